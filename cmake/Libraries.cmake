@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: Apache-2.0
+# Every library we build on, each from Debian 12. `./dev` installs them.
+find_package(PkgConfig REQUIRED)
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED CONFIG)
+find_package(nlohmann_json REQUIRED CONFIG)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+find_package(hwy REQUIRED CONFIG)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(OpenImageIO 2.4 REQUIRED CONFIG)
+find_package(CLI11 REQUIRED CONFIG)
+find_package(tomlplusplus REQUIRED CONFIG)
+find_package(GTest REQUIRED CONFIG)
+pkg_check_modules(LIBRAW_R REQUIRED IMPORTED_TARGET libraw_r)
+if(NOT WEFT_PLAIN_THREADS)
+  find_package(TBB REQUIRED CONFIG)
+endif()

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: Apache-2.0
+# What every target of ours is built with.
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
+
+set(WEFT_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=: address,undefined or thread")
+option(WEFT_PLAIN_THREADS "parallel_for on plain threads instead of oneTBB, which ThreadSanitizer cannot see into" OFF)
+option(WEFT_FUZZERS "Build the libFuzzer programs (clang only)" OFF)
+
+add_library(weft_settings INTERFACE)
+target_include_directories(weft_settings INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(weft_settings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -Werror
+  -ffp-contract=off)  # the same bytes from every build: operations fuse only where a kernel says so
+target_link_options(weft_settings INTERFACE -fuse-ld=lld)
+if(WEFT_SANITIZE)
+  target_compile_options(weft_settings INTERFACE
+    -fsanitize=${WEFT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(weft_settings INTERFACE -fsanitize=${WEFT_SANITIZE})
+endif()
+
+# weft_library(NAME DEPENDS ... SOURCES ...): one folder, one target.
+function(weft_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC weft_settings ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+endfunction()
+
+# weft_test(NAME DEPENDS ... SOURCES ...): one test program, one CTest entry.
+# One entry a program: loading OpenImageIO costs 0.2 s a process.
+function(weft_test name)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_link_libraries(${name} PRIVATE weft_settings ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
+  add_test(NAME ${name} COMMAND ${name})
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+endfunction()
