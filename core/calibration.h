@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/camera.h"
+#include "core/json_document.h"
+#include "core/lights.h"
+#include "core/result.h"
+
+namespace weft {
+
+/// How counts follow light: variance of one reading and departure from a straight line.
+struct Response {
+  double electrons_per_count = 1;  ///< photon noise: variance of s counts of light is s / electrons_per_count
+  double read_noise_counts = 0;    ///< standard deviation without light
+  /// lin_c(v) = v * (1 + a v + b v^2) for v = (count - black) / (white - black); {a, b} by channel.
+  std::array<std::array<double, 2>, 3> linearity = {};
+
+  friend bool operator==(const Response&, const Response&) = default;
+};
+
+/// What everything in a calibration holds for.
+struct CalibrationSubject {
+  std::string rig;
+  std::string camera_model;
+  std::string camera_serial;
+  double f_number = 0;
+  /// "absolute" where a patch of measured reflectance fixed the scale, else "relative".
+  std::string albedo_scale = "relative";
+};
+
+/// Everything measured about a rig, immutable, named by its content.
+struct Calibration {
+  std::string id;  ///< SHA-256 of the sorted (name, SHA-256) list of its parts
+  CalibrationSubject subject;
+  std::optional<CameraModel> camera;
+  std::optional<Response> response;
+  std::optional<Lights> lights;
+};
+
+/// Reads a calibration folder: calibration.json (schema weft.calibration/1) and its parts camera.json,
+/// response.json, lights.json, each checked against the SHA-256 that calibration.json names.
+Result<Calibration> read_calibration(const std::filesystem::path& folder);
+
+/// Writes the folder, which must not be there yet, and returns the calibration with its id.
+Result<Calibration> write_calibration(const std::filesystem::path& folder, Calibration calibration);
+
+}  // namespace weft

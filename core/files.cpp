@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/files.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <openssl/evp.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <memory>
+#include <vector>
+
+namespace weft {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& file, int flags, mode_t mode = 0644)
+      : fd_(::open(file.c_str(), flags | O_CLOEXEC, mode)) {}
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  explicit operator bool() const { return fd_ >= 0; }
+
+ private:
+  int fd_;
+};
+
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), &EVP_MD_CTX_free) {
+    EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr);
+  }
+  void add(const void* data, std::size_t bytes) { EVP_DigestUpdate(context_.get(), data, bytes); }
+  std::string hex() {
+    std::array<unsigned char, EVP_MAX_MD_SIZE> digest = {};
+    unsigned int length = 0;
+    EVP_DigestFinal_ex(context_.get(), digest.data(), &length);
+    std::string text;
+    for (unsigned int i = 0; i < length; ++i) text += fmt::format("{:02x}", digest[i]);
+    return text;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+bool write_all(int fd, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::write(fd, bytes.data(), bytes.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+  }
+  return true;
+}
+
+fs::path parent_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+}  // namespace
+
+std::string system_reason(int error_number) {
+  return std::strerror(error_number);
+}
+
+Error cannot_read(const fs::path& file, int error_number) {
+  return {ErrorKind::kNoInput, "cannot read", file.string(), system_reason(error_number),
+          error_number == EACCES ? "give this user the right to read it" : "check the path"};
+}
+
+Error cannot_write(const fs::path& file, int error_number) {
+  switch (error_number) {
+    case ENOSPC:
+    case EDQUOT:
+    case EFBIG:
+      return {ErrorKind::kInputOutput, "cannot write", file.string(), system_reason(error_number),
+              "free disk space or choose another disk with -o, then run the same command again"};
+    case EACCES:
+    case EPERM:
+    case EROFS:
+    case ENOENT:
+    case ENOTDIR:
+    case EEXIST:
+    case ENOTEMPTY:
+      return {ErrorKind::kCannotCreate, "cannot create", file.string(), system_reason(error_number),
+              "choose a folder that this user may write to"};
+    default:
+      return {ErrorKind::kInputOutput, "cannot write", file.string(), system_reason(error_number),
+              "check the disk and its cable"};
+  }
+}
+
+Result<std::string> read_text(const fs::path& file, std::size_t most_bytes) {
+  const Descriptor in(file, O_RDONLY);
+  if (!in) return cannot_read(file, errno);
+  struct stat info = {};
+  if (fstat(in.get(), &info) != 0) return cannot_read(file, errno);
+  if (S_ISDIR(info.st_mode)) return cannot_read(file, EISDIR);
+  std::string text;
+  std::vector<char> block(std::size_t{1} << 16);
+  for (;;) {
+    const ssize_t n = ::read(in.get(), block.data(), block.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return cannot_read(file, errno);
+    if (n == 0) return text;
+    text.append(block.data(), static_cast<std::size_t>(n));
+    if (text.size() > most_bytes) {
+      return Error{ErrorKind::kBadData, "file is too large for what it should be", file.string(),
+                   fmt::format("over {} bytes", most_bytes), "check that it is the file you mean"};
+    }
+  }
+}
+
+Result<void> write_file(const fs::path& file, std::string_view bytes) {
+  fs::path aside = file;
+  aside += ".partial";
+  {
+    const Descriptor out(aside, O_WRONLY | O_CREAT | O_TRUNC);
+    if (!out) return cannot_write(file, errno);
+    if (!write_all(out.get(), bytes) || ::fsync(out.get()) != 0) {
+      const int reason = errno;
+      ::unlink(aside.c_str());
+      return cannot_write(file, reason);
+    }
+  }
+  if (::rename(aside.c_str(), file.c_str()) != 0) {
+    const int reason = errno;
+    ::unlink(aside.c_str());
+    return cannot_write(file, reason);
+  }
+  return sync_path(parent_of(file));
+}
+
+Result<void> sync_path(const fs::path& path) {
+  const Descriptor fd(path, O_RDONLY);
+  if (!fd || ::fsync(fd.get()) != 0) return cannot_write(path, errno);
+  return {};
+}
+
+Result<void> publish_folder(const fs::path& folder, const fs::path& target) {
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, failed)) {
+    if (Result<void> synced = sync_path(entry.path()); !synced) return synced;
+  }
+  if (failed) return cannot_write(folder, failed.value());
+  if (Result<void> synced = sync_path(folder); !synced) return synced;
+  // rename() would replace an empty folder in silence.
+  if (fs::exists(target)) return cannot_write(target, EEXIST);
+  if (::rename(folder.c_str(), target.c_str()) != 0) return cannot_write(target, errno);
+  return sync_path(parent_of(target));
+}
+
+Result<void> make_writable_folder(const fs::path& folder) {
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) return cannot_write(folder, failed.value());
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) return cannot_write(folder, errno);
+  return {};
+}
+
+Result<std::string> sha256_of_file(const fs::path& file) {
+  const Descriptor in(file, O_RDONLY);
+  if (!in) return cannot_read(file, errno);
+  Sha256 digest;
+  std::vector<char> block(std::size_t{1} << 20);
+  for (;;) {
+    const ssize_t n = ::read(in.get(), block.data(), block.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return cannot_read(file, errno);
+    if (n == 0) return digest.hex();
+    digest.add(block.data(), static_cast<std::size_t>(n));
+  }
+}
+
+std::string sha256_of(std::string_view text) {
+  Sha256 digest;
+  digest.add(text.data(), text.size());
+  return digest.hex();
+}
+
+std::uint64_t free_disk_bytes(const fs::path& path) {
+  std::error_code failed;
+  fs::path existing = fs::absolute(path, failed);
+  while (!fs::exists(existing, failed) && existing.has_relative_path()) existing = existing.parent_path();
+  const fs::space_info space = fs::space(existing, failed);
+  return failed ? 0 : space.available;
+}
+
+std::uint64_t available_memory_bytes() {
+  std::ifstream info("/proc/meminfo");
+  std::string key;
+  std::uint64_t kilobytes = 0;
+  std::string unit;
+  while (info >> key >> kilobytes >> unit) {
+    if (key == "MemAvailable:") return kilobytes * 1024;
+  }
+  return 0;
+}
+
+std::uint64_t peak_memory_bytes() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+}  // namespace weft

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace weft {
+
+/// The whole of a text file. kNoInput if it is not there or may not be read, kBadData above `most_bytes`.
+Result<std::string> read_text(const std::filesystem::path& file,
+                              std::size_t most_bytes = std::size_t{64} << 20);
+
+/// Writes a file aside (`.partial`), syncs it and renames it into place: after a crash there is the old file
+/// or the new one, never half of one. Errors: kCannotCreate, kInputOutput with the system's reason.
+Result<void> write_file(const std::filesystem::path& file, std::string_view bytes);
+
+/// Syncs a file or folder to its disk.
+Result<void> sync_path(const std::filesystem::path& path);
+
+/// Syncs everything under `folder`, renames it to `target` and syncs the parent: a folder that is there is
+/// complete. Fails with kCannotCreate if `target` exists.
+Result<void> publish_folder(const std::filesystem::path& folder, const std::filesystem::path& target);
+
+/// Makes `folder` and its parents and proves that files can be made in it.
+Result<void> make_writable_folder(const std::filesystem::path& folder);
+
+/// SHA-256 of a file's bytes as 64 hexadecimal digits, read in blocks.
+Result<std::string> sha256_of_file(const std::filesystem::path& file);
+/// SHA-256 of a text as 64 hexadecimal digits.
+std::string sha256_of(std::string_view text);
+
+/// Bytes free for this user on the disk that holds `path` or its nearest existing parent.
+std::uint64_t free_disk_bytes(const std::filesystem::path& path);
+/// Bytes of memory the system could hand out now without swapping.
+std::uint64_t available_memory_bytes();
+/// The most memory this process has held at once, in bytes.
+std::uint64_t peak_memory_bytes();
+
+/// "No space left on device" and the like for an errno value.
+std::string system_reason(int error_number);
+/// The error of a file that cannot be opened for reading, from errno.
+Error cannot_read(const std::filesystem::path& file, int error_number);
+/// The error of an output that could not be written, from errno: kCannotCreate or kInputOutput.
+Error cannot_write(const std::filesystem::path& file, int error_number);
+
+}  // namespace weft

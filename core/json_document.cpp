@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/json_document.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "core/files.h"
+
+namespace weft {
+namespace {
+
+Error bad_document(const std::string& where, const std::string& why) {
+  return {ErrorKind::kBadData, "document cannot be used", where, why,
+          "restore the file from a copy, or make it again with the program that wrote it"};
+}
+
+}  // namespace
+
+Result<Json> read_json(const std::filesystem::path& file, const std::string& name, int major) {
+  Result<std::string> text = read_text(file);
+  if (!text) return std::move(text).error();
+  const Json document = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  if (document.is_discarded()) return bad_document(file.string(), "it is not valid JSON");
+  if (!document.is_object() || !document.contains("schema") || !document["schema"].is_string()) {
+    return bad_document(file.string(),
+                        fmt::format("it has no \"schema\"; \"{}/{}\" was expected", name, major));
+  }
+  const std::string schema = document["schema"].get<std::string>();
+  const std::string prefix = name + '/';
+  int version = -1;
+  if (schema.starts_with(prefix)) {
+    const char* begin = schema.data() + prefix.size();
+    const char* end = schema.data() + schema.size();
+    const auto [rest, failed] = std::from_chars(begin, end, version);
+    if (failed != std::errc() || (rest != end && *rest != '.')) version = -1;
+  }
+  if (version < 1) {
+    return bad_document(file.string(),
+                        fmt::format("its schema is \"{}\"; \"{}/{}\" was expected", schema, name, major));
+  }
+  if (version > major) {
+    return Error{ErrorKind::kBadData, "document is newer than this program", file.string(),
+                 fmt::format("its schema is {}; this program reads {}/{}", schema, name, major),
+                 fmt::format("use a version of weft that reads {}/{}", name, version)};
+  }
+  return document;
+}
+
+Result<void> write_json(const std::filesystem::path& file, const Json& document) {
+  return write_file(file, document.dump(2, ' ', false, Json::error_handler_t::replace) + '\n');
+}
+
+const Json* JsonFields::find(const char* key, bool (*is_kind)(const Json&), const char* kind) {
+  if (error_) return nullptr;
+  if (!object_->is_object() || !object_->contains(key)) {
+    error_ = bad_document(where_, fmt::format("\"{}\" is missing", key));
+    return nullptr;
+  }
+  const Json& value = (*object_)[key];
+  if (!is_kind(value)) {
+    error_ = bad_document(
+        where_, fmt::format("\"{}\" is {}; {} was expected", key, value.dump().substr(0, 40), kind));
+    return nullptr;
+  }
+  return &value;
+}
+
+std::string JsonFields::text(const char* key) {
+  const Json* value = find(
+      key, [](const Json& v) { return v.is_string(); }, "a text");
+  return value ? value->get<std::string>() : std::string();
+}
+
+std::string JsonFields::text_or(const char* key, std::string fallback) {
+  return has(key) ? text(key) : fallback;
+}
+
+double JsonFields::number(const char* key) {
+  const Json* value = find(
+      key, [](const Json& v) { return v.is_number() && std::isfinite(v.get<double>()); }, "a number");
+  return value ? value->get<double>() : 0.0;
+}
+
+std::optional<double> JsonFields::optional_number(const char* key) {
+  if (!has(key)) return std::nullopt;
+  return number(key);
+}
+
+int JsonFields::integer(const char* key) {
+  const auto fits = [](const Json& v) {
+    return v.is_number_integer() && v.get<std::int64_t>() >= -2147483647 &&
+           v.get<std::int64_t>() <= 2147483647;
+  };
+  const Json* value = find(key, fits, "a whole number");
+  return value ? value->get<int>() : 0;
+}
+
+std::array<double, 3> JsonFields::rgb(const char* key) {
+  const auto is_triple = [](const Json& v) {
+    if (!v.is_array() || v.size() != 3) return false;
+    for (const Json& item : v) {
+      if (!item.is_number() || !std::isfinite(item.get<double>())) return false;
+    }
+    return true;
+  };
+  const Json* value = find(key, is_triple, "a list of three numbers");
+  return value ? value->get<std::array<double, 3>>() : std::array<double, 3>{};
+}
+
+Vec3 JsonFields::vec3(const char* key) {
+  const std::array<double, 3> v = rgb(key);
+  return {v[0], v[1], v[2]};
+}
+
+const Json& JsonFields::list(const char* key) {
+  static const Json empty = Json::array();
+  const Json* value = find(
+      key, [](const Json& v) { return v.is_array(); }, "a list");
+  return value ? *value : empty;
+}
+
+const Json& JsonFields::object(const char* key) {
+  static const Json empty = Json::object();
+  const Json* value = find(
+      key, [](const Json& v) { return v.is_object(); }, "an object");
+  return value ? *value : empty;
+}
+
+bool JsonFields::has(const char* key) const {
+  return object_->is_object() && object_->contains(key);
+}
+
+void JsonFields::reject(const char* key, const std::string& rule) {
+  if (!error_) error_ = bad_document(where_, fmt::format("\"{}\" {}", key, rule));
+}
+
+Result<void> JsonFields::status() const {
+  if (error_) return *error_;
+  return {};
+}
+
+}  // namespace weft

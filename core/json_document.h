@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "core/result.h"
+#include "core/vec.h"
+
+namespace weft {
+
+/// JSON with its keys in the order they were written, so that files read as they were meant.
+using Json = nlohmann::ordered_json;
+
+/// Reads a document whose "schema" is `name`/`major` or `name`/`major`.minor. A newer major version is
+/// refused with a sentence that names the version needed; a newer minor version is read and its fields are
+/// kept.
+Result<Json> read_json(const std::filesystem::path& file, const std::string& name, int major);
+
+/// Writes a document aside, synced and renamed, indented for people.
+Result<void> write_json(const std::filesystem::path& file, const Json& document);
+
+/// Typed access to the fields of one JSON object. The first field that is missing or of the wrong kind is
+/// remembered with its path; every later read then returns a default, so a reader is a plain list of fields
+/// that ends with `status()`.
+class JsonFields {
+ public:
+  JsonFields(const Json& object, std::string where) : object_(&object), where_(std::move(where)) {}
+
+  std::string text(const char* key);
+  double number(const char* key);  ///< finite
+  int integer(const char* key);
+  Vec3 vec3(const char* key);
+  std::array<double, 3> rgb(const char* key);
+  std::optional<double> optional_number(const char* key);
+  std::string text_or(const char* key, std::string fallback);
+  /// The list under `key`, or an empty one once something is wrong.
+  const Json& list(const char* key);
+  const Json& object(const char* key);
+  bool has(const char* key) const;
+
+  /// Remembers that the value of `key` breaks a rule: "must be above 0".
+  void reject(const char* key, const std::string& rule);
+  const std::string& where() const { return where_; }
+  Result<void> status() const;
+
+ private:
+  const Json* find(const char* key, bool (*is_kind)(const Json&), const char* kind);
+
+  const Json* object_;
+  std::string where_;
+  std::optional<Error> error_;
+};
+
+}  // namespace weft

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+
+namespace weft {
+namespace {
+
+constexpr const char* kSchema = "weft.session";
+constexpr std::array<std::pair<ShotRole, const char*>, 4> kRoles = {{{ShotRole::kLit, "lit"},
+                                                                     {ShotRole::kDark, "dark"},
+                                                                     {ShotRole::kRepeat, "repeat"},
+                                                                     {ShotRole::kBracket, "bracket"}}};
+
+bool stays_inside(const std::filesystem::path& file) {
+  if (file.empty() || file.is_absolute()) return false;
+  return std::none_of(file.begin(), file.end(),
+                      [](const std::filesystem::path& part) { return part == ".."; });
+}
+
+Result<Shot> read_shot(const Json& json, const std::string& where) {
+  JsonFields fields(json, where);
+  Shot shot;
+  shot.index = fields.integer("index");
+  shot.led = fields.integer("led");
+  shot.file = fields.text("file");
+  shot.sha256 = fields.text_or("sha256", "");
+  shot.exposure_us = fields.number("exposure_us");
+  shot.iso = fields.number("iso");
+  shot.f_number = fields.number("f_number");
+  shot.time = fields.text_or("time", "");
+  const std::string role = fields.text("role");
+  const auto* known =
+      std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return role == r.second; });
+  if (known == kRoles.end()) {
+    fields.reject("role", fmt::format("is \"{}\"; lit, dark, repeat or bracket was expected", role));
+  } else {
+    shot.role = known->first;
+  }
+  if (!stays_inside(shot.file)) fields.reject("file", "must be a path inside the session");
+  if (shot.exposure_us <= 0) fields.reject("exposure_us", "must be above 0");
+  if (shot.iso <= 0) fields.reject("iso", "must be above 0");
+  if (shot.led < 0) fields.reject("led", "must be 0 (none) or a LED's number");
+  if (shot.role == ShotRole::kLit && shot.led == 0) fields.reject("led", "must be above 0 for a lit shot");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  shot.document = json;
+  return shot;
+}
+
+Result<void> check_shots(const Session& session, const std::string& where) {
+  const auto refuse = [&](std::string why, std::string remedy) {
+    return Error{ErrorKind::kBadData, "session cannot be used", where, std::move(why), std::move(remedy)};
+  };
+  std::set<int> lit_leds;
+  const Shot* first = nullptr;
+  int darks = 0;
+  for (const Shot& shot : session.shots) {
+    if (shot.role == ShotRole::kRepeat || shot.role == ShotRole::kBracket) continue;
+    if (shot.role == ShotRole::kLit && !lit_leds.insert(shot.led).second) {
+      return refuse(fmt::format("LED {} has two lit shots", shot.led),
+                    "keep one of them as lit and mark the other as repeat");
+    }
+    if (shot.role == ShotRole::kDark && ++darks > 1) {
+      return refuse("there are two dark shots", "keep one of them");
+    }
+    if (first == nullptr) first = &shot;
+    if (shot.exposure_us != first->exposure_us || shot.iso != first->iso ||
+        shot.f_number != first->f_number) {
+      return refuse(fmt::format("{} was taken at {} us, ISO {}, f/{} and {} at {} us, ISO {}, f/{}",
+                                first->file, first->exposure_us, first->iso, first->f_number, shot.file,
+                                shot.exposure_us, shot.iso, shot.f_number),
+                    "scan again with one exposure for all shots, or mark the odd one as bracket");
+    }
+  }
+  return {};
+}
+
+Json to_json(const Shot& shot) {
+  const auto* role =
+      std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return shot.role == r.first; });
+  Json json = shot.document.is_object() ? shot.document : Json::object();
+  json["index"] = shot.index;
+  json["led"] = shot.led;
+  json["role"] = role->second;
+  json["file"] = shot.file;
+  json["sha256"] = shot.sha256;
+  json["exposure_us"] = shot.exposure_us;
+  json["iso"] = shot.iso;
+  json["f_number"] = shot.f_number;
+  if (!shot.time.empty()) json["time"] = shot.time;
+  return json;
+}
+
+}  // namespace
+
+const Shot* Session::dark() const {
+  const auto found =
+      std::find_if(shots.begin(), shots.end(), [](const Shot& s) { return s.role == ShotRole::kDark; });
+  return found == shots.end() ? nullptr : &*found;
+}
+
+std::vector<const Shot*> Session::lit() const {
+  std::vector<const Shot*> lit;
+  for (const Shot& shot : shots) {
+    if (shot.role == ShotRole::kLit) lit.push_back(&shot);
+  }
+  std::sort(lit.begin(), lit.end(), [](const Shot* a, const Shot* b) { return a->led < b->led; });
+  return lit;
+}
+
+Result<Session> read_session(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "session.json";
+  Result<Json> document = read_json(file, kSchema, 1);
+  if (!document) return std::move(document).error();
+  JsonFields fields(*document, file.string());
+  Session session;
+  session.folder = folder;
+  session.fabric = fields.text_or("fabric", "");
+  session.cloth_height_mm = fields.number("cloth_height_mm");
+  session.rig = fields.text("rig");
+  session.calibration_id = fields.text("calibration");
+  session.state = fields.text("state");
+  const Json& shots = fields.list("shots");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    Result<Shot> shot = read_shot(shots[i], fmt::format("{}: shot {}", file.string(), i));
+    if (!shot) return std::move(shot).error();
+    session.shots.push_back(std::move(*shot));
+  }
+  if (Result<void> ok = check_shots(session, file.string()); !ok) return std::move(ok).error();
+  session.document = std::move(*document);
+  return session;
+}
+
+Result<void> write_session(const Session& session) {
+  Json document = session.document.is_object() ? session.document : Json::object();
+  if (!document.contains("schema")) document["schema"] = std::string(kSchema) + "/1";
+  document["fabric"] = session.fabric;
+  document["cloth_height_mm"] = session.cloth_height_mm;
+  document["rig"] = session.rig;
+  document["calibration"] = session.calibration_id;
+  document["state"] = session.state;
+  Json shots = Json::array();
+  for (const Shot& shot : session.shots) shots.push_back(to_json(shot));
+  document["shots"] = std::move(shots);
+  return write_json(session.folder / "session.json", document);
+}
+
+}  // namespace weft

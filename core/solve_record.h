@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+namespace weft {
+
+/// Bits of status.png. The first two and kInvalidReading say that a reading was left out; the others speak of
+/// the pixel itself.
+enum StatusBit : std::uint16_t {
+  kSaturated = 1 << 0,
+  kShadowed = 1 << 1,
+  kZeroDof = 1 << 2,         ///< exactly three readings: nothing left to test them by
+  kDark = 1 << 3,            ///< no reading stands out of the noise
+  kIllConditioned = 1 << 4,  ///< condition number of the light matrix from 1e6
+  kNoSolution = 1 << 5,      ///< fewer than three readings, or light directions of rank below three
+  kSpecular = 1 << 6,        ///< a reading over three times the Lambert prediction
+  kInvalidReading = 1 << 7,
+};
+
+struct StatusName {
+  StatusBit bit;
+  const char* name;
+};
+
+inline constexpr std::array<StatusName, 8> kStatusNames = {{{kSaturated, "SATURATED"},
+                                                            {kShadowed, "SHADOWED"},
+                                                            {kZeroDof, "ZERO_DOF"},
+                                                            {kDark, "DARK"},
+                                                            {kIllConditioned, "ILL_CONDITIONED"},
+                                                            {kNoSolution, "NO_SOLUTION"},
+                                                            {kSpecular, "SPECULAR"},
+                                                            {kInvalidReading, "INVALID_READING"}}};
+
+/// Light matrices with this condition number or more are flagged.
+inline constexpr double kIllConditionedFrom = 1e6;
+
+/// Raised whenever the bytes of an output may change.
+inline constexpr int kSolverVersion = 1;
+
+}  // namespace weft
