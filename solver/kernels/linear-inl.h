@@ -1,0 +1,530 @@
+// SPDX-License-Identifier: Apache-2.0
+// The row kernels of linear.cpp, compiled once for every SIMD target.
+
+#include <hwy/cache_control.h>
+#include <hwy/highway.h>
+// math-inl.h comes after highway.h.
+#include <hwy/contrib/math/math-inl.h>
+
+#include "core/solve_record.h"
+#include "solver/kernels/linear_row.h"
+#include "solver/method.h"
+#include "solver/reference/pixel.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace weft::solver {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using D = hn::ScalableTag<float>;
+using V = hn::Vec<D>;
+using M = hn::Mask<D>;
+
+// 1 / sqrt(v) to about 1e-7: the estimate of the machine and one step of Newton's method.
+HWY_INLINE V reciprocal_sqrt(D d, V v) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Div(hn::Set(d, 1.0f), hn::Sqrt(v));
+#else
+  const V y = hn::ApproximateReciprocalSqrt(v);
+  const V half_v = hn::Mul(hn::Set(d, 0.5f), v);
+  return hn::Mul(y, hn::NegMulAdd(half_v, hn::Mul(y, y), hn::Set(d, 1.5f)));
+#endif
+}
+
+// 1 / v to about 1e-7; the same construction.
+HWY_INLINE V reciprocal(D d, V v) {
+#if HWY_TARGET == HWY_SCALAR
+  return hn::Div(hn::Set(d, 1.0f), v);
+#else
+  const V y = hn::ApproximateReciprocal(v);
+  return hn::Mul(y, hn::NegMulAdd(v, y, hn::Set(d, 2.0f)));
+#endif
+}
+
+struct Vector3 {
+  V x, y, z;
+};
+
+HWY_INLINE V dot(Vector3 a, Vector3 b) {
+  return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
+}
+
+// A symmetric 3 x 3 matrix.
+struct Symmetric {
+  V xx, xy, xz, yy, yz, zz;
+};
+
+HWY_INLINE Symmetric zero_matrix(D d) {
+  const V z = hn::Zero(d);
+  return {z, z, z, z, z, z};
+}
+
+// m += (w a) a^T, with wa = w a.
+HWY_INLINE void add_outer(Symmetric& m, Vector3 wa, Vector3 a) {
+  m.xx = hn::MulAdd(wa.x, a.x, m.xx);
+  m.xy = hn::MulAdd(wa.x, a.y, m.xy);
+  m.xz = hn::MulAdd(wa.x, a.z, m.xz);
+  m.yy = hn::MulAdd(wa.y, a.y, m.yy);
+  m.yz = hn::MulAdd(wa.y, a.z, m.yz);
+  m.zz = hn::MulAdd(wa.z, a.z, m.zz);
+}
+
+HWY_INLINE void add_scaled(Vector3& sum, V w, Vector3 a) {
+  sum.x = hn::MulAdd(w, a.x, sum.x);
+  sum.y = hn::MulAdd(w, a.y, sum.y);
+  sum.z = hn::MulAdd(w, a.z, sum.z);
+}
+
+HWY_INLINE Vector3 times(const Symmetric& m, Vector3 v) {
+  return {dot({m.xx, m.xy, m.xz}, v), dot({m.xy, m.yy, m.yz}, v), dot({m.xz, m.yz, m.zz}, v)};
+}
+
+HWY_INLINE V trace(const Symmetric& m) {
+  return hn::Add(m.xx, hn::Add(m.yy, m.zz));
+}
+
+// Sum of the products of all nine elements: tr(A B).
+HWY_INLINE V trace_of_product(D d, const Symmetric& a, const Symmetric& b) {
+  const V off = hn::MulAdd(a.xy, b.xy, hn::MulAdd(a.xz, b.xz, hn::Mul(a.yz, b.yz)));
+  return hn::MulAdd(hn::Set(d, 2.0f), off,
+                    hn::MulAdd(a.xx, b.xx, hn::MulAdd(a.yy, b.yy, hn::Mul(a.zz, b.zz))));
+}
+
+HWY_INLINE Symmetric squared(const Symmetric& m) {
+  const Vector3 x = {m.xx, m.xy, m.xz}, y = {m.xy, m.yy, m.yz}, z = {m.xz, m.yz, m.zz};
+  return {dot(x, x), dot(x, y), dot(x, z), dot(y, y), dot(y, z), dot(z, z)};
+}
+
+struct Inverse {
+  Symmetric matrix;
+  V determinant;
+  V minors;  // sum of the principal 2 x 2 minors
+};
+
+HWY_INLINE Inverse inverted(D d, const Symmetric& g) {
+  const auto minor = [](V a, V b, V c, V e) { return hn::NegMulAdd(c, e, hn::Mul(a, b)); };  // a b - c e
+  Symmetric adjugate;
+  adjugate.xx = minor(g.yy, g.zz, g.yz, g.yz);
+  adjugate.xy = minor(g.xz, g.yz, g.xy, g.zz);
+  adjugate.xz = minor(g.xy, g.yz, g.xz, g.yy);
+  adjugate.yy = minor(g.xx, g.zz, g.xz, g.xz);
+  adjugate.yz = minor(g.xy, g.xz, g.xx, g.yz);
+  adjugate.zz = minor(g.xx, g.yy, g.xy, g.xy);
+  Inverse result;
+  result.determinant = dot({g.xx, g.xy, g.xz}, {adjugate.xx, adjugate.xy, adjugate.xz});
+  result.minors = trace(adjugate);
+  const V s = hn::Div(hn::Set(d, 1.0f), result.determinant);
+  result.matrix = {hn::Mul(adjugate.xx, s), hn::Mul(adjugate.xy, s), hn::Mul(adjugate.xz, s),
+                   hn::Mul(adjugate.yy, s), hn::Mul(adjugate.yz, s), hn::Mul(adjugate.zz, s)};
+  return result;
+}
+
+// A quantity of RowPoints at the vector of columns that starts at x: vectors never straddle a cell.
+struct Along {
+  std::size_t cell;
+  V offset;
+
+  Along(D d, std::size_t x)
+      : cell(x / LightField::kCell),
+        offset(hn::Iota(d, static_cast<float>(x % static_cast<std::size_t>(LightField::kCell)))) {}
+  HWY_INLINE V at(D d, RowLinePointer line) const {
+    return hn::MulAdd(offset, hn::Set(d, line.step[cell]), hn::Set(d, line.value[cell]));
+  }
+};
+
+// The value of an even and an odd column, alternating from column x.
+HWY_INLINE V alternate(D d, std::size_t x, float even, float odd) {
+  if (hn::Lanes(d) == 1) return hn::Set(d, (x & 1) != 0 ? odd : even);
+  return hn::OddEven(hn::Set(d, odd), hn::Set(d, even));
+}
+
+struct LightHere {
+  Vector3 l;
+  V inverse_shape;  // 1 / (lobe / d^2): 1 / e without flux and gain
+  M lit;
+};
+
+HWY_INLINE LightHere light_here(D d, const RowLight& light, V x_mm, V y_mm) {
+  const Vector3 p = {hn::Set(d, light.position[0]), hn::Set(d, light.position[1]),
+                     hn::Set(d, light.position[2])};
+  const V one = hn::Set(d, 1.0f);
+  if (light.distant) return {p, one, hn::Eq(one, one)};
+  const Vector3 to_led = {hn::Sub(p.x, x_mm), hn::Sub(p.y, y_mm), p.z};
+  const V d2 = dot(to_led, to_led);
+  const V inverse_d = reciprocal_sqrt(d, d2);
+  LightHere here;
+  here.l = {hn::Mul(to_led.x, inverse_d), hn::Mul(to_led.y, inverse_d), hn::Mul(to_led.z, inverse_d)};
+  if (light.mu == 0) {
+    here.inverse_shape = d2;
+    here.lit = hn::Eq(one, one);
+    return here;
+  }
+  const Vector3 aim = {hn::Set(d, light.aim[0]), hn::Set(d, light.aim[1]), hn::Set(d, light.aim[2])};
+  const V cosine = hn::Neg(dot(here.l, aim));
+  here.lit = hn::Gt(cosine, hn::Zero(d));
+  const V safe = hn::IfThenElse(here.lit, cosine, one);
+  V inverse_lobe = reciprocal(d, safe);
+  if (light.mu != 1) inverse_lobe = hn::Exp(d, hn::Mul(hn::Set(d, -light.mu), hn::Log(d, safe)));
+  here.inverse_shape = hn::Mul(d2, inverse_lobe);
+  return here;
+}
+
+// Where the quantities of light k lie in the scratch of a row.
+class Scratch {
+ public:
+  Scratch(D d, float* data, std::size_t lights)
+      : d_(d), data_(data), lanes_(hn::Lanes(d)), sorted_(data + lights * 8 * lanes_) {}
+
+  HWY_INLINE void store(std::size_t k, Vector3 l, V light, V inverse_e) const {
+    float* p = data_ + k * 8 * lanes_;
+    hn::StoreU(l.x, d_, p);
+    hn::StoreU(l.y, d_, p + lanes_);
+    hn::StoreU(l.z, d_, p + 2 * lanes_);
+    hn::StoreU(light, d_, p + 3 * lanes_);
+    hn::StoreU(inverse_e, d_, p + 4 * lanes_);
+  }
+  HWY_INLINE void store_plane(std::size_t k, std::size_t plane, V x) const {
+    hn::StoreU(x, d_, data_ + (k * 8 + 5 + plane) * lanes_);
+  }
+  HWY_INLINE Vector3 direction(std::size_t k) const { return {load(k, 0), load(k, 1), load(k, 2)}; }
+  HWY_INLINE V light(std::size_t k) const { return load(k, 3); }
+  HWY_INLINE V inverse_e(std::size_t k) const { return load(k, 4); }
+  HWY_INLINE V plane(std::size_t k, std::size_t p) const { return load(k, 5 + p); }
+  HWY_INLINE float* sorted(std::size_t rank) const { return sorted_ + rank * lanes_; }
+
+ private:
+  HWY_INLINE V load(std::size_t k, std::size_t what) const {
+    return hn::LoadU(d_, data_ + (k * 8 + what) * lanes_);
+  }
+
+  D d_;
+  float* data_;
+  std::size_t lanes_;
+  float* sorted_;
+};
+
+// The brightest readings seen so far, in falling order: four in registers, more of them (many lights) in
+// memory.
+class Brightest {
+ public:
+  Brightest(D d, const Scratch& scratch, std::size_t count)
+      : d_(d),
+        scratch_(&scratch),
+        count_(count),
+        first_(none(d)),
+        second_(first_),
+        third_(first_),
+        fourth_(first_) {
+    if (count_ > 4) {
+      for (std::size_t i = 0; i < count_; ++i) hn::StoreU(first_, d_, scratch.sorted(i));
+    }
+  }
+  static HWY_INLINE V none(D d) { return hn::Neg(hn::Inf(d)); }
+
+  HWY_INLINE void add(V v) {
+    if (count_ > 4) {
+      for (std::size_t i = 0; i < count_; ++i) {
+        const V kept = hn::LoadU(d_, scratch_->sorted(i));
+        hn::StoreU(hn::Max(kept, v), d_, scratch_->sorted(i));
+        v = hn::Min(kept, v);
+      }
+      return;
+    }
+    insert(first_, v);
+    insert(second_, v);
+    insert(third_, v);
+    insert(fourth_, v);
+  }
+  HWY_INLINE V ranked(std::size_t index) const {
+    if (count_ > 4) return hn::LoadU(d_, scratch_->sorted(index));
+    return index == 0 ? first_ : index == 1 ? second_ : index == 2 ? third_ : fourth_;
+  }
+
+ private:
+  static HWY_INLINE void insert(V& kept, V& v) {
+    const V larger = hn::Max(kept, v);
+    v = hn::Min(kept, v);
+    kept = larger;
+  }
+
+  D d_;
+  const Scratch* scratch_;
+  std::size_t count_;
+  V first_, second_, third_, fourth_;
+};
+
+// Least squares, covariance and status of one vector of pixels, whose columns start at x. Returns whether
+// some lane asks to be solved again.
+template <std::size_t kPlanes>
+HWY_INLINE bool solve_columns(D d, const RowTask& task, const Scratch& scratch, std::size_t x) {
+  const hn::RebindToSigned<D> di;
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const V minus_infinity = Brightest::none(d), infinity = hn::Inf(d);
+  const Along along(d, x);
+  const RowPoints& points = *task.points;
+  const bool near = points.x_mm.value != nullptr;
+  const bool gains = !points.led_gain.empty();
+  const V x_mm = near ? along.at(d, points.x_mm) : zero;
+  const V y_mm = near ? along.at(d, points.y_mm) : zero;
+
+  // 1 / gain of each plane.
+  V inverse_gain[kPlanes];
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    inverse_gain[p] = one;
+    if (!gains) continue;
+    V gain;
+    if constexpr (kPlanes == 1) {
+      gain = hn::OddEven(along.at(d, points.gain_rgb[task.channel[1]]),
+                         along.at(d, points.gain_rgb[task.channel[0]]));
+      if (hn::Lanes(d) == 1) gain = along.at(d, points.gain_rgb[task.channel[x & 1]]);
+    } else {
+      gain = along.at(d, points.gain_rgb[p]);
+    }
+    inverse_gain[p] = reciprocal(d, gain);
+  }
+
+  // Equilibrated readings r / e; a reading that cannot be used becomes minus infinity.
+  auto status = hn::Zero(di);
+  const auto mark = [&](M where, std::uint16_t bit) {
+    status = hn::Or(status, hn::IfThenElseZero(hn::RebindMask(di, where), hn::Set(di, bit)));
+  };
+  M saturated = hn::Lt(one, zero), invalid = saturated, unlit = saturated, bright = saturated;
+  Brightest brightest(d, scratch, task.bright_rank);
+  const V dark_sigma = hn::Set(d, 3 * std::sqrt(task.noise_floor + task.noise_shared));
+  for (std::size_t k = 0; k < task.light_count; ++k) {
+    const RowLight& light = task.lights[k];
+    const LightHere here = light_here(d, light, x_mm, y_mm);
+    V shape = here.inverse_shape;
+    if (gains) shape = hn::Mul(shape, reciprocal(d, along.at(d, points.led_gain[k])));
+    M missing = hn::Lt(one, zero), full = missing;
+    V sum = zero, inverse_e = zero;
+    for (std::size_t p = 0; p < kPlanes; ++p) {
+      const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + x);
+      V inverse_flux;
+      if constexpr (kPlanes == 1) {
+        inverse_flux =
+            alternate(d, x, light.inverse_flux[task.channel[0]], light.inverse_flux[task.channel[1]]);
+      } else {
+        inverse_flux = hn::Set(d, light.inverse_flux[p]);
+      }
+      inverse_e = hn::Mul(hn::Mul(shape, inverse_flux), inverse_gain[p]);
+      const V ratio = hn::Mul(r, inverse_e);
+      full = hn::Or(full, hn::Eq(r, infinity));
+      missing = hn::Or(missing, hn::Not(hn::Gt(r, minus_infinity)));
+      if constexpr (kPlanes == 1) {
+        sum = ratio;
+      } else {
+        sum = hn::MulAdd(hn::Set(d, static_cast<float>(kLuminance[p])), ratio, sum);
+        scratch.store_plane(k, p, ratio);
+      }
+    }
+    full = hn::AndNot(missing, full);
+    const M behind = hn::AndNot(hn::Or(missing, full), hn::Not(here.lit));
+    const M usable = hn::Not(hn::Or(behind, hn::Or(missing, full)));
+    invalid = hn::Or(invalid, missing);
+    saturated = hn::Or(saturated, full);
+    unlit = hn::Or(unlit, behind);
+    bright =
+        hn::Or(bright, hn::And(usable, hn::Gt(sum, kPlanes == 1 ? hn::Mul(dark_sigma, inverse_e) : zero)));
+    sum = hn::IfThenElse(usable, sum, minus_infinity);
+    scratch.store(k, here.l, sum, inverse_e);
+    if (task.shadow_mask) brightest.add(sum);
+  }
+  mark(invalid, kInvalidReading);
+  mark(saturated, kSaturated);
+  mark(unlit, kShadowed);
+
+  // Normal equations of what the mask keeps.
+  V threshold = minus_infinity;
+  if (task.shadow_mask) {
+    threshold =
+        hn::Min(hn::Mul(hn::Set(d, static_cast<float>(kShadowShare)), brightest.ranked(task.bright_index)),
+                brightest.ranked(kLeastKept - 1));
+  }
+  Symmetric g = zero_matrix(d);
+  Vector3 rhs = {zero, zero, zero};
+  Vector3 plane_rhs[3] = {rhs, rhs, rhs};
+  V count = zero, dropped = zero;
+  for (std::size_t k = 0; k < task.light_count; ++k) {
+    const V sum = scratch.light(k);
+    const M keep = hn::And(hn::Ge(sum, threshold), hn::Gt(sum, minus_infinity));
+    dropped = hn::Add(dropped, hn::IfThenElseZero(hn::AndNot(keep, hn::Gt(sum, minus_infinity)), one));
+    count = hn::Add(count, hn::IfThenElseZero(keep, one));
+    const Vector3 l = scratch.direction(k);
+    const Vector3 kept = {hn::IfThenElseZero(keep, l.x), hn::IfThenElseZero(keep, l.y),
+                          hn::IfThenElseZero(keep, l.z)};
+    add_outer(g, kept, l);
+    add_scaled(rhs, hn::IfThenElseZero(keep, sum), l);
+    if constexpr (kPlanes == 3) {
+      for (std::size_t p = 0; p < 3; ++p) {
+        add_scaled(plane_rhs[p], hn::IfThenElseZero(keep, scratch.plane(k, p)), l);
+      }
+    }
+  }
+  const Inverse inverse = inverted(d, g);
+  const Vector3 b = times(inverse.matrix, rhs);
+  const V rho2 = dot(b, b);
+  const V inverse_rho = hn::Div(one, hn::Sqrt(rho2));
+  const V rho = hn::Mul(rho2, inverse_rho);
+  const Vector3 n = {hn::Mul(b.x, inverse_rho), hn::Mul(b.y, inverse_rho), hn::Mul(b.z, inverse_rho)};
+  Vector3 plane_b[3];
+  if constexpr (kPlanes == 3) {
+    for (std::size_t p = 0; p < 3; ++p) plane_b[p] = times(inverse.matrix, plane_rhs[p]);
+  }
+
+  // What float32 cannot answer for. With rows of unit length the eigenvalues of G sum to the count and
+  // determinant / minors is a lower bound of the smallest, so this catches every condition number over 30.
+  const M any_dropped = hn::Gt(dropped, zero);
+  const V kMostConditionSquared = hn::Set(d, 900.0f);
+  M again =
+      hn::Not(hn::Gt(hn::Mul(kMostConditionSquared, inverse.determinant), hn::Mul(count, inverse.minors)));
+  again = hn::Or(again, hn::Lt(count, hn::Set(d, 3.0f)));
+  again = hn::Or(
+      again, hn::And(any_dropped,
+                     hn::Le(inverse.determinant, hn::Set(d, static_cast<float>(kLeastMaskedDeterminant)))));
+  again = hn::Or(again, hn::Not(hn::And(hn::Gt(rho2, hn::Set(d, 1e-24f)), hn::Lt(rho2, hn::Set(d, 1e24f)))));
+  again = hn::Or(again, hn::Not(bright));
+  mark(any_dropped, kShadowed);
+  mark(hn::Eq(count, hn::Set(d, 3.0f)), kZeroDof);
+
+  // Residuals and the covariance C = G^-1 M G^-1 of b.
+  const bool modelled = kPlanes == 1 && task.has_noise;
+  const V per_reading = hn::Set(d, task.noise_per_reading), floor = hn::Set(d, task.noise_floor);
+  V residual2 = zero;
+  V plane_residual2[3] = {zero, zero, zero};
+  Symmetric m = zero_matrix(d);
+  Vector3 shared = {zero, zero, zero};
+  M specular = hn::Lt(one, zero);
+  const V margin = hn::Mul(hn::Set(d, static_cast<float>(kSpecularMargin)), rho);
+  for (std::size_t k = 0; k < task.light_count; ++k) {
+    const V sum = scratch.light(k);
+    const M keep = hn::And(hn::Ge(sum, threshold), hn::Gt(sum, minus_infinity));
+    const Vector3 l = scratch.direction(k);
+    const V fit = dot(l, b);
+    const V predicted = hn::Max(fit, zero);
+    const V r = hn::IfThenElseZero(keep, hn::Sub(sum, fit));
+    residual2 = hn::MulAdd(r, r, residual2);
+    V limit = hn::MulAdd(hn::Set(d, static_cast<float>(kSpecularTimes)), predicted, margin);
+    if (modelled) {
+      const V inverse_e = scratch.inverse_e(k);
+      const V variance = hn::Mul(inverse_e, hn::MulAdd(per_reading, predicted, hn::Mul(floor, inverse_e)));
+      const V kept = hn::IfThenElseZero(keep, variance);
+      add_outer(m, {hn::Mul(kept, l.x), hn::Mul(kept, l.y), hn::Mul(kept, l.z)}, l);
+      add_scaled(shared, hn::IfThenElseZero(keep, inverse_e), l);
+      limit = hn::MulAdd(hn::Set(d, 3.0f), hn::Sqrt(variance), limit);
+    }
+    if constexpr (kPlanes == 3) {
+      for (std::size_t p = 0; p < 3; ++p) {
+        const V pr = hn::IfThenElseZero(keep, hn::Sub(scratch.plane(k, p), dot(l, plane_b[p])));
+        plane_residual2[p] = hn::MulAdd(pr, pr, plane_residual2[p]);
+      }
+    }
+    specular = hn::Or(specular, hn::And(keep, hn::Gt(sum, limit)));
+  }
+  mark(specular, kSpecular);
+  mark(again, kSolveAgain);
+
+  // Variance of the normal's angle times rho^2, and of rho.
+  const V to_degrees = hn::Set(d, static_cast<float>(180 / 3.14159265358979323846));
+  const Vector3 u = times(inverse.matrix, n);
+  V angle2, along_n;
+  if (modelled) {
+    const V s = hn::Set(d, task.noise_shared);
+    const Vector3 inverse_shared = times(inverse.matrix, shared);
+    const V un = dot(u, shared);
+    along_n = hn::MulAdd(s, hn::Mul(un, un), dot(u, times(m, u)));
+    angle2 =
+        hn::MulAdd(s, dot(inverse_shared, inverse_shared), trace_of_product(d, m, squared(inverse.matrix)));
+    angle2 = hn::Sub(angle2, along_n);
+  } else {
+    along_n = dot(n, u);
+    angle2 = hn::Sub(trace(inverse.matrix), along_n);
+  }
+  angle2 = hn::Max(angle2, zero);
+  along_n = hn::Max(along_n, zero);
+  const V inverse_freedom = hn::Div(one, hn::Sub(count, hn::Set(d, 3.0f)));
+  const M determined = hn::Gt(count, hn::Set(d, 3.0f));
+  if (!modelled) angle2 = hn::Mul(angle2, hn::Mul(residual2, inverse_freedom));
+  V sigma_deg = hn::Mul(to_degrees, hn::Mul(hn::Sqrt(angle2), inverse_rho));
+  const V unknown = hn::Set(d, kUnknownAngleDeg);
+  if (!modelled) sigma_deg = hn::IfThenElse(determined, sigma_deg, unknown);
+  hn::StoreU(hn::Min(sigma_deg, unknown), d, task.sigma_normal_deg + x);
+  hn::StoreU(hn::Mul(hn::Sqrt(hn::Div(residual2, count)), inverse_rho), d, task.residual + x);
+  hn::StoreU(n.x, d, task.normal[0] + x);
+  hn::StoreU(n.y, d, task.normal[1] + x);
+  hn::StoreU(n.z, d, task.normal[2] + x);
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    const V albedo = kPlanes == 1 ? rho : hn::Max(zero, dot(n, plane_b[p]));
+    V sigma = hn::Sqrt(along_n);
+    if (!modelled) {
+      const V scatter2 = kPlanes == 1 ? residual2 : plane_residual2[p];
+      sigma =
+          hn::IfThenElse(determined, hn::Mul(sigma, hn::Sqrt(hn::Mul(scatter2, inverse_freedom))), albedo);
+    }
+    hn::StoreU(albedo, d, task.albedo[p] + x);
+    hn::StoreU(sigma, d, task.sigma_albedo[p] + x);
+  }
+  hn::StoreU(hn::DemoteTo(hn::Rebind<std::uint16_t, D>(), status), hn::Rebind<std::uint16_t, D>(),
+             task.status + x);
+  return !hn::AllFalse(d, again);
+}
+
+template <std::size_t kPlanes>
+bool solve_row(const RowTask& task) {
+  const D d;
+  const Scratch scratch(d, task.scratch, task.light_count);
+  bool again = false;
+  for (std::size_t x = 0; x < task.width; x += hn::Lanes(d))
+    again |= solve_columns<kPlanes>(d, task, scratch, x);
+  return again;
+}
+
+bool solve_mosaic_row(const RowTask& task) {
+  return solve_row<1>(task);
+}
+bool solve_rgb_row(const RowTask& task) {
+  return solve_row<3>(task);
+}
+
+// Normal equations only; see solve_bare.
+void solve_bare_row(const RowTask& task) {
+  const D d;
+  const V zero = hn::Zero(d);
+  for (std::size_t x = 0; x < task.width; x += hn::Lanes(d)) {
+    const Along along(d, x);
+    const V x_mm = along.at(d, task.points->x_mm), y_mm = along.at(d, task.points->y_mm);
+    Symmetric g = zero_matrix(d);
+    Vector3 rhs[3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}};
+    for (std::size_t k = 0; k < task.light_count; ++k) {
+      const RowLight& light = task.lights[k];
+      const Vector3 to_led = {hn::Sub(hn::Set(d, light.position[0]), x_mm),
+                              hn::Sub(hn::Set(d, light.position[1]), y_mm), hn::Set(d, light.position[2])};
+      const V d2 = dot(to_led, to_led);
+      const V inverse_d = reciprocal_sqrt(d, d2);
+      const Vector3 l = {hn::Mul(to_led.x, inverse_d), hn::Mul(to_led.y, inverse_d),
+                         hn::Mul(to_led.z, inverse_d)};
+      add_outer(g, l, l);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const V r = hn::LoadU(d, task.readings[k * 3 + c] + x);
+        add_scaled(rhs[c], hn::Mul(r, hn::Mul(d2, hn::Set(d, light.inverse_flux[c]))), l);
+      }
+    }
+    const Symmetric inverse = inverted(d, g).matrix;
+    Vector3 b[3], sum = {zero, zero, zero};
+    for (std::size_t c = 0; c < 3; ++c) {
+      b[c] = times(inverse, rhs[c]);
+      add_scaled(sum, hn::Set(d, static_cast<float>(kLuminance[c])), b[c]);
+    }
+    const V inverse_rho = reciprocal_sqrt(d, dot(sum, sum));
+    const Vector3 n = {hn::Mul(sum.x, inverse_rho), hn::Mul(sum.y, inverse_rho), hn::Mul(sum.z, inverse_rho)};
+    hn::Stream(n.x, d, task.normal[0] + x);
+    hn::Stream(n.y, d, task.normal[1] + x);
+    hn::Stream(n.z, d, task.normal[2] + x);
+    for (std::size_t c = 0; c < 3; ++c) hn::Stream(dot(n, b[c]), d, task.albedo[c] + x);
+  }
+  hwy::FlushStream();
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace weft::solver
+HWY_AFTER_NAMESPACE();

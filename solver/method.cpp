@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/method.h"
+
+namespace weft::solver {
+
+std::span<const MethodName> method_names() {
+  static constexpr std::array<MethodName, 3> names = {{{"fast", true, &fast_method},
+                                                       {"seed", false, &seed_method},
+                                                       {"least-squares", false, &least_squares_method}}};
+  return names;
+}
+
+}  // namespace weft::solver

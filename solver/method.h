@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/light_field.h"
+#include "core/radiometry.h"
+#include "core/raw_frame.h"
+#include "core/result.h"
+#include "core/solve_record.h"
+
+namespace weft::solver {
+
+/// Rec.709 luminance weights of linear R, G, B: what one normal for three channels is solved from.
+inline constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722};
+
+/// K frames of one tile as readings (core/radiometry.h: +infinity is saturated, NaN is missing).
+///
+/// One plane is a mosaic: each photosite is solved alone, with its own direction and its colour's strength,
+/// so that the normal needs no demosaicing. Three planes are RGB and share one normal, solved from their
+/// luminance after each channel was divided by its strength.
+struct TileInput {
+  Rect tile;       ///< absolute pixels; tile.x0 is a multiple of kRowGroup
+  int planes = 1;  ///< 1 or 3
+  CfaPattern cfa;  ///< colour of each photosite where planes is 1
+  std::span<const View<const float>>
+      readings;  ///< [k * planes + p], (0, 0) is the tile's corner, rows padded
+  const LightField* field = nullptr;
+  std::optional<NoiseModel> noise;  ///< of a mosaic; without one the scatter of the residuals stands for it
+};
+
+/// What a method writes for every pixel of the tile; views have (0, 0) at the tile's corner and padded rows.
+/// A pixel without solution gets the normal (0, 0, 1), the best albedo for that normal and a sigma of
+/// kUnknownAngleDeg.
+struct TileOutput {
+  std::array<View<float>, 3> normal;        ///< X, Y, Z of the rig frame, unit length
+  std::array<View<float>, 3> albedo;        ///< rho of the photosite in [0] where planes is 1, else R, G, B
+  View<float> sigma_normal_deg;             ///< sqrt(tr(P C P)) / rho in degrees: rms angle
+  std::array<View<float>, 3> sigma_albedo;  ///< absolute, as albedo
+  View<float> residual;                     ///< rms of the readings used, over the albedo
+  View<std::uint16_t> status;               ///< StatusBit
+};
+
+inline constexpr float kUnknownAngleDeg = 180;
+
+/// A way from readings to normals. Stateless: one object serves all threads.
+class Method {
+ public:
+  virtual ~Method() = default;
+  virtual void solve(const TileInput& input, const TileOutput& output) const = 0;
+  /// Whether it expects RGB (planes = 3) where the photographs are mosaics, as the paper it follows did.
+  virtual bool wants_rgb() const { return false; }
+};
+
+/// "The paper's": four systems a pixel, one for each channel and one for luminance, each by Eigen's two-sided
+/// Jacobi SVD in double (Neubelt and Pettineo 2013, eq. 24-30). No shadow mask.
+std::unique_ptr<Method> seed_method();
+/// Every valid reading in one least-squares system, no shadow mask (eq. 29).
+std::unique_ptr<Method> least_squares_method();
+/// Least squares without the readings in attached shadow: those below 0.15 of the third brightest of ten, as
+/// long as four readings and a well-conditioned system remain.
+std::unique_ptr<Method> fast_method();
+
+/// Levels and methods by the name a person gives them.
+struct MethodName {
+  const char* name;
+  bool is_quality;  ///< a level of --quality; else a method of --method
+  std::unique_ptr<Method> (*make)();
+};
+std::span<const MethodName> method_names();
+
+}  // namespace weft::solver

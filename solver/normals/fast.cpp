@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/kernels/linear.h"
+#include "solver/method.h"
+
+namespace weft::solver {
+namespace {
+
+class Fast : public Method {
+ public:
+  void solve(const TileInput& input, const TileOutput& output) const override {
+    solve_linear(input, output, {.shadow_mask = true});
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Method> fast_method() {
+  return std::make_unique<Fast>();
+}
+
+}  // namespace weft::solver
