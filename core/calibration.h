@@ -16,7 +16,7 @@ namespace weft {
 /// How counts follow light: variance of one reading and departure from a straight line.
 struct Response {
   double electrons_per_count = 1;  ///< photon noise: variance of s counts of light is s / electrons_per_count
-  double read_noise_counts = 0;    ///< standard deviation without light
+  double read_noise_counts = 0;    ///< standard deviation without light, rounding to whole counts included
   /// lin_c(v) = v * (1 + a v + b v^2) for v = (count - black) / (white - black); {a, b} by channel.
   std::array<std::array<double, 2>, 3> linearity = {};
 

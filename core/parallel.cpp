@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 #else
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #endif
@@ -29,6 +30,9 @@ void run_workers(int threads, const std::function<void(int)>& worker) {
 }
 #else
 void run_workers(int threads, const std::function<void(int)>& worker) {
+  // Without this, asking for more threads than the machine has makes oneTBB complain on standard error.
+  const oneapi::tbb::global_control allow(oneapi::tbb::global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(std::max(threads, hardware_threads())));
   oneapi::tbb::task_arena arena(threads);
   arena.execute([&] { oneapi::tbb::parallel_for(0, threads, worker, oneapi::tbb::simple_partitioner{}); });
 }

@@ -80,9 +80,9 @@ Radiometry::Radiometry(const RawFrame& like, const RawFrame* dark, const Respons
       mean_range += range / 4.0;
     }
   }
-  // s counts of light have variance s / gain; a count is rounded to a whole number (1/12).
+  // s counts of light have variance s / gain.
   const double reading_per_count = static_cast<double>(per_second_) / mean_range;
-  const double still = response.read_noise_counts * response.read_noise_counts + 1.0 / 12;
+  const double still = response.read_noise_counts * response.read_noise_counts;
   noise_.per_reading = reading_per_count / response.electrons_per_count;
   noise_.floor = reading_per_count * reading_per_count * still;
   noise_.shared = dark != nullptr ? noise_.floor : 0;

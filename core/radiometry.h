@@ -22,7 +22,7 @@ inline constexpr double kSaturatedFrom = 0.98;
 /// Variance of one reading: photon noise grows with the reading, the rest does not.
 struct NoiseModel {
   double per_reading = 0;  ///< variance a unit of reading
-  double floor = 0;        ///< variance without light: read noise and quantisation
+  double floor = 0;        ///< variance without light
   double shared = 0;       ///< variance of the dark shot's own noise, which all readings of a photosite share
 
   double variance(double reading) const { return per_reading * (reading > 0 ? reading : 0) + floor; }

@@ -4,9 +4,9 @@
 namespace weft::solver {
 
 std::span<const MethodName> method_names() {
-  static constexpr std::array<MethodName, 3> names = {{{"fast", true, &fast_method},
-                                                       {"seed", false, &seed_method},
-                                                       {"least-squares", false, &least_squares_method}}};
+  static constexpr std::array<MethodName, 3> names = {{{"fast", true, false, &fast_method},
+                                                       {"seed", false, true, &seed_method},
+                                                       {"least-squares", false, true, &least_squares_method}}};
   return names;
 }
 

@@ -7,6 +7,7 @@
 #include <hwy/contrib/math/math-inl.h>
 
 #include "core/solve_record.h"
+#include "core/vec.h"
 #include "solver/kernels/linear_row.h"
 #include "solver/method.h"
 #include "solver/reference/pixel.h"
@@ -140,32 +141,29 @@ HWY_INLINE V alternate(D d, std::size_t x, float even, float odd) {
 
 struct LightHere {
   Vector3 l;
-  V inverse_shape;  // 1 / (lobe / d^2): 1 / e without flux and gain
-  M lit;
+  V inverse_shape;  // 1 / (lobe * gain / d^2): 1 / e without flux and the gain of the channel
+  V cosine;         // of the angle from the LED's aim; positive where the LED shines
 };
 
-HWY_INLINE LightHere light_here(D d, const RowLight& light, V x_mm, V y_mm) {
-  const Vector3 p = {hn::Set(d, light.position[0]), hn::Set(d, light.position[1]),
-                     hn::Set(d, light.position[2])};
+HWY_INLINE LightHere light_here(D d, const RowLight& light, V x_mm, V y_mm, V gain) {
+  const Vector3 p = {hn::Set(d, light.position[0]), hn::Set(d, light.position[1]), hn::Set(d, light.position[2])};
   const V one = hn::Set(d, 1.0f);
-  if (light.distant) return {p, one, hn::Eq(one, one)};
+  if (light.distant) return {p, one, one};
   const Vector3 to_led = {hn::Sub(p.x, x_mm), hn::Sub(p.y, y_mm), p.z};
   const V d2 = dot(to_led, to_led);
   const V inverse_d = reciprocal_sqrt(d, d2);
   LightHere here;
   here.l = {hn::Mul(to_led.x, inverse_d), hn::Mul(to_led.y, inverse_d), hn::Mul(to_led.z, inverse_d)};
   if (light.mu == 0) {
-    here.inverse_shape = d2;
-    here.lit = hn::Eq(one, one);
+    here.cosine = one;
+    here.inverse_shape = hn::Mul(d2, reciprocal(d, gain));
     return here;
   }
   const Vector3 aim = {hn::Set(d, light.aim[0]), hn::Set(d, light.aim[1]), hn::Set(d, light.aim[2])};
-  const V cosine = hn::Neg(dot(here.l, aim));
-  here.lit = hn::Gt(cosine, hn::Zero(d));
-  const V safe = hn::IfThenElse(here.lit, cosine, one);
-  V inverse_lobe = reciprocal(d, safe);
-  if (light.mu != 1) inverse_lobe = hn::Exp(d, hn::Mul(hn::Set(d, -light.mu), hn::Log(d, safe)));
-  here.inverse_shape = hn::Mul(d2, inverse_lobe);
+  here.cosine = hn::Neg(dot(here.l, aim));
+  V lobe = here.cosine;
+  if (light.mu != 1) lobe = hn::Exp(d, hn::Mul(hn::Set(d, light.mu), hn::Log(d, hn::Max(lobe, hn::Zero(d)))));
+  here.inverse_shape = hn::Mul(d2, reciprocal(d, hn::Mul(lobe, gain)));
   return here;
 }
 
@@ -182,6 +180,9 @@ class Scratch {
     hn::StoreU(l.z, d_, p + 2 * lanes_);
     hn::StoreU(light, d_, p + 3 * lanes_);
     hn::StoreU(inverse_e, d_, p + 4 * lanes_);
+  }
+  HWY_INLINE void store_light(std::size_t k, V light) const {
+    hn::StoreU(light, d_, data_ + (k * 8 + 3) * lanes_);
   }
   HWY_INLINE void store_plane(std::size_t k, std::size_t plane, V x) const {
     hn::StoreU(x, d_, data_ + (k * 8 + 5 + plane) * lanes_);
@@ -211,7 +212,7 @@ class Brightest {
       : d_(d),
         scratch_(&scratch),
         count_(count),
-        first_(none(d)),
+        first_(hn::Neg(hn::Inf(d))),
         second_(first_),
         third_(first_),
         fourth_(first_) {
@@ -219,7 +220,6 @@ class Brightest {
       for (std::size_t i = 0; i < count_; ++i) hn::StoreU(first_, d_, scratch.sorted(i));
     }
   }
-  static HWY_INLINE V none(D d) { return hn::Neg(hn::Inf(d)); }
 
   HWY_INLINE void add(V v) {
     if (count_ > 4) {
@@ -253,179 +253,240 @@ class Brightest {
   V first_, second_, third_, fourth_;
 };
 
-// Least squares, covariance and status of one vector of pixels, whose columns start at x. Returns whether
-// some lane asks to be solved again.
+// Normal equations and what tells whether they may stand.
 template <std::size_t kPlanes>
-HWY_INLINE bool solve_columns(D d, const RowTask& task, const Scratch& scratch, std::size_t x) {
-  const hn::RebindToSigned<D> di;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
-  const V minus_infinity = Brightest::none(d), infinity = hn::Inf(d);
-  const Along along(d, x);
-  const RowPoints& points = *task.points;
-  const bool near = points.x_mm.value != nullptr;
-  const bool gains = !points.led_gain.empty();
-  const V x_mm = near ? along.at(d, points.x_mm) : zero;
-  const V y_mm = near ? along.at(d, points.y_mm) : zero;
+struct Sums {
+  Symmetric g;
+  Vector3 rhs;
+  Vector3 plane_rhs[3];
+  V count;
 
-  // 1 / gain of each plane.
-  V inverse_gain[kPlanes];
+  explicit Sums(D d) : g(zero_matrix(d)), rhs{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, plane_rhs{rhs, rhs, rhs},
+                       count(hn::Zero(d)) {}
+};
+
+// What a vector of columns has in common, whichever way it is solved.
+struct Columns {
+  std::size_t x;
+  Along along;
+  V x_mm, y_mm;
+
+  Columns(D d, const RowTask& task, std::size_t first)
+      : x(first),
+        along(d, first),
+        x_mm(task.points->x_mm.value != nullptr ? along.at(d, task.points->x_mm) : hn::Zero(d)),
+        y_mm(task.points->x_mm.value != nullptr ? along.at(d, task.points->y_mm) : hn::Zero(d)) {}
+};
+
+// Readings over strength of all lights, kept in `scratch`, and their normal equations as if every one counted. Returns
+// whether that holds for every lane: no reading is missing, saturated or behind a LED, none is dark enough to be taken
+// for a shadow, some stand out of the noise. A value that is not finite shows in the sums.
+template <std::size_t kPlanes>
+HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const Columns& columns, Sums<kPlanes>& sums) {
+  const V one = hn::Set(d, 1.0f), infinity = hn::Inf(d);
+  const RowPoints& points = *task.points;
+  const bool gains = !points.led_gain.empty();
+  V inverse_gain[kPlanes];  // of each plane
   for (std::size_t p = 0; p < kPlanes; ++p) {
     inverse_gain[p] = one;
     if (!gains) continue;
-    V gain;
+    const auto gain_of = [&](std::size_t channel) { return columns.along.at(d, points.gain_rgb[channel]); };
     if constexpr (kPlanes == 1) {
-      gain = hn::OddEven(along.at(d, points.gain_rgb[task.channel[1]]),
-                         along.at(d, points.gain_rgb[task.channel[0]]));
-      if (hn::Lanes(d) == 1) gain = along.at(d, points.gain_rgb[task.channel[x & 1]]);
+      const V gain = hn::Lanes(d) == 1 ? gain_of(task.channel[columns.x & 1])
+                                       : hn::OddEven(gain_of(task.channel[1]), gain_of(task.channel[0]));
+      inverse_gain[p] = reciprocal(d, gain);
     } else {
-      gain = along.at(d, points.gain_rgb[p]);
+      inverse_gain[p] = reciprocal(d, gain_of(p));
     }
-    inverse_gain[p] = reciprocal(d, gain);
   }
-
-  // Equilibrated readings r / e; a reading that cannot be used becomes minus infinity.
-  auto status = hn::Zero(di);
-  const auto mark = [&](M where, std::uint16_t bit) {
-    status = hn::Or(status, hn::IfThenElseZero(hn::RebindMask(di, where), hn::Set(di, bit)));
-  };
-  M saturated = hn::Lt(one, zero), invalid = saturated, unlit = saturated, bright = saturated;
-  Brightest brightest(d, scratch, task.bright_rank);
-  const V dark_sigma = hn::Set(d, 3 * std::sqrt(task.noise_floor + task.noise_shared));
+  V darkest = infinity, brightest = hn::Neg(infinity), brightest_reading = brightest, least_cosine = one;
   for (std::size_t k = 0; k < task.light_count; ++k) {
     const RowLight& light = task.lights[k];
-    const LightHere here = light_here(d, light, x_mm, y_mm);
-    V shape = here.inverse_shape;
-    if (gains) shape = hn::Mul(shape, reciprocal(d, along.at(d, points.led_gain[k])));
-    M missing = hn::Lt(one, zero), full = missing;
-    V sum = zero, inverse_e = zero;
+    const LightHere here =
+        light_here(d, light, columns.x_mm, columns.y_mm, gains ? columns.along.at(d, points.led_gain[k]) : one);
+    V light_sum = hn::Zero(d), inverse_e = light_sum;
     for (std::size_t p = 0; p < kPlanes; ++p) {
-      const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + x);
+      const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + columns.x);
       V inverse_flux;
       if constexpr (kPlanes == 1) {
-        inverse_flux =
-            alternate(d, x, light.inverse_flux[task.channel[0]], light.inverse_flux[task.channel[1]]);
+        inverse_flux = alternate(d, columns.x, light.inverse_flux[task.channel[0]], light.inverse_flux[task.channel[1]]);
       } else {
         inverse_flux = hn::Set(d, light.inverse_flux[p]);
       }
-      inverse_e = hn::Mul(hn::Mul(shape, inverse_flux), inverse_gain[p]);
+      inverse_e = hn::Mul(here.inverse_shape, hn::Mul(inverse_flux, inverse_gain[p]));
       const V ratio = hn::Mul(r, inverse_e);
-      full = hn::Or(full, hn::Eq(r, infinity));
-      missing = hn::Or(missing, hn::Not(hn::Gt(r, minus_infinity)));
       if constexpr (kPlanes == 1) {
-        sum = ratio;
+        light_sum = ratio;
+        brightest_reading = hn::Max(brightest_reading, r);
       } else {
-        sum = hn::MulAdd(hn::Set(d, static_cast<float>(kLuminance[p])), ratio, sum);
+        light_sum = hn::MulAdd(hn::Set(d, static_cast<float>(kLuminance[p])), ratio, light_sum);
         scratch.store_plane(k, p, ratio);
+        add_scaled(sums.plane_rhs[p], ratio, here.l);
       }
     }
+    scratch.store(k, here.l, light_sum, inverse_e);
+    darkest = hn::Min(darkest, light_sum);
+    brightest = hn::Max(brightest, light_sum);
+    least_cosine = hn::Min(least_cosine, here.cosine);
+    add_outer(sums.g, here.l, here.l);
+    add_scaled(sums.rhs, light_sum, here.l);
+  }
+  sums.count = hn::Set(d, static_cast<float>(task.light_count));
+  M all = hn::Lt(hn::Abs(hn::Add(sums.rhs.x, hn::Add(sums.rhs.y, sums.rhs.z))), infinity);
+  all = hn::And(all, hn::Gt(least_cosine, hn::Zero(d)));
+  all = hn::And(all, kPlanes == 1 ? hn::Gt(brightest_reading, hn::Set(d, task.dark_reading))
+                                  : hn::Gt(brightest, hn::Zero(d)));
+  if (task.shadow_mask) {
+    all = hn::And(all, hn::Ge(darkest, hn::Mul(hn::Set(d, static_cast<float>(kShadowShare)), brightest)));
+  }
+  return hn::AllTrue(d, all);
+}
+
+using Status = hn::Vec<hn::RebindToSigned<D>>;
+
+HWY_INLINE void mark(Status& status, M where, std::uint16_t bit) {
+  const hn::RebindToSigned<D> di;
+  status = hn::Or(status, hn::IfThenElseZero(hn::RebindMask(di, where), hn::Set(di, bit)));
+}
+
+// The normal equations again, of the readings that can be used and that the shadow mask keeps. In `scratch`, readings
+// that were left out become minus infinity. Returns the lanes that must be solved again in double.
+template <std::size_t kPlanes>
+HWY_INLINE M select(D d, const RowTask& task, const Scratch& scratch, const Columns& columns, Sums<kPlanes>& sums,
+                    Status& status) {
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), infinity = hn::Inf(d), minus_infinity = hn::Neg(infinity);
+  const M no = hn::Lt(one, zero);
+  M saturated = no, invalid = no, unlit = no, bright = no;
+  Brightest brightest(d, scratch, task.bright_rank);
+  for (std::size_t k = 0; k < task.light_count; ++k) {
+    M missing = no, full = no, stands_out = no;
+    for (std::size_t p = 0; p < kPlanes; ++p) {
+      const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + columns.x);
+      full = hn::Or(full, hn::Eq(r, infinity));
+      missing = hn::Or(missing, hn::Not(hn::Gt(r, minus_infinity)));
+      if constexpr (kPlanes == 1) stands_out = hn::Gt(r, hn::Set(d, task.dark_reading));
+    }
+    const V light_sum = scratch.light(k);
+    if constexpr (kPlanes == 3) stands_out = hn::Gt(light_sum, zero);
+    const V cosine = light_here(d, task.lights[k], columns.x_mm, columns.y_mm, one).cosine;
     full = hn::AndNot(missing, full);
-    const M behind = hn::AndNot(hn::Or(missing, full), hn::Not(here.lit));
-    const M usable = hn::Not(hn::Or(behind, hn::Or(missing, full)));
+    const M unreadable = hn::Or(missing, full);
+    const M behind = hn::AndNot(unreadable, hn::Not(hn::Gt(cosine, zero)));
+    const M usable = hn::Not(hn::Or(behind, unreadable));
     invalid = hn::Or(invalid, missing);
     saturated = hn::Or(saturated, full);
     unlit = hn::Or(unlit, behind);
-    bright =
-        hn::Or(bright, hn::And(usable, hn::Gt(sum, kPlanes == 1 ? hn::Mul(dark_sigma, inverse_e) : zero)));
-    sum = hn::IfThenElse(usable, sum, minus_infinity);
-    scratch.store(k, here.l, sum, inverse_e);
-    if (task.shadow_mask) brightest.add(sum);
+    bright = hn::Or(bright, hn::And(usable, stands_out));
+    const V kept = hn::IfThenElse(usable, light_sum, minus_infinity);
+    scratch.store_light(k, kept);
+    if (task.shadow_mask) brightest.add(kept);
   }
-  mark(invalid, kInvalidReading);
-  mark(saturated, kSaturated);
-  mark(unlit, kShadowed);
-
-  // Normal equations of what the mask keeps.
   V threshold = minus_infinity;
   if (task.shadow_mask) {
-    threshold =
-        hn::Min(hn::Mul(hn::Set(d, static_cast<float>(kShadowShare)), brightest.ranked(task.bright_index)),
-                brightest.ranked(kLeastKept - 1));
+    threshold = hn::Min(hn::Mul(hn::Set(d, static_cast<float>(kShadowShare)), brightest.ranked(task.bright_index)),
+                        brightest.ranked(kLeastKept - 1));
   }
-  Symmetric g = zero_matrix(d);
-  Vector3 rhs = {zero, zero, zero};
-  Vector3 plane_rhs[3] = {rhs, rhs, rhs};
-  V count = zero, dropped = zero;
+  sums = Sums<kPlanes>(d);
+  M any_dropped = no;
   for (std::size_t k = 0; k < task.light_count; ++k) {
-    const V sum = scratch.light(k);
-    const M keep = hn::And(hn::Ge(sum, threshold), hn::Gt(sum, minus_infinity));
-    dropped = hn::Add(dropped, hn::IfThenElseZero(hn::AndNot(keep, hn::Gt(sum, minus_infinity)), one));
-    count = hn::Add(count, hn::IfThenElseZero(keep, one));
+    const V light_sum = scratch.light(k);
+    const M usable = hn::Gt(light_sum, minus_infinity);
+    const M keep = hn::And(usable, hn::Ge(light_sum, threshold));
+    any_dropped = hn::Or(any_dropped, hn::AndNot(keep, usable));
+    sums.count = hn::Add(sums.count, hn::IfThenElseZero(keep, one));
+    scratch.store_light(k, hn::IfThenElse(keep, light_sum, minus_infinity));
     const Vector3 l = scratch.direction(k);
-    const Vector3 kept = {hn::IfThenElseZero(keep, l.x), hn::IfThenElseZero(keep, l.y),
-                          hn::IfThenElseZero(keep, l.z)};
-    add_outer(g, kept, l);
-    add_scaled(rhs, hn::IfThenElseZero(keep, sum), l);
+    add_outer(sums.g, {hn::IfThenElseZero(keep, l.x), hn::IfThenElseZero(keep, l.y), hn::IfThenElseZero(keep, l.z)}, l);
+    add_scaled(sums.rhs, hn::IfThenElseZero(keep, light_sum), l);
     if constexpr (kPlanes == 3) {
       for (std::size_t p = 0; p < 3; ++p) {
-        add_scaled(plane_rhs[p], hn::IfThenElseZero(keep, scratch.plane(k, p)), l);
+        add_scaled(sums.plane_rhs[p], hn::IfThenElseZero(keep, scratch.plane(k, p)), l);
       }
     }
   }
-  const Inverse inverse = inverted(d, g);
-  const Vector3 b = times(inverse.matrix, rhs);
+  mark(status, invalid, kInvalidReading);
+  mark(status, saturated, kSaturated);
+  mark(status, hn::Or(unlit, any_dropped), kShadowed);
+  mark(status, hn::Eq(sums.count, hn::Set(d, 3.0f)), kZeroDof);
+  // The mask stands only while enough is left; without anything bright there is nothing to tell shadow by.
+  const V determinant = inverted(d, sums.g).determinant;
+  const M too_little = hn::Not(hn::Gt(determinant, hn::Set(d, static_cast<float>(kLeastMaskedDeterminant))));
+  return hn::Or(hn::Not(bright), hn::Or(hn::And(any_dropped, too_little), hn::Lt(sums.count, hn::Set(d, 3.0f))));
+}
+
+// Solution, residuals and covariance from the normal equations. `kSelected` says that some readings are left out (minus
+// infinity in `scratch`); without any, both ways take the same steps to the same bits.
+template <std::size_t kPlanes, bool kSelected>
+HWY_INLINE bool finish(D d, const RowTask& task, const Scratch& scratch, std::size_t x, const Sums<kPlanes>& sums,
+                       M again, Status status) {
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), minus_infinity = hn::Neg(hn::Inf(d));
+  const Inverse inverse = inverted(d, sums.g);
+  const Vector3 b = times(inverse.matrix, sums.rhs);
   const V rho2 = dot(b, b);
   const V inverse_rho = hn::Div(one, hn::Sqrt(rho2));
   const V rho = hn::Mul(rho2, inverse_rho);
   const Vector3 n = {hn::Mul(b.x, inverse_rho), hn::Mul(b.y, inverse_rho), hn::Mul(b.z, inverse_rho)};
   Vector3 plane_b[3];
   if constexpr (kPlanes == 3) {
-    for (std::size_t p = 0; p < 3; ++p) plane_b[p] = times(inverse.matrix, plane_rhs[p]);
+    for (std::size_t p = 0; p < 3; ++p) plane_b[p] = times(inverse.matrix, sums.plane_rhs[p]);
   }
 
-  // What float32 cannot answer for. With rows of unit length the eigenvalues of G sum to the count and
-  // determinant / minors is a lower bound of the smallest, so this catches every condition number over 30.
-  const M any_dropped = hn::Gt(dropped, zero);
-  const V kMostConditionSquared = hn::Set(d, 900.0f);
-  M again =
-      hn::Not(hn::Gt(hn::Mul(kMostConditionSquared, inverse.determinant), hn::Mul(count, inverse.minors)));
-  again = hn::Or(again, hn::Lt(count, hn::Set(d, 3.0f)));
-  again = hn::Or(
-      again, hn::And(any_dropped,
-                     hn::Le(inverse.determinant, hn::Set(d, static_cast<float>(kLeastMaskedDeterminant)))));
+  // What float32 cannot answer for. With rows of unit length the eigenvalues of G sum to the count and determinant /
+  // minors is a lower bound of the smallest, so this catches every condition number over 30.
+  const V most_condition2 = hn::Set(d, 900.0f);
+  again = hn::Or(again, hn::Not(hn::Gt(hn::Mul(most_condition2, inverse.determinant), hn::Mul(sums.count, inverse.minors))));
   again = hn::Or(again, hn::Not(hn::And(hn::Gt(rho2, hn::Set(d, 1e-24f)), hn::Lt(rho2, hn::Set(d, 1e24f)))));
-  again = hn::Or(again, hn::Not(bright));
-  mark(any_dropped, kShadowed);
-  mark(hn::Eq(count, hn::Set(d, 3.0f)), kZeroDof);
+  mark(status, again, kSolveAgain);
 
   // Residuals and the covariance C = G^-1 M G^-1 of b.
   const bool modelled = kPlanes == 1 && task.has_noise;
   const V per_reading = hn::Set(d, task.noise_per_reading), floor = hn::Set(d, task.noise_floor);
-  V residual2 = zero;
+  const V specular_times = hn::Set(d, static_cast<float>(kSpecularTimes));
+  V residual2 = zero, most_excess = minus_infinity;
   V plane_residual2[3] = {zero, zero, zero};
   Symmetric m = zero_matrix(d);
   Vector3 shared = {zero, zero, zero};
-  M specular = hn::Lt(one, zero);
-  const V margin = hn::Mul(hn::Set(d, static_cast<float>(kSpecularMargin)), rho);
+  const auto variance_of = [&](V predicted, V inverse_e) {
+    return hn::Mul(inverse_e, hn::MulAdd(per_reading, predicted, hn::Mul(floor, inverse_e)));
+  };
   for (std::size_t k = 0; k < task.light_count; ++k) {
-    const V sum = scratch.light(k);
-    const M keep = hn::And(hn::Ge(sum, threshold), hn::Gt(sum, minus_infinity));
+    const V light_sum = scratch.light(k);
+    const M keep = hn::Gt(light_sum, minus_infinity);
+    const auto kept = [&](V v) { return kSelected ? hn::IfThenElseZero(keep, v) : v; };
     const Vector3 l = scratch.direction(k);
     const V fit = dot(l, b);
     const V predicted = hn::Max(fit, zero);
-    const V r = hn::IfThenElseZero(keep, hn::Sub(sum, fit));
+    const V r = kept(hn::Sub(light_sum, fit));
     residual2 = hn::MulAdd(r, r, residual2);
-    V limit = hn::MulAdd(hn::Set(d, static_cast<float>(kSpecularTimes)), predicted, margin);
+    most_excess = hn::Max(most_excess, hn::NegMulAdd(specular_times, predicted, light_sum));
     if (modelled) {
       const V inverse_e = scratch.inverse_e(k);
-      const V variance = hn::Mul(inverse_e, hn::MulAdd(per_reading, predicted, hn::Mul(floor, inverse_e)));
-      const V kept = hn::IfThenElseZero(keep, variance);
-      add_outer(m, {hn::Mul(kept, l.x), hn::Mul(kept, l.y), hn::Mul(kept, l.z)}, l);
-      add_scaled(shared, hn::IfThenElseZero(keep, inverse_e), l);
-      limit = hn::MulAdd(hn::Set(d, 3.0f), hn::Sqrt(variance), limit);
+      const V variance = kept(variance_of(predicted, inverse_e));
+      add_outer(m, {hn::Mul(variance, l.x), hn::Mul(variance, l.y), hn::Mul(variance, l.z)}, l);
+      add_scaled(shared, kept(inverse_e), l);
     }
     if constexpr (kPlanes == 3) {
       for (std::size_t p = 0; p < 3; ++p) {
-        const V pr = hn::IfThenElseZero(keep, hn::Sub(scratch.plane(k, p), dot(l, plane_b[p])));
+        const V pr = kept(hn::Sub(scratch.plane(k, p), dot(l, plane_b[p])));
         plane_residual2[p] = hn::MulAdd(pr, pr, plane_residual2[p]);
       }
     }
-    specular = hn::Or(specular, hn::And(keep, hn::Gt(sum, limit)));
   }
-  mark(specular, kSpecular);
-  mark(again, kSolveAgain);
+  const V margin = hn::Mul(hn::Set(d, static_cast<float>(kSpecularMargin)), rho);
+  if (!hn::AllFalse(d, hn::Gt(most_excess, margin))) {
+    M specular = hn::Lt(one, zero);
+    for (std::size_t k = 0; k < task.light_count; ++k) {
+      const V predicted = hn::Max(dot(scratch.direction(k), b), zero);
+      const V excess = hn::Sub(hn::NegMulAdd(specular_times, predicted, scratch.light(k)), margin);
+      const V variance = modelled ? variance_of(predicted, scratch.inverse_e(k)) : zero;
+      specular = hn::Or(specular, hn::And(hn::Gt(excess, zero), hn::Gt(hn::Mul(excess, excess),
+                                                                      hn::Mul(hn::Set(d, 9.0f), variance))));
+    }
+    mark(status, specular, kSpecular);
+  }
 
   // Variance of the normal's angle times rho^2, and of rho.
-  const V to_degrees = hn::Set(d, static_cast<float>(180 / 3.14159265358979323846));
+  const V to_degrees = hn::Set(d, static_cast<float>(180 / kPi));
   const Vector3 u = times(inverse.matrix, n);
   V angle2, along_n;
   if (modelled) {
@@ -433,8 +494,7 @@ HWY_INLINE bool solve_columns(D d, const RowTask& task, const Scratch& scratch, 
     const Vector3 inverse_shared = times(inverse.matrix, shared);
     const V un = dot(u, shared);
     along_n = hn::MulAdd(s, hn::Mul(un, un), dot(u, times(m, u)));
-    angle2 =
-        hn::MulAdd(s, dot(inverse_shared, inverse_shared), trace_of_product(d, m, squared(inverse.matrix)));
+    angle2 = hn::MulAdd(s, dot(inverse_shared, inverse_shared), trace_of_product(d, m, squared(inverse.matrix)));
     angle2 = hn::Sub(angle2, along_n);
   } else {
     along_n = dot(n, u);
@@ -442,14 +502,14 @@ HWY_INLINE bool solve_columns(D d, const RowTask& task, const Scratch& scratch, 
   }
   angle2 = hn::Max(angle2, zero);
   along_n = hn::Max(along_n, zero);
-  const V inverse_freedom = hn::Div(one, hn::Sub(count, hn::Set(d, 3.0f)));
-  const M determined = hn::Gt(count, hn::Set(d, 3.0f));
+  const V inverse_freedom = hn::Div(one, hn::Sub(sums.count, hn::Set(d, 3.0f)));
+  const M determined = hn::Gt(sums.count, hn::Set(d, 3.0f));
   if (!modelled) angle2 = hn::Mul(angle2, hn::Mul(residual2, inverse_freedom));
   V sigma_deg = hn::Mul(to_degrees, hn::Mul(hn::Sqrt(angle2), inverse_rho));
   const V unknown = hn::Set(d, kUnknownAngleDeg);
   if (!modelled) sigma_deg = hn::IfThenElse(determined, sigma_deg, unknown);
   hn::StoreU(hn::Min(sigma_deg, unknown), d, task.sigma_normal_deg + x);
-  hn::StoreU(hn::Mul(hn::Sqrt(hn::Div(residual2, count)), inverse_rho), d, task.residual + x);
+  hn::StoreU(hn::Mul(hn::Sqrt(hn::Div(residual2, sums.count)), inverse_rho), d, task.residual + x);
   hn::StoreU(n.x, d, task.normal[0] + x);
   hn::StoreU(n.y, d, task.normal[1] + x);
   hn::StoreU(n.z, d, task.normal[2] + x);
@@ -458,15 +518,29 @@ HWY_INLINE bool solve_columns(D d, const RowTask& task, const Scratch& scratch, 
     V sigma = hn::Sqrt(along_n);
     if (!modelled) {
       const V scatter2 = kPlanes == 1 ? residual2 : plane_residual2[p];
-      sigma =
-          hn::IfThenElse(determined, hn::Mul(sigma, hn::Sqrt(hn::Mul(scatter2, inverse_freedom))), albedo);
+      sigma = hn::IfThenElse(determined, hn::Mul(sigma, hn::Sqrt(hn::Mul(scatter2, inverse_freedom))), albedo);
     }
     hn::StoreU(albedo, d, task.albedo[p] + x);
     hn::StoreU(sigma, d, task.sigma_albedo[p] + x);
   }
-  hn::StoreU(hn::DemoteTo(hn::Rebind<std::uint16_t, D>(), status), hn::Rebind<std::uint16_t, D>(),
-             task.status + x);
+  const hn::Rebind<std::uint16_t, D> d16;
+  hn::StoreU(hn::DemoteTo(d16, status), d16, task.status + x);
   return !hn::AllFalse(d, again);
+}
+
+// One vector of pixels. Returns whether some lane asks to be solved again.
+template <std::size_t kPlanes>
+HWY_INLINE bool solve_columns(D d, const RowTask& task, const Scratch& scratch, std::size_t x) {
+  const Columns columns(d, task, x);
+  Sums<kPlanes> sums(d);
+  Status status = hn::Zero(hn::RebindToSigned<D>());
+  const M no = hn::Lt(hn::Set(d, 1.0f), hn::Zero(d));
+  const bool all_count = gather(d, task, scratch, columns, sums);
+  if (all_count && task.light_count > 3) {
+    return finish<kPlanes, false>(d, task, scratch, x, sums, no, status);
+  }
+  const M again = select(d, task, scratch, columns, sums, status);
+  return finish<kPlanes, true>(d, task, scratch, x, sums, again, status);
 }
 
 template <std::size_t kPlanes>

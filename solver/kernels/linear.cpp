@@ -126,6 +126,7 @@ void solve_linear(const TileInput& input, const TileOutput& output, const Linear
     task.noise_per_reading = static_cast<float>(input.noise->per_reading);
     task.noise_floor = static_cast<float>(input.noise->floor);
     task.noise_shared = static_cast<float>(input.noise->shared);
+    task.dark_reading = static_cast<float>(3 * std::sqrt(input.noise->floor + input.noise->shared));
   }
   for (int y = 0; y < input.tile.height(); ++y) {
     const int py = input.tile.y0 + y;

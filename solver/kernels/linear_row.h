@@ -52,6 +52,7 @@ struct RowTask {
   float noise_per_reading = 0;
   float noise_floor = 0;
   float noise_shared = 0;
+  float dark_reading = 0;  ///< readings up to here do not stand out of the noise
 
   float* normal[3] = {};
   float* albedo[3] = {};

@@ -107,7 +107,7 @@ PixelSolution solve_pixel(std::span<const PixelRow> rows, const PixelOptions& op
 
   const double floor_sigma =
       options.noise && planes == 1 ? std::sqrt(options.noise->floor + options.noise->shared) : 0.0;
-  const bool dark = std::none_of(valid.begin(), valid.end(), [&](const Row& r) {
+  const bool dark = !valid.empty() && std::none_of(valid.begin(), valid.end(), [&](const Row& r) {
     return r.light > 3 * floor_sigma * r.inverse_strength;
   });
   if (dark) status |= kDark;

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/arguments.h"
+
+#include <CLI/CLI.hpp>
+#include <map>
+
+#include "app/cli/exit_code.h"
+#include "app/cli/terminal.h"
+
+namespace weft::app {
+namespace {
+
+void add_common(CLI::App& verb, CommonArguments& common) {
+  verb.add_flag("--json", common.json, "Print one JSON document on standard output");
+  verb.add_flag("-q,--quiet", common.quiet, "No progress on standard error");
+  verb.add_option("--threads", common.threads, "Threads; 0 is all the machine has")->capture_default_str()->check(
+      CLI::Range(0, 1024));
+}
+
+CLI::App* add_simulate(CLI::App& app, SimulateArguments& a) {
+  CLI::App* verb = app.add_subcommand("simulate", "Render a scene (TOML) into a session of raw DNG frames with its truth");
+  verb->add_option("scene", a.scene, "Scene file; docs/scenes.md lists its keys and units")->required();
+  verb->add_option("-o,--output", a.output, "Session folder to make, NAME.weft; must not exist")->required();
+  verb->add_flag("--explain", a.explain, "List the passes that ran, what each cost, and the effects left out");
+  return verb;
+}
+
+CLI::App* add_solve(CLI::App& app, SolveArguments& a, CommonArguments& common, std::string& quality,
+                    std::string& method, std::string& transfer, std::vector<int>& lights) {
+  CLI::App* verb = app.add_subcommand("solve", "Turn a session, or photographs under known lights, into albedo and normals");
+  CLI::Option* session = verb->add_option("session", a.session.folder, "Session folder, NAME.weft");
+  CLI::Option* photos =
+      verb->add_option("--photos", a.photos.folder,
+                       "Folder of photographs under distant lights: filenames.txt, light_directions.txt (unit x y z, "
+                       "x right, y up, z to the camera), light_intensities.txt (R G B), mask.png");
+  CLI::Option* light_file =
+      verb->add_option("--lp", a.photos.light_file, "RTI light file: a count, then a line \"file x y z\" a photograph");
+  session->excludes(photos)->excludes(light_file);
+  photos->excludes(light_file);
+  CLI::Option* level = verb->add_option("--quality", quality, "Level: fast (least squares on readings not saturated and "
+                                                              "not in attached shadow)")
+                           ->check(CLI::IsMember({"fast"}));
+  verb->add_option("--method", method,
+                   "Method for comparison: seed (four systems a pixel by SVD, after demosaicing), least-squares "
+                   "(every valid reading)")
+      ->check(CLI::IsMember({"seed", "least-squares"}))
+      ->excludes(level);
+  verb->add_option("--lights", lights, "LEDs or photographs to solve from, numbered from 1: 1,4,7; default all")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--calibration", a.session.calibration, "Calibration folder; default the session's own")
+      ->needs(session);
+  verb->add_option("--transfer", transfer,
+                   "How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb")
+      ->check(CLI::IsMember({"auto", "linear", "srgb"}))
+      ->capture_default_str();
+  verb->add_option("-o,--output", a.options.output,
+                   "Folder for the maps; default SESSION/solve/ID, or ./NAME-solve/ID for photographs");
+  verb->add_option("--compress", a.options.compression, "Of EXR files: none, zip, piz")
+      ->check(CLI::IsMember({"none", "zip", "piz"}))
+      ->capture_default_str();
+  verb->add_option("--tile-width", a.options.tile.width, "Columns a tile (changes no byte of the result)")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  verb->add_option("--tile-height", a.options.tile.height, "Rows a tile (changes no byte of the result)")
+      ->check(CLI::Range(1, 1 << 20))
+      ->capture_default_str();
+  verb->add_flag("!--no-previews", a.options.previews, "Write no pictures");
+  verb->add_flag("--strict", common.strict, "Exit with 2 where pixels have no solution");
+  return verb;
+}
+
+CLI::App* add_compare(CLI::App& app, CompareArguments& a, std::string& kind) {
+  CLI::App* verb = app.add_subcommand("compare", "Compare a map with the truth: degrees, or relative albedo");
+  verb->add_option("tested", a.tested, "Map to test (EXR, TIFF, PNG)")->required();
+  verb->add_option("truth", a.truth, "Map that is right")->required();
+  verb->add_option("--mask", a.mask, "Image that is over one half where pixels count");
+  verb->add_option("--kind", kind, "What the maps are: normal, albedo")
+      ->check(CLI::IsMember({"normal", "albedo"}))
+      ->capture_default_str();
+  return verb;
+}
+
+CLI::App* add_bench_solve(CLI::App& bench, BenchSolveArguments& a) {
+  CLI::App* verb = bench.add_subcommand("solve", "Speed and exactness of the solver");
+  verb->add_option("--megapixels", a.megapixels, "Size of the photographs, millions of pixels")
+      ->check(CLI::Range(0.01, 200.0))
+      ->capture_default_str();
+  CLI::Option* exact = verb->add_flag("--exact", a.exact, "Noise-free errors against the truth instead of speed");
+  CLI::Option* noise = verb->add_flag("--noise", a.noise, "Errors under noise against the Cramer-Rao bound");
+  CLI::Option* order = verb->add_flag("--order", a.order, "Demosaicing before solving against after it");
+  CLI::Option* end_to_end =
+      verb->add_flag("--end-to-end", a.end_to_end, "From eleven DNG files to maps on disk, with peak memory");
+  exact->excludes(noise)->excludes(order)->excludes(end_to_end);
+  noise->excludes(order)->excludes(end_to_end);
+  order->excludes(end_to_end);
+  return verb;
+}
+
+CLI::App* add_demo(CLI::App& app, DemoArguments& a) {
+  CLI::App* verb = app.add_subcommand("demo", "Scan a simulated cloth, solve it and show the result");
+  verb->add_option("scene", a.scene, "Scene file (TOML)")->required();
+  verb->add_option("-o,--output", a.output, "Folder for the session and its maps")->capture_default_str();
+  verb->add_option("--megapixels", a.megapixels, "Size instead of the scene's, millions of pixels")
+      ->check(CLI::Range(0.01, 200.0));
+  return verb;
+}
+
+}  // namespace
+
+std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) {
+  CLI::App app("weft: photometric-stereo textile scanner");
+  app.name("weft");
+  app.set_version_flag("--version", WEFT_VERSION);
+  app.require_subcommand(1);
+  app.footer("Exit codes: 0 done, 2 done with warnings under --strict, 64 usage, 65 bad data, 66 no input, 70 our own bug,\n"
+             "73 cannot create, 74 input/output, 75 try again, 130 interrupted.");
+
+  CommonArguments common;
+  SimulateArguments simulate;
+  SolveArguments solve;
+  CompareArguments compare;
+  BenchSolveArguments bench_solve;
+  DemoArguments demo;
+  std::string quality, method, transfer = "auto", kind = "normal";
+  std::vector<int> lights;
+  CLI::App* simulate_verb = add_simulate(app, simulate);
+  CLI::App* solve_verb = add_solve(app, solve, common, quality, method, transfer, lights);
+  CLI::App* compare_verb = add_compare(app, compare, kind);
+  CLI::App* bench_verb = app.add_subcommand("bench", "Measure");
+  bench_verb->require_subcommand(1);
+  CLI::App* bench_solve_verb = add_bench_solve(*bench_verb, bench_solve);
+  CLI::App* demo_verb = add_demo(app, demo);
+  for (CLI::App* verb : {simulate_verb, solve_verb, compare_verb, bench_solve_verb, demo_verb}) add_common(*verb, common);
+
+  const auto usage = [&](const std::string& why) {
+    note("weft: " + why + ". See weft --help.");
+    exit_code = kUsageError;
+    return std::nullopt;
+  };
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked_for_help = error.get_exit_code() == 0;
+    exit_code = asked_for_help ? kDone : kUsageError;
+    app.exit(error);
+    return std::nullopt;
+  }
+
+  if (*simulate_verb) return Arguments{common, simulate};
+  if (*compare_verb) {
+    compare.albedo = kind == "albedo";
+    return Arguments{common, compare};
+  }
+  if (*demo_verb) return Arguments{common, demo};
+  if (*bench_verb) return Arguments{common, bench_solve};
+  if (solve.session.folder.empty() && solve.photos.folder.empty() && solve.photos.light_file.empty()) {
+    return usage("solve needs a session, --photos or --lp");
+  }
+  if (!method.empty()) solve.options.method = method;
+  if (!quality.empty()) solve.options.method = quality;
+  solve.session.leds = lights;
+  solve.photos.lights = lights;
+  static const std::map<std::string, Transfer> kTransfers = {
+      {"auto", Transfer::kAuto}, {"linear", Transfer::kLinear}, {"srgb", Transfer::kSrgb}};
+  solve.photos.transfer = kTransfers.at(transfer);
+  return Arguments{common, solve};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/terminal.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <thread>
+
+namespace weft::app {
+namespace {
+
+constexpr int kBarCells = 30;
+
+volatile std::sig_atomic_t signals_seen = 0;
+
+extern "C" void on_signal(int) {
+  if (signals_seen != 0) _exit(130);
+  signals_seen = 1;
+}
+
+void write_all(std::FILE* stream, std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stream);
+}
+
+}  // namespace
+
+ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressLine::~ProgressLine() {
+  if (drawn_ && terminal_) write_all(stderr, "\r\x1b[K");
+}
+
+Progress ProgressLine::callback() {
+  return [this](std::string_view phase, double share) { update(phase, share); };
+}
+
+void ProgressLine::update(std::string_view phase, double share) {
+  const std::lock_guard lock(mutex_);
+  if (quiet_) return;
+  const Clock::time_point now = Clock::now();
+  const bool new_phase = phase != phase_;
+  if (new_phase) {
+    phase_ = phase;
+    phase_began_ = now;
+  }
+  const auto pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000);
+  if (!new_phase && now - last_drawn_ < pause && share < 1) return;
+  if (!terminal_ && !new_phase && share >= 1) return;
+  last_drawn_ = now;
+  draw(share, now);
+}
+
+void ProgressLine::draw(double share, Clock::time_point now) {
+  drawn_ = true;
+  const double seconds = std::chrono::duration<double>(now - phase_began_).count();
+  const std::string left =
+      share > 0.02 && seconds > 0.5 ? fmt::format("  {:.0f} s left", seconds / share * (1 - share)) : "";
+  if (!terminal_) {
+    write_all(stderr, fmt::format("{} {:.0f} %{}\n", phase_, 100 * share, left));
+    return;
+  }
+  const int full = static_cast<int>(share * kBarCells);
+  write_all(stderr,
+            fmt::format("\r{:<9} [{}{}] {:3.0f} %{}\x1b[K", phase_,
+                        std::string(static_cast<std::size_t>(full), '#'),
+                        std::string(static_cast<std::size_t>(kBarCells - full), '.'), 100 * share, left));
+  std::fflush(stderr);
+}
+
+std::stop_token stop_on_signal() {
+  static std::stop_source source;
+  static std::jthread watcher([](const std::stop_token& ending) {
+    while (!ending.stop_requested()) {
+      if (signals_seen != 0) source.request_stop();
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  });
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  // A full disk quota and a closed pipe come back as errors of the call, not as the end of the program.
+  std::signal(SIGXFSZ, SIG_IGN);
+  std::signal(SIGPIPE, SIG_IGN);
+  return source.get_token();
+}
+
+void print(std::string_view text) {
+  write_all(stdout, fmt::format("{}\n", text));
+}
+void print_json(const Json& document) {
+  print(document.dump(2));
+}
+void complain(const Error& error) {
+  note("weft: " + error.message());
+}
+void note(std::string_view text) {
+  write_all(stderr, fmt::format("{}\n", text));
+}
+
+}  // namespace weft::app

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <mutex>
+#include <string>
+#include <string_view>
+
+#include "app/jobs/job.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// Progress on standard error: one bar with an estimate on a terminal, a plain line a phase and every ten
+/// seconds elsewhere, nothing at all when quiet.
+class ProgressLine {
+ public:
+  explicit ProgressLine(bool quiet);
+  ~ProgressLine();
+  void update(std::string_view phase, double share);
+  Progress callback();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw(double share, Clock::time_point now);
+
+  std::mutex mutex_;
+  bool quiet_;
+  bool terminal_;
+  bool drawn_ = false;
+  std::string phase_;
+  Clock::time_point phase_began_, last_drawn_;
+};
+
+/// The stop token that SIGINT and SIGTERM request; a second signal ends the program at once.
+std::stop_token stop_on_signal();
+
+void print(std::string_view text);  ///< to standard output, with a line end
+void print_json(const Json& document);
+void complain(const Error& error);  ///< to standard error
+void note(std::string_view text);   ///< to standard error
+
+}  // namespace weft::app

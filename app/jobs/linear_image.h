@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "core/image.h"
+#include "core/image_io/image_io.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// How the values of a developed photograph follow light.
+enum class Transfer {
+  kAuto,    ///< 16-bit and float files are linear, 8-bit ones and JPEG sRGB
+  kLinear,  ///< proportional to light
+  kSrgb,    ///< IEC 61966-2-1
+};
+
+/// What becomes of the full-scale values of integer files, which stand for anything brighter too.
+enum class Clipped {
+  kMark,  ///< saturated: +infinity
+  kKeep,  ///< taken at their word, as published baselines do
+};
+
+/// Whether a file is a developed photograph (TIFF, PNG, EXR, JPEG by its extension), not a raw frame.
+bool is_linear_image(const std::filesystem::path& file);
+
+/// Header of a photograph that can be solved: one, three or four channels.
+Result<ImageFileInfo> read_linear_image_info(const std::filesystem::path& file);
+
+/// Reads a photograph as readings (core/radiometry.h): planes R, G, B, 1.0 is full scale. Grey is repeated. A
+/// float file with NaN or infinity is kBadData. A JPEG is refused for kLinear: what a camera made of it
+/// cannot be undone.
+Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transfer transfer, Clipped clipped);
+
+/// What kAuto means for a file.
+Transfer transfer_of(const ImageFileInfo& info);
+
+/// image -= dark, sample by sample.
+void subtract(Image<float>& image, const Image<float>& dark);
+/// image *= factor.
+void scale(Image<float>& image, double factor);
+
+}  // namespace weft::app

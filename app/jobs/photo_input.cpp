@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/photo_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error bad_lights(const fs::path& file, std::string why) {
+  return {ErrorKind::kBadData, "lights cannot be read", file.string(), std::move(why),
+          "see docs/formats.md for the layout"};
+}
+
+// Numbers of a text file, `columns` a line; empty lines are skipped.
+Result<std::vector<std::array<double, 3>>> read_triples(const fs::path& file) {
+  const Result<std::string> text = read_text(file);
+  if (!text) return text.error();
+  std::vector<std::array<double, 3>> triples;
+  std::istringstream lines(*text);
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    std::istringstream words(line);
+    std::array<double, 3> t = {};
+    if (!(words >> t[0] >> t[1] >> t[2]))
+      return bad_lights(file, fmt::format("line {} is not three numbers", number));
+    triples.push_back(t);
+  }
+  return triples;
+}
+
+// A direction as written, to unit length; its length says nothing.
+Result<Vec3> direction_of(const std::array<double, 3>& t, const fs::path& file) {
+  const Vec3 v = {t[0], t[1], t[2]};
+  if (!(length(v) > 0) || !std::isfinite(length(v))) return bad_lights(file, "a direction has no length");
+  return normalized(v);
+}
+
+Result<PhotoPlan> read_folder(const fs::path& folder) {
+  PhotoPlan plan;
+  const fs::path directions_file = folder / "light_directions.txt",
+                 intensities_file = folder / "light_intensities.txt";
+  const Result<std::string> names = read_text(folder / "filenames.txt");
+  if (!names) return names.error();
+  std::istringstream lines(*names);
+  for (std::string name; std::getline(lines, name);) {
+    name.erase(name.find_last_not_of(" \t\r") + 1);
+    if (!name.empty()) plan.files.push_back(folder / name);
+  }
+  const auto directions = read_triples(directions_file);
+  if (!directions) return directions.error();
+  std::vector<std::array<double, 3>> intensities(directions->size(), {1, 1, 1});
+  if (fs::exists(intensities_file)) {
+    auto read = read_triples(intensities_file);
+    if (!read) return std::move(read).error();
+    intensities = std::move(*read);
+  }
+  if (directions->size() != plan.files.size() || intensities.size() != plan.files.size()) {
+    return bad_lights(
+        folder, fmt::format("filenames.txt has {} lines, light_directions.txt {}, light_intensities.txt {}",
+                            plan.files.size(), directions->size(), intensities.size()));
+  }
+  for (std::size_t k = 0; k < plan.files.size(); ++k) {
+    const Result<Vec3> direction = direction_of((*directions)[k], directions_file);
+    if (!direction) return direction.error();
+    for (const double v : intensities[k]) {
+      if (!(v > 0) || !std::isfinite(v)) {
+        return bad_lights(intensities_file, fmt::format("light {} has an intensity of {}", k + 1, v));
+      }
+    }
+    plan.lights.lights.push_back({*direction, intensities[k]});
+  }
+  if (fs::exists(folder / "mask.png")) plan.mask = folder / "mask.png";
+  return plan;
+}
+
+Result<PhotoPlan> read_light_file(const fs::path& file) {
+  const Result<std::string> text = read_text(file);
+  if (!text) return text.error();
+  std::istringstream lines(*text);
+  std::size_t count = 0;
+  std::string line;
+  if (!std::getline(lines, line) || !(std::istringstream(line) >> count)) {
+    return bad_lights(file, "the first line is not the number of photographs");
+  }
+  PhotoPlan plan;
+  while (std::getline(lines, line)) {
+    line.erase(line.find_last_not_of(" \t\r") + 1);
+    if (line.empty()) continue;
+    // The name may hold spaces: the last three words are the direction.
+    std::array<double, 3> t = {};
+    std::size_t end = line.size();
+    for (std::size_t i = 3; i-- > 0;) {
+      const std::size_t blank = line.find_last_of(" \t", end == 0 ? 0 : end - 1);
+      if (blank == std::string::npos ||
+          !(std::istringstream(line.substr(blank + 1, end - blank - 1)) >> t[i])) {
+        return bad_lights(file, fmt::format("\"{}\" is not \"file x y z\"", line));
+      }
+      end = line.find_last_not_of(" \t", blank) + 1;
+    }
+    const Result<Vec3> direction = direction_of(t, file);
+    if (!direction) return direction.error();
+    plan.files.push_back(file.parent_path() / line.substr(0, end));
+    plan.lights.lights.push_back({*direction, {1, 1, 1}});
+  }
+  if (plan.files.size() != count) {
+    return bad_lights(file,
+                      fmt::format("it announces {} photographs and lists {}", count, plan.files.size()));
+  }
+  return plan;
+}
+
+Result<void> keep_lights(PhotoPlan& plan, const std::vector<int>& numbers) {
+  if (numbers.empty()) return {};
+  Result<Lights> lights = select_lights(Lights(plan.lights), numbers);
+  if (!lights) return std::move(lights).error();
+  std::vector<fs::path> files;
+  for (const int number : numbers) files.push_back(plan.files[static_cast<std::size_t>(number) - 1]);
+  plan.lights = std::get<DistantLights>(std::move(*lights));
+  plan.files = std::move(files);
+  return {};
+}
+
+}  // namespace
+
+Result<PhotoPlan> plan_photos(const PhotoOptions& options) {
+  Result<PhotoPlan> read =
+      options.light_file.empty() ? read_folder(options.folder) : read_light_file(options.light_file);
+  if (!read) return read;
+  PhotoPlan plan = std::move(*read);
+  plan.clipped = options.clipped;
+  if (Result<void> kept = keep_lights(plan, options.lights); !kept) return std::move(kept).error();
+  if (plan.files.size() < 3) {
+    return Error{ErrorKind::kBadData, "too few lights", (options.folder / options.light_file).string(),
+                 fmt::format("{} photographs; a normal and an albedo are three unknowns", plan.files.size()),
+                 "give at least three photographs under different lights"};
+  }
+  Json inputs = Json::array();
+  for (std::size_t k = 0; k < plan.files.size(); ++k) {
+    const Result<ImageFileInfo> info = read_linear_image_info(plan.files[k]);
+    if (!info) return info.error();
+    if (k == 0) {
+      plan.size = info->size;
+      plan.transfer = options.transfer == Transfer::kAuto ? transfer_of(*info) : options.transfer;
+    }
+    if (info->size != plan.size) {
+      return Error{ErrorKind::kBadData, "photographs differ in size", plan.files[k].string(),
+                   fmt::format("{} x {} pixels, the first has {} x {}", info->size.width, info->size.height,
+                               plan.size.width, plan.size.height),
+                   "use photographs of one camera that was not moved"};
+    }
+    const Result<std::string> digest = sha256_of_file(plan.files[k]);
+    if (!digest) return digest.error();
+    const DistantLight& light = plan.lights.lights[k];
+    inputs.push_back({{"file", plan.files[k].filename().string()},
+                      {"sha256", *digest},
+                      {"direction", {light.direction.x, light.direction.y, light.direction.z}},
+                      {"irradiance_rgb", light.irradiance_rgb}});
+  }
+  plan.description = {{"photographs", std::move(inputs)},
+                      {"transfer", plan.transfer == Transfer::kSrgb ? "srgb" : "linear"}};
+  if (!plan.mask.empty()) {
+    const Result<ImageFileInfo> info = read_image_info(plan.mask);
+    if (!info) return info.error();
+    if (info->size != plan.size) {
+      return Error{ErrorKind::kBadData, "mask differs in size", plan.mask.string(),
+                   fmt::format("{} x {} pixels, the photographs have {} x {}", info->size.width,
+                               info->size.height, plan.size.width, plan.size.height),
+                   "make the mask again from one of the photographs"};
+    }
+    const Result<std::string> digest = sha256_of_file(plan.mask);
+    if (!digest) return digest.error();
+    plan.description["mask"] = *digest;
+  }
+  return plan;
+}
+
+Result<Photographs> load_photos(const PhotoPlan& plan, const JobContext& context) {
+  const std::uint64_t needed = static_cast<std::uint64_t>(plan.size.pixels()) * 12 * (plan.files.size() + 4);
+  if (needed > available_memory_bytes()) {
+    return Error{
+        ErrorKind::kTryAgain, "not enough memory", plan.files.front().string(),
+        fmt::format("{} MB are needed, {} MB are free", needed >> 20, available_memory_bytes() >> 20),
+        "use fewer or smaller photographs, or a larger machine"};
+  }
+  Photographs photographs;
+  photographs.size = plan.size;
+  Result<LightField> field = LightField::make(Lights(plan.lights), std::nullopt, plan.size, 0);
+  if (!field) return std::move(field).error();
+  photographs.field = std::move(*field);
+
+  std::optional<LoadedImage> mask;
+  if (!plan.mask.empty()) {
+    Result<LoadedImage> loaded = read_image(plan.mask);
+    if (!loaded) return std::move(loaded).error();
+    mask = std::move(*loaded);
+  }
+  photographs.rgb.resize(plan.files.size());
+  const auto read_photo = [&](std::size_t k) -> Result<void> {
+    Result<Image<float>> image = read_linear_image(plan.files[k], plan.transfer, plan.clipped);
+    if (!image) return std::move(image).error();
+    if (mask) {
+      for (int y = 0; y < plan.size.height; ++y) {
+        for (int x = 0; x < plan.size.width; ++x) {
+          if (mask->planes(x, y) > 0.5f) continue;
+          for (int c = 0; c < 3; ++c) (*image)(x, y, c) = std::numeric_limits<float>::quiet_NaN();
+        }
+      }
+    }
+    photographs.rgb[k] = std::move(*image);
+    return {};
+  };
+  if (Result<void> read = for_each_frame(plan.files.size(), context, read_photo); !read) {
+    return std::move(read).error();
+  }
+  return photographs;
+}
+
+}  // namespace weft::app

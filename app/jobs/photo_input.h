@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/jobs/job.h"
+#include "app/jobs/linear_image.h"
+#include "app/jobs/photographs.h"
+#include "core/lights.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+struct PhotoOptions {
+  /// A folder in the layout of the DiLiGenT benchmark (Shi et al., CVPR 2016): filenames.txt,
+  /// light_directions.txt and, where they exist, light_intensities.txt (R G B a line) and mask.png.
+  std::filesystem::path folder;
+  /// Or an RTI light file: a count, then one line "file x y z" a photograph.
+  std::filesystem::path light_file;
+  Transfer transfer = Transfer::kAuto;
+  Clipped clipped = Clipped::kMark;
+  std::vector<int> lights;  ///< numbers from 1; empty: all
+};
+
+/// Photographs under distant lights that have been looked at but not read.
+struct PhotoPlan {
+  std::vector<std::filesystem::path> files;
+  DistantLights lights;
+  std::filesystem::path mask;  ///< empty: every pixel counts
+  Size size;
+  Transfer transfer = Transfer::kLinear;
+  Clipped clipped = Clipped::kMark;
+  Json description;
+};
+
+Result<PhotoPlan> plan_photos(const PhotoOptions& options);
+/// Reads the photographs; readings outside the mask are missing.
+Result<Photographs> load_photos(const PhotoPlan& plan, const JobContext& context);
+
+}  // namespace weft::app

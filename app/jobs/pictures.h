@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/jobs/compare.h"
+#include "app/jobs/solve_bands.h"
+#include "core/result.h"
+#include "material/downsampler.h"
+#include "material/drawing.h"
+#include "material/preview.h"
+
+namespace weft::app {
+
+/// How a solve differs from its truth, as numbers and as a picture.
+struct TruthError {
+  NormalComparison normal;
+  material::Downsampler reduced_deg;  ///< the error at preview size
+};
+
+/// Compares two normal maps on disk.
+Result<TruthError> error_against(const std::filesystem::path& truth, const std::filesystem::path& normal);
+
+/// The pictures a person opens first, reduced from the maps while they are solved.
+class Pictures {
+ public:
+  explicit Pictures(Size size);
+  void add(const MapBand& band);
+
+  /// Writes albedo.png (sRGB; a relative albedo is scaled, and the sheet says by how much), normal.png, relit.png,
+  /// error.png where there is a truth, else status_preview.png, and sheet.png with all of them under `title`. Returns
+  /// their names.
+  Result<std::vector<std::string>> write(const std::filesystem::path& folder, const std::string& title,
+                                         bool absolute_albedo, const TruthError* error) const;
+
+ private:
+  material::Downsampler normal_, albedo_;
+  material::StatusPreview status_;
+};
+
+}  // namespace weft::app

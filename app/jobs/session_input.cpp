@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/session_input.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/jobs/linear_image.h"
+#include "calibration/suits.h"
+#include "capture/raw/decode.h"
+#include "capture/raw/raw_info.h"
+#include "core/files.h"
+#include "core/parallel.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The lit shots of the named LEDs, or of all.
+Result<std::vector<Shot>> choose_lit(const Session& session, const std::vector<int>& leds) {
+  std::vector<Shot> chosen;
+  for (const Shot* shot : session.lit()) {
+    if (leds.empty() || std::count(leds.begin(), leds.end(), shot->led) > 0) chosen.push_back(*shot);
+  }
+  for (const int led : leds) {
+    if (std::none_of(chosen.begin(), chosen.end(), [&](const Shot& s) { return s.led == led; })) {
+      return Error{ErrorKind::kUsage, "no such light", fmt::format("LED {}", led),
+                   fmt::format("{} has no lit shot of it", session.folder.string()),
+                   "name LEDs that were lit"};
+    }
+  }
+  if (chosen.size() < 3) {
+    return Error{ErrorKind::kBadData, "too few lights", session.folder.string(),
+                 fmt::format("{} lit shots; a normal and an albedo are three unknowns", chosen.size()),
+                 "solve from at least three LEDs"};
+  }
+  return chosen;
+}
+
+// Looks at one frame without decoding it.
+Result<capture::RawInfo> look_at(const fs::path& file) {
+  if (!is_linear_image(file)) return capture::read_raw_info(file);
+  Result<ImageFileInfo> info = read_linear_image_info(file);
+  if (!info) return std::move(info).error();
+  return capture::RawInfo{info->size, {}, {}};
+}
+
+Result<void> check_alike(const SessionPlan& plan, const Shot& shot, const capture::RawInfo& info,
+                         const CfaPattern& cfa) {
+  const auto refuse = [&](std::string why) {
+    return Error{ErrorKind::kBadData, "frame does not belong to its session",
+                 plan.session.path_of(shot).string(), std::move(why),
+                 "copy the session again from the rig, or scan the cloth again"};
+  };
+  if (info.size != plan.size) {
+    return refuse(fmt::format("it has {} x {} pixels, {} has {} x {}", info.size.width, info.size.height,
+                              plan.lit.front().file, plan.size.width, plan.size.height));
+  }
+  if (info.cfa != cfa) return refuse("its colour filters are laid out differently from the first frame's");
+  // A file that records its exposure must agree with the journal: mixed-up frames are caught here.
+  const auto differs = [](double recorded, double journal) {
+    return recorded > 0 && std::abs(recorded - journal) > 1e-3 * journal;
+  };
+  if (differs(info.shot.exposure_us, shot.exposure_us)) {
+    return refuse(fmt::format("it was exposed for {:.6g} us, session.json says {:.6g} us",
+                              info.shot.exposure_us, shot.exposure_us));
+  }
+  if (differs(info.shot.iso, shot.iso)) {
+    return refuse(
+        fmt::format("it was taken at ISO {:.6g}, session.json says {:.6g}", info.shot.iso, shot.iso));
+  }
+  return {};
+}
+
+// Bytes that decoding and solving will hold at once: the frames, one more for every thread that decodes, and
+// bands.
+std::uint64_t memory_needed(const SessionPlan& plan, std::size_t frames, int threads) {
+  const auto pixels = static_cast<std::uint64_t>(plan.size.pixels());
+  const auto decoding =
+      static_cast<std::uint64_t>(std::min<std::size_t>(static_cast<std::size_t>(threads), frames));
+  const std::uint64_t bytes_a_pixel = plan.raw ? 2 : 12;
+  return pixels * bytes_a_pixel * (frames + decoding) +
+         static_cast<std::uint64_t>(plan.size.width) * 128 * 150 + (std::uint64_t{64} << 20);
+}
+
+Result<void> check_digest(const fs::path& file, const Shot& shot) {
+  if (shot.sha256.empty()) return {};
+  const Result<std::string> digest = sha256_of_file(file);
+  if (!digest) return digest.error();
+  if (*digest == shot.sha256) return {};
+  return Error{ErrorKind::kBadData, "frame is not the one that was captured", file.string(),
+               "its SHA-256 differs from session.json: it was changed, truncated or swapped",
+               "copy the session again from the rig's disk"};
+}
+
+// Frames of one body have one set of levels.
+Result<void> check_levels(const RawFrame& frame, const RawFrame& first, const fs::path& file) {
+  if (frame.black == first.black && frame.white == first.white) return {};
+  return Error{ErrorKind::kBadData, "frame does not belong to its session", file.string(),
+               fmt::format("its black and white level are {} and {}, the first frame's {} and {}",
+                           frame.black[0][0], frame.white, first.black[0][0], first.white),
+               "scan the cloth again with fixed camera settings"};
+}
+
+}  // namespace
+
+Result<SessionPlan> plan_session(const SessionOptions& options) {
+  SessionPlan plan;
+  Result<Session> session = read_session(options.folder);
+  if (!session) return std::move(session).error();
+  plan.session = std::move(*session);
+  if (plan.session.state != "complete") {
+    return Error{ErrorKind::kBadData, "session is not complete", options.folder.string(),
+                 fmt::format("its state is \"{}\"", plan.session.state), "finish the scan with weft scan"};
+  }
+  const bool own = options.calibration.empty();
+  Result<Calibration> calibration =
+      read_calibration(own ? plan.session.calibration_folder() : options.calibration);
+  if (!calibration) return std::move(calibration).error();
+  plan.calibration = std::move(*calibration);
+  if (own && plan.calibration.id != plan.session.calibration_id) {
+    return Error{ErrorKind::kBadData, "calibration is not the one of the session",
+                 plan.session.calibration_folder().string(),
+                 fmt::format("its id is {:.12}, session.json names {:.12}", plan.calibration.id,
+                             plan.session.calibration_id),
+                 "restore the session's calibration folder, or name another with --calibration"};
+  }
+
+  Result<std::vector<Shot>> lit = choose_lit(plan.session, options.leds);
+  if (!lit) return std::move(lit).error();
+  plan.lit = std::move(*lit);
+  if (const Shot* dark = plan.session.dark()) plan.dark = *dark;
+  plan.raw = !is_linear_image(plan.session.path_of(plan.lit.front()));
+
+  std::vector<Shot> frames = plan.lit;
+  if (plan.dark) frames.push_back(*plan.dark);
+  CfaPattern cfa;
+  for (const Shot& shot : frames) {
+    const fs::path file = plan.session.path_of(shot);
+    if (is_linear_image(file) == plan.raw) {
+      return Error{ErrorKind::kBadData, "session mixes raw and developed frames", file.string(),
+                   "all frames must be of one kind", "export them all the same way"};
+    }
+    const Result<capture::RawInfo> info = look_at(file);
+    if (!info) return info.error();
+    if (&shot == &frames.front()) {
+      plan.size = info->size;
+      cfa = info->cfa;
+      if (Result<void> ok = calibration::suits(plan.calibration, plan.session, info->shot); !ok) {
+        return std::move(ok).error();
+      }
+    }
+    if (Result<void> ok = check_alike(plan, shot, *info, cfa); !ok) return std::move(ok).error();
+  }
+  if (plan.calibration.camera->size != plan.size) {
+    return Error{
+        ErrorKind::kBadData, "calibration does not suit the session", options.folder.string(),
+        fmt::format("its camera has {} x {} pixels, the frames {} x {}", plan.calibration.camera->size.width,
+                    plan.calibration.camera->size.height, plan.size.width, plan.size.height),
+        "name the calibration of this camera with --calibration"};
+  }
+
+  Json shots = Json::array();
+  for (const Shot& shot : frames)
+    shots.push_back({{"led", shot.led}, {"file", shot.file}, {"sha256", shot.sha256}});
+  plan.description = {{"session", plan.session.fabric},
+                      {"calibration", plan.calibration.id},
+                      {"cloth_height_mm", plan.session.cloth_height_mm},
+                      {"shots", std::move(shots)}};
+  return plan;
+}
+
+Result<Photographs> load_session(const SessionPlan& plan, const JobContext& context) {
+  std::vector<Shot> shots = plan.lit;
+  if (plan.dark) shots.push_back(*plan.dark);
+  const int threads = std::min(resolved_threads(context.threads), static_cast<int>(shots.size()));
+  const std::uint64_t needed = memory_needed(plan, shots.size(), threads);
+  if (needed > available_memory_bytes()) {
+    return Error{
+        ErrorKind::kTryAgain, "not enough memory", plan.session.folder.string(),
+        fmt::format("{} MB are needed, {} MB are free", needed >> 20, available_memory_bytes() >> 20),
+        "close other programs, or solve on a larger machine"};
+  }
+
+  std::vector<int> leds;
+  for (const Shot& shot : plan.lit) leds.push_back(shot.led);
+  Result<Lights> lights = select_lights(*plan.calibration.lights, leds);
+  if (!lights) return std::move(lights).error();
+  Result<LightField> field =
+      LightField::make(std::move(*lights), plan.calibration.camera, plan.size, plan.session.cloth_height_mm);
+  if (!field) return std::move(field).error();
+
+  std::vector<RawFrame> raw(plan.raw ? shots.size() : 0);
+  std::vector<Image<float>> rgb(plan.raw ? 0 : shots.size());
+  const auto read_frame = [&](std::size_t i) -> Result<void> {
+    const fs::path file = plan.session.path_of(shots[i]);
+    if (Result<void> same = check_digest(file, shots[i]); !same) return same;
+    if (!plan.raw) {
+      Result<Image<float>> image = read_linear_image(file, Transfer::kLinear, Clipped::kMark);
+      if (!image) return std::move(image).error();
+      rgb[i] = std::move(*image);
+      return {};
+    }
+    Result<RawFrame> frame = capture::decode_raw(file, {.size = plan.size});
+    if (!frame) return std::move(frame).error();
+    raw[i] = std::move(*frame);
+    return {};
+  };
+  if (Result<void> read = for_each_frame(shots.size(), context, read_frame); !read)
+    return std::move(read).error();
+
+  Photographs photographs;
+  photographs.size = plan.size;
+  photographs.field = std::move(*field);
+  photographs.albedo_scale = plan.calibration.subject.albedo_scale;
+  const Shot& first = plan.lit.front();
+  if (!plan.raw) {
+    if (plan.dark) {
+      for (std::size_t k = 0; k + 1 < rgb.size(); ++k) subtract(rgb[k], rgb.back());
+      rgb.pop_back();
+    }
+    for (Image<float>& image : rgb) scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
+    photographs.rgb = std::move(rgb);
+    return photographs;
+  }
+  for (std::size_t i = 1; i < raw.size(); ++i) {
+    if (Result<void> ok = check_levels(raw[i], raw[0], plan.session.path_of(shots[i])); !ok) {
+      return std::move(ok).error();
+    }
+  }
+  if (plan.dark) {
+    photographs.dark = std::move(raw.back());
+    raw.pop_back();
+  }
+  photographs.mosaics = std::move(raw);
+  photographs.radiometry.emplace(photographs.mosaics.front(), photographs.dark ? &*photographs.dark : nullptr,
+                                 *plan.calibration.response,
+                                 Radiometry::Exposure{first.exposure_us, first.iso});
+  photographs.noise = photographs.radiometry->noise();
+  return photographs;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/solve.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "app/jobs/pictures.h"
+#include "app/jobs/solve_bands.h"
+#include "core/files.h"
+#include "core/image_io/image_io.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSchema = "weft.solve";
+
+// Removes an unfinished folder unless it was published.
+class PartialFolder {
+ public:
+  explicit PartialFolder(fs::path path) : path_(std::move(path)) {}
+  ~PartialFolder() {
+    std::error_code ignored;
+    if (!path_.empty()) fs::remove_all(path_, ignored);
+  }
+  PartialFolder(const PartialFolder&) = delete;
+  PartialFolder& operator=(const PartialFolder&) = delete;
+  const fs::path& path() const { return path_; }
+  Result<void> publish(const fs::path& target) {
+    Result<void> published = publish_folder(path_, target);
+    if (published) path_.clear();
+    return published;
+  }
+
+ private:
+  fs::path path_;
+};
+
+// Counts of pixels by status, gathered band by band.
+class StatusCounts {
+ public:
+  void add(View<const std::uint16_t> status) {
+    for (int y = 0; y < status.height(); ++y) {
+      const std::uint16_t* row = status.row(y);
+      for (int x = 0; x < status.width(); ++x) ++seen_[row[x] & 0xff];
+    }
+  }
+  std::int64_t with(StatusBit bit) const {
+    std::int64_t sum = 0;
+    for (std::size_t s = 0; s < seen_.size(); ++s) {
+      if (s & bit) sum += seen_[s];
+    }
+    return sum;
+  }
+
+ private:
+  std::array<std::int64_t, 256> seen_ = {};
+};
+
+// The map files of a solve, written band by band.
+class MapFiles {
+ public:
+  static Result<MapFiles> open(const fs::path& folder, Size size, const std::string& compression) {
+    MapFiles files;
+    const std::array<std::pair<std::optional<ImageWriter>*, Spec>, 5> all = {
+        {{&files.normal_, {"normal.exr", {"X", "Y", "Z"}, SampleType::kFloat}},
+         {&files.albedo_, {"albedo.exr", {"R", "G", "B"}, SampleType::kHalf}},
+         {&files.sigma_, {"sigma.exr", {"R", "G", "B", "normal_deg"}, SampleType::kHalf}},
+         {&files.residual_, {"residual.exr", {"residual"}, SampleType::kHalf}},
+         {&files.status_, {"status.png", {"Y"}, SampleType::kUint16}}}};
+    for (const auto& [writer, spec] : all) {
+      Result<ImageWriter> opened = ImageWriter::open(folder / spec.name, size, spec.channels,
+                                                     {.type = spec.type, .compression = compression});
+      if (!opened) return std::move(opened).error();
+      writer->emplace(std::move(*opened));
+    }
+    return files;
+  }
+
+  Result<void> write(const MapBand& band) {
+    if (Result<void> ok = normal_->write_rows(band.normal); !ok) return ok;
+    if (Result<void> ok = residual_->write_rows(std::array{band.residual}); !ok) return ok;
+    if (Result<void> ok = status_->write_rows(band.status); !ok) return ok;
+    if (band.albedo_rows.height() == 0) return {};
+    if (Result<void> ok = albedo_->write_rows(band.albedo); !ok) return ok;
+    return sigma_->write_rows(
+        std::array{band.sigma_albedo[0], band.sigma_albedo[1], band.sigma_albedo[2], band.sigma_normal_deg});
+  }
+
+  Result<void> finish() {
+    for (std::optional<ImageWriter>* writer : {&normal_, &albedo_, &sigma_, &residual_, &status_}) {
+      if (Result<void> ok = (*writer)->finish(); !ok) return ok;
+    }
+    return {};
+  }
+
+ private:
+  struct Spec {
+    const char* name;
+    std::vector<std::string> channels;
+    SampleType type;
+  };
+  std::optional<ImageWriter> normal_, albedo_, sigma_, residual_, status_;
+};
+
+// Where the maps go and by which name.
+struct Place {
+  std::string id;
+  fs::path folder;
+};
+
+// The id says what went in; nothing about this machine or this run.
+std::string id_of(const Json& input, const SolveOptions& options) {
+  const Json all = {{"input", input},
+                    {"method", options.method},
+                    {"compression", options.compression},
+                    {"solver_version", kSolverVersion}};
+  return sha256_of(all.dump()).substr(0, 16);
+}
+
+Result<solver::MethodName> find_method(const std::string& name) {
+  const auto names = solver::method_names();
+  const auto found = std::find_if(names.begin(), names.end(), [&](const auto& m) { return name == m.name; });
+  if (found != names.end()) return *found;
+  return Error{ErrorKind::kUsage, "no such method", name, "", "see weft solve --help for their names"};
+}
+
+// A complete solve of the same inputs, if the folder holds one; an error if it holds anything else.
+Result<std::optional<Json>> find_finished(const Place& place) {
+  if (!fs::exists(place.folder)) return std::optional<Json>();
+  const fs::path file = place.folder / "solve.json";
+  if (fs::exists(file)) {
+    Result<Json> document = read_json(file, kSchema, 1);
+    if (!document) return std::move(document).error();
+    if (document->value("id", "") == place.id) return std::optional<Json>(std::move(*document));
+  }
+  return Error{ErrorKind::kCannotCreate, "output folder is taken", place.folder.string(),
+               "it holds something other than this solve", "name another folder with -o, or remove it"};
+}
+
+// Room for the maps, before any work is done.
+Result<void> check_disk(const fs::path& folder, Size size) {
+  constexpr std::uint64_t kBytesAPixel =
+      32;  // normal 12, albedo 6, sigma 8, residual 2, status and pictures 4
+  const std::uint64_t needed = static_cast<std::uint64_t>(size.pixels()) * kBytesAPixel;
+  const std::uint64_t free = free_disk_bytes(folder);
+  if (free >= needed) return {};
+  return Error{ErrorKind::kInputOutput, "not enough disk space", folder.string(),
+               fmt::format("{} MB are needed, {} MB are free", needed >> 20, free >> 20),
+               "free disk space or choose another disk with -o"};
+}
+
+// // One solve, whatever it starts from.
+struct Input {
+  std::string title;
+  Json description;  // all that the id depends on besides the options
+  Size size;
+  fs::path default_parent;  // of the output
+  fs::path truth;           // normal.exr of a simulated session, or empty
+  std::function<Result<Photographs>()> load;
+};
+
+Result<SolveReport> run(const solver::MethodName& method_name, const Input& input, const SolveOptions& options,
+                        const JobContext& context) {
+  Stopwatch total, watch;
+  const Size size = input.size;
+  Place place;
+  place.id = id_of(input.description, options);
+  place.folder =
+      fs::absolute(options.output.empty() ? input.default_parent / place.id : options.output).lexically_normal();
+  Result<std::optional<Json>> finished = find_finished(place);
+  if (!finished) return std::move(finished).error();
+  if (*finished) return SolveReport{place.folder, true, std::move(**finished), {}};
+
+  const fs::path aside =
+      place.folder.parent_path() / fmt::format(".{}.{}.partial", place.folder.filename().string(), getpid());
+  if (Result<void> made = make_writable_folder(place.folder.parent_path()); !made)
+    return std::move(made).error();
+  if (Result<void> room = check_disk(place.folder.parent_path(), size); !room) return std::move(room).error();
+  if (Result<void> made = make_writable_folder(aside); !made) return std::move(made).error();
+  PartialFolder partial(aside);
+  Result<MapFiles> files = MapFiles::open(partial.path(), size, options.compression);
+  if (!files) return std::move(files).error();
+
+  SolveReport report;
+  report.folder = place.folder;
+  Result<Photographs> photographs = input.load();
+  if (!photographs) return std::move(photographs).error();
+  report.seconds.read = watch.lap();
+
+  StatusCounts counts;
+  Pictures pictures(size);
+  const std::unique_ptr<solver::Method> method = method_name.make();
+  const Result<double> waited =
+      solve_bands(*photographs, *method, options.tile, context, [&](const MapBand& band) -> Result<void> {
+        counts.add(band.status);
+        if (options.previews) pictures.add(band);
+        return files->write(band);
+      });
+  if (!waited) return waited.error();
+  report.seconds.solve = watch.lap() - *waited;
+  const std::string scale = photographs->albedo_scale;
+  const std::size_t lights = photographs->count();
+  photographs = Photographs();  // their memory is needed for nothing more
+
+  if (Result<void> ok = files->finish(); !ok) return std::move(ok).error();
+  report.seconds.write = *waited + watch.lap();
+  std::optional<TruthError> error;
+  if (!input.truth.empty()) {
+    Result<TruthError> measured = error_against(input.truth, partial.path() / "normal.exr");
+    if (!measured) return std::move(measured).error();
+    error = std::move(*measured);
+  }
+  Json written = Json::array();
+  if (options.previews) {
+    Result<std::vector<std::string>> names =
+        pictures.write(partial.path(), input.title, scale == "absolute", error ? &*error : nullptr);
+    if (!names) return std::move(names).error();
+    written = *names;
+  }
+
+  Json status = Json::object();
+  for (const StatusName& s : kStatusNames) status[s.name] = counts.with(s.bit);
+  report.document = {{"schema", std::string(kSchema) + "/1"},
+                     {"id", place.id},
+                     {"solver_version", kSolverVersion},
+                     {"method", options.method},
+                     {"compression", options.compression},
+                     {"input", input.description},
+                     {"lights", lights},
+                     {"width", size.width},
+                     {"height", size.height},
+                     {"albedo_scale", scale},
+                     {"pixels", size.pixels() - counts.with(kNoSolution)},
+                     {"status", std::move(status)},
+                     {"pictures", std::move(written)}};
+  if (error) {
+    report.document["error"] = {{"mean_deg", error->normal.mean_deg},
+                                {"median_deg", error->normal.median_deg},
+                                {"p95_deg", error->normal.p95_deg},
+                                {"max_deg", error->normal.max_deg}};
+  }
+  if (Result<void> ok = write_json(partial.path() / "solve.json", report.document); !ok)
+    return std::move(ok).error();
+  watch.lap();
+  if (context.stop.stop_requested()) return interrupted();
+  if (Result<void> ok = partial.publish(place.folder); !ok) return std::move(ok).error();
+  report.seconds.sync = watch.lap();
+  report.seconds.total = total.lap();
+  return report;
+}
+
+}  // namespace
+
+Result<SolveReport> solve_session(const SessionOptions& input, const SolveOptions& options,
+                                  const JobContext& context) {
+  const Result<solver::MethodName> method = find_method(options.method);
+  if (!method) return method.error();
+  Result<SessionPlan> plan = plan_session(input);
+  if (!plan) return std::move(plan).error();
+  const fs::path truth = plan->session.folder / "truth" / "normal.exr";
+  return run(*method,
+             {.title = plan->session.fabric,
+              .description = plan->description,
+              .size = plan->size,
+              .default_parent = plan->session.folder / "solve",
+              .truth = fs::exists(truth) ? truth : fs::path(),
+              .load = [&] { return load_session(*plan, context); }},
+             options, context);
+}
+
+Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& options,
+                                 const JobContext& context) {
+  const Result<solver::MethodName> method = find_method(options.method);
+  if (!method) return method.error();
+  PhotoOptions photos = input;
+  photos.clipped = method->keeps_clipped ? Clipped::kKeep : Clipped::kMark;
+  Result<PhotoPlan> plan = plan_photos(photos);
+  if (!plan) return std::move(plan).error();
+  const fs::path source =
+      fs::absolute(input.light_file.empty() ? input.folder : input.light_file).lexically_normal();
+  const fs::path name = source.has_filename() ? source.stem() : source.parent_path().filename();
+  return run(*method,
+             {.title = name.string(),
+              .description = plan->description,
+              .size = plan->size,
+              .default_parent = fs::current_path() / (name.string() + "-solve"),
+              .truth = {},
+              .load = [&] { return load_photos(*plan, context); }},
+             options, context);
+}
+
+}  // namespace weft::app

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/job.h"
+#include "app/jobs/photo_input.h"
+#include "app/jobs/photographs.h"
+#include "app/jobs/session_input.h"
+#include "core/json_document.h"
+#include "core/result.h"
+#include "core/tiles.h"
+#include "solver/method.h"
+
+namespace weft::app {
+
+struct SolveOptions {
+  std::string method = "fast";       ///< a name of solver::method_names()
+  std::filesystem::path output;      ///< empty: <session>/solve/<id>, or ./<photographs>-solve/<id>
+  std::string compression = "none";  ///< of EXR files: none, zip, piz
+  TileOptions tile = {.width = 512, .height = 32};
+  bool previews = true;
+};
+
+struct SolveSeconds {
+  double read = 0, solve = 0, write = 0, sync = 0, total = 0;
+};
+
+/// What a solve left behind.
+struct SolveReport {
+  std::filesystem::path folder;
+  bool was_there = false;  ///< a complete solve of the same inputs and options was found
+  Json document;           ///< solve.json
+  SolveSeconds seconds;    ///< of this run: zero if was_there
+};
+
+/// Solves a session into its maps (docs/formats.md): normal.exr, albedo.exr, sigma.exr, residual.exr,
+/// status.png, solve.json and previews, made aside and published whole.
+Result<SolveReport> solve_session(const SessionOptions& input, const SolveOptions& options,
+                                  const JobContext& context);
+
+/// The same from photographs under distant lights.
+Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& options,
+                                 const JobContext& context);
+
+}  // namespace weft::app

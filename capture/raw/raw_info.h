@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "core/image.h"
+#include "core/raw_frame.h"
+#include "core/result.h"
+
+namespace weft::capture {
+
+/// What the header of a raw file says.
+struct RawInfo {
+  Size size;       ///< of the active area
+  CfaPattern cfa;  ///< of the active area's (0, 0)
+  ShotMetadata shot;
+};
+
+/// Opens a raw file and decodes no pixels: a millisecond a file, to look over a session before an hour of
+/// work. Refuses with the same errors as decode_raw() all that can be told before decoding.
+Result<RawInfo> read_raw_info(const std::filesystem::path& file);
+
+}  // namespace weft::capture

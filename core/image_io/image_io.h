@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/image.h"
+#include "core/result.h"
+
+// Image files: EXR, TIFF, PNG, and JPEG for reading. OpenImageIO stays behind this header. Values are what
+// the file holds: no transfer function, no premultiplication by alpha; integers are scaled so that full scale
+// is 1.
+
+namespace weft {
+
+enum class SampleType { kUint8, kUint16, kHalf, kFloat };
+
+/// Text attributes. EXR keeps each under its name, TIFF and PNG all of them as JSON in ImageDescription. Use
+/// names of your own ("weft.units"): EXR keeps neither empty texts nor names that have a meaning of their own
+/// ("compression", "DateTime").
+using ImageAttributes = std::map<std::string, std::string>;
+
+/// What an image file holds, without its pixels.
+struct ImageFileInfo {
+  Size size;
+  std::vector<std::string> channels;     ///< R, G, B, A or X, Y, Z first; only EXR keeps other names
+  SampleType type = SampleType::kFloat;  ///< the widest of the channels; kFloat for anything else
+  std::string format;                    ///< "openexr", "tiff", "png", "jpeg"
+  ImageAttributes attributes;
+};
+
+/// An image in memory: one float plane a channel. lround(65535 * v) is the count of a 16-bit file, exactly.
+struct LoadedImage {
+  ImageFileInfo info;
+  Image<float> planes;
+
+  /// The plane of this name; an empty view where there is none.
+  View<const float> channel(std::string_view name) const;
+};
+
+/// What a file says of itself; the format comes from its content, not from its name. Errors: kNoInput,
+/// kBadData.
+Result<ImageFileInfo> read_image_info(const std::filesystem::path& file);
+/// Reads every channel of the first image or EXR part, whatever its tiling and data window; NaN and
+/// infinities pass. Errors: kNoInput; kBadData if truncated, damaged, deep or a raw file's thumbnail;
+/// kTryAgain if it is larger than the memory that is free.
+Result<LoadedImage> read_image(const std::filesystem::path& file);
+
+struct WriteOptions {
+  SampleType type = SampleType::kFloat;
+  std::string compression = "none";  ///< EXR: none, zip, piz; TIFF: none, zip; PNG is always deflated
+  ImageAttributes attributes = {};
+};
+
+/// Writes an image row band by row band, aside (`FILE.partial`) until `finish` renames it: no date, no host
+/// name, the same bytes for the same pixels whatever the bands and the time they take. Dropped unfinished, it
+/// removes what it wrote. Errors: kUsage if the format cannot hold such an image, kCannotCreate, kInputOutput
+/// with the system's reason.
+class ImageWriter {
+ public:
+  /// The format follows the ending of `file`: .exr (half, float), .tif (all types), .png (uint8, uint16).
+  static Result<ImageWriter> open(const std::filesystem::path& file, Size size,
+                                  const std::vector<std::string>& channels, const WriteOptions& options);
+  ImageWriter(ImageWriter&&) noexcept;
+  ImageWriter& operator=(ImageWriter&&) noexcept;
+  ~ImageWriter();
+
+  /// The next rows: one view a channel, all of one height. Values are rounded to nearest, ties to even, and
+  /// clamped to what the type can hold; NaN is 0 in integers, NaN and infinities stay in half and float.
+  Result<void> write_rows(std::span<const View<const float>> planes);
+  /// The next rows of a one-channel 16-bit image, bit for bit.
+  Result<void> write_rows(View<const std::uint16_t> plane);
+  /// Closes and renames into place. Syncing is the caller's, who may have many files to sync at once.
+  Result<void> finish();
+
+ private:
+  struct State;
+  explicit ImageWriter(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+/// Writes a whole image at once.
+Result<void> write_image(const std::filesystem::path& file, std::span<const View<const float>> planes,
+                         const std::vector<std::string>& channels, const WriteOptions& options);
+
+}  // namespace weft

@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/files.h"
+#include "core/image_io/image_io.h"
+#include "core/image_io/oiio.h"
+
+namespace weft {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::string_view_literals;
+
+struct Signature {
+  std::string_view bytes;
+  const char* format;
+};
+
+constexpr std::array kSignatures = {Signature{"\x76\x2f\x31\x01"sv, "openexr"},
+                                    Signature{"II*\0"sv, "tiff"},
+                                    Signature{"MM\0*"sv, "tiff"},
+                                    Signature{"II+\0"sv, "tiff"},
+                                    Signature{"MM\0+"sv, "tiff"},
+                                    Signature{"\x89PNG\r\n\x1a\n"sv, "png"},
+                                    Signature{"\xff\xd8\xff"sv, "jpeg"}};
+
+// Asked for beforehand, because libpng prints a line of its own when a file stops early.
+constexpr std::string_view kPngEnd = "\0\0\0\0IEND\xae\x42\x60\x82"sv;
+
+Error bad_data(const fs::path& file, std::string why) {
+  return {ErrorKind::kBadData, "cannot read the image", file.string(), std::move(why),
+          "write or copy the file again"};
+}
+
+bool ends_in(std::ifstream& in, std::string_view wanted) {
+  std::string last(wanted.size(), ' ');
+  in.clear();
+  in.seekg(-static_cast<std::streamoff>(last.size()), std::ios::end);
+  in.read(last.data(), static_cast<std::streamsize>(last.size()));
+  return in.good() && last == wanted;
+}
+
+/// The name of the file's format, from its first bytes: its ending may say anything.
+Result<std::string> format_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return cannot_read(file, errno);
+  std::array<char, 8> first = {};
+  in.read(first.data(), first.size());
+  const std::string_view start(first.data(), static_cast<std::size_t>(in.gcount()));
+  if (start.empty()) return bad_data(file, "it is empty");
+  for (const Signature& signature : kSignatures) {
+    if (!start.starts_with(signature.bytes)) continue;
+    if (signature.format == "png"sv && !ends_in(in, kPngEnd)) return bad_data(file, "its end is missing");
+    return std::string(signature.format);
+  }
+  return bad_data(file, "it is no EXR, TIFF, PNG or JPEG file");
+}
+
+SampleType sample_type(const OIIO::ImageSpec& spec) {
+  const auto type_of = [](const OIIO::TypeDesc& type) {
+    switch (type.basetype) {
+      case OIIO::TypeDesc::UINT8:
+        return SampleType::kUint8;
+      case OIIO::TypeDesc::UINT16:
+        return SampleType::kUint16;
+      case OIIO::TypeDesc::HALF:
+        return SampleType::kHalf;
+      default:
+        return SampleType::kFloat;
+    }
+  };
+  SampleType widest = type_of(spec.format);
+  for (const OIIO::TypeDesc& type : spec.channelformats) widest = std::max(widest, type_of(type));
+  return widest;
+}
+
+ImageAttributes attributes_of(const OIIO::ImageSpec& spec, const std::string& format) {
+  ImageAttributes attributes;
+  for (const OIIO::ParamValue& each : spec.extra_attribs) {
+    const std::string name = each.name().string();
+    const std::string prefix = name.substr(0, name.find(':'));
+    const bool about_the_file = prefix == "oiio" || prefix == format || name == "compression" ||
+                                name == "planarconfig" || name == "ResolutionUnit";
+    if (each.type() == OIIO::TypeString && !about_the_file) attributes[name] = each.get_string();
+  }
+  if (format == "openexr") return attributes;
+
+  const nlohmann::json ours = nlohmann::json::parse(attributes["ImageDescription"], nullptr, false);
+  const bool texts = ours.is_object() && std::all_of(ours.begin(), ours.end(),
+                                                     [](const nlohmann::json& v) { return v.is_string(); });
+  if (texts) return ours.get<ImageAttributes>();
+  if (attributes["ImageDescription"].empty()) attributes.erase("ImageDescription");
+  return attributes;
+}
+
+struct OpenedImage {
+  std::unique_ptr<OIIO::ImageInput> input;
+  OIIO::ImageSpec spec;
+  ImageFileInfo info;
+};
+
+Result<OpenedImage> open_image(const fs::path& file) {
+  prepare_oiio();
+  std::error_code failed;
+  const std::uintmax_t file_bytes = fs::file_size(file, failed);
+  if (failed) return cannot_read(file, failed.value());
+  const Result<std::string> format = format_of(file);
+  if (!format) return format.error();
+
+  OpenedImage opened;
+  opened.input = OIIO::ImageInput::create(*format);
+  OIIO::ImageSpec wishes;
+  wishes.attribute("oiio:UnassociatedAlpha", 1);
+  const bool open = opened.input->open(file.string(), opened.spec, wishes);
+  // Missing strips of a TIFF and the missing end of a JPEG are errors that no return value tells, here and
+  // below.
+  const std::string message = opened.input->geterror();
+  if (!open || !message.empty()) return bad_data(file, oiio_reason(message));
+  const OIIO::ImageSpec& spec = opened.spec;
+  if (spec.deep || spec.depth > 1) return bad_data(file, "its pixels have depth");
+  if (spec.width < 1 || spec.height < 1 || spec.nchannels < 1) return bad_data(file, "it has no pixels");
+  if (spec.get_int_attribute("tiff:subfiletype") == 1) {
+    return bad_data(file, "its first image is a thumbnail, as in a camera's raw file");
+  }
+  const std::uint64_t stored = spec.image_bytes(/*native=*/true);
+  if (*format == "openexr" && spec.get_string_attribute("compression") == "none" && stored > file_bytes) {
+    return bad_data(file, fmt::format("its {} x {} pixels need {} bytes, it has {}", spec.width, spec.height,
+                                      stored, file_bytes));
+  }
+  opened.info = {{spec.width, spec.height},
+                 {spec.channelnames.begin(), spec.channelnames.end()},
+                 sample_type(spec),
+                 *format,
+                 attributes_of(spec, *format)};
+  return opened;
+}
+
+/// Rows [y, y_end) of an opened image as interleaved floats. Returns why it failed, or nothing.
+std::string read_rows(OpenedImage& opened, int y, int y_end, float* rows) {
+  const OIIO::ImageSpec& spec = opened.spec;
+  OIIO::ImageInput& input = *opened.input;
+  const int y0 = spec.y + y, y1 = spec.y + y_end, channels = spec.nchannels;
+  const bool read = spec.tile_width == 0
+                        ? input.read_scanlines(0, 0, y0, y1, spec.z, 0, channels, OIIO::TypeFloat, rows)
+                        : input.read_tiles(0, 0, spec.x, spec.x + spec.width, y0, y1, spec.z, spec.z + 1, 0,
+                                           channels, OIIO::TypeFloat, rows);
+  const std::string message = input.geterror();
+  return read && message.empty() ? "" : oiio_reason(message);
+}
+
+/// Rows read at once: whole tiles, or enough lines to keep a decoder's threads busy.
+int rows_a_band(const OIIO::ImageSpec& spec) {
+  if (spec.tile_width > 0) return spec.tile_height;
+  constexpr std::int64_t kBandBytes = std::int64_t{8} << 20;
+  const std::int64_t row_bytes = std::int64_t{spec.width} * spec.nchannels * 4;
+  return static_cast<int>(std::clamp<std::int64_t>(kBandBytes / row_bytes / 32 * 32, 32, 4096));
+}
+
+Result<LoadedImage> read_pixels(OpenedImage opened, const fs::path& file) {
+  const Size size = opened.info.size;
+  const int channels = opened.spec.nchannels;
+  const int band_rows = std::min(rows_a_band(opened.spec), size.height);
+  const double padded_width = static_cast<double>(detail::padded_stride(size.width));
+  const double needed = 4.0 * channels * (padded_width * size.height + double{1} * size.width * band_rows);
+  const double available = static_cast<double>(available_memory_bytes());
+  if (needed > available) {
+    return Error{ErrorKind::kTryAgain, "image does not fit into memory", file.string(),
+                 fmt::format("{} x {} pixels with {} channels need {:.1f} GB, {:.1f} GB are free", size.width,
+                             size.height, channels, needed * 1e-9, available * 1e-9),
+                 "end other programs or use a larger machine"};
+  }
+  LoadedImage loaded{std::move(opened.info), Image<float>(size, channels)};
+  std::vector<float> band(static_cast<std::size_t>(size.width) * static_cast<std::size_t>(channels) *
+                          static_cast<std::size_t>(band_rows));
+  for (int y = 0; y < size.height; y += band_rows) {
+    const int y_end = std::min(y + band_rows, size.height);
+    if (const std::string why = read_rows(opened, y, y_end, band.data()); !why.empty()) {
+      return bad_data(file, why);
+    }
+    for (int c = 0; c < channels; ++c) {
+      const float* sample = band.data() + c;
+      for (int row = y; row < y_end; ++row) {
+        float* out = loaded.planes.plane(c).row(row);
+        for (int x = 0; x < size.width; ++x, sample += channels) out[x] = *sample;
+      }
+    }
+  }
+  return loaded;
+}
+
+}  // namespace
+
+View<const float> LoadedImage::channel(std::string_view name) const {
+  const auto found = std::find(info.channels.begin(), info.channels.end(), name);
+  if (found == info.channels.end()) return {};
+  return planes.plane(static_cast<int>(found - info.channels.begin()));
+}
+
+Result<ImageFileInfo> read_image_info(const fs::path& file) try {
+  Result<OpenedImage> opened = open_image(file);
+  if (!opened) return opened.error();
+  return std::move(opened->info);
+} catch (const std::exception& damage) {
+  return bad_data(file, damage.what());
+}
+
+Result<LoadedImage> read_image(const fs::path& file) try {
+  Result<OpenedImage> opened = open_image(file);
+  if (!opened) return opened.error();
+  return read_pixels(*std::move(opened), file);
+} catch (const std::exception& damage) {
+  return bad_data(file, damage.what());
+}
+
+}  // namespace weft

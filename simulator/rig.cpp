@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/rig.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulator/light.h"
+
+namespace weft::simulator {
+namespace {
+
+constexpr double kFullScaleShare = 0.90;
+constexpr std::size_t kMostLeds = 256;
+constexpr double kLongestExposure_us = 1e9;
+
+Error refusal(std::string what, std::string why, std::string remedy) {
+  return {ErrorKind::kBadData, std::move(what), "scene", std::move(why), std::move(remedy)};
+}
+
+std::vector<NearLight> place_leds(const LightSettings& lights) {
+  NearLight common;
+  common.mu = lights.mu;
+  for (std::size_t c = 0; c < 3; ++c) common.flux_rgb[c] = lights.flux * lights.white_balance[c];
+
+  std::vector<NearLight> leds;
+  const auto place = [&](Vec3 position_mm) -> NearLight& {
+    NearLight& led = leds.emplace_back(common);
+    led.position_mm = position_mm;
+    led.aim = normalized(-1.0 * position_mm);
+    return led;
+  };
+  const bool is_default = lights.rings.empty() && lights.leds.empty();
+  for (const LedRing& ring : is_default ? default_rings() : lights.rings) {
+    const double zenith = radians(ring.zenith_deg);
+    for (int i = 0; i < ring.count; ++i) {
+      const double azimuth = radians(ring.azimuth_deg + 360.0 * i / ring.count);
+      place(ring.distance_mm * Vec3{std::sin(zenith) * std::cos(azimuth),
+                                    std::sin(zenith) * std::sin(azimuth), std::cos(zenith)});
+    }
+  }
+  for (const LedSettings& own : lights.leds) {
+    NearLight& led = place(own.position_mm);
+    if (own.aim) led.aim = normalized(*own.aim);
+    led.mu = own.mu.value_or(common.mu);
+    led.flux_rgb = own.flux_rgb.value_or(common.flux_rgb);
+  }
+  return leds;
+}
+
+Result<void> check_places(const Scene& scene, const std::vector<NearLight>& leds) {
+  const double height_mm = scene.geometry.cloth_height_mm;
+  if (leds.size() > kMostLeds) {
+    return refusal("too many LEDs", fmt::format("{} of at most {}", leds.size(), kMostLeds), "remove some");
+  }
+  for (std::size_t i = 0; i < leds.size(); ++i) {
+    if (leds[i].position_mm.z > height_mm && leds[i].position_mm.z > 0) continue;
+    return refusal(fmt::format("LED {} is not above table and cloth", i + 1),
+                   fmt::format("it is at z = {} mm and the cloth at {} mm", leds[i].position_mm.z, height_mm),
+                   "raise it or lower geometry.cloth_height_mm");
+  }
+  if (scene.camera.distance_mm > height_mm) return {};
+  return refusal("the camera is not above the cloth",
+                 fmt::format("it is at {} mm and the cloth at {} mm", scene.camera.distance_mm, height_mm),
+                 "raise camera.distance_mm or lower geometry.cloth_height_mm");
+}
+
+/// Readings that a white surface gives where it faces the LED, in the brightest channel of the brightest LED.
+double brightest_reading(const DistantLights& lights) {
+  double brightest = 0;
+  for (const DistantLight& light : lights.lights) {
+    brightest =
+        std::max(brightest, *std::max_element(light.irradiance_rgb.begin(), light.irradiance_rgb.end()));
+  }
+  return brightest;
+}
+
+}  // namespace
+
+DistantLights distant_lights(const Rig& rig, double cloth_height_mm) {
+  DistantLights distant;
+  for (const NearLight& led : rig.leds.leds) {
+    const Incidence light = incidence(led, {0, 0, cloth_height_mm});
+    const std::array<double, 3>& flux = led.flux_rgb;
+    distant.lights.push_back(
+        {light.direction, {flux[0] * light.strength, flux[1] * light.strength, flux[2] * light.strength}});
+  }
+  return distant;
+}
+
+Result<Rig> rig_of(const Scene& scene) {
+  if (Result<void> ok = check_scene(scene); !ok) return ok.error();
+  Rig rig;
+  rig.leds.leds = place_leds(scene.lights);
+  if (Result<void> ok = check_places(scene, rig.leds.leds); !ok) return ok.error();
+  rig.sensor = sensor_of(scene.camera);
+
+  const double reading = brightest_reading(distant_lights(rig, scene.geometry.cloth_height_mm));
+  if (reading <= 0) {
+    return refusal("no LED lights the table's centre", "every aim points away or every flux is 0",
+                   "correct the section [lights]");
+  }
+  const CameraSettings& camera = scene.camera;
+  rig.exposure_us = std::round(camera.exposure_us.value_or(
+      1e6 * kFullScaleShare / (camera.albedo_at_full * reading * camera.iso / 100)));
+  if (rig.exposure_us < 1 || rig.exposure_us > kLongestExposure_us) {
+    return refusal("no exposure fits the lights",
+                   fmt::format("{:.3g} us would be needed, 1 to {:.0e} can be had", rig.exposure_us,
+                               kLongestExposure_us),
+                   "change lights.flux or camera.iso");
+  }
+  return rig;
+}
+
+Calibration exact_calibration(const Scene& scene, const Rig& rig) {
+  const CameraSettings& c = scene.camera;
+  Calibration calibration;
+  calibration.subject.rig = "virtual rig";
+  calibration.subject.camera_model = rig.sensor.model;
+  calibration.subject.camera_serial = "virtual";
+  calibration.subject.f_number = c.f_number;
+  calibration.subject.albedo_scale = "absolute";
+  calibration.camera = overhead_camera({c.width, c.height}, c.distance_mm, c.mm_per_pixel);
+  calibration.response = response_of(rig.sensor);
+  if (scene.effects.near_light) {
+    calibration.lights = rig.leds;
+  } else {
+    calibration.lights = distant_lights(rig, scene.geometry.cloth_height_mm);
+  }
+  return calibration;
+}
+
+}  // namespace weft::simulator

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <variant>
+
+#include "core/calibration.h"
+#include "core/lights.h"
+#include "core/result.h"
+#include "simulator/scene.h"
+#include "simulator/sensor.h"
+
+namespace weft::simulator {
+
+/// The virtual rig that a scene describes, in numbers.
+struct Rig {
+  NearLights leds;
+  Sensor sensor;
+  double exposure_us = 0;  ///< whole microseconds
+
+  /// Signal of a reading of 1: seconds at ISO 100.
+  double exposure(double iso) const { return exposure_us * 1e-6 * iso / 100; }
+};
+
+/// Checks the scene, places its LEDs and chooses the exposure. kBadData where no LED lights the table's
+/// centre, a LED or the camera is not above the cloth, or the exposure would not be between 1 us and 1000 s.
+Result<Rig> rig_of(const Scene& scene);
+
+/// Each LED as the distant light that it is at the table's centre, on the cloth's plane.
+DistantLights distant_lights(const Rig& rig, double cloth_height_mm);
+
+/// The point of the plane z = cloth_height_mm that a pixel of the scene's camera sees.
+inline Vec3 point_of_pixel(const Scene& scene, int x, int y) {
+  const CameraSettings& c = scene.camera;
+  const double height_mm = scene.geometry.cloth_height_mm;
+  const double mm_per_pixel = c.mm_per_pixel * (c.distance_mm - height_mm) / c.distance_mm;
+  return {(x - (c.width - 1) / 2.0) * mm_per_pixel, ((c.height - 1) / 2.0 - y) * mm_per_pixel, height_mm};
+}
+
+/// Everything about the rig as a perfect calibration would have it.
+Calibration exact_calibration(const Scene& scene, const Rig& rig);
+
+}  // namespace weft::simulator

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/sensor.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::simulator {
+
+Sensor sensor_of(const CameraSettings& camera) {
+  Sensor sensor = camera.body == Body::kOffset ? Sensor{"weft", "virtual camera", 600, 15520}
+                                               : Sensor{"NIKON CORPORATION", "NIKON D5100", 0, 15846};
+  const double scale = std::ldexp(1.0, camera.bits - 14);  // the levels above are those of 14 bits
+  sensor.black = std::floor(sensor.black * scale);
+  sensor.white = std::floor(sensor.white * scale);
+  sensor.electrons_at_white = camera.full_well_electrons * 100 / camera.iso;
+  sensor.read_noise_electrons = camera.read_noise_electrons;
+  return sensor;
+}
+
+std::uint16_t count_of(const Sensor& sensor, double signal) {
+  const double count = std::floor(sensor.black + (sensor.white - sensor.black) * signal + 0.5);
+  return static_cast<std::uint16_t>(std::clamp(count, 0.0, sensor.white));
+}
+
+Response response_of(const Sensor& sensor) {
+  Response response;
+  response.electrons_per_count = sensor.electrons_per_count();
+  response.read_noise_counts =
+      std::hypot(sensor.read_noise_electrons / sensor.electrons_per_count(), std::sqrt(1.0 / 12));
+  return response;
+}
+
+}  // namespace weft::simulator

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include "core/image.h"
+#include "core/result.h"
+#include "core/tiles.h"
+#include "simulator/passes.h"
+#include "simulator/scene.h"
+
+namespace weft::simulator {
+
+struct SimulateOptions {
+  TileOptions tiles;  ///< tile size and threads: they change no byte
+  std::stop_token stop;
+  /// Called after each part of the work: the truth, then every frame.
+  std::function<void(int parts_done, int parts)> progress;
+};
+
+/// What a simulation did.
+struct SimulationReport {
+  int frames = 0;
+  double exposure_us = 0;
+  std::vector<PassCost> passes;  ///< in the order they run
+  std::vector<LeftOut> left_out;
+  double render_seconds = 0;  ///< wall time of the passes
+  double write_seconds = 0;   ///< wall time of files: frames, truth, syncing
+};
+
+/// Renders a scene into a session folder: a lit frame for each LED and a dark one as DNG, session.json, the
+/// exact calibration, and under truth/ normal.exr (X, Y, Z), albedo.exr (R, G, B), height.exr (mm, above the
+/// plane cloth_height_mm) and scene.toml. The same scene gives the same bytes. Memory holds frames of up to
+/// 256 MiB together, at least one, and a band of the truth.
+///
+/// The folder is made aside (`.partial`) and renamed when complete: after an error or an interrupt there is
+/// nothing. Errors: kBadData (the scene), kCannotCreate (`session_folder` or a folder aside exists, or may
+/// not be made), kInputOutput (no room on the disk), kTryAgain (not enough memory free), kInterrupted.
+Result<SimulationReport> simulate_session(const Scene& scene, const std::filesystem::path& session_folder,
+                                          const SimulateOptions& options);
+
+/// Part of a simulated picture as numbers, without mosaic, converter or files.
+struct Rendering {
+  Image<double> readings;   ///< plane 3 k + c: light k, channel c; 1 is full scale per second at ISO 100
+  Image<double> normal;     ///< planes X, Y, Z
+  Image<double> albedo;     ///< planes R, G, B
+  Image<double> height_mm;  ///< above the plane cloth_height_mm
+};
+
+/// Renders the pixels of `area`, which may reach beyond the scene's frame, for all LEDs. The scene's effects
+/// apply.
+Result<Rendering> render_readings(const Scene& scene, Rect area, const TileOptions& tiles = {});
+
+}  // namespace weft::simulator

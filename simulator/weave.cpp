@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/weave.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace weft::simulator {
+namespace {
+
+double mean_pitch_mm(const GeometrySettings& g) {
+  return (g.warp_pitch_mm + g.weft_pitch_mm) / 2;
+}
+
+std::int64_t modulo(std::int64_t a, std::int64_t n) {
+  return (a % n + n) % n;
+}
+
+/// Where a coordinate lies among parallel yarns: the nearest one and the next, on the other side of it.
+struct Neighbours {
+  std::int64_t nearest;
+  std::int64_t next;
+  double offset_mm;  ///< from the nearest yarn's axis
+  double side;       ///< of the next yarn: -1 or 1
+};
+
+Neighbours neighbours_at(double coordinate_mm, double pitch_mm) {
+  const double cell = std::floor(coordinate_mm / pitch_mm);
+  const double offset_mm = coordinate_mm - (cell + 0.5) * pitch_mm;
+  const auto nearest = static_cast<std::int64_t>(cell);
+  const int side = offset_mm < 0 ? -1 : 1;
+  return {nearest, nearest + side, offset_mm, static_cast<double>(side)};
+}
+
+/// A height and its derivatives across and along a yarn.
+struct Profile {
+  double height_mm;
+  double across;
+  double along;
+};
+
+/// The axis: from one side (-1 under, 1 over) at t = 0 to the other at t = 1.
+Profile axis(double amplitude_mm, double from, double to, double t, double dt_dalong) {
+  return {amplitude_mm * (from + (to - from) * t * t * (3 - 2 * t)), 0,
+          amplitude_mm * (to - from) * 6 * t * (1 - t) * dt_dalong};
+}
+
+/// The cross-section: 0 at the crest.
+Profile cross_section(double radius_mm, double half_mm, double flank_slope, double across_mm) {
+  const double u = std::min(std::abs(across_mm), half_mm);
+  const double z = std::sqrt(radius_mm * radius_mm - u * u);
+  const double beyond_mm = std::abs(across_mm) - u;
+  const double slope = beyond_mm > 0 ? flank_slope : u / z;
+  return {z - radius_mm - flank_slope * beyond_mm, across_mm < 0 ? slope : -slope, 0};
+}
+
+/// Ridges of the plies: two from crossing to crossing, at 45 degrees if the crossings are a pitch apart; the
+/// sign of `along_pitch_mm` turns them.
+Profile twist(double amplitude_mm, double across_mm, double across_pitch_mm, double along_mm,
+              double along_pitch_mm) {
+  const double kx = 4 * kPi / across_pitch_mm, ky = 4 * kPi / along_pitch_mm;
+  const double phase = kx * across_mm + ky * along_mm;
+  const double slope = amplitude_mm * std::cos(phase);
+  return {amplitude_mm * std::sin(phase), kx * slope, ky * slope};
+}
+
+Profile operator+(Profile a, Profile b) {
+  return {a.height_mm + b.height_mm, a.across + b.across, a.along + b.along};
+}
+
+/// A yarn that may be the highest at a point.
+struct Candidate {
+  Profile profile;
+  double across_mm;
+  Yarn yarn;
+};
+
+}  // namespace
+
+Draft draft_of(const GeometrySettings& g) {
+  switch (g.kind) {
+    case GeometryKind::kTwill:
+      return {g.over.value_or(2), g.under.value_or(2), g.step.value_or(1)};
+    case GeometryKind::kSatin:
+      return {g.over.value_or(4), g.under.value_or(1), g.step.value_or(2)};
+    default:
+      return {1, 1, 1};
+  }
+}
+
+bool yarns_stay_beside_their_neighbours(const GeometrySettings& g) {
+  const double flank = radians(g.flank_deg);
+  const double drop = (1 - std::cos(flank)) / (2 * std::sin(flank)) + std::tan(flank) / 2;  // over one pitch
+  return 2 * (g.crimp + g.twist_relief) * mean_pitch_mm(g) <=
+         drop * std::min(g.warp_pitch_mm, g.weft_pitch_mm);
+}
+
+Weave::Weave(const GeometrySettings& g)
+    : period_(draft_of(g).period()),
+      crimp_mm_(g.crimp * mean_pitch_mm(g)),
+      twist_mm_(g.twist_relief * mean_pitch_mm(g)),
+      flank_slope_(std::tan(radians(g.flank_deg))),
+      warp_{g.warp_pitch_mm, g.warp_pitch_mm / 2 / std::sin(radians(g.flank_deg))},
+      weft_{g.weft_pitch_mm, g.weft_pitch_mm / 2 / std::sin(radians(g.flank_deg))} {
+  const Draft draft = draft_of(g);
+  for (std::int64_t i = 0; i < period_; ++i) {
+    for (std::int64_t j = 0; j < period_; ++j) {
+      warp_side_.push_back(modulo(j - draft.step * i, period_) < draft.over ? 1 : -1);
+    }
+  }
+}
+
+SurfacePoint Weave::at(double x_mm, double y_mm) const {
+  const Neighbours warp = neighbours_at(x_mm, warp_.pitch_mm);
+  const Neighbours weft = neighbours_at(y_mm, weft_.pitch_mm);
+  const std::int64_t i[2] = {modulo(warp.nearest, period_), modulo(warp.next, period_)};
+  const std::int64_t j[2] = {modulo(weft.nearest, period_), modulo(weft.next, period_)};
+  const auto warp_side = [&](int a, int b) {
+    return warp_side_[static_cast<std::size_t>(i[a] * period_ + j[b])];
+  };
+
+  const auto candidate = [&](bool is_weft, int k) -> Candidate {
+    const Set& set = is_weft ? weft_ : warp_;
+    const Neighbours& own = is_weft ? weft : warp;
+    const Neighbours& crossing = is_weft ? warp : weft;
+    const double crossing_pitch_mm = is_weft ? warp_.pitch_mm : weft_.pitch_mm;
+    const double from = is_weft ? -warp_side(0, k) : warp_side(k, 0);
+    const double to = is_weft ? -warp_side(1, k) : warp_side(k, 1);
+    const double across_mm = own.offset_mm - k * own.side * set.pitch_mm;
+    return {cross_section(set.radius_mm, set.pitch_mm / 2, flank_slope_, across_mm) +
+                axis(crimp_mm_, from, to, std::abs(crossing.offset_mm) / crossing_pitch_mm,
+                     crossing.side / crossing_pitch_mm),
+            across_mm,
+            {is_weft, k == 0 ? own.nearest : own.next}};
+  };
+  // Four yarns can be on top: the nearest and the next of either set.
+  std::array<Candidate, 4> candidates = {candidate(false, 0), candidate(false, 1), candidate(true, 0),
+                                         candidate(true, 1)};
+  const auto lower = [](const Candidate& a, const Candidate& b) {
+    return a.profile.height_mm < b.profile.height_mm;
+  };
+  if (twist_mm_ > 0) {
+    const double top_mm = std::max_element(candidates.begin(), candidates.end(), lower)->profile.height_mm;
+    for (Candidate& c : candidates) {
+      if (c.profile.height_mm < top_mm - 2 * twist_mm_) continue;  // no ridge lifts it to the top
+      c.profile =
+          c.profile + (c.yarn.is_weft ? twist(twist_mm_, c.across_mm, weft_.pitch_mm, x_mm, warp_.pitch_mm)
+                                      : twist(twist_mm_, c.across_mm, warp_.pitch_mm, y_mm, -weft_.pitch_mm));
+    }
+  }
+  const Candidate& top = *std::max_element(candidates.begin(), candidates.end(), lower);
+  const Profile& p = top.profile;
+  const double slope_x = top.yarn.is_weft ? p.along : p.across;
+  const double slope_y = top.yarn.is_weft ? p.across : p.along;
+  const double z = 1 / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
+  return {p.height_mm, {-slope_x * z, -slope_y * z, z}, top.yarn};
+}
+
+Surface surface_of(const GeometrySettings& g) {
+  switch (g.kind) {
+    case GeometryKind::kFlat:
+      return Plane({0, 0, 1});
+    case GeometryKind::kTilted: {
+      const double tilt = radians(g.tilt_deg), azimuth = radians(g.azimuth_deg);
+      return Plane({std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)});
+    }
+    default:
+      return Weave(g);
+  }
+}
+
+}  // namespace weft::simulator

@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/raw/dng_layout.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "capture/raw/decode.h"
+#include "tests/capture/raw/dng_bytes.h"
+
+namespace weft::capture {
+namespace {
+
+using testing::HasSubstr;
+
+void expect_refusal(const DngBytes& dng, const std::string& reason) {
+  const auto frame = decode_raw(dng.save("layout.dng"));
+  ASSERT_FALSE(frame.has_value()) << "decoded, though " << reason;
+  EXPECT_EQ(frame.error().kind, ErrorKind::kBadData) << frame.error().message();
+  EXPECT_THAT(frame.error().message(), HasSubstr(reason));
+}
+
+/// A lossless JPEG (ITU-T T.81, SOF3, predictor 1) of part of a frame, whose code words all have five bits.
+std::vector<std::uint8_t> lossless_jpeg(const RawFrame& frame, Rect r) {
+  const auto high = [](int n) { return static_cast<std::uint8_t>(n >> 8); };
+  const auto low = [](int n) { return static_cast<std::uint8_t>(n & 255); };
+  std::vector<std::uint8_t> jpeg = {0xff, 0xd8, 0xff, 0xc4, 0, 36, 0, 0, 0, 0, 0, 17,
+                                    0,    0,    0,    0,    0, 0,  0, 0, 0, 0, 0};
+  for (std::uint8_t category = 0; category <= 16; ++category) jpeg.push_back(category);
+  jpeg.insert(jpeg.end(), {0xff,
+                           0xc3,
+                           0,
+                           11,
+                           16,
+                           high(r.height()),
+                           low(r.height()),
+                           high(r.width()),
+                           low(r.width()),
+                           1,
+                           1,
+                           0x11,
+                           0,
+                           0xff,
+                           0xda,
+                           0,
+                           8,
+                           1,
+                           1,
+                           0,
+                           1,
+                           0,
+                           0});
+  std::uint64_t bits = 0;
+  int held = 0;
+  const auto put = [&](unsigned code, int length) {
+    bits = bits << length | code;
+    for (held += length; held >= 8; held -= 8) {
+      jpeg.push_back(static_cast<std::uint8_t>(bits >> (held - 8)));
+      if (jpeg.back() == 0xff) jpeg.push_back(0);
+    }
+  };
+  const auto count = [&](int x, int y) {
+    return x < frame.counts.width() && y < frame.counts.height() ? frame.counts(x, y) : 0;
+  };
+  for (int y = r.y0; y < r.y1; ++y)
+    for (int x = r.x0; x < r.x1; ++x) {
+      const int predicted = x > r.x0 ? count(x - 1, y) : y > r.y0 ? count(x, y - 1) : 32768;
+      const int difference = count(x, y) - predicted;  // under 32 768 in size for counts of 15 bits
+      const auto magnitude = static_cast<unsigned>(std::abs(difference));
+      const auto category = static_cast<int>(std::bit_width(magnitude));
+      put(static_cast<unsigned>(category), 5);
+      if (category > 0) put(difference > 0 ? magnitude : (1u << category) - 1 - magnitude, category);
+    }
+  put(127, 7);
+  jpeg.insert(jpeg.end(), {0xff, 0xd9});
+  return jpeg;
+}
+
+DngBytes lossless_strip(const RawFrame& frame) {
+  DngBytes dng(frame);
+  const auto jpeg = lossless_jpeg(frame, {0, 0, frame.counts.width(), frame.counts.height()});
+  dng.bytes.resize(dng.get(273));
+  dng.bytes.insert(dng.bytes.end(), jpeg.begin(), jpeg.end());
+  return dng.set(259, {7}, 2).set(279, {static_cast<std::uint32_t>(jpeg.size())});
+}
+
+/// Tiles whose offsets and lengths lie where the colour matrix was.
+DngBytes lossless_tiles(const RawFrame& frame, Size tile) {
+  DngBytes dng(frame);
+  const auto strip_at = dng.get(273);
+  const auto arrays_at = static_cast<std::uint32_t>(dng.value_at(50721));
+  dng.bytes.resize(strip_at);
+  std::vector<std::uint32_t> offsets, lengths;
+  for (int y = 0; y < frame.counts.height(); y += tile.height)
+    for (int x = 0; x < frame.counts.width(); x += tile.width) {
+      const auto jpeg = lossless_jpeg(frame, {x, y, x + tile.width, y + tile.height});
+      offsets.push_back(static_cast<std::uint32_t>(dng.bytes.size()));
+      lengths.push_back(static_cast<std::uint32_t>(jpeg.size()));
+      dng.bytes.insert(dng.bytes.end(), jpeg.begin(), jpeg.end());
+      if (dng.bytes.size() % 2 == 1) dng.bytes.push_back(0);
+    }
+  const auto tiles = static_cast<std::uint32_t>(offsets.size());
+  dng.remove(50721).remove(278).set(259, {7}, 2);
+  dng.retag(254, 322, 4, 1).set(322, {static_cast<std::uint32_t>(tile.width)});
+  dng.retag(50778, 323, 4, 1).set(323, {static_cast<std::uint32_t>(tile.height)});
+  dng.retag(273, 324, 4, 1).set(324, {tiles == 1 ? offsets[0] : arrays_at}).retag(324, 324, 4, tiles);
+  dng.retag(279, 325, 4, 1)
+      .set(325, {tiles == 1 ? lengths[0] : arrays_at + 4 * tiles})
+      .retag(325, 325, 4, tiles);
+  if (tiles > 1) {
+    std::memcpy(dng.bytes.data() + arrays_at, offsets.data(), 4 * tiles);
+    std::memcpy(dng.bytes.data() + arrays_at + 4 * tiles, lengths.data(), 4 * tiles);
+  }
+  return dng;
+}
+
+void expect_same_counts(const DngBytes& dng, const RawFrame& truth) {
+  const auto frame = decode_raw(dng.save("lossless.dng"));
+  ASSERT_TRUE(frame.has_value()) << frame.error().message();
+  ASSERT_EQ(frame->counts.size(), truth.counts.size());
+  for (int y = 0; y < truth.counts.height(); ++y)
+    for (int x = 0; x < truth.counts.width(); ++x)
+      ASSERT_EQ(frame->counts(x, y), truth.counts(x, y)) << "at " << x << ", " << y;
+}
+
+TEST(DngLayout, TakesLosslessJpegInOneStrip) {
+  const RawFrame truth = sample_frame({41, 30});
+  expect_same_counts(lossless_strip(truth), truth);
+}
+
+TEST(DngLayout, TakesLosslessJpegInTiles) {
+  const RawFrame truth = sample_frame({41, 30});
+  expect_same_counts(lossless_tiles(truth, {16, 16}), truth);
+}
+
+TEST(DngLayout, RefusesOneTileWhichLibRawMistakesForAListOfTiles) {
+  expect_refusal(lossless_tiles(sample_frame({41, 30}), {48, 32}), "it is one tile");
+}
+
+TEST(DngLayout, TakesStripsThatFollowOneAnother) {
+  const RawFrame truth = sample_frame({40, 30});
+  DngBytes dng(truth);
+  const auto strip_at = dng.get(273), arrays_at = static_cast<std::uint32_t>(dng.value_at(50721));
+  dng.remove(50721).set(273, {arrays_at}).retag(273, 273, 4, 2).set(278, {15});
+  dng.set(279, {arrays_at + 8}).retag(279, 279, 4, 2);
+  dng.set(273, {strip_at, strip_at + 1200, 1200, 1200});
+  expect_same_counts(dng, truth);
+  expect_refusal(dng.set(273, {strip_at + 1200, strip_at}), "do not follow one another");
+}
+
+TEST(DngLayout, RefusesDataThatAreNotWhatCompressionAndBitsSay) {
+  const DngBytes good;
+  const auto with = [&good](std::uint16_t tag, std::uint32_t value) {
+    return DngBytes(good).set(tag, {value}, 2);
+  };
+  expect_refusal(with(259, 7), "no lossless JPEG of 40 x 30 counts");
+  expect_refusal(with(259, 8), "compression 8 is not read");
+  expect_refusal(with(259, 34892), "compression 34892 is not read");
+  expect_refusal(with(258, 14), "14 bits, not 16");
+  expect_refusal(with(258, 12), "12 bits, not 16");
+  expect_refusal(with(258, 8), "8 bits, not 16");
+}
+
+TEST(DngLayout, RefusesALosslessJpegOfAnotherSizeOrNoLosslessJpeg) {
+  const RawFrame frame = sample_frame({41, 30});
+  DngBytes dng = lossless_strip(frame);
+  const std::size_t sof = dng.get(273) + 2 + 2 + 36;
+  ASSERT_EQ(dng.bytes[sof + 1], 0xc3);
+  --dng.bytes[sof + 6];
+  expect_refusal(dng, "no lossless JPEG of 41 x 30 counts");
+  ++dng.bytes[sof + 6];
+  dng.bytes[sof + 1] = 0xc0;
+  expect_refusal(dng, "no lossless JPEG of 41 x 30 counts");
+  dng.bytes[sof + 1] = 0xc3;
+  dng.bytes[dng.get(273) + 6] = 3;
+  expect_refusal(dng, "no lossless JPEG of 41 x 30 counts");
+  dng = lossless_tiles(frame, {16, 16});
+  dng.bytes[dng.bytes.size() - 20] = 0xff;  // a marker inside the last tile's data
+  dng.bytes[dng.bytes.size() - 19] = 0xd9;
+  expect_refusal(dng, "LibRaw");
+}
+
+TEST(DngLayout, FindsTheMosaicInASubdirectory) {
+  const RawFrame truth = sample_frame({40, 30});
+  DngBytes dng(truth);
+  const auto raw_directory_at = 8u, preview_directory_at = static_cast<std::uint32_t>(dng.bytes.size());
+  // The directory again, as that of a preview whose child is the first one.
+  dng.bytes.insert(dng.bytes.end(), dng.bytes.begin() + raw_directory_at, dng.bytes.begin() + dng.get(34665));
+  dng.bytes[4] = static_cast<std::uint8_t>(preview_directory_at);
+  dng.bytes[5] = static_cast<std::uint8_t>(preview_directory_at >> 8);
+  dng.set(254, {1}).set(262, {1}, 2).remove(273).remove(279).remove(33421).remove(33422).remove(258);
+  dng.retag(284, 330, 4, 1).set(330, {raw_directory_at});
+  expect_same_counts(dng, truth);
+}
+
+TEST(DngLayout, RefusesCountsThatAreNotIntegersOfOneMosaic) {
+  const DngBytes good;
+  expect_refusal(DngBytes(good).retag(284, 339, 3, 1).set(339, {3}, 2), "not unsigned integers");
+  expect_refusal(DngBytes(good).set(277, {3}, 2), "3 samples a pixel");
+  expect_refusal(DngBytes(good).set(262, {34892}, 2), "0 full-size colour filter arrays");
+  expect_refusal(DngBytes(good).set(254, {1}), "0 full-size colour filter arrays");
+  expect_refusal(DngBytes(good).retag(284, 50711, 3, 1).set(50711, {2}, 2), "not a Bayer mosaic");
+}
+
+TEST(DngLayout, RefusesMissingOrImpossibleWhiteLevels) {
+  const DngBytes good;
+  expect_refusal(DngBytes(good).remove(50717), "no white level");
+  expect_refusal(DngBytes(good).set(50717, {0}), "no white level");
+  expect_refusal(DngBytes(good).set(50717, {65536}), "white level is 65536");
+  expect_refusal(DngBytes(good).set(50717, {600}), "black level is 600 counts and its white level 600");
+}
+
+TEST(DngLayout, RefusesMissingOrImpossibleBlackLevels) {
+  const DngBytes good;
+  expect_refusal(DngBytes(good).remove(50714), "no black level");
+  expect_refusal(DngBytes(good).set(50714, {1, 0}), "no black level");
+  expect_refusal(DngBytes(good).set(50713, {2, 2}, 2), "1 black levels are no pattern");
+  expect_refusal(DngBytes(good).retag(50728, 50715, 10, 3), "changes from row to row or column to column");
+}
+
+TEST(DngLayout, TakesABlackPatternOnlyIfItRepeatsWithTheCell) {
+  // Four by two levels in place of the colour matrix.
+  DngBytes dng(sample_frame({40, 30}));
+  dng.remove(50714).retag(50721, 50714, 4, 8).set(50713, {4, 2}, 2);
+  dng.set(50714, {600, 601, 602, 603, 600, 601, 602, 603});
+  const auto frame = decode_raw(dng.save("black_pattern.dng"));
+  ASSERT_TRUE(frame.has_value()) << frame.error().message();
+  EXPECT_EQ(frame->black, (std::array<std::array<float, 2>, 2>{{{600, 601}, {602, 603}}}));
+  expect_refusal(dng.set(50714, {600, 601, 602, 603, 600, 601, 602, 604}), "not 2 x 2");
+}
+
+TEST(DngLayout, RefusesSizesThatContradictTheData) {
+  const DngBytes good;
+  const auto with = [&good](std::uint16_t tag, std::uint32_t value) {
+    return DngBytes(good).set(tag, {value});
+  };
+  expect_refusal(with(256, 38), "38 x 30 counts of 16 bits take 2280 bytes, it holds 2400");
+  expect_refusal(with(257, 31), "40 x 31 counts of 16 bits take 2480 bytes, it holds 2400");
+  expect_refusal(with(256, 60000), "60000 x 30 counts");
+  expect_refusal(with(279, 2398), "it holds 2398");
+  expect_refusal(with(256, 0), "its size is 0 x 30 pixels");
+  expect_refusal(with(257, 0), "its size is 40 x 0 pixels");
+}
+
+TEST(DngLayout, RefusesDataBeyondTheEndOfTheFile) {
+  const DngBytes good;
+  expect_refusal(DngBytes(good).set(273, {0x7fffffff}), "bytes are missing of");
+  expect_refusal(DngBytes(good).set(273, {0}), "a piece of its data is empty");
+  expect_refusal(DngBytes(good).set(279, {0xffffffff}), "bytes are missing of");
+  expect_refusal(DngBytes(good).remove(279), "does not say where its data are");
+}
+
+TEST(DngLayout, RefusesAnActiveAreaOutsideTheSensor) {
+  DngBytes dng;
+  dng.retag(50728, 50829, 4, 4);
+  expect_refusal(dng.set(50829, {0, 0, 31, 40}), "active area does not lie within 40 x 30");
+  expect_refusal(dng.set(50829, {4, 0, 4, 40}), "active area does not lie within 40 x 30");
+}
+
+}  // namespace
+}  // namespace weft::capture

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "core/image_io/image_io.h"
+
+namespace weft {
+
+/// Random values that `type` holds exactly: counts of an integer, or eight bits of fraction with a sign.
+inline Image<float> exact_noise(Size size, int planes, SampleType type, unsigned seed = 7) {
+  std::mt19937 random(seed);
+  Image<float> image(size, planes);
+  for (int p = 0; p < planes; ++p) {
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        const auto bits = static_cast<std::uint32_t>(random());
+        switch (type) {
+          case SampleType::kUint8:
+            image(x, y, p) = static_cast<float>(bits & 0xFFU) / 255.0f;
+            break;
+          case SampleType::kUint16:
+            image(x, y, p) = static_cast<float>(bits & 0xFFFFU) / 65535.0f;
+            break;
+          case SampleType::kHalf:
+            image(x, y, p) = static_cast<float>(static_cast<int>(bits & 0xFFFU) - 2048) / 256.0f;
+            break;
+          case SampleType::kFloat:
+            image(x, y, p) = static_cast<float>(static_cast<std::int32_t>(bits)) * 1e-7f;
+            break;
+        }
+      }
+    }
+  }
+  return image;
+}
+
+inline std::vector<View<const float>> views_of(const Image<float>& image) {
+  std::vector<View<const float>> views;
+  views.reserve(static_cast<std::size_t>(image.planes()));
+  for (int p = 0; p < image.planes(); ++p) views.push_back(image.plane(p));
+  return views;
+}
+
+/// The same rows of every view.
+inline std::vector<View<const float>> rows_of(const std::vector<View<const float>>& views, int y0, int y1) {
+  std::vector<View<const float>> rows;
+  rows.reserve(views.size());
+  for (const View<const float>& view : views) rows.push_back(view.crop({0, y0, view.width(), y1}));
+  return rows;
+}
+
+inline std::vector<std::string> channel_names(int channels) {
+  if (channels == 1) return {"Y"};
+  std::vector<std::string> names = {"R", "G", "B", "A"};
+  names.resize(static_cast<std::size_t>(channels));
+  return names;
+}
+
+}  // namespace weft

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every file of the repository has, and what none may hold.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/repository/source_tree.h"
+
+namespace weft::repository {
+namespace {
+
+constexpr std::string_view kLicenceLine = "// SPDX-License-Identifier: Apache-2.0";
+constexpr std::size_t kMostLines = 600;
+
+bool is_source(std::string_view path) {
+  return ends_in(path, {".h", ".cpp", ".c"});
+}
+
+/// Whether a path that begins with one of these folders of the machine's root starts somewhere in the line,
+/// and not in the middle of a longer path.
+bool names_machine_path(std::string_view line) {
+  for (const std::string_view folder : {"root", "home", "work", "Users"}) {
+    const std::string wanted = "/" + std::string(folder) + "/";
+    for (std::size_t at = line.find(wanted); at != line.npos; at = line.find(wanted, at + 1)) {
+      const char before = at == 0 ? ' ' : line[at - 1];
+      const bool goes_on = std::isalnum(static_cast<unsigned char>(before)) ||
+                           std::string_view("_.-~})>*").find(before) != line.npos;
+      if (!goes_on) return true;
+    }
+  }
+  return false;
+}
+
+bool names_registry_host(std::string_view path, std::string_view line) {
+  return (path.ends_with("package-lock.json") && line.find("\"resolved\"") != line.npos) ||
+         (path.ends_with(".npmrc") && line.find("registry=") != line.npos);
+}
+
+std::vector<std::string> forbidden_content(std::string_view path, std::string_view text) {
+  std::vector<std::string> found;
+  const auto lines = lines_of(text);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (names_machine_path(lines[i])) found.push_back(place(path, i + 1) + ": names a path of one machine");
+    if (names_registry_host(path, lines[i]))
+      found.push_back(place(path, i + 1) + ": names a package registry");
+  }
+  return found;
+}
+
+/// What a source file lacks; nothing for other files.
+std::vector<std::string> missing_content(std::string_view path, std::string_view text) {
+  if (!is_source(path)) return {};
+  std::vector<std::string> found;
+  const auto lines = lines_of(text);
+  if (lines.empty() || lines[0] != kLicenceLine) found.push_back(place(path, 1) + ": no SPDX line");
+  if (path.ends_with(".h") && std::ranges::find(lines, "#pragma once") == lines.end()) {
+    found.push_back(place(path, 1) + ": no #pragma once");
+  }
+  if (lines.size() > kMostLines) {
+    found.push_back(place(path, lines.size()) + ": over " + std::to_string(kMostLines) + " lines");
+  }
+  return found;
+}
+
+TEST(Content, NoFileNamesAMachineOrARegistry) {
+  for (const TextFile& file : text_files()) {
+    for (const std::string& found : forbidden_content(file.path, file.text)) ADD_FAILURE() << found;
+  }
+}
+
+TEST(Content, EverySourceHasItsLicenceItsGuardAndAModestLength) {
+  for (const TextFile& file : text_files()) {
+    for (const std::string& found : missing_content(file.path, file.text)) ADD_FAILURE() << found;
+  }
+}
+
+TEST(Content, AMachinePathIsFoundWhereverItStarts) {
+  const std::string home = std::string("/") + "home/", work = std::string("/") + "work/";
+  for (const std::string& line : {home + "me", "see " + work + "x", "'" + home + "'", "(" + work + "a)",
+                                  "=" + home, "`" + work + "`", "file://" + home + "me"}) {
+    EXPECT_EQ(forbidden_content("a.md", line).size(), 1U) << line;
+  }
+  for (const std::string& line : {"net" + work + "x", "${DIR}" + home + "me", ".." + work, "~" + work,
+                                  std::string("/") + "homely/x", std::string("/") + "homes"}) {
+    EXPECT_THAT(forbidden_content("a.md", line), testing::IsEmpty()) << line;
+  }
+  EXPECT_THAT(forbidden_content("a.md", "one\n" + home),
+              testing::ElementsAre(testing::StartsWith("a.md:2: ")));
+}
+
+TEST(Content, ARegistryIsFoundInLockFilesOnly) {
+  EXPECT_EQ(forbidden_content("app/web/package-lock.json", "\"resolved\": \"https://host/a.tgz\"").size(),
+            1U);
+  EXPECT_EQ(forbidden_content("app/web/.npmrc", "registry=https://host/").size(), 1U);
+  EXPECT_THAT(forbidden_content("app/web/a.ts", "\"resolved\""), testing::IsEmpty());
+  EXPECT_THAT(forbidden_content("app/web/.npmrc", "omit-lockfile-registry-resolved=true"),
+              testing::IsEmpty());
+}
+
+TEST(Content, ASourceWithoutLicenceGuardOrEndIsFound) {
+  const std::string licence = std::string(kLicenceLine) + "\n";
+  std::string lines;
+  for (std::size_t i = 1; i < kMostLines; ++i) lines += "\n";
+  EXPECT_THAT(missing_content("core/a.h", licence + "#pragma once\n"), testing::IsEmpty());
+  EXPECT_THAT(missing_content("core/a.cpp", licence + lines), testing::IsEmpty());
+  EXPECT_THAT(missing_content("docs/a.md", "words"), testing::IsEmpty());
+  EXPECT_EQ(missing_content("core/a.h", licence).size(), 1U);
+  EXPECT_EQ(missing_content("core/a.h", "#pragma once\n").size(), 1U);
+  EXPECT_EQ(missing_content("core/a.h", "").size(), 2U);
+  EXPECT_EQ(missing_content("core/a.cpp", "\n" + licence).size(), 1U);
+  EXPECT_EQ(missing_content("core/a.cpp", licence + lines + "\n").size(), 1U);
+}
+
+}  // namespace
+}  // namespace weft::repository

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+// The layer table of the design: every #include of the tree against it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/repository/source_tree.h"
+
+namespace weft::repository {
+namespace {
+
+using Prefixes = std::vector<std::string_view>;
+
+/// What files below a folder may include of ours. The first folder that fits a file decides.
+struct Layer {
+  std::string_view folder;
+  Prefixes may_include;
+  Prefixes except;
+};
+
+/// Headers of a library that only some folders may see.
+struct Door {
+  std::string_view headers;
+  Prefixes only_under;
+};
+
+const Prefixes kEverything = {"core/",      "capture/", "calibration/", "solver/", "material/",
+                              "simulator/", "app/",     "bench/",       "tests/",  "firmware/"};
+
+const std::vector<Layer> kLayers = {
+    {"core/image_io/", {"core/"}, {}},
+    {"core/", {"core/"}, {"core/image_io/"}},
+    {"capture/", {"core/", "capture/", "firmware/protocol/"}, {}},
+    {"calibration/", {"core/", "calibration/"}, {}},
+    {"solver/", {"core/", "solver/"}, {}},
+    {"material/", {"core/", "material/"}, {}},
+    {"simulator/",
+     {"core/", "simulator/", "firmware/protocol/"},
+     {"core/light_field", "core/radiometry"}},  // the product is never tested against itself
+    {"app/", kEverything, {}},
+    {"bench/", kEverything, {}},
+    {"tests/", kEverything, {}},
+    {"firmware/", {"firmware/"}, {}},
+};
+
+const std::vector<Door> kDoors = {
+    {"OpenImageIO/", {"core/image_io/"}},
+    {"libraw/", {"capture/raw/", "bench/"}},
+    {"hwy/", {"core/", "solver/kernels/", "tests/"}},
+};
+
+bool starts_with_any(std::string_view path, const Prefixes& prefixes) {
+  return std::ranges::any_of(prefixes, [&](std::string_view prefix) { return path.starts_with(prefix); });
+}
+
+struct Include {
+  bool quoted = false;
+  std::string_view header;
+};
+
+std::optional<Include> include_of(std::string_view line) {
+  const auto skip = [&](std::string_view word) {
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (!line.starts_with(word)) return false;
+    line.remove_prefix(word.size());
+    return true;
+  };
+  if (!skip("#") || !skip("include")) return std::nullopt;
+  const bool quoted = skip("\"");
+  if (!quoted && !skip("<")) return std::nullopt;
+  return Include{quoted, line.substr(0, line.find_first_of("\">"))};
+}
+
+/// Why the file at `path` may not include this, or nothing.
+std::string objection(std::string_view path, const Include& include) {
+  for (const Door& door : kDoors) {
+    if (!include.header.starts_with(door.headers)) continue;
+    return starts_with_any(path, door.only_under) ? "" : "a library that another folder stands before";
+  }
+  const auto layer =
+      std::ranges::find_if(kLayers, [&](const Layer& each) { return path.starts_with(each.folder); });
+  if (layer == kLayers.end()) return "a folder that is not in the layer table";
+  const bool rooted = starts_with_any(include.header, kEverything);
+  if (!include.quoted && !rooted) return "";
+  if (!rooted || include.header.find("..") != std::string_view::npos) {
+    return "not a path from the root of the repository";
+  }
+  const bool allowed =
+      starts_with_any(include.header, layer->may_include) && !starts_with_any(include.header, layer->except);
+  return allowed ? "" : "forbidden by the layer table to " + std::string(layer->folder);
+}
+
+std::vector<std::string> forbidden_includes(std::string_view path, std::string_view text) {
+  std::vector<std::string> found;
+  const auto lines = lines_of(text);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const auto include = include_of(lines[i]);
+    if (!include) continue;
+    if (const std::string why = objection(path, *include); !why.empty()) {
+      found.push_back(place(path, i + 1) + ": " + std::string(include->header) + ": " + why);
+    }
+  }
+  return found;
+}
+
+std::string including(std::string_view header) {
+  return "#include \"" + std::string(header) + "\"\n";
+}
+
+struct Case {
+  const char* path;
+  const char* header;
+};
+
+TEST(Layers, HoldInEveryFileOfTheTree) {
+  int files = 0;
+  for (const TextFile& file : text_files()) {
+    if (!ends_in(file.path, {".h", ".cpp", ".c"})) continue;
+    ++files;
+    for (const std::string& found : forbidden_includes(file.path, file.text)) ADD_FAILURE() << found;
+  }
+  EXPECT_GT(files, 10) << "the sources were not found";
+}
+
+TEST(Layers, ForbidEveryStepUpwardsOrSideways) {
+  for (const auto& [path, header] : std::vector<Case>{{"core/image.cpp", "core/image_io/image_io.h"},
+                                                      {"core/image.cpp", "solver/solve.h"},
+                                                      {"core/image_io/exr.cpp", "capture/raw/decode.h"},
+                                                      {"capture/scan.cpp", "calibration/lights.h"},
+                                                      {"capture/scan.cpp", "firmware/board/main.h"},
+                                                      {"calibration/lights.cpp", "capture/raw/decode.h"},
+                                                      {"calibration/lights.cpp", "solver/solve.h"},
+                                                      {"solver/solve.cpp", "capture/raw/decode.h"},
+                                                      {"solver/solve.cpp", "material/mips.h"},
+                                                      {"solver/solve.cpp", "tests/solver/weave.h"},
+                                                      {"material/mips.cpp", "solver/solve.h"},
+                                                      {"simulator/camera.cpp", "core/light_field.h"},
+                                                      {"simulator/camera.cpp", "core/radiometry.h"},
+                                                      {"simulator/camera.cpp", "core/radiometry_tiles.h"},
+                                                      {"simulator/camera.cpp", "solver/solve.h"},
+                                                      {"simulator/camera.cpp", "firmware/board/main.h"},
+                                                      {"firmware/board/main.c", "core/result.h"}}) {
+    EXPECT_EQ(forbidden_includes(path, including(header)).size(), 1U) << path << " includes " << header;
+    const std::string angled = "#include <" + std::string(header) + ">\n";
+    EXPECT_EQ(forbidden_includes(path, angled).size(), 1U) << path << " includes " << angled;
+  }
+}
+
+TEST(Layers, AllowWhatTheTableAllows) {
+  for (const auto& [path, header] :
+       std::vector<Case>{{"core/image_io/exr.cpp", "core/image_io/image_io.h"},
+                         {"capture/scan.cpp", "firmware/protocol/protocol.h"},
+                         {"calibration/lights.cpp", "core/radiometry.h"},
+                         {"solver/normals/seed.cpp", "solver/solve.h"},
+                         {"material/mips.cpp", "core/image_io/image_io.h"},
+                         {"simulator/camera.cpp", "core/lights.h"},
+                         {"simulator/board.cpp", "firmware/protocol/protocol.h"},
+                         {"app/cli/main.cpp", "simulator/scene.h"},
+                         {"bench/solve.cpp", "solver/solve.h"},
+                         {"tests/system/demo_test.cpp", "app/cli/options.h"},
+                         {"firmware/board/main.c", "firmware/protocol/protocol.h"}}) {
+    EXPECT_THAT(forbidden_includes(path, including(header)), testing::IsEmpty());
+  }
+}
+
+TEST(Layers, KeepEachLibraryBehindItsDoor) {
+  for (const auto& [path, header] : std::vector<Case>{{"core/json.cpp", "OpenImageIO/imageio.h"},
+                                                      {"app/cli/main.cpp", "OpenImageIO/imageio.h"},
+                                                      {"capture/scan.cpp", "libraw/libraw.h"},
+                                                      {"simulator/dng.cpp", "libraw/libraw.h"},
+                                                      {"solver/solve.cpp", "hwy/highway.h"}}) {
+    const std::string angled = "#include <" + std::string(header) + ">\n";
+    EXPECT_EQ(forbidden_includes(path, angled).size(), 1U) << path << " includes " << header;
+    EXPECT_EQ(forbidden_includes(path, including(header)).size(), 1U) << path << " includes " << header;
+  }
+  for (const auto& [path, header] : std::vector<Case>{{"core/image_io/exr.cpp", "OpenImageIO/imageio.h"},
+                                                      {"capture/raw/decode.cpp", "libraw/libraw.h"},
+                                                      {"bench/raw.cpp", "libraw/libraw.h"},
+                                                      {"solver/kernels/fast.cpp", "hwy/foreach_target.h"}}) {
+    EXPECT_THAT(forbidden_includes(path, including(header)), testing::IsEmpty());
+  }
+}
+
+TEST(Layers, WantPathsFromTheRootAndFoldersOfTheTable) {
+  EXPECT_EQ(forbidden_includes("solver/solve.cpp", including("solve.h")).size(), 1U);
+  EXPECT_EQ(forbidden_includes("solver/solve.cpp", including("core/../capture/scan.h")).size(), 1U);
+  EXPECT_EQ(forbidden_includes("helpers/solve.cpp", including("core/image.h")).size(), 1U);
+}
+
+TEST(Layers, NameFileAndLineAndReadOnlyIncludes) {
+  const auto found = forbidden_includes("core/a.cpp",
+                                        "#include <vector>\n"
+                                        "// #include \"solver/a.h\"\n"
+                                        " # include\t\"solver/a.h\"  // why\n");
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_THAT(found[0], testing::StartsWith("core/a.cpp:3: solver/a.h: "));
+}
+
+}  // namespace
+}  // namespace weft::repository

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/simulate.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "capture/raw/decode.h"
+#include "core/calibration.h"
+#include "core/files.h"
+#include "core/image_io/image_io.h"
+#include "core/session.h"
+
+namespace weft::simulator {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// An empty folder of this test's own.
+fs::path fresh_folder() {
+  const fs::path folder = fs::path(testing::TempDir()) / "weft_simulate" /
+                          testing::UnitTest::GetInstance()->current_test_info()->name();
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+/// A twill of 128 x 96 pixels.
+Scene small_scene() {
+  Scene scene;
+  scene.camera.width = 128;
+  scene.camera.height = 96;
+  scene.geometry.kind = GeometryKind::kTwill;
+  scene.geometry.cloth_height_mm = 2;
+  scene.material.warp_albedo = Rgb{0.1, 0.2, 0.3};
+  scene.effects.near_light = true;
+  return scene;
+}
+
+SimulationReport simulated(const Scene& scene, const fs::path& folder, const SimulateOptions& options = {}) {
+  const Result<SimulationReport> report = simulate_session(scene, folder, options);
+  EXPECT_TRUE(report) << report.error().message();
+  return report ? *report : SimulationReport();
+}
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+/// Every file below a folder with its bytes.
+std::map<std::string, std::string> contents_of(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) files[fs::relative(entry.path(), folder).string()] = bytes_of(entry.path());
+  }
+  return files;
+}
+
+RawFrame decoded(const fs::path& file) {
+  Result<RawFrame> frame = capture::decode_raw(file);
+  EXPECT_TRUE(frame) << frame.error().message();
+  return frame ? std::move(*frame) : RawFrame();
+}
+
+std::vector<std::uint16_t> counts_of(const fs::path& file) {
+  const RawFrame frame = decoded(file);
+  std::vector<std::uint16_t> counts;
+  for (int y = 0; y < frame.counts.height(); ++y) {
+    const std::uint16_t* row = frame.counts.plane().row(y);
+    counts.insert(counts.end(), row, row + frame.counts.width());
+  }
+  return counts;
+}
+
+TEST(Simulate, WritesASessionThatReadsBack) {
+  const fs::path folder = fresh_folder() / "a.weft";
+  const Scene scene = small_scene();
+  const SimulationReport report = simulated(scene, folder);
+  EXPECT_EQ(report.frames, 11);
+
+  const Result<Session> session = read_session(folder);
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_EQ(session->state, "complete");
+  EXPECT_EQ(session->fabric, scene.fabric);
+  EXPECT_EQ(session->cloth_height_mm, 2);
+  ASSERT_EQ(session->shots.size(), 11U);
+  ASSERT_NE(session->dark(), nullptr);
+  EXPECT_EQ(session->dark()->file, "raw/10_led00.dng");
+  EXPECT_EQ(session->lit()[2]->file, "raw/02_led03.dng");
+  for (const Shot& shot : session->shots) {
+    EXPECT_EQ(shot.exposure_us, report.exposure_us);
+    EXPECT_EQ(shot.sha256, *sha256_of_file(session->path_of(shot))) << shot.file;
+  }
+
+  const Result<Calibration> calibration = read_calibration(session->calibration_folder());
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  EXPECT_EQ(calibration->id, session->calibration_id);
+  EXPECT_EQ(calibration->camera->size, (Size{128, 96}));
+  EXPECT_EQ(std::get<NearLights>(*calibration->lights).leds.size(), 10U);
+
+  const Result<Scene> copy = read_scene(folder / "truth" / "scene.toml");
+  ASSERT_TRUE(copy) << copy.error().message();
+  EXPECT_EQ(*copy, scene);
+}
+
+TEST(Simulate, CountsWhatTheReadingsSay) {
+  const fs::path folder = fresh_folder() / "a.weft";
+  const Scene scene = small_scene();
+  const SimulationReport report = simulated(scene, folder);
+  const Result<Rendering> truth = render_readings(scene, {0, 0, 128, 96});
+  ASSERT_TRUE(truth);
+  for (int led = 1; led <= 10; ++led) {
+    const std::string file =
+        "raw/0" + std::to_string(led - 1) + "_led" + (led < 10 ? "0" : "") + std::to_string(led) + ".dng";
+    const std::vector<std::uint16_t> counts = counts_of(folder / file);
+    for (int y = 0; y < 96; ++y) {
+      for (int x = 0; x < 128; ++x) {
+        const int channel = (x & 1) + (y & 1);  // red, green / green, blue
+        const double reading = truth->readings(x, y, 3 * (led - 1) + channel);
+        const double expected = 600 + 14920 * reading * report.exposure_us * 1e-6;
+        ASSERT_NEAR(counts[static_cast<std::size_t>(128 * y + x)], expected, 0.5 + 1e-9)
+            << file << " " << x << ", " << y;
+      }
+    }
+  }
+  for (const std::uint16_t count : counts_of(folder / "raw/10_led00.dng")) ASSERT_EQ(count, 600);
+}
+
+TEST(Simulate, WritesFramesThatSayWhatTheyAre) {
+  for (const Body body : {Body::kOffset, Body::kD5100}) {
+    const fs::path folder = fresh_folder() / "a.weft";
+    Scene scene = small_scene();
+    scene.lights.rings = {{1, 50, 0, 600}};
+    scene.camera.body = body;
+    scene.camera.iso = 200;
+    scene.camera.f_number = 5.6;
+    const SimulationReport report = simulated(scene, folder);
+    const RawFrame frame = decoded(folder / "raw/00_led01.dng");
+    const Sensor sensor = sensor_of(scene.camera);
+    EXPECT_EQ(frame.counts.size(), (Size{128, 96}));
+    EXPECT_EQ(frame.cfa, CfaPattern());
+    EXPECT_EQ(frame.white, static_cast<float>(sensor.white));
+    for (const auto& row : frame.black) {
+      for (const float black : row) EXPECT_EQ(black, static_cast<float>(sensor.black));
+    }
+    EXPECT_THAT(frame.shot.model, HasSubstr(body == Body::kD5100 ? "D5100" : "virtual camera"));
+    EXPECT_NEAR(frame.shot.exposure_us / report.exposure_us, 1, 1e-6);
+    EXPECT_EQ(frame.shot.iso, 200);
+    EXPECT_NEAR(frame.shot.f_number, 5.6, 1e-6);
+  }
+}
+
+TEST(Simulate, WritesTheTruthItRendered) {
+  const fs::path folder = fresh_folder() / "a.weft";
+  Scene scene = small_scene();
+  scene.camera.height = 300;  // more than two bands of rows
+  simulated(scene, folder);
+  const Result<Rendering> truth = render_readings(scene, {0, 0, 128, 300});
+  ASSERT_TRUE(truth);
+  const auto compare = [&](const char* file, const std::vector<std::string>& channels,
+                           const Image<double>& expected) {
+    const Result<LoadedImage> image = read_image(folder / "truth" / file);
+    ASSERT_TRUE(image) << image.error().message();
+    EXPECT_EQ(image->info.channels, channels);
+    EXPECT_EQ(image->info.type, SampleType::kFloat);
+    ASSERT_EQ(image->info.size, (Size{128, 300}));
+    for (int p = 0; p < expected.planes(); ++p) {
+      for (int y = 0; y < 300; ++y) {
+        for (int x = 0; x < 128; ++x) {
+          ASSERT_EQ(image->planes(x, y, p), static_cast<float>(expected(x, y, p)))
+              << file << " " << x << ", " << y;
+        }
+      }
+    }
+  };
+  compare("normal.exr", {"X", "Y", "Z"}, truth->normal);
+  compare("albedo.exr", {"R", "G", "B"}, truth->albedo);
+  compare("height.exr", {"Y"}, truth->height_mm);
+}
+
+TEST(Simulate, GivesTheSameBytesForAnyThreadsAndTiles) {
+  const fs::path folder = fresh_folder();
+  Scene scene = small_scene();
+  scene.lights.rings = {{3, 50, 0, 600}};
+  scene.effects.noise = true;
+  scene.material.yarn_variation = 0.1;
+  SimulateOptions options;
+  options.tiles = {512, 32, 1};
+  simulated(scene, folder / "one.weft", options);
+  const auto one = contents_of(folder / "one.weft");
+  EXPECT_EQ(one.size(), 4U + 1 + 4 + 4) << "frames, session, calibration, truth";
+  for (const TileOptions& tiles : {TileOptions{64, 5, 2}, TileOptions{64, 1, 7}}) {
+    options.tiles = tiles;
+    fs::remove_all(folder / "many.weft");
+    simulated(scene, folder / "many.weft", options);
+    const auto many = contents_of(folder / "many.weft");
+    ASSERT_EQ(many.size(), one.size());
+    for (const auto& [name, bytes] : one) EXPECT_TRUE(many.at(name) == bytes) << name;
+  }
+}
+
+TEST(Simulate, ClipsAtWhiteAndNeverAbove) {
+  for (const Body body : {Body::kOffset, Body::kD5100}) {
+    const fs::path folder = fresh_folder() / "a.weft";
+    Scene scene = small_scene();
+    scene.lights.rings = {{1, 50, 0, 600}};
+    scene.effects.noise = true;
+    scene.camera.body = body;
+    scene.camera.exposure_us = 100000;
+    simulated(scene, folder);
+    const int white = body == Body::kOffset ? 15520 : 15846;
+    const std::vector<std::uint16_t> counts = counts_of(folder / "raw/00_led01.dng");
+    EXPECT_EQ(*std::max_element(counts.begin(), counts.end()), white);
+    EXPECT_GT(std::count(counts.begin(), counts.end(), white), 1000);
+    const std::vector<std::uint16_t> dark = counts_of(folder / "raw/01_led00.dng");
+    const auto at_zero = std::count(dark.begin(), dark.end(), 0);
+    if (body == Body::kD5100) {
+      EXPECT_GT(at_zero, 128 * 96 / 2) << "the dark is clipped at 0";
+    } else {
+      EXPECT_EQ(at_zero, 0);
+    }
+  }
+}
+
+TEST(Simulate, ReportsWhatRanAndWhatItCost) {
+  const Scene scene = small_scene();
+  SimulateOptions options;
+  std::vector<int> parts;
+  options.progress = [&](int done, int of) {
+    EXPECT_EQ(of, 12);
+    parts.push_back(done);
+  };
+  const SimulationReport report = simulated(scene, fresh_folder() / "a.weft", options);
+  EXPECT_THAT(parts, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12));
+  std::map<std::string, std::int64_t> pixels;
+  for (const PassCost& cost : report.passes) pixels[cost.name] = cost.pixels;
+  EXPECT_EQ(pixels.at("geometry"), 2 * 128 * 96) << "once for the truth, once for all frames together";
+  EXPECT_EQ(pixels.at("near light"), 11 * 128 * 96);
+  EXPECT_EQ(pixels.count("noise"), 0U);
+  ASSERT_EQ(report.left_out.size(), 2U);
+  EXPECT_EQ(report.left_out[1].name, "noise");
+  EXPECT_GT(report.render_seconds, 0);
+  EXPECT_GT(report.write_seconds, 0);
+}
+
+TEST(Simulate, LeavesNothingWhenItIsInterrupted) {
+  for (const int after : {0, 1, 5}) {
+    const fs::path folder = fresh_folder();
+    std::stop_source source;
+    SimulateOptions options;
+    options.stop = source.get_token();
+    options.progress = [&](int done, int) {
+      if (done == after) source.request_stop();
+    };
+    if (after == 0) source.request_stop();
+    const Result<SimulationReport> report = simulate_session(small_scene(), folder / "a.weft", options);
+    ASSERT_FALSE(report) << after;
+    EXPECT_EQ(report.error().kind, ErrorKind::kInterrupted);
+    EXPECT_TRUE(fs::is_empty(folder)) << after;
+  }
+}
+
+TEST(Simulate, NeverTouchesWhatIsThere) {
+  const fs::path folder = fresh_folder();
+  fs::create_directory(folder / "a.weft");
+  const Result<SimulationReport> over = simulate_session(small_scene(), folder / "a.weft", {});
+  ASSERT_FALSE(over);
+  EXPECT_EQ(over.error().kind, ErrorKind::kCannotCreate);
+  EXPECT_TRUE(fs::is_empty(folder / "a.weft"));
+
+  fs::create_directory(folder / "b.weft.partial");
+  const Result<SimulationReport> aside = simulate_session(small_scene(), folder / "b.weft", {});
+  ASSERT_FALSE(aside);
+  EXPECT_EQ(aside.error().kind, ErrorKind::kCannotCreate);
+  EXPECT_THAT(aside.error().message(), HasSubstr("b.weft.partial"));
+  EXPECT_TRUE(fs::exists(folder / "b.weft.partial"));
+}
+
+TEST(Simulate, SaysWhereItCannotWrite) {
+  const fs::path folder = fresh_folder();
+  const Result<SimulationReport> no_parent = simulate_session(small_scene(), folder / "none" / "a.weft", {});
+  ASSERT_FALSE(no_parent);
+  EXPECT_EQ(no_parent.error().kind, ErrorKind::kCannotCreate) << no_parent.error().message();
+  const Result<SimulationReport> no_name = simulate_session(small_scene(), "", {});
+  ASSERT_FALSE(no_name);
+  EXPECT_EQ(no_name.error().kind, ErrorKind::kUsage) << no_name.error().message();
+  EXPECT_TRUE(fs::is_empty(folder));
+}
+
+TEST(Simulate, TakesAFolderNameWithASlashAtItsEnd) {
+  const fs::path folder = fresh_folder();
+  simulated(small_scene(), (folder / "a.weft").string() + "/");
+  EXPECT_TRUE(fs::exists(folder / "a.weft" / "session.json"));
+  EXPECT_FALSE(fs::exists(folder / "a.weft.partial"));
+}
+
+TEST(Simulate, RefusesASceneMadeInCodeThatBreaksItsRanges) {
+  Scene scene = small_scene();
+  scene.camera.height = -4;
+  const Result<SimulationReport> report = simulate_session(scene, fresh_folder() / "a.weft", {});
+  ASSERT_FALSE(report);
+  EXPECT_THAT(report.error().message(), HasSubstr("camera.height"));
+}
+
+}  // namespace
+}  // namespace weft::simulator
