@@ -26,10 +26,12 @@ Result<Json> json_of_command(const std::string& command) {
   if (pipe == nullptr) return Error{ErrorKind::kTryAgain, "cannot start", command, "", ""};
   std::string text;
   std::array<char, 4096> block = {};
-  for (std::size_t n; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;) text.append(block.data(), n);
+  for (std::size_t n; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
+    text.append(block.data(), n);
   const int status = pclose(pipe);
   Json json = Json::parse(text, nullptr, false);
-  if (status != 0 || json.is_discarded()) return Error{ErrorKind::kInternal, "the solve failed", command, text, ""};
+  if (status != 0 || json.is_discarded())
+    return Error{ErrorKind::kInternal, "the solve failed", command, text, ""};
   return json;
 }
 
@@ -38,7 +40,8 @@ Result<double> write_seconds(const fs::path& maps, const fs::path& folder) {
   double sum = 0;
   for (const char* name : {"normal.exr", "albedo.exr", "sigma.exr", "residual.exr", "status.png"}) {
     const auto in = OIIO::ImageInput::open((maps / name).string());
-    if (!in) return Error{ErrorKind::kInternal, "cannot read back", (maps / name).string(), OIIO::geterror(), ""};
+    if (!in)
+      return Error{ErrorKind::kInternal, "cannot read back", (maps / name).string(), OIIO::geterror(), ""};
     OIIO::ImageSpec spec = in->spec();
     std::vector<char> pixels(spec.image_bytes(true));
     if (!in->read_image(0, 0, 0, spec.nchannels, spec.format, pixels.data())) {
@@ -47,8 +50,8 @@ Result<double> write_seconds(const fs::path& maps, const fs::path& folder) {
     bool written = true;
     sum += least_seconds(3, [&] {
       const auto out = OIIO::ImageOutput::create(name);
-      written &= out && out->open((folder / name).string(), spec) && out->write_image(spec.format, pixels.data()) &&
-                 out->close();
+      written &= out && out->open((folder / name).string(), spec) &&
+                 out->write_image(spec.format, pixels.data()) && out->close();
     });
     if (!written) return Error{ErrorKind::kInputOutput, "cannot write", (folder / name).string(), "", ""};
   }
@@ -90,9 +93,9 @@ Result<Rows> end_to_end(const EndToEndOptions& options) {
   fs::path maps;
   for (int i = 0; i < 3; ++i) {
     maps = scratch.path() / fmt::format("maps{}", i);
-    const Result<Json> solved =
-        json_of_command(fmt::format("'{}' solve '{}' -o '{}' --quality fast --no-previews --quiet --json --threads {}",
-                                    options.program.string(), folder.string(), maps.string(), threads));
+    const Result<Json> solved = json_of_command(
+        fmt::format("'{}' solve '{}' -o '{}' --quality fast --no-previews --quiet --json --threads {}",
+                    options.program.string(), folder.string(), maps.string(), threads));
     if (!solved) return solved.error();
     const Json& s = (*solved)["seconds"];
     const double work = s["read"].get<double>() + s["solve"].get<double>() + s["write"].get<double>();

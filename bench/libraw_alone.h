@@ -8,7 +8,8 @@
 
 namespace weft::bench {
 
-/// LibRaw alone: least wall seconds of three runs to open and unpack every file, the files shared out among the threads.
+/// LibRaw alone: least wall seconds of three runs to open and unpack every file, the files shared out among
+/// the threads.
 Result<double> unpack_seconds(const std::vector<std::filesystem::path>& files, int threads);
 
 }  // namespace weft::bench

@@ -27,7 +27,8 @@ NearLights bench_lights(double mu, bool gains) {
     for (GainSpline& spline : lights.log_gain_rgb) {
       spline = {6, 4, {}};
       for (int j = 0; j < 4; ++j) {
-        for (int i = 0; i < 6; ++i) spline.coefficients.push_back(-0.05 * ((i - 2.5) * (i - 2.5) + (j - 1.5) * (j - 1.5)));
+        for (int i = 0; i < 6; ++i)
+          spline.coefficients.push_back(-0.05 * ((i - 2.5) * (i - 2.5) + (j - 1.5) * (j - 1.5)));
       }
     }
   }
@@ -40,6 +41,8 @@ Size bench_size(double megapixels) {
   return {even(1.5 * height), even(height)};
 }
 
-CameraModel bench_camera(Size size) { return overhead_camera(size, 600, 200.0 / size.width); }
+CameraModel bench_camera(Size size) {
+  return overhead_camera(size, 600, 200.0 / size.width);
+}
 
 }  // namespace weft::bench

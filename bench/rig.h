@@ -7,8 +7,8 @@
 
 namespace weft::bench {
 
-/// Ten near LEDs, four at 35 degrees from the zenith and six at 62, 600 mm from the table's centre; with gains, a
-/// vignette and a few per cent of a LED's own.
+/// Ten near LEDs, four at 35 degrees from the zenith and six at 62, 600 mm from the table's centre; with
+/// gains, a vignette and a few per cent of a LED's own.
 NearLights bench_lights(double mu, bool gains);
 
 /// A frame of 3:2 with about so many pixels, both sides even.

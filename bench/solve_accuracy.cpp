@@ -39,15 +39,23 @@ struct Maps {
   Image<std::uint16_t> status;
 
   explicit Maps(Size size)
-      : normal(size, 3), albedo(size, 3), sigma_albedo(size, 3), sigma_normal_deg(size), residual(size), status(size) {}
+      : normal(size, 3),
+        albedo(size, 3),
+        sigma_albedo(size, 3),
+        sigma_normal_deg(size),
+        residual(size),
+        status(size) {}
   solver::TileOutput output() {
     const auto three = [](Image<float>& i) { return std::array{i.plane(0), i.plane(1), i.plane(2)}; };
-    return {three(normal), three(albedo), sigma_normal_deg.plane(), three(sigma_albedo), residual.plane(), status.plane()};
+    return {three(normal),       three(albedo),    sigma_normal_deg.plane(),
+            three(sigma_albedo), residual.plane(), status.plane()};
   }
   Vec3 normal_at(int x, int y) const { return {normal(x, y, 0), normal(x, y, 1), normal(x, y, 2)}; }
 };
 
-Vec3 at(const Image<double>& planes, int x, int y) { return {planes(x, y, 0), planes(x, y, 1), planes(x, y, 2)}; }
+Vec3 at(const Image<double>& planes, int x, int y) {
+  return {planes(x, y, 0), planes(x, y, 1), planes(x, y, 2)};
+}
 
 Json error_row(const char* kind, const char* name, const char* input, const std::vector<double>& angles) {
   double sum = 0, most = 0;
@@ -85,9 +93,10 @@ Json float_row(const simulator::Rendering& truth, const LightField& field, int p
                                maps.output());
   std::vector<double> angles;
   for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) angles.push_back(angle_deg(maps.normal_at(x, y), at(truth.normal, x, y)));
+    for (int x = 0; x < size.width; ++x)
+      angles.push_back(angle_deg(maps.normal_at(x, y), at(truth.normal, x, y)));
   }
-  return error_row("quality", "fast", planes == 1 ? "float mosaic" : "float RGB", angles);
+  return error_row("quality", "fast", planes == 1 ? "twill, float mosaic" : "twill, float RGB", angles);
 }
 
 Json seed_row(const simulator::Rendering& truth, const LightField& field) {
@@ -106,7 +115,7 @@ Json seed_row(const simulator::Rendering& truth, const LightField& field) {
       angles.push_back(angle_deg(solver::solve_seed_pixel(rows).n[3], at(truth.normal, x, y)));
     }
   }
-  return error_row("method", "seed", "double RGB", angles);
+  return error_row("method", "seed", "plane, double RGB", angles);
 }
 
 Result<LightField> field_of(const Scene& scene) {
@@ -123,7 +132,8 @@ Result<Json> file_row(Size size, int threads) {
   Scene scene = scene_of(GeometryKind::kFlat, size);
   scene.material.albedo = {0.2, 0.2, 0.2};
   const std::filesystem::path session = scratch.path() / "flat.weft";
-  const auto simulated = simulator::simulate_session(scene, session, {.tiles = {.threads = threads}, .stop = {}, .progress = {}});
+  const auto simulated = simulator::simulate_session(
+      scene, session, {.tiles = {.threads = threads}, .stop = {}, .progress = {}});
   if (!simulated) return simulated.error();
   app::JobContext context;
   context.threads = threads;
@@ -133,7 +143,7 @@ Result<Json> file_row(Size size, int threads) {
       app::compare_normals(solved->folder / "normal.exr", session / "truth" / "normal.exr", {});
   if (!compared) return compared.error();
   return Json{{"quality", "fast"},
-              {"input", "14-bit DNG, maps as EXR"},
+              {"input", "flat, 14-bit DNG to EXR"},
               {"pixels", compared->pixels},
               {"mean_deg", compared->mean_deg},
               {"max_deg", compared->max_deg}};
@@ -161,12 +171,18 @@ double cramer_rao_deg(const LightField& field, int channel, int x, int y, Vec3 n
 
 Result<Rows> solve_exactness(const AccuracyOptions& options) {
   const Size size = bench_size(options.megapixels);
-  const Scene scene = scene_of(GeometryKind::kTwill, size);
-  const Result<LightField> field = field_of(scene);
+  const Rect all = {0, 0, size.width, size.height};
+  // The seed's method knows no shadow: a plane that every light reaches is its truth.
+  Scene plane = scene_of(GeometryKind::kTilted, size);
+  plane.geometry.tilt_deg = 15;
+  const Scene cloth = scene_of(GeometryKind::kTwill, size);
+  const Result<LightField> field = field_of(cloth);
   if (!field) return field.error();
-  const auto truth = simulator::render_readings(scene, {0, 0, size.width, size.height}, {.threads = options.threads});
-  if (!truth) return truth.error();
-  Rows rows = {seed_row(*truth, *field), float_row(*truth, *field, 1), float_row(*truth, *field, 3)};
+  const auto lit = simulator::render_readings(plane, all, {.threads = options.threads});
+  if (!lit) return lit.error();
+  const auto woven = simulator::render_readings(cloth, all, {.threads = options.threads});
+  if (!woven) return woven.error();
+  Rows rows = {seed_row(*lit, *field), float_row(*woven, *field, 1), float_row(*woven, *field, 3)};
   Result<Json> files = file_row(size, options.threads);
   if (!files) return std::move(files).error();
   rows.push_back(std::move(*files));
@@ -263,10 +279,12 @@ Result<Json> order_row(const app::Photographs& photographs, const solver::Method
   const auto measure = [&](const app::MapBand& band) -> Result<void> {
     for (int y = band.rows.y0; y < band.rows.y1; ++y) {
       for (int x = 0; x < band.rows.x1; ++x) {
-        const auto solved = [&](int c) { return band.normal[static_cast<std::size_t>(c)](x, y - band.rows.y0); };
+        const auto solved = [&](int c) {
+          return band.normal[static_cast<std::size_t>(c)](x, y - band.rows.y0);
+        };
         const auto real = [&](int c) { return truth.normal.planes(x, y, c); };
-        angles.push_back(static_cast<float>(
-            angle_deg({solved(0), solved(1), solved(2)}, {real(0), real(1), real(2)})));
+        angles.push_back(
+            static_cast<float>(angle_deg({solved(0), solved(1), solved(2)}, {real(0), real(1), real(2)})));
       }
     }
     for (int y = band.albedo_rows.y0; y < band.albedo_rows.y1; ++y) {
@@ -280,10 +298,11 @@ Result<Json> order_row(const app::Photographs& photographs, const solver::Method
     }
     return {};
   };
-  const Result<double> measured = app::solve_bands(photographs, method, {}, context, measure);
+  const Result<double> measured = app::solve_bands(photographs, method, app::kSolveTile, context, measure);
   if (!measured) return measured.error();
   const double seconds = least_seconds(3, [&] {
-    (void)app::solve_bands(photographs, method, {}, context, [](const app::MapBand&) { return Result<void>(); });
+    (void)app::solve_bands(photographs, method, app::kSolveTile, context,
+                           [](const app::MapBand&) { return Result<void>(); });
   });
   const app::NormalComparison c = app::summarize(angles);
   return Json{{"pixels", c.pixels},
@@ -311,15 +330,17 @@ class FastOnRgb : public solver::Method {
 Result<Rows> solve_order(const AccuracyOptions& options) {
   const ScratchFolder scratch;
   Rows rows;
-  for (const auto& [name, kind] : {std::pair{"plain", GeometryKind::kPlain}, std::pair{"twill", GeometryKind::kTwill},
-                                   std::pair{"satin", GeometryKind::kSatin}}) {
+  for (const auto& [name, kind] :
+       {std::pair{"plain", GeometryKind::kPlain}, std::pair{"twill", GeometryKind::kTwill},
+        std::pair{"satin", GeometryKind::kSatin}}) {
     Scene scene = scene_of(kind, bench_size(options.megapixels));
     scene.material.warp_albedo = {0.06, 0.08, 0.2};
     scene.material.weft_albedo = {0.6, 0.5, 0.4};
     scene.material.yarn_variation = 0.1;
     scene.effects.noise = true;
     const std::filesystem::path folder = scratch.path() / (std::string(name) + ".weft");
-    const auto simulated = simulator::simulate_session(scene, folder, {.tiles = {.threads = options.threads}, .stop = {}, .progress = {}});
+    const auto simulated = simulator::simulate_session(
+        scene, folder, {.tiles = {.threads = options.threads}, .stop = {}, .progress = {}});
     if (!simulated) return simulated.error();
     const auto plan = app::plan_session({folder, {}, {}});
     if (!plan) return plan.error();
@@ -334,7 +355,8 @@ Result<Rows> solve_order(const AccuracyOptions& options) {
           after ? solver::fast_method() : std::unique_ptr<solver::Method>(new FastOnRgb);
       Result<Json> row = order_row(*photographs, *method, *truth, context);
       if (!row) return std::move(row).error();
-      Json named = {{"quality", "fast"}, {"cloth", name}, {"demosaicing", after ? "after solving" : "before solving"}};
+      Json named = {
+          {"quality", "fast"}, {"cloth", name}, {"demosaicing", after ? "after solving" : "before solving"}};
       named.update(*row);
       rows.push_back(std::move(named));
     }

@@ -86,8 +86,9 @@ app::Photographs mosaics_of(const LightField& field, Size size, int threads) {
 Result<Timing> time_method(const app::Photographs& photographs, const solver::Method& method, int threads) {
   std::optional<Error> failure;
   const double seconds = least_seconds(kRepeats, [&] {
-    const Result<double> done = app::solve_bands(photographs, method, {}, {threads, {}, [](std::string_view, double) {}},
-                                                 [](const app::MapBand&) { return Result<void>(); });
+    const Result<double> done =
+        app::solve_bands(photographs, method, app::kSolveTile, {threads, {}, [](std::string_view, double) {}},
+                         [](const app::MapBand&) { return Result<void>(); });
     if (!done) failure = done.error();
   });
   if (failure) return *failure;
@@ -104,7 +105,8 @@ Timing time_bare(Size size, int threads) {
       for (int x = 0; x < size.width; ++x) {
         const LightField::Light light = field.at(k, 0, x, y);
         for (int c = 0; c < 3; ++c) {
-          readings(x, y, static_cast<int>(k) * 3 + c) = static_cast<float>(0.4 * light.strength * light.direction.z);
+          readings(x, y, static_cast<int>(k) * 3 + c) =
+              static_cast<float>(0.4 * light.strength * light.direction.z);
         }
       }
     }
@@ -114,9 +116,10 @@ Timing time_bare(Size size, int threads) {
     const Result<void> done = for_each_tile({0, 0, size.width, size.height}, tiles, {}, [&](Rect tile, int) {
       std::vector<View<const float>> views;
       for (int i = 0; i < readings.planes(); ++i) views.emplace_back(readings.plane(i).crop(tile));
-      solver::solve_bare(tile, views, field,
-                         {normal.plane(0).crop(tile), normal.plane(1).crop(tile), normal.plane(2).crop(tile)},
-                         {albedo.plane(0).crop(tile), albedo.plane(1).crop(tile), albedo.plane(2).crop(tile)});
+      solver::solve_bare(
+          tile, views, field,
+          {normal.plane(0).crop(tile), normal.plane(1).crop(tile), normal.plane(2).crop(tile)},
+          {albedo.plane(0).crop(tile), albedo.plane(1).crop(tile), albedo.plane(2).crop(tile)});
     });
     if (!done) std::terminate();
   });

@@ -149,14 +149,14 @@ LightField::Light LightField::at(std::size_t k, int c, int x, int y) const {
   return {l, led.flux_rgb[channel] * gain * lobe / d2};
 }
 
-void LightField::blend(const Grid& grid, int y, RowLine& line) const {
+void LightField::blend(const Grid& grid, int y, int first_cell, int cells, RowLine& line) const {
   const double fy = static_cast<double>(y % kCell) / kCell;
-  const double* upper = grid.data() + (y / kCell) * columns_;
+  const double* upper = grid.data() + (y / kCell) * columns_ + first_cell;
   const double* lower = upper + columns_;
-  line.value.resize(static_cast<std::size_t>(columns_));
-  line.step.resize(static_cast<std::size_t>(columns_));
+  line.value.resize(static_cast<std::size_t>(cells));
+  line.step.resize(static_cast<std::size_t>(cells));
   double left = upper[0] + fy * (lower[0] - upper[0]);
-  for (int i = 0; i + 1 < columns_; ++i) {
+  for (int i = 0; i < cells; ++i) {
     const double right = upper[i + 1] + fy * (lower[i + 1] - upper[i + 1]);
     line.value[static_cast<std::size_t>(i)] = static_cast<float>(left);
     line.step[static_cast<std::size_t>(i)] = static_cast<float>((right - left) / kCell);
@@ -164,14 +164,15 @@ void LightField::blend(const Grid& grid, int y, RowLine& line) const {
   }
 }
 
-void LightField::read_row(int y, Row& row) const {
+void LightField::read_row(int y, int x0, int x1, Row& row) const {
   if (std::holds_alternative<DistantLights>(lights_)) return;
-  blend(x_mm_, y, row.x_mm);
-  blend(y_mm_, y, row.y_mm);
+  const int first = x0 / kCell, cells = (x1 + kCell - 1) / kCell - first;
+  blend(x_mm_, y, first, cells, row.x_mm);
+  blend(y_mm_, y, first, cells, row.y_mm);
   if (!has_gain()) return;
-  for (std::size_t c = 0; c < 3; ++c) blend(gain_rgb_[c], y, row.gain_rgb[c]);
+  for (std::size_t c = 0; c < 3; ++c) blend(gain_rgb_[c], y, first, cells, row.gain_rgb[c]);
   row.led_gain.resize(led_gain_.size());
-  for (std::size_t k = 0; k < led_gain_.size(); ++k) blend(led_gain_[k], y, row.led_gain[k]);
+  for (std::size_t k = 0; k < led_gain_.size(); ++k) blend(led_gain_[k], y, first, cells, row.led_gain[k]);
 }
 
 }  // namespace weft

@@ -38,8 +38,8 @@ class LightField {
   /// Light k (from 0) as channel c (0 red, 1 green, 2 blue) sees it at a pixel.
   Light at(std::size_t k, int c, int x, int y) const;
 
-  /// One grid line blended down to a pixel row: value at the left end of every cell of a row and its step a
-  /// pixel.
+  /// /// A stretch of grid line blended down to a pixel row: the value at the left end of each cell and its
+  /// step a pixel.
   struct RowLine {
     std::vector<float> value;
     std::vector<float> step;
@@ -49,8 +49,9 @@ class LightField {
     std::array<RowLine, 3> gain_rgb;  ///< empty where has_gain() is false
     std::vector<RowLine> led_gain;    ///< one a LED; empty where has_gain() is false
   };
-  /// What the kernels read of pixel row y. `row` keeps its memory from call to call.
-  void read_row(int y, Row& row) const;
+  /// What the kernels read of pixels x0 <= x < x1 of row y, from the cell that begins at x0, a multiple of
+  /// kCell. `row` keeps its memory from call to call.
+  void read_row(int y, int x0, int x1, Row& row) const;
 
   const Lights& lights() const { return lights_; }
   std::size_t count() const { return light_count(lights_); }
@@ -60,7 +61,7 @@ class LightField {
  private:
   using Grid = std::vector<double>;
   double sample(const Grid& grid, int x, int y) const;
-  void blend(const Grid& grid, int y, RowLine& line) const;
+  void blend(const Grid& grid, int y, int first_cell, int cells, RowLine& line) const;
 
   Lights lights_;
   double cloth_height_mm_ = 0;

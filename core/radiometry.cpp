@@ -8,6 +8,7 @@
 #define HWY_TARGET_INCLUDE "core/radiometry.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target.h comes first.
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -28,6 +29,7 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 void read_row(const RadiometryRow& row, float* out, std::size_t width) {
+  constexpr std::size_t kAhead = 512;  // counts come from memory, many frames side by side
   const hn::ScalableTag<float> d;
   const hn::Rebind<std::int32_t, decltype(d)> di;
   const hn::Rebind<std::uint16_t, decltype(d)> du16;
@@ -43,6 +45,7 @@ void read_row(const RadiometryRow& row, float* out, std::size_t width) {
       if (lanes == 1) return hn::Set(d, two[x & 1]);
       return hn::OddEven(hn::Set(d, two[1]), hn::Set(d, two[0]));
     };
+    hwy::Prefetch(row.counts + x + kAhead);
     const auto counts = load(row.counts + x);
     const auto dark = row.dark != nullptr ? load(row.dark + x) : alternate(row.black);
     const auto v = hn::Mul(hn::Sub(counts, dark), alternate(row.per_count));

@@ -13,45 +13,53 @@ namespace {
 void add_common(CLI::App& verb, CommonArguments& common) {
   verb.add_flag("--json", common.json, "Print one JSON document on standard output");
   verb.add_flag("-q,--quiet", common.quiet, "No progress on standard error");
-  verb.add_option("--threads", common.threads, "Threads; 0 is all the machine has")->capture_default_str()->check(
-      CLI::Range(0, 1024));
+  verb.add_option("--threads", common.threads, "Threads; 0 is all the machine has")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 1024));
 }
 
 CLI::App* add_simulate(CLI::App& app, SimulateArguments& a) {
-  CLI::App* verb = app.add_subcommand("simulate", "Render a scene (TOML) into a session of raw DNG frames with its truth");
+  CLI::App* verb =
+      app.add_subcommand("simulate", "Render a scene (TOML) into a session of raw DNG frames with its truth");
   verb->add_option("scene", a.scene, "Scene file; docs/scenes.md lists its keys and units")->required();
   verb->add_option("-o,--output", a.output, "Session folder to make, NAME.weft; must not exist")->required();
-  verb->add_flag("--explain", a.explain, "List the passes that ran, what each cost, and the effects left out");
+  verb->add_flag("--explain", a.explain,
+                 "List the passes that ran, what each cost, and the effects left out");
   return verb;
 }
 
 CLI::App* add_solve(CLI::App& app, SolveArguments& a, CommonArguments& common, std::string& quality,
                     std::string& method, std::string& transfer, std::vector<int>& lights) {
-  CLI::App* verb = app.add_subcommand("solve", "Turn a session, or photographs under known lights, into albedo and normals");
+  CLI::App* verb = app.add_subcommand(
+      "solve", "Turn a session, or photographs under known lights, into albedo and normals");
   CLI::Option* session = verb->add_option("session", a.session.folder, "Session folder, NAME.weft");
-  CLI::Option* photos =
-      verb->add_option("--photos", a.photos.folder,
-                       "Folder of photographs under distant lights: filenames.txt, light_directions.txt (unit x y z, "
-                       "x right, y up, z to the camera), light_intensities.txt (R G B), mask.png");
-  CLI::Option* light_file =
-      verb->add_option("--lp", a.photos.light_file, "RTI light file: a count, then a line \"file x y z\" a photograph");
+  CLI::Option* photos = verb->add_option(
+      "--photos", a.photos.folder,
+      "Folder of photographs under distant lights: filenames.txt, light_directions.txt (unit x y z, "
+      "x right, y up, z to the camera), light_intensities.txt (R G B), mask.png");
+  CLI::Option* light_file = verb->add_option(
+      "--lp", a.photos.light_file, "RTI light file: a count, then a line \"file x y z\" a photograph");
   session->excludes(photos)->excludes(light_file);
   photos->excludes(light_file);
-  CLI::Option* level = verb->add_option("--quality", quality, "Level: fast (least squares on readings not saturated and "
-                                                              "not in attached shadow)")
+  CLI::Option* level = verb->add_option("--quality", quality,
+                                        "Level: fast (least squares on readings not saturated and "
+                                        "not in attached shadow)")
                            ->check(CLI::IsMember({"fast"}));
-  verb->add_option("--method", method,
-                   "Method for comparison: seed (four systems a pixel by SVD, after demosaicing), least-squares "
-                   "(every valid reading)")
+  verb->add_option(
+          "--method", method,
+          "Method for comparison: seed (four systems a pixel by SVD, after demosaicing), least-squares "
+          "(every valid reading)")
       ->check(CLI::IsMember({"seed", "least-squares"}))
       ->excludes(level);
-  verb->add_option("--lights", lights, "LEDs or photographs to solve from, numbered from 1: 1,4,7; default all")
+  verb->add_option("--lights", lights,
+                   "LEDs or photographs to solve from, numbered from 1: 1,4,7; default all")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
   verb->add_option("--calibration", a.session.calibration, "Calibration folder; default the session's own")
       ->needs(session);
-  verb->add_option("--transfer", transfer,
-                   "How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb")
+  verb->add_option(
+          "--transfer", transfer,
+          "How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb")
       ->check(CLI::IsMember({"auto", "linear", "srgb"}))
       ->capture_default_str();
   verb->add_option("-o,--output", a.options.output,
@@ -86,7 +94,8 @@ CLI::App* add_bench_solve(CLI::App& bench, BenchSolveArguments& a) {
   verb->add_option("--megapixels", a.megapixels, "Size of the photographs, millions of pixels")
       ->check(CLI::Range(0.01, 200.0))
       ->capture_default_str();
-  CLI::Option* exact = verb->add_flag("--exact", a.exact, "Noise-free errors against the truth instead of speed");
+  CLI::Option* exact =
+      verb->add_flag("--exact", a.exact, "Noise-free errors against the truth instead of speed");
   CLI::Option* noise = verb->add_flag("--noise", a.noise, "Errors under noise against the Cramer-Rao bound");
   CLI::Option* order = verb->add_flag("--order", a.order, "Demosaicing before solving against after it");
   CLI::Option* end_to_end =
@@ -113,8 +122,10 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   app.name("weft");
   app.set_version_flag("--version", WEFT_VERSION);
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 done, 2 done with warnings under --strict, 64 usage, 65 bad data, 66 no input, 70 our own bug,\n"
-             "73 cannot create, 74 input/output, 75 try again, 130 interrupted.");
+  app.footer(
+      "Exit codes: 0 done, 2 done with warnings under --strict, 64 usage, 65 bad data, 66 no input, 70 our "
+      "own bug,\n"
+      "73 cannot create, 74 input/output, 75 try again, 130 interrupted.");
 
   CommonArguments common;
   SimulateArguments simulate;
@@ -131,7 +142,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   bench_verb->require_subcommand(1);
   CLI::App* bench_solve_verb = add_bench_solve(*bench_verb, bench_solve);
   CLI::App* demo_verb = add_demo(app, demo);
-  for (CLI::App* verb : {simulate_verb, solve_verb, compare_verb, bench_solve_verb, demo_verb}) add_common(*verb, common);
+  for (CLI::App* verb : {simulate_verb, solve_verb, compare_verb, bench_solve_verb, demo_verb})
+    add_common(*verb, common);
 
   const auto usage = [&](const std::string& why) {
     note("weft: " + why + ". See weft --help.");

@@ -55,8 +55,8 @@ struct Arguments {
   std::variant<SimulateArguments, SolveArguments, CompareArguments, BenchSolveArguments, DemoArguments> verb;
 };
 
-/// Reads the command line. Without a verb to run (--help, a usage error) it has printed what there is to say and
-/// leaves the exit code in `exit_code`.
+/// Reads the command line. Without a verb to run (--help, a usage error) it has printed what there is to say
+/// and leaves the exit code in `exit_code`.
 std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code);
 
 }  // namespace weft::app

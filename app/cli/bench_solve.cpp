@@ -13,7 +13,8 @@ Result<bench::Rows> measure(const BenchSolveArguments& a, int threads) {
   if (a.exact) return bench::solve_exactness({a.megapixels, threads});
   if (a.noise) return bench::solve_noise({a.megapixels, threads});
   if (a.order) return bench::solve_order({a.megapixels, threads});
-  if (a.end_to_end) return bench::end_to_end({a.megapixels, threads, std::filesystem::read_symlink("/proc/self/exe")});
+  if (a.end_to_end)
+    return bench::end_to_end({a.megapixels, threads, std::filesystem::read_symlink("/proc/self/exe")});
   return bench::solve_speed({a.megapixels, threads});
 }
 

@@ -16,7 +16,8 @@ Result<int> print_albedo(const CompareArguments& a, bool json) {
   if (json) {
     print_json({{"pixels", c->pixels}, {"mean_rel", c->mean_rel}, {"bias_rel", c->bias_rel}});
   } else {
-    print(fmt::format("{} pixels: mean |A - B| / B {:.5f}, bias {:+.5f}", c->pixels, c->mean_rel, c->bias_rel));
+    print(
+        fmt::format("{} pixels: mean |A - B| / B {:.5f}, bias {:+.5f}", c->pixels, c->mean_rel, c->bias_rel));
   }
   return kDone;
 }
@@ -34,8 +35,8 @@ Result<int> run_compare(const CompareArguments& a, const CommonArguments& common
                 {"p95_deg", c->p95_deg},
                 {"max_deg", c->max_deg}});
   } else {
-    print(fmt::format("{} pixels: mean {:.4f}, median {:.4f}, 95 % under {:.4f}, max {:.4f} degrees", c->pixels,
-                      c->mean_deg, c->median_deg, c->p95_deg, c->max_deg));
+    print(fmt::format("{} pixels: mean {:.4f}, median {:.4f}, 95 % under {:.4f}, max {:.4f} degrees",
+                      c->pixels, c->mean_deg, c->median_deg, c->p95_deg, c->max_deg));
   }
   return kDone;
 }

@@ -44,14 +44,16 @@ struct Outcome {
   std::uint64_t session_bytes = 0, map_bytes = 0;
 };
 
-Result<Outcome> scan_and_solve(const simulator::Scene& scene, const fs::path& session, const CommonArguments& common) {
+Result<Outcome> scan_and_solve(const simulator::Scene& scene, const fs::path& session,
+                               const CommonArguments& common) {
   ProgressLine line(common.quiet);
   const std::stop_token stop = stop_on_signal();
   Outcome outcome;
   auto simulated = simulator::simulate_session(
-      scene, session, {.tiles = {.threads = common.threads}, .stop = stop, .progress = [&](int done, int parts) {
-                         line.update("simulate", static_cast<double>(done) / parts);
-                       }});
+      scene, session,
+      {.tiles = {.threads = common.threads}, .stop = stop, .progress = [&](int done, int parts) {
+         line.update("simulate", static_cast<double>(done) / parts);
+       }});
   if (!simulated) return std::move(simulated).error();
   outcome.simulated = std::move(*simulated);
   const Result<std::uint64_t> session_bytes = bytes_in(session / "raw");
@@ -78,32 +80,37 @@ void print_table(const simulator::Scene& scene, const Outcome& o) {
   const SolveSeconds& s = o.solved.seconds;
   print(fmt::format("{}, {} x {} pixels, {} frames", scene.fabric, scene.camera.width, scene.camera.height,
                     o.simulated.frames));
-  print(fmt::format("  normal error    mean {:.3f}, median {:.3f}, 95 % under {:.3f} degrees", o.normal.mean_deg,
-                    o.normal.median_deg, o.normal.p95_deg));
+  print(fmt::format("  normal error    mean {:.3f}, median {:.3f}, 95 % under {:.3f} degrees",
+                    o.normal.mean_deg, o.normal.median_deg, o.normal.p95_deg));
   print(fmt::format("  albedo error    mean {:.2f} %, bias {:+.2f} %", 100 * o.albedo.mean_rel,
                     100 * o.albedo.bias_rel));
   print(fmt::format("  scan            {:.2f} s rendering, {:.2f} s writing, {} MB of raw frames",
                     o.simulated.render_seconds, o.simulated.write_seconds, o.session_bytes / 1000000));
-  print(fmt::format("  solve           {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, sync {:.2f}; {} MB of maps",
-                    s.total, s.read, s.solve, s.write, s.sync, o.map_bytes / 1000000));
+  print(
+      fmt::format("  solve           {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, "
+                  "sync {:.2f}; {} MB of maps",
+                  s.total, s.read, s.solve, s.write, s.pictures, s.sync, o.map_bytes / 1000000));
   print(fmt::format("  look at         {}", (o.solved.folder / "sheet.png").string()));
 }
 
 Json json_of(const Outcome& o) {
   const SolveSeconds& s = o.solved.seconds;
-  return {{"folder", o.solved.folder.string()},
-          {"sheet", (o.solved.folder / "sheet.png").string()},
-          {"normal", {{"mean_deg", o.normal.mean_deg}, {"median_deg", o.normal.median_deg}, {"p95_deg", o.normal.p95_deg}}},
-          {"albedo", {{"mean_rel", o.albedo.mean_rel}, {"bias_rel", o.albedo.bias_rel}}},
-          {"seconds",
-           {{"simulate", o.simulated.render_seconds + o.simulated.write_seconds},
-            {"read", s.read},
-            {"solve", s.solve},
-            {"write", s.write},
-            {"sync", s.sync},
-            {"total", s.total}}},
-          {"session_bytes", o.session_bytes},
-          {"map_bytes", o.map_bytes}};
+  return {
+      {"folder", o.solved.folder.string()},
+      {"sheet", (o.solved.folder / "sheet.png").string()},
+      {"normal",
+       {{"mean_deg", o.normal.mean_deg}, {"median_deg", o.normal.median_deg}, {"p95_deg", o.normal.p95_deg}}},
+      {"albedo", {{"mean_rel", o.albedo.mean_rel}, {"bias_rel", o.albedo.bias_rel}}},
+      {"seconds",
+       {{"simulate", o.simulated.render_seconds + o.simulated.write_seconds},
+        {"read", s.read},
+        {"solve", s.solve},
+        {"write", s.write},
+        {"pictures", s.pictures},
+        {"sync", s.sync},
+        {"total", s.total}}},
+      {"session_bytes", o.session_bytes},
+      {"map_bytes", o.map_bytes}};
 }
 
 }  // namespace

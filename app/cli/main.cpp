@@ -41,13 +41,17 @@ int main_of(int argc, char** argv) {
   try {
     return finish(run(*arguments));
   } catch (const std::bad_alloc&) {
-    return finish(Error{ErrorKind::kTryAgain, "out of memory", "", "", "close other programs, or use a larger machine"});
+    return finish(Error{ErrorKind::kTryAgain, "out of memory", "", "",
+                        "close other programs, or use a larger machine"});
   } catch (const std::exception& bug) {
-    return finish(Error{ErrorKind::kInternal, "a bug in weft", "", bug.what(), "report it with the command you ran"});
+    return finish(
+        Error{ErrorKind::kInternal, "a bug in weft", "", bug.what(), "report it with the command you ran"});
   }
 }
 
 }  // namespace
 }  // namespace weft::app
 
-int main(int argc, char** argv) { return weft::app::main_of(argc, argv); }
+int main(int argc, char** argv) {
+  return weft::app::main_of(argc, argv);
+}

@@ -28,8 +28,8 @@ void print_passes(const simulator::SimulationReport& report) {
   for (const simulator::PassCost& pass : report.passes) sum += pass.seconds;
   print("pass             seconds  share  what it does");
   for (const simulator::PassCost& pass : report.passes) {
-    print(fmt::format("{:<16} {:7.2f} {:5.1f}%  {}", pass.name, pass.seconds, 100 * pass.seconds / std::max(sum, 1e-9),
-                      pass.does));
+    print(fmt::format("{:<16} {:7.2f} {:5.1f}%  {}", pass.name, pass.seconds,
+                      100 * pass.seconds / std::max(sum, 1e-9), pass.does));
   }
   for (const simulator::LeftOut& effect : report.left_out) {
     print(fmt::format("{:<16}    left out    {}", effect.name, effect.why));
@@ -61,8 +61,8 @@ Result<int> run_simulate(const SimulateArguments& arguments, const CommonArgumen
     return kDone;
   }
   if (arguments.explain) print_passes(*report);
-  print(fmt::format("{}: {} frames of {} x {} at {:.0f} us, rendered in {:.1f} s, written in {:.1f} s", session,
-                    report->frames, scene->camera.width, scene->camera.height, report->exposure_us,
+  print(fmt::format("{}: {} frames of {} x {} at {:.0f} us, rendered in {:.1f} s, written in {:.1f} s",
+                    session, report->frames, scene->camera.width, scene->camera.height, report->exposure_us,
                     report->render_seconds, report->write_seconds));
   return kDone;
 }

@@ -31,6 +31,7 @@ Json json_of(const SolveReport& report) {
            {{"read", report.seconds.read},
             {"solve", report.seconds.solve},
             {"write", report.seconds.write},
+            {"pictures", report.seconds.pictures},
             {"sync", report.seconds.sync},
             {"total", report.seconds.total}}},
           {"peak_bytes", peak_memory_bytes()},
@@ -51,8 +52,9 @@ void print_words(const SolveReport& report) {
                     d["albedo_scale"].get<std::string>()));
   print("  pixels by status:" + status_words(d["status"]));
   const SolveSeconds& s = report.seconds;
-  print(fmt::format("  {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, sync {:.2f}; peak {} MB", s.total, s.read,
-                    s.solve, s.write, s.sync, peak_memory_bytes() >> 20));
+  print(fmt::format(
+      "  {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, sync {:.2f}; peak {} MB",
+      s.total, s.read, s.solve, s.write, s.pictures, s.sync, peak_memory_bytes() >> 20));
   for (const Json& name : d["pictures"]) {
     if (name == "sheet.png") print(fmt::format("  look at {}", (report.folder / "sheet.png").string()));
   }

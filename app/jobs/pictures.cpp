@@ -29,8 +29,8 @@ Result<TruthError> error_against(const fs::path& truth, const fs::path& normal) 
   const Size size = solved->info.size;
   if (real->info.size != size || real->planes.planes() < 3) {
     return Error{ErrorKind::kBadData, "truth does not fit the photographs", truth.string(),
-                 fmt::format("{} x {} pixels instead of {} x {}", real->info.size.width, real->info.size.height,
-                             size.width, size.height),
+                 fmt::format("{} x {} pixels instead of {} x {}", real->info.size.width,
+                             real->info.size.height, size.width, size.height),
                  "simulate the session again"};
   }
   TruthError error = {{}, material::Downsampler(size, 1)};
@@ -39,7 +39,8 @@ Result<TruthError> error_against(const fs::path& truth, const fs::path& normal) 
   for (int y = 0; y < size.height; ++y) {
     const Rect line = {0, y, size.width, y + 1};
     const auto rows = [&](const LoadedImage& image) {
-      return std::array<View<const float>, 3>{image.planes.plane(0).crop(line), image.planes.plane(1).crop(line),
+      return std::array<View<const float>, 3>{image.planes.plane(0).crop(line),
+                                              image.planes.plane(1).crop(line),
                                               image.planes.plane(2).crop(line)};
     };
     material::angular_error_deg(rows(*solved), rows(*real), row.plane());

@@ -29,9 +29,9 @@ class Pictures {
   explicit Pictures(Size size);
   void add(const MapBand& band);
 
-  /// Writes albedo.png (sRGB; a relative albedo is scaled, and the sheet says by how much), normal.png, relit.png,
-  /// error.png where there is a truth, else status_preview.png, and sheet.png with all of them under `title`. Returns
-  /// their names.
+  /// Writes albedo.png (sRGB; a relative albedo is scaled, and the sheet says by how much), normal.png,
+  /// relit.png, error.png where there is a truth, else status_preview.png, and sheet.png with all of them
+  /// under `title`. Returns their names.
   Result<std::vector<std::string>> write(const std::filesystem::path& folder, const std::string& title,
                                          bool absolute_albedo, const TruthError* error) const;
 

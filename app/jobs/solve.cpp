@@ -167,14 +167,14 @@ struct Input {
   std::function<Result<Photographs>()> load;
 };
 
-Result<SolveReport> run(const solver::MethodName& method_name, const Input& input, const SolveOptions& options,
-                        const JobContext& context) {
+Result<SolveReport> run(const solver::MethodName& method_name, const Input& input,
+                        const SolveOptions& options, const JobContext& context) {
   Stopwatch total, watch;
   const Size size = input.size;
   Place place;
   place.id = id_of(input.description, options);
-  place.folder =
-      fs::absolute(options.output.empty() ? input.default_parent / place.id : options.output).lexically_normal();
+  place.folder = fs::absolute(options.output.empty() ? input.default_parent / place.id : options.output)
+                     .lexically_normal();
   Result<std::optional<Json>> finished = find_finished(place);
   if (!finished) return std::move(finished).error();
   if (*finished) return SolveReport{place.folder, true, std::move(**finished), {}};
@@ -213,7 +213,7 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
   if (Result<void> ok = files->finish(); !ok) return std::move(ok).error();
   report.seconds.write = *waited + watch.lap();
   std::optional<TruthError> error;
-  if (!input.truth.empty()) {
+  if (options.previews && !input.truth.empty()) {
     Result<TruthError> measured = error_against(input.truth, partial.path() / "normal.exr");
     if (!measured) return std::move(measured).error();
     error = std::move(*measured);
@@ -225,6 +225,8 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
     if (!names) return std::move(names).error();
     written = *names;
   }
+
+  report.seconds.pictures = watch.lap();
 
   Json status = Json::object();
   for (const StatusName& s : kStatusNames) status[s.name] = counts.with(s.bit);
@@ -249,7 +251,6 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
   }
   if (Result<void> ok = write_json(partial.path() / "solve.json", report.document); !ok)
     return std::move(ok).error();
-  watch.lap();
   if (context.stop.stop_requested()) return interrupted();
   if (Result<void> ok = partial.publish(place.folder); !ok) return std::move(ok).error();
   report.seconds.sync = watch.lap();

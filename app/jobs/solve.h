@@ -10,6 +10,7 @@
 #include "app/jobs/photo_input.h"
 #include "app/jobs/photographs.h"
 #include "app/jobs/session_input.h"
+#include "app/jobs/solve_bands.h"
 #include "core/json_document.h"
 #include "core/result.h"
 #include "core/tiles.h"
@@ -21,12 +22,12 @@ struct SolveOptions {
   std::string method = "fast";       ///< a name of solver::method_names()
   std::filesystem::path output;      ///< empty: <session>/solve/<id>, or ./<photographs>-solve/<id>
   std::string compression = "none";  ///< of EXR files: none, zip, piz
-  TileOptions tile = {.width = 512, .height = 32};
+  TileOptions tile = kSolveTile;
   bool previews = true;
 };
 
 struct SolveSeconds {
-  double read = 0, solve = 0, write = 0, sync = 0, total = 0;
+  double read = 0, solve = 0, write = 0, pictures = 0, sync = 0, total = 0;
 };
 
 /// What a solve left behind.

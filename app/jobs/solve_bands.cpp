@@ -13,7 +13,7 @@
 namespace weft::app {
 namespace {
 
-constexpr int kBandRows = 128;
+constexpr int kBandRows = 64;
 constexpr int kReach = solver::kDemosaicReach;
 // Rows kept from the band above: what demosaicing looks back on, and the rows it could not do for want of a
 // look ahead.

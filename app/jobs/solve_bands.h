@@ -29,6 +29,10 @@ struct MapBand {
   View<const float> sigma_normal_deg;
 };
 
+/// Whole rows, as few of them as leave the readings of ten lights in a core's second cache: frames are then
+/// read from memory in long runs.
+inline constexpr TileOptions kSolveTile = {.width = 8192, .height = 4};
+
 /// Called in order, from one thread at a time, while the next band is being solved.
 using BandSink = std::function<Result<void>(const MapBand&)>;
 

@@ -14,8 +14,7 @@
 #include "core/result.h"
 
 // Image files: EXR, TIFF, PNG, and JPEG for reading. OpenImageIO stays behind this header. Values are what
-// the file holds: no transfer function, no premultiplication by alpha; integers are scaled so that full scale
-// is 1.
+// the file holds, without transfer function or premultiplication by alpha; full scale of integers is 1.
 
 namespace weft {
 
@@ -44,8 +43,7 @@ struct LoadedImage {
   View<const float> channel(std::string_view name) const;
 };
 
-/// What a file says of itself; the format comes from its content, not from its name. Errors: kNoInput,
-/// kBadData.
+/// What a file says of itself; its content tells the format, not its name. Errors: kNoInput, kBadData.
 Result<ImageFileInfo> read_image_info(const std::filesystem::path& file);
 /// Reads every channel of the first image or EXR part, whatever its tiling and data window; NaN and
 /// infinities pass. Errors: kNoInput; kBadData if truncated, damaged, deep or a raw file's thumbnail;

@@ -99,6 +99,12 @@ ImageAttributes attributes_of(const OIIO::ImageSpec& spec, const std::string& fo
   return attributes;
 }
 
+/// How often larger than its file the pixels of an EXR can be, with room above what a constant image gives.
+double most_expansion(const OIIO::ImageSpec& spec) {
+  const std::string compression = spec.get_string_attribute("compression");
+  return compression == "none" ? 1 : compression.starts_with("dwa") ? 1e6 : 1e4;
+}
+
 struct OpenedImage {
   std::unique_ptr<OIIO::ImageInput> input;
   OIIO::ImageSpec spec;
@@ -118,8 +124,7 @@ Result<OpenedImage> open_image(const fs::path& file) {
   OIIO::ImageSpec wishes;
   wishes.attribute("oiio:UnassociatedAlpha", 1);
   const bool open = opened.input->open(file.string(), opened.spec, wishes);
-  // Missing strips of a TIFF and the missing end of a JPEG are errors that no return value tells, here and
-  // below.
+  // Missing strips of a TIFF and the missing end of a JPEG are told by no return value, here and below.
   const std::string message = opened.input->geterror();
   if (!open || !message.empty()) return bad_data(file, oiio_reason(message));
   const OIIO::ImageSpec& spec = opened.spec;
@@ -128,10 +133,17 @@ Result<OpenedImage> open_image(const fs::path& file) {
   if (spec.get_int_attribute("tiff:subfiletype") == 1) {
     return bad_data(file, "its first image is a thumbnail, as in a camera's raw file");
   }
-  const std::uint64_t stored = spec.image_bytes(/*native=*/true);
-  if (*format == "openexr" && spec.get_string_attribute("compression") == "none" && stored > file_bytes) {
-    return bad_data(file, fmt::format("its {} x {} pixels need {} bytes, it has {}", spec.width, spec.height,
-                                      stored, file_bytes));
+  constexpr std::int64_t kLargeTile = std::int64_t{4096} * 4096;
+  const std::int64_t tile = std::int64_t{spec.tile_width} * spec.tile_height;
+  if (tile > std::max(kLargeTile, std::int64_t{spec.width} * spec.height)) {
+    return bad_data(file, fmt::format("its tiles of {} x {} pixels are larger than the image",
+                                      spec.tile_width, spec.tile_height));
+  }
+  const auto stored = static_cast<double>(spec.image_bytes(/*native=*/true));
+  if (*format == "openexr" && stored > most_expansion(spec) * static_cast<double>(file_bytes)) {
+    return bad_data(file,
+                    fmt::format("its {} x {} pixels of {:.0f} bytes in all are more than its {} bytes hold",
+                                spec.width, spec.height, stored, file_bytes));
   }
   opened.info = {{spec.width, spec.height},
                  {spec.channelnames.begin(), spec.channelnames.end()},

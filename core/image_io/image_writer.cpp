@@ -25,29 +25,14 @@ struct Format {
   std::vector<SampleType> types;
   std::vector<std::string> compressions;
   std::size_t most_channels;
-  std::string what_it_holds;
 };
 
 const std::vector<Format>& formats() {
   using enum SampleType;
-  static const std::vector<Format> all = {{"openexr",
-                                           {".exr"},
-                                           {kHalf, kFloat},
-                                           {"none", "zip", "piz"},
-                                           1024,
-                                           "EXR is half or float; none, zip or piz"},
-                                          {"tiff",
-                                           {".tif", ".tiff"},
-                                           {kUint8, kUint16, kHalf, kFloat},
-                                           {"none", "zip"},
-                                           1024,
-                                           "TIFF is uint8, uint16, half or float; none or zip"},
-                                          {"png",
-                                           {".png"},
-                                           {kUint8, kUint16},
-                                           {"none", "zip"},
-                                           4,
-                                           "PNG is uint8 or uint16, with 1 to 4 channels"}};
+  static const std::vector<Format> all = {
+      {"openexr", {".exr"}, {kHalf, kFloat}, {"none", "zip", "piz"}, 1024},
+      {"tiff", {".tif", ".tiff"}, {kUint8, kUint16, kHalf, kFloat}, {"none", "zip"}, 1024},
+      {"png", {".png"}, {kUint8, kUint16}, {"none", "zip"}, 4}};
   return all;
 }
 
@@ -94,8 +79,8 @@ Result<const Format*> format_for(const fs::path& file, Size size, const std::vec
                   fmt::format("name 1 to {} different channels", format->most_channels));
   }
   if (!has(format->types, options.type) || !has(format->compressions, options.compression)) {
-    return refuse(fmt::format("{} (asked: {}, {})", format->what_it_holds, oiio_type(options.type).c_str(),
-                              options.compression),
+    return refuse(fmt::format("{} cannot hold {} samples with compression {}", format->name,
+                              oiio_type(options.type).c_str(), options.compression),
                   "choose another type, compression or ending");
   }
   return &*format;
@@ -129,8 +114,7 @@ fs::path aside(fs::path file) {
   return file;
 }
 
-/// Rows handed to the encoder at once: always the same, since some encoders make blocks of what they are
-/// given.
+/// Rows handed to the encoder at once: always the same, since some encoders make blocks of what they get.
 int rows_a_chunk(std::size_t row_bytes) {
   constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
   constexpr std::size_t kStep = 32;  // lines of a TIFF strip and of an EXR piz block

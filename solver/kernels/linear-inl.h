@@ -146,7 +146,8 @@ struct LightHere {
 };
 
 HWY_INLINE LightHere light_here(D d, const RowLight& light, V x_mm, V y_mm, V gain) {
-  const Vector3 p = {hn::Set(d, light.position[0]), hn::Set(d, light.position[1]), hn::Set(d, light.position[2])};
+  const Vector3 p = {hn::Set(d, light.position[0]), hn::Set(d, light.position[1]),
+                     hn::Set(d, light.position[2])};
   const V one = hn::Set(d, 1.0f);
   if (light.distant) return {p, one, one};
   const Vector3 to_led = {hn::Sub(p.x, x_mm), hn::Sub(p.y, y_mm), p.z};
@@ -261,8 +262,11 @@ struct Sums {
   Vector3 plane_rhs[3];
   V count;
 
-  explicit Sums(D d) : g(zero_matrix(d)), rhs{hn::Zero(d), hn::Zero(d), hn::Zero(d)}, plane_rhs{rhs, rhs, rhs},
-                       count(hn::Zero(d)) {}
+  explicit Sums(D d)
+      : g(zero_matrix(d)),
+        rhs{hn::Zero(d), hn::Zero(d), hn::Zero(d)},
+        plane_rhs{rhs, rhs, rhs},
+        count(hn::Zero(d)) {}
 };
 
 // What a vector of columns has in common, whichever way it is solved.
@@ -278,11 +282,13 @@ struct Columns {
         y_mm(task.points->x_mm.value != nullptr ? along.at(d, task.points->y_mm) : hn::Zero(d)) {}
 };
 
-// Readings over strength of all lights, kept in `scratch`, and their normal equations as if every one counted. Returns
-// whether that holds for every lane: no reading is missing, saturated or behind a LED, none is dark enough to be taken
-// for a shadow, some stand out of the noise. A value that is not finite shows in the sums.
+// Readings over strength of all lights, kept in `scratch`, and their normal equations as if every one
+// counted. Returns whether that holds for every lane: no reading is missing, saturated or behind a LED, none
+// is dark enough to be taken for a shadow, some stand out of the noise. A value that is not finite shows in
+// the sums.
 template <std::size_t kPlanes>
-HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const Columns& columns, Sums<kPlanes>& sums) {
+HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const Columns& columns,
+                       Sums<kPlanes>& sums) {
   const V one = hn::Set(d, 1.0f), infinity = hn::Inf(d);
   const RowPoints& points = *task.points;
   const bool gains = !points.led_gain.empty();
@@ -302,14 +308,15 @@ HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const C
   V darkest = infinity, brightest = hn::Neg(infinity), brightest_reading = brightest, least_cosine = one;
   for (std::size_t k = 0; k < task.light_count; ++k) {
     const RowLight& light = task.lights[k];
-    const LightHere here =
-        light_here(d, light, columns.x_mm, columns.y_mm, gains ? columns.along.at(d, points.led_gain[k]) : one);
+    const LightHere here = light_here(d, light, columns.x_mm, columns.y_mm,
+                                      gains ? columns.along.at(d, points.led_gain[k]) : one);
     V light_sum = hn::Zero(d), inverse_e = light_sum;
     for (std::size_t p = 0; p < kPlanes; ++p) {
       const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + columns.x);
       V inverse_flux;
       if constexpr (kPlanes == 1) {
-        inverse_flux = alternate(d, columns.x, light.inverse_flux[task.channel[0]], light.inverse_flux[task.channel[1]]);
+        inverse_flux =
+            alternate(d, columns.x, light.inverse_flux[task.channel[0]], light.inverse_flux[task.channel[1]]);
       } else {
         inverse_flux = hn::Set(d, light.inverse_flux[p]);
       }
@@ -349,12 +356,13 @@ HWY_INLINE void mark(Status& status, M where, std::uint16_t bit) {
   status = hn::Or(status, hn::IfThenElseZero(hn::RebindMask(di, where), hn::Set(di, bit)));
 }
 
-// The normal equations again, of the readings that can be used and that the shadow mask keeps. In `scratch`, readings
-// that were left out become minus infinity. Returns the lanes that must be solved again in double.
+// The normal equations again, of the readings that can be used and that the shadow mask keeps. In `scratch`,
+// readings that were left out become minus infinity. Returns the lanes that must be solved again in double.
 template <std::size_t kPlanes>
-HWY_INLINE M select(D d, const RowTask& task, const Scratch& scratch, const Columns& columns, Sums<kPlanes>& sums,
-                    Status& status) {
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), infinity = hn::Inf(d), minus_infinity = hn::Neg(infinity);
+HWY_INLINE M select(D d, const RowTask& task, const Scratch& scratch, const Columns& columns,
+                    Sums<kPlanes>& sums, Status& status) {
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), infinity = hn::Inf(d),
+          minus_infinity = hn::Neg(infinity);
   const M no = hn::Lt(one, zero);
   M saturated = no, invalid = no, unlit = no, bright = no;
   Brightest brightest(d, scratch, task.bright_rank);
@@ -383,8 +391,9 @@ HWY_INLINE M select(D d, const RowTask& task, const Scratch& scratch, const Colu
   }
   V threshold = minus_infinity;
   if (task.shadow_mask) {
-    threshold = hn::Min(hn::Mul(hn::Set(d, static_cast<float>(kShadowShare)), brightest.ranked(task.bright_index)),
-                        brightest.ranked(kLeastKept - 1));
+    threshold =
+        hn::Min(hn::Mul(hn::Set(d, static_cast<float>(kShadowShare)), brightest.ranked(task.bright_index)),
+                brightest.ranked(kLeastKept - 1));
   }
   sums = Sums<kPlanes>(d);
   M any_dropped = no;
@@ -396,7 +405,9 @@ HWY_INLINE M select(D d, const RowTask& task, const Scratch& scratch, const Colu
     sums.count = hn::Add(sums.count, hn::IfThenElseZero(keep, one));
     scratch.store_light(k, hn::IfThenElse(keep, light_sum, minus_infinity));
     const Vector3 l = scratch.direction(k);
-    add_outer(sums.g, {hn::IfThenElseZero(keep, l.x), hn::IfThenElseZero(keep, l.y), hn::IfThenElseZero(keep, l.z)}, l);
+    add_outer(sums.g,
+              {hn::IfThenElseZero(keep, l.x), hn::IfThenElseZero(keep, l.y), hn::IfThenElseZero(keep, l.z)},
+              l);
     add_scaled(sums.rhs, hn::IfThenElseZero(keep, light_sum), l);
     if constexpr (kPlanes == 3) {
       for (std::size_t p = 0; p < 3; ++p) {
@@ -411,14 +422,15 @@ HWY_INLINE M select(D d, const RowTask& task, const Scratch& scratch, const Colu
   // The mask stands only while enough is left; without anything bright there is nothing to tell shadow by.
   const V determinant = inverted(d, sums.g).determinant;
   const M too_little = hn::Not(hn::Gt(determinant, hn::Set(d, static_cast<float>(kLeastMaskedDeterminant))));
-  return hn::Or(hn::Not(bright), hn::Or(hn::And(any_dropped, too_little), hn::Lt(sums.count, hn::Set(d, 3.0f))));
+  return hn::Or(hn::Not(bright),
+                hn::Or(hn::And(any_dropped, too_little), hn::Lt(sums.count, hn::Set(d, 3.0f))));
 }
 
-// Solution, residuals and covariance from the normal equations. `kSelected` says that some readings are left out (minus
-// infinity in `scratch`); without any, both ways take the same steps to the same bits.
+// Solution, residuals and covariance from the normal equations. `kSelected` says that some readings are left
+// out (minus infinity in `scratch`); without any, both ways take the same steps to the same bits.
 template <std::size_t kPlanes, bool kSelected>
-HWY_INLINE bool finish(D d, const RowTask& task, const Scratch& scratch, std::size_t x, const Sums<kPlanes>& sums,
-                       M again, Status status) {
+HWY_INLINE bool finish(D d, const RowTask& task, const Scratch& scratch, std::size_t x,
+                       const Sums<kPlanes>& sums, M again, Status status) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), minus_infinity = hn::Neg(hn::Inf(d));
   const Inverse inverse = inverted(d, sums.g);
   const Vector3 b = times(inverse.matrix, sums.rhs);
@@ -431,10 +443,11 @@ HWY_INLINE bool finish(D d, const RowTask& task, const Scratch& scratch, std::si
     for (std::size_t p = 0; p < 3; ++p) plane_b[p] = times(inverse.matrix, sums.plane_rhs[p]);
   }
 
-  // What float32 cannot answer for. With rows of unit length the eigenvalues of G sum to the count and determinant /
-  // minors is a lower bound of the smallest, so this catches every condition number over 30.
+  // What float32 cannot answer for. With rows of unit length the eigenvalues of G sum to the count and
+  // determinant / minors is a lower bound of the smallest, so this catches every condition number over 30.
   const V most_condition2 = hn::Set(d, 900.0f);
-  again = hn::Or(again, hn::Not(hn::Gt(hn::Mul(most_condition2, inverse.determinant), hn::Mul(sums.count, inverse.minors))));
+  again = hn::Or(again, hn::Not(hn::Gt(hn::Mul(most_condition2, inverse.determinant),
+                                       hn::Mul(sums.count, inverse.minors))));
   again = hn::Or(again, hn::Not(hn::And(hn::Gt(rho2, hn::Set(d, 1e-24f)), hn::Lt(rho2, hn::Set(d, 1e24f)))));
   mark(status, again, kSolveAgain);
 
@@ -480,7 +493,7 @@ HWY_INLINE bool finish(D d, const RowTask& task, const Scratch& scratch, std::si
       const V excess = hn::Sub(hn::NegMulAdd(specular_times, predicted, scratch.light(k)), margin);
       const V variance = modelled ? variance_of(predicted, scratch.inverse_e(k)) : zero;
       specular = hn::Or(specular, hn::And(hn::Gt(excess, zero), hn::Gt(hn::Mul(excess, excess),
-                                                                      hn::Mul(hn::Set(d, 9.0f), variance))));
+                                                                       hn::Mul(hn::Set(d, 9.0f), variance))));
     }
     mark(status, specular, kSpecular);
   }
@@ -494,7 +507,8 @@ HWY_INLINE bool finish(D d, const RowTask& task, const Scratch& scratch, std::si
     const Vector3 inverse_shared = times(inverse.matrix, shared);
     const V un = dot(u, shared);
     along_n = hn::MulAdd(s, hn::Mul(un, un), dot(u, times(m, u)));
-    angle2 = hn::MulAdd(s, dot(inverse_shared, inverse_shared), trace_of_product(d, m, squared(inverse.matrix)));
+    angle2 =
+        hn::MulAdd(s, dot(inverse_shared, inverse_shared), trace_of_product(d, m, squared(inverse.matrix)));
     angle2 = hn::Sub(angle2, along_n);
   } else {
     along_n = dot(n, u);
@@ -518,7 +532,8 @@ HWY_INLINE bool finish(D d, const RowTask& task, const Scratch& scratch, std::si
     V sigma = hn::Sqrt(along_n);
     if (!modelled) {
       const V scatter2 = kPlanes == 1 ? residual2 : plane_residual2[p];
-      sigma = hn::IfThenElse(determined, hn::Mul(sigma, hn::Sqrt(hn::Mul(scatter2, inverse_freedom))), albedo);
+      sigma =
+          hn::IfThenElse(determined, hn::Mul(sigma, hn::Sqrt(hn::Mul(scatter2, inverse_freedom))), albedo);
     }
     hn::StoreU(albedo, d, task.albedo[p] + x);
     hn::StoreU(sigma, d, task.sigma_albedo[p] + x);
@@ -562,6 +577,8 @@ bool solve_rgb_row(const RowTask& task) {
 
 // Normal equations only; see solve_bare.
 void solve_bare_row(const RowTask& task) {
+  // Thirty streams are as many as the machine's own prefetcher follows.
+  constexpr std::size_t kAhead = 64;
   const D d;
   const V zero = hn::Zero(d);
   for (std::size_t x = 0; x < task.width; x += hn::Lanes(d)) {
@@ -579,7 +596,9 @@ void solve_bare_row(const RowTask& task) {
                          hn::Mul(to_led.z, inverse_d)};
       add_outer(g, l, l);
       for (std::size_t c = 0; c < 3; ++c) {
-        const V r = hn::LoadU(d, task.readings[k * 3 + c] + x);
+        const float* reading = task.readings[k * 3 + c] + x;
+        hwy::Prefetch(reading + kAhead);
+        const V r = hn::LoadU(d, reading);
         add_scaled(rhs[c], hn::Mul(r, hn::Mul(d2, hn::Set(d, light.inverse_flux[c]))), l);
       }
     }

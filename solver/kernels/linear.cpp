@@ -57,10 +57,9 @@ std::vector<RowLight> row_lights(const LightField& field) {
   return lights;
 }
 
-RowPoints points_of(const LightField::Row& row, int x0) {
-  const auto cell = static_cast<std::size_t>(x0 / LightField::kCell);
+RowPoints points_of(const LightField::Row& row) {
   const auto line = [&](const LightField::RowLine& l) {
-    return l.value.empty() ? RowLinePointer{} : RowLinePointer{l.value.data() + cell, l.step.data() + cell};
+    return l.value.empty() ? RowLinePointer{} : RowLinePointer{l.value.data(), l.step.data()};
   };
   RowPoints points;
   points.x_mm = line(row.x_mm);
@@ -130,8 +129,8 @@ void solve_linear(const TileInput& input, const TileOutput& output, const Linear
   }
   for (int y = 0; y < input.tile.height(); ++y) {
     const int py = input.tile.y0 + y;
-    input.field->read_row(py, line);
-    const RowPoints points = points_of(line, input.tile.x0);
+    input.field->read_row(py, input.tile.x0, input.tile.x1, line);
+    const RowPoints points = points_of(line);
     task.points = &points;
     for (std::size_t i = 0; i < readings.size(); ++i) readings[i] = input.readings[i].row(y);
     for (std::size_t c = 0; c < 3; ++c) task.normal[c] = output.normal[c].row(y);
@@ -166,8 +165,8 @@ void solve_bare(Rect tile, std::span<const View<const float>> readings, const Li
   task.readings = rows.data();
   task.width = static_cast<std::size_t>(tile.width());
   for (int y = 0; y < tile.height(); ++y) {
-    field.read_row(tile.y0 + y, line);
-    const RowPoints points = points_of(line, tile.x0);
+    field.read_row(tile.y0 + y, tile.x0, tile.x1, line);
+    const RowPoints points = points_of(line);
     task.points = &points;
     for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = readings[i].row(y);
     for (std::size_t c = 0; c < 3; ++c) {
