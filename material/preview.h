@@ -21,12 +21,10 @@ inline constexpr Colour kMissing{1, 0, 1};
 float srgb_from_linear(float linear);
 
 /// The factor that brings the 99th percentile of max(R, G, B) to 0.8: how to show an albedo whose scale is
-/// relative. 1 where there is nothing to see. Use one factor for all pictures that are compared, and state
-/// it.
+/// relative. 1 where there is nothing to see. Pictures that are compared share one factor and state it.
 double display_scale(const Image<float>& albedo);
 
-/// `scale` times the linear Rec.709 albedo (planes R, G, B), in sRGB. A scale of 1 shows reflectance as it
-/// is.
+/// `scale` times the linear Rec.709 albedo (planes R, G, B), in sRGB. A scale of 1 shows true reflectance.
 Picture albedo_picture(const Image<float>& albedo, double scale = 1);
 
 /// Normals (planes X, Y, Z in the rig frame) at unit length as n * 0.5 + 0.5: green is up, as in OpenGL.
@@ -40,9 +38,8 @@ Picture relit_picture(const Image<float>& albedo, const Image<float>& normal, do
 void angular_error_deg(std::span<const View<const float>> normal, std::span<const View<const float>> truth,
                        View<float> error_deg);
 
-/// A colour for `t` in [0, 1] whose lightness rises evenly from dark violet over green to light yellow: OKLCh
-/// (Ottosson 2020) with L from 0.25 to 0.92 and hue from 300 to 105 degrees, both linear, and chroma within
-/// sRGB.
+/// A colour for `t` in [0, 1] whose lightness rises evenly from dark violet over green to light yellow: in
+/// OKLCh (Ottosson 2020) L goes from 0.25 to 0.92 and hue from 300 to 105 degrees, within what sRGB shows.
 Colour heat_colour(double t);
 
 /// The least number of one significant digit that covers 99 of 100 values.

@@ -49,7 +49,7 @@ const std::vector<Layer> kLayers = {
 };
 
 const std::vector<Door> kDoors = {
-    {"OpenImageIO/", {"core/image_io/"}},
+    {"OpenImageIO/", {"core/image_io/", "bench/"}},
     {"libraw/", {"capture/raw/", "bench/"}},
     {"hwy/", {"core/", "solver/kernels/", "tests/"}},
 };

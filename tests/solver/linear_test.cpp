@@ -175,6 +175,27 @@ TEST(LinearKernel, GivesTheSameBytesWhereverTheTileBegins) {
   }
 }
 
+TEST(LinearKernel, GivesTheSameBitsWhateverThePixelBeside) {
+  const LightField field = field_of(test::ten_leds());
+  const NoiseModel noise = {2e-4, 1e-7, 1e-7};
+  on_every_target([&] {
+    for (const int planes : {1, 3}) {
+      Trial alone(field, kTile, planes, cloth(15)), beside(field, kTile, planes, cloth(15));
+      for (int x = 0; x < kTile.width(); x += 7) beside.reading(3)(x, 0) = x % 2 == 0 ? kNaN : 0;
+      alone.solve(*solver::fast_method(), noise);
+      beside.solve(*solver::fast_method(), noise);
+      for (int x = 0; x < kTile.width(); ++x) {
+        if (x % 7 == 0) continue;
+        ASSERT_EQ(alone.normal(x, 0), beside.normal(x, 0)) << planes << " planes, pixel " << x;
+        ASSERT_EQ(alone.sigma_normal_deg(x, 0), beside.sigma_normal_deg(x, 0)) << planes << " planes, pixel " << x;
+        ASSERT_EQ(alone.sigma_albedo(x, 0), beside.sigma_albedo(x, 0)) << planes << " planes, pixel " << x;
+        ASSERT_EQ(alone.residual(x, 0), beside.residual(x, 0)) << planes << " planes, pixel " << x;
+        ASSERT_EQ(alone.status(x, 0), beside.status(x, 0)) << planes << " planes, pixel " << x;
+      }
+    }
+  });
+}
+
 TEST(LinearKernel, SaysWhyAPixelHasNoSolution) {
   const LightField field = field_of(test::ten_leds());
   Trial trial(field, kTile, 1, [](int, int) { return Truth{{0, 0, 1}, {0.5, 0.5, 0.5}}; });
