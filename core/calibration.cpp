@@ -41,6 +41,14 @@ Json to_json(const CameraModel& c) {
           {"camera_from_rig_translation_mm", json_of(c.camera_from_rig_translation_mm)}};
 }
 
+// Orthonormal, and no mirror.
+bool is_rotation(const Mat3& m) {
+  const Vec3 x = m * Vec3{1, 0, 0}, y = m * Vec3{0, 1, 0}, z = m * Vec3{0, 0, 1};
+  const auto near = [](Vec3 a, Vec3 b) { return length(a - b) < 1e-6; };
+  return near(cross(x, y), z) && near(cross(y, z), x) && near(cross(z, x), y) &&
+         std::abs(length(x) - 1) < 1e-6;
+}
+
 Result<CameraModel> camera_from_json(const Json& json, const std::string& where) {
   JsonFields fields(json, where);
   CameraModel c;
@@ -55,21 +63,15 @@ Result<CameraModel> camera_from_json(const Json& json, const std::string& where)
   c.p1 = fields.number("p1");
   c.p2 = fields.number("p2");
   const Json& rotation = fields.list("camera_from_rig_rotation");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   for (std::size_t i = 0; i < 3; ++i) {
     const Json row = {{"row", i < rotation.size() ? rotation[i] : Json()}};
     JsonFields row_fields(row, where + ": camera_from_rig_rotation");
     c.camera_from_rig_rotation[i] = row_fields.rgb("row");
     if (Result<void> ok = row_fields.status(); !ok) return std::move(ok).error();
   }
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = i; j < 3; ++j) {
-      const auto& a = c.camera_from_rig_rotation[i];
-      const auto& b = c.camera_from_rig_rotation[j];
-      if (std::abs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] - (i == j ? 1 : 0)) > 1e-6) {
-        fields.reject("camera_from_rig_rotation", "must be a rotation");
-      }
-    }
-  }
+  if (!is_rotation(c.camera_from_rig_rotation))
+    fields.reject("camera_from_rig_rotation", "must be a rotation");
   c.camera_from_rig_translation_mm = fields.vec3("camera_from_rig_translation_mm");
   if (c.size.width < 1 || c.size.height < 1) fields.reject("width", "and \"height\" must be above 0");
   if (c.fx <= 0 || c.fy <= 0) fields.reject("fx", "and \"fy\" must be above 0");
@@ -292,7 +294,8 @@ Result<Calibration> read_calibration(const fs::path& folder) {
 }
 
 Result<Calibration> write_calibration(const fs::path& folder, Calibration calibration) {
-  if (fs::exists(folder / "calibration.json")) {
+  std::error_code failed;
+  if (fs::exists(folder / "calibration.json", failed)) {
     return Error{ErrorKind::kCannotCreate, "cannot write calibration", folder.string(),
                  "there is one already, and calibrations are never changed", "name a new folder with -o"};
   }

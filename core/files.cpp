@@ -94,6 +94,9 @@ Error cannot_write(const fs::path& file, int error_number) {
     case EROFS:
     case ENOENT:
     case ENOTDIR:
+    case EISDIR:
+    case ELOOP:
+    case ENAMETOOLONG:
     case EEXIST:
     case ENOTEMPTY:
       return {ErrorKind::kCannotCreate, "cannot create", file.string(), system_reason(error_number),
@@ -153,13 +156,14 @@ Result<void> sync_path(const fs::path& path) {
 
 Result<void> publish_folder(const fs::path& folder, const fs::path& target) {
   std::error_code failed;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, failed)) {
-    if (Result<void> synced = sync_path(entry.path()); !synced) return synced;
+  for (fs::recursive_directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    if (Result<void> synced = sync_path(entry->path()); !synced) return synced;
   }
   if (failed) return cannot_write(folder, failed.value());
   if (Result<void> synced = sync_path(folder); !synced) return synced;
   // rename() would replace an empty folder in silence.
-  if (fs::exists(target)) return cannot_write(target, EEXIST);
+  if (fs::exists(target, failed)) return cannot_write(target, EEXIST);
   if (::rename(folder.c_str(), target.c_str()) != 0) return cannot_write(target, errno);
   return sync_path(parent_of(target));
 }

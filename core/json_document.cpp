@@ -3,17 +3,30 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include "core/files.h"
 
 namespace weft {
 namespace {
 
+// Lists in lists beyond this are no document of ours: copying or printing them would overflow the stack.
+constexpr int kMostDepth = 64;
+
 Error bad_document(const std::string& where, const std::string& why) {
   return {ErrorKind::kBadData, "document cannot be used", where, why,
           "restore the file from a copy, or make it again with the program that wrote it"};
+}
+
+// The beginning of a value as a message quotes it, cut between characters.
+std::string beginning_of(const Json& value) {
+  const std::string text = value.dump();
+  std::size_t end = std::min<std::size_t>(text.size(), 40);
+  while (end < text.size() && (text[end] & 0xc0) == 0x80) --end;
+  return text.substr(0, end);
 }
 
 }  // namespace
@@ -21,7 +34,13 @@ Error bad_document(const std::string& where, const std::string& why) {
 Result<Json> read_json(const std::filesystem::path& file, const std::string& name, int major) {
   Result<std::string> text = read_text(file);
   if (!text) return std::move(text).error();
-  const Json document = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  bool too_deep = false;
+  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
+    too_deep = too_deep || depth > kMostDepth;
+    return !too_deep;
+  };
+  Json document = Json::parse(*text, shallow, /*allow_exceptions=*/false);
+  if (too_deep) return bad_document(file.string(), fmt::format("it is nested over {} deep", kMostDepth));
   if (document.is_discarded()) return bad_document(file.string(), "it is not valid JSON");
   if (!document.is_object() || !document.contains("schema") || !document["schema"].is_string()) {
     return bad_document(file.string(),
@@ -60,8 +79,8 @@ const Json* JsonFields::find(const char* key, bool (*is_kind)(const Json&), cons
   }
   const Json& value = (*object_)[key];
   if (!is_kind(value)) {
-    error_ = bad_document(
-        where_, fmt::format("\"{}\" is {}; {} was expected", key, value.dump().substr(0, 40), kind));
+    error_ =
+        bad_document(where_, fmt::format("\"{}\" is {}; {} was expected", key, beginning_of(value), kind));
     return nullptr;
   }
   return &value;
@@ -90,8 +109,7 @@ std::optional<double> JsonFields::optional_number(const char* key) {
 
 int JsonFields::integer(const char* key) {
   const auto fits = [](const Json& v) {
-    return v.is_number_integer() && v.get<std::int64_t>() >= -2147483647 &&
-           v.get<std::int64_t>() <= 2147483647;
+    return v.is_number_integer() && std::abs(v.get<double>()) <= std::numeric_limits<int>::max();
   };
   const Json* value = find(key, fits, "a whole number");
   return value ? value->get<int>() : 0;

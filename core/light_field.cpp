@@ -103,7 +103,10 @@ Result<LightField> LightField::make(Lights lights, const std::optional<CameraMod
     for (int j = 0; j < rows; ++j) {
       for (int i = 0; i < field.columns_; ++i) {
         const Vec3 p = point_on_plane(*camera, i * kCell, j * kCell, cloth_height_mm);
-        if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
+        // Behind the camera, past the horizon or where the lens folds, the point is not the one the pixel
+        // sees.
+        const Vec3 back = project(*camera, p);
+        if (!(back.z > 0 && std::hypot(back.x - i * kCell, back.y - j * kCell) < 0.01)) {
           return bad_lights("camera",
                             fmt::format("pixel ({}, {}) does not look at the table", i * kCell, j * kCell),
                             "calibrate the camera again");
@@ -111,7 +114,8 @@ Result<LightField> LightField::make(Lights lights, const std::optional<CameraMod
         field.x_mm_.push_back(p.x);
         field.y_mm_.push_back(p.y);
         if (!gain) continue;
-        const double u = 2.0 * i * kCell / (size.width - 1) - 1, v = 2.0 * j * kCell / (size.height - 1) - 1;
+        const double u = 2.0 * i * kCell / std::max(size.width - 1, 1) - 1;
+        const double v = 2.0 * j * kCell / std::max(size.height - 1, 1) - 1;
         for (std::size_t c = 0; c < 3; ++c)
           field.gain_rgb_[c].push_back(std::exp(near->log_gain_rgb[c].at(u, v)));
         for (std::size_t k = 0; k < near->leds.size(); ++k) {

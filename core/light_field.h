@@ -38,7 +38,7 @@ class LightField {
   /// Light k (from 0) as channel c (0 red, 1 green, 2 blue) sees it at a pixel.
   Light at(std::size_t k, int c, int x, int y) const;
 
-  /// /// A stretch of grid line blended down to a pixel row: the value at the left end of each cell and its
+  /// A stretch of grid line blended down to a pixel row: the value at the left end of each cell and its
   /// step a pixel.
   struct RowLine {
     std::vector<float> value;

@@ -8,8 +8,9 @@
 namespace weft {
 
 std::vector<Rect> tiles_of(Rect area, const TileOptions& options) {
-  const int width = (std::max(options.width, 1) + kRowGroup - 1) / kRowGroup * kRowGroup;
-  const int height = std::max(options.height, 1);
+  const int most = std::clamp(options.width, 1, std::max(area.width(), 1));
+  const int width = (most + kRowGroup - 1) / kRowGroup * kRowGroup;
+  const int height = std::clamp(options.height, 1, std::max(area.height(), 1));
   std::vector<Rect> tiles;
   for (int y = area.y0; y < area.y1; y += height) {
     for (int x = area.x0; x < area.x1; x += width) {

@@ -139,7 +139,7 @@ Result<std::optional<Json>> find_finished(const Place& place) {
   if (fs::exists(file)) {
     Result<Json> document = read_json(file, kSchema, 1);
     if (!document) return std::move(document).error();
-    if (document->value("id", "") == place.id) return std::optional<Json>(std::move(*document));
+    if (JsonFields(*document, file.string()).text_or("id", "") == place.id) return std::optional<Json>(std::move(*document));
   }
   return Error{ErrorKind::kCannotCreate, "output folder is taken", place.folder.string(),
                "it holds something other than this solve", "name another folder with -o, or remove it"};

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// Today's readers on the stored documents of testdata/schemas, which are kept for ever.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/calibration.h"
+#include "core/session.h"
+#include "core/solve_record.h"
+#include "tests/core/image_io/scratch_folder.h"
+
+namespace weft {
+namespace {
+
+const std::filesystem::path kSchemas = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas";
+
+TEST(Schemas, Session1) {
+  const ScratchFolder folder;
+  std::filesystem::copy_file(kSchemas / "weft.session-1.json", folder / "session.json");
+  const Result<Session> session = read_session(folder / "");
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_EQ(session->fabric, "linen 1/1");
+  EXPECT_EQ(session->cloth_height_mm, 0.4);
+  EXPECT_EQ(session->rig, "rig A");
+  EXPECT_EQ(session->calibration_id, "9e1ed071c12a8ac2b162e23c795a48d10c009741f26d678017da91b2788425fd");
+  EXPECT_EQ(session->state, "complete");
+  ASSERT_EQ(session->shots.size(), 6U);
+  EXPECT_EQ(session->lit().size(), 3U);
+  EXPECT_EQ(session->lit()[2]->file, "raw/02_led03.dng");
+  ASSERT_NE(session->dark(), nullptr);
+  EXPECT_EQ(session->dark()->exposure_us, 16364);
+  EXPECT_EQ(session->shots[4].role, ShotRole::kRepeat);
+  EXPECT_EQ(session->shots[5].role, ShotRole::kBracket);
+  EXPECT_EQ(session->shots[5].exposure_us, 1000);
+  EXPECT_EQ(session->shots[0].iso, 100);
+  EXPECT_EQ(session->shots[0].f_number, 8);
+  EXPECT_EQ(session->shots[0].time, "2026-01-31T12:00:00Z");
+  EXPECT_EQ(session->shots[0].sha256, "93ae1d12b3e6656802b0dd674caa63041dafc2c5baa13ade4a50f1c4eaaac7e7");
+}
+
+TEST(Schemas, Calibration1WithCameraResponseAndNearLights) {
+  const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1");
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  EXPECT_EQ(calibration->id, "9e1ed071c12a8ac2b162e23c795a48d10c009741f26d678017da91b2788425fd");
+  EXPECT_EQ(calibration->subject.rig, "rig A");
+  EXPECT_EQ(calibration->subject.camera_model, "NIKON D5100");
+  EXPECT_EQ(calibration->subject.camera_serial, "6012345");
+  EXPECT_EQ(calibration->subject.f_number, 8);
+  EXPECT_EQ(calibration->subject.albedo_scale, "absolute");
+
+  ASSERT_TRUE(calibration->camera);
+  const CameraModel& camera = *calibration->camera;
+  EXPECT_EQ(camera.size, (Size{4928, 3264}));
+  EXPECT_EQ(camera.fx, 7322.5);
+  EXPECT_EQ(camera.fy, 7323.25);
+  EXPECT_EQ(camera.cx, 2463.5);
+  EXPECT_EQ(camera.cy, 1631.5);
+  EXPECT_EQ(camera.k1, -0.1);
+  EXPECT_EQ(camera.k2, 0.05);
+  EXPECT_EQ(camera.k3, -0.01);
+  EXPECT_EQ(camera.p1, 0.0003);
+  EXPECT_EQ(camera.p2, -0.0002);
+  EXPECT_EQ(camera.camera_from_rig_rotation, (Mat3{{{0.96, 0.28, 0}, {0.28, -0.96, 0}, {0, 0, -1}}}));
+  EXPECT_EQ(camera.camera_from_rig_translation_mm, (Vec3{0.5, -1.25, 602}));
+
+  ASSERT_TRUE(calibration->response);
+  EXPECT_EQ(calibration->response->electrons_per_count, 2.5);
+  EXPECT_EQ(calibration->response->read_noise_counts, 1.75);
+  EXPECT_EQ(calibration->response->linearity[2], (std::array<double, 2>{0.003, -0.004}));
+
+  ASSERT_TRUE(calibration->lights && std::holds_alternative<NearLights>(*calibration->lights));
+  const auto& lights = std::get<NearLights>(*calibration->lights);
+  ASSERT_EQ(lights.leds.size(), 3U);
+  EXPECT_EQ(lights.leds[1].position_mm, (Vec3{-150, 260, 490}));
+  EXPECT_EQ(lights.leds[1].aim, (Vec3{0.36, -0.48, -0.8}));
+  EXPECT_EQ(lights.leds[1].mu, 1.2);
+  EXPECT_EQ(lights.leds[1].flux_rgb, (std::array<double, 3>{100'000, 200'000, 136'000}));
+  EXPECT_EQ(lights.leds[1].log_gain_quadratic,
+            (std::array<double, 6>{0.01, -0.02, 0.03, -0.04, 0.05, -0.06}));
+  EXPECT_EQ(lights.log_gain_rgb[1].columns, 5);
+  EXPECT_EQ(lights.log_gain_rgb[1].rows, 4);
+  ASSERT_EQ(lights.log_gain_rgb[1].coefficients.size(), 20U);
+  EXPECT_EQ(lights.log_gain_rgb[1].coefficients[7], -0.07);
+  EXPECT_TRUE(lights.log_gain_rgb[0].empty());
+}
+
+TEST(Schemas, Calibration1WithDistantLights) {
+  const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1-distant");
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  EXPECT_EQ(calibration->id, "8f6c2fe7e4518f3a55bd2aaab5d3d10f39dc1cdcaacffec45e0da5d5ad18531d");
+  EXPECT_FALSE(calibration->camera || calibration->response);
+  ASSERT_TRUE(calibration->lights && std::holds_alternative<DistantLights>(*calibration->lights));
+  const auto& lights = std::get<DistantLights>(*calibration->lights).lights;
+  ASSERT_EQ(lights.size(), 3U);
+  EXPECT_EQ(lights[1].direction, (Vec3{0.36, -0.48, 0.8}));
+  EXPECT_EQ(lights[1].irradiance_rgb, (std::array<double, 3>{1, 1.5, 2}));
+}
+
+TEST(Schemas, Solve1) {
+  const Result<Json> document = read_json(kSchemas / "weft.solve-1.json", "weft.solve", 1);
+  ASSERT_TRUE(document) << document.error().message();
+  JsonFields fields(*document, "weft.solve-1.json");
+  EXPECT_EQ(fields.text("id").size(), 16U);
+  EXPECT_GE(fields.integer("solver_version"), 1);
+  EXPECT_EQ(fields.text("method"), "fast");
+  EXPECT_EQ(fields.text("compression"), "none");
+  EXPECT_EQ(fields.integer("lights"), 10);
+  EXPECT_EQ(fields.integer("width"), 256);
+  EXPECT_EQ(fields.integer("height"), 256);
+  EXPECT_EQ(fields.text("albedo_scale"), "absolute");
+  EXPECT_EQ(fields.integer("pixels"), 256 * 256);
+  EXPECT_FALSE(fields.list("pictures").empty());
+
+  JsonFields input(fields.object("input"), "input");
+  EXPECT_EQ(input.text("session"), "golden twill");
+  EXPECT_EQ(input.text("calibration").size(), 64U);
+  EXPECT_EQ(input.number("cloth_height_mm"), 0);
+  EXPECT_EQ(input.list("shots").size(), 11U);
+  EXPECT_TRUE(input.status()) << input.status().error().message();
+
+  JsonFields status(fields.object("status"), "status");
+  for (const StatusName& bit : kStatusNames) EXPECT_GE(status.integer(bit.name), 0);
+  EXPECT_TRUE(status.status()) << status.status().error().message();
+
+  JsonFields error(fields.object("error"), "error");
+  EXPECT_GT(error.number("mean_deg"), 0);
+  EXPECT_GT(error.number("max_deg"), error.number("p95_deg"));
+  EXPECT_GT(error.number("p95_deg"), error.number("median_deg"));
+  EXPECT_TRUE(error.status()) << error.status().error().message();
+  EXPECT_TRUE(fields.status()) << fields.status().error().message();
+}
+
+}  // namespace
+}  // namespace weft

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+// What scripts rely on: JSON fields, exit codes, and help that says units and defaults.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/system/session_test.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Words = std::vector<std::string>;
+
+std::string joined(const Words& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+using CommandLine = SessionTest;
+
+TEST_F(CommandLine, SolvePrintsOneJsonDocument) {
+  // From another folder and by a relative path: the paths that come back are absolute.
+  const Outcome run = run_weft({"solve", "cloth.weft", "--json"}, {.folder = work_.path()});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const Json json = run.json();
+  for (const char* map : {"normal", "albedo"}) {
+    const fs::path file = json.at(map).get<std::string>();
+    EXPECT_TRUE(file.is_absolute()) << file;
+    EXPECT_TRUE(fs::exists(file)) << file;
+  }
+  double sum = 0;
+  for (const char* part : {"read", "solve", "write", "sync"}) {
+    EXPECT_GE(json.at("seconds").at(part).get<double>(), 0) << part;
+    sum += json["seconds"][part].get<double>();
+  }
+  EXPECT_LE(sum, json.at("seconds").at("total").get<double>() + 1e-6) << json;
+  EXPECT_GT(json.at("peak_bytes").get<std::int64_t>(), 1 << 20);
+  EXPECT_EQ(json.at("pixels"), 48 * 32);
+  for (const char* name : {"SATURATED", "SHADOWED", "ZERO_DOF", "DARK", "ILL_CONDITIONED", "NO_SOLUTION",
+                           "SPECULAR", "INVALID_READING"}) {
+    EXPECT_TRUE(json.at("status").at(name).is_number_integer()) << name;
+  }
+  EXPECT_THAT(run.error, testing::HasSubstr("solve"));  // progress keeps off standard output
+}
+
+TEST_F(CommandLine, ASolveHasAllItsFiles) {
+  const Outcome run = run_weft({"solve", session_.string(), "-o", (work_ / "maps").string(), "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_EQ(run.error, "");
+  for (const char* name : {"normal.exr", "albedo.exr", "sigma.exr", "residual.exr", "status.png",
+                           "solve.json", "normal.png", "albedo.png", "sheet.png"}) {
+    EXPECT_TRUE(fs::exists(work_ / "maps" / name)) << name;
+  }
+  EXPECT_EQ(Json::parse(bytes_of(work_ / "maps" / "solve.json")).at("schema"), "weft.solve/1");
+}
+
+TEST_F(CommandLine, CompareOfNormalsPrintsOneJsonDocument) {
+  const std::string truth = (session_ / "truth" / "normal.exr").string();
+  const Outcome run = run_weft({"compare", truth, truth, "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const Json json = run.json();
+  EXPECT_EQ(json.at("pixels"), 48 * 32);
+  for (const char* field : {"mean_deg", "median_deg", "p95_deg", "max_deg"})
+    EXPECT_LT(json.at(field), 1e-4) << field;
+}
+
+TEST_F(CommandLine, CompareOfAlbedosPrintsOneJsonDocument) {
+  const std::string truth = (session_ / "truth" / "albedo.exr").string();
+  const Outcome run = run_weft({"compare", truth, truth, "--kind", "albedo", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const Json json = run.json();
+  EXPECT_EQ(json.at("pixels"), 48 * 32);
+  for (const char* field : {"mean_rel", "bias_rel"}) EXPECT_EQ(json.at(field), 0) << field;
+}
+
+TEST_F(CommandLine, OutputThatCannotBeWrittenIsAnError) {
+  const std::string truth = (session_ / "truth" / "normal.exr").string();
+  for (const char* form : {"--json", "--quiet"}) {
+    const Outcome run = run_weft({"compare", truth, truth, form}, {.full_output = true});
+    EXPECT_EQ(run.exit_code, 74) << form;
+    EXPECT_THAT(run.error,
+                testing::AllOf(testing::HasSubstr("cannot write"), testing::HasSubstr("standard output"),
+                               testing::HasSubstr("No space left")));
+  }
+}
+
+TEST_F(CommandLine, CompareOfMapsOfTwoSizesIsRefused) {
+  PhotographSample().write(work_ / "photos");
+  expect_refusal(work_,
+                 {"compare", (session_ / "truth" / "normal.exr").string(),
+                  (work_ / "photos" / "normal_gt.exr").string()},
+                 65, {"differ in size", "normal_gt.exr", "40 x 30", "48 x 32", "same photographs"});
+}
+
+TEST_F(CommandLine, CompareOfAMissingMapIsRefused) {
+  expect_refusal(work_,
+                 {"compare", (work_ / "no.exr").string(), (session_ / "truth" / "normal.exr").string()}, 66,
+                 {"cannot read", "no.exr", "No such file", "check the path"});
+}
+
+TEST_F(CommandLine, SimulatePrintsOneJsonDocument) {
+  put_bytes(work_ / "scene.toml", simulator::to_toml(scene_named("golden", {48, 32})));
+  const Outcome run =
+      run_weft({"simulate", "scene.toml", "-o", "new.weft", "--json"}, {.folder = work_.path()});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_EQ(run.json().at("frames"), 11);
+  EXPECT_EQ(run.json().at("session"), (work_ / "new.weft").string());
+}
+
+TEST_F(CommandLine, ExplainListsThePassesAndWhatWasLeftOut) {
+  put_bytes(work_ / "scene.toml", simulator::to_toml(scene_named("flat", {48, 32})));
+  const Outcome run =
+      run_weft({"simulate", "scene.toml", "-o", "new.weft", "--explain", "-q"}, {.folder = work_.path()});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_THAT(run.output, testing::AllOf(testing::HasSubstr("near light"), testing::HasSubstr("seconds"),
+                                         testing::ContainsRegex("noise +left out")));
+}
+
+TEST_F(CommandLine, StrictEndsWith2WherePixelsHaveNoSolution) {
+  PhotographSample().write(work_ / "photos");
+  const Image<float> mask({40, 30});
+  const std::array<View<const float>, 1> planes = {mask.plane()};
+  ASSERT_TRUE(write_image(work_ / "photos" / "mask.png", planes, {"Y"}, {.type = SampleType::kUint8}));
+  const Words arguments = {"solve", "--photos", "photos", "-q", "-o"};
+  Words strict = arguments, lax = arguments;
+  strict.insert(strict.end(), {"a", "--strict"});
+  lax.emplace_back("b");
+  EXPECT_EQ(run_weft(strict, {.folder = work_.path()}).exit_code, 2);
+  EXPECT_EQ(run_weft(lax, {.folder = work_.path()}).exit_code, 0);
+}
+
+TEST_F(CommandLine, PhotographsSayAloudHowTheyAreTaken) {
+  PhotographSample eight_bits;
+  eight_bits.ending = ".png";
+  eight_bits.type = SampleType::kUint8;
+  eight_bits.write(work_ / "eight");
+  PhotographSample().write(work_ / "float");
+  EXPECT_THAT(run_weft({"solve", "--photos", "eight"}, {.folder = work_.path()}).error,
+              testing::AllOf(testing::HasSubstr("srgb"), testing::HasSubstr("--transfer")));
+  EXPECT_THAT(run_weft({"solve", "--photos", "float"}, {.folder = work_.path()}).error,
+              testing::AllOf(testing::HasSubstr("linear"), testing::HasSubstr("--transfer")));
+}
+
+TEST(Bench, PrintsOneJsonDocument) {
+  const Outcome run = run_weft({"bench", "solve", "--megapixels", "0.01", "--json", "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const Json json = run.json();
+  EXPECT_TRUE(json.contains("machine"));
+  ASSERT_FALSE(json.at("rows").empty());
+  for (const Json& row : json["rows"]) {
+    EXPECT_TRUE(row.contains("quality") || row.contains("method") || row.contains("effect")) << row;
+    EXPECT_GT(row.at("ns_per_pixel").get<double>(), 0) << row;
+    EXPECT_GT(row.at("threads").get<int>(), 0) << row;
+    EXPECT_GT(row.at("ratio_to_copy").get<double>(), 0) << row;
+  }
+}
+
+TEST(Demo, LeavesASessionAndItsMaps) {
+  const Workspace work;
+  const Outcome run = run_weft({"demo", source_file("testdata/scenes/demo.toml").string(), "--megapixels",
+                                "0.01", "-o", (work / "demo").string(), "-q", "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_TRUE(fs::exists(run.json().at("sheet").get<std::string>())) << run.output;
+}
+
+struct Verb {
+  Words words;
+  Words help;  ///< units and defaults that its help must name
+};
+
+const std::vector<Verb>& verbs() {
+  static const std::vector<Verb> all = {
+      {{"simulate"}, {"units", "must not exist", "0 is all the machine has"}},
+      {{"solve"},
+       {"numbered from 1", "default all", "default the session's own", "default SESSION/solve/ID", "=none",
+        "=auto", "Columns", "Rows", "x right, y up, z to the camera", "unit x y z"}},
+      {{"compare"}, {"degrees", "relative", "=normal"}},
+      {{"bench", "solve"}, {"millions of pixels", "=4"}},
+      {{"demo"}, {"millions of pixels", "=demo"}}};
+  return all;
+}
+
+TEST(Help, OfTheProgramNamesEveryVerbAndExitCode) {
+  const Outcome run = run_weft({"--help"});
+  EXPECT_EQ(run.exit_code, 0);
+  for (const Verb& verb : verbs()) EXPECT_THAT(run.output, testing::HasSubstr(verb.words.front()));
+  for (const char* code : {"64 usage", "65 bad data", "66 no input", "73 cannot create", "74 input/output",
+                           "75 try again", "130 interrupted"}) {
+    EXPECT_THAT(run.output, testing::HasSubstr(code));
+  }
+}
+
+TEST(Help, OfEveryVerbNamesUnitsAndDefaults) {
+  for (const Verb& verb : verbs()) {
+    SCOPED_TRACE(joined(verb.words));
+    Words arguments = verb.words;
+    arguments.emplace_back("--help");
+    const Outcome run = run_weft(arguments);
+    EXPECT_EQ(run.exit_code, 0) << run.error;
+    for (const std::string& word : verb.help) EXPECT_THAT(run.output, testing::HasSubstr(word));
+    EXPECT_EQ(run.error, "");
+  }
+}
+
+TEST(Help, OfSolveNamesTheLevelThatIsTheDefault) {
+  const std::string help = run_weft({"solve", "--help"}).output;
+  const std::size_t from = help.find("--quality"), to = help.find("\n  --method");
+  ASSERT_LT(from, to) << help;
+  EXPECT_THAT(help.substr(from, to - from), testing::HasSubstr("default"));
+}
+
+TEST(Usage, AnUnknownOptionOfAnyVerbIsNamed) {
+  const Workspace work;
+  const Words commands[] = {{"simulate", "a.toml", "-o", "b"},
+                            {"simulate"},
+                            {"solve", "a.weft"},
+                            {"compare", "a.exr", "b.exr"},
+                            {"bench", "solve"},
+                            {"demo", "a.toml"},
+                            {}};
+  for (Words arguments : commands) {
+    SCOPED_TRACE(joined(arguments));
+    arguments.emplace_back("--no-such-option");
+    expect_refusal(work, arguments, 64, {"--no-such-option"}, {.folder = work.path()});
+  }
+}
+
+TEST(Usage, AWordTooManyIsNamed) {
+  const Workspace work;
+  expect_refusal(work, {"solve", "a.weft", "b.weft"}, 64, {"b.weft"}, {.folder = work.path()});
+  expect_refusal(work, {"compare", "a.exr", "b.exr", "c.exr"}, 64, {"c.exr"}, {.folder = work.path()});
+}
+
+TEST(Usage, ErrorsEndWith64AndLeaveNothing) {
+  const Workspace work;
+  const std::pair<Words, Words> wrong[] = {
+      {{}, {"subcommand"}},
+      {{"weave"}, {"weave"}},
+      {{"simulate"}, {"scene"}},
+      {{"simulate", "a.toml"}, {"--output"}},
+      {{"solve"}, {"needs a session, --photos or --lp"}},
+      {{"solve", "a.weft", "--photos", "b"}, {"--photos"}},
+      {{"solve", "--photos", "b", "--lp", "c"}, {"--lp"}},
+      {{"solve", "a.weft", "--quality", "perfect"}, {"--quality", "perfect"}},
+      {{"solve", "a.weft", "--method", "magic"}, {"--method", "magic"}},
+      {{"solve", "a.weft", "--method", "seed", "--quality", "fast"}, {"--method"}},
+      {{"solve", "a.weft", "--lights", "0,1,2"}, {"--lights"}},
+      {{"solve", "a.weft", "--lights", "one"}, {"--lights"}},
+      {{"solve", "a.weft", "--threads", "-1"}, {"--threads"}},
+      {{"solve", "a.weft", "--threads", "many"}, {"--threads"}},
+      {{"solve", "a.weft", "--tile-width", "0"}, {"--tile-width"}},
+      {{"solve", "a.weft", "--compress", "rar"}, {"--compress"}},
+      {{"solve", "--photos", "b", "--transfer", "log"}, {"--transfer"}},
+      {{"solve", "--photos", "b", "--calibration", "c"}, {"--calibration"}},
+      {{"compare", "a.exr"}, {"truth"}},
+      {{"compare", "a.exr", "b.exr", "--kind", "height"}, {"--kind", "height"}},
+      {{"bench"}, {"subcommand"}},
+      {{"bench", "solve", "--megapixels", "0"}, {"--megapixels"}},
+      {{"demo"}, {"scene"}}};
+  for (const auto& [arguments, words] : wrong) {
+    SCOPED_TRACE("weft " + joined(arguments));
+    expect_refusal(work, arguments, 64, words, {.folder = work.path()});
+  }
+}
+
+}  // namespace
+}  // namespace weft::test

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stored session and its maps; testdata/golden/README.md says how they were made.
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "app/jobs/compare.h"
+#include "app/jobs/solve.h"
+#include "core/image_io/image_io.h"
+#include "tests/system/samples.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kGolden = source_file("testdata/golden");
+const fs::path kSession = kGolden / "twill.weft";
+const fs::path kExpected = kGolden / "expected";
+
+/// The largest difference of two albedo maps, in units of the rounding to a half float.
+double largest_half_steps(const fs::path& tested, const fs::path& truth) {
+  const Result<LoadedImage> a = read_image(tested), b = read_image(truth);
+  if (!a || !b || a->info.size != b->info.size) {
+    ADD_FAILURE() << "no two maps of one size: " << tested << ", " << truth;
+    return 0;
+  }
+  double largest = 0;
+  for (int c = 0; c < 3; ++c) {
+    for (int y = 0; y < a->info.size.height; ++y) {
+      for (int x = 0; x < a->info.size.width; ++x) {
+        const double expected = b->planes(x, y, c);
+        const double step =
+            std::exp2(std::max(std::floor(std::log2(std::abs(expected) + 1e-30)), -14.0) - 10);
+        largest = std::max(largest, std::abs(a->planes(x, y, c) - expected) / step);
+      }
+    }
+  }
+  return largest;
+}
+
+void expect_golden_maps(const fs::path& maps) {
+  const Result<app::NormalComparison> normal =
+      app::compare_normals(maps / "normal.exr", kExpected / "normal.exr", {});
+  ASSERT_TRUE(normal) << normal.error().message();
+  EXPECT_EQ(normal->pixels, 256 * 256);
+  EXPECT_LT(normal->max_deg, 0.005);
+  EXPECT_LE(largest_half_steps(maps / "albedo.exr", kExpected / "albedo.exr"), 1.001);
+  EXPECT_EQ(bytes_of(maps / "status.png"), bytes_of(kExpected / "status.png"));
+}
+
+TEST(Golden, TheStoredSessionSolvesToTheStoredMaps) {
+  const Workspace work;
+  const auto before = contents_of(kGolden);
+  const Outcome run =
+      run_weft({"solve", kSession.string(), "--quality", "fast", "-o", (work / "maps").string(), "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  expect_golden_maps(work / "maps");
+  EXPECT_EQ(contents_of(kGolden), before);
+}
+
+TEST(Golden, EverySimdTargetOfThisMachineSolvesToTheStoredMaps) {
+  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
+    SCOPED_TRACE(hwy::TargetName(target));
+    const Workspace work;
+    hwy::SetSupportedTargetsForTest(target);
+    app::SolveOptions options;
+    options.output = work / "maps";
+    options.previews = false;
+    const Result<app::SolveReport> report =
+        app::solve_session({.folder = kSession, .calibration = {}, .leds = {}}, options, {});
+    hwy::SetSupportedTargetsForTest(0);
+    ASSERT_TRUE(report) << report.error().message();
+    expect_golden_maps(work / "maps");
+  }
+}
+
+TEST(Golden, TheSceneSimulatesToTheStoredSession) {
+  const Workspace work;
+  const Outcome run = run_weft({"simulate", source_file("testdata/scenes/golden.toml").string(), "-o",
+                                (work / "twill.weft").string(), "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  fs::remove_all(work / "twill.weft" / "truth");  // not stored
+  EXPECT_EQ(contents_of(work / "twill.weft"), contents_of(kSession));
+}
+
+}  // namespace
+}  // namespace weft::test

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Real photographs, which are no part of the repository: the folder that WEFT_SHARED_DATA names.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "core/image_io/image_io.h"
+#include "tests/system/samples.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+class RealPhotographs : public testing::Test {
+ protected:
+  void find(const std::string& folder) {
+    const char* shared = std::getenv("WEFT_SHARED_DATA");
+    if (shared == nullptr) GTEST_SKIP() << "WEFT_SHARED_DATA is not set";
+    data_ = fs::path(shared) / folder;
+    if (!fs::exists(data_)) GTEST_SKIP() << data_ << " is not there";
+  }
+  Json error_against(const fs::path& truth, const fs::path& mask) const {
+    const Outcome run = run_weft({"compare", (work_ / "maps" / "normal.exr").string(), truth.string(),
+                                  "--mask", mask.string(), "--json"});
+    EXPECT_EQ(run.exit_code, 0) << run.error;
+    return run.json();
+  }
+
+  Workspace work_;
+  fs::path data_;
+};
+
+/// The normals of a sphere that fills a mask, seen from afar; zero outside.
+Image<float> sphere_in(const LoadedImage& mask) {
+  Rect box = {mask.info.size.width, mask.info.size.height, 0, 0};
+  for (int y = 0; y < mask.info.size.height; ++y) {
+    for (int x = 0; x < mask.info.size.width; ++x) {
+      if (!(mask.planes(x, y) > 0.5f)) continue;
+      box = {std::min(box.x0, x), std::min(box.y0, y), std::max(box.x1, x + 1), std::max(box.y1, y + 1)};
+    }
+  }
+  const double cx = (box.x0 + box.x1 - 1) / 2.0, cy = (box.y0 + box.y1 - 1) / 2.0,
+               radius = (box.width() + box.height()) / 4.0;
+  Image<float> normal(mask.info.size, 3);
+  for (int y = 0; y < normal.height(); ++y) {
+    for (int x = 0; x < normal.width(); ++x) {
+      const double nx = (x - cx) / radius, ny = (cy - y) / radius, zz = 1 - nx * nx - ny * ny;
+      if (zz <= 0) continue;
+      normal(x, y, 0) = static_cast<float>(nx);
+      normal(x, y, 1) = static_cast<float>(ny);
+      normal(x, y, 2) = static_cast<float>(std::sqrt(zz));
+    }
+  }
+  return normal;
+}
+
+TEST_F(RealPhotographs, TheBallOfDiLiGenTByLeastSquaresIsWhatWasPublished) {
+  ASSERT_NO_FATAL_FAILURE(find("diligent_ball"));
+  if (IsSkipped()) return;
+  const Outcome run = run_weft({"solve", "--photos", data_.string(), "--method", "least-squares", "-o",
+                                (work_ / "maps").string(), "--no-previews", "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  // Shi et al., CVPR 2016, table 3: 4.10 degrees.
+  const Json error = error_against(data_ / "normal_gt.exr", data_ / "mask.png");
+  EXPECT_GT(error["mean_deg"], 4.0) << error;
+  EXPECT_LT(error["mean_deg"], 4.4) << error;
+}
+
+TEST_F(RealPhotographs, TheGreySphereIsRound) {
+  ASSERT_NO_FATAL_FAILURE(find("uw_photos"));
+  if (IsSkipped()) return;
+  std::ifstream lights(data_ / "lights.txt");
+  std::string text, line;
+  ASSERT_TRUE(std::getline(lights, text));
+  text += '\n';
+  for (int k = 0; std::getline(lights, line); ++k) {
+    text += (data_ / "gray" / ("gray." + std::to_string(k) + ".png")).string() + " " + line + "\n";
+  }
+  put_bytes(work_ / "gray.lp", text);
+  // These photographs are linear in spite of their eight bits: taken as sRGB the sphere is flatter.
+  const Outcome run = run_weft({"solve", "--lp", (work_ / "gray.lp").string(), "-o",
+                                (work_ / "maps").string(), "--transfer", "linear", "--no-previews", "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+
+  const fs::path mask_file = data_ / "gray" / "gray.mask.png";
+  const Result<LoadedImage> mask = read_image(mask_file);
+  ASSERT_TRUE(mask) << mask.error().message();
+  const Image<float> sphere = sphere_in(*mask);
+  const std::array<View<const float>, 3> planes = {sphere.plane(0), sphere.plane(1), sphere.plane(2)};
+  ASSERT_TRUE(write_image(work_ / "sphere.exr", planes, {"X", "Y", "Z"}, {}));
+  const Json error = error_against(work_ / "sphere.exr", mask_file);
+  EXPECT_LT(error["mean_deg"], 10) << error;
+}
+
+}  // namespace
+}  // namespace weft::test

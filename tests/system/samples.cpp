@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/system/samples.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <stdexcept>
+
+#include "core/session.h"
+#include "simulator/simulate.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <typename T>
+T need(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().message());
+  return *std::move(result);
+}
+
+void need(const Result<void>& result) {
+  if (!result) throw std::runtime_error(result.error().message());
+}
+
+void write_planes(const fs::path& file, Size size, const std::vector<std::string>& channels, SampleType type,
+                  const std::function<std::array<double, 3>(int x, int y)>& value) {
+  Image<float> image(size, 3);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const std::array<double, 3> v = value(x, y);
+      for (int p = 0; p < 3; ++p) image(x, y, p) = static_cast<float>(v[static_cast<std::size_t>(p)]);
+    }
+  }
+  const std::array<View<const float>, 3> planes = {image.plane(0), image.plane(1), image.plane(2)};
+  need(write_image(file, planes, channels, {.type = type}));
+}
+
+}  // namespace
+
+fs::path source_file(const std::string& path) {
+  return fs::path(WEFT_SOURCE_DIR) / path;
+}
+
+simulator::Scene scene_named(const std::string& name, Size size) {
+  simulator::Scene scene = need(simulator::read_scene(source_file("testdata/scenes/" + name + ".toml")));
+  scene.camera.width = size.width;
+  scene.camera.height = size.height;
+  return scene;
+}
+
+void simulate(const simulator::Scene& scene, const fs::path& folder) {
+  need(simulator::simulate_session(scene, folder, {}));
+}
+
+void simulate_developed(const simulator::Scene& scene, const fs::path& folder, const std::string& ending,
+                        SampleType type) {
+  simulate(scene, folder);
+  Session session = need(read_session(folder));
+  std::erase_if(session.shots, [](const Shot& shot) { return shot.role != ShotRole::kLit; });
+  const Size size = {scene.camera.width, scene.camera.height};
+  const simulator::Rendering rendering =
+      need(simulator::render_readings(scene, {0, 0, size.width, size.height}));
+  for (Shot& shot : session.shots) {
+    const double exposure = shot.exposure_us * 1e-6 * shot.iso / 100;
+    const int first = 3 * (shot.led - 1);
+    shot.file = fs::path(shot.file).replace_extension(ending).string();
+    shot.sha256.clear();
+    write_planes(session.path_of(shot), size, {"R", "G", "B"}, type, [&](int x, int y) {
+      const auto reading = [&](int c) { return rendering.readings(x, y, first + c) * exposure; };
+      return std::array<double, 3>{reading(0), reading(1), reading(2)};
+    });
+  }
+  need(write_session(session));
+}
+
+std::vector<DistantLight> PhotographSample::six_lights() {
+  std::vector<DistantLight> lights;
+  for (int k = 0; k < 6; ++k) {
+    const double azimuth = radians(60.0 * k + 7), zenith = radians(40);
+    lights.push_back(
+        {{std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith)},
+         {0.9 + 0.1 * k, 1.3 - 0.1 * k, 1.0}});
+  }
+  return lights;
+}
+
+Vec3 PhotographSample::normal_at(int x, int y) const {
+  return normalized({0.28 * std::sin(0.31 * x + 0.05 * y), 0.28 * std::cos(0.23 * y), 1});
+}
+
+std::array<double, 3> PhotographSample::albedo_at(int x, int y) const {
+  return {0.3 + 0.1 * std::sin(0.7 * x), 0.4, 0.35 + 0.1 * std::cos(0.9 * y)};
+}
+
+std::string PhotographSample::name_of(std::size_t light) const {
+  return fmt::format("{:02}{}", light + 1, ending);
+}
+
+void PhotographSample::write(const fs::path& folder) const {
+  fs::create_directories(folder);
+  std::ofstream names(folder / "filenames.txt"), directions(folder / "light_directions.txt"),
+      intensities(folder / "light_intensities.txt");
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    const auto& [l, e] = lights[k];
+    names << name_of(k) << '\n';
+    directions << fmt::format("{} {} {}\n", l.x, l.y, l.z);
+    intensities << fmt::format("{} {} {}\n", e[0], e[1], e[2]);
+    write_planes(folder / name_of(k), size, {"R", "G", "B"}, type, [&](int x, int y) {
+      const double shading = std::max(0.0, dot(normal_at(x, y), l));
+      std::array<double, 3> value = albedo_at(x, y);
+      for (std::size_t c = 0; c < 3; ++c) value[c] *= e[c] * shading;
+      return value;
+    });
+  }
+  write_planes(folder / "normal_gt.exr", size, {"X", "Y", "Z"}, SampleType::kFloat, [&](int x, int y) {
+    const Vec3 n = normal_at(x, y);
+    return std::array<double, 3>{n.x, n.y, n.z};
+  });
+  write_planes(folder / "albedo_gt.exr", size, {"R", "G", "B"}, SampleType::kFloat,
+               [&](int x, int y) { return albedo_at(x, y); });
+}
+
+}  // namespace weft::test
