@@ -11,7 +11,7 @@ struct AccuracyOptions {
   int threads = 0;  ///< 0: all the machine has
 };
 
-/// /// Errors without noise against the simulator's truth: seed on doubles (a plane tilted by 15 degrees),
+/// Errors without noise against the simulator's truth: seed on doubles (a plane tilted by 15 degrees),
 /// fast on floats as mosaic and as RGB (a twill; in memory, no quantisation), and fast through 14-bit DNG
 /// files and EXR maps (a flat cloth of albedo 0.2).
 Result<Rows> solve_exactness(const AccuracyOptions& options);

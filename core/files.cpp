@@ -73,6 +73,11 @@ fs::path parent_of(const fs::path& path) {
 
 }  // namespace
 
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::exists(path, ignored);
+}
+
 std::string system_reason(int error_number) {
   return std::strerror(error_number);
 }

@@ -10,6 +10,10 @@
 
 namespace weft {
 
+/// Whether there is something at `path` that this user can see; a folder that may not be entered shows
+/// nothing.
+bool is_there(const std::filesystem::path& path);
+
 /// The whole of a text file. kNoInput if it is not there or may not be read, kBadData above `most_bytes`.
 Result<std::string> read_text(const std::filesystem::path& file,
                               std::size_t most_bytes = std::size_t{64} << 20);

@@ -42,8 +42,8 @@ CLI::App* add_solve(CLI::App& app, SolveArguments& a, CommonArguments& common, s
   session->excludes(photos)->excludes(light_file);
   photos->excludes(light_file);
   CLI::Option* level = verb->add_option("--quality", quality,
-                                        "Level: fast (least squares on readings not saturated and "
-                                        "not in attached shadow)")
+                                        "Level, default fast: least squares on readings that are neither "
+                                        "saturated nor in attached shadow")
                            ->check(CLI::IsMember({"fast"}));
   verb->add_option(
           "--method", method,
@@ -154,6 +154,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
+    const std::vector<std::string> unknown = app.remaining(/*recurse=*/true);
+    // What is not known says more than what is then missing.
+    if (!asked_for_help && !unknown.empty()) return usage(unknown.front() + " was not expected");
     exit_code = asked_for_help ? kDone : kUsageError;
     app.exit(error);
     return std::nullopt;

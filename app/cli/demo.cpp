@@ -122,7 +122,7 @@ Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& comm
   // A demo is made again each time it is asked for; it removes only what an earlier one left under this name.
   const fs::path session = arguments.output / (arguments.scene.stem().string() + ".weft");
   std::error_code failed;
-  if (fs::exists(session / "truth" / "scene.toml")) fs::remove_all(session, failed);
+  if (is_there(session / "truth" / "scene.toml")) fs::remove_all(session, failed);
   if (failed) return cannot_write(session, failed.value());
   if (Result<void> made = make_writable_folder(arguments.output); !made) return std::move(made).error();
   const Result<Outcome> outcome = scan_and_solve(*scene, session, common);

@@ -28,7 +28,8 @@ Result<int> run(const Arguments& arguments) {
 }
 
 // The one place where an error becomes words and an exit code.
-int finish(const Result<int>& result) {
+int finish(Result<int> result) {
+  if (Result<void> printed = flush_output(); result && !printed) result = std::move(printed).error();
   if (result) return *result;
   complain(result.error());
   return exit_code_of(result.error().kind);

@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <thread>
+
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -90,6 +93,12 @@ void print(std::string_view text) {
 }
 void print_json(const Json& document) {
   print(document.dump(2));
+}
+Result<void> flush_output() {
+  errno = 0;
+  const bool flushed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  if (flushed) return {};
+  return cannot_write("standard output", errno != 0 ? errno : EIO);
 }
 void complain(const Error& error) {
   note("weft: " + error.message());

@@ -38,6 +38,8 @@ std::stop_token stop_on_signal();
 
 void print(std::string_view text);  ///< to standard output, with a line end
 void print_json(const Json& document);
+/// kInputOutput if anything printed did not reach standard output: a full disk, a closed pipe.
+Result<void> flush_output();
 void complain(const Error& error);  ///< to standard error
 void note(std::string_view text);   ///< to standard error
 

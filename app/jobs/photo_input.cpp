@@ -20,7 +20,7 @@ Error bad_lights(const fs::path& file, std::string why) {
           "see docs/formats.md for the layout"};
 }
 
-// Numbers of a text file, `columns` a line; empty lines are skipped.
+// Three numbers a line of a text file; empty lines are skipped.
 Result<std::vector<std::array<double, 3>>> read_triples(const fs::path& file) {
   const Result<std::string> text = read_text(file);
   if (!text) return text.error();
@@ -31,7 +31,8 @@ Result<std::vector<std::array<double, 3>>> read_triples(const fs::path& file) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     std::istringstream words(line);
     std::array<double, 3> t = {};
-    if (!(words >> t[0] >> t[1] >> t[2]))
+    std::string more;
+    if (!(words >> t[0] >> t[1] >> t[2]) || words >> more)
       return bad_lights(file, fmt::format("line {} is not three numbers", number));
     triples.push_back(t);
   }
@@ -59,7 +60,7 @@ Result<PhotoPlan> read_folder(const fs::path& folder) {
   const auto directions = read_triples(directions_file);
   if (!directions) return directions.error();
   std::vector<std::array<double, 3>> intensities(directions->size(), {1, 1, 1});
-  if (fs::exists(intensities_file)) {
+  if (is_there(intensities_file)) {
     auto read = read_triples(intensities_file);
     if (!read) return std::move(read).error();
     intensities = std::move(*read);
@@ -79,7 +80,7 @@ Result<PhotoPlan> read_folder(const fs::path& folder) {
     }
     plan.lights.lights.push_back({*direction, intensities[k]});
   }
-  if (fs::exists(folder / "mask.png")) plan.mask = folder / "mask.png";
+  if (is_there(folder / "mask.png")) plan.mask = folder / "mask.png";
   return plan;
 }
 
@@ -89,7 +90,10 @@ Result<PhotoPlan> read_light_file(const fs::path& file) {
   std::istringstream lines(*text);
   std::size_t count = 0;
   std::string line;
-  if (!std::getline(lines, line) || !(std::istringstream(line) >> count)) {
+  std::string more;
+  std::getline(lines, line);
+  std::istringstream first(line);
+  if (!(first >> count) || first >> more) {
     return bad_lights(file, "the first line is not the number of photographs");
   }
   PhotoPlan plan;

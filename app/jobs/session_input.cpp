@@ -98,10 +98,13 @@ Result<void> check_digest(const fs::path& file, const Shot& shot) {
 // Frames of one body have one set of levels.
 Result<void> check_levels(const RawFrame& frame, const RawFrame& first, const fs::path& file) {
   if (frame.black == first.black && frame.white == first.white) return {};
-  return Error{ErrorKind::kBadData, "frame does not belong to its session", file.string(),
-               fmt::format("its black and white level are {} and {}, the first frame's {} and {}",
-                           frame.black[0][0], frame.white, first.black[0][0], first.white),
-               "scan the cloth again with fixed camera settings"};
+  return Error{
+      ErrorKind::kBadData, "frame does not belong to its session", file.string(),
+      fmt::format("its black levels are {} {} {} {} and its white level is {}, the first frame's are {} {} "
+                  "{} {} and {}",
+                  frame.black[0][0], frame.black[0][1], frame.black[1][0], frame.black[1][1], frame.white,
+                  first.black[0][0], first.black[0][1], first.black[1][0], first.black[1][1], first.white),
+      "scan the cloth again with fixed camera settings"};
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "app/jobs/pictures.h"
 #include "app/jobs/solve_bands.h"
@@ -22,13 +23,18 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSchema = "weft.solve";
 
-// Removes an unfinished folder unless it was published.
+// A folder aside that becomes the output. Unless it is published it goes again, with the parents made for it.
 class PartialFolder {
  public:
-  explicit PartialFolder(fs::path path) : path_(std::move(path)) {}
+  explicit PartialFolder(fs::path path) : path_(std::move(path)) {
+    for (fs::path p = path_.parent_path(); !p.empty() && !is_there(p); p = p.parent_path())
+      made_.push_back(p);
+  }
   ~PartialFolder() {
     std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
+    if (path_.empty()) return;
+    fs::remove_all(path_, ignored);
+    for (const fs::path& parent : made_) fs::remove(parent, ignored);
   }
   PartialFolder(const PartialFolder&) = delete;
   PartialFolder& operator=(const PartialFolder&) = delete;
@@ -41,6 +47,7 @@ class PartialFolder {
 
  private:
   fs::path path_;
+  std::vector<fs::path> made_;  // from the deepest up
 };
 
 // Counts of pixels by status, gathered band by band.
@@ -134,12 +141,13 @@ Result<solver::MethodName> find_method(const std::string& name) {
 
 // A complete solve of the same inputs, if the folder holds one; an error if it holds anything else.
 Result<std::optional<Json>> find_finished(const Place& place) {
-  if (!fs::exists(place.folder)) return std::optional<Json>();
+  if (!is_there(place.folder)) return std::optional<Json>();
   const fs::path file = place.folder / "solve.json";
-  if (fs::exists(file)) {
+  if (is_there(file)) {
     Result<Json> document = read_json(file, kSchema, 1);
     if (!document) return std::move(document).error();
-    if (JsonFields(*document, file.string()).text_or("id", "") == place.id) return std::optional<Json>(std::move(*document));
+    if (JsonFields(*document, file.string()).text_or("id", "") == place.id)
+      return std::optional<Json>(std::move(*document));
   }
   return Error{ErrorKind::kCannotCreate, "output folder is taken", place.folder.string(),
                "it holds something other than this solve", "name another folder with -o, or remove it"};
@@ -179,13 +187,10 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
   if (!finished) return std::move(finished).error();
   if (*finished) return SolveReport{place.folder, true, std::move(**finished), {}};
 
-  const fs::path aside =
-      place.folder.parent_path() / fmt::format(".{}.{}.partial", place.folder.filename().string(), getpid());
-  if (Result<void> made = make_writable_folder(place.folder.parent_path()); !made)
-    return std::move(made).error();
+  PartialFolder partial(place.folder.parent_path() /
+                        fmt::format(".{}.{}.partial", place.folder.filename().string(), getpid()));
   if (Result<void> room = check_disk(place.folder.parent_path(), size); !room) return std::move(room).error();
-  if (Result<void> made = make_writable_folder(aside); !made) return std::move(made).error();
-  PartialFolder partial(aside);
+  if (Result<void> made = make_writable_folder(partial.path()); !made) return std::move(made).error();
   Result<MapFiles> files = MapFiles::open(partial.path(), size, options.compression);
   if (!files) return std::move(files).error();
 
@@ -272,7 +277,7 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
               .description = plan->description,
               .size = plan->size,
               .default_parent = plan->session.folder / "solve",
-              .truth = fs::exists(truth) ? truth : fs::path(),
+              .truth = is_there(truth) ? truth : fs::path(),
               .load = [&] { return load_session(*plan, context); }},
              options, context);
 }

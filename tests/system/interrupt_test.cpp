@@ -27,7 +27,7 @@ TEST_F(Interrupt, ASimulationLeavesNothing) {
                  130, {"interrupted"}, {.interrupt_at = "simulate"});
 }
 
-TEST_F(Interrupt, ASolveLeavesNothing) {
+TEST_F(Interrupt, ASolveLeavesNothingAndCanBeRunAgain) {
   const std::string session = (work_ / "cloth.weft").string();
   simulate(large_scene(), session);
   for (const char* phase : {"read", "solve"}) {
@@ -36,12 +36,6 @@ TEST_F(Interrupt, ASolveLeavesNothing) {
     expect_refusal(work_, {"solve", session, "--method", "seed"}, 130, {"interrupted"},
                    {.interrupt_at = phase});
   }
-}
-
-TEST_F(Interrupt, AnInterruptedSolveCanBeRunAgain) {
-  const std::string session = (work_ / "cloth.weft").string();
-  simulate(large_scene(), session);
-  ASSERT_EQ(run_weft({"solve", session, "--method", "seed"}, {.interrupt_at = "solve"}).exit_code, 130);
   EXPECT_EQ(run_weft({"solve", session, "--quality", "fast", "--no-previews", "-q"}).exit_code, 0);
 }
 

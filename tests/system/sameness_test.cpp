@@ -75,9 +75,9 @@ TEST_P(SameMapsOfASession, ForAnyThreadsAndTiles) {
   });
 }
 
-// One band and less, several bands, and neither side a multiple of anything.
+// One tile of a band; several bands; several tiles a band.
 INSTANTIATE_TEST_SUITE_P(Sizes, SameMapsOfASession,
-                         testing::Values(Size{64, 48}, Size{34, 262}, Size{322, 130}));
+                         testing::Values(Size{64, 48}, Size{34, 262}, Size{322, 20}));
 
 struct PhotographKind {
   Size size;
@@ -106,7 +106,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SameMapsOfPhotographs,
                                          PhotographKind{{37, 131}, ".exr", SampleType::kHalf},
                                          PhotographKind{{333, 29}, ".png", SampleType::kUint16},
                                          PhotographKind{{15, 17}, ".png", SampleType::kUint8},
-                                         PhotographKind{{65, 257}, ".tif", SampleType::kUint16}));
+                                         PhotographKind{{21, 257}, ".tif", SampleType::kUint16}));
 
 class Sameness : public testing::Test {
  protected:
