@@ -18,6 +18,9 @@ target_compile_options(weft_settings INTERFACE
 # GCC 12 reports these inside its own <string> and <regex>, depending on what it inlined.
 target_compile_options(weft_settings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized>)
 target_link_options(weft_settings INTERFACE -fuse-ld=lld)
+if(WEFT_FUZZERS)
+  target_compile_options(weft_settings INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 if(WEFT_SANITIZE)
   target_compile_options(weft_settings INTERFACE
     -fsanitize=${WEFT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)

@@ -44,10 +44,4 @@ struct RawFrame {
   ShotMetadata shot;
 };
 
-/// A photograph that is already linear RGB (planes R, G, B): 1.0 is white. NaN marks a missing reading.
-struct RgbFrame {
-  Image<float> rgb;
-  ShotMetadata shot;
-};
-
 }  // namespace weft
