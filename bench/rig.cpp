@@ -37,7 +37,7 @@ NearLights bench_lights(double mu, bool gains) {
 
 Size bench_size(double megapixels) {
   const double height = std::sqrt(megapixels * 1e6 / 1.5);
-  const auto even = [](double v) { return 2 * static_cast<int>(v / 2 + 0.5); };
+  const auto even = [](double v) { return 2 * static_cast<int>(std::lround(v / 2)); };
   return {even(1.5 * height), even(height)};
 }
 

@@ -32,7 +32,7 @@ std::ptrdiff_t padded_plane(std::ptrdiff_t stride, int height, std::size_t sampl
   constexpr std::ptrdiff_t kPage = 4096;
   const std::ptrdiff_t bytes = stride * height * static_cast<std::ptrdiff_t>(sample_bytes);
   // An odd number of 64-byte lines past a page boundary: neighbouring planes start in different cache sets.
-  const std::ptrdiff_t padded = (bytes + kPage - 1) / kPage * kPage + 17 * 64;
+  const std::ptrdiff_t padded = (bytes + kPage - 1) / kPage * kPage + std::ptrdiff_t{17} * 64;
   return padded / static_cast<std::ptrdiff_t>(sample_bytes);
 }
 

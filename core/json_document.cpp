@@ -93,7 +93,7 @@ std::string JsonFields::text(const char* key) {
 }
 
 std::string JsonFields::text_or(const char* key, std::string fallback) {
-  return has(key) ? text(key) : fallback;
+  return has(key) ? text(key) : std::move(fallback);
 }
 
 double JsonFields::number(const char* key) {

@@ -132,7 +132,7 @@ Result<LightField> LightField::make(Lights lights, const std::optional<CameraMod
 double LightField::sample(const Grid& grid, int x, int y) const {
   const int i = x / kCell, j = y / kCell;
   const double fx = static_cast<double>(x % kCell) / kCell, fy = static_cast<double>(y % kCell) / kCell;
-  const double* upper = grid.data() + j * columns_ + i;
+  const double* upper = grid.data() + std::ptrdiff_t{j} * columns_ + i;
   const double* lower = upper + columns_;
   const double left = upper[0] + fy * (lower[0] - upper[0]);
   const double right = upper[1] + fy * (lower[1] - upper[1]);
@@ -155,7 +155,7 @@ LightField::Light LightField::at(std::size_t k, int c, int x, int y) const {
 
 void LightField::blend(const Grid& grid, int y, int first_cell, int cells, RowLine& line) const {
   const double fy = static_cast<double>(y % kCell) / kCell;
-  const double* upper = grid.data() + (y / kCell) * columns_ + first_cell;
+  const double* upper = grid.data() + std::ptrdiff_t{y / kCell} * columns_ + first_cell;
   const double* lower = upper + columns_;
   line.value.resize(static_cast<std::size_t>(cells));
   line.step.resize(static_cast<std::size_t>(cells));

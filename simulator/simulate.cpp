@@ -101,7 +101,7 @@ void copy_counts(const Tile& tile, View<std::uint16_t> counts) {
   }
 }
 
-constexpr std::uint64_t kMegabyte = 1000 * 1000;
+constexpr std::uint64_t kMegabyte = 1000000;
 
 Error no_memory(const std::string& why) {
   return {ErrorKind::kTryAgain, "not enough memory", "simulation", why,

@@ -4,10 +4,11 @@
 namespace weft::solver {
 
 std::span<const MethodName> method_names() {
-  static constexpr std::array<MethodName, 3> names = {{{"fast", true, false, &fast_method},
-                                                       {"seed", false, true, &seed_method},
-                                                       {"least-squares", false, true, &least_squares_method}}};
-  return names;
+  static constexpr std::array<MethodName, 3> kNames = {
+      {{"fast", true, false, &fast_method},
+       {"seed", false, true, &seed_method},
+       {"least-squares", false, true, &least_squares_method}}};
+  return kNames;
 }
 
 }  // namespace weft::solver

@@ -176,9 +176,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   if (!quality.empty()) solve.options.method = quality;
   solve.session.leds = lights;
   solve.photos.lights = lights;
-  static const std::map<std::string, Transfer> kTransfers = {
+  static const std::map<std::string, Transfer> transfers = {
       {"auto", Transfer::kAuto}, {"linear", Transfer::kLinear}, {"srgb", Transfer::kSrgb}};
-  solve.photos.transfer = kTransfers.at(transfer);
+  solve.photos.transfer = transfers.at(transfer);
   return Arguments{common, solve};
 }
 

@@ -19,7 +19,9 @@ namespace fs = std::filesystem;
 // The scene at another resolution: the same piece of cloth, more or fewer pixels a millimetre.
 void resize(simulator::CameraSettings& camera, double megapixels) {
   const double factor = std::sqrt(megapixels * 1e6 / (static_cast<double>(camera.width) * camera.height));
-  const auto even = [&](int side) { return std::max(2, 2 * static_cast<int>(side * factor / 2 + 0.5)); };
+  const auto even = [&](int side) {
+    return std::max(2, 2 * static_cast<int>(std::lround(side * factor / 2)));
+  };
   const int width = even(camera.width);
   camera.mm_per_pixel *= static_cast<double>(camera.width) / width;
   camera.height = even(camera.height);

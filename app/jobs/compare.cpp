@@ -93,7 +93,8 @@ NormalComparison summarize(std::vector<float>& angles_deg) {
   double sum = 0;
   for (const float a : angles_deg) sum += a;
   const auto rank = [&](double share) {
-    return angles_deg[static_cast<std::size_t>(share * static_cast<double>(angles_deg.size() - 1) + 0.5)];
+    return angles_deg[static_cast<std::size_t>(
+        std::lround(share * static_cast<double>(angles_deg.size() - 1)))];
   };
   c.mean_deg = sum / static_cast<double>(angles_deg.size());
   c.median_deg = rank(0.5);

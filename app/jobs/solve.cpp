@@ -165,7 +165,7 @@ Result<void> check_disk(const fs::path& folder, Size size) {
                "free disk space or choose another disk with -o"};
 }
 
-// // One solve, whatever it starts from.
+// One solve, whatever it starts from.
 struct Input {
   std::string title;
   Json description;  // all that the id depends on besides the options
@@ -174,6 +174,60 @@ struct Input {
   fs::path truth;           // normal.exr of a simulated session, or empty
   std::function<Result<Photographs>()> load;
 };
+
+// What solve.json says.
+struct Facts {
+  const std::string& id;
+  const SolveOptions& options;
+  const Input& input;
+  const StatusCounts& counts;
+  std::string albedo_scale;
+  std::size_t lights;
+  std::vector<std::string> pictures;
+  std::optional<NormalComparison> error;  // against the truth, where there is one
+};
+
+Json document_of(const Facts& facts) {
+  Json status = Json::object();
+  for (const StatusName& s : kStatusNames) status[s.name] = facts.counts.with(s.bit);
+  const Size size = facts.input.size;
+  Json document = {{"schema", std::string(kSchema) + "/1"},
+                   {"id", facts.id},
+                   {"solver_version", kSolverVersion},
+                   {"method", facts.options.method},
+                   {"compression", facts.options.compression},
+                   {"input", facts.input.description},
+                   {"lights", facts.lights},
+                   {"width", size.width},
+                   {"height", size.height},
+                   {"albedo_scale", facts.albedo_scale},
+                   {"pixels", size.pixels() - facts.counts.with(kNoSolution)},
+                   {"status", std::move(status)},
+                   {"pictures", facts.pictures}};
+  if (facts.error) {
+    document["error"] = {{"mean_deg", facts.error->mean_deg},
+                         {"median_deg", facts.error->median_deg},
+                         {"p95_deg", facts.error->p95_deg},
+                         {"max_deg", facts.error->max_deg}};
+  }
+  return document;
+}
+
+// Writes the pictures beside the maps, with their error where there is a truth.
+Result<void> draw(const Pictures& pictures, const Input& input, const fs::path& folder, Facts& facts) {
+  std::optional<TruthError> error;
+  if (!input.truth.empty()) {
+    Result<TruthError> measured = error_against(input.truth, folder / "normal.exr");
+    if (!measured) return std::move(measured).error();
+    error = std::move(*measured);
+    facts.error = error->normal;
+  }
+  Result<std::vector<std::string>> names =
+      pictures.write(folder, input.title, facts.albedo_scale == "absolute", error ? &*error : nullptr);
+  if (!names) return std::move(names).error();
+  facts.pictures = std::move(*names);
+  return {};
+}
 
 Result<SolveReport> run(const solver::MethodName& method_name, const Input& input,
                         const SolveOptions& options, const JobContext& context) {
@@ -211,49 +265,18 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
       });
   if (!waited) return waited.error();
   report.seconds.solve = watch.lap() - *waited;
-  const std::string scale = photographs->albedo_scale;
-  const std::size_t lights = photographs->count();
+  Facts facts = {place.id, options, input, counts, photographs->albedo_scale, photographs->count(), {}, {}};
   photographs = Photographs();  // their memory is needed for nothing more
 
   if (Result<void> ok = files->finish(); !ok) return std::move(ok).error();
   report.seconds.write = *waited + watch.lap();
-  std::optional<TruthError> error;
-  if (options.previews && !input.truth.empty()) {
-    Result<TruthError> measured = error_against(input.truth, partial.path() / "normal.exr");
-    if (!measured) return std::move(measured).error();
-    error = std::move(*measured);
-  }
-  Json written = Json::array();
   if (options.previews) {
-    Result<std::vector<std::string>> names =
-        pictures.write(partial.path(), input.title, scale == "absolute", error ? &*error : nullptr);
-    if (!names) return std::move(names).error();
-    written = *names;
+    Result<void> drawn = draw(pictures, input, partial.path(), facts);
+    if (!drawn) return std::move(drawn).error();
   }
-
   report.seconds.pictures = watch.lap();
 
-  Json status = Json::object();
-  for (const StatusName& s : kStatusNames) status[s.name] = counts.with(s.bit);
-  report.document = {{"schema", std::string(kSchema) + "/1"},
-                     {"id", place.id},
-                     {"solver_version", kSolverVersion},
-                     {"method", options.method},
-                     {"compression", options.compression},
-                     {"input", input.description},
-                     {"lights", lights},
-                     {"width", size.width},
-                     {"height", size.height},
-                     {"albedo_scale", scale},
-                     {"pixels", size.pixels() - counts.with(kNoSolution)},
-                     {"status", std::move(status)},
-                     {"pictures", std::move(written)}};
-  if (error) {
-    report.document["error"] = {{"mean_deg", error->normal.mean_deg},
-                                {"median_deg", error->normal.median_deg},
-                                {"p95_deg", error->normal.p95_deg},
-                                {"max_deg", error->normal.max_deg}};
-  }
+  report.document = document_of(facts);
   if (Result<void> ok = write_json(partial.path() / "solve.json", report.document); !ok)
     return std::move(ok).error();
   if (context.stop.stop_requested()) return interrupted();

@@ -94,7 +94,7 @@ class LayoutReader {
     return tiff_.number(directory_, tag, otherwise).value_or(-1);
   }
   std::vector<double> numbers(Tag tag, std::vector<double> otherwise = {}) const {
-    return Tiff::find(directory_, tag) == nullptr ? otherwise : tiff_.numbers(directory_, tag);
+    return Tiff::find(directory_, tag) == nullptr ? std::move(otherwise) : tiff_.numbers(directory_, tag);
   }
 
   Result<void> read_sizes() {

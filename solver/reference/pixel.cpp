@@ -114,7 +114,7 @@ PixelSolution solve_pixel(std::span<const PixelRow> rows, const PixelOptions& op
 
   const Matrix3d g = normal_matrix(used);
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(g);
-  const Vector3d lambda = eigen.eigenvalues();
+  const Vector3d& lambda = eigen.eigenvalues();
   if (used.size() < 3 || !(lambda[0] > 1e-15 * lambda[2])) return unsolved(valid, options, status);
   const Matrix3d inverse =
       eigen.eigenvectors() * lambda.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();

@@ -59,9 +59,9 @@ std::vector<Table> tables_of(std::string_view text) {
 }
 
 std::vector<std::string> quoted_in(const std::string& cell) {
-  static const std::regex kQuoted("`([^`]+)`");
+  static const std::regex quoted("`([^`]+)`");
   std::vector<std::string> found;
-  for (std::sregex_iterator it(cell.begin(), cell.end(), kQuoted), end; it != end; ++it) {
+  for (std::sregex_iterator it(cell.begin(), cell.end(), quoted), end; it != end; ++it) {
     found.push_back((*it)[1]);
   }
   return found;
@@ -69,9 +69,9 @@ std::vector<std::string> quoted_in(const std::string& cell) {
 
 /// "Suite.Name" of every test that a source defines at the start of a line.
 std::set<std::string> tests_in(const std::string& text) {
-  static const std::regex kTest(R"((?:^|\n)TEST(?:_F|_P)?\s*\(\s*(\w+)\s*,\s*(\w+)\s*\))");
+  static const std::regex test(R"((?:^|\n)TEST(?:_F|_P)?\s*\(\s*(\w+)\s*,\s*(\w+)\s*\))");
   std::set<std::string> found;
-  for (std::sregex_iterator it(text.begin(), text.end(), kTest), end; it != end; ++it) {
+  for (std::sregex_iterator it(text.begin(), text.end(), test), end; it != end; ++it) {
     found.insert((*it)[1].str() + "." + (*it)[2].str());
   }
   return found;
