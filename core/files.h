@@ -39,7 +39,7 @@ std::string sha256_of(std::string_view text);
 
 /// Bytes free for this user on the disk that holds `path` or its nearest existing parent.
 std::uint64_t free_disk_bytes(const std::filesystem::path& path);
-/// Bytes of memory the system could hand out now without swapping.
+/// Bytes of memory the system could hand out now without swapping; 0 where it does not say.
 std::uint64_t available_memory_bytes();
 /// The most memory this process has held at once, in bytes.
 std::uint64_t peak_memory_bytes();

@@ -25,6 +25,10 @@ Result<std::vector<Shot>> choose_lit(const Session& session, const std::vector<i
     if (leds.empty() || std::count(leds.begin(), leds.end(), shot->led) > 0) chosen.push_back(*shot);
   }
   for (const int led : leds) {
+    if (std::count(leds.begin(), leds.end(), led) > 1) {
+      return Error{ErrorKind::kUsage, "a light is named twice", fmt::format("LED {}", led), "",
+                   "name every LED once"};
+    }
     if (std::none_of(chosen.begin(), chosen.end(), [&](const Shot& s) { return s.led == led; })) {
       return Error{ErrorKind::kUsage, "no such light", fmt::format("LED {}", led),
                    fmt::format("{} has no lit shot of it", session.folder.string()),
@@ -180,11 +184,11 @@ Result<Photographs> load_session(const SessionPlan& plan, const JobContext& cont
   if (plan.dark) shots.push_back(*plan.dark);
   const int threads = std::min(resolved_threads(context.threads), static_cast<int>(shots.size()));
   const std::uint64_t needed = memory_needed(plan, shots.size(), threads);
-  if (needed > available_memory_bytes()) {
-    return Error{
-        ErrorKind::kTryAgain, "not enough memory", plan.session.folder.string(),
-        fmt::format("{} MB are needed, {} MB are free", needed >> 20, available_memory_bytes() >> 20),
-        "close other programs, or solve on a larger machine"};
+  const std::uint64_t free = available_memory_bytes();
+  if (free != 0 && needed > free) {
+    return Error{ErrorKind::kTryAgain, "not enough memory", plan.session.folder.string(),
+                 fmt::format("{} MB are needed, {} MB are free", needed >> 20, free >> 20),
+                 "close other programs, or solve on a larger machine"};
   }
 
   std::vector<int> leds;

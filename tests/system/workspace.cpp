@@ -48,7 +48,8 @@ void edit_json(const fs::path& file, const std::function<void(Json&)>& change) {
 
 std::map<std::string, std::string> contents_of(const fs::path& folder) {
   std::map<std::string, std::string> contents;
-  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+  constexpr auto kEnterWhatMayBe = fs::directory_options::skip_permission_denied;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, kEnterWhatMayBe)) {
     const Result<std::string> digest =
         entry.is_directory() ? std::string("folder") : sha256_of_file(entry.path());
     contents[fs::relative(entry.path(), folder).string()] = digest ? *digest : digest.error().why;
