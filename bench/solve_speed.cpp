@@ -93,7 +93,7 @@ Result<Timing> time_method(const app::Photographs& photographs, const solver::Me
   });
   if (failure) return *failure;
   // Eleven frames of counts in; normal, albedo, their sigmas, residual and status out.
-  return Timing{seconds, static_cast<double>(photographs.size.pixels()), 2 * (kLights + 1) + 4 * 11 + 2};
+  return Timing{seconds, static_cast<double>(photographs.size.pixels()), 2 * (kLights + 1) + 4.0 * 11 + 2};
 }
 
 Timing time_bare(Size size, int threads) {

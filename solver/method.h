@@ -72,8 +72,8 @@ std::unique_ptr<Method> fast_method();
 struct MethodName {
   const char* name;
   bool is_quality;  ///< a level of --quality; else a method of --method
-  /// Takes the clipped values of developed photographs at their word, so that it can be held against published
-  /// figures. Saturated raw counts enter no method.
+  /// Takes the clipped values of developed photographs at their word, so that it can be held against
+  /// published figures. Saturated raw counts enter no method.
   bool keeps_clipped;
   std::unique_ptr<Method> (*make)();
 };

@@ -187,7 +187,8 @@ TEST(LinearKernel, GivesTheSameBitsWhateverThePixelBeside) {
       for (int x = 0; x < kTile.width(); ++x) {
         if (x % 7 == 0) continue;
         ASSERT_EQ(alone.normal(x, 0), beside.normal(x, 0)) << planes << " planes, pixel " << x;
-        ASSERT_EQ(alone.sigma_normal_deg(x, 0), beside.sigma_normal_deg(x, 0)) << planes << " planes, pixel " << x;
+        ASSERT_EQ(alone.sigma_normal_deg(x, 0), beside.sigma_normal_deg(x, 0))
+            << planes << " planes, pixel " << x;
         ASSERT_EQ(alone.sigma_albedo(x, 0), beside.sigma_albedo(x, 0)) << planes << " planes, pixel " << x;
         ASSERT_EQ(alone.residual(x, 0), beside.residual(x, 0)) << planes << " planes, pixel " << x;
         ASSERT_EQ(alone.status(x, 0), beside.status(x, 0)) << planes << " planes, pixel " << x;
