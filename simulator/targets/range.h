@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <initializer_list>
+
+#include "core/result.h"
+
+namespace weft::simulator {
+
+struct Range {
+  double least;
+  double most;
+};
+
+/// A setting by its name.
+struct Setting {
+  const char* name;
+  double value;
+  Range range;
+};
+
+/// kBadData for the first value that is not a number in its range.
+Result<void> check(std::initializer_list<Setting> settings);
+
+}  // namespace weft::simulator
