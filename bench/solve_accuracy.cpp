@@ -13,7 +13,7 @@
 #include "bench/rig.h"
 #include "core/image_io/image_io.h"
 #include "core/vec.h"
-#include "simulator/random.h"
+#include "simulator/sampling/random.h"
 #include "simulator/simulate.h"
 #include "solver/method.h"
 #include "solver/normals/seed.h"

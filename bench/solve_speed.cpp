@@ -12,7 +12,7 @@
 #include "bench/libraw_alone.h"
 #include "bench/rig.h"
 #include "core/parallel.h"
-#include "simulator/dng_writer.h"
+#include "simulator/camera/dng_writer.h"
 #include "solver/kernels/linear.h"
 #include "solver/method.h"
 #include "solver/normals/seed.h"

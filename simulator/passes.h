@@ -4,6 +4,8 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -12,9 +14,9 @@
 #include "core/image.h"
 #include "core/result.h"
 #include "core/tiles.h"
-#include "simulator/rig.h"
-#include "simulator/scene.h"
-#include "simulator/weave.h"
+#include "simulator/geometry/surface.h"
+#include "simulator/light/incidence.h"
+#include "simulator/rgb.h"
 
 // A frame is the product of a list of passes built from the scene. A pass fills or changes the samples of one
 // tile; an effect is a pass, or another pass in the place of the plain one, and costs nothing where it is not
@@ -22,29 +24,57 @@
 
 namespace weft::simulator {
 
-/// What the passes of one tile hand on, pixel by pixel in rows of `rect`. Every value depends on the pixel's
-/// place in the frame and on the shot, never on the tile.
+struct Transport;
+
+/// What the passes of one tile hand on. Every value depends on the pixel's place in the frame and on the
+/// shot, never on the tile. Each array covers one rectangle of the frame, row by row.
 struct Tile {
-  Rect rect;    ///< pixels of the frame
+  Rect rect;    ///< the pixels that are asked for
+  Rect area;    ///< `rect` and the halo that shadows, bounces and blur look into
   int led = 0;  ///< LED of the shot, from 1; 0 is the dark shot
 
-  std::vector<Vec3> point_mm;  ///< rig frame
-  std::vector<SurfacePoint> surface;
-  std::vector<Rgb> albedo;
-  std::vector<Rgb> signal;      ///< light by channel, 1 is full scale
-  std::vector<double> samples;  ///< what photosites see: one a pixel, or three (R, G, B)
-  std::vector<std::uint16_t> counts;
+  // On `area`, once a tile.
+  std::vector<Vec3> point_mm;         ///< rig frame
+  std::vector<SurfacePoint> surface;  ///< geometry of the cloth
+  std::vector<Rgb> albedo;            ///< as the camera's filters see it
+  std::shared_ptr<Transport> transport;  ///< the mesh and what passes keep with it; none where nothing asks
+  std::vector<double> openness;  ///< share of an even sky that each point sees; empty where nothing asks
 
-  void resize(Rect tile);
-  /// body(i, x, y) for every pixel: its index here and its place in the frame.
-  template <typename Body>
-  void for_each_pixel(const Body& body) const {
-    std::size_t i = 0;
-    for (int y = rect.y0; y < rect.y1; ++y) {
-      for (int x = rect.x0; x < rect.x1; ++x) body(i++, x, y);
-    }
-  }
+  // On `area`, each shot.
+  std::vector<Incidence> light;     ///< from the LED of the shot
+  std::vector<double> irradiance;   ///< strength times cosine, what shadows leave of it
+  std::vector<float> visibility;    ///< share of the LED that each point sees; empty where nothing asks
+  std::vector<Rgb> indirect;        ///< irradiance by way of the cloth; empty where nothing asks
+  std::vector<Rgb> signal;          ///< light by channel, 1 is full scale
+  Rect signal_rect;                 ///< of `signal`: blur shrinks it
+
+  std::vector<double> samples;  ///< what photosites see: one a pixel, or three (R, G, B)
+  Rect sample_rect;             ///< of `samples`
+  std::vector<std::uint16_t> counts;  ///< on `rect`
+
+  std::optional<Error> failure;  ///< of a pass that could not do its work; the run ends with it
+
+  void resize(Rect tile, int halo);
 };
+
+inline Rect grown(Rect r, int by) {
+  return {r.x0 - by, r.y0 - by, r.x1 + by, r.y1 + by};
+}
+
+/// Index in an array over `rect` of a pixel of the frame.
+inline std::size_t index_in(Rect rect, int x, int y) {
+  return static_cast<std::size_t>(y - rect.y0) * static_cast<std::size_t>(rect.width()) +
+         static_cast<std::size_t>(x - rect.x0);
+}
+
+/// body(i, x, y) for every pixel of `rect`: its index in an array over `rect` and its place in the frame.
+template <typename Body>
+void for_each_pixel(Rect rect, const Body& body) {
+  std::size_t i = 0;
+  for (int y = rect.y0; y < rect.y1; ++y) {
+    for (int x = rect.x0; x < rect.x1; ++x) body(i++, x, y);
+  }
+}
 
 /// What a pass works on: once a tile, whatever the light, or again for each shot.
 enum class Stage { kSurface, kShot };
@@ -65,14 +95,9 @@ struct LeftOut {
 struct PassList {
   std::vector<Pass> passes;  ///< in the order they run; all of kSurface before those of kShot
   std::vector<LeftOut> left_out;
+  int halo = 0;                  ///< pixels around a tile that the passes need
+  bool cloth_moves = false;      ///< the surface is another one for each shot
 };
-
-/// What comes out of the sensor: counts of a mosaic, or the linear RGB that a camera without mosaic and
-/// converter would see.
-enum class Output { kCounts, kRgb };
-
-/// `scene` and `rig` are copied into the passes.
-PassList build_passes(const Scene& scene, const Rig& rig, Output output);
 
 /// What a pass cost, summed over threads.
 struct PassCost {
@@ -85,7 +110,9 @@ struct PassCost {
 /// Runs a list of passes over tiles and keeps account of the time of each.
 class PassRunner {
  public:
-  PassRunner(PassList list, const TileOptions& options);
+  /// Tiles are made as high as the halo asks for, so that it costs less than the tile: `options` change no
+  /// byte.
+  PassRunner(PassList list, TileOptions options);
 
   /// For every tile of `area`, several at once: the surface passes, `with_surface`, and then for each LED
   /// number of `leds` (0: dark) the shot passes and `with_shot`.

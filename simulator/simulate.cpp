@@ -15,7 +15,8 @@
 #include "core/image_io/image_io.h"
 #include "core/raw_frame.h"
 #include "core/session.h"
-#include "simulator/dng_writer.h"
+#include "simulator/build_passes.h"
+#include "simulator/camera/dng_writer.h"
 
 namespace weft::simulator {
 namespace {
@@ -81,8 +82,9 @@ struct Band {
   template <typename Value>
   void put(const Tile& tile, int plane, const Value& value_of) {
     const View<float> view = planes.plane(plane);
-    tile.for_each_pixel(
-        [&](std::size_t i, int x, int y) { view(x, y - y0) = static_cast<float>(value_of(i)); });
+    for_each_pixel(tile.rect, [&](std::size_t, int x, int y) {
+      view(x, y - y0) = static_cast<float>(value_of(index_in(tile.area, x, y)));
+    });
   }
   Result<void> append_to(ImageWriter& file, int first, int count, int rows) const {
     std::vector<View<const float>> views;
@@ -368,24 +370,26 @@ Result<Rendering> render_readings(const Scene& scene, Rect area, const TileOptio
                    Image<double>(size, 3), Image<double>(size)};
   const double exposure = rig->exposure(scene.camera.iso);
   const auto put = [&](const Tile& tile, View<double> plane, const auto& value_of) {
-    tile.for_each_pixel([&](std::size_t i, int x, int y) { plane(x - area.x0, y - area.y0) = value_of(i); });
+    for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {
+      plane(x - area.x0, y - area.y0) = value_of(i, index_in(tile.area, x, y));
+    });
   };
   PassRunner runner(build_passes(scene, *rig, Output::kRgb), tiles);
   const Result<void> ran = runner.run(
       area, leds, {},
       [&](const Tile& tile) {
-        put(tile, out.normal.plane(0), [&](std::size_t i) { return tile.surface[i].normal.x; });
-        put(tile, out.normal.plane(1), [&](std::size_t i) { return tile.surface[i].normal.y; });
-        put(tile, out.normal.plane(2), [&](std::size_t i) { return tile.surface[i].normal.z; });
-        put(tile, out.height_mm.plane(), [&](std::size_t i) { return tile.surface[i].height_mm; });
+        put(tile, out.normal.plane(0), [&](std::size_t, std::size_t i) { return tile.surface[i].normal.x; });
+        put(tile, out.normal.plane(1), [&](std::size_t, std::size_t i) { return tile.surface[i].normal.y; });
+        put(tile, out.normal.plane(2), [&](std::size_t, std::size_t i) { return tile.surface[i].normal.z; });
+        put(tile, out.height_mm.plane(), [&](std::size_t, std::size_t i) { return tile.surface[i].height_mm; });
         for (std::size_t c = 0; c < 3; ++c) {
-          put(tile, out.albedo.plane(static_cast<int>(c)), [&](std::size_t i) { return tile.albedo[i][c]; });
+          put(tile, out.albedo.plane(static_cast<int>(c)), [&](std::size_t, std::size_t i) { return tile.albedo[i][c]; });
         }
       },
       [&](const Tile& tile) {
         for (std::size_t c = 0; c < 3; ++c) {
           put(tile, out.readings.plane(3 * (tile.led - 1) + static_cast<int>(c)),
-              [&](std::size_t i) { return tile.samples[3 * i + c] / exposure; });
+              [&](std::size_t i, std::size_t) { return tile.samples[3 * i + c] / exposure; });
         }
       });
   if (!ran) return ran.error();

@@ -11,7 +11,7 @@
 #include "core/result.h"
 #include "core/tiles.h"
 #include "simulator/passes.h"
-#include "simulator/scene.h"
+#include "simulator/scene/scene.h"
 
 namespace weft::simulator {
 

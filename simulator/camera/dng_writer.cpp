@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/dng_writer.h"
+#include "simulator/camera/dng_writer.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/sensor.h"
+#include "simulator/camera/sensor.h"
 
 #include <algorithm>
 #include <cmath>

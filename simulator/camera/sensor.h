@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/calibration.h"
-#include "simulator/random.h"
-#include "simulator/scene.h"
+#include "simulator/sampling/random.h"
+#include "simulator/scene/scene.h"
 
 namespace weft::simulator {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/weave.h"
+#include "simulator/geometry/weave.h"
 
 #include <algorithm>
 #include <array>
@@ -46,10 +46,12 @@ Profile axis(double amplitude_mm, double from, double to, double t, double dt_da
 }
 
 /// The cross-section: 0 at the crest.
-Profile cross_section(double radius_mm, double half_mm, double flank_slope, double across_mm) {
-  const double u = std::min(std::abs(across_mm), half_mm);
+Profile cross_section(double flat_mm, double radius_mm, double half_mm, double flank_slope,
+                      double across_mm) {
+  const double within_mm = std::min(std::abs(across_mm), half_mm);
+  const double u = std::max(within_mm - flat_mm, 0.0);
   const double z = std::sqrt(radius_mm * radius_mm - u * u);
-  const double beyond_mm = std::abs(across_mm) - u;
+  const double beyond_mm = std::abs(across_mm) - within_mm;
   const double slope = beyond_mm > 0 ? flank_slope : u / z;
   return {z - radius_mm - flank_slope * beyond_mm, across_mm < 0 ? slope : -slope, 0};
 }
@@ -90,24 +92,41 @@ Draft draft_of(const GeometrySettings& g) {
 
 bool yarns_stay_beside_their_neighbours(const GeometrySettings& g) {
   const double flank = radians(g.flank_deg);
-  const double drop = (1 - std::cos(flank)) / (2 * std::sin(flank)) + std::tan(flank) / 2;  // over one pitch
-  return 2 * (g.crimp + g.twist_relief) * mean_pitch_mm(g) <=
+  const double drop = (1 - g.flatness) * (1 - std::cos(flank)) / (2 * std::sin(flank)) +
+                      std::tan(flank) / 2;  // over one pitch
+  return 2 * (g.crimp + g.twist_relief + g.fibre_relief) * mean_pitch_mm(g) <=
          drop * std::min(g.warp_pitch_mm, g.weft_pitch_mm);
 }
 
 Weave::Weave(const GeometrySettings& g)
     : period_(draft_of(g).period()),
+      repeat_(g.fibre_relief > 0 ? period_ * ((kYarnsUntilFibresRepeat + period_ - 1) / period_) : period_),
       crimp_mm_(g.crimp * mean_pitch_mm(g)),
       twist_mm_(g.twist_relief * mean_pitch_mm(g)),
+      relief_mm_((g.twist_relief + g.fibre_relief) * mean_pitch_mm(g)),
       flank_slope_(std::tan(radians(g.flank_deg))),
-      warp_{g.warp_pitch_mm, g.warp_pitch_mm / 2 / std::sin(radians(g.flank_deg))},
-      weft_{g.weft_pitch_mm, g.weft_pitch_mm / 2 / std::sin(radians(g.flank_deg))} {
+      warp_(set_of(g, g.warp_pitch_mm)),
+      weft_(set_of(g, g.weft_pitch_mm)) {
   const Draft draft = draft_of(g);
   for (std::int64_t i = 0; i < period_; ++i) {
     for (std::int64_t j = 0; j < period_; ++j) {
       warp_side_.push_back(modulo(j - draft.step * i, period_) < draft.over ? 1 : -1);
     }
   }
+  if (g.fibre_relief > 0) {
+    const double angle = radians(g.fibre_angle_deg);  // Z on both: across turns the other way in the weft
+    const auto fibres_of = [&](double pitch_mm, double lean, double length_mm, std::uint32_t stream) {
+      return Fibres(g.fibre_relief * mean_pitch_mm(g), g.fibre_spacing * pitch_mm, lean, length_mm, repeat_,
+                    g.fibre_seed, stream);
+    };
+    warp_fibres_ = fibres_of(warp_.pitch_mm, angle, period_y_mm(), 0);
+    weft_fibres_ = fibres_of(weft_.pitch_mm, -angle, period_x_mm(), 1);
+  }
+}
+
+Weave::Set Weave::set_of(const GeometrySettings& g, double pitch_mm) {
+  return {pitch_mm, g.flatness * pitch_mm / 2,
+          pitch_mm / 2 * (1 - g.flatness) / std::sin(radians(g.flank_deg))};
 }
 
 SurfacePoint Weave::at(double x_mm, double y_mm) const {
@@ -127,7 +146,7 @@ SurfacePoint Weave::at(double x_mm, double y_mm) const {
     const double from = is_weft ? -warp_side(0, k) : warp_side(k, 0);
     const double to = is_weft ? -warp_side(1, k) : warp_side(k, 1);
     const double across_mm = own.offset_mm - k * own.side * set.pitch_mm;
-    return {cross_section(set.radius_mm, set.pitch_mm / 2, flank_slope_, across_mm) +
+    return {cross_section(set.flat_mm, set.radius_mm, set.pitch_mm / 2, flank_slope_, across_mm) +
                 axis(crimp_mm_, from, to, std::abs(crossing.offset_mm) / crossing_pitch_mm,
                      crossing.side / crossing_pitch_mm),
             across_mm,
@@ -139,34 +158,48 @@ SurfacePoint Weave::at(double x_mm, double y_mm) const {
   const auto lower = [](const Candidate& a, const Candidate& b) {
     return a.profile.height_mm < b.profile.height_mm;
   };
-  if (twist_mm_ > 0) {
+  if (relief_mm_ > 0) {
     const double top_mm = std::max_element(candidates.begin(), candidates.end(), lower)->profile.height_mm;
     for (Candidate& c : candidates) {
-      if (c.profile.height_mm < top_mm - 2 * twist_mm_) continue;  // no ridge lifts it to the top
-      c.profile =
-          c.profile + (c.yarn.is_weft ? twist(twist_mm_, c.across_mm, weft_.pitch_mm, x_mm, warp_.pitch_mm)
-                                      : twist(twist_mm_, c.across_mm, warp_.pitch_mm, y_mm, -weft_.pitch_mm));
+      if (c.profile.height_mm < top_mm - 2 * relief_mm_) continue;  // no relief lifts it to the top
+      const Set& set = c.yarn.is_weft ? weft_ : warp_;
+      const double along_mm = c.yarn.is_weft ? x_mm : y_mm;
+      const double along_pitch_mm = c.yarn.is_weft ? warp_.pitch_mm : -weft_.pitch_mm;
+      if (twist_mm_ > 0)
+        c.profile = c.profile + twist(twist_mm_, c.across_mm, set.pitch_mm, along_mm, along_pitch_mm);
+      if (const std::optional<Fibres>& fibres = c.yarn.is_weft ? weft_fibres_ : warp_fibres_) {
+        const Fibres::Relief r = fibres->at(c.yarn.index, c.across_mm, along_mm);
+        c.profile = c.profile + Profile{r.height_mm, r.across, r.along};
+      }
     }
   }
   const Candidate& top = *std::max_element(candidates.begin(), candidates.end(), lower);
   const Profile& p = top.profile;
   const double slope_x = top.yarn.is_weft ? p.along : p.across;
   const double slope_y = top.yarn.is_weft ? p.across : p.along;
-  const double z = 1 / std::sqrt(1 + slope_x * slope_x + slope_y * slope_y);
-  return {p.height_mm, {-slope_x * z, -slope_y * z, z}, top.yarn};
+  return {p.height_mm, normal_of_slopes(slope_x, slope_y), top.yarn, top.yarn.is_weft ? 1.0 : 0.0,
+          top.yarn.is_weft ? 0.0 : 1.0};
 }
 
-Surface surface_of(const GeometrySettings& g) {
-  switch (g.kind) {
-    case GeometryKind::kFlat:
-      return Plane({0, 0, 1});
-    case GeometryKind::kTilted: {
-      const double tilt = radians(g.tilt_deg), azimuth = radians(g.azimuth_deg);
-      return Plane({std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)});
-    }
-    default:
-      return Weave(g);
-  }
+HeightRange Weave::heights_mm(const Area&) const {
+  // The nearest yarn of either set is at most half a pitch away.
+  const double drop_mm = std::min(arc_drop_mm(warp_), arc_drop_mm(weft_));
+  return {-crimp_mm_ - drop_mm - relief_mm_, crimp_mm_ + relief_mm_};
+}
+
+double Weave::arc_drop_mm(const Set& set) {
+  const double arc_mm = set.pitch_mm / 2 - set.flat_mm;
+  return set.radius_mm - std::sqrt(set.radius_mm * set.radius_mm - arc_mm * arc_mm);
+}
+
+double Weave::steepest_slope() const {
+  const auto slope_of = [&](const Set& set, double along_pitch_mm, const std::optional<Fibres>& fibres) {
+    const double across = flank_slope_ + twist_mm_ * 4 * kPi / set.pitch_mm;
+    const double along = 3 * crimp_mm_ / along_pitch_mm + twist_mm_ * 4 * kPi / along_pitch_mm;
+    return std::hypot(across, along) + (fibres ? fibres->steepest_slope() : 0);
+  };
+  return std::max(slope_of(warp_, weft_.pitch_mm, warp_fibres_),
+                  slope_of(weft_, warp_.pitch_mm, weft_fibres_));
 }
 
 }  // namespace weft::simulator

@@ -10,6 +10,7 @@ namespace weft::simulator {
 struct Incidence {
   Vec3 direction;       ///< unit, from the point to the light
   double strength = 0;  ///< on a surface that faces the light: 1 / mm^2 for a LED
+  double distance_mm = 0;
 };
 
 /// An imperfect Lambertian point source (Queau et al., JMIV 2018, section 2): strength
@@ -22,5 +23,10 @@ inline double shading(const Incidence& light, Vec3 normal) {
   const double cosine = dot(normal, light.direction);
   return cosine > 0 ? light.strength * cosine : 0;
 }
+
+/// What stands for the cosine under a sphere of even radiance whose radius is `sine` times its distance: the
+/// cosine itself while the whole sphere is above the surface's horizon, and a smooth way to 0 while it sets
+/// (Snyder, "Area light sources for real-time graphics", Microsoft Research 1996). 0 <= sine < 1.
+double sphere_cosine(double cosine, double sine);
 
 }  // namespace weft::simulator

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/rig.h"
+#include "simulator/scene/rig.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "simulator/light.h"
+#include "simulator/light/incidence.h"
 
 namespace weft::simulator {
 namespace {
@@ -77,6 +77,15 @@ double brightest_reading(const DistantLights& lights) {
 }
 
 }  // namespace
+
+std::vector<Rgb> Rig::signal_of_unit(double iso) const {
+  std::vector<Rgb> signals;
+  for (const NearLight& led : leds.leds) {
+    const double seconds = exposure(iso);
+    signals.push_back({led.flux_rgb[0] * seconds, led.flux_rgb[1] * seconds, led.flux_rgb[2] * seconds});
+  }
+  return signals;
+}
 
 DistantLights distant_lights(const Rig& rig, double cloth_height_mm) {
   DistantLights distant;

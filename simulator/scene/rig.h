@@ -6,8 +6,8 @@
 #include "core/calibration.h"
 #include "core/lights.h"
 #include "core/result.h"
-#include "simulator/scene.h"
-#include "simulator/sensor.h"
+#include "simulator/scene/scene.h"
+#include "simulator/camera/sensor.h"
 
 namespace weft::simulator {
 
@@ -19,6 +19,8 @@ struct Rig {
 
   /// Signal of a reading of 1: seconds at ISO 100.
   double exposure(double iso) const { return exposure_us * 1e-6 * iso / 100; }
+  /// Signal of each LED, by channel, on a white surface with an irradiance of 1.
+  std::vector<Rgb> signal_of_unit(double iso) const;
 };
 
 /// Checks the scene, places its LEDs and chooses the exposure. kBadData where no LED lights the table's

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/scene.h"
+#include "simulator/scene/scene.h"
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "core/files.h"
-#include "simulator/weave.h"
+#include "simulator/geometry/weave.h"
 
 namespace weft::simulator {
 namespace {
@@ -114,15 +114,18 @@ void visit(Visitor& v, LightSettings& l) {
   v.number("flux", l.flux, kFlux);
   v.rgb("white_balance", l.white_balance, {1e-3, 100});
   v.number("mu", l.mu, {0, 100});
+  v.number("led_radius_mm", l.led_radius_mm, {0, 100});
+  v.number("drift", l.drift, {0, 0.5});
+  v.number("flicker", l.flicker, {0, 0.1});
+  v.number("stray", l.stray, {0, 1});
+  v.number("ambient", l.ambient, {0, 1});
   v.list("ring", l.rings);
   v.list("led", l.leds);
 }
 
 template <typename Visitor>
 void visit(Visitor& v, EffectSettings& e) {
-  v.flag("near_light", e.near_light);
-  v.flag("relief", e.relief);
-  v.flag("noise", e.noise);
+  for (const EffectKey& effect : effect_keys()) v.flag(effect.name, e.*effect.on);
 }
 
 template <typename Visitor>
@@ -424,6 +427,32 @@ Result<Scene> read_table(const toml::table* table, const std::string& where, Sce
 }
 
 }  // namespace
+
+std::span<const EffectKey> effect_keys() {
+  using E = EffectSettings;
+  static constexpr EffectKey kKeys[] = {
+      {"near_light", &E::near_light},
+      {"relief", &E::relief},
+      {"finite_led", &E::finite_led},
+      {"led_drift", &E::led_drift},
+      {"stray", &E::stray},
+      {"ambient", &E::ambient},
+      {"cast_shadows", &E::cast_shadows},
+      {"interreflection", &E::interreflection},
+      {"reflectance", &E::reflectance},
+      {"spectral", &E::spectral},
+      {"distortion", &E::distortion},
+      {"movement", &E::movement},
+      {"vignetting", &E::vignetting},
+      {"defocus", &E::defocus},
+      {"bloom", &E::bloom},
+      {"dark_current", &E::dark_current},
+      {"uneven_response", &E::uneven_response},
+      {"nonlinearity", &E::nonlinearity},
+      {"noise", &E::noise},
+  };
+  return kKeys;
+}
 
 std::vector<LedRing> default_rings() {
   return {{4, 35, 0, 600}, {6, 62, 15, 600}};

@@ -5,20 +5,25 @@
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/result.h"
 #include "core/vec.h"
+#include "simulator/camera/settings.h"
+#include "simulator/geometry/print.h"
+#include "simulator/geometry/settings.h"
+#include "simulator/reflectance/reflectance.h"
+#include "simulator/rgb.h"
+#include "simulator/spectra/spectrum.h"
+#include "simulator/targets/settings.h"
 
 // A scene says what is on the table, what lights it, what photographs it and which effects are simulated.
 // docs/scenes.md lists every key; millimetres and the rig frame throughout.
 
 namespace weft::simulator {
-
-/// Linear Rec.709 red, green, blue.
-using Rgb = std::array<double, 3>;
 
 /// The made-up camera bodies, by how they store no light.
 enum class Body {
@@ -30,7 +35,7 @@ struct CameraSettings {
   int width = 2464;  ///< photosites, even: whole filter cells
   int height = 1632;
   double mm_per_pixel = 0.08;  ///< on the table, z = 0
-  double distance_mm = 600;    ///< from the table to the projection centre, straight above it
+  double distance_mm = 600;    ///< from the table to the projection centre
   Body body = Body::kOffset;
   int bits = 14;                       ///< 12, 14 or 16; black and white scale with it
   double full_well_electrons = 40000;  ///< electrons of a photosite at white, at ISO 100
@@ -42,34 +47,21 @@ struct CameraSettings {
   /// in the brightest channel of the brightest LED.
   double albedo_at_full = 0.99;
 
+  PoseSettings pose;                                            ///< no effect but geometry: always there
+  LensSettings lens = {.k1 = -0.06, .k2 = 0.02};                ///< distortion
+  MovementSettings movement = {0.02, 0.005};                    ///< movement
+  VignetteSettings vignette = {4, 0.05};                        ///< vignetting
+  BlurSettings blur = {.defocus_px = 0.5, .spread_px = 0.4};    ///< defocus
+  BloomSettings bloom = {.share = 0.5};                         ///< bloom
+  std::array<double, 2> linearity = {0.01, -0.005};             ///< nonlinearity: Response::linearity
+  DefectSettings defects = {.dark_electrons_per_s = 5,          ///< dark_current, uneven_response
+                            .response_percent = 0.4,
+                            .column_counts = 0.3,
+                            .photosite_counts = 0.3,
+                            .hot_per_million = 20,
+                            .dead_per_million = 2};
+
   bool operator==(const CameraSettings&) const = default;
-};
-
-enum class GeometryKind { kFlat, kTilted, kPlain, kTwill, kSatin };
-inline bool is_woven(GeometryKind kind) {
-  return kind != GeometryKind::kFlat && kind != GeometryKind::kTilted;
-}
-
-/// The shape of the cloth. Lengths without unit are in yarn pitches, so that slopes do not depend on scale.
-struct GeometrySettings {
-  GeometryKind kind = GeometryKind::kFlat;
-  double cloth_height_mm = 0;  ///< of the plane that the cloth's heights are measured from, above the table
-
-  double tilt_deg = 20;    ///< kTilted: between the normal and z
-  double azimuth_deg = 0;  ///< kTilted: of the normal's horizontal part, from x towards y
-
-  double warp_pitch_mm = 0.5;  ///< from one warp yarn (along y) to the next
-  double weft_pitch_mm = 0.5;  ///< from one weft yarn (along x) to the next
-  /// Warp yarn i lies over weft yarn j where (j - step * i) mod (over + under) < over.
-  std::optional<int> over;   ///< else 1, 2, 4 for plain, twill, satin
-  std::optional<int> under;  ///< else 1, 2, 1
-  std::optional<int> step;   ///< else 1, 1, 2
-  double crimp = 0.08;       ///< amplitude of a yarn's axis as it goes over and under
-  double flank_deg =
-      36;  ///< slope of a yarn's flank where it meets its neighbour, half a pitch from its axis
-  double twist_relief = 0;  ///< amplitude of the ridges that the plies of a yarn make
-
-  bool operator==(const GeometrySettings&) const = default;
 };
 
 struct MaterialSettings {
@@ -80,6 +72,14 @@ struct MaterialSettings {
   /// other.
   int stripe_yarns = 0;
   double yarn_variation = 0;  ///< albedo of a yarn is multiplied by 1 +- this, uniformly
+  PrintSettings print;        ///< a pattern over the yarns' colours, which it multiplies
+
+  /// spectral: dyes in the place of the albedos above.
+  std::optional<Spectrum> dye;
+  std::optional<Spectrum> warp_dye;
+  std::optional<Spectrum> weft_dye;
+
+  Reflectance reflectance = Lambert{};  ///< reflectance
 
   bool operator==(const MaterialSettings&) const = default;
 };
@@ -111,6 +111,12 @@ struct LightSettings {
   double flux = 2e7;                   ///< of the green channel: reading * mm^2 / s at ISO 100
   Rgb white_balance = {0.5, 1, 0.68};  ///< flux by channel is `flux` times this
   double mu = 1;                       ///< lobe exponent: 0 isotropic, 1 Lambertian
+  double led_radius_mm = 0.75;         ///< finite_led
+  double drift = 0.003;                ///< led_drift: what the last shot's LED has lost against the first's
+  double flicker = 0.001;              ///< led_drift: standard deviation of a shot's brightness, relative
+  /// Of what a white surface at the table's centre that faces the LED reflects, evenly from all sides.
+  double stray = 0.002;    ///< stray: by way of the rig
+  double ambient = 0.001;  ///< ambient: from the room, in units of the brightest LED
   /// LED 1 is the first of the first ring; `leds` follow the rings. With neither there are the
   /// default_rings().
   std::vector<LedRing> rings;
@@ -119,15 +125,56 @@ struct LightSettings {
   bool operator==(const LightSettings&) const = default;
 };
 
+/// spectral: what shines and what filters, from 380 to 730 nm.
+struct SpectraSettings {
+  Spectrum led = flat_spectrum(1);
+  std::array<Spectrum, 3> filters = {};  ///< red, green, blue
+  std::vector<Spectrum> chart;           ///< the patches of a colour chart, row by row; 24 or none
+
+  bool operator==(const SpectraSettings&) const = default;
+};
+
+/// How light is traced over the cloth. `bounces` and rays make interreflection exact, at their price.
+struct TransportSettings {
+  int shadow_rays = 16;  ///< cast_shadows, where LEDs are finite
+  int bounce_rays = 64;  ///< interreflection
+  int bounces = 2;       ///< interreflection
+
+  bool operator==(const TransportSettings&) const = default;
+};
+
 /// What is simulated beyond the ideal picture. An effect that a scene does not name does not run.
 struct EffectSettings {
-  bool near_light =
-      false;            ///< direction, distance and lobe of each LED by pixel; else as at the table's centre
-  bool relief = false;  ///< light is evaluated at the cloth's height, else on the plane cloth_height_mm
-  bool noise = false;   ///< photon noise and read noise
+  bool near_light = false;       ///< direction, distance and lobe of each LED by pixel, not as at the centre
+  bool relief = false;           ///< light is evaluated at the cloth's height, not on the plane below it
+  bool finite_led = false;       ///< LEDs are spheres of led_radius_mm: soft shadows and wider highlights
+  bool led_drift = false;        ///< LEDs fade over the session and flicker
+  bool stray = false;            ///< light of the LED that the rig reflects
+  bool ambient = false;          ///< light of the room
+  bool cast_shadows = false;     ///< the cloth hides LEDs from parts of itself
+  bool interreflection = false;  ///< the cloth lights itself
+  bool reflectance = false;      ///< the material's own reflectance, not Lambert's
+  bool spectral = false;         ///< colours are spectra seen through the camera's filters
+  bool distortion = false;       ///< of the lens
+  bool movement = false;         ///< the cloth shifts between shots
+  bool vignetting = false;       ///< the lens darkens towards the corners
+  bool defocus = false;          ///< blur by a disc and by the lens's point spread
+  bool bloom = false;            ///< full photosites spill into their column
+  bool dark_current = false;     ///< photosites fill by warmth, too, and some are hot or dead
+  bool uneven_response = false;  ///< photosites and columns differ in gain and offset
+  bool nonlinearity = false;     ///< counts do not follow light in a straight line
+  bool noise = false;            ///< photon noise and read noise
 
   bool operator==(const EffectSettings&) const = default;
 };
+
+/// An effect by the key that names it.
+struct EffectKey {
+  const char* name;
+  bool EffectSettings::*on;
+};
+/// All effects in the order of light.
+std::span<const EffectKey> effect_keys();
 
 struct Scene {
   std::string fabric = "simulated cloth";
@@ -136,7 +183,13 @@ struct Scene {
   GeometrySettings geometry;
   MaterialSettings material;
   LightSettings lights;
+  SpectraSettings spectra;
+  TransportSettings transport;
+  std::vector<TargetSettings> targets;  ///< on the table beside or over the cloth
   EffectSettings effects;
+  /// `effects = "auto"`: the effects that run are those whose bound exceeds this many sigma of the photon
+  /// noise (simulator/effects/bounds.h); `effects` above is not used.
+  std::optional<double> auto_to_sigma;
 
   bool operator==(const Scene&) const = default;
 };

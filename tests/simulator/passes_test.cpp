@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/passes.h"
+#include "simulator/build_passes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <atomic>
 #include <cmath>
 
-#include "simulator/light.h"
+#include "simulator/light/incidence.h"
 #include "simulator/simulate.h"
 
 namespace weft::simulator {

@@ -11,7 +11,7 @@
 #include "capture/raw/decode.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
-#include "simulator/dng_writer.h"
+#include "simulator/camera/dng_writer.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {

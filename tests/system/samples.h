@@ -10,7 +10,7 @@
 #include "core/image_io/image_io.h"
 #include "core/lights.h"
 #include "core/vec.h"
-#include "simulator/scene.h"
+#include "simulator/scene/scene.h"
 
 namespace weft::test {
 

@@ -16,7 +16,7 @@
 #include <vector>
 
 #include "core/raw_frame.h"
-#include "simulator/dng_writer.h"
+#include "simulator/camera/dng_writer.h"
 
 namespace weft::capture {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/sensor.h"
+#include "simulator/camera/sensor.h"
 
 #include <gtest/gtest.h>
 
@@ -18,18 +18,19 @@ struct Statistics {
 };
 
 /// Counts of a body for one level of light, over many photosites.
-Statistics counts_of(const Sensor& sensor, double signal) {
+Statistics counts_of(const Sensor& sensor, double signal, std::uint32_t draws = kDraws,
+                     std::uint32_t stream = 0) {
   double sum = 0, sum_of_squares = 0;
   Statistics s;
-  for (std::uint32_t i = 0; i < kDraws; ++i) {
-    const double count = count_of(sensor, noisy(sensor, signal, philox({i, 0, 0, 0}, {99, 0})));
+  for (std::uint32_t i = 0; i < draws; ++i) {
+    const double count = count_of(sensor, noisy(sensor, signal, philox({i, stream, 0, 0}, {99, 0})));
     sum += count;
     sum_of_squares += count * count;
     s.lowest = std::min(s.lowest, count);
     s.highest = std::max(s.highest, count);
   }
-  s.mean = sum / kDraws;
-  s.variance = sum_of_squares / kDraws - s.mean * s.mean;
+  s.mean = sum / draws;
+  s.variance = sum_of_squares / draws - s.mean * s.mean;
   return s;
 }
 
@@ -98,6 +99,35 @@ TEST(Sensor, ReadsItsDarkNoiseInElectrons) {
   const Statistics dark = counts_of(offset_body(), 0);
   const double electrons_per_count = 40000.0 / 14920;
   EXPECT_NEAR(std::sqrt(dark.variance - 1.0 / 12) * electrons_per_count, 3, 0.05);
+}
+
+/// Gain and read noise as a laboratory finds them: a straight line through variance over mean of flat frames
+/// (Janesick, "Photon Transfer", 2007), the 1/12 count^2 of whole counts taken off.
+TEST(Sensor, ShowsItsGainAndReadNoiseInThePhotonTransferCurve) {
+  struct Case {
+    int bits;
+    double read_noise_electrons;  // over a count, so that rounding adds 1/12 count^2
+  };
+  for (const Case& c : {Case{12, 12}, Case{14, 3}}) {
+    CameraSettings camera;
+    camera.bits = c.bits;
+    camera.read_noise_electrons = c.read_noise_electrons;
+    const Sensor sensor = sensor_of(camera);
+    const double dark_variance = counts_of(sensor, 0, 4 * kDraws).variance - 1.0 / 12;
+    double means = 0, variances = 0;
+    std::uint32_t stream = 1;
+    for (const double signal : {0.1, 0.25, 0.4, 0.55, 0.7, 0.8}) {
+      const Statistics flat = counts_of(sensor, signal, 2 * kDraws, stream++);
+      means += flat.mean - sensor.black;
+      variances += flat.variance - 1.0 / 12 - dark_variance;
+    }
+    const double electrons_per_count = means / variances;
+    EXPECT_NEAR(electrons_per_count, 40000 / (sensor.white - sensor.black), 0.01 * electrons_per_count)
+        << c.bits << " bits";
+    EXPECT_NEAR(std::sqrt(dark_variance) * electrons_per_count, c.read_noise_electrons,
+                0.01 * c.read_noise_electrons)
+        << c.bits << " bits";
+  }
 }
 
 TEST(Sensor, NeverCountsAboveWhite) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/weave.h"
+#include "simulator/geometry/weave.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,8 @@
 #include <cmath>
 #include <string>
 
-#include "simulator/random.h"
+#include "simulator/geometry/surface.h"
+#include "simulator/sampling/random.h"
 
 namespace weft::simulator {
 namespace {
@@ -150,6 +151,23 @@ TEST(Weave, ShowsTheYarnThatTheDraftPutsOnTop) {
       }
     }
   }
+}
+
+TEST(Weave, IsLevelAcrossTheFlatPartOfAYarn) {
+  GeometrySettings g = woven(GeometryKind::kPlain);
+  g.flatness = 0.5;
+  g.crimp = 0.05;
+  const Weave weave(g);
+  const double y = 0.5 * g.weft_pitch_mm, half_mm = 0.25 * g.warp_pitch_mm, crest_mm = 0.05 * 0.6;
+  const SurfacePoint middle = weave.at(0.5 * g.warp_pitch_mm, y);
+  ASSERT_FALSE(middle.yarn.is_weft);
+  for (const double across : {-0.99, -0.5, 0.0, 0.99}) {
+    const SurfacePoint p = weave.at(0.5 * g.warp_pitch_mm + across * half_mm, y);
+    EXPECT_NEAR(p.height_mm, crest_mm, 1e-12) << across;
+    EXPECT_NEAR(p.normal.z, 1, 1e-12) << across;
+  }
+  const SurfacePoint rim = weave.at(0.5 * g.warp_pitch_mm + 1.9 * half_mm, y);
+  EXPECT_LT(rim.height_mm, crest_mm - 0.01) << "round beyond";
 }
 
 TEST(Weave, WarpCoversFourFifthsOfASatinsCrossings) {

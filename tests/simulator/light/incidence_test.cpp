@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/light.h"
+#include "simulator/light/incidence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/random.h"
+#include "simulator/sampling/random.h"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simulator/rig.h"
+#include "simulator/scene/rig.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "simulator/light.h"
+#include "simulator/light/incidence.h"
 
 namespace weft::simulator {
 namespace {

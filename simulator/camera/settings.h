@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+// What a scene may say about its camera beyond an ideal pinhole with an ideal sensor. The default of every
+// number is that ideal.
+
+namespace weft::simulator {
+
+/// Brown-Conrady distortion in the coefficients of OpenCV, and where the optical axis meets the sensor.
+struct LensSettings {
+  double k1 = 0, k2 = 0, k3 = 0;  ///< radial, -10 to 10; what folds the picture is refused (lens.h)
+  double p1 = 0, p2 = 0;          ///< tangential, -1 to 1
+  double offset_x_px = 0;         ///< of the principal point from the frame's centre, right, -5000 to 5000
+  double offset_y_px = 0;         ///< down, -5000 to 5000
+
+  bool operator==(const LensSettings&) const = default;
+};
+
+/// The camera looks at a point of the table from the scene's camera distance.
+struct PoseSettings {
+  double tilt_deg = 0;     ///< between the line of sight and z, 0 to 80
+  double azimuth_deg = 0;  ///< where the tilted camera stands, from x towards y, -360 to 360
+  double roll_deg = 0;     ///< of the camera about its line of sight, clockwise as seen from it, -360 to 360
+  double x_mm = 0;         ///< the point of the table it looks at, -10000 to 10000
+  double y_mm = 0;         ///< -10000 to 10000
+
+  bool operator==(const PoseSettings&) const = default;
+};
+
+/// How far the cloth is moved between one shot and the next: standard deviations.
+struct MovementSettings {
+  double sigma_mm = 0;   ///< of the shift along x and along y, 0 to 100
+  double sigma_deg = 0;  ///< of the turn about the table's centre, 0 to 45
+
+  bool operator==(const MovementSettings&) const = default;
+};
+
+/// Light lost towards the edge of the frame.
+struct VignetteSettings {
+  double cosine_power = 4;  ///< natural: the law of cos^4 by default, 0 (a telecentric lens) to 8
+  double corner_loss = 0;   ///< mechanical: share lost in the farthest corner, 0 to 0.5
+
+  bool operator==(const VignetteSettings&) const = default;
+};
+
+/// Where the light of a point goes.
+struct BlurSettings {
+  double defocus_px = 0;      ///< diameter of the circle of confusion, 0 to 32
+  double spread_px = 0;       ///< standard deviation of the point spread, 0 to 5
+  double halo_share = 0;      ///< share of the light that goes into a disc around the point, 0 to 0.5
+  double halo_radius_px = 8;  ///< of that disc, 1 to 40
+
+  bool operator==(const BlurSettings&) const = default;
+};
+
+/// How photosites differ. Counts are those of the scene's converter, whatever its bits.
+struct DefectSettings {
+  double dark_electrons_per_s = 0;  ///< of a photosite at 25 degrees Celsius, 0 to 1e6
+  double temperature_c = 25;        ///< of the sensor, degrees Celsius, -50 to 100
+  double dark_doubling_c = 6;       ///< warming that doubles dark current and hot pixels, 2 to 20
+  double response_percent = 0;      ///< PRNU: standard deviation of a photosite's response, 0 to 20
+  double column_counts = 0;         ///< standard deviation of a column's black level, 0 to 1000
+  double photosite_counts = 0;      ///< standard deviation of a photosite's black level, 0 to 1000
+  std::array<std::array<double, 2>, 2> cell_counts = {};  ///< of [y & 1][x & 1], -1000 to 1000
+  double hot_per_million = 0;                             ///< photosites with more dark current, 0 to 1e5
+  double hot_electrons_per_s = 10000;                     ///< mean of that, at 25 degrees Celsius, 0 to 1e9
+  double dead_per_million = 0;                            ///< photosites that see too little, 0 to 1e5
+  double dead_response = 0;                               ///< of the light that they see, 0 to 0.9
+
+  bool operator==(const DefectSettings&) const = default;
+};
+
+/// What runs out of a photosite that is full.
+struct BloomSettings {
+  double share = 0;    ///< of the charge above a full well that spills along the column, 0 to 1
+  double decay = 0.5;  ///< of the spill from one photosite to the next, 0 to 0.9
+
+  bool operator==(const BloomSettings&) const = default;
+};
+
+}  // namespace weft::simulator

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simulator/effects/effects.h"
+#include "simulator/effects/random_key.h"
+#include "simulator/sampling/random.h"
+
+namespace weft::simulator {
+namespace {
+
+/// Brightness of each LED in its shot: warming LEDs fade in a straight line over the session, and each shot
+/// is a little off by itself.
+std::vector<double> gains_of(const Scene& scene, const Rig& rig) {
+  const std::size_t shots = rig.leds.leds.size();
+  std::vector<double> gains;
+  for (std::size_t k = 0; k < shots; ++k) {
+    const double time = shots < 2 ? 0 : static_cast<double>(k) / static_cast<double>(shots - 1);
+    const NormalPair normal =
+        normal_pair(philox({static_cast<std::uint32_t>(k), 0, kFlickerStream, 0}, random_key(scene)));
+    gains.push_back((1 - scene.lights.drift * time) * (1 + scene.lights.flicker * normal.first));
+  }
+  return gains;
+}
+
+/// Adds `of_led[led]` times albedo, and times what of the sky the cloth leaves open.
+std::function<void(Tile&)> even_light(std::vector<Rgb> of_led) {
+  return [of_led = std::move(of_led)](Tile& tile) {
+    const Rgb light = of_led[static_cast<std::size_t>(tile.led)];
+    for (std::size_t i = 0; i < tile.signal.size(); ++i) {
+      const double open = tile.openness.empty() ? 1 : tile.openness[i];
+      for (std::size_t c = 0; c < 3; ++c) tile.signal[i][c] += tile.albedo[i][c] * open * light[c];
+    }
+  };
+}
+
+/// Signal of a white surface at the table's centre that faces the LED.
+std::vector<Rgb> signal_at_centre(const Scene& scene, const Rig& rig) {
+  std::vector<Rgb> signals;
+  const double exposure = rig.exposure(scene.camera.iso);
+  for (const DistantLight& light : distant_lights(rig, scene.geometry.cloth_height_mm).lights) {
+    const auto& e = light.irradiance_rgb;
+    signals.push_back({e[0] * exposure, e[1] * exposure, e[2] * exposure});
+  }
+  return signals;
+}
+
+}  // namespace
+
+Pass led_drift_pass(const Scene& scene, const Rig& rig) {
+  return {"led drift", "fades the LEDs over the session and lets each shot flicker", Stage::kShot,
+          [gains = gains_of(scene, rig)](Tile& tile) {
+            if (tile.led == 0) return;
+            const double gain = gains[static_cast<std::size_t>(tile.led - 1)];
+            for (Rgb& signal : tile.signal) {
+              for (double& s : signal) s *= gain;
+            }
+          }};
+}
+
+Pass stray_pass(const Scene& scene, const Rig& rig) {
+  std::vector<Rgb> of_led = {Rgb{}};
+  for (Rgb light : signal_at_centre(scene, rig)) {
+    for (double& l : light) l *= scene.lights.stray;
+    of_led.push_back(light);
+  }
+  return {"stray", "adds light of the LED that comes back from the rig, evenly from all sides", Stage::kShot,
+          even_light(std::move(of_led))};
+}
+
+Pass ambient_pass(const Scene& scene, const Rig& rig) {
+  Rgb brightest{};
+  for (const Rgb& light : signal_at_centre(scene, rig)) {
+    for (std::size_t c = 0; c < 3; ++c) brightest[c] = std::max(brightest[c], scene.lights.ambient * light[c]);
+  }
+  return {"ambient", "adds the light of the room to every shot, the dark one too", Stage::kShot,
+          even_light(std::vector<Rgb>(rig.leds.leds.size() + 1, brightest))};
+}
+
+}  // namespace weft::simulator
