@@ -15,7 +15,7 @@ enum class Output {
 };
 
 /// The passes that a scene calls for, in order, and the effects it does without. `scene` and `rig` are copied
-/// into the passes.
-PassList build_passes(const Scene& scene, const Rig& rig, Output output);
+/// into the passes. kBadData where a shadow would be too long to be traced.
+Result<PassList> build_passes(const Scene& scene, const Rig& rig, Output output);
 
 }  // namespace weft::simulator

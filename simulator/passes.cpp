@@ -80,7 +80,8 @@ Result<void> PassRunner::run(Rect area, std::span<const int> leds, std::stop_tok
 std::vector<PassCost> PassRunner::costs() const {
   std::vector<PassCost> costs;
   for (std::size_t p = 0; p < list_.passes.size(); ++p) {
-    PassCost cost = {list_.passes[p].name, list_.passes[p].does};
+    const Pass& pass = list_.passes[p];
+    PassCost cost = {pass.name, pass.does, pass.effect};
     for (const Worker& worker : workers_) {
       cost.seconds += std::chrono::duration<double>(worker.spent[p]).count();
       cost.pixels += worker.pixels[p];

@@ -14,7 +14,8 @@
 #include "core/image.h"
 #include "core/result.h"
 #include "core/tiles.h"
-#include "simulator/geometry/surface.h"
+#include "simulator/camera/defects.h"
+#include "simulator/geometry/surface_point.h"
 #include "simulator/light/incidence.h"
 #include "simulator/rgb.h"
 
@@ -25,6 +26,9 @@
 namespace weft::simulator {
 
 struct Transport;
+
+/// What Tile::target says of the cloth.
+inline constexpr int kCloth = -1;
 
 /// What the passes of one tile hand on. Every value depends on the pixel's place in the frame and on the
 /// shot, never on the tile. Each array covers one rectangle of the frame, row by row.
@@ -37,6 +41,8 @@ struct Tile {
   std::vector<Vec3> point_mm;         ///< rig frame
   std::vector<SurfacePoint> surface;  ///< geometry of the cloth
   std::vector<Rgb> albedo;            ///< as the camera's filters see it
+  std::vector<int> target;            ///< number of the target that covers the cloth there, from 0, or
+                                      ///< kCloth; empty where there are no targets
   std::shared_ptr<Transport> transport;  ///< the mesh and what passes keep with it; none where nothing asks
   std::vector<double> openness;  ///< share of an even sky that each point sees; empty where nothing asks
 
@@ -50,6 +56,7 @@ struct Tile {
 
   std::vector<double> samples;  ///< what photosites see: one a pixel, or three (R, G, B)
   Rect sample_rect;             ///< of `samples`
+  std::vector<Photosite> photosites;  ///< what they are, on `sample_rect`; empty where all are alike
   std::vector<std::uint16_t> counts;  ///< on `rect`
 
   std::optional<Error> failure;  ///< of a pass that could not do its work; the run ends with it
@@ -84,17 +91,18 @@ struct Pass {
   std::string does;  ///< one sentence for `weft simulate --explain`
   Stage stage = Stage::kSurface;
   std::function<void(Tile&)> run;
+  std::string effect = {};  ///< key of the effect that called for it; empty for what every scene needs
 };
 
 /// An effect that has no pass.
 struct LeftOut {
   std::string name;
   std::string why;
+  double bound_sigma = 0;  ///< what it would change at most, in sigma of the noise; 0 where nobody asked
 };
 
 struct PassList {
   std::vector<Pass> passes;  ///< in the order they run; all of kSurface before those of kShot
-  std::vector<LeftOut> left_out;
   int halo = 0;                  ///< pixels around a tile that the passes need
   bool cloth_moves = false;      ///< the surface is another one for each shot
 };
@@ -103,6 +111,7 @@ struct PassList {
 struct PassCost {
   std::string name;
   std::string does;
+  std::string effect;
   double seconds = 0;
   std::int64_t pixels = 0;
 };
@@ -121,7 +130,6 @@ class PassRunner {
                    const std::function<void(const Tile&)>& with_shot);
 
   std::vector<PassCost> costs() const;
-  const std::vector<LeftOut>& left_out() const { return list_.left_out; }
 
  private:
   struct Worker {

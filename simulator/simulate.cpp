@@ -17,6 +17,7 @@
 #include "core/session.h"
 #include "simulator/build_passes.h"
 #include "simulator/camera/dng_writer.h"
+#include "simulator/plan.h"
 
 namespace weft::simulator {
 namespace {
@@ -24,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::steady_clock;
 
-constexpr int kBandRows = 128;                                   // of the truth, in memory at a time
-constexpr std::uint64_t kFrameBytes = std::uint64_t{256} << 20;  // of counts, in memory at a time
+constexpr int kBandRows = 128;        // of frames and truth, in memory at a time
+constexpr int kTallBandRows = 256;    // where tiles have a halo, which costs less the larger they are
 constexpr int kFarthestPixel = 1000 * 1000;
 constexpr int kTruthPlanes = 7;  // normal, albedo, height
 
@@ -74,32 +75,74 @@ class FolderAside {
   fs::path path_;
 };
 
-/// Float planes that rows of tiles are put into.
-struct Band {
-  Image<float> planes;
-  int y0 = 0;
+/// Image files that are written together, band of rows by band of rows, from planes in memory.
+class MapFiles {
+ public:
+  /// One file: its name, its channels, and how wide its samples are.
+  struct Map {
+    std::string name;
+    std::vector<std::string> channels;
+    SampleType type = SampleType::kFloat;
+  };
 
+  static Result<MapFiles> open(const fs::path& folder, Size size, int band_rows, const std::vector<Map>& maps) {
+    MapFiles files;
+    int planes = 0;
+    for (const Map& map : maps) {
+      Result<ImageWriter> writer =
+          ImageWriter::open(folder / map.name, size, map.channels, {.type = map.type});
+      if (!writer) return writer.error();
+      files.writers_.push_back(std::move(*writer));
+      files.channels_.push_back(static_cast<int>(map.channels.size()));
+      planes += files.channels_.back();
+    }
+    if (planes > 0) files.planes_ = Image<float>({size.width, std::min(band_rows, size.height)}, planes);
+    return files;
+  }
+
+  bool empty() const { return writers_.empty(); }
+  void begin_band(int y0) { y0_ = y0; }
+
+  /// value_of(index in the tile's area) for each pixel that the tile was asked for.
   template <typename Value>
   void put(const Tile& tile, int plane, const Value& value_of) {
-    const View<float> view = planes.plane(plane);
+    const View<float> view = planes_.plane(plane);
     for_each_pixel(tile.rect, [&](std::size_t, int x, int y) {
-      view(x, y - y0) = static_cast<float>(value_of(index_in(tile.area, x, y)));
+      view(x, y - y0_) = static_cast<float>(value_of(index_in(tile.area, x, y)));
     });
   }
-  Result<void> append_to(ImageWriter& file, int first, int count, int rows) const {
-    std::vector<View<const float>> views;
-    for (int p = first; p < first + count; ++p) {
-      views.push_back(planes.plane(p).crop({0, 0, planes.width(), rows}));
+
+  Result<void> write_band(int rows) {
+    int plane = 0;
+    for (std::size_t f = 0; f < writers_.size(); ++f) {
+      std::vector<View<const float>> views;
+      for (int c = 0; c < channels_[f]; ++c) {
+        views.push_back(std::as_const(planes_).plane(plane++).crop({0, 0, planes_.width(), rows}));
+      }
+      if (Result<void> ok = writers_[f].write_rows(views); !ok) return ok;
     }
-    return file.write_rows(views);
+    return {};
   }
+
+  Result<void> finish() {
+    for (ImageWriter& writer : writers_) {
+      if (Result<void> ok = writer.finish(); !ok) return ok;
+    }
+    return {};
+  }
+
+ private:
+  std::vector<ImageWriter> writers_;
+  std::vector<int> channels_;  ///< of each file
+  Image<float> planes_;
+  int y0_ = 0;
 };
 
-void copy_counts(const Tile& tile, View<std::uint16_t> counts) {
+void copy_counts(const Tile& tile, int y0, View<std::uint16_t> counts) {
   const auto row_length = static_cast<std::size_t>(tile.rect.width());
   const std::uint16_t* row = tile.counts.data();
   for (int y = tile.rect.y0; y < tile.rect.y1; ++y, row += row_length) {
-    std::copy_n(row, row_length, counts.row(y) + tile.rect.x0);
+    std::copy_n(row, row_length, counts.row(y - y0) + tile.rect.x0);
   }
 }
 
@@ -120,20 +163,41 @@ Error interrupted() {
   return {ErrorKind::kInterrupted, "interrupted", "", "stopped on request", ""};
 }
 
-/// One map of the truth: its file and where its planes are in the band.
-struct Map {
-  const char* file;
-  std::vector<std::string> channels;
-  int first_plane;
-};
+/// What a raw file says beside its counts.
+RawFrame frame_head(const Plan& plan) {
+  RawFrame frame;
+  const Sensor& sensor = plan.rig.sensor;
+  const DefectSettings defects = defects_of(plan.scene);
+  for (std::size_t y = 0; y < 2; ++y) {
+    for (std::size_t x = 0; x < 2; ++x) {
+      frame.black[y][x] = static_cast<float>(sensor.black + defects.cell_counts[y][x]);
+    }
+  }
+  frame.white = static_cast<float>(sensor.white);
+  const CameraSettings& camera = plan.scene.camera;
+  frame.shot = {sensor.make, sensor.model, "virtual", plan.rig.exposure_us, camera.iso, camera.f_number};
+  return frame;
+}
+
+DngTags tags_of(const Scene& scene) {
+  DngTags tags;
+  for (std::size_t c = 0; c < 3; ++c) {
+    tags.as_shot_neutral[c] = scene.lights.white_balance[c] / scene.lights.white_balance[1];
+  }
+  return tags;
+}
 
 class SessionWriter {
  public:
-  SessionWriter(const Scene& scene, const Rig& rig, const SimulateOptions& options)
-      : scene_(scene),
-        rig_(rig),
+  SessionWriter(const Scene& scene, const Plan& plan, PassList surface, PassList frames,
+                const SimulateOptions& options)
+      : given_(scene),
+        plan_(plan),
+        scene_(plan.scene),
         options_(options),
-        runner_(build_passes(scene, rig, Output::kCounts), options.tiles) {}
+        band_rows_(frames.halo > 0 ? kTallBandRows : kBandRows),
+        surface_runner_(std::move(surface), options.tiles),
+        frame_runner_(std::move(frames), options.tiles) {}
 
   Result<SimulationReport> write(const fs::path& target) {
     if (Result<void> ok = check_room(target); !ok) return ok.error();
@@ -149,24 +213,26 @@ class SessionWriter {
       if (Result<void> ok = (this->*step)(); !ok) return ok.error();
     }
     if (Result<void> ok = publish(*aside, target); !ok) return ok.error();
-    report_.exposure_us = rig_.exposure_us;
-    report_.passes = runner_.costs();
-    report_.left_out = runner_.left_out();
+    report_.frames = frames();
+    report_.exposure_us = plan_.rig.exposure_us;
+    report_.passes = frame_runner_.costs();
+    report_.left_out = plan_.left_out;
     return std::move(report_);
   }
 
  private:
   int width() const { return scene_.camera.width; }
   int height() const { return scene_.camera.height; }
-  int frames() const { return static_cast<int>(rig_.leds.leds.size()) + 1; }
-
-  std::size_t frames_at_once() const {
-    const std::uint64_t fitting = kFrameBytes / frame_bytes();
-    return std::clamp<std::size_t>(fitting, 1, static_cast<std::size_t>(frames()));
+  int leds() const { return static_cast<int>(plan_.rig.leds.leds.size()); }
+  int frames() const { return leds() + 1; }
+  /// Planes of truth that each LED has of its own: what it is seen of and what reaches a point by the cloth.
+  int planes_of_led() const {
+    return (scene_.effects.cast_shadows ? 1 : 0) + (scene_.effects.interreflection ? 3 : 0);
   }
-  std::uint64_t frame_bytes() const {
-    return sizeof(std::uint16_t) * static_cast<std::uint64_t>(Size{width(), height()}.pixels());
+  std::string shot_name(int index, const char* ending) const {
+    return fmt::format("{:02}_led{:02}{}", index, led_of(index), ending);
   }
+  int led_of(int index) const { return index < leds() ? index + 1 : 0; }  // the dark shot comes last
 
   /// Better now than after an hour of rendering.
   Result<void> check_room(const fs::path& target) const {
@@ -175,126 +241,153 @@ class SessionWriter {
       return Error{ErrorKind::kCannotCreate, "session exists", target.string(),
                    "sessions are never overwritten", "choose another name with -o or remove it"};
     }
-    const std::uint64_t truth_row = kTruthPlanes * sizeof(float) * static_cast<std::uint64_t>(width());
-    const std::uint64_t disk = truth_row * static_cast<std::uint64_t>(height()) +
-                               frame_bytes() * static_cast<std::uint64_t>(frames());
+    const auto pixels = static_cast<std::uint64_t>(Size{width(), height()}.pixels());
+    const auto count = static_cast<std::uint64_t>(frames());
+    const auto of_leds = static_cast<std::uint64_t>(planes_of_led() * leds());
+    const std::uint64_t disk =
+        pixels * (kTruthPlanes * sizeof(float) + count * sizeof(std::uint16_t) + of_leds * sizeof(std::uint16_t));
     if (const std::uint64_t free = free_disk_bytes(target); free < disk) {
       return Error{ErrorKind::kInputOutput, "no room for the session", target.string(),
                    fmt::format("{} MB are needed, {} MB are free", disk / kMegabyte, free / kMegabyte),
                    "free disk space or choose another disk with -o"};
     }
-    return check_memory(truth_row * kBandRows + frame_bytes() * frames_at_once());
+    const std::uint64_t band_pixels =
+        static_cast<std::uint64_t>(std::min(band_rows_, height())) * static_cast<std::uint64_t>(width());
+    return check_memory(band_pixels *
+                        (kTruthPlanes * sizeof(float) + count * sizeof(std::uint16_t) + of_leds * sizeof(float)));
   }
 
   Result<void> write_calibration_folder() {
-    Result<Calibration> written = write_calibration(folder_ / "calibration", exact_calibration(scene_, rig_));
+    Result<Calibration> written =
+        write_calibration(folder_ / "calibration", exact_calibration(scene_, plan_.rig));
     if (!written) return written.error();
     session_.calibration_id = written->id;
     return {};
   }
 
-  Result<void> write_truth() {
-    if (Result<void> ok = write_file(folder_ / "truth" / "scene.toml", to_toml(scene_)); !ok) return ok;
-    const Map maps[] = {
-        {"normal.exr", {"X", "Y", "Z"}, 0}, {"albedo.exr", {"R", "G", "B"}, 3}, {"height.exr", {"Y"}, 6}};
-    std::vector<ImageWriter> files;
-    for (const Map& map : maps) {
-      Result<ImageWriter> file =
-          ImageWriter::open(folder_ / "truth" / map.file, {width(), height()}, map.channels, WriteOptions());
-      if (!file) return file.error();
-      files.push_back(std::move(*file));
+  /// body(y0, y1) for each band of rows, in order.
+  template <typename Body>
+  Result<void> for_each_band(const Body& body) {
+    for (int y0 = 0; y0 < height(); y0 += band_rows_) {
+      const int y1 = std::min(y0 + band_rows_, height());
+      if (Result<void> ok = body(y0, y1); !ok) return ok;
+      rows_done_ += y1 - y0;
+      if (options_.progress) options_.progress(rows_done_, 2 * height());
     }
-    Band band = {Image<float>({width(), std::min(kBandRows, height())}, kTruthPlanes)};
-    for (band.y0 = 0; band.y0 < height(); band.y0 += kBandRows) {
-      const int y1 = std::min(band.y0 + kBandRows, height());
-      if (Result<void> ok = render_truth(band, y1); !ok) return ok;
-      const Stopwatch timing(report_.write_seconds);
-      for (std::size_t m = 0; m < files.size(); ++m) {
-        const int planes = static_cast<int>(maps[m].channels.size());
-        if (Result<void> ok = band.append_to(files[m], maps[m].first_plane, planes, y1 - band.y0); !ok)
-          return ok;
-      }
-    }
-    for (ImageWriter& file : files) {
-      if (Result<void> ok = file.finish(); !ok) return ok;
-    }
-    report_progress();
     return {};
   }
 
-  Result<void> render_truth(Band& band, int y1) {
+  Result<void> write_truth() {
+    if (Result<void> ok = write_file(folder_ / "truth" / "scene.toml", to_toml(given_)); !ok) return ok;
+    Result<MapFiles> maps = MapFiles::open(
+        folder_ / "truth", {width(), height()}, band_rows_,
+        {{"normal.exr", {"X", "Y", "Z"}}, {"albedo.exr", {"R", "G", "B"}}, {"height.exr", {"Y"}}});
+    if (!maps) return maps.error();
+    Result<void> written = for_each_band([&](int y0, int y1) {
+      maps->begin_band(y0);
+      if (Result<void> ok = render_surface(*maps, y0, y1); !ok) return ok;
+      const Stopwatch timing(report_.write_seconds);
+      return maps->write_band(y1 - y0);
+    });
+    return written ? maps->finish() : written;
+  }
+
+  Result<void> render_surface(MapFiles& maps, int y0, int y1) {
     const Stopwatch timing(report_.render_seconds);
-    return runner_.run(
-        {0, band.y0, width(), y1}, {}, options_.stop,
+    return surface_runner_.run(
+        {0, y0, width(), y1}, {}, options_.stop,
         [&](const Tile& tile) {
-          band.put(tile, 0, [&](std::size_t i) { return tile.surface[i].normal.x; });
-          band.put(tile, 1, [&](std::size_t i) { return tile.surface[i].normal.y; });
-          band.put(tile, 2, [&](std::size_t i) { return tile.surface[i].normal.z; });
-          for (int c = 0; c < 3; ++c) {
-            band.put(tile, 3 + c, [&](std::size_t i) { return tile.albedo[i][static_cast<std::size_t>(c)]; });
+          maps.put(tile, 0, [&](std::size_t i) { return tile.surface[i].normal.x; });
+          maps.put(tile, 1, [&](std::size_t i) { return tile.surface[i].normal.y; });
+          maps.put(tile, 2, [&](std::size_t i) { return tile.surface[i].normal.z; });
+          for (std::size_t c = 0; c < 3; ++c) {
+            maps.put(tile, 3 + static_cast<int>(c), [&](std::size_t i) { return tile.albedo[i][c]; });
           }
-          band.put(tile, 6, [&](std::size_t i) { return tile.surface[i].height_mm; });
+          maps.put(tile, 6, [&](std::size_t i) { return tile.surface[i].height_mm; });
         },
         {});
   }
 
   Result<void> write_frames() {
-    std::vector<int> leds(static_cast<std::size_t>(frames()));
-    std::iota(leds.begin(), leds.end(), 1);
-    leds.back() = 0;  // the dark shot comes last
-    // The surface is the same for every light: frames that fit into memory together share it.
-    std::vector<RawFrame> together(frames_at_once());
-    for (RawFrame& frame : together) frame = empty_frame();
-    for (std::size_t first = 0; first < leds.size(); first += together.size()) {
-      const std::size_t count = std::min(together.size(), leds.size() - first);
-      if (Result<void> ok = render_frames({&leds[first], count}, together); !ok) return ok;
-      for (std::size_t i = 0; i < count; ++i) {
-        if (options_.stop.stop_requested()) return interrupted();
-        if (Result<void> ok = write_frame(static_cast<int>(first + i), leds[first + i], together[i]); !ok)
-          return ok;
-        ++report_.frames;
-        report_progress();
+    std::vector<DngWriter> files;
+    for (int index = 0; index < frames(); ++index) {
+      Result<DngWriter> file = DngWriter::open(folder_ / "raw" / shot_name(index, ".dng"), frame_head(plan_),
+                                               {width(), height()}, tags_of(scene_));
+      if (!file) return file.error();
+      files.push_back(std::move(*file));
+    }
+    Result<MapFiles> light = open_light_maps();
+    if (!light) return light.error();
+    Image<std::uint16_t> counts({width(), std::min(band_rows_, height())}, frames());
+    Result<void> written = for_each_band([&](int y0, int y1) {
+      if (Result<void> ok = render_frames(counts, *light, y0, y1); !ok) return ok;
+      const Stopwatch timing(report_.write_seconds);
+      for (int index = 0; index < frames(); ++index) {
+        const View<const std::uint16_t> rows = counts.plane(index);
+        Result<void> ok = files[static_cast<std::size_t>(index)].write_rows(rows.crop({0, 0, width(), y1 - y0}));
+        if (!ok) return ok;
       }
+      return light->write_band(y1 - y0);
+    });
+    if (!written) return written;
+    if (Result<void> ok = light->finish(); !ok) return ok;
+    for (int index = 0; index < frames(); ++index) {
+      if (options_.stop.stop_requested()) return interrupted();
+      if (Result<void> ok = finish_frame(index, files[static_cast<std::size_t>(index)]); !ok) return ok;
     }
     return {};
   }
 
-  RawFrame empty_frame() const {
-    RawFrame frame;
-    frame.counts = Image<std::uint16_t>({width(), height()});
-    const auto black = static_cast<float>(rig_.sensor.black);
-    frame.black = {{{black, black}, {black, black}}};
-    frame.white = static_cast<float>(rig_.sensor.white);
-    frame.shot = {rig_.sensor.make, rig_.sensor.model, "virtual",
-                  rig_.exposure_us, scene_.camera.iso, scene_.camera.f_number};
-    return frame;
+  Result<MapFiles> open_light_maps() const {
+    std::vector<MapFiles::Map> maps;
+    for (int index = 0; index < leds(); ++index) {
+      if (scene_.effects.cast_shadows) {
+        maps.push_back({"visibility_" + shot_name(index, ".exr").substr(3), {"Y"}, SampleType::kHalf});
+      }
+      if (scene_.effects.interreflection) {
+        maps.push_back({"indirect_" + shot_name(index, ".exr").substr(3), {"R", "G", "B"}, SampleType::kHalf});
+      }
+    }
+    return MapFiles::open(folder_ / "truth", {width(), height()}, band_rows_, maps);
   }
 
-  Result<void> render_frames(std::span<const int> leds, std::span<RawFrame> frames) {
+  Result<void> render_frames(Image<std::uint16_t>& counts, MapFiles& light, int y0, int y1) {
     const Stopwatch timing(report_.render_seconds);
-    return runner_.run(
-        {0, 0, width(), height()}, leds, options_.stop, [](const Tile&) {},
+    std::vector<int> shots(static_cast<std::size_t>(frames()));
+    for (int index = 0; index < frames(); ++index) shots[static_cast<std::size_t>(index)] = led_of(index);
+    light.begin_band(y0);
+    return frame_runner_.run(
+        {0, y0, width(), y1}, shots, options_.stop, [](const Tile&) {},
         [&](const Tile& tile) {
-          const auto shot = std::find(leds.begin(), leds.end(), tile.led) - leds.begin();
-          copy_counts(tile, frames[static_cast<std::size_t>(shot)].counts.plane());
+          const int index = tile.led == 0 ? leds() : tile.led - 1;
+          copy_counts(tile, y0, counts.plane(index));
+          if (tile.led != 0 && !light.empty()) put_light(light, tile);
         });
   }
 
-  Result<void> write_frame(int index, int led, const RawFrame& frame) {
+  void put_light(MapFiles& light, const Tile& tile) const {
+    int plane = (tile.led - 1) * planes_of_led();
+    if (scene_.effects.cast_shadows) {
+      light.put(tile, plane++, [&](std::size_t i) { return tile.visibility[i]; });
+    }
+    if (!scene_.effects.interreflection) return;
+    const Rgb flux = plan_.rig.leds.leds[static_cast<std::size_t>(tile.led - 1)].flux_rgb;
+    for (std::size_t c = 0; c < 3; ++c) {
+      light.put(tile, plane++, [&](std::size_t i) { return tile.indirect[i][c] * flux[c]; });
+    }
+  }
+
+  Result<void> finish_frame(int index, DngWriter& file) {
     const Stopwatch timing(report_.write_seconds);
+    if (Result<void> ok = file.finish(); !ok) return ok;
     Shot shot;
     shot.index = index;
-    shot.led = led;
-    shot.role = led == 0 ? ShotRole::kDark : ShotRole::kLit;
-    shot.file = fmt::format("raw/{:02}_led{:02}.dng", index, led);
-    shot.exposure_us = rig_.exposure_us;
+    shot.led = led_of(index);
+    shot.role = shot.led == 0 ? ShotRole::kDark : ShotRole::kLit;
+    shot.file = "raw/" + shot_name(index, ".dng");
+    shot.exposure_us = plan_.rig.exposure_us;
     shot.iso = scene_.camera.iso;
     shot.f_number = scene_.camera.f_number;
-    DngTags tags;
-    for (std::size_t c = 0; c < 3; ++c) {
-      tags.as_shot_neutral[c] = scene_.lights.white_balance[c] / scene_.lights.white_balance[1];
-    }
-    if (Result<void> ok = write_dng(folder_ / shot.file, frame, tags); !ok) return ok;
     Result<std::string> digest = sha256_of_file(folder_ / shot.file);
     if (!digest) return digest.error();
     shot.sha256 = *digest;
@@ -315,40 +408,68 @@ class SessionWriter {
     return aside.publish(target);
   }
 
-  void report_progress() {
-    if (options_.progress) options_.progress(++parts_done_, frames() + 1);
-  }
-
-  const Scene& scene_;
-  const Rig& rig_;
+  const Scene& given_;  ///< as it was asked for
+  const Plan& plan_;
+  const Scene& scene_;  ///< as it is simulated
   const SimulateOptions& options_;
-  PassRunner runner_;
+  int band_rows_;
+  PassRunner surface_runner_, frame_runner_;
   fs::path folder_;
   Session session_;
   SimulationReport report_;
-  int parts_done_ = 0;
+  int rows_done_ = 0;
 };
 
 }  // namespace
 
 Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& session_folder,
                                           const SimulateOptions& options) try {
-  const Result<Rig> rig = rig_of(scene);
-  if (!rig) return rig.error();
+  const Result<Plan> plan = plan_of(scene);
+  if (!plan) return plan.error();
   if (session_folder.empty()) {
     return Error{ErrorKind::kUsage, "no session folder", "simulation", "its name is empty",
                  "name one with -o"};
   }
   const bool ends_in_slash = !session_folder.has_filename() && session_folder.has_parent_path();
   const fs::path target = ends_in_slash ? session_folder.parent_path() : session_folder;
-  return SessionWriter(scene, *rig, options).write(target);
+  Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
+  Result<PassList> frames = build_passes(plan->scene, plan->rig, Output::kCounts);
+  if (!surface) return surface.error();
+  if (!frames) return frames.error();
+  return SessionWriter(scene, *plan, std::move(*surface), std::move(*frames), options).write(target);
+} catch (const std::bad_alloc&) {
+  return no_memory("the system refused some");
+}
+
+Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file, const SimulateOptions& options) try {
+  const Result<Plan> plan = plan_of(scene);
+  if (!plan) return plan.error();
+  const int leds = static_cast<int>(plan->rig.leds.leds.size());
+  if (led < 0 || led > leds) {
+    return Error{ErrorKind::kUsage, "the scene has no such LED", fmt::format("LED {}", led),
+                 fmt::format("LEDs are numbered from 1 to {}; 0 is the dark shot", leds), "choose another"};
+  }
+  Result<PassList> passes = build_passes(plan->scene, plan->rig, Output::kCounts);
+  if (!passes) return passes.error();
+  RawFrame frame = frame_head(*plan);
+  const Size size = plan->rig.camera.size;
+  if (Result<void> ok = check_memory(2 * sizeof(std::uint16_t) * static_cast<std::uint64_t>(size.pixels())); !ok) {
+    return ok;
+  }
+  frame.counts = Image<std::uint16_t>(size);
+  PassRunner runner(std::move(*passes), options.tiles);
+  const Result<void> ran =
+      runner.run({0, 0, size.width, size.height}, {&led, 1}, options.stop, [](const Tile&) {},
+                 [&](const Tile& tile) { copy_counts(tile, 0, frame.counts.plane()); });
+  if (!ran) return ran;
+  return write_dng(file, frame, tags_of(plan->scene));
 } catch (const std::bad_alloc&) {
   return no_memory("the system refused some");
 }
 
 Result<Rendering> render_readings(const Scene& scene, Rect area, const TileOptions& tiles) try {
-  const Result<Rig> rig = rig_of(scene);
-  if (!rig) return rig.error();
+  const Result<Plan> plan = plan_of(scene);
+  if (!plan) return plan.error();
   const auto inside = [](int from, int to) {
     return from >= -kFarthestPixel && to <= kFarthestPixel && from < to;
   };
@@ -358,38 +479,43 @@ Result<Rendering> render_readings(const Scene& scene, Rect area, const TileOptio
                  fmt::format("it must hold a pixel and end within {} pixels of the origin", kFarthestPixel),
                  "choose another area"};
   }
-  const std::uint64_t planes = 3 * rig->leds.leds.size() + kTruthPlanes;
+  Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
+  Result<PassList> frames = build_passes(plan->scene, plan->rig, Output::kRgb);
+  if (!surface) return surface.error();
+  if (!frames) return frames.error();
+  std::vector<int> leds(plan->rig.leds.leds.size());
+  std::iota(leds.begin(), leds.end(), 1);
+  const std::uint64_t planes = 3 * leds.size() + kTruthPlanes;
   if (Result<void> ok = check_memory(static_cast<std::uint64_t>(area.pixels()) * planes * sizeof(double));
       !ok) {
     return ok.error();
   }
-  std::vector<int> leds(rig->leds.leds.size());
-  std::iota(leds.begin(), leds.end(), 1);
   const Size size = {area.width(), area.height()};
   Rendering out = {Image<double>(size, 3 * static_cast<int>(leds.size())), Image<double>(size, 3),
                    Image<double>(size, 3), Image<double>(size)};
-  const double exposure = rig->exposure(scene.camera.iso);
   const auto put = [&](const Tile& tile, View<double> plane, const auto& value_of) {
-    for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {
-      plane(x - area.x0, y - area.y0) = value_of(i, index_in(tile.area, x, y));
-    });
+    for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) { plane(x - area.x0, y - area.y0) = value_of(i); });
   };
-  PassRunner runner(build_passes(scene, *rig, Output::kRgb), tiles);
-  const Result<void> ran = runner.run(
-      area, leds, {},
+  const Result<void> truth = PassRunner(std::move(*surface), tiles).run(
+      area, {}, {},
       [&](const Tile& tile) {
-        put(tile, out.normal.plane(0), [&](std::size_t, std::size_t i) { return tile.surface[i].normal.x; });
-        put(tile, out.normal.plane(1), [&](std::size_t, std::size_t i) { return tile.surface[i].normal.y; });
-        put(tile, out.normal.plane(2), [&](std::size_t, std::size_t i) { return tile.surface[i].normal.z; });
-        put(tile, out.height_mm.plane(), [&](std::size_t, std::size_t i) { return tile.surface[i].height_mm; });
+        put(tile, out.normal.plane(0), [&](std::size_t i) { return tile.surface[i].normal.x; });
+        put(tile, out.normal.plane(1), [&](std::size_t i) { return tile.surface[i].normal.y; });
+        put(tile, out.normal.plane(2), [&](std::size_t i) { return tile.surface[i].normal.z; });
+        put(tile, out.height_mm.plane(), [&](std::size_t i) { return tile.surface[i].height_mm; });
         for (std::size_t c = 0; c < 3; ++c) {
-          put(tile, out.albedo.plane(static_cast<int>(c)), [&](std::size_t, std::size_t i) { return tile.albedo[i][c]; });
+          put(tile, out.albedo.plane(static_cast<int>(c)), [&](std::size_t i) { return tile.albedo[i][c]; });
         }
       },
+      {});
+  if (!truth) return truth.error();
+  const double exposure = plan->rig.exposure(scene.camera.iso);
+  const Result<void> ran = PassRunner(std::move(*frames), tiles).run(
+      area, leds, {}, [](const Tile&) {},
       [&](const Tile& tile) {
         for (std::size_t c = 0; c < 3; ++c) {
           put(tile, out.readings.plane(3 * (tile.led - 1) + static_cast<int>(c)),
-              [&](std::size_t i, std::size_t) { return tile.samples[3 * i + c] / exposure; });
+              [&](std::size_t i) { return tile.samples[3 * i + c] / exposure; });
         }
       });
   if (!ran) return ran.error();

@@ -18,8 +18,8 @@ namespace weft::simulator {
 struct SimulateOptions {
   TileOptions tiles;  ///< tile size and threads: they change no byte
   std::stop_token stop;
-  /// Called after each part of the work: the truth, then every frame.
-  std::function<void(int parts_done, int parts)> progress;
+  /// Called after each band of rows: of the truth, then of all frames together.
+  std::function<void(int rows_done, int rows)> progress;
 };
 
 /// What a simulation did.
@@ -34,14 +34,21 @@ struct SimulationReport {
 
 /// Renders a scene into a session folder: a lit frame for each LED and a dark one as DNG, session.json, the
 /// exact calibration, and under truth/ normal.exr (X, Y, Z), albedo.exr (R, G, B), height.exr (mm, above the
-/// plane cloth_height_mm) and scene.toml. The same scene gives the same bytes. Memory holds frames of up to
-/// 256 MiB together, at least one, and a band of the truth.
+/// plane cloth_height_mm) and scene.toml. With cast shadows, for each LED K visibility_ledKK.exr, the share of
+/// it that each point sees; with interreflection indirect_ledKK.exr (R, G, B), the reading of a white surface
+/// by light from the cloth alone. The same scene gives the same bytes. Memory
+/// holds a band of rows of everything.
 ///
 /// The folder is made aside (`.partial`) and renamed when complete: after an error or an interrupt there is
 /// nothing. Errors: kBadData (the scene), kCannotCreate (`session_folder` or a folder aside exists, or may
 /// not be made), kInputOutput (no room on the disk), kTryAgain (not enough memory free), kInterrupted.
 Result<SimulationReport> simulate_session(const Scene& scene, const std::filesystem::path& session_folder,
                                           const SimulateOptions& options);
+
+/// One frame alone, the same bytes as in the session: of a LED from 1, or with 0 the dark shot. Errors as
+/// above; kUsage where the scene has no such LED.
+Result<void> simulate_frame(const Scene& scene, int led, const std::filesystem::path& file,
+                            const SimulateOptions& options);
 
 /// Part of a simulated picture as numbers, without mosaic, converter or files.
 struct Rendering {

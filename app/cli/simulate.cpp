@@ -7,33 +7,99 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "core/files.h"
+#include "simulator/build_passes.h"
+#include "simulator/plan.h"
+#include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
 
 namespace weft::app {
 namespace {
 
+using simulator::LeftOut;
+using simulator::PassCost;
+using simulator::Plan;
+
+constexpr double kWorthTelling_s = 0.05;
+
+/// What runs and what does not, known before the run.
+struct Explanation {
+  Plan plan;
+  simulator::PassList passes;
+  std::vector<double> saved_seconds;  ///< of one thread, by left-out effect; only where bounds decided
+};
+
+Result<Explanation> explain(const simulator::Scene& scene) {
+  Result<Plan> plan = simulator::plan_of(scene);
+  if (!plan) return plan.error();
+  Result<simulator::PassList> passes =
+      simulator::build_passes(plan->scene, plan->rig, simulator::Output::kCounts);
+  if (!passes) return passes.error();
+  Explanation explanation = {std::move(*plan), std::move(*passes), {}};
+  if (scene.auto_to_sigma) {
+    for (const LeftOut& effect : explanation.plan.left_out) {
+      explanation.saved_seconds.push_back(simulator::seconds_saved(explanation.plan, effect));
+    }
+  }
+  return explanation;
+}
+
+std::string why(const simulator::Pass& pass, const simulator::Scene& scene) {
+  if (pass.effect.empty()) return "every picture needs it";
+  return scene.auto_to_sigma ? pass.effect + " may change more than is asked for"
+                             : "the scene names " + pass.effect;
+}
+
+void print_plan(const Explanation& explanation, const simulator::Scene& scene) {
+  print("pass             why it runs                        what it does");
+  for (const simulator::Pass& pass : explanation.passes.passes) {
+    print(fmt::format("{:<16} {:<34} {}", pass.name, why(pass, scene), pass.does));
+  }
+  if (explanation.plan.left_out.empty()) return;
+  print(scene.auto_to_sigma ? "\nleft out         sigma at most  thread-seconds saved  why"
+                            : "\nleft out         why");
+  for (std::size_t i = 0; i < explanation.plan.left_out.size(); ++i) {
+    const LeftOut& effect = explanation.plan.left_out[i];
+    if (!scene.auto_to_sigma) {
+      print(fmt::format("{:<16} {}", effect.name, effect.why));
+      continue;
+    }
+    const double saved = explanation.saved_seconds[i];
+    print(fmt::format("{:<16} {:13.2g}  {:>20}  {}", effect.name, effect.bound_sigma,
+                      saved < kWorthTelling_s ? "under 0.05" : fmt::format("{:.1f}", saved), effect.why));
+  }
+}
+
+void print_costs(const std::vector<PassCost>& costs) {
+  double sum = 0;
+  for (const PassCost& pass : costs) sum += pass.seconds;
+  print("\npass             thread-seconds  share");
+  for (const PassCost& pass : costs) {
+    print(fmt::format("{:<16} {:14.2f} {:5.1f}%", pass.name, pass.seconds,
+                      100 * pass.seconds / std::max(sum, 1e-9)));
+  }
+}
+
 Json json_of(const simulator::SimulationReport& report) {
   Json passes = Json::array(), left_out = Json::array();
-  for (const simulator::PassCost& pass : report.passes) {
-    passes.push_back({{"effect", pass.name}, {"does", pass.does}, {"seconds", pass.seconds}});
+  for (const PassCost& pass : report.passes) {
+    passes.push_back({{"pass", pass.name},
+                      {"effect", pass.effect.empty() ? pass.name : pass.effect},
+                      {"does", pass.does},
+                      {"seconds", pass.seconds}});
   }
-  for (const simulator::LeftOut& effect : report.left_out) {
-    left_out.push_back({{"effect", effect.name}, {"why", effect.why}});
+  for (const LeftOut& effect : report.left_out) {
+    left_out.push_back({{"effect", effect.name}, {"why", effect.why}, {"bound_sigma", effect.bound_sigma}});
   }
   return {{"passes", std::move(passes)}, {"left_out", std::move(left_out)}};
 }
 
-void print_passes(const simulator::SimulationReport& report) {
-  double sum = 0;
-  for (const simulator::PassCost& pass : report.passes) sum += pass.seconds;
-  print("pass             seconds  share  what it does");
-  for (const simulator::PassCost& pass : report.passes) {
-    print(fmt::format("{:<16} {:7.2f} {:5.1f}%  {}", pass.name, pass.seconds,
-                      100 * pass.seconds / std::max(sum, 1e-9), pass.does));
-  }
-  for (const simulator::LeftOut& effect : report.left_out) {
-    print(fmt::format("{:<16}    left out    {}", effect.name, effect.why));
-  }
+Result<int> run_frame(const simulator::Scene& scene, const SimulateArguments& arguments,
+                      const CommonArguments& common, const simulator::SimulateOptions& options) {
+  const Result<void> done = simulator::simulate_frame(scene, *arguments.led, arguments.output, options);
+  if (!done) return done.error();
+  const std::string file = std::filesystem::absolute(arguments.output).lexically_normal().string();
+  common.json ? print_json({{"frame", file}, {"led", *arguments.led}}) : print(file);
+  return kDone;
 }
 
 }  // namespace
@@ -46,6 +112,12 @@ Result<int> run_simulate(const SimulateArguments& arguments, const CommonArgumen
   options.tiles.threads = common.threads;
   options.stop = stop_on_signal();
   options.progress = [&](int done, int parts) { line.update("simulate", static_cast<double>(done) / parts); };
+  if (arguments.led) return run_frame(*scene, arguments, common, options);
+  if (arguments.explain && !common.json) {
+    const Result<Explanation> explanation = explain(*scene);
+    if (!explanation) return explanation.error();
+    print_plan(*explanation, *scene);
+  }
   const Result<simulator::SimulationReport> report =
       simulator::simulate_session(*scene, arguments.output, options);
   if (!report) return report.error();
@@ -60,7 +132,7 @@ Result<int> run_simulate(const SimulateArguments& arguments, const CommonArgumen
     print_json(document);
     return kDone;
   }
-  if (arguments.explain) print_passes(*report);
+  if (arguments.explain) print_costs(report->passes);
   print(fmt::format("{}: {} frames of {} x {} at {:.0f} us, rendered in {:.1f} s, written in {:.1f} s",
                     session, report->frames, scene->camera.width, scene->camera.height, report->exposure_us,
                     report->render_seconds, report->write_seconds));

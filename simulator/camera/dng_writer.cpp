@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -188,10 +189,10 @@ std::uint64_t strip_bytes(Size size) {
   return 2 * static_cast<std::uint64_t>(size.pixels());
 }
 
-Directory raw_directory(const RawFrame& frame, const DngTags& tags, std::uint32_t exif_at,
+Directory raw_directory(const RawFrame& frame, Size size, const DngTags& tags, std::uint32_t exif_at,
                         std::uint32_t strip_at) {
-  const auto width = static_cast<std::uint32_t>(frame.counts.width());
-  const auto height = static_cast<std::uint32_t>(frame.counts.height());
+  const auto width = static_cast<std::uint32_t>(size.width);
+  const auto height = static_cast<std::uint32_t>(size.height);
   const ShotMetadata& shot = frame.shot;
   const auto color = [&frame](int x, int y) { return static_cast<std::uint8_t>(frame.cfa.channel_at(x, y)); };
   std::vector<double> black = {frame.black[0][0], frame.black[0][1], frame.black[1][0], frame.black[1][1]};
@@ -211,7 +212,7 @@ Directory raw_directory(const RawFrame& frame, const DngTags& tags, std::uint32_
       shorts(kOrientation, {kUpright}),
       shorts(kSamplesPerPixel, {1}),
       longs(kRowsPerStrip, {height}),
-      longs(kStripByteCounts, {static_cast<std::uint32_t>(strip_bytes(frame.counts.size()))}),
+      longs(kStripByteCounts, {static_cast<std::uint32_t>(strip_bytes(size))}),
       shorts(kPlanarConfiguration, {1}),
       shorts(kCfaRepeatPatternDim, {2, 2}),
       bytes(kCfaPattern, {color(0, 0), color(1, 0), color(0, 1), color(1, 1)}),
@@ -231,16 +232,16 @@ Directory raw_directory(const RawFrame& frame, const DngTags& tags, std::uint32_
 }
 
 /// Everything before the counts.
-std::string dng_head(const RawFrame& frame, const DngTags& tags) {
+std::string dng_head(const RawFrame& frame, Size size, const DngTags& tags) {
   const Directory exif = exif_directory(frame.shot, tags);
-  const std::size_t exif_at = kHeaderBytes + bytes_of(raw_directory(frame, tags, 0, 0));
+  const std::size_t exif_at = kHeaderBytes + bytes_of(raw_directory(frame, size, tags, 0, 0));
   const std::size_t strip_at =
       (exif_at + bytes_of(exif) + kStripAlignment - 1) / kStripAlignment * kStripAlignment;
 
   std::string head = "II*";
   head.resize(4);
   append(head, kHeaderBytes);
-  append(head, raw_directory(frame, tags, static_cast<std::uint32_t>(exif_at),
+  append(head, raw_directory(frame, size, tags, static_cast<std::uint32_t>(exif_at),
                              static_cast<std::uint32_t>(strip_at)));
   append(head, exif);
   head.resize(strip_at);
@@ -259,9 +260,8 @@ bool is_bayer(const CfaPattern& cfa) {
 }
 
 /// Why this frame cannot be a DNG; empty when it can.
-std::string fault_of(const RawFrame& frame, const DngTags& tags) {
-  const Size size = frame.counts.size();
-  if (frame.counts.empty() || frame.counts.planes() != 1) return "it is no mosaic of one plane";
+std::string fault_of(const RawFrame& frame, Size size, const DngTags& tags) {
+  if (size.width < 1 || size.height < 1) return "it is no mosaic of one plane with pixels";
   if (size.width > kLongestSide || size.height > kLongestSide)
     return fmt::format("one of its sides of {} and {} pixels is over {}", size.width, size.height,
                        kLongestSide);
@@ -296,20 +296,56 @@ std::string fault_of(const RawFrame& frame, const DngTags& tags) {
   return {};
 }
 
+Result<std::string> checked_head(const std::filesystem::path& file, const RawFrame& frame, Size size,
+                                 const DngTags& tags) {
+  if (const std::string fault = fault_of(frame, size, tags); !fault.empty()) {
+    return Error{ErrorKind::kUsage, "frame cannot be written as DNG", file.string(), fault,
+                 "correct the camera of the scene"};
+  }
+  return dng_head(frame, size, tags);
+}
+
 }  // namespace
 
 Result<void> write_dng(const std::filesystem::path& file, const RawFrame& frame, const DngTags& tags) {
-  if (const std::string fault = fault_of(frame, tags); !fault.empty())
-    return Error{ErrorKind::kUsage, "frame cannot be written as DNG", file.string(), fault,
-                 "correct the camera of the scene"};
-
+  const bool is_mosaic = frame.counts.planes() == 1;
   const View<const std::uint16_t> counts = frame.counts.plane();
+  Result<std::string> bytes = checked_head(file, frame, is_mosaic ? counts.size() : Size(), tags);
+  if (!bytes) return bytes.error();
   const std::size_t row_bytes = sizeof(std::uint16_t) * static_cast<std::size_t>(counts.width());
-  std::string bytes = dng_head(frame, tags);
-  bytes.reserve(bytes.size() + strip_bytes(counts.size()));
+  bytes->reserve(bytes->size() + strip_bytes(counts.size()));
   for (int y = 0; y < counts.height(); ++y)
-    bytes.append(reinterpret_cast<const char*>(counts.row(y)), row_bytes);
-  return write_file(file, bytes);
+    bytes->append(reinterpret_cast<const char*>(counts.row(y)), row_bytes);
+  return write_file(file, *bytes);
+}
+
+Result<DngWriter> DngWriter::open(const std::filesystem::path& file, const RawFrame& frame, Size size,
+                                  const DngTags& tags) {
+  const Result<std::string> head = checked_head(file, frame, size, tags);
+  if (!head) return head.error();
+  DngWriter writer;
+  writer.file_ = file;
+  writer.out_.reset(std::fopen(file.c_str(), "wbx"));
+  if (!writer.out_) return cannot_write(file, errno);
+  if (std::fwrite(head->data(), 1, head->size(), writer.out_.get()) != head->size()) {
+    return cannot_write(file, errno);
+  }
+  return writer;
+}
+
+Result<void> DngWriter::write_rows(View<const std::uint16_t> rows) {
+  const auto width = static_cast<std::size_t>(rows.width());
+  for (int y = 0; y < rows.height(); ++y) {
+    if (std::fwrite(rows.row(y), sizeof(std::uint16_t), width, out_.get()) != width) {
+      return cannot_write(file_, errno);
+    }
+  }
+  return {};
+}
+
+Result<void> DngWriter::finish() {
+  if (std::fclose(out_.release()) != 0) return cannot_write(file_, errno);
+  return {};
 }
 
 }  // namespace weft::simulator

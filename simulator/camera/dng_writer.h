@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <string>
 
 #include "core/raw_frame.h"
@@ -33,5 +35,24 @@ struct DngTags {
 /// The file is written aside and renamed (core/files.h). Errors: kUsage where the frame breaks a rule above;
 /// kCannotCreate and kInputOutput with the system's reason.
 Result<void> write_dng(const std::filesystem::path& file, const RawFrame& frame, const DngTags& tags = {});
+
+/// The same file row band by row band. It is not written aside: make it in a folder that is published when
+/// it is complete (core/files.h). Errors as write_dng(); a file that is there is kCannotCreate.
+class DngWriter {
+ public:
+  /// `frame` says everything but the counts, which are not looked at.
+  static Result<DngWriter> open(const std::filesystem::path& file, const RawFrame& frame, Size size,
+                                const DngTags& tags = {});
+  /// The next rows, all of them `size.height` in the end.
+  Result<void> write_rows(View<const std::uint16_t> rows);
+  Result<void> finish();
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::filesystem::path file_;
+  std::unique_ptr<std::FILE, Close> out_;
+};
 
 }  // namespace weft::simulator

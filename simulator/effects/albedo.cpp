@@ -4,16 +4,44 @@
 #include "simulator/effects/effects.h"
 #include "simulator/effects/random_key.h"
 #include "simulator/sampling/random.h"
+#include "simulator/spectra/observer.h"
 
 namespace weft::simulator {
 namespace {
 
+/// What three channels make of a dye: those of the camera where it is told apart from the observer, which is
+/// an effect.
+class ColourOf {
+ public:
+  ColourOf(const Scene& scene, bool seen_by_camera)
+      : plain_(scene.material.albedo), weights_(rec709_weights()) {
+    if (seen_by_camera && scene.effects.spectral) {
+      if (const auto camera = camera_weights(scene.spectra.led, scene.spectra.filters)) weights_ = *camera;
+    }
+    if (scene.material.dye) plain_ = of(*scene.material.dye);
+  }
+  Rgb operator()(const std::optional<Spectrum>& dye, const std::optional<Rgb>& albedo) const {
+    return dye ? of(*dye) : albedo.value_or(plain_);
+  }
+
+ private:
+  /// A dye outside Rec.709 counts as the nearest albedo there is.
+  Rgb of(const Spectrum& dye) const {
+    Rgb albedo = channel_reflectance(weights_, dye);
+    for (double& a : albedo) a = std::clamp(a, 0.0, 1.0);
+    return albedo;
+  }
+
+  Rgb plain_;
+  ChannelWeights weights_;
+};
+
 /// Albedo of a yarn: its colour, a little lighter or darker than its neighbours.
 class Dye {
  public:
-  explicit Dye(const Scene& scene)
-      : colours_{scene.material.warp_albedo.value_or(scene.material.albedo),
-                 scene.material.weft_albedo.value_or(scene.material.albedo)},
+  Dye(const Scene& scene, const ColourOf& colour_of)
+      : colours_{colour_of(scene.material.warp_dye, scene.material.warp_albedo),
+                 colour_of(scene.material.weft_dye, scene.material.weft_albedo)},
         stripe_yarns_(scene.material.stripe_yarns) {
     for (std::uint32_t i = 0; i < kYarns; ++i) {
       const auto bits = philox({i, 0, kYarnStream, 0}, random_key(scene));
@@ -47,16 +75,17 @@ class Dye {
 
 }  // namespace
 
-Pass dye_pass(const Scene& scene) {
-  return {"dye", "gives each yarn its albedo", Stage::kSurface, [dye = Dye(scene)](Tile& tile) {
+Pass dye_pass(const Scene& scene, bool seen_by_camera) {
+  return {"dye", "gives each yarn its albedo", Stage::kSurface,
+          [dye = Dye(scene, ColourOf(scene, seen_by_camera))](Tile& tile) {
             for (std::size_t i = 0; i < tile.surface.size(); ++i)
               tile.albedo[i] = dye.of(tile.surface[i].yarn);
           }};
 }
 
-Pass albedo_pass(const Scene& scene) {
+Pass albedo_pass(const Scene& scene, bool seen_by_camera) {
   return {"albedo", "gives the cloth its one albedo", Stage::kSurface,
-          [albedo = scene.material.albedo](Tile& tile) {
+          [albedo = ColourOf(scene, seen_by_camera)({}, {})](Tile& tile) {
             std::fill(tile.albedo.begin(), tile.albedo.end(), albedo);
           }};
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-
 #include "simulator/effects/effects.h"
-#include "simulator/effects/random_key.h"
+#include "simulator/geometry/surface.h"
 
 namespace weft::simulator {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "simulator/effects/halos.h"
 #include "simulator/passes.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
@@ -12,26 +13,45 @@ namespace weft::simulator {
 
 // Cloth, once a tile.
 Pass camera_pass(const Scene& scene, const Rig& rig);
+Pass onto_moved_cloth_pass(const Scene& scene);  ///< movement: rig to cloth, before the cloth is looked up
 Pass geometry_pass(const Scene& scene);
-Pass albedo_pass(const Scene& scene);  ///< plain: one albedo
-Pass dye_pass(const Scene& scene);     ///< in its place where yarns have colours
+Pass albedo_pass(const Scene& scene, bool seen_by_camera);  ///< plain: one albedo
+Pass dye_pass(const Scene& scene, bool seen_by_camera);     ///< in its place where yarns have colours
+Pass print_pass(const Scene& scene);
+Pass back_from_moved_cloth_pass(const Scene& scene);  ///< movement: cloth to rig, after it
 Pass relief_pass();
+Pass mesh_pass();
+Pass bounces_pass(const Scene& scene, const Halos& halos);
+Pass targets_pass(const Scene& scene, const Rig& rig, bool seen_by_camera);
 
 // Light of the shot's LED: fills `light` and `irradiance`.
 Pass distant_light_pass(const Scene& scene, const Rig& rig);  ///< plain
 Pass near_light_pass(const Rig& rig);
 Pass finite_led_pass(const Scene& scene, const Rig& rig);
+Pass paper_pass(const Scene& scene);
+Pass cast_shadows_pass(const Scene& scene, const Rig& rig, const Halos& halos);
 
 // From irradiance to signal.
 Pass lambert_pass(const Scene& scene, const Rig& rig);  ///< plain
+Pass reflectance_pass(const Scene& scene, const Rig& rig);
+Pass interreflection_pass(const Scene& scene, const Rig& rig);
 Pass led_drift_pass(const Scene& scene, const Rig& rig);
 Pass stray_pass(const Scene& scene, const Rig& rig);
 Pass ambient_pass(const Scene& scene, const Rig& rig);
 
+// Lens.
+Pass vignetting_pass(const Scene& scene, const Rig& rig);
+Pass defocus_pass(const Scene& scene, const Halos& halos);
+
 // Photosites.
-Pass mosaic_pass(int halo);  ///< plain; keeps `halo` rows and columns around the tile
-Pass rgb_pass();             ///< in its place for Output::kRgb
+Pass photosites_pass(const Scene& scene, const Halos& halos);
+Pass mosaic_pass(int halo_rows);  ///< plain; keeps rows above and below the tile
+Pass rgb_pass();                  ///< in its place for Output::kRgb
+Pass expose_pass(const Rig& rig);
+Pass bloom_pass(const Scene& scene);
 Pass noise_pass(const Scene& scene, const Rig& rig);
+Pass nonlinearity_pass(const Scene& scene);
+Pass black_pattern_pass(const Rig& rig);
 Pass converter_pass(const Rig& rig);  ///< plain
 
 }  // namespace weft::simulator

@@ -7,11 +7,11 @@
 
 namespace weft::simulator {
 
-Pass mosaic_pass(int halo) {
+Pass mosaic_pass(int halo_rows) {
   return {"mosaic", "keeps the colour that each photosite's filter passes", Stage::kShot,
-          [halo](Tile& tile) {
+          [halo_rows](Tile& tile) {
             constexpr CfaPattern kCfa;
-            tile.sample_rect = grown(tile.rect, halo);
+            tile.sample_rect = grown_in_rows(tile.rect, halo_rows);
             tile.samples.resize(static_cast<std::size_t>(tile.sample_rect.pixels()));
             const std::size_t row = static_cast<std::size_t>(tile.sample_rect.width());
             for (int y = tile.sample_rect.y0, j = 0; y < tile.sample_rect.y1; ++y, ++j) {

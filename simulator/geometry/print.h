@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "core/image.h"
 #include "core/result.h"
@@ -15,6 +16,7 @@ namespace weft::simulator {
 /// A pattern printed on the cloth: albedo, linear Rec.709.
 struct PrintSettings {
   std::shared_ptr<const Image<float>> albedo;  ///< three planes, 0 to 1; none: nothing is printed
+  std::string file;                            ///< where it was read, absolute; empty: from no file
   PicturePlacement placement;
 
   bool operator==(const PrintSettings&) const = default;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/image.h"
@@ -97,6 +98,7 @@ struct GeometrySettings {
   double contact_deg = 85;  ///< kSphere, kCylinder: slope where the body meets the table
 
   std::shared_ptr<const Image<float>> heights_mm;  ///< kHeightMap: one plane
+  std::string heights_file;                        ///< where they were read, absolute; empty: from no file
   PicturePlacement height_map;
 
   std::vector<Fold> folds;  ///< added to any kind

@@ -2,33 +2,17 @@
 #include "simulator/reflectance/presets.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <numeric>
-#include <utility>
+
+#include "core/text.h"
 
 namespace weft::simulator {
 namespace {
-
-/// Insertions, deletions and substitutions from one word to the other (Levenshtein 1966).
-std::size_t edits(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> above(to.size() + 1);
-  std::iota(above.begin(), above.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= from.size(); ++i) {
-    std::vector<std::size_t> row = {i};
-    for (std::size_t j = 1; j <= to.size(); ++j) {
-      const std::size_t other_letter = from[i - 1] == to[j - 1] ? 0 : 1;
-      row.push_back(std::min({above[j] + 1, row.back() + 1, above[j - 1] + other_letter}));
-    }
-    above = std::move(row);
-  }
-  return above.back();
-}
 
 std::string names_nearest_first(std::string_view wanted) {
   std::vector<std::string_view> names;
   for (const Preset& each : presets()) names.push_back(each.name);
   std::stable_sort(names.begin(), names.end(),
-                   [&](auto a, auto b) { return edits(wanted, a) < edits(wanted, b); });
+                   [&](auto a, auto b) { return edit_distance(wanted, a) < edit_distance(wanted, b); });
   std::string list;
   for (const std::string_view name : names) list += (list.empty() ? "" : ", ") + std::string(name);
   return list;

@@ -6,7 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulator/camera/optics.h"
+#include "simulator/camera/saturation.h"
 #include "simulator/light/incidence.h"
+#include "simulator/spectra/observer.h"
+#include "simulator/targets/target.h"
 
 namespace weft::simulator {
 namespace {
@@ -66,6 +70,42 @@ Result<void> check_places(const Scene& scene, const std::vector<NearLight>& leds
                  "raise camera.distance_mm or lower geometry.cloth_height_mm");
 }
 
+/// What the scene's own parts have to say against it.
+Result<void> check_parts(const Scene& scene) {
+  if (scene.effects.nonlinearity) {
+    if (const auto bend = NonLinearity::of(scene.camera.linearity); !bend) return bend.error();
+  }
+  if (scene.effects.spectral) {
+    if (const auto camera = camera_weights(scene.spectra.led, scene.spectra.filters); !camera) {
+      return camera.error();
+    }
+  }
+  for (std::size_t i = 0; i < scene.targets.size(); ++i) {
+    const auto target = Target::make(scene.targets[i], scene.seed, static_cast<int>(i));
+    if (!target) return target.error();
+    if (const auto inks = inks_of(scene.targets[i], scene.spectra.chart); !inks) return inks.error();
+  }
+  if (Result<void> ok = check_heights(scene.geometry);
+      !ok && scene.geometry.kind == GeometryKind::kHeightMap) {
+    return ok;
+  }
+  return scene.material.print.albedo ? check_print(scene.material.print) : Result<void>();
+}
+
+Result<void> place_camera(const Scene& scene, Rig& rig) {
+  const CameraSettings& c = scene.camera;
+  LensSettings lens = scene.effects.distortion ? c.lens : LensSettings();
+  const Result<CameraModel> camera = camera_of({c.width, c.height}, c.distance_mm, c.mm_per_pixel, lens, c.pose,
+                                               scene.geometry.cloth_height_mm);
+  if (!camera) return camera.error();
+  rig.camera = *camera;
+  if (lens == LensSettings() && c.pose == PoseSettings()) return {};
+  Result<Lens> ready = Lens::of(rig.camera);
+  if (!ready) return ready.error();
+  rig.lens = std::move(*ready);
+  return {};
+}
+
 /// Readings that a white surface gives where it faces the LED, in the brightest channel of the brightest LED.
 double brightest_reading(const DistantLights& lights) {
   double brightest = 0;
@@ -98,12 +138,33 @@ DistantLights distant_lights(const Rig& rig, double cloth_height_mm) {
   return distant;
 }
 
+Vec3 Rig::camera_centre_mm() const {
+  const Mat3& m = camera.camera_from_rig_rotation;
+  const Vec3 t = camera.camera_from_rig_translation_mm;
+  return {-(m[0][0] * t.x + m[1][0] * t.y + m[2][0] * t.z), -(m[0][1] * t.x + m[1][1] * t.y + m[2][1] * t.z),
+          -(m[0][2] * t.x + m[1][2] * t.y + m[2][2] * t.z)};
+}
+
+DefectSettings defects_of(const Scene& scene) {
+  DefectSettings defects = scene.camera.defects;
+  if (!scene.effects.dark_current) {
+    defects.dark_electrons_per_s = defects.hot_per_million = defects.dead_per_million = 0;
+  }
+  if (!scene.effects.uneven_response) {
+    defects.response_percent = defects.column_counts = defects.photosite_counts = 0;
+    defects.cell_counts = {};
+  }
+  return defects;
+}
+
 Result<Rig> rig_of(const Scene& scene) {
   if (Result<void> ok = check_scene(scene); !ok) return ok.error();
+  if (Result<void> ok = check_parts(scene); !ok) return ok.error();
   Rig rig;
   rig.leds.leds = place_leds(scene.lights);
   if (Result<void> ok = check_places(scene, rig.leds.leds); !ok) return ok.error();
   rig.sensor = sensor_of(scene.camera);
+  if (Result<void> ok = place_camera(scene, rig); !ok) return ok.error();
 
   const double reading = brightest_reading(distant_lights(rig, scene.geometry.cloth_height_mm));
   if (reading <= 0) {
@@ -123,20 +184,28 @@ Result<Rig> rig_of(const Scene& scene) {
 }
 
 Calibration exact_calibration(const Scene& scene, const Rig& rig) {
-  const CameraSettings& c = scene.camera;
   Calibration calibration;
   calibration.subject.rig = "virtual rig";
   calibration.subject.camera_model = rig.sensor.model;
   calibration.subject.camera_serial = "virtual";
-  calibration.subject.f_number = c.f_number;
+  calibration.subject.f_number = scene.camera.f_number;
   calibration.subject.albedo_scale = "absolute";
-  calibration.camera = overhead_camera({c.width, c.height}, c.distance_mm, c.mm_per_pixel);
+  calibration.camera = rig.camera;
   calibration.response = response_of(rig.sensor);
-  if (scene.effects.near_light) {
-    calibration.lights = rig.leds;
-  } else {
+  if (scene.effects.nonlinearity) calibration.response->linearity.fill(scene.camera.linearity);
+  if (!scene.effects.near_light) {
     calibration.lights = distant_lights(rig, scene.geometry.cloth_height_mm);
+    return calibration;
   }
+  NearLights lights = rig.leds;
+  if (scene.effects.vignetting) {
+    const GainFit gain = fit_gain(Vignette(scene.camera.vignette, rig.camera), rig.camera.size);
+    lights.log_gain_rgb.fill(gain.spline);
+    for (NearLight& led : lights.leds) {
+      for (double& flux : led.flux_rgb) flux *= std::exp(gain.mean_log_gain);
+    }
+  }
+  calibration.lights = std::move(lights);
   return calibration;
 }
 

@@ -1,13 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <variant>
+#include <vector>
 
 #include "core/calibration.h"
 #include "core/lights.h"
 #include "core/result.h"
-#include "simulator/scene/scene.h"
+#include "simulator/camera/lens.h"
 #include "simulator/camera/sensor.h"
+#include "simulator/scene/scene.h"
 
 namespace weft::simulator {
 
@@ -15,22 +18,29 @@ namespace weft::simulator {
 struct Rig {
   NearLights leds;
   Sensor sensor;
+  CameraModel camera;
+  std::optional<Lens> lens;  ///< none where the camera is straight above and nothing bends its rays
   double exposure_us = 0;  ///< whole microseconds
 
   /// Signal of a reading of 1: seconds at ISO 100.
   double exposure(double iso) const { return exposure_us * 1e-6 * iso / 100; }
   /// Signal of each LED, by channel, on a white surface with an irradiance of 1.
   std::vector<Rgb> signal_of_unit(double iso) const;
+  Vec3 camera_centre_mm() const;
 };
 
-/// Checks the scene, places its LEDs and chooses the exposure. kBadData where no LED lights the table's
-/// centre, a LED or the camera is not above the cloth, or the exposure would not be between 1 us and 1000 s.
+/// Checks the scene, places its LEDs and its camera and chooses the exposure. kBadData where no LED lights the
+/// table's centre, a LED or the camera is not above the cloth, the camera does not see the table, a target or a
+/// filter cannot be used, or the exposure would not be between 1 us and 1000 s.
 Result<Rig> rig_of(const Scene& scene);
 
 /// Each LED as the distant light that it is at the table's centre, on the cloth's plane.
 DistantLights distant_lights(const Rig& rig, double cloth_height_mm);
 
-/// The point of the plane z = cloth_height_mm that a pixel of the scene's camera sees.
+/// The defects that the scene's effects call for; those of the others are zero.
+DefectSettings defects_of(const Scene& scene);
+
+/// The point of the plane z = cloth_height_mm that a pixel sees of a camera straight above, without lens.
 inline Vec3 point_of_pixel(const Scene& scene, int x, int y) {
   const CameraSettings& c = scene.camera;
   const double height_mm = scene.geometry.cloth_height_mm;

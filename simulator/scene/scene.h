@@ -47,14 +47,14 @@ struct CameraSettings {
   /// in the brightest channel of the brightest LED.
   double albedo_at_full = 0.99;
 
-  PoseSettings pose;                                            ///< no effect but geometry: always there
-  LensSettings lens = {.k1 = -0.06, .k2 = 0.02};                ///< distortion
-  MovementSettings movement = {0.02, 0.005};                    ///< movement
-  VignetteSettings vignette = {4, 0.05};                        ///< vignetting
-  BlurSettings blur = {.defocus_px = 0.5, .spread_px = 0.4};    ///< defocus
-  BloomSettings bloom = {.share = 0.5};                         ///< bloom
-  std::array<double, 2> linearity = {0.01, -0.005};             ///< nonlinearity: Response::linearity
-  DefectSettings defects = {.dark_electrons_per_s = 5,          ///< dark_current, uneven_response
+  PoseSettings pose;                                          ///< no effect but geometry: always there
+  LensSettings lens = {.k1 = -0.06, .k2 = 0.02};              ///< distortion
+  MovementSettings movement = {0.02, 0.005};                  ///< movement
+  VignetteSettings vignette = {4, 0.05};                      ///< vignetting
+  BlurSettings blur = {.defocus_px = 0.5, .spread_px = 0.4};  ///< defocus
+  BloomSettings bloom = {.share = 0.5};                       ///< bloom
+  std::array<double, 2> linearity = {0.01, -0.005};           ///< nonlinearity: Response::linearity
+  DefectSettings defects = {.dark_electrons_per_s = 5,        ///< dark_current, uneven_response
                             .response_percent = 0.4,
                             .column_counts = 0.3,
                             .photosite_counts = 0.3,
@@ -195,14 +195,18 @@ struct Scene {
 };
 
 /// Reads a scene in TOML. An unknown key is kBadData with its line and the nearest key that exists; so is a
-/// value of the wrong type or out of its range, with what is allowed. `where` names the text in errors.
+/// value of the wrong type or out of its range, with what is allowed; so are keys that contradict each other.
+/// kNoInput for a file it names that is not there. `where` names the text in errors; files are relative to
+/// its folder. Pictures keep their names and are not read.
 Result<Scene> parse_scene(std::string_view toml, const std::string& where);
+/// The same with the pictures; in the library weft_scene_files.
 Result<Scene> read_scene(const std::filesystem::path& file);
 
-/// Whether a scene made in code keeps the ranges that parse_scene enforces.
+/// Whether a scene made in code is one that read_scene could have read.
 Result<void> check_scene(const Scene& scene);
 
-/// The scene as TOML with its defaults spelled out; parse_scene gives the same scene back.
+/// The scene as TOML with its defaults spelled out; parse_scene gives the same scene back, but for pictures.
+/// Spectra and measured LEDs are written as numbers, pictures by their names.
 std::string to_toml(const Scene& scene);
 
 }  // namespace weft::simulator

@@ -6,7 +6,9 @@
 
 #include <atomic>
 #include <cmath>
+#include <set>
 
+#include "simulator/geometry/surface.h"
 #include "simulator/light/incidence.h"
 #include "simulator/simulate.h"
 
@@ -31,16 +33,10 @@ Rendering render(const Scene& scene, Rect area, const TileOptions& tiles = {}) {
 }
 
 std::vector<std::string> names_of(const Scene& scene, Output output) {
+  const Result<PassList> list = build_passes(scene, *rig_of(scene), output);
+  EXPECT_TRUE(list) << list.error().message();
   std::vector<std::string> names;
-  for (const Pass& pass : build_passes(scene, *rig_of(scene), output).passes) names.push_back(pass.name);
-  return names;
-}
-
-std::vector<std::string> left_out_of(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const LeftOut& effect : build_passes(scene, *rig_of(scene), Output::kCounts).left_out) {
-    names.push_back(effect.name);
-  }
+  for (const Pass& pass : list->passes) names.push_back(pass.name);
   return names;
 }
 
@@ -64,20 +60,37 @@ Statistics statistics_of(const Image<double>& image, int plane) {
 TEST(Passes, AreOnlyThoseThatTheSceneCallsFor) {
   Scene scene;
   EXPECT_THAT(names_of(scene, Output::kCounts),
-              ElementsAre("camera", "geometry", "albedo", "distant light", "mosaic", "converter"));
-  EXPECT_THAT(left_out_of(scene), ElementsAre("relief", "near_light", "noise"));
+              ElementsAre("camera", "geometry", "albedo", "distant light", "lambert", "mosaic", "converter"));
   scene = near_lit(GeometryKind::kSatin);
   scene.effects.noise = scene.effects.relief = true;
-  EXPECT_THAT(names_of(scene, Output::kCounts), ElementsAre("camera", "geometry", "dye", "relief",
-                                                            "near light", "mosaic", "noise", "converter"));
-  EXPECT_THAT(left_out_of(scene), ElementsAre());
+  EXPECT_THAT(names_of(scene, Output::kCounts),
+              ElementsAre("camera", "geometry", "dye", "relief", "near light", "lambert", "mosaic", "noise",
+                          "converter"));
   EXPECT_THAT(names_of(scene, Output::kRgb),
-              ElementsAre("camera", "geometry", "dye", "relief", "near light", "rgb", "noise"));
+              ElementsAre("camera", "geometry", "dye", "relief", "near light", "lambert", "rgb", "noise"));
+  EXPECT_THAT(names_of(scene, Output::kSurface), ElementsAre("camera", "geometry", "dye", "relief"));
+}
+
+TEST(Passes, OfEveryEffectNameIt) {
+  Scene scene = near_lit(GeometryKind::kPlain);
+  scene.material.dye = flat_spectrum(0.4);
+  scene.material.reflectance = Ggx{};
+  scene.spectra.filters.fill(flat_spectrum(1));
+  for (const EffectKey& effect : effect_keys()) scene.effects.*effect.on = true;
+  const Result<PassList> list = build_passes(scene, *rig_of(scene), Output::kCounts);
+  ASSERT_TRUE(list) << list.error().message();
+  std::set<std::string> named;
+  for (const Pass& pass : list->passes) named.insert(pass.effect);
+  for (const EffectKey& effect : effect_keys()) {
+    const bool has_no_pass_of_its_own = std::string(effect.name) == "near_light" ||  // finite_led's stands for it
+                                        std::string(effect.name) == "spectral";      // another set of albedos
+    EXPECT_EQ(named.count(effect.name) == 0, has_no_pass_of_its_own) << effect.name;
+  }
 }
 
 TEST(Passes, AreCountedByTileAndShot) {
   const Scene scene = near_lit(GeometryKind::kPlain);
-  PassRunner runner(build_passes(scene, *rig_of(scene), Output::kCounts), {64, 8, 2});
+  PassRunner runner(*build_passes(scene, *rig_of(scene), Output::kCounts), {64, 8, 2});
   const std::vector<int> leds = {3, 0, 7};
   std::vector<std::atomic<int>> shots(11);
   ASSERT_TRUE(runner.run(

@@ -15,6 +15,7 @@
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/session.h"
+#include "simulator/camera/sensor.h"
 
 namespace weft::simulator {
 namespace {
@@ -206,6 +207,50 @@ TEST(Simulate, GivesTheSameBytesForAnyThreadsAndTiles) {
   }
 }
 
+/// A deep weave with everything that can be simulated.
+Scene hard_scene() {
+  Scene scene = small_scene();
+  scene.camera.width = 96;
+  scene.camera.height = 64;
+  scene.camera.mm_per_pixel = 0.05;
+  scene.geometry = family_settings(Family::kDeep);
+  scene.lights.rings = {{2, 50, 0, 600}};
+  for (const EffectKey& effect : effect_keys()) scene.effects.*effect.on = true;
+  scene.effects.spectral = false;
+  scene.material.reflectance = Ggx{.alpha = 0.4};
+  scene.transport.bounce_rays = 16;
+  return scene;
+}
+
+TEST(Simulate, GivesTheSameBytesForAnyThreadsAndTilesWithAllEffects) {
+  const fs::path folder = fresh_folder();
+  SimulateOptions options;
+  options.tiles = {512, 256, 1};
+  const Scene scene = hard_scene();
+  simulated(scene, folder / "one.weft", options);
+  const auto one = contents_of(folder / "one.weft");
+  EXPECT_EQ(one.size(), 3U + 1 + 4 + 4 + 2 * 2) << "frames, session, calibration, truth, light of two LEDs";
+  options.tiles = {64, 32, 3};
+  simulated(scene, folder / "many.weft", options);
+  for (const auto& [name, bytes] : contents_of(folder / "many.weft")) {
+    EXPECT_TRUE(one.at(name) == bytes) << name;
+  }
+}
+
+TEST(Simulate, RendersASingleFrameAlone) {
+  const fs::path folder = fresh_folder();
+  for (const Scene& scene : {small_scene(), hard_scene()}) {
+    fs::remove_all(folder / "a.weft");
+    simulated(scene, folder / "a.weft");
+    const Result<void> alone = simulate_frame(scene, 2, folder / "alone.dng", {});
+    ASSERT_TRUE(alone) << alone.error().message();
+    EXPECT_TRUE(bytes_of(folder / "alone.dng") == bytes_of(folder / "a.weft/raw/01_led02.dng"));
+  }
+  const Result<void> none = simulate_frame(small_scene(), 11, folder / "none.dng", {});
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().kind, ErrorKind::kUsage);
+}
+
 TEST(Simulate, ClipsAtWhiteAndNeverAbove) {
   for (const Body body : {Body::kOffset, Body::kD5100}) {
     const fs::path folder = fresh_folder() / "a.weft";
@@ -230,28 +275,29 @@ TEST(Simulate, ClipsAtWhiteAndNeverAbove) {
 }
 
 TEST(Simulate, ReportsWhatRanAndWhatItCost) {
-  const Scene scene = small_scene();
+  Scene scene = small_scene();
+  scene.camera.height = 200;  // two bands of rows
   SimulateOptions options;
-  std::vector<int> parts;
+  std::vector<int> rows;
   options.progress = [&](int done, int of) {
-    EXPECT_EQ(of, 12);
-    parts.push_back(done);
+    EXPECT_EQ(of, 400);
+    rows.push_back(done);
   };
   const SimulationReport report = simulated(scene, fresh_folder() / "a.weft", options);
-  EXPECT_THAT(parts, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12));
+  EXPECT_THAT(rows, testing::ElementsAre(128, 200, 328, 400));
   std::map<std::string, std::int64_t> pixels;
   for (const PassCost& cost : report.passes) pixels[cost.name] = cost.pixels;
-  EXPECT_EQ(pixels.at("geometry"), 2 * 128 * 96) << "once for the truth, once for all frames together";
-  EXPECT_EQ(pixels.at("near light"), 11 * 128 * 96);
+  EXPECT_EQ(pixels.at("geometry"), 128 * 200) << "once for all frames together";
+  EXPECT_EQ(pixels.at("near light"), 11 * 128 * 200);
   EXPECT_EQ(pixels.count("noise"), 0U);
-  ASSERT_EQ(report.left_out.size(), 2U);
-  EXPECT_EQ(report.left_out[1].name, "noise");
+  EXPECT_EQ(report.left_out.size(), effect_keys().size() - 1);
+  EXPECT_EQ(report.left_out.back().name, "noise");
   EXPECT_GT(report.render_seconds, 0);
   EXPECT_GT(report.write_seconds, 0);
 }
 
 TEST(Simulate, LeavesNothingWhenItIsInterrupted) {
-  for (const int after : {0, 1, 5}) {
+  for (const int after : {0, 96, 192}) {
     const fs::path folder = fresh_folder();
     std::stop_source source;
     SimulateOptions options;

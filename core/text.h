@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+namespace weft {
+
+/// Insertions, deletions and substitutions of bytes from one word to the other (Levenshtein 1966): the
+/// nearest known name is the one to suggest for an unknown one.
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+}  // namespace weft

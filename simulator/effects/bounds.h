@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulator/passes.h"
+#include "simulator/scene/rig.h"
+#include "simulator/scene/scene.h"
+
+// What an effect can change at most, found from the scene's numbers without rendering: what `effects =
+// "auto"` leaves out by. Bounds hold in every sample of every shot, whatever other effects run, so the bounds
+// of several effects add up. Scene::effects is not looked at.
+//
+// Signals are compared between 0 and full scale, to which the converter clips them, where noise is drawn: the
+// sigma of a change is sqrt(s N + r^2) / N, with N electrons at full scale, r of read noise and s the
+// brighter of the two signals. What comes after noise bends noise and change alike. Normal deviates count
+// as 8.6, which none exceeds (simulator/sampling/random.h); of the rays of interreflection, which are many,
+// six standard deviations.
+
+namespace weft::simulator {
+
+struct EffectBound {
+  double sigma = 0;  ///< from 0; infinite where nothing bounds the effect
+  std::string why;   ///< a sentence without its full stop
+};
+
+/// In the order of effect_keys().
+using EffectBounds = std::vector<EffectBound>;
+
+/// @param rig of the same scene, whatever effects it names
+EffectBounds bounds_of(const Scene& scene, const Rig& rig);
+
+/// All effects but those whose bounds together stay within `to_sigma`, the least first; `left_out` gets
+/// these. An effect stays while one that needs it does: near_light for relief, finite_led and vignetting,
+/// relief for cast_shadows and interreflection. Noise always stays.
+EffectSettings effects_within(const Scene& scene, const Rig& rig, double to_sigma,
+                              std::vector<LeftOut>& left_out);
+
+}  // namespace weft::simulator
