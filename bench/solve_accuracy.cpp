@@ -14,6 +14,7 @@
 #include "core/image_io/image_io.h"
 #include "core/vec.h"
 #include "simulator/sampling/random.h"
+#include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
 #include "solver/method.h"
 #include "solver/normals/seed.h"

@@ -47,18 +47,22 @@ class Builder {
     add(camera_pass(scene_, rig_), on().distortion ? "distortion" : "");
     if (moves()) add(onto_moved_cloth_pass(scene_), "movement");
     add(geometry_pass(scene_));
-    add(is_woven(scene_.geometry.kind) ? dye_pass(scene_, seen_by_camera) : albedo_pass(scene_, seen_by_camera));
+    add(is_woven(scene_.geometry.kind) ? dye_pass(scene_, seen_by_camera)
+                                       : albedo_pass(scene_, seen_by_camera));
     if (scene_.material.print.albedo) add(print_pass(scene_));
     if (moves()) add(back_from_moved_cloth_pass(scene_), "movement");
     if (on().relief) add(relief_pass(), "relief");
-    if (output_ == Output::kSurface && !scene_.targets.empty()) add(targets_pass(scene_, rig_, seen_by_camera));
+    if (output_ == Output::kSurface && !scene_.targets.empty())
+      add(targets_pass(scene_, rig_, seen_by_camera));
   }
 
   void add_rays() {
-    if (on().cast_shadows || on().interreflection) add(mesh_pass(), on().cast_shadows ? "cast_shadows" : "interreflection");
+    if (on().cast_shadows || on().interreflection)
+      add(mesh_pass(), on().cast_shadows ? "cast_shadows" : "interreflection");
     if (on().interreflection) add(bounces_pass(scene_, halos_), "interreflection");
     if (!scene_.targets.empty()) add(targets_pass(scene_, rig_, true));
-    if (output_ == Output::kCounts && has_photosites()) add(photosites_pass(scene_, halos_), photosites_effect());
+    if (output_ == Output::kCounts && has_photosites())
+      add(photosites_pass(scene_, halos_), photosites_effect());
   }
 
   void add_light() {

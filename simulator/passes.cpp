@@ -11,7 +11,10 @@ namespace {
 
 using std::chrono::steady_clock;
 
+// What a halo costs falls with the size of the tile, which memory limits.
 constexpr int kSquareTile = 256;
+constexpr int kLargeTile = 512;
+constexpr int kLargeHalo = 64;
 
 }  // namespace
 
@@ -32,8 +35,9 @@ PassRunner::PassRunner(PassList list, TileOptions options)
       options_(options),
       workers_(static_cast<std::size_t>(resolved_threads(options.threads))) {
   if (list_.halo > 0) {
-    options_.width = std::min(options_.width, kSquareTile);
-    options_.height = std::max(options_.height, kSquareTile);
+    const int side = list_.halo > kLargeHalo ? kLargeTile : kSquareTile;
+    options_.width = std::min(options_.width, side);
+    options_.height = std::max(options_.height, side);
   }
   for (Worker& worker : workers_) {
     worker.spent.resize(list_.passes.size());

@@ -38,24 +38,24 @@ struct Tile {
   int led = 0;  ///< LED of the shot, from 1; 0 is the dark shot
 
   // On `area`, once a tile.
-  std::vector<Vec3> point_mm;         ///< rig frame
-  std::vector<SurfacePoint> surface;  ///< geometry of the cloth
-  std::vector<Rgb> albedo;            ///< as the camera's filters see it
-  std::vector<int> target;            ///< number of the target that covers the cloth there, from 0, or
-                                      ///< kCloth; empty where there are no targets
+  std::vector<Vec3> point_mm;            ///< rig frame
+  std::vector<SurfacePoint> surface;     ///< geometry of the cloth
+  std::vector<Rgb> albedo;               ///< as the camera's filters see it
+  std::vector<int> target;               ///< number of the target that covers the cloth there, from 0, or
+                                         ///< kCloth; empty where there are no targets
   std::shared_ptr<Transport> transport;  ///< the mesh and what passes keep with it; none where nothing asks
   std::vector<double> openness;  ///< share of an even sky that each point sees; empty where nothing asks
 
   // On `area`, each shot.
-  std::vector<Incidence> light;     ///< from the LED of the shot
-  std::vector<double> irradiance;   ///< strength times cosine, what shadows leave of it
-  std::vector<float> visibility;    ///< share of the LED that each point sees; empty where nothing asks
-  std::vector<Rgb> indirect;        ///< irradiance by way of the cloth; empty where nothing asks
-  std::vector<Rgb> signal;          ///< light by channel, 1 is full scale
-  Rect signal_rect;                 ///< of `signal`: blur shrinks it
+  std::vector<Incidence> light;    ///< from the LED of the shot
+  std::vector<double> irradiance;  ///< strength times cosine, what shadows leave of it
+  std::vector<float> visibility;   ///< share of the LED that each point sees; empty where nothing asks
+  std::vector<Rgb> indirect;       ///< irradiance by way of the cloth; empty where nothing asks
+  std::vector<Rgb> signal;         ///< light by channel, 1 is full scale
+  Rect signal_rect;                ///< of `signal`: blur shrinks it
 
-  std::vector<double> samples;  ///< what photosites see: one a pixel, or three (R, G, B)
-  Rect sample_rect;             ///< of `samples`
+  std::vector<double> samples;        ///< what photosites see: one a pixel, or three (R, G, B)
+  Rect sample_rect;                   ///< of `samples`
   std::vector<Photosite> photosites;  ///< what they are, on `sample_rect`; empty where all are alike
   std::vector<std::uint16_t> counts;  ///< on `rect`
 
@@ -103,8 +103,8 @@ struct LeftOut {
 
 struct PassList {
   std::vector<Pass> passes;  ///< in the order they run; all of kSurface before those of kShot
-  int halo = 0;                  ///< pixels around a tile that the passes need
-  bool cloth_moves = false;      ///< the surface is another one for each shot
+  int halo = 0;              ///< pixels around a tile that the passes need
+  bool cloth_moves = false;  ///< the surface is another one for each shot
 };
 
 /// What a pass cost, summed over threads.

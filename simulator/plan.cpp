@@ -41,7 +41,8 @@ double seconds_of(const Scene& scene, const Rig& rig, Rect area) {
   PassRunner runner(std::move(*passes), {.threads = 1});
   std::vector<int> leds(rig.leds.leds.size());
   std::iota(leds.begin(), leds.end(), 1);
-  const Result<void> ran = runner.run(area, leds, {}, [](const Tile&) {}, [](const Tile&) {});
+  const Result<void> ran = runner.run(
+      area, leds, {}, [](const Tile&) {}, [](const Tile&) {});
   const std::vector<PassCost> costs = runner.costs();
   if (!ran) return 0;
   return std::accumulate(costs.begin(), costs.end(), 0.0,

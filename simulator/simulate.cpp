@@ -25,8 +25,8 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::steady_clock;
 
-constexpr int kBandRows = 128;        // of frames and truth, in memory at a time
-constexpr int kTallBandRows = 256;    // where tiles have a halo, which costs less the larger they are
+constexpr int kBandRows = 128;      // of frames and truth, in memory at a time
+constexpr int kTallBandRows = 256;  // where tiles have a halo, which costs less the larger they are
 constexpr int kFarthestPixel = 1000 * 1000;
 constexpr int kTruthPlanes = 7;  // normal, albedo, height
 
@@ -85,7 +85,8 @@ class MapFiles {
     SampleType type = SampleType::kFloat;
   };
 
-  static Result<MapFiles> open(const fs::path& folder, Size size, int band_rows, const std::vector<Map>& maps) {
+  static Result<MapFiles> open(const fs::path& folder, Size size, int band_rows,
+                               const std::vector<Map>& maps) {
     MapFiles files;
     int planes = 0;
     for (const Map& map : maps) {
@@ -244,8 +245,8 @@ class SessionWriter {
     const auto pixels = static_cast<std::uint64_t>(Size{width(), height()}.pixels());
     const auto count = static_cast<std::uint64_t>(frames());
     const auto of_leds = static_cast<std::uint64_t>(planes_of_led() * leds());
-    const std::uint64_t disk =
-        pixels * (kTruthPlanes * sizeof(float) + count * sizeof(std::uint16_t) + of_leds * sizeof(std::uint16_t));
+    const std::uint64_t disk = pixels * (kTruthPlanes * sizeof(float) + count * sizeof(std::uint16_t) +
+                                         of_leds * sizeof(std::uint16_t));
     if (const std::uint64_t free = free_disk_bytes(target); free < disk) {
       return Error{ErrorKind::kInputOutput, "no room for the session", target.string(),
                    fmt::format("{} MB are needed, {} MB are free", disk / kMegabyte, free / kMegabyte),
@@ -253,8 +254,8 @@ class SessionWriter {
     }
     const std::uint64_t band_pixels =
         static_cast<std::uint64_t>(std::min(band_rows_, height())) * static_cast<std::uint64_t>(width());
-    return check_memory(band_pixels *
-                        (kTruthPlanes * sizeof(float) + count * sizeof(std::uint16_t) + of_leds * sizeof(float)));
+    return check_memory(band_pixels * (kTruthPlanes * sizeof(float) + count * sizeof(std::uint16_t) +
+                                       of_leds * sizeof(float)));
   }
 
   Result<void> write_calibration_folder() {
@@ -294,18 +295,18 @@ class SessionWriter {
 
   Result<void> render_surface(MapFiles& maps, int y0, int y1) {
     const Stopwatch timing(report_.render_seconds);
-    return surface_runner_.run(
-        {0, y0, width(), y1}, {}, options_.stop,
-        [&](const Tile& tile) {
-          maps.put(tile, 0, [&](std::size_t i) { return tile.surface[i].normal.x; });
-          maps.put(tile, 1, [&](std::size_t i) { return tile.surface[i].normal.y; });
-          maps.put(tile, 2, [&](std::size_t i) { return tile.surface[i].normal.z; });
-          for (std::size_t c = 0; c < 3; ++c) {
-            maps.put(tile, 3 + static_cast<int>(c), [&](std::size_t i) { return tile.albedo[i][c]; });
-          }
-          maps.put(tile, 6, [&](std::size_t i) { return tile.surface[i].height_mm; });
-        },
-        {});
+    return surface_runner_.run({0, y0, width(), y1}, {}, options_.stop,
+                               [&](const Tile& tile) {
+                                 maps.put(tile, 0, [&](std::size_t i) { return tile.surface[i].normal.x; });
+                                 maps.put(tile, 1, [&](std::size_t i) { return tile.surface[i].normal.y; });
+                                 maps.put(tile, 2, [&](std::size_t i) { return tile.surface[i].normal.z; });
+                                 for (std::size_t c = 0; c < 3; ++c) {
+                                   maps.put(tile, 3 + static_cast<int>(c),
+                                            [&](std::size_t i) { return tile.albedo[i][c]; });
+                                 }
+                                 maps.put(tile, 6, [&](std::size_t i) { return tile.surface[i].height_mm; });
+                               },
+                               {});
   }
 
   Result<void> write_frames() {
@@ -324,7 +325,8 @@ class SessionWriter {
       const Stopwatch timing(report_.write_seconds);
       for (int index = 0; index < frames(); ++index) {
         const View<const std::uint16_t> rows = counts.plane(index);
-        Result<void> ok = files[static_cast<std::size_t>(index)].write_rows(rows.crop({0, 0, width(), y1 - y0}));
+        Result<void> ok =
+            files[static_cast<std::size_t>(index)].write_rows(rows.crop({0, 0, width(), y1 - y0}));
         if (!ok) return ok;
       }
       return light->write_band(y1 - y0);
@@ -345,7 +347,8 @@ class SessionWriter {
         maps.push_back({"visibility_" + shot_name(index, ".exr").substr(3), {"Y"}, SampleType::kHalf});
       }
       if (scene_.effects.interreflection) {
-        maps.push_back({"indirect_" + shot_name(index, ".exr").substr(3), {"R", "G", "B"}, SampleType::kHalf});
+        maps.push_back(
+            {"indirect_" + shot_name(index, ".exr").substr(3), {"R", "G", "B"}, SampleType::kHalf});
       }
     }
     return MapFiles::open(folder_ / "truth", {width(), height()}, band_rows_, maps);
@@ -441,7 +444,8 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
   return no_memory("the system refused some");
 }
 
-Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file, const SimulateOptions& options) try {
+Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file,
+                            const SimulateOptions& options) try {
   const Result<Plan> plan = plan_of(scene);
   if (!plan) return plan.error();
   const int leds = static_cast<int>(plan->rig.leds.leds.size());
@@ -453,14 +457,15 @@ Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file, c
   if (!passes) return passes.error();
   RawFrame frame = frame_head(*plan);
   const Size size = plan->rig.camera.size;
-  if (Result<void> ok = check_memory(2 * sizeof(std::uint16_t) * static_cast<std::uint64_t>(size.pixels())); !ok) {
+  if (Result<void> ok = check_memory(2 * sizeof(std::uint16_t) * static_cast<std::uint64_t>(size.pixels()));
+      !ok) {
     return ok;
   }
   frame.counts = Image<std::uint16_t>(size);
   PassRunner runner(std::move(*passes), options.tiles);
-  const Result<void> ran =
-      runner.run({0, 0, size.width, size.height}, {&led, 1}, options.stop, [](const Tile&) {},
-                 [&](const Tile& tile) { copy_counts(tile, 0, frame.counts.plane()); });
+  const Result<void> ran = runner.run(
+      {0, 0, size.width, size.height}, {&led, 1}, options.stop, [](const Tile&) {},
+      [&](const Tile& tile) { copy_counts(tile, 0, frame.counts.plane()); });
   if (!ran) return ran;
   return write_dng(file, frame, tags_of(plan->scene));
 } catch (const std::bad_alloc&) {
@@ -494,30 +499,34 @@ Result<Rendering> render_readings(const Scene& scene, Rect area, const TileOptio
   Rendering out = {Image<double>(size, 3 * static_cast<int>(leds.size())), Image<double>(size, 3),
                    Image<double>(size, 3), Image<double>(size)};
   const auto put = [&](const Tile& tile, View<double> plane, const auto& value_of) {
-    for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) { plane(x - area.x0, y - area.y0) = value_of(i); });
+    for_each_pixel(tile.rect,
+                   [&](std::size_t i, int x, int y) { plane(x - area.x0, y - area.y0) = value_of(i); });
   };
-  const Result<void> truth = PassRunner(std::move(*surface), tiles).run(
-      area, {}, {},
-      [&](const Tile& tile) {
-        put(tile, out.normal.plane(0), [&](std::size_t i) { return tile.surface[i].normal.x; });
-        put(tile, out.normal.plane(1), [&](std::size_t i) { return tile.surface[i].normal.y; });
-        put(tile, out.normal.plane(2), [&](std::size_t i) { return tile.surface[i].normal.z; });
-        put(tile, out.height_mm.plane(), [&](std::size_t i) { return tile.surface[i].height_mm; });
-        for (std::size_t c = 0; c < 3; ++c) {
-          put(tile, out.albedo.plane(static_cast<int>(c)), [&](std::size_t i) { return tile.albedo[i][c]; });
-        }
-      },
-      {});
+  const Result<void> truth =
+      PassRunner(std::move(*surface), tiles)
+          .run(area, {}, {},
+               [&](const Tile& tile) {
+                 put(tile, out.normal.plane(0), [&](std::size_t i) { return tile.surface[i].normal.x; });
+                 put(tile, out.normal.plane(1), [&](std::size_t i) { return tile.surface[i].normal.y; });
+                 put(tile, out.normal.plane(2), [&](std::size_t i) { return tile.surface[i].normal.z; });
+                 put(tile, out.height_mm.plane(), [&](std::size_t i) { return tile.surface[i].height_mm; });
+                 for (std::size_t c = 0; c < 3; ++c) {
+                   put(tile, out.albedo.plane(static_cast<int>(c)),
+                       [&](std::size_t i) { return tile.albedo[i][c]; });
+                 }
+               },
+               {});
   if (!truth) return truth.error();
   const double exposure = plan->rig.exposure(scene.camera.iso);
-  const Result<void> ran = PassRunner(std::move(*frames), tiles).run(
-      area, leds, {}, [](const Tile&) {},
-      [&](const Tile& tile) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          put(tile, out.readings.plane(3 * (tile.led - 1) + static_cast<int>(c)),
-              [&](std::size_t i) { return tile.samples[3 * i + c] / exposure; });
-        }
-      });
+  const Result<void> ran = PassRunner(std::move(*frames), tiles)
+                               .run(
+                                   area, leds, {}, [](const Tile&) {},
+                                   [&](const Tile& tile) {
+                                     for (std::size_t c = 0; c < 3; ++c) {
+                                       put(tile, out.readings.plane(3 * (tile.led - 1) + static_cast<int>(c)),
+                                           [&](std::size_t i) { return tile.samples[3 * i + c] / exposure; });
+                                     }
+                                   });
   if (!ran) return ran.error();
   return out;
 } catch (const std::bad_alloc&) {

@@ -34,10 +34,10 @@ struct SimulationReport {
 
 /// Renders a scene into a session folder: a lit frame for each LED and a dark one as DNG, session.json, the
 /// exact calibration, and under truth/ normal.exr (X, Y, Z), albedo.exr (R, G, B), height.exr (mm, above the
-/// plane cloth_height_mm) and scene.toml. With cast shadows, for each LED K visibility_ledKK.exr, the share of
-/// it that each point sees; with interreflection indirect_ledKK.exr (R, G, B), the reading of a white surface
-/// by light from the cloth alone. The same scene gives the same bytes. Memory
-/// holds a band of rows of everything.
+/// plane cloth_height_mm) and scene.toml. With cast shadows, for each LED K visibility_ledKK.exr, the share
+/// of it that each point sees; with interreflection indirect_ledKK.exr (R, G, B), the reading of a white
+/// surface by light from the cloth alone. The same scene gives the same bytes. Memory holds a band of rows of
+/// everything.
 ///
 /// The folder is made aside (`.partial`) and renamed when complete: after an error or an interrupt there is
 /// nothing. Errors: kBadData (the scene), kCannotCreate (`session_folder` or a folder aside exists, or may

@@ -106,6 +106,7 @@ struct LedRange {
 /// The cosine that a sphere adds where its middle is on the horizon, where it adds most: the form factor of
 /// half a sphere over sine^2, (alpha - sin alpha cos alpha) / (pi sin^2 alpha), about 2 sin alpha / (3 pi).
 double added_on_horizon(double sine) {
+  if (sine == 0) return 0;
   const double alpha = std::asin(sine);
   return (alpha - sine * std::cos(alpha)) / (kPi * sine * sine);
 }
@@ -146,15 +147,8 @@ class Bounds {
     if (nearest_led().sine >= 1) return all(led + " may touch the cloth");
     if (is_glossy_) return all(led + " widens highlights");
     if (shadows_fall()) return all(led + " has a soft shadow");
-    const auto sets_somewhere = [&](const LedRange& l) {
-      return !scene_.targets.empty() || l.elevation_deg - rise_deg(slope_) < degrees(std::asin(l.sine));
-    };
-    if (std::none_of(leds_.begin(), leds_.end(), sets_somewhere)) {
-      return {0, led + " stands wholly above the horizon of every slope: no shading changes"};
-    }
-    return change_of_irradiance(
-        [&](const LedRange& l) { return sets_somewhere(l) ? l.strength() * added_on_horizon(l.sine) : 0; },
-        led + " changes shading by at most {:.2g} of full scale");
+    if (!leds_set()) return {0, led + " stands wholly above the horizon of every slope: no shading changes"};
+    return change_on_horizon(led + " changes shading by at most {:.2g} of full scale");
   }
 
   EffectBound led_drift() const {
@@ -181,8 +175,11 @@ class Bounds {
                       " change by at most {:.2g} of full scale");
   }
 
+  /// Lambert's law as a material leaves dark what faces away from the middle of a LED.
   EffectBound reflectance() const {
-    return is_glossy_ ? EffectBound(glossy()) : EffectBound{0, "the material is Lambert's"};
+    if (is_glossy_) return glossy();
+    if (!leds_set()) return {0, "the material is Lambert's"};
+    return change_on_horizon("the material is Lambert's: at most {:.2g} of full scale on the horizon");
   }
 
   EffectBound spectral() const {
@@ -224,16 +221,15 @@ class Bounds {
   EffectBound defocus() const {
     const BlurKernel kernel = blur_kernel(scene_.camera.blur);
     const double elsewhere = 1 - kernel.weights[kernel.weights.size() / 2];
-    if (kernel.radius == 0) return {0, "no light leaves its pixel"};
+    if (elsewhere <= 0) return {0, "no light leaves its pixel"};
     return change(elsewhere * light_, fmt::format("{:.2g} of the light", elsewhere) +
                                           " leaves its pixel: at most {:.2g} of full scale");
   }
 
   EffectBound bloom() const {
-    if (scene_.camera.bloom.share == 0) return {0, "nothing spills"};
-    if (!spills()) return {0, fmt::format("no photosite holds more than {:.2g} of full scale", sample_)};
-    EffectBound bound = whole(scene_.camera.bloom.share * (sample_ - 1), "a full photosite spills {:.2g}");
-    // Noise below white shows where bloom has cut the charge before.
+    if (sample_ <= 1) return {0, fmt::format("no photosite holds more than {:.2g} of full scale", sample_)};
+    const double spilt = spills() ? scene_.camera.bloom.share * (sample_ - 1) : 0;
+    EffectBound bound = whole(spilt, "full photosites lose their noise above white and spill {:.2g}");
     bound.sigma += kMostDeviation;
     return bound;
   }
@@ -429,6 +425,8 @@ class Bounds {
       lowest = std::min(lowest, led.elevation_deg - degrees(std::asin(led.sine)));
     return lowest;
   }
+  /// Whether a part of a LED may be below the horizon of a point.
+  bool leds_set() const { return !scene_.targets.empty() || lowest_elevation_deg() < rise_deg(slope_); }
   bool shadows_fall() const { return lowest_elevation_deg() <= rise_deg(mesh_slope()); }
 
   // Changes in sigma.
@@ -452,7 +450,7 @@ class Bounds {
   EffectBound share(double of_signal, const std::string& why) const {
     const std::string said = fmt::format(fmt::runtime(why), of_signal);
     if (of_signal == 0) return {0, said};
-    if (spills()) return all(said);
+    if (spills()) return {whole(of_signal * sample_, "").sigma, said};
     const double most = std::min(sample_, 1.0);
     return {in_sigma(of_signal * most, std::max(1 - of_signal, of_signal) * most), said};
   }
@@ -460,6 +458,11 @@ class Bounds {
   EffectBound change_of_irradiance(const ChangeOf& change_of, const std::string& why) const {
     const double gain = 1 + kMostDeviation * scene_.lights.flicker;
     return change(paper_ * gain * bounced_ * brightest(albedo_, change_of), why);
+  }
+
+  EffectBound change_on_horizon(const std::string& why) const {
+    return change_of_irradiance(
+        [](const LedRange& led) { return led.strength() * added_on_horizon(led.sine); }, why);
   }
 
   const Scene& scene_;

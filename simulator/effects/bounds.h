@@ -12,11 +12,12 @@
 // "auto"` leaves out by. Bounds hold in every sample of every shot, whatever other effects run, so the bounds
 // of several effects add up. Scene::effects is not looked at.
 //
-// Signals are compared between 0 and full scale, to which the converter clips them, where noise is drawn: the
+// Signals are compared where noise is drawn, between 0 and full scale, to which the converter clips them: the
 // sigma of a change is sqrt(s N + r^2) / N, with N electrons at full scale, r of read noise and s the
-// brighter of the two signals. What comes after noise bends noise and change alike. Normal deviates count
-// as 8.6, which none exceeds (simulator/sampling/random.h); of the rays of interreflection, which are many,
-// six standard deviations.
+// brighter of the two signals. What comes after noise bends noise and change alike; its own bounds are of
+// what it does to such a signal. Normal deviates count as 8.6, which none exceeds
+// (simulator/sampling/random.h), and the share of the rays that meet the cloth as six standard deviations
+// above its mean.
 
 namespace weft::simulator {
 

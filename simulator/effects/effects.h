@@ -6,8 +6,8 @@
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
 
-// The passes, in the order of light: cloth, LED, cloth again, lens, sensor. Each copies what it needs of scene
-// and rig. The plain passes below run for every scene; every other one is an effect that a scene names.
+// The passes, in the order of light: cloth, LED, cloth again, lens, sensor. Each copies what it needs of
+// scene and rig. The plain passes below run for every scene; every other one is an effect that a scene names.
 
 namespace weft::simulator {
 

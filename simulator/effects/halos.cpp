@@ -17,7 +17,7 @@ namespace {
 
 /// What a look at the edge of the frame tells of the whole of it.
 struct Field {
-  Area area;           ///< of the table, seen by the frame
+  Area area;             ///< of the table, seen by the frame
   double least_step_mm;  ///< between neighbouring pixels
 };
 
@@ -32,7 +32,8 @@ Field field_of(const Rig& rig, double height_mm) {
       const Vec3 p = lens.point_on_plane(x, y, height_mm);
       field.area = {std::min(field.area.x0_mm, p.x), std::min(field.area.y0_mm, p.y),
                     std::max(field.area.x1_mm, p.x), std::max(field.area.y1_mm, p.y)};
-      for (const Vec3 next : {lens.point_on_plane(x + 1, y, height_mm), lens.point_on_plane(x, y + 1, height_mm)}) {
+      for (const Vec3 next :
+           {lens.point_on_plane(x + 1, y, height_mm), lens.point_on_plane(x, y + 1, height_mm)}) {
         field.least_step_mm = std::min(field.least_step_mm, length(next - p));
       }
     }
@@ -44,8 +45,10 @@ Field field_of(const Rig& rig, double height_mm) {
 double longest_shadow_of_unit(const Rig& rig, const Area& area, double highest_mm) {
   double longest = 0;
   for (const NearLight& led : rig.leds.leds) {
-    const double away_x = std::max(std::abs(led.position_mm.x - area.x0_mm), std::abs(led.position_mm.x - area.x1_mm));
-    const double away_y = std::max(std::abs(led.position_mm.y - area.y0_mm), std::abs(led.position_mm.y - area.y1_mm));
+    const double away_x =
+        std::max(std::abs(led.position_mm.x - area.x0_mm), std::abs(led.position_mm.x - area.x1_mm));
+    const double away_y =
+        std::max(std::abs(led.position_mm.y - area.y0_mm), std::abs(led.position_mm.y - area.y1_mm));
     longest = std::max(longest, std::hypot(away_x, away_y) / std::max(led.position_mm.z - highest_mm, 1e-3));
   }
   return longest;
@@ -65,8 +68,8 @@ Result<Halos> halos_of(const Scene& scene, const Rig& rig) {
   const double relief_mm = std::max(heights.highest_mm - heights.lowest_mm, 0.5 * field.least_step_mm);
   const double step_mm = kMargin * field.least_step_mm;
   if (scene.effects.cast_shadows) {
-    halos.shadow_mm =
-        relief_mm * longest_shadow_of_unit(rig, field.area, scene.geometry.cloth_height_mm + heights.highest_mm);
+    halos.shadow_mm = relief_mm * longest_shadow_of_unit(rig, field.area,
+                                                         scene.geometry.cloth_height_mm + heights.highest_mm);
     halos.shadow = halo_for(halos.shadow_mm, step_mm);
     if (halos.shadow > kLongestShadow) {
       return Error{ErrorKind::kBadData, "shadows are too long to be traced", "scene",

@@ -29,7 +29,8 @@ Pass bounces_pass(const Scene& scene, const Halos& halos) {
             tile.openness.assign(tile.surface.size(), 1);
             const Rect traced = bounces->pixels();
             for_each_pixel(traced, [&](std::size_t, int x, int y) {
-              tile.openness[index_in(tile.area, x, y)] = static_cast<double>(openness(x - traced.x0, y - traced.y0));
+              tile.openness[index_in(tile.area, x, y)] =
+                  static_cast<double>(openness(x - traced.x0, y - traced.y0));
             });
             tile.transport->bounces = std::move(*bounces);
           }};

@@ -5,8 +5,8 @@
 
 namespace weft::simulator {
 
-/// Fills `light` and `irradiance` from incidence_at(led, point) and irradiance_of(incidence, normal); the dark
-/// shot has none.
+/// Fills `light` and `irradiance` from incidence_at(led, point) and irradiance_of(incidence, normal); the
+/// dark shot has none.
 template <typename IncidenceAt, typename IrradianceOf>
 std::function<void(Tile&)> lit_by(const IncidenceAt& incidence_at, const IrradianceOf& irradiance_of) {
   return [incidence_at, irradiance_of](Tile& tile) {

@@ -39,7 +39,8 @@ Pass rgb_pass() {
 Pass noise_pass(const Scene& scene, const Rig& rig) {
   return {"noise", "draws photons (Poisson) and read noise (normal)", Stage::kShot,
           [sensor = rig.sensor, key = random_key(scene)](Tile& tile) {
-            const std::size_t channels = tile.samples.size() / static_cast<std::size_t>(tile.sample_rect.pixels());
+            const std::size_t channels =
+                tile.samples.size() / static_cast<std::size_t>(tile.sample_rect.pixels());
             for_each_pixel(tile.sample_rect, [&](std::size_t i, int x, int y) {
               for (std::size_t c = 0; c < channels; ++c) {
                 double& sample = tile.samples[channels * i + c];

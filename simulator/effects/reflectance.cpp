@@ -16,6 +16,14 @@ struct Frame {
   Vec3 local(Vec3 v) const { return {dot(v, tangent), dot(v, bitangent), dot(v, normal)}; }
 };
 
+/// The centre of a LED that has a size may have set while part of it still shines: the model then sees it
+/// where it stood last.
+constexpr double kRisenCosine = 1e-6;
+Vec3 risen(Vec3 to_light) {
+  to_light.z = kRisenCosine;
+  return normalized(to_light);
+}
+
 /// The model as a light of that size sees it: its highlight is that much wider.
 template <typename Model>
 const Model& under_light_of(const Model& model, double, double) {
@@ -44,16 +52,18 @@ Pass reflectance_pass(const Scene& scene, const Rig& rig) {
         if (tile.target.empty() || tile.target[i] == kCloth) {
           const Frame frame(tile.surface[i]);
           const Vec3 to_view = normalized(camera_mm - tile.point_mm[i]);
+          Vec3 to_light = frame.local(tile.light[i].direction);
+          if (to_light.z < kRisenCosine) to_light = risen(to_light);
           reflected = under_light_of(model, radius_mm, tile.light[i].distance_mm)
-                          .evaluate(tile.albedo[i], frame.local(tile.light[i].direction), frame.local(to_view));
+                          .evaluate(tile.albedo[i], to_light, frame.local(to_view));
           for (double& f : reflected) f *= kPi;
         }
         for (std::size_t c = 0; c < 3; ++c) tile.signal[i][c] = reflected[c] * irradiance * flux[c];
       }
     };
   };
-  return {"reflectance", "reflects light as the material does: highlights, sheen, rough diffuse", Stage::kShot,
-          std::visit(pass, scene.material.reflectance)};
+  return {"reflectance", "reflects light as the material does: highlights, sheen, rough diffuse",
+          Stage::kShot, std::visit(pass, scene.material.reflectance)};
 }
 
 }  // namespace weft::simulator

@@ -9,12 +9,13 @@
 namespace weft::simulator {
 
 Pass photosites_pass(const Scene& scene, const Halos& halos) {
-  return {"photosites", "draws how each photosite differs from the next", Stage::kSurface,
-          [pattern = SensorPattern(defects_of(scene), random_key(scene)), rows = halos.bloom_rows](Tile& tile) {
-            const Rect rect = grown_in_rows(tile.rect, rows);
-            tile.photosites.resize(static_cast<std::size_t>(rect.pixels()));
-            pattern.fill(rect, tile.photosites);
-          }};
+  return {
+      "photosites", "draws how each photosite differs from the next", Stage::kSurface,
+      [pattern = SensorPattern(defects_of(scene), random_key(scene)), rows = halos.bloom_rows](Tile& tile) {
+        const Rect rect = grown_in_rows(tile.rect, rows);
+        tile.photosites.resize(static_cast<std::size_t>(rect.pixels()));
+        pattern.fill(rect, tile.photosites);
+      }};
 }
 
 Pass expose_pass(const Rig& rig) {

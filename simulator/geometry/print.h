@@ -16,8 +16,8 @@ namespace weft::simulator {
 /// A pattern printed on the cloth: albedo, linear Rec.709.
 struct PrintSettings {
   std::shared_ptr<const Image<float>> albedo;  ///< three planes, 0 to 1; none: nothing is printed
-  std::string file;                            ///< where it was read, absolute; empty: from no file
   PicturePlacement placement;
+  std::string file = {};  ///< where it was read, absolute; empty: from no file
 
   bool operator==(const PrintSettings&) const = default;
 };

@@ -8,6 +8,7 @@ namespace weft::simulator {
 namespace {
 
 constexpr double kNearest_mm = 1;
+constexpr double kWidestSine = 0.999;  // of a sphere that the point is not inside
 
 double power(double base, double exponent) {
   if (exponent == 0) return 1;
@@ -25,6 +26,7 @@ Incidence incidence(const NearLight& led, Vec3 point_mm) {
 }
 
 double sphere_cosine(double cosine, double sine) {
+  sine = std::min(sine, kWidestSine);
   if (cosine >= sine) return cosine;
   if (cosine <= -sine) return 0;
   const double across = std::sqrt(1 - cosine * cosine);

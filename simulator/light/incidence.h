@@ -26,7 +26,8 @@ inline double shading(const Incidence& light, Vec3 normal) {
 
 /// What stands for the cosine under a sphere of even radiance whose radius is `sine` times its distance: the
 /// cosine itself while the whole sphere is above the surface's horizon, and a smooth way to 0 while it sets
-/// (Snyder, "Area light sources for real-time graphics", Microsoft Research 1996). 0 <= sine < 1.
+/// (Snyder, "Area light sources for real-time graphics", Microsoft Research 1996). A point inside
+/// the sphere counts as just outside it.
 double sphere_cosine(double cosine, double sine);
 
 }  // namespace weft::simulator

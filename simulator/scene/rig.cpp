@@ -95,8 +95,8 @@ Result<void> check_parts(const Scene& scene) {
 Result<void> place_camera(const Scene& scene, Rig& rig) {
   const CameraSettings& c = scene.camera;
   LensSettings lens = scene.effects.distortion ? c.lens : LensSettings();
-  const Result<CameraModel> camera = camera_of({c.width, c.height}, c.distance_mm, c.mm_per_pixel, lens, c.pose,
-                                               scene.geometry.cloth_height_mm);
+  const Result<CameraModel> camera = camera_of({c.width, c.height}, c.distance_mm, c.mm_per_pixel, lens,
+                                               c.pose, scene.geometry.cloth_height_mm);
   if (!camera) return camera.error();
   rig.camera = *camera;
   if (lens == LensSettings() && c.pose == PoseSettings()) return {};

@@ -20,7 +20,7 @@ struct Rig {
   Sensor sensor;
   CameraModel camera;
   std::optional<Lens> lens;  ///< none where the camera is straight above and nothing bends its rays
-  double exposure_us = 0;  ///< whole microseconds
+  double exposure_us = 0;    ///< whole microseconds
 
   /// Signal of a reading of 1: seconds at ISO 100.
   double exposure(double iso) const { return exposure_us * 1e-6 * iso / 100; }
@@ -29,9 +29,9 @@ struct Rig {
   Vec3 camera_centre_mm() const;
 };
 
-/// Checks the scene, places its LEDs and its camera and chooses the exposure. kBadData where no LED lights the
-/// table's centre, a LED or the camera is not above the cloth, the camera does not see the table, a target or a
-/// filter cannot be used, or the exposure would not be between 1 us and 1000 s.
+/// Checks the scene, places its LEDs and its camera and chooses the exposure. kBadData where no LED lights
+/// the table's centre, a LED or the camera is not above the cloth, the camera does not see the table, a
+/// target or a filter cannot be used, or the exposure would not be between 1 us and 1000 s.
 Result<Rig> rig_of(const Scene& scene);
 
 /// Each LED as the distant light that it is at the table's centre, on the cloth's plane.

@@ -243,6 +243,7 @@ void walk(Visitor& v, GeometrySettings& g) {
             {"sphere", GeometryKind::kSphere},
             {"cylinder", GeometryKind::kCylinder},
             {"height_map", GeometryKind::kHeightMap}});
+  v.require(!family || is_woven(g.kind), "family", "it is a weave, and this kind of geometry is none");
   v.number("cloth_height_mm", g.cloth_height_mm, {-100, 1000});
   if (g.kind == GeometryKind::kTilted) v.number("tilt_deg", g.tilt_deg, {0, 85});
   if (g.kind == GeometryKind::kTilted || g.kind == GeometryKind::kCylinder)

@@ -183,7 +183,8 @@ void SceneReader::flags(const char* key, EffectSettings& effects) {
   const toml::node* node = find(key);
   if (node == nullptr || node->is_table()) return section(key, effects);
   const toml::array* names = node->as_array();
-  if (names == nullptr) return refuse_type(key, "a section [effects], a list of names or \"auto\"");
+  if (names == nullptr || (!names->empty() && !names->is_homogeneous(toml::node_type::string)))
+    return refuse_type(key, "a section [effects], a list of names or \"auto\"");
   std::vector<std::string> known;
   for (const EffectKey& effect : effect_keys()) known.emplace_back(effect.name);
   for (const toml::node& each : *names) {

@@ -82,8 +82,9 @@ TEST(Passes, OfEveryEffectNameIt) {
   std::set<std::string> named;
   for (const Pass& pass : list->passes) named.insert(pass.effect);
   for (const EffectKey& effect : effect_keys()) {
-    const bool has_no_pass_of_its_own = std::string(effect.name) == "near_light" ||  // finite_led's stands for it
-                                        std::string(effect.name) == "spectral";      // another set of albedos
+    const bool has_no_pass_of_its_own =
+        std::string(effect.name) == "near_light" ||  // finite_led's stands for it
+        std::string(effect.name) == "spectral";      // another set of albedos
     EXPECT_EQ(named.count(effect.name) == 0, has_no_pass_of_its_own) << effect.name;
   }
 }

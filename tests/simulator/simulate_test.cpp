@@ -218,7 +218,8 @@ Scene hard_scene() {
   for (const EffectKey& effect : effect_keys()) scene.effects.*effect.on = true;
   scene.effects.spectral = false;
   scene.material.reflectance = Ggx{.alpha = 0.4};
-  scene.transport.bounce_rays = 16;
+  scene.transport.bounce_rays = 2;
+  scene.transport.shadow_rays = 4;
   return scene;
 }
 

@@ -10,7 +10,7 @@ int main() {
   const auto rig = rig_of(scene);
   if (!rig) return 1;
   PassList list;
-  list.passes = {camera_pass(scene, *rig), geometry_pass(scene),       albedo_pass(scene, true),
+  list.passes = {camera_pass(scene, *rig), geometry_pass(scene),      albedo_pass(scene, true),
                  near_light_pass(*rig),    lambert_pass(scene, *rig), mosaic_pass(0),
                  converter_pass(*rig)};
   return print_frame(std::move(list));

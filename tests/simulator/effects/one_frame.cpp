@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/simulator/effects/one_frame.h"
 
-#include <cstdio>
 #include <cstdint>
+#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -16,10 +16,9 @@ constexpr int kSide = 256;
 extern "C" [[gnu::noinline]] bool weft_frame(PassRunner& runner, std::vector<std::uint16_t>& counts) {
   const int led = 1;
   counts.clear();
-  return static_cast<bool>(runner.run({0, 0, kSide, kSide}, {&led, 1}, {}, [](const Tile&) {},
-                                      [&](const Tile& tile) {
-                                        counts.insert(counts.end(), tile.counts.begin(), tile.counts.end());
-                                      }));
+  return static_cast<bool>(runner.run(
+      {0, 0, kSide, kSide}, {&led, 1}, {}, [](const Tile&) {},
+      [&](const Tile& tile) { counts.insert(counts.end(), tile.counts.begin(), tile.counts.end()); }));
 }
 
 Scene scene_of_the_frame() {

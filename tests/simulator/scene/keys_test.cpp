@@ -15,8 +15,8 @@ TEST(SceneEffects, AreASectionOfFlagsOrAListOfNames) {
   EXPECT_THAT(
       refusal("seed = 1\neffects = [\"noise\", \"vigneting\"]\n"),
       AllOf(HasSubstr("scene.toml:2"), HasSubstr("\"vigneting\" is no effect"), HasSubstr("\"vignetting\"")));
-  EXPECT_THAT(refusal("effects = [1]\n"), HasSubstr("is no effect"));
-  EXPECT_THAT(refusal("effects = true\n"), HasSubstr("a list of names or \"auto\""));
+  for (const char* wrong : {"effects = [1]\n", "effects = true\n", "[[effects]]\nnoise = true\n"})
+    EXPECT_THAT(refusal(wrong), HasSubstr("a list of names or \"auto\"")) << wrong;
   EXPECT_THAT(refusal("effects = \"noise\"\n"), HasSubstr("in brackets"));
 }
 
@@ -50,6 +50,8 @@ TEST(SceneGeometry, StartsFromAFamilyAndOverridesIt) {
   const Scene scene = parsed("[geometry]\nwarp_pitch_mm = 1\ntwist_relief = 0.02\nfamily = \"deep\"\n");
   EXPECT_EQ(scene.geometry, deep) << "whatever the order of the lines";
   EXPECT_THAT(to_toml(scene), testing::Not(HasSubstr("family")));
+  EXPECT_EQ(parsed("[geometry]\nfamily = \"deep\"\nkind = \"twill\"\n").geometry.kind, GeometryKind::kTwill);
+  EXPECT_THAT(refusal("[geometry]\nfamily = \"deep\"\nkind = \"knit\"\n"), HasSubstr("it is a weave"));
   EXPECT_THAT(refusal("[geometry]\nfamily = \"rough\"\n"), HasSubstr("\"smooth\", \"plain\", \"deep\""));
 }
 
