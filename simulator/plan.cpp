@@ -12,9 +12,13 @@
 namespace weft::simulator {
 namespace {
 
-bool has_dyes(const Scene& scene) {
+/// Whether there is anything to see by wavelength, and filters to see it through.
+bool has_spectra(const Scene& scene) {
   const MaterialSettings& m = scene.material;
-  return (m.dye || m.warp_dye || m.weft_dye || !scene.spectra.chart.empty()) &&
+  const bool has_chart =
+      std::any_of(scene.targets.begin(), scene.targets.end(),
+                  [](const TargetSettings& target) { return kind_of(target.pattern) == TargetKind::kChart; });
+  return (m.dye || (m.warp_dye && m.weft_dye) || has_chart) &&
          camera_weights(scene.spectra.led, scene.spectra.filters).has_value();
 }
 
@@ -22,7 +26,7 @@ bool has_dyes(const Scene& scene) {
 EffectSettings all_effects(const Scene& scene) {
   EffectSettings all;
   for (const EffectKey& effect : effect_keys()) all.*effect.on = true;
-  all.spectral = has_dyes(scene);
+  all.spectral = has_spectra(scene);
   return all;
 }
 

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "simulator/camera/optics.h"
-#include "simulator/camera/saturation.h"
 #include "simulator/light/incidence.h"
 #include "simulator/spectra/observer.h"
 #include "simulator/targets/target.h"
@@ -72,9 +71,6 @@ Result<void> check_places(const Scene& scene, const std::vector<NearLight>& leds
 
 /// What the scene's own parts have to say against it.
 Result<void> check_parts(const Scene& scene) {
-  if (scene.effects.nonlinearity) {
-    if (const auto bend = NonLinearity::of(scene.camera.linearity); !bend) return bend.error();
-  }
   if (scene.effects.spectral) {
     if (const auto camera = camera_weights(scene.spectra.led, scene.spectra.filters); !camera) {
       return camera.error();

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/files.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {
