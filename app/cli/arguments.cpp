@@ -22,9 +22,16 @@ CLI::App* add_simulate(CLI::App& app, SimulateArguments& a) {
   CLI::App* verb =
       app.add_subcommand("simulate", "Render a scene (TOML) into a session of raw DNG frames with its truth");
   verb->add_option("scene", a.scene, "Scene file; docs/scenes.md lists its keys and units")->required();
-  verb->add_option("-o,--output", a.output, "Session folder to make, NAME.weft; must not exist")->required();
+  verb->add_option("-o,--output", a.output,
+                   "Session folder to make, NAME.weft, which must not exist; with --led the DNG file")
+      ->required();
+  CLI::Option* led =
+      verb->add_option("--led", a.led, "Render one frame alone: of this LED, 0 for the dark shot")
+          ->check(CLI::NonNegativeNumber);
   verb->add_flag("--explain", a.explain,
-                 "List the passes that ran, what each cost, and the effects left out");
+                 "List the passes that run and why, the effects left out with what they would change and "
+                 "cost, and after the run what each pass cost")
+      ->excludes(led);
   return verb;
 }
 
@@ -106,6 +113,24 @@ CLI::App* add_bench_solve(CLI::App& bench, BenchSolveArguments& a) {
   return verb;
 }
 
+CLI::App* add_bench_effects(CLI::App& bench, BenchEffectsArguments& a) {
+  CLI::App* verb = bench.add_subcommand("effects", "Cost, error and pictures of the simulator's effects");
+  CLI::Option* size = verb->add_option("--megapixels", a.megapixels, "Size of a frame, millions of pixels")
+                          ->check(CLI::Range(0.01, 200.0))
+                          ->capture_default_str();
+  CLI::Option* rays = verb->add_flag("--rays", a.rays, "Error and time of sampled effects at 1 to 4096 rays");
+  CLI::Option* embree = verb->add_flag("--embree", a.embree, "Shadow and bounce rays against bare Embree");
+  CLI::Option* choice = verb->add_flag(
+      "--auto", a.choice, "What effects = \"auto\" at 0.25 sigma changes and saves against all effects");
+  CLI::Option* gallery =
+      verb->add_option("--gallery", a.gallery, "Folder for a picture of each effect off and on");
+  rays->excludes(embree)->excludes(choice)->excludes(gallery)->excludes(size);
+  embree->excludes(choice)->excludes(gallery)->excludes(size);
+  choice->excludes(gallery)->excludes(size);
+  gallery->excludes(size);
+  return verb;
+}
+
 CLI::App* add_demo(CLI::App& app, DemoArguments& a) {
   CLI::App* verb = app.add_subcommand("demo", "Scan a simulated cloth, solve it and show the result");
   verb->add_option("scene", a.scene, "Scene file (TOML)")->required();
@@ -132,6 +157,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   SolveArguments solve;
   CompareArguments compare;
   BenchSolveArguments bench_solve;
+  BenchEffectsArguments bench_effects;
   DemoArguments demo;
   std::string quality, method, transfer = "auto", kind = "normal";
   std::vector<int> lights;
@@ -141,9 +167,12 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   CLI::App* bench_verb = app.add_subcommand("bench", "Measure");
   bench_verb->require_subcommand(1);
   CLI::App* bench_solve_verb = add_bench_solve(*bench_verb, bench_solve);
+  CLI::App* bench_effects_verb = add_bench_effects(*bench_verb, bench_effects);
   CLI::App* demo_verb = add_demo(app, demo);
-  for (CLI::App* verb : {simulate_verb, solve_verb, compare_verb, bench_solve_verb, demo_verb})
+  for (CLI::App* verb :
+       {simulate_verb, solve_verb, compare_verb, bench_solve_verb, bench_effects_verb, demo_verb}) {
     add_common(*verb, common);
+  }
 
   const auto usage = [&](const std::string& why) {
     note("weft: " + why + ". See weft --help.");
@@ -168,6 +197,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
     return Arguments{common, compare};
   }
   if (*demo_verb) return Arguments{common, demo};
+  if (*bench_effects_verb) return Arguments{common, bench_effects};
   if (*bench_verb) return Arguments{common, bench_solve};
   if (solve.session.folder.empty() && solve.photos.folder.empty() && solve.photos.light_file.empty()) {
     return usage("solve needs a session, --photos or --lp");

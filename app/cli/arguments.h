@@ -22,6 +22,7 @@ struct CommonArguments {
 struct SimulateArguments {
   std::filesystem::path scene;
   std::filesystem::path output;
+  std::optional<int> led;  ///< one frame alone: a LED from 1, or 0 for the dark shot
   bool explain = false;
 };
 
@@ -44,6 +45,14 @@ struct BenchSolveArguments {
   bool end_to_end = false;
 };
 
+struct BenchEffectsArguments {
+  double megapixels = 1;
+  bool rays = false;
+  bool embree = false;
+  bool choice = false;            ///< --auto
+  std::filesystem::path gallery;  ///< folder; empty: no pictures
+};
+
 struct DemoArguments {
   std::filesystem::path output = "demo";
   std::optional<double> megapixels;
@@ -52,7 +61,9 @@ struct DemoArguments {
 
 struct Arguments {
   CommonArguments common;
-  std::variant<SimulateArguments, SolveArguments, CompareArguments, BenchSolveArguments, DemoArguments> verb;
+  std::variant<SimulateArguments, SolveArguments, CompareArguments, BenchSolveArguments,
+               BenchEffectsArguments, DemoArguments>
+      verb;
 };
 
 /// Reads the command line. Without a verb to run (--help, a usage error) it has printed what there is to say

@@ -23,6 +23,7 @@ Result<int> run(const Arguments& arguments) {
                              [&](const SolveArguments& a) { return run_solve(a, common); },
                              [&](const CompareArguments& a) { return run_compare(a, common); },
                              [&](const BenchSolveArguments& a) { return run_bench_solve(a, common); },
+                             [&](const BenchEffectsArguments& a) { return run_bench_effects(a, common); },
                              [&](const DemoArguments& a) { return run_demo(a, common); }},
                     arguments.verb);
 }

@@ -12,6 +12,7 @@ Result<int> run_simulate(const SimulateArguments& arguments, const CommonArgumen
 Result<int> run_solve(const SolveArguments& arguments, const CommonArguments& common);
 Result<int> run_compare(const CompareArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_solve(const BenchSolveArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_effects(const BenchEffectsArguments& arguments, const CommonArguments& common);
 Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& common);
 
 }  // namespace weft::app
