@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "core/files.h"
 #include "simulator/build_passes.h"
+#include "simulator/effects/bounds.h"
 #include "simulator/plan.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
@@ -25,7 +27,9 @@ constexpr double kWorthTelling_s = 0.05;
 struct Explanation {
   Plan plan;
   simulator::PassList passes;
-  std::vector<double> saved_seconds;  ///< of one thread, by left-out effect; only where bounds decided
+  // Only where bounds decided:
+  simulator::EffectBounds bounds;
+  std::vector<double> saved_seconds;  ///< of one thread, by left-out effect
 };
 
 Result<Explanation> explain(const simulator::Scene& scene) {
@@ -34,8 +38,9 @@ Result<Explanation> explain(const simulator::Scene& scene) {
   Result<simulator::PassList> passes =
       simulator::build_passes(plan->scene, plan->rig, simulator::Output::kCounts);
   if (!passes) return passes.error();
-  Explanation explanation = {std::move(*plan), std::move(*passes), {}};
+  Explanation explanation = {std::move(*plan), std::move(*passes), {}, {}};
   if (scene.auto_to_sigma) {
+    explanation.bounds = simulator::bounds_of(explanation.plan.scene, explanation.plan.rig);
     for (const LeftOut& effect : explanation.plan.left_out) {
       explanation.saved_seconds.push_back(simulator::seconds_saved(explanation.plan, effect));
     }
@@ -43,16 +48,21 @@ Result<Explanation> explain(const simulator::Scene& scene) {
   return explanation;
 }
 
-std::string why(const simulator::Pass& pass, const simulator::Scene& scene) {
+std::string why(const simulator::Pass& pass, const simulator::EffectBounds& bounds) {
   if (pass.effect.empty()) return "every picture needs it";
-  return scene.auto_to_sigma ? pass.effect + " may change more than is asked for"
-                             : "the scene names " + pass.effect;
+  if (bounds.empty()) return "the scene names " + pass.effect;
+  const auto keys = simulator::effect_keys();
+  const auto key =
+      std::find_if(keys.begin(), keys.end(), [&](const auto& k) { return pass.effect == k.name; });
+  const double sigma = bounds[static_cast<std::size_t>(key - keys.begin())].sigma;
+  return std::isinf(sigma) ? pass.effect + ", without bound"
+                           : fmt::format("{}, up to {:.2g} sigma", pass.effect, sigma);
 }
 
 void print_plan(const Explanation& explanation, const simulator::Scene& scene) {
   print("pass             why it runs                        what it does");
   for (const simulator::Pass& pass : explanation.passes.passes) {
-    print(fmt::format("{:<16} {:<34} {}", pass.name, why(pass, scene), pass.does));
+    print(fmt::format("{:<16} {:<34} {}", pass.name, why(pass, explanation.bounds), pass.does));
   }
   if (explanation.plan.left_out.empty()) return;
   print(scene.auto_to_sigma ? "\nleft out         sigma at most  thread-seconds saved  why"

@@ -540,8 +540,7 @@ EffectSettings effects_within(const Scene& scene, const Rig& rig, double to_sigm
   const auto leave_out = [&](std::size_t i) {
     sum += bounds[i].sigma;
     on.*keys[i].on = false;
-    left_out.push_back({keys[i].name, fmt::format("{}, at most {:.2g} sigma", bounds[i].why, bounds[i].sigma),
-                        bounds[i].sigma});
+    left_out.push_back({keys[i].name, bounds[i].why, bounds[i].sigma});
   };
   for (const auto dear : kDearest) {
     for (std::size_t i = 0; i < keys.size(); ++i) {
