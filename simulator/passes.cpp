@@ -60,7 +60,7 @@ Result<void> PassRunner::run(Rect area, std::span<const int> leds, std::stop_tok
                              const std::function<void(const Tile&)>& with_shot) {
   // The tile loop starts at column 0, an area anywhere.
   const Rect whole = {0, 0, area.width(), area.height()};
-  const Result<void> done = for_each_tile(whole, options_, std::move(stop), [&](Rect part, int w) {
+  Result<void> done = for_each_tile(whole, options_, std::move(stop), [&](Rect part, int w) {
     Worker& worker = workers_[static_cast<std::size_t>(w)];
     Tile& tile = worker.tile;
     if (tile.failure) return;

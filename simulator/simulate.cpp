@@ -244,7 +244,7 @@ class SessionWriter {
     }
     const auto pixels = static_cast<std::uint64_t>(Size{width(), height()}.pixels());
     const auto count = static_cast<std::uint64_t>(frames());
-    const auto of_leds = static_cast<std::uint64_t>(planes_of_led() * leds());
+    const auto of_leds = static_cast<std::uint64_t>(planes_of_led()) * static_cast<std::uint64_t>(leds());
     const std::uint64_t disk = pixels * (kTruthPlanes * sizeof(float) + count * sizeof(std::uint16_t) +
                                          of_leds * sizeof(std::uint16_t));
     if (const std::uint64_t free = free_disk_bytes(target); free < disk) {
@@ -463,7 +463,7 @@ Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file,
   }
   frame.counts = Image<std::uint16_t>(size);
   PassRunner runner(std::move(*passes), options.tiles);
-  const Result<void> ran = runner.run(
+  Result<void> ran = runner.run(
       {0, 0, size.width, size.height}, {&led, 1}, options.stop, [](const Tile&) {},
       [&](const Tile& tile) { copy_counts(tile, 0, frame.counts.plane()); });
   if (!ran) return ran;

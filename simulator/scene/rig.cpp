@@ -96,9 +96,9 @@ Result<void> place_camera(const Scene& scene, Rig& rig) {
   if (!camera) return camera.error();
   rig.camera = *camera;
   if (lens == LensSettings() && c.pose == PoseSettings()) return {};
-  Result<Lens> ready = Lens::of(rig.camera);
+  const Result<Lens> ready = Lens::of(rig.camera);
   if (!ready) return ready.error();
-  rig.lens = std::move(*ready);
+  rig.lens = *ready;
   return {};
 }
 
