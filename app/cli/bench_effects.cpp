@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/exit_code.h"
-#include "app/cli/terminal.h"
+#include "app/cli/bench_rows.h"
 #include "app/cli/verbs.h"
 #include "bench/effects_auto.h"
 #include "bench/effects_cost.h"
@@ -22,14 +21,7 @@ Result<bench::Rows> measure(const BenchEffectsArguments& a, int threads) {
 }  // namespace
 
 Result<int> run_bench_effects(const BenchEffectsArguments& arguments, const CommonArguments& common) {
-  const Result<bench::Rows> rows = measure(arguments, common.threads);
-  if (!rows) return rows.error();
-  if (common.json) {
-    print_json(bench::document_of(*rows));
-  } else {
-    print(bench::table_of(*rows));
-  }
-  return kDone;
+  return print_rows(measure(arguments, common.threads), common);
 }
 
 }  // namespace weft::app

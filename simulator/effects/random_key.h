@@ -18,7 +18,7 @@ inline std::array<std::uint32_t, 2> random_key(const Scene& scene) {
 /// has.
 enum RandomStream : std::uint32_t {
   kYarnStream = 0xFFFFFFFF,
-  kFlickerStream = 0xFFFFFFFE,
+  kFlickerStream = 0xFFFFFFFB,  // those between belong to targets and bounces
 };
 
 }  // namespace weft::simulator
