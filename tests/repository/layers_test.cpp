@@ -52,7 +52,8 @@ const std::vector<Door> kDoors = {
     {"OpenImageIO/", {"core/image_io/", "bench/"}},
     {"libraw/", {"capture/raw/", "bench/"}},
     {"hwy/", {"core/", "solver/kernels/", "tests/"}},
-    {"embree3/", {"simulator/transport/", "bench/"}},
+    {"embree3/", {"simulator/transport/", "solver/transport/", "bench/"}},
+    {"kissfft/", {"solver/height/", "bench/"}},
 };
 
 bool starts_with_any(std::string_view path, const Prefixes& prefixes) {
