@@ -4,10 +4,14 @@
 namespace weft::solver {
 
 std::span<const MethodName> method_names() {
-  static constexpr std::array<MethodName, 3> kNames = {
+  static constexpr std::array<MethodName, 7> kNames = {
       {{"fast", true, false, &fast_method},
+       {"standard", true, false, &standard_method},
+       {"robust", true, false, &robust_method},
        {"seed", false, true, &seed_method},
-       {"least-squares", false, true, &least_squares_method}}};
+       {"least-squares", false, true, &least_squares_method},
+       {"wls", false, false, &weighted_method},
+       {"lts", false, false, &trimmed_method}}};
   return kNames;
 }
 

@@ -21,7 +21,8 @@ namespace weft::solver {
 /// Rec.709 luminance weights of linear R, G, B: what one normal for three channels is solved from.
 inline constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722};
 
-/// K frames of one tile as readings (core/radiometry.h: +infinity is saturated, NaN is missing).
+/// K frames of one tile as readings (core/radiometry.h: +infinity is saturated, NaN is missing; -infinity is
+/// known to be in shadow).
 ///
 /// One plane is a mosaic: each photosite is solved alone, with its own direction and its colour's strength,
 /// so that the normal needs no demosaicing. Three planes are RGB and share one normal, solved from their
@@ -67,6 +68,17 @@ std::unique_ptr<Method> least_squares_method();
 /// Least squares without the readings in attached shadow: those below 0.15 of the third brightest of ten, as
 /// long as four readings and a well-conditioned system remain.
 std::unique_ptr<Method> fast_method();
+
+/// Two-step weighted least squares of the readings that the shadow mask leaves: solved once, and again with
+/// every reading over the variance that the first solution predicts.
+std::unique_ptr<Method> weighted_method();
+/// Weighted, then readings that do not fit the others are left out one by one, and shadowed ones that do fit
+/// are taken back.
+std::unique_ptr<Method> standard_method();
+/// Standard; where its residuals ask for it, from the start that most readings agree on.
+std::unique_ptr<Method> robust_method();
+/// Least trimmed squares at every pixel (Rousseeuw 1984), then weighted.
+std::unique_ptr<Method> trimmed_method();
 
 /// Levels and methods by the name a person gives them.
 struct MethodName {

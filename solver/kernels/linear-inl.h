@@ -265,11 +265,12 @@ HWY_INLINE M select(D d, const RowTask& task, const Scratch& scratch, const Colu
   M saturated = no, invalid = no, unlit = no, bright = no;
   Brightest brightest(d, scratch, task.bright_rank);
   for (std::size_t k = 0; k < task.light_count; ++k) {
-    M missing = no, full = no, stands_out = no;
+    M missing = no, full = no, in_shadow = no, stands_out = no;
     for (std::size_t p = 0; p < kPlanes; ++p) {
       const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + columns.x);
       full = hn::Or(full, hn::Eq(r, infinity));
-      missing = hn::Or(missing, hn::Not(hn::Gt(r, minus_infinity)));
+      missing = hn::Or(missing, hn::IsNaN(r));
+      in_shadow = hn::Or(in_shadow, hn::Eq(r, minus_infinity));
       if constexpr (kPlanes == 1) stands_out = hn::Gt(r, hn::Set(d, task.dark_reading));
     }
     const V light_sum = scratch.light(k);
@@ -277,7 +278,7 @@ HWY_INLINE M select(D d, const RowTask& task, const Scratch& scratch, const Colu
     const V cosine = light_here(d, task.lights[k], columns.x_mm, columns.y_mm, one).cosine;
     full = hn::AndNot(missing, full);
     const M unreadable = hn::Or(missing, full);
-    const M behind = hn::AndNot(unreadable, hn::Not(hn::Gt(cosine, zero)));
+    const M behind = hn::AndNot(unreadable, hn::Or(in_shadow, hn::Not(hn::Gt(cosine, zero))));
     const M usable = hn::Not(hn::Or(behind, unreadable));
     invalid = hn::Or(invalid, missing);
     saturated = hn::Or(saturated, full);

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include "solver/kernels/linear_row.h"
+#include "solver/normals/pixelwise.h"
 #include "solver/reference/pixel.h"
 
 #undef HWY_TARGET_INCLUDE
@@ -69,38 +69,6 @@ RowPoints points_of(const LightField::Row& row) {
   return points;
 }
 
-// Nothing leaves as infinity, whatever came in.
-float finite(double v) {
-  return static_cast<float>(std::min(v, double{std::numeric_limits<float>::max()}));
-}
-
-// Solves one pixel of the tile in double and writes it over what the kernel left.
-void solve_again(const TileInput& input, const TileOutput& output, const LinearOptions& options, int x, int y,
-                 std::vector<PixelRow>& rows) {
-  const auto planes = static_cast<std::size_t>(input.planes);
-  const int px = input.tile.x0 + x, py = input.tile.y0 + y;
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    for (std::size_t p = 0; p < planes; ++p) {
-      const int channel = planes == 1 ? input.cfa.channel_at(px, py) : static_cast<int>(p);
-      const LightField::Light light = input.field->at(k, channel, px, py);
-      rows[k].direction = light.direction;
-      rows[k].strength[p] = light.strength;
-      rows[k].reading[p] = input.readings[k * planes + p](x, y);
-    }
-  }
-  const PixelSolution s = solve_pixel(rows, {input.planes, options.shadow_mask, input.noise});
-  output.normal[0](x, y) = static_cast<float>(s.normal.x);
-  output.normal[1](x, y) = static_cast<float>(s.normal.y);
-  output.normal[2](x, y) = static_cast<float>(s.normal.z);
-  for (std::size_t p = 0; p < planes; ++p) {
-    output.albedo[p](x, y) = finite(s.albedo[p]);
-    output.sigma_albedo[p](x, y) = finite(s.sigma_albedo[p]);
-  }
-  output.sigma_normal_deg(x, y) = static_cast<float>(s.sigma_normal_deg);
-  output.residual(x, y) = static_cast<float>(s.residual);
-  output.status(x, y) = s.status;
-}
-
 }  // namespace
 
 void solve_linear(const TileInput& input, const TileOutput& output, const LinearOptions& options) {
@@ -109,6 +77,7 @@ void solve_linear(const TileInput& input, const TileOutput& output, const Linear
   std::vector<float> scratch(row_scratch_floats(lights.size()));
   std::vector<const float*> readings(input.readings.size());
   std::vector<PixelRow> pixel_rows(lights.size());
+  PixelSolver solve_in_double({input.planes, options.shadow_mask, input.noise});
   LightField::Row line;
 
   RowTask task;
@@ -149,7 +118,9 @@ void solve_linear(const TileInput& input, const TileOutput& output, const Linear
                                    : HWY_DYNAMIC_DISPATCH(solve_rgb_row)(task);
     if (!again) continue;
     for (int x = 0; x < input.tile.width(); ++x) {
-      if (task.status[x] & kSolveAgain) solve_again(input, output, options, x, y, pixel_rows);
+      if (!(task.status[x] & kSolveAgain)) continue;
+      read_pixel(input, x, y, pixel_rows);
+      write_pixel(solve_in_double.solve(pixel_rows), input.planes, output, x, y);
     }
   }
 }

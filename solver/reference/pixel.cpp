@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/reference/pixel.h"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "solver/method.h"
+#include "solver/reference/factor.h"
+#include "solver/reference/triples.h"
 
 namespace weft::solver {
 namespace {
@@ -16,172 +18,344 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// One equilibrated row: x = r / e by plane, and `light` = sum of plane weights times x, which the normal is
-// solved from.
-struct Row {
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+enum class Use { kFitted, kShadowed, kRejected };
+
+// One equilibrated reading: x = r / e by plane, and `light` = sum of plane weights times x, which the normal
+// is solved from.
+struct Reading {
   Vector3d l;
   std::array<double, 3> x = {};
   double light = 0;
   double inverse_strength = 0;  // of plane 0
+  Use use = Use::kFitted;
+  double variance = 1;  // of `light`, as the last solution predicts it
 };
 
-// What is left of the rows that can be used at all; says in `status` why others cannot.
-std::vector<Row> valid_rows(std::span<const PixelRow> rows, int planes, std::uint16_t& status) {
-  std::vector<Row> valid;
-  for (const PixelRow& row : rows) {
-    bool missing = false, saturated = false, unlit = false;
-    Row r = {Vector3d(row.direction.x, row.direction.y, row.direction.z), {}, 0, 1 / row.strength[0]};
-    for (std::size_t p = 0; p < static_cast<std::size_t>(planes); ++p) {
-      saturated |= row.reading[p] == std::numeric_limits<double>::infinity();
-      missing |= !std::isfinite(row.reading[p]) && row.reading[p] != std::numeric_limits<double>::infinity();
-      unlit |= !(row.strength[p] > 0);
-      r.x[p] = row.reading[p] / row.strength[p];
-      r.light += (planes == 1 ? 1.0 : kLuminance[p]) * r.x[p];
-    }
-    if (missing) {
-      status |= kInvalidReading;
-    } else if (saturated) {
-      status |= kSaturated;
-    } else if (unlit) {
-      status |= kShadowed;
-    } else {
-      valid.push_back(r);
+}  // namespace
+
+struct PixelSolver::Work {
+  PixelOptions options;
+  std::vector<Reading> readings;
+  std::vector<WeightedDirection> system;
+  std::vector<double> sorted;
+  std::vector<std::size_t> fitted;
+  std::uint16_t status = 0;
+  Factor fit;
+
+  std::size_t planes() const { return static_cast<std::size_t>(options.planes); }
+  bool has_noise() const { return planes() == 1 && options.noise.has_value(); }
+
+  // Keeps the rows that can be used at all; says in `status` why others cannot.
+  void take_valid(std::span<const PixelRow> rows) {
+    readings.clear();
+    status = 0;
+    for (const PixelRow& row : rows) {
+      bool missing = false, saturated = false, unlit = false;
+      Reading r;
+      r.l = Vector3d(row.direction.x, row.direction.y, row.direction.z);
+      r.inverse_strength = 1 / row.strength[0];
+      for (std::size_t p = 0; p < planes(); ++p) {
+        saturated |= row.reading[p] == kInfinity;
+        missing |= std::isnan(row.reading[p]);
+        unlit |= !(row.strength[p] > 0) || row.reading[p] == -kInfinity;
+        r.x[p] = row.reading[p] / row.strength[p];
+        r.light += (planes() == 1 ? 1.0 : kLuminance[p]) * r.x[p];
+      }
+      if (missing) {
+        status |= kInvalidReading;
+      } else if (saturated) {
+        status |= kSaturated;
+      } else if (unlit) {
+        status |= kShadowed;
+      } else {
+        readings.push_back(r);
+      }
     }
   }
-  return valid;
-}
 
-Matrix3d normal_matrix(const std::vector<Row>& rows) {
-  Matrix3d g = Matrix3d::Zero();
-  for (const Row& row : rows) g += row.l * row.l.transpose();
-  return g;
-}
+  bool all_dark() const {
+    const double sigma = has_noise() ? std::sqrt(options.noise->floor + options.noise->shared) : 0.0;
+    return !readings.empty() && std::none_of(readings.begin(), readings.end(), [&](const Reading& r) {
+      return r.light > 3 * sigma * r.inverse_strength;
+    });
+  }
 
-// Leaves out what attached shadow darkened, unless too little would be left to solve with.
-std::vector<Row> without_shadow(std::vector<Row> rows, std::size_t lights, std::uint16_t& status) {
-  std::vector<double> sorted;
-  for (const Row& row : rows) sorted.push_back(row.light);
-  std::sort(sorted.begin(), sorted.end(), std::greater<>());
-  const auto ranked = [&](int rank) {
-    const auto i = static_cast<std::size_t>(rank) - 1;
-    return i < sorted.size() ? sorted[i] : -std::numeric_limits<double>::infinity();
-  };
-  const double threshold = std::min(kShadowShare * ranked(bright_rank(lights)), ranked(kLeastKept));
-  std::vector<Row> lit;
-  std::copy_if(rows.begin(), rows.end(), std::back_inserter(lit),
-               [&](const Row& row) { return row.light >= threshold; });
-  if (lit.size() == rows.size() || normal_matrix(lit).determinant() <= kLeastMaskedDeterminant) return rows;
-  status |= kShadowed;
-  return lit;
-}
+  // Leaves out what shadow darkened, unless too little would be left to solve with.
+  void leave_out_shadow(std::size_t lights) {
+    sorted.clear();
+    for (const Reading& r : readings) sorted.push_back(r.light);
+    std::sort(sorted.begin(), sorted.end(), std::greater<>());
+    const auto ranked = [&](int rank) {
+      const auto i = static_cast<std::size_t>(rank) - 1;
+      return i < sorted.size() ? sorted[i] : -kInfinity;
+    };
+    const double threshold = std::min(kShadowShare * ranked(bright_rank(lights)), ranked(kLeastKept));
+    Matrix3d lit = Matrix3d::Zero();
+    for (Reading& r : readings) {
+      r.use = r.light >= threshold ? Use::kFitted : Use::kShadowed;
+      if (r.use == Use::kFitted) lit += r.l * r.l.transpose();
+    }
+    if (lit.determinant() > kLeastMaskedDeterminant) return;
+    for (Reading& r : readings) r.use = Use::kFitted;
+  }
 
-PixelSolution unsolved(const std::vector<Row>& rows, const PixelOptions& options, std::uint16_t status) {
+  // Fits what is in use, each reading over its variance, and predicts the variances anew.
+  bool solve_fitted() {
+    system.clear();
+    for (const Reading& r : readings) {
+      if (r.use == Use::kFitted) system.push_back({r.l, 1 / r.variance, r.light});
+    }
+    fit = factorise(system);
+    const double rho = fit.path == SolvedBy::kNothing ? 0 : fit.b.stableNorm();
+    return rho > 0 && std::isfinite(rho);
+  }
+  void predict_variances() {
+    const double model = std::pow(kModelShare * fit.b.stableNorm(), 2);
+    for (Reading& r : readings) r.variance = noise_variance(r) + model;
+  }
+  double noise_variance(const Reading& r) const {
+    if (!has_noise()) return 0;
+    const double predicted = std::max(0.0, r.l.dot(fit.b)) / r.inverse_strength;
+    return options.noise->variance(predicted) * r.inverse_strength * r.inverse_strength;
+  }
+  bool solve_weighted() {
+    predict_variances();
+    return solve_fitted();
+  }
+
+  std::size_t fitted_count() const { return system.size(); }
+  double squared_misfit(const Reading& r) const {
+    return std::pow(r.light - r.l.dot(fit.b), 2) / r.variance;
+  }
+
+  // Shadowed readings that the others predict to be lit, and as bright as they are.
+  bool take_back_what_fits() {
+    bool any = false;
+    for (Reading& r : readings) {
+      if (r.use != Use::kShadowed) continue;
+      const double predicted = r.l.dot(fit.b), sigma2 = r.variance + r.l.dot(fit.inverse * r.l);
+      if (predicted <= 3 * std::sqrt(sigma2) || std::pow(r.light - predicted, 2) > kRejectFrom * sigma2)
+        continue;
+      r.use = Use::kFitted;
+      any = true;
+    }
+    return any;
+  }
+
+  // The reading in use that the others contradict most, or null. Its own share of the scatter is taken out
+  // before it is judged (Cook and Weisberg 1982, externally studentised residuals).
+  Reading* worst_misfit() {
+    const auto n = static_cast<double>(fitted_count());
+    if (fitted_count() <= kLeastKept) return nullptr;
+    double scatter = 0;
+    for (const Reading& r : readings) {
+      if (r.use == Use::kFitted) scatter += squared_misfit(r);
+    }
+    Reading* worst = nullptr;
+    double most = 0;
+    for (Reading& r : readings) {
+      if (r.use != Use::kFitted) continue;
+      const double freedom = 1 - r.l.dot(fit.inverse * r.l) / r.variance;
+      if (!(freedom > 1e-6)) continue;
+      const double t2 = squared_misfit(r) / freedom;
+      const double others = std::max(0.0, scatter - t2) / (n - 4);
+      if (t2 > kRejectFrom * std::max(1.0, others) && t2 > most) {
+        most = t2;
+        worst = &r;
+      }
+    }
+    return worst;
+  }
+
+  bool reject_misfits() {
+    for (int i = 0; i < kMostRejected; ++i) {
+      Reading* worst = worst_misfit();
+      if (worst == nullptr) return true;
+      worst->use = Use::kRejected;
+      if (!solve_fitted()) return false;
+    }
+    return true;
+  }
+
+  // Starts over from the triple of lights that most readings agree with (Rousseeuw 1984, least trimmed
+  // squares).
+  bool start_from_most_consistent() {
+    double scatter = 0;
+    fitted.clear();
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      if (readings[i].use != Use::kFitted) continue;
+      fitted.push_back(i);
+      scatter += squared_misfit(readings[i]);
+    }
+    const std::size_t n = fitted.size();
+    if (n <= kLeastKept || scatter <= options.trim_from * static_cast<double>(n - 3)) return true;
+    const std::size_t covered = trimmed_count(n);
+    double least = kInfinity;
+    Vector3d best = fit.b;
+    for (const Triple& t : triples_of(n)) {
+      Matrix3d a;
+      Vector3d x;
+      for (int i = 0; i < 3; ++i) {
+        const Reading& r = readings[fitted[t[static_cast<std::size_t>(i)]]];
+        a.row(i) = r.l.transpose();
+        x[i] = r.light;
+      }
+      const double determinant = a.determinant();
+      if (!(std::abs(determinant) > kLeastTripleDeterminant)) continue;
+      const Vector3d b = a.inverse() * x;
+      sorted.clear();
+      for (const std::size_t i : fitted) {
+        sorted.push_back(std::pow(readings[i].light - readings[i].l.dot(b), 2) / readings[i].variance);
+      }
+      std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(covered) - 1, sorted.end());
+      double sum = 0;
+      for (std::size_t i = 0; i < covered; ++i) sum += sorted[i];
+      if (sum < least) {
+        least = sum;
+        best = b;
+      }
+    }
+    if (!(least < kInfinity)) return true;
+    fit.b = best;
+    // The readings that agree, by the scale that the covered ones show.
+    const double scale2 = std::max(1.0, least / static_cast<double>(covered - 2));
+    sorted.clear();
+    for (const std::size_t i : fitted) sorted.push_back(squared_misfit(readings[i]));
+    std::vector<double> ranked = sorted;
+    std::sort(ranked.begin(), ranked.end());
+    const double limit = std::max(kRejectFrom * scale2, ranked[covered - 1]);
+    for (std::size_t j = 0; j < n; ++j) {
+      if (sorted[j] > limit) readings[fitted[j]].use = Use::kRejected;
+    }
+    return solve_fitted() && solve_weighted();
+  }
+
+  bool estimate() {
+    if (!solve_fitted()) return false;
+    if (options.estimator == Estimator::kLeastSquares) return true;
+    if (!solve_weighted()) return false;
+    if (options.estimator == Estimator::kWeighted) return true;
+    if (options.estimator == Estimator::kTrimmed && !start_from_most_consistent()) return false;
+    if (take_back_what_fits() && !solve_weighted()) return false;
+    return reject_misfits() && solve_weighted();
+  }
+
+  PixelSolution unsolved() const;
+  PixelSolution solution();
+};
+
+// The best albedo for a normal of (0, 0, 1).
+PixelSolution PixelSolver::Work::unsolved() const {
   PixelSolution s;
   s.status = status | kNoSolution;
-  const auto planes = static_cast<std::size_t>(options.planes);
   double weight = 0;
-  for (const Row& row : rows) weight += row.l.z() * row.l.z();
+  for (const Reading& r : readings) weight += r.l.z() * r.l.z();
   if (!(weight > 0)) return s;
-  for (std::size_t p = 0; p < planes; ++p) {
+  for (std::size_t p = 0; p < planes(); ++p) {
     double sum = 0, variance = 0;
-    for (const Row& row : rows) {
-      sum += row.l.z() * row.x[p];
-      if (options.noise) {
-        variance += std::pow(row.l.z() * row.inverse_strength, 2) *
-                    options.noise->variance(row.x[p] / row.inverse_strength);
+    for (const Reading& r : readings) {
+      sum += r.l.z() * r.x[p];
+      if (has_noise()) {
+        variance += std::pow(r.l.z() * r.inverse_strength, 2) *
+                    options.noise->variance(r.x[p] / r.inverse_strength);
       }
     }
     s.albedo[p] = std::max(0.0, sum / weight);
-    s.sigma_albedo[p] = options.noise ? std::sqrt(variance) / weight : s.albedo[p];
+    s.sigma_albedo[p] = has_noise() ? std::sqrt(variance) / weight : s.albedo[p];
   }
   return s;
 }
 
-}  // namespace
-
-PixelSolution solve_pixel(std::span<const PixelRow> rows, const PixelOptions& options) {
-  const auto planes = static_cast<std::size_t>(options.planes);
-  std::uint16_t status = 0;
-  const std::vector<Row> valid = valid_rows(rows, options.planes, status);
-  const std::vector<Row> used = options.shadow_mask ? without_shadow(valid, rows.size(), status) : valid;
-
-  const double floor_sigma =
-      options.noise && planes == 1 ? std::sqrt(options.noise->floor + options.noise->shared) : 0.0;
-  const bool dark = !valid.empty() && std::none_of(valid.begin(), valid.end(), [&](const Row& r) {
-    return r.light > 3 * floor_sigma * r.inverse_strength;
-  });
-  if (dark) status |= kDark;
-
-  const Matrix3d g = normal_matrix(used);
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(g);
-  const Vector3d& lambda = eigen.eigenvalues();
-  if (used.size() < 3 || !(lambda[0] > 1e-15 * lambda[2])) return unsolved(valid, options, status);
-  const Matrix3d inverse =
-      eigen.eigenvectors() * lambda.cwiseInverse().asDiagonal() * eigen.eigenvectors().transpose();
-  if (std::sqrt(lambda[2] / lambda[0]) >= kIllConditionedFrom) status |= kIllConditioned;
-  if (used.size() == 3) status |= kZeroDof;
-
-  Vector3d b = Vector3d::Zero();
-  std::array<Vector3d, 3> b_of_plane = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
-  for (const Row& row : used) {
-    b += inverse * row.l * row.light;
-    for (std::size_t p = 0; p < planes; ++p) b_of_plane[p] += inverse * row.l * row.x[p];
-  }
+// Normal, albedo and their covariance C = G^-1 (sum w^2 v l l^T) G^-1, from the noise model or else from the
+// scatter of the residuals.
+PixelSolution PixelSolver::Work::solution() {
+  const Vector3d& b = fit.b;
   const double rho = b.stableNorm();
-  if (!(rho > 0) || !std::isfinite(rho)) return unsolved(valid, options, status);
   const Vector3d n = b / rho;
-
-  // Residuals, and from the noise model or their scatter the covariance C = G^-1 M G^-1 of b.
-  double residual2 = 0;
+  const bool weighted = options.estimator != Estimator::kLeastSquares;
+  std::array<Vector3d, 3> b_of_plane = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
+  double residual2 = 0, weights = 0;
   std::array<double, 3> plane_residual2 = {};
   Matrix3d m = Matrix3d::Zero();
   Vector3d shared = Vector3d::Zero();
-  for (const Row& row : used) {
-    residual2 += std::pow(row.light - row.l.dot(b), 2);
-    for (std::size_t p = 0; p < planes; ++p) {
-      plane_residual2[p] += std::pow(row.x[p] - row.l.dot(b_of_plane[p]), 2);
+  for (const Reading& r : readings) {
+    if (r.use != Use::kFitted) continue;
+    const double w = weighted ? 1 / r.variance : 1;
+    weights += w;
+    residual2 += std::pow(r.light - r.l.dot(b), 2);
+    if (has_noise()) {
+      m += w * w * noise_variance(r) * r.l * r.l.transpose();
+      shared += w * r.inverse_strength * r.l;
     }
-    if (options.noise) {
-      const double predicted = std::max(0.0, row.l.dot(b)) / row.inverse_strength;
-      m += options.noise->variance(predicted) * std::pow(row.inverse_strength, 2) * row.l * row.l.transpose();
-      shared += row.inverse_strength * row.l;
+    for (std::size_t p = 0; p < planes(); ++p) b_of_plane[p] += w * r.x[p] * (fit.inverse * r.l);
+  }
+  for (const Reading& r : readings) {
+    if (r.use != Use::kFitted) continue;
+    for (std::size_t p = 0; p < planes(); ++p) {
+      plane_residual2[p] += std::pow(r.x[p] - r.l.dot(b_of_plane[p]), 2);
     }
   }
-  const auto count = static_cast<double>(used.size());
+
+  const auto count = static_cast<double>(fitted_count());
   const double freedom = count - 3;
   PixelSolution s;
+  s.path = fit.path;
   s.normal = {n.x(), n.y(), n.z()};
   s.residual = std::sqrt(residual2 / count) / rho;
-  double noise_level2 = freedom > 0 ? residual2 / freedom : 0;
-  const bool modelled = planes == 1 && options.noise;
-  if (modelled) {
+  if (has_noise()) {
     m += options.noise->shared * shared * shared.transpose();
-    const Matrix3d c = inverse * m * inverse;
-    s.sigma_normal_deg = degrees(std::sqrt(std::max(0.0, c.trace() - n.dot(c * n))) / rho);
-    s.sigma_albedo[0] = std::sqrt(std::max(0.0, n.dot(c * n)));
+    const Matrix3d c = fit.inverse * m * fit.inverse;
+    const double along = std::max(0.0, n.dot(c * n)), across = std::max(0.0, c.trace() - n.dot(c * n));
+    s.sigma_normal_deg = degrees(std::sqrt(across) / rho);
+    s.sigma_albedo[0] = std::sqrt(along);
     s.albedo[0] = rho;
   } else {
+    // Without a noise model all weights are alike, and the inverse is that of their sum.
+    const Matrix3d unit = fit.inverse * (weights / count);
+    const double along = std::max(0.0, n.dot(unit * n)), across = std::max(0.0, unit.trace() - n.dot(unit * n));
     s.sigma_normal_deg =
-        freedom > 0
-            ? degrees(std::sqrt(noise_level2 * std::max(0.0, inverse.trace() - n.dot(inverse * n))) / rho)
-            : kUnknownAngleDeg;
-    for (std::size_t p = 0; p < planes; ++p) {
-      s.albedo[p] = planes == 1 ? rho : std::max(0.0, n.dot(b_of_plane[p]));
-      s.sigma_albedo[p] =
-          freedom > 0 ? std::sqrt(plane_residual2[p] / freedom * n.dot(inverse * n)) : s.albedo[p];
+        freedom > 0 ? degrees(std::sqrt(residual2 / freedom * across) / rho) : kUnknownAngleDeg;
+    for (std::size_t p = 0; p < planes(); ++p) {
+      s.albedo[p] = planes() == 1 ? rho : std::max(0.0, n.dot(b_of_plane[p]));
+      s.sigma_albedo[p] = freedom > 0 ? std::sqrt(plane_residual2[p] / freedom * along) : s.albedo[p];
     }
   }
   s.sigma_normal_deg = std::min(s.sigma_normal_deg, double{kUnknownAngleDeg});
 
-  for (const Row& row : used) {
-    const double predicted = std::max(0.0, row.l.dot(b));
-    const double sigma =
-        modelled ? std::sqrt(options.noise->variance(predicted / row.inverse_strength)) * row.inverse_strength
-                 : 0.0;
-    if (row.light > kSpecularTimes * predicted + 3 * sigma + kSpecularMargin * rho) status |= kSpecular;
+  for (const Reading& r : readings) {
+    if (r.use == Use::kShadowed) {
+      status |= kShadowed;
+      continue;
+    }
+    const double predicted = std::max(0.0, r.l.dot(b));
+    const double sigma = std::sqrt(noise_variance(r));
+    if (r.light > kSpecularTimes * predicted + 3 * sigma + kSpecularMargin * rho) status |= kSpecular;
   }
+  if (fitted_count() == 3) status |= kZeroDof;
   s.status = status;
   return s;
+}
+
+PixelSolver::PixelSolver(const PixelOptions& options) : work_(std::make_unique<Work>()) {
+  work_->options = options;
+}
+PixelSolver::~PixelSolver() = default;
+PixelSolver::PixelSolver(PixelSolver&&) noexcept = default;
+
+PixelSolution PixelSolver::solve(std::span<const PixelRow> rows) {
+  Work& w = *work_;
+  w.take_valid(rows);
+  if (w.all_dark()) w.status |= kDark;
+  if (w.options.shadow_mask) w.leave_out_shadow(rows.size());
+  if (!w.estimate()) return w.unsolved();
+  if (w.fit.condition >= kIllConditionedFrom) w.status |= kIllConditioned;
+  return w.solution();
+}
+
+PixelSolution solve_pixel(std::span<const PixelRow> rows, const PixelOptions& options) {
+  return PixelSolver(options).solve(rows);
 }
 
 }  // namespace weft::solver

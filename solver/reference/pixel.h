@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 
@@ -13,18 +14,34 @@
 namespace weft::solver {
 
 /// One pixel under one light: `direction` l and, for each plane, strength e and reading r (+infinity
-/// saturated, NaN missing).
+/// saturated, NaN missing, -infinity known to be in shadow).
 struct PixelRow {
   Vec3 direction;
   std::array<double, 3> strength = {};
   std::array<double, 3> reading = {};
 };
 
+/// What is minimised, each over what the one before leaves of the readings.
+enum class Estimator {
+  kLeastSquares,  ///< sum of (x_k - l_k . b)^2 with x = r / e
+  kWeighted,      ///< the same over the variances that a first solution predicts: two steps
+  kRejecting,     ///< weighted; shadowed readings that fit come back, those that do not fit the others go
+  kTrimmed        ///< rejecting, from a start that the most consistent readings agree on
+};
+
+/// Readings are trimmed where their scatter is over this many times what noise explains.
+inline constexpr double kTrimFrom = 4;
+
 struct PixelOptions {
   int planes = 1;  ///< 1 (a photosite of a mosaic) or 3 (RGB)
   bool shadow_mask = false;
   std::optional<NoiseModel> noise;  ///< of a mosaic; without one the scatter of the residuals stands for it
+  Estimator estimator = Estimator::kLeastSquares;
+  double trim_from = kTrimFrom;  ///< kTrimmed: scatter over what noise explains, from which it starts anew
 };
+
+/// How a system of equations was solved, by its condition number.
+enum class SolvedBy { kNothing, kNormalEquations, kQr, kSvd };
 
 /// What TileOutput holds for one pixel.
 struct PixelSolution {
@@ -34,12 +51,33 @@ struct PixelSolution {
   std::array<double, 3> sigma_albedo = {};
   double residual = 0;
   std::uint16_t status = 0;
+  SolvedBy path = SolvedBy::kNothing;
 };
 
-/// The slow obvious truth of the kernels, in double: least squares on rows divided by their strength (row
-/// equilibration), shadow mask, covariance and status. It also solves the pixels that a kernel hands back
-/// because float32 would not do: condition number over 30, fewer than three readings, nothing but noise.
+/// The slow obvious truth of the kernels, in double, and the last resort of the pixels that float32 cannot
+/// answer for: condition number over kFloatCondition, fewer than three readings, nothing but noise.
+///
+/// Rows are divided by their strength (row equilibration). The factorisation follows the condition number of
+/// the weighted rows: normal equations up to kDoubleCondition, Householder QR up to kIllConditionedFrom,
+/// beyond it Jacobi SVD and a flag. Keeps its memory from pixel to pixel; one object serves one thread.
+class PixelSolver {
+ public:
+  explicit PixelSolver(const PixelOptions& options);
+  ~PixelSolver();
+  PixelSolver(PixelSolver&&) noexcept;
+  PixelSolution solve(std::span<const PixelRow> rows);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
 PixelSolution solve_pixel(std::span<const PixelRow> rows, const PixelOptions& options);
+
+/// float32 normal equations are good up to here (0.01 degrees; Higham's cond^2 u).
+inline constexpr double kFloatCondition = 30;
+/// Normal equations in double are good up to here.
+inline constexpr double kDoubleCondition = 1e3;
 
 /// A masked system keeps the mask only while its determinant stays above this.
 inline constexpr double kLeastMaskedDeterminant = 0.02;
@@ -56,5 +94,13 @@ inline int bright_rank(std::size_t lights) {
 /// albedo.
 inline constexpr double kSpecularTimes = 3;
 inline constexpr double kSpecularMargin = 0.01;
+
+/// Departures from Lambert's law that no noise model knows, as a share of the albedo: added to the noise
+/// wherever readings are weighed and judged.
+inline constexpr double kModelShare = 0.003;
+/// A reading is rejected where its studentised residual, squared, is over this many times the scatter of the
+/// others.
+inline constexpr double kRejectFrom = 9;
+inline constexpr int kMostRejected = 4;
 
 }  // namespace weft::solver

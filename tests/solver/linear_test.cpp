@@ -218,7 +218,7 @@ TEST(LinearKernel, SaysWhyAPixelHasNoSolution) {
   EXPECT_EQ(trial.status(3, 0), kInvalidReading | kZeroDof);
   EXPECT_LT(trial.error_deg(3, 0), 1e-3);
   EXPECT_EQ(trial.status(4, 0), kDark | kNoSolution);
-  EXPECT_EQ(trial.status(5, 0), kInvalidReading | kNoSolution);
+  EXPECT_EQ(trial.status(5, 0), kShadowed | kNoSolution);
   EXPECT_TRUE(trial.status(6, 0) & kDark);
   for (int x = 0; x < 8; ++x) {
     EXPECT_NEAR(length(trial.normal(x, 0)), 1, 1e-6) << x;

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "solver/method.h"
+#include "solver/reference/pixel.h"
+
+namespace weft::solver {
+
+/// Rows of one pixel of a tile, in double, whatever a kernel would make of it.
+void read_pixel(const TileInput& input, int x, int y, std::span<PixelRow> rows);
+
+/// Writes what was solved into a tile. Nothing leaves as infinity.
+void write_pixel(const PixelSolution& solution, int planes, const TileOutput& output, int x, int y);
+
+/// Solves every pixel of a tile by a function of its rows.
+void solve_each_pixel(const TileInput& input, const TileOutput& output,
+                      const std::function<PixelSolution(std::span<const PixelRow>)>& solve);
+
+}  // namespace weft::solver
