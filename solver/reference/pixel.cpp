@@ -30,7 +30,7 @@ struct Reading {
   double light = 0;
   double inverse_strength = 0;  // of plane 0
   Use use = Use::kFitted;
-  double variance = 1;  // of `light`, as the last solution predicts it
+  double variance = 1;  // of `light`, as the last solution predicts it, and what else it is doubted for
 };
 
 }  // namespace
@@ -41,6 +41,7 @@ struct PixelSolver::Work {
   std::vector<WeightedDirection> system;
   std::vector<double> sorted;
   std::vector<std::size_t> fitted;
+  double scatter = 0;  // of the readings in `fitted`, over their variances
   std::uint16_t status = 0;
   Factor fit;
 
@@ -126,9 +127,7 @@ struct PixelSolver::Work {
   }
 
   std::size_t fitted_count() const { return system.size(); }
-  double squared_misfit(const Reading& r) const {
-    return std::pow(r.light - r.l.dot(fit.b), 2) / r.variance;
-  }
+  double squared_misfit(const Reading& r) const { return std::pow(r.light - r.l.dot(fit.b), 2) / r.variance; }
 
   // Shadowed readings that the others predict to be lit, and as bright as they are.
   bool take_back_what_fits() {
@@ -149,7 +148,7 @@ struct PixelSolver::Work {
   Reading* worst_misfit() {
     const auto n = static_cast<double>(fitted_count());
     if (fitted_count() <= kLeastKept) return nullptr;
-    double scatter = 0;
+    scatter = 0;
     for (const Reading& r : readings) {
       if (r.use == Use::kFitted) scatter += squared_misfit(r);
     }
@@ -179,10 +178,8 @@ struct PixelSolver::Work {
     return true;
   }
 
-  // Starts over from the triple of lights that most readings agree with (Rousseeuw 1984, least trimmed
-  // squares).
-  bool start_from_most_consistent() {
-    double scatter = 0;
+  bool asks_for_trimming() {
+    scatter = 0;
     fitted.clear();
     for (std::size_t i = 0; i < readings.size(); ++i) {
       if (readings[i].use != Use::kFitted) continue;
@@ -190,10 +187,15 @@ struct PixelSolver::Work {
       scatter += squared_misfit(readings[i]);
     }
     const std::size_t n = fitted.size();
-    if (n <= kLeastKept || scatter <= options.trim_from * static_cast<double>(n - 3)) return true;
-    const std::size_t covered = trimmed_count(n);
-    double least = kInfinity;
-    Vector3d best = fit.b;
+    return n > kLeastKept && scatter > options.trim_from * static_cast<double>(n - 3);
+  }
+
+  // Starts over from the triple of lights that most readings agree with (Rousseeuw 1984, least trimmed
+  // squares), if that explains them far better.
+  bool start_from_most_consistent() {
+    const std::size_t n = fitted.size(), covered = trimmed_count(n);
+    double least = kTrimmedShare * scatter;
+    std::optional<Vector3d> best;
     for (const Triple& t : triples_of(n)) {
       Matrix3d a;
       Vector3d x;
@@ -209,7 +211,8 @@ struct PixelSolver::Work {
       for (const std::size_t i : fitted) {
         sorted.push_back(std::pow(readings[i].light - readings[i].l.dot(b), 2) / readings[i].variance);
       }
-      std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(covered) - 1, sorted.end());
+      std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(covered) - 1,
+                       sorted.end());
       double sum = 0;
       for (std::size_t i = 0; i < covered; ++i) sum += sorted[i];
       if (sum < least) {
@@ -217,8 +220,8 @@ struct PixelSolver::Work {
         best = b;
       }
     }
-    if (!(least < kInfinity)) return true;
-    fit.b = best;
+    if (!best) return true;
+    fit.b = *best;
     // The readings that agree, by the scale that the covered ones show.
     const double scale2 = std::max(1.0, least / static_cast<double>(covered - 2));
     sorted.clear();
@@ -232,14 +235,29 @@ struct PixelSolver::Work {
     return solve_fitted() && solve_weighted();
   }
 
+  // A highlight adds light, nothing takes any away: what is brighter than predicted is doubted the more the
+  // brighter it is.
+  bool doubt_highlights() {
+    for (int i = 0; i < kDoubtRounds; ++i) {
+      predict_variances();
+      for (Reading& r : readings) {
+        const double excess = r.light - r.l.dot(fit.b) - kDoubtFrom * std::sqrt(r.variance);
+        r.variance += kDoubt * std::pow(std::max(0.0, excess), 2);
+      }
+      if (!solve_fitted()) return false;
+    }
+    return true;
+  }
+
   bool estimate() {
     if (!solve_fitted()) return false;
     if (options.estimator == Estimator::kLeastSquares) return true;
     if (!solve_weighted()) return false;
     if (options.estimator == Estimator::kWeighted) return true;
-    if (options.estimator == Estimator::kTrimmed && !start_from_most_consistent()) return false;
+    const bool trimming = options.estimator == Estimator::kTrimmed && asks_for_trimming();
+    if (trimming && !start_from_most_consistent()) return false;
     if (take_back_what_fits() && !solve_weighted()) return false;
-    return reject_misfits() && solve_weighted();
+    return trimming ? doubt_highlights() : reject_misfits() && solve_weighted();
   }
 
   PixelSolution unsolved() const;
@@ -258,8 +276,8 @@ PixelSolution PixelSolver::Work::unsolved() const {
     for (const Reading& r : readings) {
       sum += r.l.z() * r.x[p];
       if (has_noise()) {
-        variance += std::pow(r.l.z() * r.inverse_strength, 2) *
-                    options.noise->variance(r.x[p] / r.inverse_strength);
+        variance +=
+            std::pow(r.l.z() * r.inverse_strength, 2) * options.noise->variance(r.x[p] / r.inverse_strength);
       }
     }
     s.albedo[p] = std::max(0.0, sum / weight);
@@ -314,7 +332,8 @@ PixelSolution PixelSolver::Work::solution() {
   } else {
     // Without a noise model all weights are alike, and the inverse is that of their sum.
     const Matrix3d unit = fit.inverse * (weights / count);
-    const double along = std::max(0.0, n.dot(unit * n)), across = std::max(0.0, unit.trace() - n.dot(unit * n));
+    const double along = std::max(0.0, n.dot(unit * n)),
+                 across = std::max(0.0, unit.trace() - n.dot(unit * n));
     s.sigma_normal_deg =
         freedom > 0 ? degrees(std::sqrt(residual2 / freedom * across) / rho) : kUnknownAngleDeg;
     for (std::size_t p = 0; p < planes(); ++p) {

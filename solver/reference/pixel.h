@@ -26,11 +26,14 @@ enum class Estimator {
   kLeastSquares,  ///< sum of (x_k - l_k . b)^2 with x = r / e
   kWeighted,      ///< the same over the variances that a first solution predicts: two steps
   kRejecting,     ///< weighted; shadowed readings that fit come back, those that do not fit the others go
-  kTrimmed        ///< rejecting, from a start that the most consistent readings agree on
+  kTrimmed        ///< where they scatter, from a start that most readings agree on, highlights doubted; else
+                  ///< rejecting
 };
 
 /// Readings are trimmed where their scatter is over this many times what noise explains.
 inline constexpr double kTrimFrom = 4;
+/// The trimmed readings must scatter by no more than this share of all, or trimming explains nothing.
+inline constexpr double kTrimmedShare = 0.2;
 
 struct PixelOptions {
   int planes = 1;  ///< 1 (a photosite of a mosaic) or 3 (RGB)
@@ -102,5 +105,11 @@ inline constexpr double kModelShare = 0.003;
 /// others.
 inline constexpr double kRejectFrom = 9;
 inline constexpr int kMostRejected = 4;
+
+/// Where readings are trimmed, what exceeds its prediction by more than kDoubtFrom sigma has kDoubt times
+/// the square of the rest added to its variance, in so many rounds.
+inline constexpr double kDoubtFrom = 2;
+inline constexpr double kDoubt = 10;
+inline constexpr int kDoubtRounds = 4;
 
 }  // namespace weft::solver

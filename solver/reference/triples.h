@@ -17,9 +17,9 @@ inline constexpr std::size_t kMostTriples = 500;
 /// counter-based generator: the same ones for the same n, everywhere.
 const std::vector<Triple>& triples_of(std::size_t n);
 
-/// How many of n readings least trimmed squares wants to agree: seven of ten.
+/// How many of n readings least trimmed squares wants to agree: eight of ten.
 inline std::size_t trimmed_count(std::size_t n) {
-  return (7 * n + 9) / 10;
+  return (8 * n + 9) / 10;
 }
 
 /// Three directions with a smaller determinant are left out: their solution is mostly noise.
