@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/transport/height_grid.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "tests/solver/transport/cloths.h"
+
+namespace weft::solver {
+namespace {
+
+TEST(HeightGrid, RefusesHeightsThatAreNoRelief) {
+  Image<float> height_mm({6, 4});
+  const auto why = [&](double mm_per_pixel) {
+    const auto relief = Relief::of(height_mm.plane(), mm_per_pixel);
+    if (relief) return std::string("accepted");
+    EXPECT_EQ(relief.error().kind, ErrorKind::kBadData);
+    return relief.error().why;
+  };
+  EXPECT_EQ(why(0.04), "accepted");
+  EXPECT_EQ(why(0), "0 mm a pixel");
+  EXPECT_EQ(why(std::numeric_limits<double>::infinity()), "inf mm a pixel");
+  height_mm(5, 3) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_EQ(why(0.04), "the height of pixel (5, 3) is nan mm");
+  height_mm(5, 3) = -std::numeric_limits<float>::infinity();
+  EXPECT_EQ(why(0.04), "the height of pixel (5, 3) is -inf mm");
+  height_mm(5, 3) = 400;
+  EXPECT_EQ(why(0.04), "heights differ by 10000 pixels");
+  EXPECT_EQ(why(0.05), "accepted");
+  EXPECT_FALSE(Relief::of({}, 0.04));
+}
+
+TEST(HeightGrid, RefusesBlocksOutsideThePicture) {
+  const TestCloth cloth = bumpy_cloth({40, 30});
+  const Relief relief = cloth.relief();
+  for (const Rect block : {Rect{0, 0, 41, 30}, Rect{-1, 0, 5, 5}, Rect{5, 5, 5, 9}, Rect{9, 5, 5, 9}}) {
+    const auto grid = HeightGrid::build(relief, block, 4);
+    ASSERT_FALSE(grid) << block.x0 << ", " << block.x1;
+    EXPECT_EQ(grid.error().kind, ErrorKind::kBadData);
+  }
+  EXPECT_FALSE(HeightGrid::build(relief, {0, 0, 4, 4}, -1));
+  const auto grid = HeightGrid::build(relief, {10, 0, 20, 30}, 4);
+  ASSERT_TRUE(grid);
+  EXPECT_EQ(grid->area(), (Rect{6, 0, 24, 30}));
+}
+
+TEST(HeightGrid, OfOneRowOrColumnHidesNothing) {
+  for (const Size size : {Size{1, 1}, Size{1, 9}, Size{40, 1}}) {
+    const TestCloth cloth = cloth_over(size, [](int x, int y) {
+      return std::pair{5.0 * ((x + y) % 3), Vec3{0, 0, 1}};
+    });
+    const HeightGrid grid = grid_of(cloth, cloth.pixels(), 3);
+    const auto bits = visible_in(grid, cloth, cloth.pixels(), near_lights(), 20);
+    const auto openness = openness_in(grid, cloth, cloth.pixels(), {});
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        EXPECT_EQ(bits(x, y), 0x3ffU);
+        EXPECT_EQ(openness(x, y), 1);
+      }
+    }
+  }
+}
+
+TEST(HeightGrid, TakesUnder160BytesAPixelAndGivesThemBack) {
+  const TestCloth cloth = bumpy_cloth({300, 200});
+  const std::int64_t before = HeightGrid::bytes_in_use();
+  {
+    const HeightGrid grid = grid_of(cloth, cloth.pixels(), 0);
+    const double bytes = static_cast<double>(HeightGrid::bytes_in_use() - before);
+    EXPECT_LT(bytes / (300 * 200), 160);
+    EXPECT_GT(bytes / (300 * 200), 28) << "three floats and four corners at least";
+  }
+  EXPECT_EQ(HeightGrid::bytes_in_use(), before);
+}
+
+}  // namespace
+}  // namespace weft::solver
