@@ -18,6 +18,7 @@ constexpr const char* kSchema = "weft.calibration";
 constexpr const char* kCameraFile = "camera.json";
 constexpr const char* kResponseFile = "response.json";
 constexpr const char* kLightsFile = "lights.json";
+constexpr const char* kHotFile = "hot.png";
 
 Json json_of(Vec3 v) {
   return Json::array({v.x, v.y, v.z});
@@ -80,10 +81,32 @@ Result<CameraModel> camera_from_json(const Json& json, const std::string& where)
 }
 
 Json to_json(const Response& r) {
-  return {{"schema", "weft.response/1"},
-          {"electrons_per_count", r.electrons_per_count},
-          {"read_noise_counts", r.read_noise_counts},
-          {"linearity", r.linearity}};
+  Json json = {{"schema", r.exposure_ratios.empty() ? "weft.response/1" : "weft.response/1.1"},
+               {"electrons_per_count", r.electrons_per_count},
+               {"read_noise_counts", r.read_noise_counts},
+               {"linearity", r.linearity}};
+  for (const ExposureRatio& e : r.exposure_ratios) {
+    json["exposure_ratios"].push_back(
+        {{"exposure_us", e.exposure_us}, {"to_exposure_us", e.to_exposure_us}, {"ratio", e.ratio}});
+  }
+  return json;
+}
+
+Result<std::vector<ExposureRatio>> exposure_ratios_from_json(const Json& list, const std::string& where) {
+  std::vector<ExposureRatio> ratios;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    JsonFields fields(list[i], fmt::format("{}: exposure_ratios {}", where, i));
+    const ExposureRatio e = {fields.number("exposure_us"), fields.number("to_exposure_us"),
+                             fields.number("ratio")};
+    for (const auto& [key, value] : {std::pair{"exposure_us", e.exposure_us},
+                                     {"to_exposure_us", e.to_exposure_us},
+                                     {"ratio", e.ratio}}) {
+      if (value <= 0) fields.reject(key, "must be above 0");
+    }
+    if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+    ratios.push_back(e);
+  }
+  return ratios;
 }
 
 Result<Response> response_from_json(const Json& json, const std::string& where) {
@@ -103,9 +126,23 @@ Result<Response> response_from_json(const Json& json, const std::string& where) 
   }
   if (r.electrons_per_count <= 0) fields.reject("electrons_per_count", "must be above 0");
   if (r.read_noise_counts < 0) fields.reject("read_noise_counts", "must not be negative");
+  const bool has_ratios = fields.has("exposure_ratios");
+  const Json& ratios = has_ratios ? fields.list("exposure_ratios") : linearity;
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  if (has_ratios) {
+    Result<std::vector<ExposureRatio>> read = exposure_ratios_from_json(ratios, where);
+    if (!read) return std::move(read).error();
+    r.exposure_ratios = std::move(*read);
+  }
   return r;
 }
+
+// What lights.json holds.
+struct LightsPart {
+  Lights lights;
+  std::vector<WhitePatch> patches;
+  std::optional<LightCovariance> covariance;
+};
 
 Json to_json(const Lights& lights) {
   Json json = {{"schema", "weft.lights/1"}};
@@ -133,6 +170,25 @@ Json to_json(const Lights& lights) {
     distant.push_back({{"direction", json_of(light.direction)}, {"irradiance_rgb", light.irradiance_rgb}});
   }
   json["lights"] = std::move(distant);
+  return json;
+}
+
+Json lights_part_of(const Calibration& calibration) {
+  Json json = to_json(*calibration.lights);
+  if (!calibration.patches.empty() || calibration.light_covariance) json["schema"] = "weft.lights/1.1";
+  for (const WhitePatch& patch : calibration.patches) {
+    json["patches"].push_back({{"polygon_px", patch.polygon_px}, {"reflectance_rgb", patch.reflectance_rgb}});
+  }
+  if (calibration.light_covariance) {
+    const auto& [parameters, matrix] = *calibration.light_covariance;
+    Json rows = Json::array();
+    for (auto row = matrix.begin(); row != matrix.end();) {
+      const auto end = row + static_cast<std::ptrdiff_t>(parameters.size());
+      rows.push_back(std::vector<double>(row, end));
+      row = end;
+    }
+    json["covariance"] = {{"parameters", parameters}, {"matrix", std::move(rows)}};
+  }
   return json;
 }
 
@@ -222,6 +278,90 @@ Result<Lights> lights_from_json(const Json& json, const std::string& where) {
   return Lights(std::move(distant));
 }
 
+bool is_numbers(const Json& list, std::size_t count) {
+  return list.is_array() && list.size() == count &&
+         std::all_of(list.begin(), list.end(), [](const Json& v) { return v.is_number(); });
+}
+
+Result<std::vector<WhitePatch>> patches_from_json(const Json& list, const std::string& where) {
+  std::vector<WhitePatch> patches;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    JsonFields fields(list[i], fmt::format("{}: patch {}", where, i + 1));
+    WhitePatch patch;
+    const Json& polygon = fields.list("polygon_px");
+    for (const Json& corner : polygon) {
+      if (!is_numbers(corner, 2)) {
+        fields.reject("polygon_px", "must be pairs of numbers");
+        break;
+      }
+      patch.polygon_px.push_back(corner.get<std::array<double, 2>>());
+    }
+    if (polygon.size() < 3) fields.reject("polygon_px", "must have three corners or more");
+    patch.reflectance_rgb = fields.rgb("reflectance_rgb");
+    require_bright(fields, "reflectance_rgb", patch.reflectance_rgb);
+    if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+    patches.push_back(std::move(patch));
+  }
+  return patches;
+}
+
+Result<LightCovariance> covariance_from_json(const Json& json, const std::string& where) {
+  JsonFields fields(json, where + ": covariance");
+  LightCovariance covariance;
+  for (const Json& name : fields.list("parameters")) {
+    if (name.is_string()) {
+      covariance.parameters.push_back(name.get<std::string>());
+    } else {
+      fields.reject("parameters", "must be names");
+    }
+  }
+  const Json& rows = fields.list("matrix");
+  const std::size_t n = covariance.parameters.size();
+  bool good = rows.size() == n &&
+              std::all_of(rows.begin(), rows.end(), [&](const Json& r) { return is_numbers(r, n); });
+  for (std::size_t i = 0; good && i < n; ++i) {
+    const auto at = [&](std::size_t row, std::size_t column) { return rows[row][column].get<double>(); };
+    good = at(i, i) >= 0;
+    for (std::size_t j = 0; good && j < n; ++j) {
+      good = std::abs(at(i, j) - at(j, i)) <= 1e-9 * std::sqrt(at(i, i) * at(j, j));
+      covariance.matrix.push_back(at(i, j));
+    }
+  }
+  if (!good)
+    fields.reject("matrix",
+                  "must be symmetric, a row and a column for each parameter, none negative on its diagonal");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  return covariance;
+}
+
+Result<LightsPart> lights_part_from_json(const Json& json, const std::string& where) {
+  Result<Lights> lights = lights_from_json(json, where);
+  if (!lights) return std::move(lights).error();
+  LightsPart part = {std::move(*lights), {}, {}};
+  JsonFields fields(json, where);
+  if (fields.has("patches")) {
+    const Json& list = fields.list("patches");
+    if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+    Result<std::vector<WhitePatch>> patches = patches_from_json(list, where);
+    if (!patches) return std::move(patches).error();
+    part.patches = std::move(*patches);
+  }
+  if (fields.has("covariance")) {
+    Result<LightCovariance> covariance = covariance_from_json(json["covariance"], where);
+    if (!covariance) return std::move(covariance).error();
+    part.covariance = std::move(*covariance);
+  }
+  return part;
+}
+
+Result<void> check_digest(const fs::path& file, const Json& expected) {
+  const Result<std::string> digest = sha256_of_file(file);
+  if (!digest) return digest.error();
+  if (expected == *digest) return {};
+  return Error{ErrorKind::kBadData, "calibration part was changed after it was measured", file.string(),
+               "its SHA-256 is not the one calibration.json names", "restore the folder, or calibrate again"};
+}
+
 // One part, if calibration.json names it, after its digest has been checked.
 template <typename T>
 Result<std::optional<T>> read_part(const fs::path& folder, const Json& parts, const char* name,
@@ -229,13 +369,7 @@ Result<std::optional<T>> read_part(const fs::path& folder, const Json& parts, co
                                    Result<T> (*from_json)(const Json&, const std::string&)) {
   if (!parts.contains(name)) return std::optional<T>();
   const fs::path file = folder / name;
-  const Result<std::string> digest = sha256_of_file(file);
-  if (!digest) return digest.error();
-  if (parts[name] != *digest) {
-    return Error{ErrorKind::kBadData, "calibration part was changed after it was measured", file.string(),
-                 "its SHA-256 is not the one calibration.json names",
-                 "restore the folder, or calibrate again"};
-  }
+  if (Result<void> same = check_digest(file, parts[name]); !same) return std::move(same).error();
   const Result<Json> json = read_json(file, schema, 1);
   if (!json) return json.error();
   Result<T> part = from_json(*json, file.string());
@@ -253,6 +387,15 @@ Result<std::string> id_of(const fs::path& folder, std::map<std::string, std::str
 }
 
 }  // namespace
+
+std::optional<double> Response::exposure_ratio(double exposure_us, double to_exposure_us) const {
+  const auto alike = [](double a, double b) { return std::abs(a - b) <= 1e-3 * b; };
+  for (const ExposureRatio& e : exposure_ratios) {
+    if (alike(e.exposure_us, exposure_us) && alike(e.to_exposure_us, to_exposure_us)) return e.ratio;
+    if (alike(e.exposure_us, to_exposure_us) && alike(e.to_exposure_us, exposure_us)) return 1 / e.ratio;
+  }
+  return {};
+}
 
 Result<Calibration> read_calibration(const fs::path& folder) {
   const fs::path file = folder / "calibration.json";
@@ -283,9 +426,19 @@ Result<Calibration> read_calibration(const fs::path& folder) {
   auto response = read_part<Response>(folder, parts, kResponseFile, "weft.response", response_from_json);
   if (!response) return std::move(response).error();
   calibration.response = *response;
-  auto lights = read_part<Lights>(folder, parts, kLightsFile, "weft.lights", lights_from_json);
+  auto lights = read_part<LightsPart>(folder, parts, kLightsFile, "weft.lights", lights_part_from_json);
   if (!lights) return std::move(lights).error();
-  calibration.lights = std::move(*lights);
+  if (*lights) {
+    calibration.lights = std::move((*lights)->lights);
+    calibration.patches = std::move((*lights)->patches);
+    calibration.light_covariance = std::move((*lights)->covariance);
+  }
+  if (parts.contains(kHotFile)) {
+    calibration.hot_picture = folder / kHotFile;
+    if (Result<void> same = check_digest(*calibration.hot_picture, parts[kHotFile]); !same) {
+      return std::move(same).error();
+    }
+  }
 
   Result<std::string> id = id_of(folder, std::move(digests));
   if (!id) return std::move(id).error();
@@ -303,7 +456,7 @@ Result<Calibration> write_calibration(const fs::path& folder, Calibration calibr
   std::map<std::string, Json> files;
   if (calibration.camera) files[kCameraFile] = to_json(*calibration.camera);
   if (calibration.response) files[kResponseFile] = to_json(*calibration.response);
-  if (calibration.lights) files[kLightsFile] = to_json(*calibration.lights);
+  if (calibration.lights) files[kLightsFile] = lights_part_of(calibration);
 
   std::map<std::string, std::string> digests;
   for (const auto& [name, json] : files) {
@@ -311,6 +464,15 @@ Result<Calibration> write_calibration(const fs::path& folder, Calibration calibr
     Result<std::string> digest = sha256_of_file(folder / name);
     if (!digest) return std::move(digest).error();
     digests[name] = std::move(*digest);
+  }
+  if (calibration.hot_picture) {
+    const Result<std::string> bytes = read_text(*calibration.hot_picture);
+    if (!bytes) return bytes.error();
+    calibration.hot_picture = folder / kHotFile;
+    if (Result<void> copied = write_file(*calibration.hot_picture, *bytes); !copied) {
+      return std::move(copied).error();
+    }
+    digests[kHotFile] = sha256_of(*bytes);
   }
   const CalibrationSubject& subject = calibration.subject;
   const Json document = {{"schema", std::string(kSchema) + "/1"},

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/camera.h"
 #include "core/json_document.h"
@@ -13,13 +14,26 @@
 
 namespace weft {
 
+/// What a shot of one exposure time gathers over what another one does, as measured: shutters do not keep
+/// their word.
+struct ExposureRatio {
+  double exposure_us = 0;
+  double to_exposure_us = 0;
+  double ratio = 1;  ///< light at exposure_us / light at to_exposure_us
+
+  friend bool operator==(const ExposureRatio&, const ExposureRatio&) = default;
+};
+
 /// How counts follow light: variance of one reading and departure from a straight line.
 struct Response {
   double electrons_per_count = 1;  ///< photon noise: variance of s counts of light is s / electrons_per_count
   double read_noise_counts = 0;    ///< standard deviation without light, rounding to whole counts included
   /// lin_c(v) = v * (1 + a v + b v^2) for v = (count - black) / (white - black); {a, b} by channel.
   std::array<std::array<double, 2>, 3> linearity = {};
+  std::vector<ExposureRatio> exposure_ratios = {};  ///< at one ISO and aperture
 
+  /// The measured ratio between two exposure times (alike to 0.1 percent), whichever way it was measured.
+  std::optional<double> exposure_ratio(double exposure_us, double to_exposure_us) const;
   friend bool operator==(const Response&, const Response&) = default;
 };
 
@@ -40,13 +54,18 @@ struct Calibration {
   std::optional<CameraModel> camera;
   std::optional<Response> response;
   std::optional<Lights> lights;
+  std::vector<WhitePatch> patches;                   ///< of lights.json
+  std::optional<LightCovariance> light_covariance;   ///< of lights.json, where they are near
+  std::optional<std::filesystem::path> hot_picture;  ///< the part hot.png, checked but not read: 8-bit grey
+                                                     ///< on the active area, a bad photosite is not 0
 };
 
 /// Reads a calibration folder: calibration.json (schema weft.calibration/1) and its parts camera.json,
-/// response.json, lights.json, each checked against the SHA-256 that calibration.json names.
+/// response.json, lights.json, hot.png, each checked against the SHA-256 that calibration.json names.
 Result<Calibration> read_calibration(const std::filesystem::path& folder);
 
-/// Writes the folder, which must not be there yet, and returns the calibration with its id.
+/// Writes the folder, which must not be there yet, with a copy of `hot_picture`, and returns the calibration
+/// with its id.
 Result<Calibration> write_calibration(const std::filesystem::path& folder, Calibration calibration);
 
 }  // namespace weft

@@ -75,6 +75,16 @@ std::size_t light_count(const Lights& lights) {
   return std::get<DistantLights>(lights).lights.size();
 }
 
+Lights brightened(Lights lights, const std::vector<double>& factors) {
+  for (std::size_t k = 0; k < factors.size(); ++k) {
+    auto* near = std::get_if<NearLights>(&lights);
+    std::array<double, 3>& rgb =
+        near != nullptr ? near->leds[k].flux_rgb : std::get<DistantLights>(lights).lights[k].irradiance_rgb;
+    for (double& value : rgb) value *= factors[k];
+  }
+  return lights;
+}
+
 Result<Lights> select_lights(const Lights& lights, const std::vector<int>& numbers) {
   if (const auto* near = std::get_if<NearLights>(&lights)) {
     Result<std::vector<NearLight>> picked = pick(near->leds, numbers);

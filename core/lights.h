@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <variant>
 #include <vector>
 
@@ -51,10 +52,27 @@ struct DistantLights {
   std::vector<DistantLight> lights;
 };
 
+/// A patch of known reflectance that lies in the frame of every scan, as a white standard beside the cloth.
+struct WhitePatch {
+  std::vector<std::array<double, 2>> polygon_px;  ///< corners on the active area, at least three
+  std::array<double, 3> reflectance_rgb = {1, 1, 1};
+};
+
+/// How far lights may be off, as the fit that found them says. Parameters are named "led01.position_mm.x",
+/// ".y", ".z" (mm), "led01.aim.x" ... (the aim is normalised after it was changed), "led01.mu",
+/// "led01.log_flux" (of all channels alike) and "led01.log_gain_quadratic.0" to ".5".
+struct LightCovariance {
+  std::vector<std::string> parameters;
+  std::vector<double> matrix;  ///< row by row, symmetric, in the units of the parameters
+};
+
 /// Either kind; a distant light is never a near one that is far away.
 using Lights = std::variant<NearLights, DistantLights>;
 
 std::size_t light_count(const Lights& lights);
+
+/// The same lights, light k (from 0) `factors[k]` times as bright.
+Lights brightened(Lights lights, const std::vector<double>& factors);
 
 /// Only the lights with the given numbers (from 1), in that order. kUsage if one is not there or twice there.
 Result<Lights> select_lights(const Lights& lights, const std::vector<int>& numbers);

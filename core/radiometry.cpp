@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/radiometry.h"
 
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -89,6 +90,37 @@ Radiometry::Radiometry(const RawFrame& like, const RawFrame* dark, const Respons
   noise_.per_reading = reading_per_count / response.electrons_per_count;
   noise_.floor = reading_per_count * reading_per_count * still;
   noise_.shared = dark != nullptr ? noise_.floor : 0;
+}
+
+void merge_exposures(std::span<const View<const float>> readings, std::span<const NoiseModel> noise,
+                     View<float> out) {
+  for (int y = 0; y < out.height(); ++y) {
+    for (int x = 0; x < out.width(); ++x) {
+      double light = 0, light_weight = 0;
+      bool is_full = false;
+      for (std::size_t i = 0; i < readings.size(); ++i) {
+        const float r = readings[i](x, y);
+        is_full = is_full || r == std::numeric_limits<float>::infinity();
+        if (!std::isfinite(r)) continue;
+        light += static_cast<double>(r) / noise[i].per_reading;
+        light_weight += 1 / noise[i].per_reading;
+      }
+      if (light_weight == 0) {
+        out(x, y) =
+            is_full ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+        continue;
+      }
+      double sum = 0, weight = 0;
+      for (std::size_t i = 0; i < readings.size(); ++i) {
+        const float r = readings[i](x, y);
+        if (!std::isfinite(r)) continue;
+        const double w = 1 / noise[i].variance(light / light_weight);
+        sum += w * static_cast<double>(r);
+        weight += w;
+      }
+      out(x, y) = static_cast<float>(sum / weight);
+    }
+  }
 }
 
 void Radiometry::read(View<const std::uint16_t> counts, Rect tile, View<float> out) const {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 
 #include "core/calibration.h"
 #include "core/image.h"
@@ -27,6 +28,13 @@ struct NoiseModel {
 
   double variance(double reading) const { return per_reading * (reading > 0 ? reading : 0) + floor; }
 };
+
+/// Joins readings of one tile taken at several exposures into `out`, which may be one of them: the mean of
+/// those that are neither full nor missing, weighted by the inverse of the variance that each noise model
+/// gives their light-weighted mean (not each its own reading: that would favour what came out low). Full
+/// where all that are not missing are full; missing where all are.
+void merge_exposures(std::span<const View<const float>> readings, std::span<const NoiseModel> noise,
+                     View<float> out);
 
 /// Turns the counts of one session into readings, a tile at a time.
 class Radiometry {

@@ -30,6 +30,7 @@ class Builder {
     add_lens();
     output_ == Output::kCounts ? add_photosites() : add_colours();
     list_.halo = halos_.all();
+    list_.leds = static_cast<int>(rig_.leds.leds.size());
     list_.cloth_moves = on().movement;
     return std::move(list_);
   }
@@ -98,12 +99,14 @@ class Builder {
     if (on().noise) add(noise_pass(scene_, rig_), "noise");
     if (on().nonlinearity) add(nonlinearity_pass(scene_), "nonlinearity");
     if (on().uneven_response) add(black_pattern_pass(rig_), "uneven_response");
+    if (!scene_.damage.empty()) add(damage_pass(scene_));
     add(converter_pass(rig_));
   }
 
   void add_colours() {
     add(rgb_pass());
     if (on().noise) add(noise_pass(scene_, rig_), "noise");
+    if (!scene_.damage.empty()) add(damage_pass(scene_));
   }
 
   const Scene& scene_;

@@ -55,7 +55,7 @@ void PassRunner::run_stage(Stage stage, Worker& worker) const {
   }
 }
 
-Result<void> PassRunner::run(Rect area, std::span<const int> leds, std::stop_token stop,
+Result<void> PassRunner::run(Rect area, std::span<const int> shots, std::stop_token stop,
                              const std::function<void(const Tile&)>& with_surface,
                              const std::function<void(const Tile&)>& with_shot) {
   // The tile loop starts at column 0, an area anywhere.
@@ -65,11 +65,12 @@ Result<void> PassRunner::run(Rect area, std::span<const int> leds, std::stop_tok
     Tile& tile = worker.tile;
     if (tile.failure) return;
     tile.resize({area.x0 + part.x0, area.y0 + part.y0, area.x0 + part.x1, area.y0 + part.y1}, list_.halo);
-    tile.led = 0;
+    tile.shot = tile.led = 0;
     if (!list_.cloth_moves) run_stage(Stage::kSurface, worker);
     with_surface(tile);
-    for (const int led : leds) {
-      tile.led = led;
+    for (const int shot : shots) {
+      tile.shot = shot;
+      tile.led = shot <= list_.leds || list_.leds == 0 ? shot : (shot - 1) % list_.leds + 1;
       if (list_.cloth_moves) run_stage(Stage::kSurface, worker);
       run_stage(Stage::kShot, worker);
       if (!tile.failure) with_shot(tile);

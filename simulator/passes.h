@@ -33,9 +33,10 @@ inline constexpr int kCloth = -1;
 /// What the passes of one tile hand on. Every value depends on the pixel's place in the frame and on the
 /// shot, never on the tile. Each array covers one rectangle of the frame, row by row.
 struct Tile {
-  Rect rect;    ///< the pixels that are asked for
-  Rect area;    ///< `rect` and the halo that shadows, bounces and blur look into
-  int led = 0;  ///< LED of the shot, from 1; 0 is the dark shot
+  Rect rect;     ///< the pixels that are asked for
+  Rect area;     ///< `rect` and the halo that shadows, bounces and blur look into
+  int shot = 0;  ///< number of the shot, which all that is drawn by chance depends on (PassRunner::run)
+  int led = 0;   ///< LED of the shot, from 1; 0 is the dark shot
 
   // On `area`, once a tile.
   std::vector<Vec3> point_mm;            ///< rig frame
@@ -104,6 +105,7 @@ struct LeftOut {
 struct PassList {
   std::vector<Pass> passes;  ///< in the order they run; all of kSurface before those of kShot
   int halo = 0;              ///< pixels around a tile that the passes need
+  int leds = 0;              ///< of the rig
   bool cloth_moves = false;  ///< the surface is another one for each shot
 };
 
@@ -123,9 +125,10 @@ class PassRunner {
   /// byte.
   PassRunner(PassList list, TileOptions options);
 
-  /// For every tile of `area`, several at once: the surface passes, `with_surface`, and then for each LED
-  /// number of `leds` (0: dark) the shot passes and `with_shot`.
-  Result<void> run(Rect area, std::span<const int> leds, std::stop_token stop,
+  /// For every tile of `area`, several at once: the surface passes, `with_surface`, and then for each number
+  /// of `shots` the shot passes and `with_shot`. Shot 0 is dark, shots 1 to n are those of the n LEDs, n + 1
+  /// to 2 n light the LEDs again, and so on.
+  Result<void> run(Rect area, std::span<const int> shots, std::stop_token stop,
                    const std::function<void(const Tile&)>& with_surface,
                    const std::function<void(const Tile&)>& with_shot);
 

@@ -17,6 +17,7 @@
 #include "core/session.h"
 #include "simulator/build_passes.h"
 #include "simulator/camera/dng_writer.h"
+#include "simulator/map_files.h"
 #include "simulator/plan.h"
 
 namespace weft::simulator {
@@ -75,70 +76,6 @@ class FolderAside {
   fs::path path_;
 };
 
-/// Image files that are written together, band of rows by band of rows, from planes in memory.
-class MapFiles {
- public:
-  /// One file: its name, its channels, and how wide its samples are.
-  struct Map {
-    std::string name;
-    std::vector<std::string> channels;
-    SampleType type = SampleType::kFloat;
-  };
-
-  static Result<MapFiles> open(const fs::path& folder, Size size, int band_rows,
-                               const std::vector<Map>& maps) {
-    MapFiles files;
-    int planes = 0;
-    for (const Map& map : maps) {
-      Result<ImageWriter> writer =
-          ImageWriter::open(folder / map.name, size, map.channels, {.type = map.type});
-      if (!writer) return writer.error();
-      files.writers_.push_back(std::move(*writer));
-      files.channels_.push_back(static_cast<int>(map.channels.size()));
-      planes += files.channels_.back();
-    }
-    if (planes > 0) files.planes_ = Image<float>({size.width, std::min(band_rows, size.height)}, planes);
-    return files;
-  }
-
-  bool empty() const { return writers_.empty(); }
-  void begin_band(int y0) { y0_ = y0; }
-
-  /// value_of(index in the tile's area) for each pixel that the tile was asked for.
-  template <typename Value>
-  void put(const Tile& tile, int plane, const Value& value_of) {
-    const View<float> view = planes_.plane(plane);
-    for_each_pixel(tile.rect, [&](std::size_t, int x, int y) {
-      view(x, y - y0_) = static_cast<float>(value_of(index_in(tile.area, x, y)));
-    });
-  }
-
-  Result<void> write_band(int rows) {
-    int plane = 0;
-    for (std::size_t f = 0; f < writers_.size(); ++f) {
-      std::vector<View<const float>> views;
-      for (int c = 0; c < channels_[f]; ++c) {
-        views.push_back(std::as_const(planes_).plane(plane++).crop({0, 0, planes_.width(), rows}));
-      }
-      if (Result<void> ok = writers_[f].write_rows(views); !ok) return ok;
-    }
-    return {};
-  }
-
-  Result<void> finish() {
-    for (ImageWriter& writer : writers_) {
-      if (Result<void> ok = writer.finish(); !ok) return ok;
-    }
-    return {};
-  }
-
- private:
-  std::vector<ImageWriter> writers_;
-  std::vector<int> channels_;  ///< of each file
-  Image<float> planes_;
-  int y0_ = 0;
-};
-
 void copy_counts(const Tile& tile, int y0, View<std::uint16_t> counts) {
   const auto row_length = static_cast<std::size_t>(tile.rect.width());
   const std::uint16_t* row = tile.counts.data();
@@ -165,7 +102,7 @@ Error interrupted() {
 }
 
 /// What a raw file says beside its counts.
-RawFrame frame_head(const Plan& plan) {
+RawFrame frame_head(const Plan& plan, double exposure_us) {
   RawFrame frame;
   const Sensor& sensor = plan.rig.sensor;
   const DefectSettings defects = defects_of(plan.scene);
@@ -176,8 +113,32 @@ RawFrame frame_head(const Plan& plan) {
   }
   frame.white = static_cast<float>(sensor.white);
   const CameraSettings& camera = plan.scene.camera;
-  frame.shot = {sensor.make, sensor.model, "virtual", plan.rig.exposure_us, camera.iso, camera.f_number};
+  frame.shot = {sensor.make, sensor.model, "virtual", exposure_us, camera.iso, camera.f_number};
   return frame;
+}
+
+/// One shot of a session.
+struct Exposure {
+  int shot = 0;  ///< its number for PassRunner::run
+  int led = 0;
+  ShotRole role = ShotRole::kLit;
+  double exposure_us = 0;
+};
+
+/// In the order of capture: the LEDs, the repeat, brackets, the dark shot.
+std::vector<Exposure> exposures_of(const Plan& plan) {
+  const RetakeSettings& retakes = plan.scene.camera.retakes;
+  const int leds = static_cast<int>(plan.rig.leds.leds.size());
+  const double exposure_us = plan.rig.exposure_us;
+  std::vector<Exposure> all;
+  for (int led = 1; led <= leds; ++led) all.push_back({led, led, ShotRole::kLit, exposure_us});
+  if (retakes.repeat) all.push_back({leds + 1, 1, ShotRole::kRepeat, exposure_us});
+  for (int led = 1; retakes.bracket && led <= leds; ++led) {
+    all.push_back({2 * leds + led, led, ShotRole::kBracket, bracket_exposure_us(retakes, plan.rig, false)});
+  }
+  // Developed frames have no black level.
+  if (plan.scene.frames == FrameFile::kDng) all.push_back({0, 0, ShotRole::kDark, exposure_us});
+  return all;
 }
 
 DngTags tags_of(const Scene& scene) {
@@ -190,15 +151,17 @@ DngTags tags_of(const Scene& scene) {
 
 class SessionWriter {
  public:
-  SessionWriter(const Scene& scene, const Plan& plan, PassList surface, PassList frames,
+  SessionWriter(const Scene& scene, const Plan& plan, PassList surface, PassList frames, PassList brackets,
                 const SimulateOptions& options)
       : given_(scene),
         plan_(plan),
         scene_(plan.scene),
         options_(options),
+        exposures_(exposures_of(plan)),
         band_rows_(frames.halo > 0 ? kTallBandRows : kBandRows),
         surface_runner_(std::move(surface), options.tiles),
-        frame_runner_(std::move(frames), options.tiles) {}
+        frame_runner_(std::move(frames), options.tiles),
+        bracket_runner_(std::move(brackets), options.tiles) {}
 
   Result<SimulationReport> write(const fs::path& target) {
     if (Result<void> ok = check_room(target); !ok) return ok.error();
@@ -217,6 +180,11 @@ class SessionWriter {
     report_.frames = frames();
     report_.exposure_us = plan_.rig.exposure_us;
     report_.passes = frame_runner_.costs();
+    const std::vector<PassCost> of_brackets = bracket_runner_.costs();
+    for (std::size_t p = 0; p < of_brackets.size(); ++p) {
+      report_.passes[p].seconds += of_brackets[p].seconds;
+      report_.passes[p].pixels += of_brackets[p].pixels;
+    }
     report_.left_out = plan_.left_out;
     return std::move(report_);
   }
@@ -225,15 +193,15 @@ class SessionWriter {
   int width() const { return scene_.camera.width; }
   int height() const { return scene_.camera.height; }
   int leds() const { return static_cast<int>(plan_.rig.leds.leds.size()); }
-  int frames() const { return leds() + 1; }
+  int frames() const { return static_cast<int>(exposures_.size()); }
   /// Planes of truth that each LED has of its own: what it is seen of and what reaches a point by the cloth.
   int planes_of_led() const {
     return (scene_.effects.cast_shadows ? 1 : 0) + (scene_.effects.interreflection ? 3 : 0);
   }
   std::string shot_name(int index, const char* ending) const {
-    return fmt::format("{:02}_led{:02}{}", index, led_of(index), ending);
+    return fmt::format("{:02}_led{:02}{}", index, exposure(index).led, ending);
   }
-  int led_of(int index) const { return index < leds() ? index + 1 : 0; }  // the dark shot comes last
+  const Exposure& exposure(int index) const { return exposures_[static_cast<std::size_t>(index)]; }
 
   /// Better now than after an hour of rendering.
   Result<void> check_room(const fs::path& target) const {
@@ -245,8 +213,9 @@ class SessionWriter {
     const auto pixels = static_cast<std::uint64_t>(Size{width(), height()}.pixels());
     const auto count = static_cast<std::uint64_t>(frames());
     const auto of_leds = static_cast<std::uint64_t>(planes_of_led()) * static_cast<std::uint64_t>(leds());
-    const std::uint64_t disk = pixels * (kTruthPlanes * sizeof(float) + count * sizeof(std::uint16_t) +
-                                         of_leds * sizeof(std::uint16_t));
+    const std::uint64_t sample = scene_.frames == FrameFile::kExr ? 3 * sizeof(float) : sizeof(std::uint16_t);
+    const std::uint64_t disk =
+        pixels * (kTruthPlanes * sizeof(float) + count * sample + of_leds * sizeof(std::uint16_t));
     if (const std::uint64_t free = free_disk_bytes(target); free < disk) {
       return Error{ErrorKind::kInputOutput, "no room for the session", target.string(),
                    fmt::format("{} MB are needed, {} MB are free", disk / kMegabyte, free / kMegabyte),
@@ -254,8 +223,8 @@ class SessionWriter {
     }
     const std::uint64_t band_pixels =
         static_cast<std::uint64_t>(std::min(band_rows_, height())) * static_cast<std::uint64_t>(width());
-    return check_memory(band_pixels * (kTruthPlanes * sizeof(float) + count * sizeof(std::uint16_t) +
-                                       of_leds * sizeof(float)));
+    return check_memory(band_pixels *
+                        (kTruthPlanes * sizeof(float) + count * sample + of_leds * sizeof(float)));
   }
 
   Result<void> write_calibration_folder() {
@@ -310,9 +279,41 @@ class SessionWriter {
   }
 
   Result<void> write_frames() {
+    return scene_.frames == FrameFile::kExr ? write_developed_frames() : write_raw_frames();
+  }
+
+  Result<void> write_developed_frames() {
+    std::vector<MapFiles::Map> maps;
+    for (int index = 0; index < frames(); ++index)
+      maps.push_back({shot_name(index, ".exr"), {"R", "G", "B"}});
+    Result<MapFiles> files = MapFiles::open(folder_ / "raw", {width(), height()}, band_rows_, maps);
+    if (!files) return files.error();
+    Result<MapFiles> light = open_light_maps();
+    if (!light) return light.error();
+    Result<void> written = for_each_band([&](int y0, int y1) {
+      files->begin_band(y0);
+      const auto put = [&](const Tile& tile, int index) { files->put_samples(tile, 3 * index); };
+      if (Result<void> ok = render_frames(put, *light, y0, y1); !ok) return ok;
+      const Stopwatch timing(report_.write_seconds);
+      if (Result<void> ok = files->write_band(y1 - y0); !ok) return ok;
+      return light->write_band(y1 - y0);
+    });
+    if (!written) return written;
+    for (MapFiles* each : {&*light, &*files}) {
+      if (Result<void> ok = each->finish(); !ok) return ok;
+    }
+    for (int index = 0; index < frames(); ++index) {
+      if (options_.stop.stop_requested()) return interrupted();
+      if (Result<void> ok = record_shot(index, ".exr"); !ok) return ok;
+    }
+    return {};
+  }
+
+  Result<void> write_raw_frames() {
     std::vector<DngWriter> files;
     for (int index = 0; index < frames(); ++index) {
-      Result<DngWriter> file = DngWriter::open(folder_ / "raw" / shot_name(index, ".dng"), frame_head(plan_),
+      Result<DngWriter> file = DngWriter::open(folder_ / "raw" / shot_name(index, ".dng"),
+                                               frame_head(plan_, exposure(index).exposure_us),
                                                {width(), height()}, tags_of(scene_));
       if (!file) return file.error();
       files.push_back(std::move(*file));
@@ -321,7 +322,8 @@ class SessionWriter {
     if (!light) return light.error();
     Image<std::uint16_t> counts({width(), std::min(band_rows_, height())}, frames());
     Result<void> written = for_each_band([&](int y0, int y1) {
-      if (Result<void> ok = render_frames(counts, *light, y0, y1); !ok) return ok;
+      const auto put = [&](const Tile& tile, int index) { copy_counts(tile, y0, counts.plane(index)); };
+      if (Result<void> ok = render_frames(put, *light, y0, y1); !ok) return ok;
       const Stopwatch timing(report_.write_seconds);
       for (int index = 0; index < frames(); ++index) {
         const View<const std::uint16_t> rows = counts.plane(index);
@@ -354,18 +356,28 @@ class SessionWriter {
     return MapFiles::open(folder_ / "truth", {width(), height()}, band_rows_, maps);
   }
 
-  Result<void> render_frames(Image<std::uint16_t>& counts, MapFiles& light, int y0, int y1) {
+  /// put(tile, index of the frame) for each tile of each frame.
+  template <typename Put>
+  Result<void> render_frames(const Put& put, MapFiles& light, int y0, int y1) {
     const Stopwatch timing(report_.render_seconds);
-    std::vector<int> shots(static_cast<std::size_t>(frames()));
-    for (int index = 0; index < frames(); ++index) shots[static_cast<std::size_t>(index)] = led_of(index);
     light.begin_band(y0);
-    return frame_runner_.run(
-        {0, y0, width(), y1}, shots, options_.stop, [](const Tile&) {},
-        [&](const Tile& tile) {
-          const int index = tile.led == 0 ? leds() : tile.led - 1;
-          copy_counts(tile, y0, counts.plane(index));
-          if (tile.led != 0 && !light.empty()) put_light(light, tile);
-        });
+    const auto run = [&](PassRunner& runner, bool brackets) -> Result<void> {
+      std::vector<int> shots;
+      for (const Exposure& e : exposures_) {
+        if ((e.role == ShotRole::kBracket) == brackets) shots.push_back(e.shot);
+      }
+      if (shots.empty()) return {};
+      return runner.run(
+          {0, y0, width(), y1}, shots, options_.stop, [](const Tile&) {},
+          [&](const Tile& tile) {
+            const auto taken = std::find_if(exposures_.begin(), exposures_.end(),
+                                            [&](const Exposure& e) { return e.shot == tile.shot; });
+            put(tile, static_cast<int>(taken - exposures_.begin()));
+            if (taken->role == ShotRole::kLit && !light.empty()) put_light(light, tile);
+          });
+    };
+    if (Result<void> ok = run(frame_runner_, false); !ok) return ok;
+    return run(bracket_runner_, true);
   }
 
   void put_light(MapFiles& light, const Tile& tile) const {
@@ -383,12 +395,16 @@ class SessionWriter {
   Result<void> finish_frame(int index, DngWriter& file) {
     const Stopwatch timing(report_.write_seconds);
     if (Result<void> ok = file.finish(); !ok) return ok;
+    return record_shot(index, ".dng");
+  }
+
+  Result<void> record_shot(int index, const char* ending) {
     Shot shot;
     shot.index = index;
-    shot.led = led_of(index);
-    shot.role = shot.led == 0 ? ShotRole::kDark : ShotRole::kLit;
-    shot.file = "raw/" + shot_name(index, ".dng");
-    shot.exposure_us = plan_.rig.exposure_us;
+    shot.led = exposure(index).led;
+    shot.role = exposure(index).role;
+    shot.file = "raw/" + shot_name(index, ending);
+    shot.exposure_us = exposure(index).exposure_us;
     shot.iso = scene_.camera.iso;
     shot.f_number = scene_.camera.f_number;
     Result<std::string> digest = sha256_of_file(folder_ / shot.file);
@@ -415,8 +431,9 @@ class SessionWriter {
   const Plan& plan_;
   const Scene& scene_;  ///< as it is simulated
   const SimulateOptions& options_;
+  std::vector<Exposure> exposures_;
   int band_rows_;
-  PassRunner surface_runner_, frame_runner_;
+  PassRunner surface_runner_, frame_runner_, bracket_runner_;
   fs::path folder_;
   Session session_;
   SimulationReport report_;
@@ -436,10 +453,16 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
   const bool ends_in_slash = !session_folder.has_filename() && session_folder.has_parent_path();
   const fs::path target = ends_in_slash ? session_folder.parent_path() : session_folder;
   Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
-  Result<PassList> frames = build_passes(plan->scene, plan->rig, Output::kCounts);
+  const Output output = plan->scene.frames == FrameFile::kExr ? Output::kRgb : Output::kCounts;
+  Result<PassList> frames = build_passes(plan->scene, plan->rig, output);
   if (!surface) return surface.error();
   if (!frames) return frames.error();
-  return SessionWriter(scene, *plan, std::move(*surface), std::move(*frames), options).write(target);
+  Rig bracket_rig = plan->rig;
+  bracket_rig.exposure_us = bracket_exposure_us(plan->scene.camera.retakes, plan->rig, true);
+  Result<PassList> brackets = build_passes(plan->scene, bracket_rig, output);
+  if (!brackets) return brackets.error();
+  return SessionWriter(scene, *plan, std::move(*surface), std::move(*frames), std::move(*brackets), options)
+      .write(target);
 } catch (const std::bad_alloc&) {
   return no_memory("the system refused some");
 }
@@ -449,13 +472,17 @@ Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file,
   const Result<Plan> plan = plan_of(scene);
   if (!plan) return plan.error();
   const int leds = static_cast<int>(plan->rig.leds.leds.size());
+  if (plan->scene.frames == FrameFile::kExr) {
+    return Error{ErrorKind::kUsage, "one frame alone is a raw file", "frames", "the scene's frames are EXR",
+                 "simulate the whole session, or set frames = \"dng\""};
+  }
   if (led < 0 || led > leds) {
     return Error{ErrorKind::kUsage, "the scene has no such LED", fmt::format("LED {}", led),
                  fmt::format("LEDs are numbered from 1 to {}; 0 is the dark shot", leds), "choose another"};
   }
   Result<PassList> passes = build_passes(plan->scene, plan->rig, Output::kCounts);
   if (!passes) return passes.error();
-  RawFrame frame = frame_head(*plan);
+  RawFrame frame = frame_head(*plan, plan->rig.exposure_us);
   const Size size = plan->rig.camera.size;
   if (Result<void> ok = check_memory(2 * sizeof(std::uint16_t) * static_cast<std::uint64_t>(size.pixels()));
       !ok) {

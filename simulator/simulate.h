@@ -32,7 +32,8 @@ struct SimulationReport {
   double write_seconds = 0;   ///< wall time of files: frames, truth, syncing
 };
 
-/// Renders a scene into a session folder: a lit frame for each LED and a dark one as DNG, session.json, the
+/// Renders a scene into a session folder: a lit frame for each LED, the retakes it asks for and a dark one as
+/// DNG, session.json, the
 /// exact calibration, and under truth/ normal.exr (X, Y, Z), albedo.exr (R, G, B), height.exr (mm, above the
 /// plane cloth_height_mm) and scene.toml. With cast shadows, for each LED K visibility_ledKK.exr, the share
 /// of it that each point sees; with interreflection indirect_ledKK.exr (R, G, B), the reading of a white

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "app/jobs/linear_image.h"
+#include "app/jobs/session_conditions.h"
 #include "calibration/suits.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
@@ -41,6 +42,35 @@ Result<std::vector<Shot>> choose_lit(const Session& session, const std::vector<i
                  "solve from at least three LEDs"};
   }
   return chosen;
+}
+
+// The repeats and brackets of the lit shots, with a warning for each that says nothing.
+void choose_more(SessionPlan& plan) {
+  const Shot& lit = plan.lit.front();
+  for (const Shot& shot : plan.session.shots) {
+    const bool is_repeat = shot.role == ShotRole::kRepeat;
+    if (!is_repeat && shot.role != ShotRole::kBracket) continue;
+    const auto leave_out = [&](const std::string& why) {
+      plan.warnings.push_back(fmt::format("{} was left out: {}", shot.file, why));
+    };
+    if (std::none_of(plan.lit.begin(), plan.lit.end(), [&](const Shot& s) { return s.led == shot.led; })) {
+      leave_out(fmt::format("no lit shot of LED {} is solved", shot.led));
+    } else if (shot.iso != lit.iso || (is_repeat && shot.exposure_us != lit.exposure_us)) {
+      leave_out(fmt::format("it was taken at {} us, ISO {}, the lit shots at {} us, ISO {}", shot.exposure_us,
+                            shot.iso, lit.exposure_us, lit.iso));
+    } else if (is_repeat) {
+      plan.repeats.push_back(shot);
+    } else if (!plan.raw) {
+      leave_out("brackets are merged by the noise of raw frames, and these are developed");
+    } else if (!plan.calibration.response->exposure_ratio(shot.exposure_us, lit.exposure_us)) {
+      leave_out(
+          fmt::format("response.json has no measured ratio of {} us to {} us; measure it with weft "
+                      "calibrate response",
+                      shot.exposure_us, lit.exposure_us));
+    } else {
+      plan.brackets.push_back(shot);
+    }
+  }
 }
 
 // Looks at one frame without decoding it.
@@ -111,7 +141,78 @@ Result<void> check_levels(const RawFrame& frame, const RawFrame& first, const fs
       "scan the cloth again with fixed camera settings"};
 }
 
+// Moves the first `count` of `frames` away.
+template <typename Frame>
+std::vector<Frame> take(std::vector<Frame>& frames, std::size_t count) {
+  const auto end = frames.begin() + static_cast<std::ptrdiff_t>(count);
+  std::vector<Frame> taken(std::make_move_iterator(frames.begin()), std::make_move_iterator(end));
+  frames.erase(frames.begin(), end);
+  return taken;
+}
+
+// `shots` are those of plan.frames().
+Result<void> read_mosaics(const SessionPlan& plan, const std::vector<Shot>& shots, const JobContext& context,
+                          Photographs& photographs, MoreFrames& more) {
+  std::vector<RawFrame> frames(shots.size());
+  const auto read_frame = [&](std::size_t i) -> Result<void> {
+    const fs::path file = plan.session.path_of(shots[i]);
+    if (Result<void> same = check_digest(file, shots[i]); !same) return same;
+    Result<RawFrame> frame = capture::decode_raw(file, {.size = plan.size});
+    if (!frame) return std::move(frame).error();
+    frames[i] = std::move(*frame);
+    return {};
+  };
+  if (Result<void> read = for_each_frame(shots.size(), context, read_frame); !read) return read;
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    if (Result<void> ok = check_levels(frames[i], frames[0], plan.session.path_of(shots[i])); !ok) return ok;
+  }
+  photographs.mosaics = take(frames, plan.lit.size());
+  if (plan.dark) photographs.dark = std::move(take(frames, 1).front());
+  more.repeats = take(frames, plan.repeats.size());
+  more.brackets = std::move(frames);
+  const Shot& first = plan.lit.front();
+  photographs.radiometry.emplace(photographs.mosaics.front(), photographs.dark ? &*photographs.dark : nullptr,
+                                 *plan.calibration.response,
+                                 Radiometry::Exposure{first.exposure_us, first.iso});
+  photographs.noise = photographs.radiometry->noise();
+  return {};
+}
+
+Result<void> read_developed(const SessionPlan& plan, const std::vector<Shot>& shots,
+                            const JobContext& context, Photographs& photographs, MoreFrames& more) {
+  std::vector<Image<float>> frames(shots.size());
+  const auto read_frame = [&](std::size_t i) -> Result<void> {
+    const fs::path file = plan.session.path_of(shots[i]);
+    if (Result<void> same = check_digest(file, shots[i]); !same) return same;
+    Result<Image<float>> image =
+        read_linear_image(file, Transfer::kLinear, Clipped::kMark, NotNumbers::kMark);
+    if (!image) return std::move(image).error();
+    frames[i] = std::move(*image);
+    return {};
+  };
+  if (Result<void> read = for_each_frame(shots.size(), context, read_frame); !read) return read;
+  photographs.rgb = take(frames, plan.lit.size());
+  const std::vector<Image<float>> dark = take(frames, plan.dark ? 1 : 0);
+  more.repeats_rgb = std::move(frames);
+  const Shot& first = plan.lit.front();
+  for (auto* list : {&photographs.rgb, &more.repeats_rgb}) {
+    for (Image<float>& image : *list) {
+      if (!dark.empty()) subtract(image, dark.front());
+      scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
+    }
+  }
+  return {};
+}
+
 }  // namespace
+
+std::vector<Shot> SessionPlan::frames() const {
+  std::vector<Shot> all = lit;
+  if (dark) all.push_back(*dark);
+  all.insert(all.end(), repeats.begin(), repeats.end());
+  all.insert(all.end(), brackets.begin(), brackets.end());
+  return all;
+}
 
 Result<SessionPlan> plan_session(const SessionOptions& options) {
   SessionPlan plan;
@@ -141,10 +242,8 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   if (const Shot* dark = plan.session.dark()) plan.dark = *dark;
   plan.raw = !is_linear_image(plan.session.path_of(plan.lit.front()));
 
-  std::vector<Shot> frames = plan.lit;
-  if (plan.dark) frames.push_back(*plan.dark);
   CfaPattern cfa;
-  for (const Shot& shot : frames) {
+  const auto look = [&](const Shot& shot) -> Result<void> {
     const fs::path file = plan.session.path_of(shot);
     if (is_linear_image(file) == plan.raw) {
       return Error{ErrorKind::kBadData, "session mixes raw and developed frames", file.string(),
@@ -152,14 +251,17 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
     }
     const Result<capture::RawInfo> info = look_at(file);
     if (!info) return info.error();
-    if (&shot == &frames.front()) {
+    if (plan.size == Size()) {
       plan.size = info->size;
       cfa = info->cfa;
-      if (Result<void> ok = calibration::suits(plan.calibration, plan.session, info->shot); !ok) {
-        return std::move(ok).error();
-      }
+      if (Result<void> ok = calibration::suits(plan.calibration, plan.session, info->shot); !ok) return ok;
     }
-    if (Result<void> ok = check_alike(plan, shot, *info, cfa); !ok) return std::move(ok).error();
+    return check_alike(plan, shot, *info, cfa);
+  };
+  if (Result<void> ok = look(plan.lit.front()); !ok) return std::move(ok).error();
+  choose_more(plan);
+  for (const Shot& shot : plan.frames()) {
+    if (Result<void> ok = look(shot); !ok) return std::move(ok).error();
   }
   if (plan.calibration.camera->size != plan.size) {
     return Error{
@@ -170,7 +272,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   }
 
   Json shots = Json::array();
-  for (const Shot& shot : frames)
+  for (const Shot& shot : plan.frames())
     shots.push_back({{"led", shot.led}, {"file", shot.file}, {"sha256", shot.sha256}});
   plan.description = {{"session", plan.session.fabric},
                       {"calibration", plan.calibration.id},
@@ -180,8 +282,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
 }
 
 Result<Photographs> load_session(const SessionPlan& plan, const JobContext& context) {
-  std::vector<Shot> shots = plan.lit;
-  if (plan.dark) shots.push_back(*plan.dark);
+  const std::vector<Shot> shots = plan.frames();
   const int threads = std::min(resolved_threads(context.threads), static_cast<int>(shots.size()));
   const std::uint64_t needed = memory_needed(plan, shots.size(), threads);
   const std::uint64_t free = available_memory_bytes();
@@ -191,61 +292,32 @@ Result<Photographs> load_session(const SessionPlan& plan, const JobContext& cont
                  "close other programs, or solve on a larger machine"};
   }
 
-  std::vector<int> leds;
-  for (const Shot& shot : plan.lit) leds.push_back(shot.led);
-  Result<Lights> lights = select_lights(*plan.calibration.lights, leds);
+  Photographs photographs;
+  photographs.size = plan.size;
+  photographs.albedo_scale = plan.calibration.subject.albedo_scale;
+  photographs.warnings = plan.warnings;
+  for (const Shot& shot : plan.lit) photographs.leds.push_back(shot.led);
+  Result<Lights> lights = select_lights(*plan.calibration.lights, photographs.leds);
   if (!lights) return std::move(lights).error();
   Result<LightField> field =
       LightField::make(std::move(*lights), plan.calibration.camera, plan.size, plan.session.cloth_height_mm);
   if (!field) return std::move(field).error();
-
-  std::vector<RawFrame> raw(plan.raw ? shots.size() : 0);
-  std::vector<Image<float>> rgb(plan.raw ? 0 : shots.size());
-  const auto read_frame = [&](std::size_t i) -> Result<void> {
-    const fs::path file = plan.session.path_of(shots[i]);
-    if (Result<void> same = check_digest(file, shots[i]); !same) return same;
-    if (!plan.raw) {
-      Result<Image<float>> image = read_linear_image(file, Transfer::kLinear, Clipped::kMark);
-      if (!image) return std::move(image).error();
-      rgb[i] = std::move(*image);
-      return {};
-    }
-    Result<RawFrame> frame = capture::decode_raw(file, {.size = plan.size});
-    if (!frame) return std::move(frame).error();
-    raw[i] = std::move(*frame);
-    return {};
-  };
-  if (Result<void> read = for_each_frame(shots.size(), context, read_frame); !read)
-    return std::move(read).error();
-
-  Photographs photographs;
-  photographs.size = plan.size;
   photographs.field = std::move(*field);
-  photographs.albedo_scale = plan.calibration.subject.albedo_scale;
-  const Shot& first = plan.lit.front();
-  if (!plan.raw) {
-    if (plan.dark) {
-      for (std::size_t k = 0; k + 1 < rgb.size(); ++k) subtract(rgb[k], rgb.back());
-      rgb.pop_back();
-    }
-    for (Image<float>& image : rgb) scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
-    photographs.rgb = std::move(rgb);
-    return photographs;
+
+  MoreFrames more;
+  if (Result<void> read = plan.raw ? read_mosaics(plan, shots, context, photographs, more)
+                                   : read_developed(plan, shots, context, photographs, more);
+      !read) {
+    return std::move(read).error();
   }
-  for (std::size_t i = 1; i < raw.size(); ++i) {
-    if (Result<void> ok = check_levels(raw[i], raw[0], plan.session.path_of(shots[i])); !ok) {
+  if (plan.raw) {
+    if (Result<void> ok = replace_bad_photosites(plan, context, photographs, more); !ok) {
       return std::move(ok).error();
     }
+    join_brackets(plan, photographs, more);
   }
-  if (plan.dark) {
-    photographs.dark = std::move(raw.back());
-    raw.pop_back();
-  }
-  photographs.mosaics = std::move(raw);
-  photographs.radiometry.emplace(photographs.mosaics.front(), photographs.dark ? &*photographs.dark : nullptr,
-                                 *plan.calibration.response,
-                                 Radiometry::Exposure{first.exposure_us, first.iso});
-  photographs.noise = photographs.radiometry->noise();
+  if (Result<void> ok = leave_out_useless_lights(plan, photographs); !ok) return std::move(ok).error();
+  if (Result<void> ok = follow_drift(plan, context, photographs, more); !ok) return std::move(ok).error();
   return photographs;
 }
 

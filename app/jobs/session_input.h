@@ -25,14 +25,21 @@ struct SessionPlan {
   Calibration calibration;
   std::vector<Shot> lit;  ///< the shots to solve from, by LED
   std::optional<Shot> dark;
+  std::vector<Shot> repeats;   ///< of those LEDs
+  std::vector<Shot> brackets;  ///< of those LEDs, with an exposure ratio that the calibration measured
   Size size;
-  bool raw = true;   ///< mosaics; else linear TIFF, PNG or EXR
-  Json description;  ///< for solve.json, and what the id of the solve is made of
+  bool raw = true;                    ///< mosaics; else linear TIFF, PNG or EXR
+  Json description;                   ///< for solve.json, and what the id of the solve is made of
+  std::vector<std::string> warnings;  ///< of shots that will not be used
+
+  /// All shots whose frames are read: lit, dark, repeats, brackets.
+  std::vector<Shot> frames() const;
 };
 
 Result<SessionPlan> plan_session(const SessionOptions& options);
 
-/// Reads, checks against their digests and decodes every frame once.
+/// Reads, checks against their digests and decodes every frame once, and corrects for the conditions they
+/// were taken in (app/jobs/session_conditions.h).
 Result<Photographs> load_session(const SessionPlan& plan, const JobContext& context);
 
 }  // namespace weft::app

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 // What a scene may say about its camera beyond an ideal pinhole with an ideal sensor. The default of every
 // number is that ideal.
@@ -35,6 +36,15 @@ struct MovementSettings {
   double sigma_deg = 0;  ///< of the turn about the table's centre, 0 to 45
 
   bool operator==(const MovementSettings&) const = default;
+};
+
+/// Shots that a session has beyond one a LED and the dark one.
+struct RetakeSettings {
+  bool repeat = false;            ///< LED 1 once more, after the last LED
+  std::optional<double> bracket;  ///< every LED once more, for so many times the exposure, 0.001 to 100
+  double shutter_error = 0;       ///< of that: the share it gathers beyond what its time says, -0.5 to 1
+
+  bool operator==(const RetakeSettings&) const = default;
 };
 
 /// Light lost towards the edge of the frame.

@@ -52,6 +52,7 @@ Pass bloom_pass(const Scene& scene);
 Pass noise_pass(const Scene& scene, const Rig& rig);
 Pass nonlinearity_pass(const Scene& scene);
 Pass black_pattern_pass(const Rig& rig);
+Pass damage_pass(const Scene& scene);
 Pass converter_pass(const Rig& rig);  ///< plain
 
 }  // namespace weft::simulator

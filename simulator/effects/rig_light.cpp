@@ -6,18 +6,14 @@
 namespace weft::simulator {
 namespace {
 
-/// Brightness of each LED in its shot: warming LEDs fade in a straight line over the session, and each shot
-/// is a little off by itself.
-std::vector<double> gains_of(const Scene& scene, const Rig& rig) {
-  const std::size_t shots = rig.leds.leds.size();
-  std::vector<double> gains;
-  for (std::size_t k = 0; k < shots; ++k) {
-    const double time = shots < 2 ? 0 : static_cast<double>(k) / static_cast<double>(shots - 1);
-    const NormalPair normal =
-        normal_pair(philox({static_cast<std::uint32_t>(k), 0, kFlickerStream, 0}, random_key(scene)));
-    gains.push_back((1 - scene.lights.drift * time) * (1 + scene.lights.flicker * normal.first));
-  }
-  return gains;
+/// Brightness of the LED in a shot from 1: warming LEDs fade in a straight line over the session, and each
+/// shot is a little off by itself. A LED's bracket follows its shot at once, the repeat comes after them all.
+double gain_of(const LightSettings& lights, int leds, int shot, std::array<std::uint32_t, 2> key) {
+  const int turn = shot == leds + 1 ? leds : (shot - 1) % leds;
+  const double time = leds < 2 ? 0 : static_cast<double>(turn) / (leds - 1);
+  const NormalPair normal =
+      normal_pair(philox({static_cast<std::uint32_t>(shot - 1), 0, kFlickerStream, 0}, key));
+  return (1 - lights.drift * time) * (1 + lights.flicker * normal.first);
 }
 
 /// Adds `of_led[led]` times albedo, and times what of the sky the cloth leaves open.
@@ -46,9 +42,10 @@ std::vector<Rgb> signal_at_centre(const Scene& scene, const Rig& rig) {
 
 Pass led_drift_pass(const Scene& scene, const Rig& rig) {
   return {"led drift", "fades the LEDs over the session and lets each shot flicker", Stage::kShot,
-          [gains = gains_of(scene, rig)](Tile& tile) {
+          [lights = scene.lights, leds = static_cast<int>(rig.leds.leds.size()),
+           key = random_key(scene)](Tile& tile) {
             if (tile.led == 0) return;
-            const double gain = gains[static_cast<std::size_t>(tile.led - 1)];
+            const double gain = gain_of(lights, leds, tile.shot, key);
             for (Rgb& signal : tile.signal) {
               for (double& s : signal) s *= gain;
             }

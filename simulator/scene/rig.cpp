@@ -176,6 +176,11 @@ Result<Rig> rig_of(const Scene& scene) {
   return rig;
 }
 
+double bracket_exposure_us(const RetakeSettings& retakes, const Rig& rig, bool as_gathered) {
+  const double taken_us = std::max(std::round(rig.exposure_us * retakes.bracket.value_or(1)), 1.0);
+  return as_gathered ? taken_us * (1 + retakes.shutter_error) : taken_us;
+}
+
 Calibration exact_calibration(const Scene& scene, const Rig& rig) {
   Calibration calibration;
   calibration.subject.rig = "virtual rig";
@@ -186,6 +191,10 @@ Calibration exact_calibration(const Scene& scene, const Rig& rig) {
   calibration.camera = rig.camera;
   calibration.response = response_of(rig.sensor);
   if (scene.effects.nonlinearity) calibration.response->linearity.fill(scene.camera.linearity);
+  if (const RetakeSettings& retakes = scene.camera.retakes; retakes.bracket) {
+    calibration.response->exposure_ratios = {{bracket_exposure_us(retakes, rig, false), rig.exposure_us,
+                                              bracket_exposure_us(retakes, rig, true) / rig.exposure_us}};
+  }
   if (!scene.effects.near_light) {
     calibration.lights = distant_lights(rig, scene.geometry.cloth_height_mm);
     return calibration;

@@ -37,6 +37,10 @@ Result<Rig> rig_of(const Scene& scene);
 /// Each LED as the distant light that it is at the table's centre, on the cloth's plane.
 DistantLights distant_lights(const Rig& rig, double cloth_height_mm);
 
+/// Exposure time that a bracket shot of the rig is taken with, whole microseconds; with `as_gathered` the one
+/// that its light is that of, as its shutter is not exact.
+double bracket_exposure_us(const RetakeSettings& retakes, const Rig& rig, bool as_gathered);
+
 /// The defects that the scene's effects call for; those of the others are zero.
 DefectSettings defects_of(const Scene& scene);
 

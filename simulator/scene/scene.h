@@ -49,6 +49,7 @@ struct CameraSettings {
 
   PoseSettings pose;                                          ///< no effect but geometry: always there
   LensSettings lens = {.k1 = -0.06, .k2 = 0.02};              ///< distortion
+  RetakeSettings retakes;                                     ///< no effect but more shots
   MovementSettings movement = {0.02, 0.005};                  ///< movement
   VignetteSettings vignette = {4, 0.05};                      ///< vignetting
   BlurSettings blur = {.defocus_px = 0.5, .spread_px = 0.4};  ///< defocus
@@ -176,6 +177,33 @@ struct EffectKey {
 /// All effects in the order of light.
 std::span<const EffectKey> effect_keys();
 
+/// How the frames of a session are stored.
+enum class FrameFile {
+  kDng,  ///< raw mosaics of whole counts, as a camera stores them
+  kExr,  ///< developed: linear R, G, B as 32-bit floats, 1 at full scale, nothing clipped
+};
+
+enum class DamageKind {
+  kMissing,    ///< NaN
+  kSaturated,  ///< +infinity in EXR frames, white in raw ones
+  kBlack,      ///< 0, as if nothing were lit
+  kFade,       ///< exposure falls from the top of the part to its bottom
+};
+
+/// Part of some frames that is not as the camera saw it: what no rig should do, for what must survive it.
+struct DamageSettings {
+  DamageKind kind = DamageKind::kMissing;
+  int first_led = 1;  ///< to the shots of these LEDs
+  int last_led = 256;
+  double left = 0;  ///< the part, in shares of the frame from its upper left corner
+  double right = 1;
+  double top = 0;
+  double bottom = 1;
+  double decades = 12;  ///< kFade: powers of ten
+
+  bool operator==(const DamageSettings&) const = default;
+};
+
 struct Scene {
   std::string fabric = "simulated cloth";
   std::int64_t seed = 1;  ///< of all random numbers, from 0
@@ -185,6 +213,8 @@ struct Scene {
   LightSettings lights;
   SpectraSettings spectra;
   TransportSettings transport;
+  FrameFile frames = FrameFile::kDng;
+  std::vector<DamageSettings> damage;   ///< in this order
   std::vector<TargetSettings> targets;  ///< on the table beside or over the cloth
   EffectSettings effects;
   /// `effects = "auto"`: the effects that run are those whose bound exceeds this many sigma of the photon

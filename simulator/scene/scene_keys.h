@@ -68,6 +68,13 @@ void walk(Visitor& v, LensSettings& l) {
 }
 
 template <typename Visitor>
+void walk(Visitor& v, RetakeSettings& r) {
+  v.flag("repeat", r.repeat);
+  v.number("bracket", r.bracket, {1e-3, 100});
+  v.number("shutter_error", r.shutter_error, {-0.5, 1});
+}
+
+template <typename Visitor>
 void walk(Visitor& v, MovementSettings& m) {
   v.number("sigma_mm", m.sigma_mm, {0, 100});
   v.number("sigma_deg", m.sigma_deg, {0, 45});
@@ -133,6 +140,7 @@ void walk(Visitor& v, CameraSettings& c) {
   v.require(NonLinearity::of(c.linearity), "linearity");
   v.section("pose", c.pose);
   v.section("lens", c.lens);
+  v.optional_section("retakes", c.retakes);
   v.section("movement", c.movement);
   v.section("vignette", c.vignette);
   v.section("blur", c.blur);
@@ -494,6 +502,25 @@ void walk(Visitor& v, TargetSettings& t) {
 }
 
 template <typename Visitor>
+void walk(Visitor& v, DamageSettings& d) {
+  v.choice("kind", d.kind,
+           {{"missing", DamageKind::kMissing},
+            {"saturated", DamageKind::kSaturated},
+            {"black", DamageKind::kBlack},
+            {"fade", DamageKind::kFade}});
+  v.integer("first_led", d.first_led, 1, 256);
+  v.integer("last_led", d.last_led, 1, 256);
+  v.require(d.first_led <= d.last_led, "last_led", "it must not be below \"first_led\"");
+  v.number("left", d.left, kShare);
+  v.number("right", d.right, kShare);
+  v.require(d.left <= d.right, "right", "it must not be below \"left\"");
+  v.number("top", d.top, kShare);
+  v.number("bottom", d.bottom, kShare);
+  v.require(d.top <= d.bottom, "bottom", "it must not be below \"top\"");
+  if (d.kind == DamageKind::kFade) v.number("decades", d.decades, {0, 30});
+}
+
+template <typename Visitor>
 void walk(Visitor& v, EffectSettings& e) {
   for (const EffectKey& effect : effect_keys()) v.flag(effect.name, e.*effect.on);
 }
@@ -502,6 +529,7 @@ template <typename Visitor>
 void walk(Visitor& v, Scene& s) {
   v.text("fabric", s.fabric);
   v.integer("seed", s.seed, 0, std::numeric_limits<std::int64_t>::max());
+  v.choice("frames", s.frames, {{"dng", FrameFile::kDng}, {"exr", FrameFile::kExr}});
   v.automatic("effects", "to", s.auto_to_sigma);
   v.section("camera", s.camera);
   v.section("geometry", s.geometry);
@@ -511,6 +539,7 @@ void walk(Visitor& v, Scene& s) {
   v.optional_section("spectra", s.spectra);
   v.section("transport", s.transport);
   v.list("target", s.targets);
+  v.list("damage", s.damage);
   if (!s.auto_to_sigma) v.flags("effects", s.effects);
 }
 

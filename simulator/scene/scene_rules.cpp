@@ -20,6 +20,15 @@ bool passes_nothing(const Spectrum& s) {
   return std::all_of(s.samples.begin(), s.samples.end(), [](double share) { return share == 0; });
 }
 
+bool has_photosites(const EffectSettings& e) {
+  return e.bloom || e.dark_current || e.uneven_response || e.nonlinearity;
+}
+
+bool loses_readings(const Scene& s) {
+  return std::any_of(s.damage.begin(), s.damage.end(),
+                     [](const DamageSettings& d) { return d.kind == DamageKind::kMissing; });
+}
+
 constexpr const char* kNearLight = "set near_light = true, or leave it out";
 constexpr const char* kRelief = "set relief = true, or leave it out";
 constexpr const char* kOneColour = "keep one of the two";
@@ -64,6 +73,12 @@ constexpr SceneRule kRules[] = {
      },
      "the LED shines nothing or a filter of the camera passes nothing",
      "give led and filters in the section [spectra]"},
+    {"frames", [](const Scene& s) { return s.frames == FrameFile::kExr && has_photosites(s.effects); },
+     "bloom, dark_current, uneven_response and nonlinearity act on photosites, and developed frames have "
+     "none",
+     "leave these effects out, or set frames = \"dng\""},
+    {"damage", [](const Scene& s) { return s.frames == FrameFile::kDng && loses_readings(s); },
+     "the whole counts of a raw file have no way to say that one is missing", "set frames = \"exr\""},
 };
 
 }  // namespace

@@ -113,6 +113,36 @@ TEST(Calibration, ReturnsEveryFieldThatWasWritten) {
   }
 }
 
+TEST(Calibration, ReturnsRatiosPatchesCovarianceAndHotPicture) {
+  const ScratchFolder folder;
+  Calibration written = full_calibration();
+  written.response->exposure_ratios = {{4000, 16000, 0.2512}, {64000, 16000, 4.03}};
+  written.patches = {{{{1, 2.5}, {30, 2}, {15, 40}}, {0.88, 0.9, 0.91}}};
+  written.light_covariance = LightCovariance{{"led01.mu", "led02.log_flux"}, {4e-4, -1e-6, -1e-6, 1e-4}};
+  put_bytes(folder / "bad.png", "bytes of a picture");
+  written.hot_picture = folder / "bad.png";
+  const std::string id = must_write(folder / "c", written);
+  const Calibration read = must_read(folder / "c");
+  EXPECT_EQ(read.id, id);
+  EXPECT_EQ(read.response, written.response);
+  ASSERT_EQ(read.patches.size(), 1U);
+  EXPECT_EQ(read.patches[0].polygon_px, written.patches[0].polygon_px);
+  EXPECT_EQ(read.patches[0].reflectance_rgb, written.patches[0].reflectance_rgb);
+  ASSERT_TRUE(read.light_covariance);
+  EXPECT_EQ(read.light_covariance->parameters, written.light_covariance->parameters);
+  EXPECT_EQ(read.light_covariance->matrix, written.light_covariance->matrix);
+  EXPECT_EQ(read.hot_picture, folder / "c/hot.png");
+  EXPECT_EQ(bytes_of(folder / "c/hot.png"), "bytes of a picture");
+  put_bytes(folder / "c/hot.png", "bytes of another");
+  EXPECT_THAT(why_refused(folder / "c"), HasSubstr("was changed after it was measured"));
+
+  const Response& response = *read.response;
+  EXPECT_EQ(response.exposure_ratio(4000, 16000), 0.2512);
+  EXPECT_EQ(response.exposure_ratio(16000, 4000), 1 / 0.2512);
+  EXPECT_EQ(response.exposure_ratio(64001, 16000), 4.03);
+  EXPECT_FALSE(response.exposure_ratio(4000, 64000)) << "was not measured";
+}
+
 TEST(Calibration, ReturnsDistantLightsAndOnlyThePartsThereAre) {
   const ScratchFolder folder;
   must_write(folder / "c", distant_calibration());
@@ -297,7 +327,32 @@ TEST(Calibration, WithNumbersThatNoRigHasIsRefused) {
       {"lights.json", set("/log_gain_rgb/0/columns", 3), "log_gain_rgb 0: \"coefficients\""},
       {"lights.json", set("/log_gain_rgb/2/rows", 2147483647), "log_gain_rgb 2: \"coefficients\""},
       {"lights.json", set("/log_gain_rgb/2/coefficients/5", "a"), "\"coefficients\" must be numbers"},
-      {"lights.json", set("/log_gain_rgb/2/coefficients", {1, 2}), "log_gain_rgb 2: \"coefficients\""}};
+      {"lights.json", set("/log_gain_rgb/2/coefficients", {1, 2}), "log_gain_rgb 2: \"coefficients\""},
+      {"lights.json", set("/leds/1/flux_rgb", {1, nullptr, 1}), "LED 2: \"flux_rgb\""},
+      {"response.json",
+       set("/exposure_ratios", Json::parse(R"([{"exposure_us": 1, "to_exposure_us": 2, "ratio": 0}])")),
+       "exposure_ratios 0: \"ratio\" must be above 0"},
+      {"response.json", set("/exposure_ratios", 3), "\"exposure_ratios\""},
+      {"lights.json", set("/patches", "here"), "\"patches\""},
+      {"lights.json",
+       set("/patches", Json::parse(R"([{"polygon_px": [[1, 2], [3, 4]], "reflectance_rgb": [1, 1, 1]}])")),
+       "patch 1: \"polygon_px\" must have three corners"},
+      {"lights.json",
+       set("/patches",
+           Json::parse(R"([{"polygon_px": [[1, 2], [3, 4], [5]], "reflectance_rgb": [1, 1, 1]}])")),
+       "patch 1: \"polygon_px\" must be pairs"},
+      {"lights.json",
+       set("/patches",
+           Json::parse(R"([{"polygon_px": [[1, 2], [3, 4], [5, 9]], "reflectance_rgb": [1, 0, 1]}])")),
+       "patch 1: \"reflectance_rgb\" must be above 0"},
+      {"lights.json", set("/covariance", Json::parse(R"({"parameters": ["led01.mu"], "matrix": [[1, 2]]})")),
+       "covariance: \"matrix\" must be symmetric"},
+      {"lights.json",
+       set("/covariance",
+           Json::parse(R"({"parameters": ["led01.mu", "led02.mu"], "matrix": [[1, 0.1], [0.2, 1]]})")),
+       "covariance: \"matrix\" must be symmetric"},
+      {"lights.json", set("/covariance", Json::parse(R"({"parameters": ["led01.mu"], "matrix": [[-1]]})")),
+       "covariance: \"matrix\" must be symmetric"}};
   must_write(folder / "good", full_calibration());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const fs::path here = folder / std::to_string(i);

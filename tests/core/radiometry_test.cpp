@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <hwy/targets.h>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 namespace weft {
 namespace {
@@ -214,6 +217,51 @@ TEST(Radiometry, KnowsTheNoiseOfAReading) {
   EXPECT_EQ(with_dark.per_reading, alone.per_reading);
   EXPECT_EQ(with_dark.floor, alone.floor);
   EXPECT_EQ(with_dark.shared, alone.floor) << "the dark shot has the read noise of any other";
+}
+
+TEST(MergedExposures, AreWeightedByTheInverseOfTheirVariance) {
+  constexpr float kFull = std::numeric_limits<float>::infinity();
+  const float missing = std::numeric_limits<float>::quiet_NaN();
+  const NoiseModel one = {1e-4, 0, 0}, four = {2.5e-5, 0, 0};  // four times the exposure
+  struct Case {
+    float shorter, longer, expected;
+  };
+  const std::vector<Case> cases = {
+      {1, 1.1f, (1 + 4 * 1.1f) / 5}, {2, kFull, 2},           {missing, 3, 3},
+      {kFull, kFull, kFull},         {missing, kFull, kFull}, {-0.1f, 0.1f, 0.06f}};
+  const NoiseModel still_one = {1e-4, 1e-6, 0}, still_four = {2.5e-5, 2.5e-7, 0};
+  Image<float> shorter({6, 1}), longer({6, 1}), out({6, 1});
+  for (int x = 0; x < 6; ++x) {
+    shorter(x, 0) = cases[static_cast<std::size_t>(x)].shorter;
+    longer(x, 0) = cases[static_cast<std::size_t>(x)].longer;
+  }
+  const std::array<View<const float>, 2> readings = {shorter.plane(), longer.plane()};
+  merge_exposures(readings, std::array{still_one, still_four}, out.plane());
+  for (int x = 0; x < 6; ++x) {
+    EXPECT_FLOAT_EQ(out(x, 0), cases[static_cast<std::size_t>(x)].expected) << "case " << x;
+  }
+  merge_exposures(readings, std::array{one, four}, out.plane());
+  EXPECT_FLOAT_EQ(out(0, 0), (1 + 4 * 1.1f) / 5);
+  longer(0, 0) = shorter(0, 0) = missing;
+  merge_exposures(readings, std::array{one, four}, out.plane());
+  EXPECT_TRUE(std::isnan(out(0, 0)));
+}
+
+TEST(MergedExposures, FavourNoReadingThatCameOutLow) {
+  // 200000 pairs of 20 and 80 electrons: weights from each reading itself would be 1 percent low.
+  std::mt19937 generator(3);
+  std::poisson_distribution<int> short_one(20), long_one(80);
+  constexpr int kCount = 200000;
+  Image<float> shorter({kCount, 1}), longer({kCount, 1}), out({kCount, 1});
+  for (int x = 0; x < kCount; ++x) {
+    shorter(x, 0) = static_cast<float>(short_one(generator));
+    longer(x, 0) = static_cast<float>(long_one(generator)) / 4;
+  }
+  const std::array<View<const float>, 2> readings = {shorter.plane(), longer.plane()};
+  merge_exposures(readings, std::array<NoiseModel, 2>{{{1, 9, 0}, {0.25, 9.0 / 16, 0}}}, out.plane());
+  double mean = 0;
+  for (int x = 0; x < kCount; ++x) mean += static_cast<double>(out(x, 0)) / kCount;
+  EXPECT_NEAR(mean, 20, 0.02);  // standard error 0.0045
 }
 
 }  // namespace

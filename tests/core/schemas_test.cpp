@@ -83,6 +83,23 @@ TEST(Schemas, Calibration1WithCameraResponseAndNearLights) {
   EXPECT_TRUE(lights.log_gain_rgb[0].empty());
 }
 
+TEST(Schemas, Calibration1WithResponse11AndLights11) {
+  const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1.1");
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  EXPECT_EQ(calibration->id, "4c10af3c39579e3834cc77fd306812679c588d69094c49e5e9acb8a9ea95843d");
+  ASSERT_TRUE(calibration->response);
+  EXPECT_EQ(calibration->response->exposure_ratios, (std::vector<ExposureRatio>{{4000, 16364, 0.2471}}));
+  ASSERT_EQ(calibration->patches.size(), 1U);
+  EXPECT_EQ(calibration->patches[0].polygon_px[2], (std::array{398.0, 300.25}));
+  EXPECT_EQ(calibration->patches[0].reflectance_rgb, (std::array{0.88, 0.9, 0.91}));
+  ASSERT_TRUE(calibration->light_covariance);
+  EXPECT_EQ(calibration->light_covariance->parameters,
+            (std::vector<std::string>{"led01.position_mm.x", "led01.mu", "led03.log_flux"}));
+  EXPECT_EQ(calibration->light_covariance->matrix,
+            (std::vector<double>{0.25, 0.001, 0, 0.001, 0.0004, 0, 0, 0, 0.0001}));
+  EXPECT_EQ(calibration->hot_picture, kSchemas / "weft.calibration-1.1" / "hot.png");
+}
+
 TEST(Schemas, Calibration1WithDistantLights) {
   const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1-distant");
   ASSERT_TRUE(calibration) << calibration.error().message();
@@ -126,6 +143,48 @@ TEST(Schemas, Solve1) {
   EXPECT_GT(error.number("max_deg"), error.number("p95_deg"));
   EXPECT_GT(error.number("p95_deg"), error.number("median_deg"));
   EXPECT_TRUE(error.status()) << error.status().error().message();
+  EXPECT_TRUE(fields.status()) << fields.status().error().message();
+}
+
+TEST(Schemas, SolveReport1) {
+  const Result<Json> document = read_json(kSchemas / "weft.solve-report-1.json", "weft.solve-report", 1);
+  ASSERT_TRUE(document) << document.error().message();
+  JsonFields fields(*document, "weft.solve-report-1.json");
+  EXPECT_EQ(fields.text("of"), "session");
+  EXPECT_EQ(fields.text("title"), "golden twill");
+  EXPECT_EQ(fields.list("lights").size(), 10U);
+  EXPECT_GT(fields.number("residual"), 0);
+  EXPECT_GT(fields.integer("looked_at"), 0);
+  ASSERT_EQ(fields.list("faults").size(), 1U);
+  ASSERT_EQ(fields.list("warnings").size(), 1U);
+  ASSERT_FALSE(fields.list("budget").empty());
+
+  JsonFields fault(fields.list("faults")[0], "faults[0]");
+  EXPECT_EQ(fault.text("kind"), "exchanged");
+  EXPECT_EQ(fault.list("lights"), Json({3, 4}));
+  EXPECT_EQ(fault.list("shown_by"), Json({4, 3}));
+  EXPECT_LT(fault.number("residual_after"), fault.number("residual_before"));
+  EXPECT_TRUE(fault.status()) << fault.status().error().message();
+
+  JsonFields warning(fields.list("warnings")[0], "warnings[0]");
+  EXPECT_EQ(warning.text("name"), "LEDS_EXCHANGED");
+  EXPECT_FALSE(warning.text("text").empty() || warning.text("remedy").empty());
+  EXPECT_TRUE(warning.status()) << warning.status().error().message();
+
+  JsonFields light(fields.list("lights")[2], "lights[2]");
+  EXPECT_EQ(light.integer("light"), 3);
+  for (const char* field : {"residual_rms", "residual_median", "residual_mean", "gain", "gain_range",
+                            "saturated", "shadowed", "missing", "outlier", "gradient", "gradient_share"}) {
+    light.number(field);
+  }
+  EXPECT_TRUE(light.status()) << light.status().error().message();
+
+  JsonFields sigma(fields.object("sigma_normal_deg"), "sigma_normal_deg");
+  EXPECT_EQ(sigma.list("grid").size(),
+            static_cast<std::size_t>(sigma.integer("columns") * sigma.integer("rows")));
+  EXPECT_GT(sigma.number("p95"), sigma.number("median"));
+  EXPECT_TRUE(sigma.status()) << sigma.status().error().message();
+  EXPECT_TRUE(fields.has("seconds"));
   EXPECT_TRUE(fields.status()) << fields.status().error().message();
 }
 

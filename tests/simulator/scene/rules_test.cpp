@@ -58,6 +58,10 @@ std::vector<Case> cases() {
        "effects = [\"spectral\"]\n" + spectra_section() + "[material]\n" + dye},
       {"effects = [\"spectral\"]\n[material]\n" + dye, "effects.spectral", "[spectra]",
        "effects = [\"spectral\"]\n[material]\n" + dye + spectra_section()},
+      {"frames = \"exr\"\neffects = [\"bloom\"]\n", "frames", "photosites",
+       "frames = \"exr\"\neffects = [\"noise\"]\n"},
+      {"[[damage]]\nkind = \"missing\"\n", "damage", "whole counts",
+       "frames = \"exr\"\n[[damage]]\nkind = \"missing\"\n"},
   };
 }
 

@@ -64,6 +64,7 @@ inline Scene everything(std::size_t number) {
               0.3,
               {10.5, -20, 30, 1, -2},
               {-0.05, 0.03, -0.001, 0.0002, -0.0003, 4, -5},
+              {true, 0.25, 0.03},
               {0.5, 0.25},
               {3, 0.1},
               {1.5, 0.7, 0.1, 9},
@@ -148,6 +149,8 @@ inline Scene everything(std::size_t number) {
                {GreyScaleSettings{{0.9, 1.0 / 3}, 10, 1, 4}, {}, 0, 0, 0, 0.9, 0.04, {}},
                {ChartSettings{20, 2, 4}, {}, 0, 0, 0, 0.9, 0.04, {}},
                {TagSettings{"DICT_APRILTAG_16h5", 3, 12, 3}, {}, 0, 0, 0, 0.9, 0.04, {}}};
+  s.damage = {{DamageKind::kFade, 2, 7, 0.1, 0.9, 0.2, 0.8, 6},
+              {DamageKind::kBlack, 3, 4, 0, 1, 0.5, 0.75, 12}};
   for (const EffectKey& effect : effect_keys()) s.effects.*effect.on = true;
   return s;
 }
