@@ -37,6 +37,16 @@ struct TileInput {
   std::optional<NoiseModel> noise;  ///< of a mosaic; without one the scatter of the residuals stands for it
 };
 
+/// How many pixels were solved in which way, and readings rejected on the way.
+struct SolveTally {
+  std::int64_t by_kernel = 0;                                   ///< in float32
+  std::int64_t by_normal_equations = 0, by_qr = 0, by_svd = 0;  ///< in double
+  std::int64_t unsolved = 0;
+  std::int64_t rejected_readings = 0;
+
+  SolveTally& operator+=(const SolveTally& other);
+};
+
 /// What a method writes for every pixel of the tile; views have (0, 0) at the tile's corner and padded rows.
 /// A pixel without solution gets the normal (0, 0, 1), the best albedo for that normal and a sigma of
 /// kUnknownAngleDeg.
@@ -47,6 +57,7 @@ struct TileOutput {
   std::array<View<float>, 3> sigma_albedo;  ///< absolute, as albedo
   View<float> residual;                     ///< rms of the readings used, over the albedo
   View<std::uint16_t> status;               ///< StatusBit
+  SolveTally* tally = nullptr;              ///< added to, where there is one
 };
 
 inline constexpr float kUnknownAngleDeg = 180;
@@ -75,10 +86,23 @@ std::unique_ptr<Method> weighted_method();
 /// Weighted, then readings that do not fit the others are left out one by one, and shadowed ones that do fit
 /// are taken back.
 std::unique_ptr<Method> standard_method();
+/// Standard in double: what the reference level solves its last round by.
+std::unique_ptr<Method> exact_method();
 /// Standard; where its residuals ask for it, from the start that most readings agree on.
 std::unique_ptr<Method> robust_method();
 /// Least trimmed squares at every pixel (Rousseeuw 1984), then weighted.
 std::unique_ptr<Method> trimmed_method();
+
+/// The least sum of absolute residuals, and least squares with sparse errors (Ikehata et al., CVPR 2012),
+/// both in double by reweighting, of every valid reading.
+std::unique_ptr<Method> least_absolute_method();
+std::unique_ptr<Method> sparse_method();
+/// Huber's loss, the same way; for measurements only.
+std::unique_ptr<Method> huber_method();
+
+/// What a level solves: tiles as they come, tiles of a picture of half the size, or tiles of a whole frame
+/// several times, with what the frame says of the light over it (app/jobs/reference.h).
+enum class Extent { kTiles, kHalfSize, kWholeFrame };
 
 /// Levels and methods by the name a person gives them.
 struct MethodName {
@@ -88,6 +112,7 @@ struct MethodName {
   /// published figures. Saturated raw counts enter no method.
   bool keeps_clipped;
   std::unique_ptr<Method> (*make)();
+  Extent extent = Extent::kTiles;
 };
 std::span<const MethodName> method_names();
 

@@ -65,8 +65,8 @@ Result<ImageFileInfo> read_linear_image_info(const std::filesystem::path& file) 
   return info;
 }
 
-Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transfer transfer,
-                                       Clipped clipped) {
+Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transfer transfer, Clipped clipped,
+                                       NotNumbers not_numbers) {
   Result<ImageFileInfo> info = read_linear_image_info(file);
   if (!info) return std::move(info).error();
   if (info->format == "jpeg" && transfer == Transfer::kLinear) {
@@ -77,7 +77,9 @@ Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transf
   if (transfer == Transfer::kAuto) transfer = transfer_of(*info);
   Result<LoadedImage> loaded = read_image(file);
   if (!loaded) return std::move(loaded).error();
-  if (Result<void> ok = check_finite(loaded->planes, file); !ok) return std::move(ok).error();
+  if (not_numbers == NotNumbers::kRefuse) {
+    if (Result<void> ok = check_finite(loaded->planes, file); !ok) return std::move(ok).error();
+  }
 
   const bool grey = info->channels.size() == 1;
   const bool saturates = clipped == Clipped::kMark && is_integer(info->type);

@@ -22,6 +22,12 @@ enum class Clipped {
   kKeep,  ///< taken at their word, as published baselines do
 };
 
+/// What becomes of NaN and infinity in float files.
+enum class NotNumbers {
+  kRefuse,  ///< an export went wrong
+  kMark,    ///< they say of a reading why it cannot be used (core/radiometry.h)
+};
+
 /// Whether a file is a developed photograph (TIFF, PNG, EXR, JPEG by its extension), not a raw frame.
 bool is_linear_image(const std::filesystem::path& file);
 
@@ -29,9 +35,9 @@ bool is_linear_image(const std::filesystem::path& file);
 Result<ImageFileInfo> read_linear_image_info(const std::filesystem::path& file);
 
 /// Reads a photograph as readings (core/radiometry.h): planes R, G, B, 1.0 is full scale. Grey is repeated. A
-/// float file with NaN or infinity is kBadData. A JPEG is refused for kLinear: what a camera made of it
-/// cannot be undone.
-Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transfer transfer, Clipped clipped);
+/// JPEG is refused for kLinear: what a camera made of it cannot be undone.
+Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transfer transfer, Clipped clipped,
+                                       NotNumbers not_numbers = NotNumbers::kRefuse);
 
 /// What kAuto means for a file.
 Transfer transfer_of(const ImageFileInfo& info);

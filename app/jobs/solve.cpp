@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/jobs/pictures.h"
+#include "app/jobs/report.h"
 #include "app/jobs/solve_bands.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
@@ -172,6 +173,7 @@ struct Input {
   Size size;
   fs::path default_parent;  // of the output
   fs::path truth;           // normal.exr of a simulated session, or empty
+  std::vector<int> picked;  // numbers of photographs picked from a list
   std::function<Result<Photographs>()> load;
 };
 
@@ -185,6 +187,7 @@ struct Facts {
   std::size_t lights;
   std::vector<std::string> pictures;
   std::optional<NormalComparison> error;  // against the truth, where there is one
+  std::vector<Verdict> verdicts;
 };
 
 Json document_of(const Facts& facts) {
@@ -203,6 +206,7 @@ Json document_of(const Facts& facts) {
                    {"albedo_scale", facts.albedo_scale},
                    {"pixels", size.pixels() - facts.counts.with(kNoSolution)},
                    {"status", std::move(status)},
+                   {"warnings", json_of(facts.verdicts)},
                    {"pictures", facts.pictures}};
   if (facts.error) {
     document["error"] = {{"mean_deg", facts.error->mean_deg},
@@ -256,16 +260,21 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
 
   StatusCounts counts;
   Pictures pictures(size);
+  MapSummary maps(size);
   const std::unique_ptr<solver::Method> method = method_name.make();
   const Result<double> waited =
       solve_bands(*photographs, *method, options.tile, context, [&](const MapBand& band) -> Result<void> {
         counts.add(band.status);
+        maps.add(band);
         if (options.previews) pictures.add(band);
         return files->write(band);
       });
   if (!waited) return waited.error();
   report.seconds.solve = watch.lap() - *waited;
-  Facts facts = {place.id, options, input, counts, photographs->albedo_scale, photographs->count(), {}, {}};
+  Facts facts = {place.id, options, input, counts, photographs->albedo_scale, photographs->count(),
+                 {},       {},      {}};
+  const PhotographsSummary summary = summarize_photographs(*photographs, input.picked, context);
+  report.seconds.report = watch.lap();
   photographs = Photographs();  // their memory is needed for nothing more
 
   if (Result<void> ok = files->finish(); !ok) return std::move(ok).error();
@@ -276,9 +285,19 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
   }
   report.seconds.pictures = watch.lap();
 
+  facts.verdicts =
+      verdicts_of(summary, static_cast<double>(counts.with(kSpecular)) / static_cast<double>(size.pixels()));
   report.document = document_of(facts);
   if (Result<void> ok = write_json(partial.path() / "solve.json", report.document); !ok)
     return std::move(ok).error();
+  const Json seconds = {{"read", report.seconds.read},
+                        {"solve", report.seconds.solve},
+                        {"write", report.seconds.write},
+                        {"pictures", report.seconds.pictures},
+                        {"report", report.seconds.report}};
+  const Json page = report_document(input.title, report.document, summary, maps, seconds);
+  if (Result<void> ok = write_report(partial.path(), page); !ok) return std::move(ok).error();
+  report.seconds.report += watch.lap();
   if (context.stop.stop_requested()) return interrupted();
   if (Result<void> ok = partial.publish(place.folder); !ok) return std::move(ok).error();
   report.seconds.sync = watch.lap();
@@ -301,6 +320,7 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
               .size = plan->size,
               .default_parent = plan->session.folder / "solve",
               .truth = is_there(truth) ? truth : fs::path(),
+              .picked = {},
               .load = [&] { return load_session(*plan, context); }},
              options, context);
 }
@@ -322,6 +342,7 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
               .size = plan->size,
               .default_parent = fs::current_path() / (name.string() + "-solve"),
               .truth = {},
+              .picked = input.lights,
               .load = [&] { return load_photos(*plan, context); }},
              options, context);
 }

@@ -27,7 +27,7 @@ struct SolveOptions {
 };
 
 struct SolveSeconds {
-  double read = 0, solve = 0, write = 0, pictures = 0, sync = 0, total = 0;
+  double read = 0, solve = 0, write = 0, pictures = 0, report = 0, sync = 0, total = 0;
 };
 
 /// What a solve left behind.
@@ -39,7 +39,7 @@ struct SolveReport {
 };
 
 /// Solves a session into its maps (docs/formats.md): normal.exr, albedo.exr, sigma.exr, residual.exr,
-/// status.png, solve.json and previews, made aside and published whole.
+/// status.png, solve.json, previews, report.json and report.html, made aside and published whole.
 Result<SolveReport> solve_session(const SessionOptions& input, const SolveOptions& options,
                                   const JobContext& context);
 

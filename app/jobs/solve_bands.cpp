@@ -2,11 +2,11 @@
 #include "app/jobs/solve_bands.h"
 
 #include <algorithm>
-#include <cmath>
 #include <future>
-#include <limits>
 #include <vector>
 
+#include "app/jobs/light_correction.h"
+#include "app/jobs/tile_reader.h"
 #include "core/parallel.h"
 #include "solver/kernels/demosaic.h"
 
@@ -42,94 +42,6 @@ struct BandMaps {
         albedo({width, kBandRows + kReach}, 3),
         sigma_albedo({width, kBandRows + kReach}, 3),
         status({width, kBandRows}) {}
-};
-
-// The readings of one tile, made by one worker.
-class TileReader {
- public:
-  // `reach` pixels around a tile are read along with it, for demosaicing.
-  TileReader(const Photographs& photographs, const TileOptions& tile, int reach, bool to_rgb)
-      : photographs_(&photographs), to_rgb_(to_rgb), reach_(reach) {
-    if (!photographs.rgb.empty()) return;
-    const Size size = {
-        std::min((std::max(tile.width, 1) + kRowGroup - 1) / kRowGroup * kRowGroup, photographs.size.width),
-        std::min(std::max(tile.height, 1), photographs.size.height)};
-    const int planes = static_cast<int>(photographs.count()) * (to_rgb ? 3 : 1);
-    readings_ = Image<float>(size, planes);
-    if (to_rgb) mosaic_ = Image<float>({size.width + 2 * reach, size.height + 2 * reach});
-  }
-
-  // Views of [k * planes + p] over the tile.
-  const std::vector<View<const float>>& read(Rect tile) {
-    views_.clear();
-    const Rect local = {0, 0, tile.width(), tile.height()};
-    for (std::size_t k = 0; k < photographs_->count(); ++k) {
-      if (!photographs_->rgb.empty()) {
-        for (int c = 0; c < 3; ++c) views_.push_back(photographs_->rgb[k].plane(c).crop(tile));
-      } else if (to_rgb_) {
-        const auto first = static_cast<int>(k) * 3;
-        const std::array<View<float>, 3> rgb = {readings_.plane(first).crop(local),
-                                                readings_.plane(first + 1).crop(local),
-                                                readings_.plane(first + 2).crop(local)};
-        read_rgb(k, tile, rgb);
-        views_.insert(views_.end(), rgb.begin(), rgb.end());
-      } else {
-        const View<float> out = readings_.plane(static_cast<int>(k)).crop(local);
-        photographs_->radiometry->read(photographs_->mosaics[k].counts.plane(), tile, out);
-        views_.emplace_back(out);
-      }
-    }
-    return views_;
-  }
-
- private:
-  // Demosaics frame k before solving, white-balanced by the flux of its light as the filters expect.
-  void read_rgb(std::size_t k, Rect tile, const std::array<View<float>, 3>& rgb) {
-    const Size size = photographs_->size;
-    const Rect around = {std::max(tile.x0 - reach_, 0), std::max(tile.y0 - reach_, 0),
-                         std::min(tile.x1 + reach_, size.width), std::min(tile.y1 + reach_, size.height)};
-    const View<float> mosaic = mosaic_.plane().crop({0, 0, around.width(), around.height()});
-    photographs_->radiometry->read(photographs_->mosaics[k].counts.plane(), around, mosaic);
-    const CfaPattern& cfa = photographs_->radiometry->cfa();
-    const std::array<double, 3> flux = flux_of(k);
-    for (int y = 0; y < around.height(); ++y) {
-      for (int x = 0; x < around.width(); ++x) {
-        const auto c = static_cast<std::size_t>(cfa.channel_at(around.x0 + x, around.y0 + y));
-        mosaic(x, y) = static_cast<float>(mosaic(x, y) / flux[c]);
-      }
-    }
-    CfaPattern phase;
-    for (int y = 0; y < 2; ++y) {
-      for (int x = 0; x < 2; ++x) {
-        phase.site[static_cast<std::size_t>(y)][static_cast<std::size_t>(x)] =
-            cfa.site_at(around.x0 + x, around.y0 + y);
-      }
-    }
-    const Rect inner = {tile.x0 - around.x0, tile.y0 - around.y0, tile.x1 - around.x0, tile.y1 - around.y0};
-    solver::demosaic(mosaic, phase, inner, rgb);
-    // What a saturated site was mixed into is as unusable as the site.
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (int y = 0; y < tile.height(); ++y) {
-        float* row = rgb[c].row(y);
-        for (int x = 0; x < tile.width(); ++x) {
-          row[x] = std::isfinite(row[x]) ? static_cast<float>(row[x] * flux[c])
-                                         : std::numeric_limits<float>::infinity();
-        }
-      }
-    }
-  }
-
-  std::array<double, 3> flux_of(std::size_t k) const {
-    const Lights& lights = photographs_->field->lights();
-    if (const auto* near = std::get_if<NearLights>(&lights)) return near->leds[k].flux_rgb;
-    return std::get<DistantLights>(lights).lights[k].irradiance_rgb;
-  }
-
-  const Photographs* photographs_;
-  bool to_rgb_;
-  int reach_;
-  Image<float> readings_, mosaic_;
-  std::vector<View<const float>> views_;
 };
 
 // What waits for demosaicing, a plane each of rho, its sigma and that of the normal, with the rows kept from
@@ -185,10 +97,35 @@ class Photosites {
   Image<float> planes_;
 };
 
+// A copy of a tile's readings, corrected; one a worker.
+class CorrectedTile {
+ public:
+  const std::vector<View<const float>>& apply(const LightCorrection& correction, Rect tile,
+                                              const std::vector<View<const float>>& readings) {
+    const Size size = {tile.width(), tile.height()};
+    if (readings_.width() < size.width || readings_.height() < size.height) {
+      readings_ = Image<float>(size, static_cast<int>(readings.size()));
+    }
+    std::vector<View<float>> views;
+    for (std::size_t i = 0; i < readings.size(); ++i) {
+      views.push_back(readings_.plane(static_cast<int>(i)).crop({0, 0, size.width, size.height}));
+      for (int y = 0; y < size.height; ++y) std::copy_n(readings[i].row(y), size.width, views[i].row(y));
+    }
+    correction.apply(tile, views);
+    views_.assign(views.begin(), views.end());
+    return views_;
+  }
+
+ private:
+  Image<float> readings_;
+  std::vector<View<const float>> views_;
+};
+
 }  // namespace
 
 Result<double> solve_bands(const Photographs& photographs, const solver::Method& method,
-                           const TileOptions& tile, const JobContext& context, const BandSink& sink) {
+                           const TileOptions& tile, const JobContext& context, const BandSink& sink,
+                           LightCorrection* correction) {
   const Size size = photographs.size;
   const bool mosaics = photographs.rgb.empty();
   const bool to_rgb = mosaics && method.wants_rgb();
@@ -197,6 +134,7 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
 
   std::vector<TileReader> readers;
   for (int i = 0; i < threads; ++i) readers.emplace_back(photographs, tile, to_rgb ? kReach : 0, to_rgb);
+  std::vector<CorrectedTile> corrected(correction == nullptr ? 0 : static_cast<std::size_t>(threads));
   std::array<BandMaps, 2> maps = {BandMaps(size.width), BandMaps(size.width)};
   Photosites photosites(demosaic_after ? size.width : 0);
   TileOptions options = tile;
@@ -214,10 +152,16 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
 
   for (int y0 = 0, turn = 0; y0 < size.height; y0 += kBandRows, turn ^= 1) {
     const Rect band = {0, y0, size.width, std::min(y0 + kBandRows, size.height)};
+    if (correction != nullptr) {
+      if (Result<void> ok = correction->prepare(band); !ok) return std::move(ok).error();
+    }
     BandMaps& out = maps[static_cast<std::size_t>(turn)];
     const Result<void> solved = for_each_tile(band, options, context.stop, [&](Rect t, int worker) {
       const Rect local = {t.x0, t.y0 - band.y0, t.x1, t.y1 - band.y0};
-      const std::vector<View<const float>>& readings = readers[static_cast<std::size_t>(worker)].read(t);
+      const std::vector<View<const float>>& as_read = readers[static_cast<std::size_t>(worker)].read(t);
+      const std::vector<View<const float>>& readings =
+          correction == nullptr ? as_read
+                                : corrected[static_cast<std::size_t>(worker)].apply(*correction, t, as_read);
       const solver::TileInput input = {
           t,        demosaic_after ? 1 : 3, mosaics ? photographs.radiometry->cfa() : CfaPattern{},
           readings, &*photographs.field,    demosaic_after ? photographs.noise : std::nullopt};
@@ -236,6 +180,7 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
       }
       method.solve(input, output);
     });
+    mark_replaced(photographs.replaced, band, out.status.plane());
     Rect albedo_rows = band;
     if (demosaic_after && solved) {
       albedo_rows = photosites.demosaic(band, size.height, photographs.radiometry->cfa(), threads, out);

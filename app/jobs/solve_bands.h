@@ -15,6 +15,8 @@
 
 namespace weft::app {
 
+class LightCorrection;
+
 /// Rows of maps as they leave the solver, top to bottom. Where mosaics are solved, albedo and sigma lag
 /// behind the rest by the rows that demosaicing looks ahead; all end at the last row.
 struct MapBand {
@@ -38,8 +40,9 @@ using BandSink = std::function<Result<void>(const MapBand&)>;
 
 /// Solves photographs band by band: memory stays at a few hundred rows of maps whatever the size of the
 /// image. The bytes that reach the sink depend on neither `tile` nor threads. Returns seconds that solving
-/// had to wait for the sink.
+/// had to wait for the sink. `correction` may be null; else readings go through it.
 Result<double> solve_bands(const Photographs& photographs, const solver::Method& method,
-                           const TileOptions& tile, const JobContext& context, const BandSink& sink);
+                           const TileOptions& tile, const JobContext& context, const BandSink& sink,
+                           LightCorrection* correction = nullptr);
 
 }  // namespace weft::app

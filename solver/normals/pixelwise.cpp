@@ -12,6 +12,24 @@ float finite(double v) {
   return static_cast<float>(std::min(v, double{std::numeric_limits<float>::max()}));
 }
 
+void count_pixel(const PixelSolution& s, SolveTally& tally) {
+  switch (s.path) {
+    case SolvedBy::kNothing:
+      ++tally.unsolved;
+      break;
+    case SolvedBy::kNormalEquations:
+      ++tally.by_normal_equations;
+      break;
+    case SolvedBy::kQr:
+      ++tally.by_qr;
+      break;
+    case SolvedBy::kSvd:
+      ++tally.by_svd;
+      break;
+  }
+  tally.rejected_readings += s.rejected;
+}
+
 }  // namespace
 
 void read_pixel(const TileInput& input, int x, int y, std::span<PixelRow> rows) {
@@ -39,6 +57,7 @@ void write_pixel(const PixelSolution& s, int planes, const TileOutput& output, i
   output.sigma_normal_deg(x, y) = static_cast<float>(s.sigma_normal_deg);
   output.residual(x, y) = finite(s.residual);
   output.status(x, y) = s.status;
+  if (output.tally != nullptr) count_pixel(s, *output.tally);
 }
 
 void solve_each_pixel(const TileInput& input, const TileOutput& output,

@@ -12,7 +12,7 @@ namespace weft::solver {
 /// Rows of one pixel of a tile, in double, whatever a kernel would make of it.
 void read_pixel(const TileInput& input, int x, int y, std::span<PixelRow> rows);
 
-/// Writes what was solved into a tile. Nothing leaves as infinity.
+/// Writes what was solved into a tile, and counts it. Nothing leaves as infinity.
 void write_pixel(const PixelSolution& solution, int planes, const TileOutput& output, int x, int y);
 
 /// Solves every pixel of a tile by a function of its rows.

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "solver/kernels/weighted.h"
 #include "solver/method.h"
-#include "solver/normals/pixelwise.h"
 
 namespace weft::solver {
 namespace {
 
-class Pixelwise : public Method {
+class Weighted : public Method {
  public:
-  Pixelwise(Estimator estimator, double trim_from) : estimator_(estimator), trim_from_(trim_from) {}
+  explicit Weighted(Estimator estimator, double trim_from = kTrimFrom)
+      : estimator_(estimator), trim_from_(trim_from) {}
   void solve(const TileInput& input, const TileOutput& output) const override {
-    PixelSolver solver({input.planes, true, input.noise, estimator_, trim_from_});
-    solve_each_pixel(input, output, [&](std::span<const PixelRow> rows) { return solver.solve(rows); });
+    solve_weighted(input, output, estimator_, trim_from_);
   }
 
  private:
@@ -21,16 +21,16 @@ class Pixelwise : public Method {
 }  // namespace
 
 std::unique_ptr<Method> weighted_method() {
-  return std::make_unique<Pixelwise>(Estimator::kWeighted, kTrimFrom);
+  return std::make_unique<Weighted>(Estimator::kWeighted);
 }
 std::unique_ptr<Method> standard_method() {
-  return std::make_unique<Pixelwise>(Estimator::kRejecting, kTrimFrom);
+  return std::make_unique<Weighted>(Estimator::kRejecting);
 }
 std::unique_ptr<Method> robust_method() {
-  return std::make_unique<Pixelwise>(Estimator::kTrimmed, kTrimFrom);
+  return std::make_unique<Weighted>(Estimator::kTrimmed);
 }
 std::unique_ptr<Method> trimmed_method() {
-  return std::make_unique<Pixelwise>(Estimator::kTrimmed, 0.0);
+  return std::make_unique<Weighted>(Estimator::kTrimmed, 0.0);
 }
 
 }  // namespace weft::solver

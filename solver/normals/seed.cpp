@@ -81,6 +81,7 @@ class Seed : public Method {
     output.sigma_normal_deg(x, y) = static_cast<float>(facts.sigma_normal_deg);
     output.residual(x, y) = static_cast<float>(facts.residual);
     output.status(x, y) = facts.status;
+    if (output.tally != nullptr) ++(solved ? output.tally->by_svd : output.tally->unsolved);
   }
 };
 

@@ -20,6 +20,8 @@ using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+constexpr int kReweightings = 30;
+
 enum class Use { kFitted, kShadowed, kRejected };
 
 // One equilibrated reading: x = r / e by plane, and `light` = sum of plane weights times x, which the normal
@@ -249,9 +251,56 @@ struct PixelSolver::Work {
     return true;
   }
 
+  double residual(const Reading& r) const { return r.light - r.l.dot(fit.b); }
+
+  // Weights 1 / |r|, smoothed where |r| is under a ten thousandth of the albedo.
+  bool solve_least_absolute() {
+    for (int i = 0; i < kReweightings; ++i) {
+      const double least = 1e-4 * fit.b.stableNorm();
+      for (Reading& r : readings) r.variance = std::max(std::abs(residual(r)), least);
+      if (!solve_fitted()) return false;
+    }
+    return true;
+  }
+
+  bool solve_huber() {
+    for (int i = 0; i < kReweightings; ++i) {
+      sorted.clear();
+      for (const Reading& r : readings) sorted.push_back(std::abs(residual(r)));
+      const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+      std::nth_element(sorted.begin(), middle, sorted.end());
+      const double bend = std::max(1.345 * 1.4826 * *middle, 1e-6 * fit.b.stableNorm());
+      for (Reading& r : readings) r.variance = std::max(1.0, std::abs(residual(r)) / bend);
+      if (!solve_fitted()) return false;
+    }
+    return true;
+  }
+
+  // Each reading has a sparse error of variance gamma_k beside noise of variance lambda, in units of the
+  // albedo: gamma_k <- (gamma w r)^2 + gamma - gamma^2 (w - w^2 l^T (L^T W L)^-1 l), w = 1 / (lambda +
+  // gamma).
+  bool solve_sparse() {
+    constexpr double kLambda = 1e-6;
+    const double rho = fit.b.stableNorm();
+    for (Reading& r : readings) r.variance = kLambda + 1;
+    for (int i = 0; i < kReweightings; ++i) {
+      if (!solve_fitted()) return false;
+      for (Reading& r : readings) {
+        const double w = 1 / r.variance, gamma = r.variance - kLambda;
+        const double leverage = w * w * r.l.dot(fit.inverse * r.l);
+        r.variance = kLambda + std::max(0.0, std::pow(gamma * w * residual(r) / rho, 2) + gamma -
+                                                 gamma * gamma * (w - leverage));
+      }
+    }
+    return solve_fitted();
+  }
+
   bool estimate() {
     if (!solve_fitted()) return false;
     if (options.estimator == Estimator::kLeastSquares) return true;
+    if (options.estimator == Estimator::kHuber) return solve_huber();
+    if (options.estimator == Estimator::kLeastAbsolute) return solve_least_absolute();
+    if (options.estimator == Estimator::kSparse) return solve_sparse();
     if (!solve_weighted()) return false;
     if (options.estimator == Estimator::kWeighted) return true;
     const bool trimming = options.estimator == Estimator::kTrimmed && asks_for_trimming();
@@ -348,6 +397,7 @@ PixelSolution PixelSolver::Work::solution() {
       status |= kShadowed;
       continue;
     }
+    s.rejected += r.use == Use::kRejected;
     const double predicted = std::max(0.0, r.l.dot(b));
     const double sigma = std::sqrt(noise_variance(r));
     if (r.light > kSpecularTimes * predicted + 3 * sigma + kSpecularMargin * rho) status |= kSpecular;

@@ -23,11 +23,14 @@ struct PixelRow {
 
 /// What is minimised, each over what the one before leaves of the readings.
 enum class Estimator {
-  kLeastSquares,  ///< sum of (x_k - l_k . b)^2 with x = r / e
-  kWeighted,      ///< the same over the variances that a first solution predicts: two steps
-  kRejecting,     ///< weighted; shadowed readings that fit come back, those that do not fit the others go
-  kTrimmed        ///< where they scatter, from a start that most readings agree on, highlights doubted; else
-                  ///< rejecting
+  kLeastSquares,   ///< sum of (x_k - l_k . b)^2 with x = r / e
+  kHuber,          ///< Huber's loss, by reweighting; from 1.345 times the median residual
+  kLeastAbsolute,  ///< sum of |x_k - l_k . b|, by reweighting (L1)
+  kSparse,         ///< least squares plus a sparse error a reading (Ikehata et al., CVPR 2012: SBL)
+  kWeighted,       ///< the same over the variances that a first solution predicts: two steps
+  kRejecting,      ///< weighted; shadowed readings that fit come back, those that do not fit the others go
+  kTrimmed         ///< where they scatter, from a start that most readings agree on, highlights doubted; else
+                   ///< rejecting
 };
 
 /// Readings are trimmed where their scatter is over this many times what noise explains.
@@ -55,6 +58,7 @@ struct PixelSolution {
   double residual = 0;
   std::uint16_t status = 0;
   SolvedBy path = SolvedBy::kNothing;
+  int rejected = 0;  ///< readings left out because the others contradict them
 };
 
 /// The slow obvious truth of the kernels, in double, and the last resort of the pixels that float32 cannot

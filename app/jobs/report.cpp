@@ -1,0 +1,358 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "app/jobs/evidence.h"
+#include "app/jobs/report_page.h"
+#include "core/files.h"
+#include "solver/method.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using solver::Fault;
+using solver::FaultKind;
+
+// A gain that turns the normals by less is in the report, but nobody is warned of it.
+constexpr double kLeastWarned_deg = 0.05;
+constexpr int kGridSide = 32;
+// Bins of the logarithm of sigma, from 1e-4 to 180 degrees, 1 percent each.
+constexpr double kLeastSigma = 1e-4, kBinRatio = 1.01;
+constexpr std::size_t kBins = 1450;
+
+// JSON has no infinity; enough digits to read, few enough to compare.
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+double percent(double share) {
+  return 100 * share;
+}
+
+// "3", "3 and 4", "3, 4 and 8".
+std::string listed(const std::vector<int>& numbers) {
+  std::string text;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0) text += i + 1 == numbers.size() ? " and " : ", ";
+    text += std::to_string(numbers[i]);
+  }
+  return text;
+}
+
+std::string joined(const std::vector<int>& numbers) {
+  std::string text;
+  for (const int n : numbers) text += (text.empty() ? "" : ",") + std::to_string(n);
+  return text;
+}
+
+// Speaks of the lights of one solve.
+struct Speaker {
+  const PhotographsSummary& photographs;
+
+  std::vector<int> numbers(const std::vector<std::size_t>& lights) const {
+    std::vector<int> all;
+    for (const std::size_t k : lights) all.push_back(photographs.numbers[k]);
+    return all;
+  }
+  std::string name(const std::vector<std::size_t>& lights) const {
+    const char* noun = photographs.of_session ? "LED" : "Light";
+    return fmt::format("{}{} {}", noun, lights.size() > 1 ? "s" : "", listed(numbers(lights)));
+  }
+  // The option that leaves lights out, as long as it can be read.
+  std::string without(const std::vector<std::size_t>& lights) const {
+    if (photographs.numbers.size() > 16) return "the other lights (--lights)";
+    std::vector<int> rest;
+    for (std::size_t k = 0; k < photographs.numbers.size(); ++k) {
+      if (std::find(lights.begin(), lights.end(), k) == lights.end()) rest.push_back(photographs.numbers[k]);
+    }
+    return "--lights " + joined(rest);
+  }
+  // What turns a residual before and after into words.
+  static std::string falls(const Fault& fault) {
+    return fmt::format("the residual of their readings falls from {:.1f} to {:.1f} percent",
+                       percent(fault.residual_before), percent(fault.residual_after));
+  }
+
+  Verdict exchanged(const Fault& fault) const {
+    const char* place = photographs.of_session ? "session.json" : "the list of lights";
+    if (fault.lights.size() == 2) {
+      return {"LEDS_EXCHANGED",
+              fmt::format("{} look swapped: with them exchanged {}", name(fault.lights), falls(fault)),
+              fmt::format("check the wiring; for these photographs exchange the numbers {} in {} and solve "
+                          "again, or solve with {}",
+                          listed(numbers(fault.lights)), place, without(fault.lights))};
+    }
+    std::string order;
+    for (std::size_t i = 0; i < fault.lights.size(); ++i) {
+      order += fmt::format("{}{} is seen in photograph {}", order.empty() ? "" : ", ",
+                           photographs.numbers[fault.lights[i]], photographs.numbers[fault.shown_by[i]]);
+    }
+    return {"LEDS_EXCHANGED",
+            fmt::format("{} look out of order: {}; with them in order {}", name(fault.lights), order,
+                        falls(fault)),
+            fmt::format("check the wiring; for these photographs put the numbers in {} in order and solve "
+                        "again, or solve with {}",
+                        place, without(fault.lights))};
+  }
+  Verdict dead(const Fault& fault) const {
+    return {"LED_DEAD",
+            fmt::format("{} looks dead: its photograph shows {:.1f} percent of the light it should",
+                        name(fault.lights), std::max(0.0, percent(fault.value))),
+            "check the LED and its cable and scan again, or solve with " + without(fault.lights)};
+  }
+  Verdict gain(const Fault& fault) const {
+    return {"LED_GAIN",
+            fmt::format("{} gives {:.1f} percent of what its calibration says (± {:.1f}), which turns "
+                        "the normals by {:.2f}°",
+                        name(fault.lights), percent(fault.value), percent(fault.sigma), fault.moved_deg),
+            "calibrate the lights again, or solve with " + without(fault.lights)};
+  }
+  Verdict operator()(const Fault& fault) const {
+    switch (fault.kind) {
+      case FaultKind::kExchanged:
+        return exchanged(fault);
+      case FaultKind::kDead:
+        return dead(fault);
+      case FaultKind::kGain:
+        return gain(fault);
+    }
+    return {};
+  }
+};
+
+const char* name_of(FaultKind kind) {
+  switch (kind) {
+    case FaultKind::kExchanged:
+      return "exchanged";
+    case FaultKind::kDead:
+      return "dead";
+    case FaultKind::kGain:
+      return "gain";
+  }
+  return "";
+}
+
+Json json_of(const Fault& fault, const Speaker& say) {
+  Json json = {{"kind", name_of(fault.kind)}, {"lights", say.numbers(fault.lights)}};
+  if (fault.kind == FaultKind::kExchanged) json["shown_by"] = say.numbers(fault.shown_by);
+  if (fault.kind != FaultKind::kExchanged) json["value"] = number(fault.value);
+  if (fault.kind == FaultKind::kGain) json["sigma"] = number(fault.sigma);
+  if (fault.kind != FaultKind::kDead) {
+    json["residual_before"] = number(fault.residual_before);
+    json["residual_after"] = number(fault.residual_after);
+    json["moved_deg"] = number(fault.moved_deg);
+  }
+  json["confidence"] = number(fault.agreement);
+  return json;
+}
+
+Json json_of(const solver::LightEvidence& light, int number_of_light) {
+  return {{"light", number_of_light},
+          {"residual_rms", number(light.residual_rms)},
+          {"residual_median", number(light.residual_median)},
+          {"residual_mean", number(light.residual_mean)},
+          {"gain", number(light.gain)},
+          {"gain_range", number(light.gain_range)},
+          {"saturated", number(light.saturated)},
+          {"shadowed", number(light.shadowed)},
+          {"missing", number(light.missing)},
+          {"outlier", number(light.outlier)},
+          {"gradient", number(light.gradient)},
+          {"gradient_share", number(light.gradient_share)}};
+}
+
+// Where the error comes from: what is known of each source, in its own unit.
+Json budget_of(const Json& solve, const PhotographsSummary& photographs, const Json& sigma,
+               const Json& shares) {
+  Json budget = Json::array();
+  const auto add = [&](const char* source, const std::string& what, const Json& value, const char* unit) {
+    if (value.is_number()) {
+      budget.push_back({{"source", source}, {"what", what}, {"value", value}, {"unit", unit}});
+    }
+  };
+  add(photographs.noise_is_known ? "photon and read noise" : "scatter of the readings",
+      "median predicted angle of the normal", sigma["median"], "deg");
+  if (solve.contains("sigma_calibration_deg")) {
+    add("calibration", "median predicted angle of the normal", solve["sigma_calibration_deg"], "deg");
+  }
+  for (const Fault& fault : photographs.diagnosis.faults) {
+    if (fault.kind == FaultKind::kDead) continue;
+    const Speaker say = {photographs};
+    add(fault.kind == FaultKind::kGain ? "gain of a light" : "exchanged lights",
+        fmt::format("{} put right would turn half of the normals by more", say.name(fault.lights)),
+        number(fault.moved_deg), "deg");
+  }
+  add("cloth unlike the model", "median deviation of the readings, over the albedo",
+      number(percent(photographs.diagnosis.left)), "percent");
+  const auto share = [&](const char* source, const char* what, const char* bit) {
+    if (shares.contains(bit)) add(source, what, percent(shares[bit].get<double>()), "percent");
+  };
+  share("shadows", "pixels with a reading left out for shadow", "SHADOWED");
+  share("highlights", "pixels with a reading over three times the prediction", "SPECULAR");
+  share("saturation", "pixels with a reading left out as saturated", "SATURATED");
+  return budget;
+}
+
+}  // namespace
+
+MapSummary::MapSummary(Size size) : sigma_(size, 1, kGridSide), row_({size.width, 1}), histogram_(kBins) {}
+
+void MapSummary::add(const MapBand& band) {
+  for (int y = 0; y < band.albedo_rows.height(); ++y) {
+    const float* sigma = band.sigma_normal_deg.row(y);
+    for (int x = 0; x < row_.width(); ++x) {
+      const bool known = sigma[x] < solver::kUnknownAngleDeg;
+      row_(x, 0) = known ? sigma[x] : std::numeric_limits<float>::quiet_NaN();
+      if (!known) continue;
+      const double bin =
+          std::log(std::max<double>(sigma[x], kLeastSigma) / kLeastSigma) / std::log(kBinRatio);
+      ++histogram_[std::min(static_cast<std::size_t>(bin), kBins - 1)];
+    }
+    sigma_.add_rows(std::array{View<const float>(row_.plane())});
+  }
+}
+
+double MapSummary::quantile(double q) const {
+  std::int64_t all = 0, seen = 0;
+  for (const std::int64_t n : histogram_) all += n;
+  for (std::size_t i = 0; i < kBins; ++i) {
+    seen += histogram_[i];
+    if (seen > 0 && static_cast<double>(seen) >= q * static_cast<double>(all)) {
+      return kLeastSigma * std::pow(kBinRatio, static_cast<double>(i) + 0.5);
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+Json MapSummary::sigma_normal_deg() const {
+  const Image<float>& means = sigma_.averages();
+  Json grid = Json::array();
+  for (int y = 0; y < means.height(); ++y) {
+    for (int x = 0; x < means.width(); ++x) grid.push_back(number(means(x, y)));
+  }
+  return {{"median", number(quantile(0.5))}, {"p95", number(quantile(0.95))}, {"square_px", sigma_.square()},
+          {"columns", means.width()},        {"rows", means.height()},        {"grid", std::move(grid)}};
+}
+
+Json condition_over(const LightField& field, Size size) {
+  constexpr int kPoints = 9;  // a side
+  std::vector<double> conditions;
+  for (int j = 0; j < kPoints; ++j) {
+    for (int i = 0; i < kPoints; ++i) {
+      std::vector<Vec3> directions;
+      for (std::size_t k = 0; k < field.count(); ++k) {
+        const LightField::Light light =
+            field.at(k, 1, (size.width - 1) * i / (kPoints - 1), (size.height - 1) * j / (kPoints - 1));
+        if (light.strength > 0) directions.push_back(light.direction);
+      }
+      conditions.push_back(condition_number(directions));
+    }
+  }
+  std::sort(conditions.begin(), conditions.end());
+  return {{"median", number(conditions[conditions.size() / 2])}, {"worst", number(conditions.back())}};
+}
+
+Json json_of(const std::vector<Verdict>& verdicts) {
+  Json all = Json::array();
+  for (const Verdict& v : verdicts) all.push_back({{"name", v.name}, {"text", v.text}, {"remedy", v.remedy}});
+  return all;
+}
+
+PhotographsSummary summarize_photographs(const Photographs& photographs, const std::vector<int>& picked,
+                                         const JobContext& context) {
+  PhotographsSummary summary;
+  summary.diagnosis = solver::diagnose(read_evidence(photographs), context.threads);
+  summary.of_session = !photographs.leds.empty();
+  summary.numbers = summary.of_session ? photographs.leds : picked;
+  for (std::size_t k = summary.numbers.size(); k < photographs.count(); ++k) {
+    summary.numbers.push_back(static_cast<int>(k) + 1);
+  }
+  summary.noise_is_known = photographs.noise.has_value();
+  summary.condition = condition_over(*photographs.field, photographs.size);
+  summary.warnings = photographs.warnings;
+  return summary;
+}
+
+std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular) {
+  const Speaker say = {photographs};
+  std::vector<Verdict> verdicts;
+  for (const FaultKind kind : {FaultKind::kExchanged, FaultKind::kDead, FaultKind::kGain}) {
+    for (const Fault& fault : photographs.diagnosis.faults) {
+      const bool matters = fault.kind != FaultKind::kGain || fault.moved_deg >= kLeastWarned_deg;
+      if (fault.kind == kind && matters) verdicts.push_back(say(fault));
+    }
+  }
+  if (specular > kSpecularDominated) {
+    verdicts.push_back({"SPECULAR_DOMINATED",
+                        fmt::format("Highlights dominate: in {:.0f} percent of the pixels a reading is over "
+                                    "three times what a matt cloth would give",
+                                    percent(specular)),
+                        "put crossed polarisers on LEDs and lens and scan again, or solve with --quality "
+                        "robust"});
+  }
+  for (const std::string& warning : photographs.warnings) verdicts.push_back({"CONDITIONS", warning, ""});
+  return verdicts;
+}
+
+Json report_document(const std::string& title, const Json& solve, const PhotographsSummary& photographs,
+                     const MapSummary& maps, const Json& seconds) {
+  const solver::Diagnosis& diagnosis = photographs.diagnosis;
+  const Speaker say = {photographs};
+  const double pixels = std::max(1.0, solve.value("width", 1.0) * solve.value("height", 1.0));
+  Json shares = Json::object(), lights = Json::array(), faults = Json::array();
+  for (const auto& [name, count] : solve.at("status").items()) shares[name] = count.get<double>() / pixels;
+  for (std::size_t k = 0; k < diagnosis.lights.size(); ++k) {
+    lights.push_back(json_of(diagnosis.lights[k], photographs.numbers[k]));
+  }
+  for (const Fault& fault : diagnosis.faults) faults.push_back(json_of(fault, say));
+  Json sigma = maps.sigma_normal_deg();
+
+  Json report = {{"schema", "weft.solve-report/1"},
+                 {"title", title},
+                 {"of", photographs.of_session ? "session" : "photographs"}};
+  for (const char* key : {"id", "method", "width", "height", "albedo_scale", "pixels"}) {
+    if (solve.contains(key)) report[key] = solve[key];
+  }
+  report["warnings"] = solve.value("warnings", Json::array());
+  report["status"] = shares;
+  report["looked_at"] = diagnosis.pixels;
+  report["residual"] = number(diagnosis.residual);
+  report["residual_explained"] = number(diagnosis.left);
+  report["lights"] = std::move(lights);
+  report["faults"] = std::move(faults);
+  report["budget"] = budget_of(solve, photographs, sigma, shares);
+  report["condition"] = photographs.condition;
+  report["sigma_normal_deg"] = std::move(sigma);
+  for (const char* key : {"error", "gates", "registration", "conditions"}) {
+    if (solve.contains(key) && !solve[key].empty()) report[key] = solve[key];
+  }
+  report["seconds"] = seconds;
+  return report;
+}
+
+Result<void> write_report(const fs::path& folder, const Json& report) {
+  constexpr std::array<std::pair<const char*, const char*>, 5> kPreviews = {
+      {{"albedo.png", "albedo"},
+       {"normal.png", "normal"},
+       {"relit.png", "relit from the upper left"},
+       {"error.png", "error against the truth"},
+       {"status_preview.png", "status"}}};
+  std::vector<PagePicture> pictures;
+  for (const auto& [name, label] : kPreviews) {
+    if (!is_there(folder / name)) continue;
+    Result<std::string> png = read_text(folder / name);
+    if (!png) return std::move(png).error();
+    pictures.push_back({label, std::move(*png)});
+  }
+  if (Result<void> ok = write_json(folder / "report.json", report); !ok) return ok;
+  return write_file(folder / "report.html", report_page(report, pictures));
+}
+
+}  // namespace weft::app

@@ -1,0 +1,377 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/report_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string_view>
+
+#include "material/preview.h"
+
+namespace weft::app {
+namespace {
+
+constexpr std::string_view kStyle = R"(
+:root { --ink: #22211f; --faint: #77736b; --line: #dcd8cf; --paper: #fdfcf9; --bar: #8f8a7e; --alarm: #b3261e; --good: #2f6b4f; }
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--paper); color: var(--ink); font: 14px/1.45 "Source Sans 3", "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
+main { max-width: 1020px; margin: 0 auto; padding: 28px 32px 40px; }
+h1 { font: 600 25px/1.2 Georgia, "Source Serif 4", serif; margin: 0; }
+h2 { font-size: 12px; font-weight: 600; letter-spacing: .06em; text-transform: uppercase; color: var(--faint); margin: 0 0 8px; }
+.meta { color: var(--faint); margin: 4px 0 0; }
+.verdict { margin: 18px 0 22px; padding: 14px 18px; border-left: 4px solid var(--good); background: #f3f1ea; }
+.verdict.alarm { border-color: var(--alarm); }
+.verdict p { margin: 0; font: 18px/1.4 Georgia, "Source Serif 4", serif; }
+.verdict p.do { font: 14px/1.45 "Source Sans 3", "Segoe UI", "Helvetica Neue", Arial, sans-serif; color: #55524b; margin-top: 3px; }
+.verdict p + p:not(.do) { margin-top: 12px; }
+section { margin: 0 0 24px; break-inside: avoid; }
+.two { display: grid; grid-template-columns: 1fr 1fr; gap: 0 36px; align-items: start; }
+.pictures { display: grid; grid-template-columns: repeat(4, 1fr); gap: 12px; }
+figure { margin: 0; }
+figure img { width: 100%; display: block; border: 1px solid var(--line); }
+figcaption, .note { color: var(--faint); font-size: 12px; margin: 4px 0 0; }
+table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
+th, td { text-align: left; padding: 3px 10px 3px 0; border-bottom: 1px solid var(--line); vertical-align: top; }
+th { font-weight: 600; font-size: 12px; color: var(--faint); }
+td.n, th.n { text-align: right; }
+td:last-child, th:last-child { padding-right: 0; }
+tr.alarm td { color: var(--alarm); font-weight: 600; }
+svg { display: block; width: 100%; height: auto; font: 12px "Source Sans 3", "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
+@media (max-width: 760px) { .two { grid-template-columns: 1fr; } .pictures { grid-template-columns: 1fr 1fr; } }
+@media print { @page { size: A4; margin: 12mm; } main { padding: 0; max-width: none; } body { background: #fff; font-size: 11.5px; } section { margin-bottom: 14px; } .verdict { -webkit-print-color-adjust: exact; print-color-adjust: exact; } svg, img { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
+)";
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+// RFC 4648, section 4.
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t group = 0;
+    for (std::size_t j = 0; j < 3; ++j) {
+      group = group << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0U);
+    }
+    for (std::size_t j = 0; j < 4; ++j) {
+      out += i + j <= bytes.size() ? kDigits[group >> (18 - 6 * j) & 63U] : '=';
+    }
+  }
+  return out;
+}
+
+double number(const Json& object, const char* key, double otherwise = 0) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? found->get<double>() : otherwise;
+}
+
+std::string percent(double share) {
+  const double p = 100 * share;
+  if (p == 0) return "0 %";
+  if (p < 0.01) return "&lt; 0.01 %";
+  return fmt::format(fmt::runtime(p < 1 ? "{:.2f} %" : "{:.1f} %"), p);
+}
+
+std::string section(std::string_view title, std::string_view body, std::string_view id = "") {
+  const std::string mark = id.empty() ? "" : fmt::format(" id=\"{}\"", id);
+  return fmt::format("<section{}><h2>{}</h2>\n{}</section>\n", mark, title, body);
+}
+
+std::string light_noun(const Json& report) {
+  return report.value("of", "session") == "session" ? "LED" : "Light";
+}
+
+// The lights that a fault names.
+std::set<int> named(const Json& report) {
+  std::set<int> numbers;
+  for (const Json& fault : report["faults"]) {
+    for (const Json& n : fault["lights"]) numbers.insert(n.get<int>());
+  }
+  return numbers;
+}
+
+std::string head(const Json& report) {
+  const std::string title = report.value("title", "");
+  return fmt::format(
+      "<h1>{}</h1>\n<p class=\"meta\">solved by {} from {} lights · {} × {} pixels · {} albedo · {}</p>\n",
+      escaped(title.empty() ? "Untitled cloth" : title), escaped(report.value("method", "")),
+      report["lights"].size(), report.value("width", 0), report.value("height", 0),
+      escaped(report.value("albedo_scale", "relative")), escaped(report.value("id", "")));
+}
+
+std::string verdict(const Json& report) {
+  std::string body;
+  for (const Json& warning : report["warnings"]) {
+    body += fmt::format("<p>{}.</p>\n", escaped(warning.value("text", "")));
+    std::string remedy = warning.value("remedy", "");
+    if (remedy.empty()) continue;
+    remedy[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(remedy[0])));
+    body += fmt::format("<p class=\"do\">{}.</p>\n", escaped(remedy));
+  }
+  if (!body.empty()) return "<div class=\"verdict alarm\">\n" + body + "</div>\n";
+  if (report.value("looked_at", 0) == 0) {
+    body = "<p>No pixel was bright and lit enough to hold the lights against each other.</p>\n";
+  } else if (report["lights"].size() < 6) {
+    body =
+        "<p>Nothing stands out. Six lights are needed to hold them against each other; "
+        "here each was taken at its word.</p>\n";
+  } else {
+    body = fmt::format(
+        "<p>Nothing stands out: half of the pixels agree with the model to {} of the albedo or "
+        "better, and no light contradicts its calibration.</p>\n",
+        percent(number(report, "residual_explained")));
+  }
+  return "<div class=\"verdict\">\n" + body + "</div>\n";
+}
+
+std::string picture_row(const std::vector<PagePicture>& pictures) {
+  if (pictures.empty()) return "";
+  std::string body = "<div class=\"pictures\">\n";
+  for (const PagePicture& p : pictures) {
+    body += fmt::format(
+        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
+        escaped(p.label), base64(p.png));
+  }
+  return "<section>" + body + "</div></section>\n";
+}
+
+// A horizontal bar for each light: the median size of its residual.
+std::string residual_chart(const Json& report) {
+  const Json& lights = report["lights"];
+  const std::set<int> alarm = named(report);
+  double most = 1e-6;
+  for (const Json& light : lights) most = std::max(most, number(light, "residual_median"));
+  const int row = lights.size() > 24 ? 9 : 21, left = 62, width = 330;
+  std::string bars;
+  int y = 0;
+  for (const Json& light : lights) {
+    const double size = number(light, "residual_median");
+    const int n = light.value("light", 0);
+    const char* colour = alarm.count(n) != 0 ? "#b3261e" : "#8f8a7e";
+    bars += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{}\" fill=\"{}\"/>", left,
+                        y + row / 7, std::max(1.0, size / most * width), row - 2 * (row / 7), colour);
+    if (row > 12) {
+      bars += fmt::format(
+          "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"{}\">{} {}</text>"
+          "<text x=\"{:.1f}\" y=\"{}\" fill=\"#77736b\">{}</text>\n",
+          left - 8, y + 15, alarm.count(n) != 0 ? "#b3261e" : "#22211f", light_noun(report), n,
+          left + size / most * width + 6, y + 15, percent(size));
+    } else if (n % 8 == 0 || alarm.count(n) != 0) {
+      bars += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"{}\">{}</text>\n", left - 8,
+                          y + 9, alarm.count(n) != 0 ? "#b3261e" : "#22211f", n);
+    }
+    y += row;
+  }
+  return fmt::format("<svg viewBox=\"0 0 460 {}\" role=\"img\">{}</svg>\n", y, bars) +
+         "<p class=\"note\">Median deviation of the readings from a robust fit, over the albedo.</p>\n";
+}
+
+std::string status_chart(const Json& report) {
+  std::string rows;
+  for (const auto& [name, share] : report["status"].items()) {
+    const double s = share.get<double>();
+    rows += fmt::format(
+        "<tr><td>{}</td><td style=\"width:45%\"><svg viewBox=\"0 0 200 12\" preserveAspectRatio=\"none\" "
+        "style=\"height:12px;margin-top:4px\"><rect width=\"200\" height=\"12\" fill=\"#eeebe3\"/>"
+        "<rect width=\"{:.1f}\" height=\"12\" fill=\"#8f8a7e\"/></svg></td><td class=\"n\">{}</td></tr>\n",
+        escaped(name), 200 * std::clamp(s, 0.0, 1.0), percent(s));
+  }
+  return "<table>\n" + rows +
+         "</table>\n<p class=\"note\">Share of pixels with each bit of status.png; a pixel may have "
+         "several.</p>\n";
+}
+
+std::string css(material::Colour c) {
+  const auto byte = [](float v) { return static_cast<int>(std::lround(255 * std::clamp(v, 0.0F, 1.0F))); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(c.r), byte(c.g), byte(c.b));
+}
+
+// Predicted angle of the normal over the frame, in squares, over a scale from 0.
+std::string sigma_map(const Json& report) {
+  const Json& sigma = report["sigma_normal_deg"];
+  if (!sigma["median"].is_number()) return "";
+  const int columns = sigma.value("columns", 0), rows = sigma.value("rows", 0);
+  std::vector<double> known;
+  for (const Json& v : sigma["grid"]) {
+    if (v.is_number()) known.push_back(v.get<double>());
+  }
+  if (known.empty() || columns <= 0) return "";
+  std::sort(known.begin(), known.end());
+  const double full = std::max(known[known.size() * 98 / 100] * 1.1, 1e-6);
+  std::string squares;
+  for (int i = 0; i < columns * rows; ++i) {
+    const Json& v = sigma["grid"][static_cast<std::size_t>(i)];
+    squares += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"10.3\" height=\"10.3\" fill=\"{}\"/>",
+                           10 * (i % columns), 10 * (i / columns),
+                           v.is_number() ? css(material::heat_colour(v.get<double>() / full)) : "#ffffff");
+  }
+  std::string scale;
+  for (int i = 0; i < 40; ++i) {
+    scale += fmt::format("<rect x=\"{}\" width=\"8.2\" height=\"10\" fill=\"{}\"/>", 8 * i,
+                         css(material::heat_colour((i + 0.5) / 40)));
+  }
+  const Json condition = report.value("condition", Json::object());
+  std::string note =
+      fmt::format("Median {:.3g}°, 95 percent below {:.3g}°.", number(sigma, "median"), number(sigma, "p95"));
+  if (condition.contains("median") && condition["median"].is_number()) {
+    note += fmt::format(" Condition number of all lights {:.2f}, at worst {:.2f}.",
+                        number(condition, "median"), number(condition, "worst", INFINITY));
+  }
+  return section(
+      "How well the lights fix the normal",
+      fmt::format(
+          "<svg viewBox=\"0 0 {} {}\" role=\"img\">{}</svg>\n"
+          "<svg viewBox=\"0 0 320 22\" style=\"margin-top:6px;font-size:9px\">{}<text x=\"0\" y=\"20\" "
+          "fill=\"#77736b\">0°</text><text x=\"320\" y=\"20\" text-anchor=\"end\" "
+          "fill=\"#77736b\">{:.2g}°</text></svg>\n<p class=\"note\">{}</p>\n",
+          10 * columns, 10 * rows, squares, scale, full, note));
+}
+
+std::string budget(const Json& report) {
+  std::string rows;
+  for (const Json& b : report["budget"]) {
+    const bool degrees = b.value("unit", "") == "deg";
+    const double value = number(b, "value");
+    rows += fmt::format("<tr><td>{}<br><span class=\"note\">{}</span></td><td class=\"n\">{}</td></tr>\n",
+                        escaped(b.value("source", "")), escaped(b.value("what", "")),
+                        degrees ? fmt::format("{:.3g}°", value) : percent(value / 100));
+  }
+  if (const auto error = report.find("error"); error != report.end()) {
+    rows += fmt::format(
+        "<tr><td>all of it<br><span class=\"note\">mean error against the truth; 95 percent below {:.2f}°"
+        "</span></td><td class=\"n\">{:.3g}°</td></tr>\n",
+        number(*error, "p95_deg"), number(*error, "mean_deg"));
+  }
+  return "<table>\n" + rows + "</table>\n";
+}
+
+std::string light_table(const Json& report) {
+  const std::set<int> alarm = named(report);
+  std::string rows;
+  for (const Json& light : report["lights"]) {
+    const int n = light.value("light", 0);
+    // Of very many lights the first and those that are named.
+    if (report["lights"].size() > 24 && alarm.count(n) == 0) continue;
+    rows += fmt::format(
+        "<tr{}><td>{} {}</td><td class=\"n\">{}</td><td class=\"n\">{:+.2f} %</td><td "
+        "class=\"n\">{:.1f} %</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
+        "<td class=\"n\">{}</td><td class=\"n\">{:.1f} % ({:.0f} %)</td></tr>\n",
+        alarm.count(n) != 0 ? " class=\"alarm\"" : "", light_noun(report), n,
+        percent(number(light, "residual_rms")), 100 * number(light, "residual_mean"),
+        100 * number(light, "gain", 1), percent(number(light, "shadowed")),
+        percent(number(light, "saturated")), percent(number(light, "missing")),
+        percent(number(light, "outlier")), 100 * number(light, "gradient"),
+        100 * number(light, "gradient_share"));
+  }
+  if (rows.empty()) return "";
+  return section(
+      "Light by light",
+      "<table><tr><th></th><th class=\"n\">rms residual</th><th class=\"n\">its mean</th><th "
+      "class=\"n\">gain</th>"
+      "<th class=\"n\">in shadow</th><th class=\"n\">saturated</th><th class=\"n\">missing</th><th "
+      "class=\"n\">outliers</th><th class=\"n\">change over the frame</th></tr>\n" +
+          rows +
+          fmt::format(
+              "</table>\n<p class=\"note\">From {} pixels all over the frame. Gain: what the light "
+              "gives of what the other lights let expect, named faults put right. A residual that changes "
+              "over the frame and explains much of its variance (in brackets) hints that a light has "
+              "moved.</p>\n",
+              report.value("looked_at", 0)));
+}
+
+// Names and plain values of a JSON object of any shape, as rows.
+void flatten(const Json& value, const std::string& name, std::string& rows) {
+  if (value.is_object()) {
+    for (const auto& [key, inner] : value.items()) {
+      flatten(inner, name.empty() ? key : name + " · " + key, rows);
+    }
+    return;
+  }
+  const std::string text = value.is_string()         ? value.get<std::string>()
+                           : value.is_number_float() ? fmt::format("{:.4g}", value.get<double>())
+                                                     : value.dump();
+  rows += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td></tr>\n", escaped(name), escaped(text));
+}
+
+std::string conditions(const Json& report) {
+  std::string rows;
+  for (const char* key : {"registration", "conditions"}) {
+    if (const auto found = report.find(key); found != report.end()) flatten(*found, "", rows);
+  }
+  return rows.empty() ? "" : section("Conditions", "<table>\n" + rows + "</table>\n");
+}
+
+std::string gates(const Json& report) {
+  const auto found = report.find("gates");
+  if (found == report.end() || !found->is_array()) return "";
+  std::string rows;
+  for (const Json& gate : *found) {
+    const Json verdict_of = gate.value("verdict", Json());
+    rows += fmt::format(
+        "<tr><td>{}</td><td class=\"n\">{:.3g} {}</td><td class=\"n\">{:.3g} {}</td><td>{}</td></tr>\n",
+        escaped(gate.value("name", "")), number(gate, "value"), escaped(gate.value("unit", "")),
+        number(gate, "limit"), escaped(gate.value("unit", "")),
+        escaped(verdict_of.is_string() ? verdict_of.get<std::string>() : verdict_of.dump()));
+  }
+  return section("Gates",
+                 "<table><tr><th>stage</th><th class=\"n\">measured</th><th class=\"n\">limit</th>"
+                 "<th>verdict</th></tr>\n" +
+                     rows + "</table>\n");
+}
+
+std::string time(const Json& report) {
+  std::string rows;
+  for (const auto& [phase, seconds] : report["seconds"].items()) {
+    rows += fmt::format("<tr><td>{}</td><td class=\"n\">{:.2f} s</td></tr>\n", escaped(phase),
+                        seconds.get<double>());
+  }
+  return rows.empty() ? "" : section("Time by phase", "<table>\n" + rows + "</table>\n", "time");
+}
+
+std::string two(const std::string& left, const std::string& right) {
+  return "<div class=\"two\"><div>\n" + left + "</div><div>\n" + right + "</div></div>\n";
+}
+
+}  // namespace
+
+std::string report_page(const Json& report, const std::vector<PagePicture>& pictures) {
+  std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n";
+  page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
+          escaped(report.value("title", "")) + " · report of a solve</title>\n<style>" + std::string(kStyle) +
+          "</style></head>\n<body><main>\n";
+  page += head(report);
+  page += verdict(report);
+  page += picture_row(pictures);
+  page += two(section("Residual by light", residual_chart(report)),
+              section("Pixels by state", status_chart(report)));
+  page += two(section("Where the error comes from", budget(report)), sigma_map(report));
+  page += light_table(report);
+  page += two(gates(report) + time(report), conditions(report));
+  return page + "</main></body></html>\n";
+}
+
+}  // namespace weft::app

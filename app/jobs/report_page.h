@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/json_document.h"
+
+namespace weft::app {
+
+struct PagePicture {
+  std::string label;
+  std::string png;  ///< the bytes of the file
+};
+
+/// The page of a report (weft.solve-report/1): one HTML file with its style, charts and pictures inside, no
+/// scripts, for a screen and for paper. What the report lacks the page leaves out. Only the section whose id
+/// is "time" depends on report["seconds"].
+std::string report_page(const Json& report, const std::vector<PagePicture>& pictures);
+
+}  // namespace weft::app

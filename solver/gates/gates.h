@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/result.h"
+
+// Whether a cloth needs what the reference level can do to it, measured on tiles of it before it is done.
+
+namespace weft::solver {
+
+/// One sample tile (sample_tiles.h) after a first solve; planes have (0, 0) at the tile's corner.
+struct SolvedSample {
+  std::array<View<const float>, 3> normal;
+  View<const float> albedo;  ///< of each photosite, or any one channel
+  View<const std::uint16_t> status;
+  std::int64_t readings = 0;  ///< that could be used
+  std::int64_t shadowed = 0;  ///< of these, below kShadowShare of the bright ones of their pixel
+};
+
+/// A measured quantity and what follows from it.
+struct Gate {
+  std::string name;
+  double value = 0;
+  double limit = 0;
+  std::string unit;
+  bool is_over = false;  ///< value > limit
+};
+
+struct GateLimits {
+  double slope_deg = 20;         ///< 95th percentile over the pixels
+  double shadowed_share = 0.01;  ///< of the readings
+  double indirect_share = 0.02;  ///< mean albedo times 1 minus mean openness: what bounces add to the light
+  double specular_share = 0.2;   ///< of the pixels: beyond, a Lambertian cloth cannot be assumed
+};
+
+/// The four gates, in the order of GateLimits. Openness is that of the height of each tile by itself, by a
+/// horizon scan of 4 slices of 8 steps.
+struct Gates {
+  std::array<Gate, 4> measured;
+
+  bool specular() const { return measured[3].is_over; }
+  /// Cast shadows are worth tracing: slopes or dark readings call for it, and the cloth is not specular.
+  bool shadows() const { return (measured[0].is_over || measured[1].is_over) && !specular(); }
+  bool interreflection() const { return measured[2].is_over && !specular(); }
+};
+
+/// Errors: as height_from_normals and scan_openness; kBadData without samples.
+Result<Gates> measure_gates(std::span<const SolvedSample> samples, const GateLimits& limits);
+
+}  // namespace weft::solver

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/method.h"
+#include "solver/normals/pixelwise.h"
+
+namespace weft::solver {
+namespace {
+
+// A method that PixelSolver runs on one pixel after another.
+class InDouble : public Method {
+ public:
+  InDouble(Estimator estimator, bool shadow_mask) : estimator_(estimator), shadow_mask_(shadow_mask) {}
+  void solve(const TileInput& input, const TileOutput& output) const override {
+    PixelSolver solver({input.planes, shadow_mask_, input.noise, estimator_});
+    solve_each_pixel(input, output, [&](std::span<const PixelRow> rows) { return solver.solve(rows); });
+  }
+
+ private:
+  Estimator estimator_;
+  bool shadow_mask_;
+};
+
+}  // namespace
+
+std::unique_ptr<Method> exact_method() {
+  return std::make_unique<InDouble>(Estimator::kRejecting, true);
+}
+std::unique_ptr<Method> least_absolute_method() {
+  return std::make_unique<InDouble>(Estimator::kLeastAbsolute, false);
+}
+std::unique_ptr<Method> sparse_method() {
+  return std::make_unique<InDouble>(Estimator::kSparse, false);
+}
+std::unique_ptr<Method> huber_method() {
+  return std::make_unique<InDouble>(Estimator::kHuber, false);
+}
+
+}  // namespace weft::solver
