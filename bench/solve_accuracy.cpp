@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/solve_accuracy.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <memory>
 #include <optional>
@@ -10,7 +9,9 @@
 #include "app/jobs/compare.h"
 #include "app/jobs/solve.h"
 #include "app/jobs/solve_bands.h"
+#include "bench/bound.h"
 #include "bench/rig.h"
+#include "bench/solved_maps.h"
 #include "core/image_io/image_io.h"
 #include "core/vec.h"
 #include "simulator/sampling/random.h"
@@ -33,26 +34,6 @@ Scene scene_of(GeometryKind kind, Size size) {
   scene.effects.near_light = true;
   return scene;
 }
-
-// Maps in memory for one call of a method over a whole image.
-struct Maps {
-  Image<float> normal, albedo, sigma_albedo, sigma_normal_deg, residual;
-  Image<std::uint16_t> status;
-
-  explicit Maps(Size size)
-      : normal(size, 3),
-        albedo(size, 3),
-        sigma_albedo(size, 3),
-        sigma_normal_deg(size),
-        residual(size),
-        status(size) {}
-  solver::TileOutput output() {
-    const auto three = [](Image<float>& i) { return std::array{i.plane(0), i.plane(1), i.plane(2)}; };
-    return {three(normal),       three(albedo),    sigma_normal_deg.plane(),
-            three(sigma_albedo), residual.plane(), status.plane()};
-  }
-  Vec3 normal_at(int x, int y) const { return {normal(x, y, 0), normal(x, y, 1), normal(x, y, 2)}; }
-};
 
 Vec3 at(const Image<double>& planes, int x, int y) {
   return {planes(x, y, 0), planes(x, y, 1), planes(x, y, 2)};
@@ -89,9 +70,9 @@ Json float_row(const simulator::Rendering& truth, const LightField& field, int p
       views.emplace_back(readings.plane(k * planes + p));
     }
   }
-  Maps maps(size);
+  SolvedMaps maps(size);
   solver::fast_method()->solve({{0, 0, size.width, size.height}, planes, cfa, views, &field, std::nullopt},
-                               maps.output());
+                               maps.output({0, 0, size.width, size.height}));
   std::vector<double> angles;
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x)
@@ -148,24 +129,6 @@ Result<Json> file_row(Size size, int threads) {
               {"pixels", compared->pixels},
               {"mean_deg", compared->mean_deg},
               {"max_deg", compared->max_deg}};
-}
-
-// Rms angle of the best unbiased estimate from one photosite: b = rho n, variance v of each reading, and
-// Fisher information J = sum a a^T / v with a = e l.
-double cramer_rao_deg(const LightField& field, int channel, int x, int y, Vec3 normal, double albedo,
-                      const NoiseModel& noise) {
-  Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-  for (std::size_t k = 0; k < field.count(); ++k) {
-    const LightField::Light light = field.at(k, channel, x, y);
-    const double mean = albedo * light.strength * dot(normal, light.direction);
-    if (mean <= 0) continue;
-    const Eigen::Vector3d a =
-        light.strength * Eigen::Vector3d(light.direction.x, light.direction.y, light.direction.z);
-    information += a * a.transpose() / noise.variance(mean);
-  }
-  const Eigen::Matrix3d c = information.inverse();
-  const Eigen::Vector3d n(normal.x, normal.y, normal.z);
-  return degrees(std::sqrt(c.trace() - n.dot(c * n)) / albedo);
 }
 
 }  // namespace
@@ -231,9 +194,10 @@ Result<Rows> solve_noise(const AccuracyOptions& options) {
       }
       views.emplace_back(readings.plane(static_cast<int>(k)));
     }
-    Maps maps(size);
+    SolvedMaps maps(size);
     solver::least_squares_method()->solve(
-        {{0, 0, size.width, size.height}, 1, CfaPattern{}, views, &*same, noise}, maps.output());
+        {{0, 0, size.width, size.height}, 1, CfaPattern{}, views, &*same, noise},
+        maps.output({0, 0, size.width, size.height}));
     double square = 0, predicted = 0, albedo_square = 0, albedo_predicted = 0;
     for (int y = 0; y < size.height; ++y) {
       for (int x = 0; x < size.width; ++x) {
@@ -245,7 +209,9 @@ Result<Rows> solve_noise(const AccuracyOptions& options) {
     }
     const auto pixels = static_cast<double>(size.pixels());
     const double rms = std::sqrt(square / pixels);
-    const double bound = cramer_rao_deg(*same, 1, 0, 0, normal, albedo, noise);
+    std::vector<LightField::Light> reaching;
+    for (std::size_t k = 0; k < same->count(); ++k) reaching.push_back(same->at(k, 1, 0, 0));
+    const double bound = cramer_rao(reaching, normal, albedo, noise).rms_deg();
     rows.push_back({{"method", "least-squares"},
                     {"albedo", albedo},
                     {"pixels", size.pixels()},

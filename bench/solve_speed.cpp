@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/solve_speed.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <vector>
 
 #include "app/jobs/solve_bands.h"
-#include "bench/libraw_alone.h"
 #include "bench/rig.h"
+#include "bench/yardsticks.h"
 #include "core/parallel.h"
-#include "simulator/camera/dng_writer.h"
 #include "solver/kernels/linear.h"
 #include "solver/method.h"
 #include "solver/normals/seed.h"
@@ -28,60 +24,6 @@ struct Timing {
   double pixels = 0;
   double bytes_a_pixel = 0;  ///< read and written
 };
-
-// Seconds to move `bytes`, half of them read and half written, in blocks that no cache holds.
-double copy_seconds(double bytes, int threads) {
-  const auto half = static_cast<std::size_t>(std::max(bytes / 2, 128.0 * (1 << 20)));
-  const Size size = {1 << 20, static_cast<int>(half >> 20) + 1};
-  Image<std::uint8_t> from(size), to(size);
-  const std::size_t part = half / static_cast<std::size_t>(threads);
-  const auto copy = [&](std::size_t i, int) {
-    std::memcpy(to.plane().row(0) + i * part, from.plane().row(0) + i * part, part);
-  };
-  std::memset(from.plane().row(0), 1, half);
-  parallel_for(static_cast<std::size_t>(threads), threads, copy);
-  const double seconds =
-      least_seconds(kRepeats, [&] { parallel_for(static_cast<std::size_t>(threads), threads, copy); });
-  return seconds * bytes / (2 * static_cast<double>(half));
-}
-
-// A mosaic session in memory: every light on a flat cloth of middle grey, as counts.
-app::Photographs mosaics_of(const LightField& field, Size size, int threads) {
-  app::Photographs photographs;
-  photographs.size = size;
-  photographs.field = field;
-  constexpr double kExposureUs = 10000;
-  const double seconds = kExposureUs * 1e-6;
-  const auto frame = [&] {
-    RawFrame f;
-    f.counts = Image<std::uint16_t>(size);
-    f.black = {{{600, 600}, {600, 600}}};
-    f.white = 15520;
-    f.shot = {"weft", "bench", "1", kExposureUs, 100, 8};
-    return f;
-  };
-  for (std::size_t k = 0; k < kLights; ++k) {
-    RawFrame f = frame();
-    parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < size.width; ++x) {
-        const LightField::Light light = field.at(k, f.cfa.channel_at(x, y), x, y);
-        const double signal = 0.4 * light.strength * light.direction.z * seconds;
-        f.counts(x, y) = static_cast<std::uint16_t>(600 + std::min(1.0, signal) * (15520 - 600));
-      }
-    });
-    photographs.mosaics.push_back(std::move(f));
-  }
-  photographs.dark = frame();
-  parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
-    std::uint16_t* counts = photographs.dark->counts.plane().row(static_cast<int>(row));
-    std::fill_n(counts, size.width, std::uint16_t{600});
-  });
-  photographs.radiometry.emplace(photographs.mosaics.front(), &*photographs.dark, Response{2.7, 1.2, {}},
-                                 Radiometry::Exposure{kExposureUs, 100});
-  photographs.noise = photographs.radiometry->noise();
-  return photographs;
-}
 
 Result<Timing> time_method(const app::Photographs& photographs, const solver::Method& method, int threads) {
   std::optional<Error> failure;
@@ -150,20 +92,6 @@ Timing time_seed(const LightField& field, Size size, int threads) {
   return {seconds, static_cast<double>(rows) * size.width, 8 * (3 * kLights + 12)};
 }
 
-Result<std::vector<std::filesystem::path>> write_frames(const app::Photographs& photographs,
-                                                        const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files;
-  const auto write = [&](const RawFrame& frame) -> Result<void> {
-    files.push_back(folder / fmt::format("{:02}.dng", files.size()));
-    return simulator::write_dng(files.back(), frame);
-  };
-  for (const RawFrame& frame : photographs.mosaics) {
-    if (Result<void> ok = write(frame); !ok) return std::move(ok).error();
-  }
-  if (Result<void> ok = write(*photographs.dark); !ok) return std::move(ok).error();
-  return files;
-}
-
 }  // namespace
 
 Result<Rows> solve_speed(const SpeedOptions& options) {
@@ -177,13 +105,9 @@ Result<Rows> solve_speed(const SpeedOptions& options) {
   const double copy_a_byte = copy / (bare.bytes_a_pixel * pixels);
 
   const LightField field = *LightField::make(bench_lights(1, true), bench_camera(size), size, 0);
-  const app::Photographs photographs = mosaics_of(field, size, threads);
-  const ScratchFolder scratch;
-  const auto files = write_frames(photographs, scratch.path());
-  if (!files) return files.error();
-  const Result<double> unpack = unpack_seconds(*files, threads);
+  const app::Photographs photographs = grey_mosaics(field, size, threads);
+  const Result<double> unpack = unpack_seconds_a_pixel(photographs, threads);
   if (!unpack) return unpack.error();
-  const double unpack_a_pixel = *unpack / pixels;
 
   const auto add = [&](const char* kind, const char* name, const Timing& t) {
     const double seconds_a_pixel = t.seconds / t.pixels;
@@ -193,10 +117,10 @@ Result<Rows> solve_speed(const SpeedOptions& options) {
                     {"ns_per_pixel", seconds_a_pixel * 1e9},
                     {"bytes_per_pixel", t.bytes_a_pixel},
                     {"ratio_to_copy", seconds_a_pixel / (copy_a_byte * t.bytes_a_pixel)},
-                    {"ratio_to_unpack", seconds_a_pixel / unpack_a_pixel}});
+                    {"ratio_to_unpack", seconds_a_pixel / *unpack}});
   };
   add("method", "copy", {copy, pixels, bare.bytes_a_pixel});
-  add("method", "unpack", {*unpack, pixels, 2 * (kLights + 1)});
+  add("method", "unpack", {*unpack * pixels, pixels, 2 * (kLights + 1)});
   add("method", "bare", bare);
   const Result<Timing> fast = time_method(photographs, *solver::fast_method(), threads);
   if (!fast) return fast.error();

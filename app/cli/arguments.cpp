@@ -131,6 +131,74 @@ CLI::App* add_bench_effects(CLI::App& bench, BenchEffectsArguments& a) {
   return verb;
 }
 
+CLI::App* add_bench_numerics(CLI::App& bench, BenchNumericsArguments& a) {
+  CLI::App* verb = bench.add_subcommand(
+      "numerics", "Pixels that are numerically hard: errors, flags and what solved them");
+  CLI::Option* curve =
+      verb->add_flag("--curve", a.curve, "Error against condition number instead of the cases");
+  CLI::Option* docs =
+      verb->add_option("--docs", a.docs, "Folder with numerics.md, whose tables and pictures to make again");
+  verb->add_option("--scenes", a.scenes, "Folder with torture.toml")->capture_default_str()->needs(docs);
+  curve->excludes(docs);
+  return verb;
+}
+
+CLI::App* add_bench_accuracy(CLI::App& bench, BenchAccuracyArguments& a, std::string& set) {
+  CLI::App* verb = bench.add_subcommand("accuracy", "What each level and method gets right, and its price");
+  verb->add_flag("--quick", a.quick, "One small patch a scene, no yardsticks");
+  verb->add_option("--set", set, "Scenes: those that methods are tuned on, or those held out")
+      ->check(CLI::IsMember({"tuning", "held-out"}))
+      ->capture_default_str();
+  verb->add_option("--scene", a.scene, "One scene alone, such as \"deep satin\"");
+  verb->add_option("--method", a.methods, "These levels and methods alone: fast,least-squares")
+      ->delimiter(',');
+  CLI::Option* bound = verb->add_flag(
+      "--bound", a.bound, "Instead: scatter against the Cramer-Rao bound, and whether sigma is honest");
+  CLI::Option* leds = verb->add_flag("--leds", a.leds, "Instead: from three to ten LEDs");
+  CLI::Option* specular = verb->add_flag("--specular", a.specular,
+                                         "Instead: who says SPECULAR on 30 dark satins and 90 other cloths");
+  CLI::Option* docs = verb->add_option(
+      "--docs", a.docs,
+      "All of it, into this folder: the figures of accuracy.md, pictures/accuracy.svg, .json");
+  bound->excludes(leds)->excludes(specular)->excludes(docs);
+  leds->excludes(specular)->excludes(docs);
+  specular->excludes(docs);
+  return verb;
+}
+
+CLI::App* add_bench_photos(CLI::App& bench, BenchPhotosArguments& a) {
+  CLI::App* verb = bench.add_subcommand("photos", "Errors on real photographs under known distant lights");
+  verb->add_option("folder", a.folder,
+                   "Photographs in the layout of the DiLiGenT benchmark, with normal_gt.exr")
+      ->required();
+  verb->add_option("--pick", a.pick, "Well-spread lights a subset; 0 is all of them")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb->add_option("--subsets", a.subsets, "Subsets to average over")
+      ->check(CLI::Range(1, 10000))
+      ->capture_default_str();
+  verb->add_option("--seed", a.seed, "Of the subsets")->capture_default_str();
+  verb->add_option("--method", a.methods, "These levels and methods alone: fast,least-squares")
+      ->delimiter(',');
+  return verb;
+}
+
+CLI::App* add_bench_height(CLI::App& bench, BenchHeightArguments& a) {
+  CLI::App* verb = bench.add_subcommand("height", "Error, time and memory from normals to heights");
+  verb->add_option("--megapixels", a.megapixels, "Size of the normal map, millions of pixels")
+      ->check(CLI::Range(0.01, 200.0))
+      ->capture_default_str();
+  return verb;
+}
+
+CLI::App* add_bench_transport(CLI::App& bench, BenchTransportArguments& a) {
+  CLI::App* verb = bench.add_subcommand("transport", "Shadow and gather rays of the solver: time and error");
+  verb->add_option("--megapixels", a.megapixels, "Size of the height map, millions of pixels")
+      ->check(CLI::Range(0.01, 200.0))
+      ->capture_default_str();
+  return verb;
+}
+
 CLI::App* add_demo(CLI::App& app, DemoArguments& a) {
   CLI::App* verb = app.add_subcommand("demo", "Scan a simulated cloth, solve it and show the result");
   verb->add_option("scene", a.scene, "Scene file (TOML)")->required();
@@ -158,8 +226,13 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   CompareArguments compare;
   BenchSolveArguments bench_solve;
   BenchEffectsArguments bench_effects;
+  BenchTransportArguments bench_transport;
+  BenchHeightArguments bench_height;
+  BenchNumericsArguments bench_numerics;
+  BenchAccuracyArguments bench_accuracy;
+  BenchPhotosArguments bench_photos;
   DemoArguments demo;
-  std::string quality, method, transfer = "auto", kind = "normal";
+  std::string quality, method, transfer = "auto", kind = "normal", set = "held-out";
   std::vector<int> lights;
   CLI::App* simulate_verb = add_simulate(app, simulate);
   CLI::App* solve_verb = add_solve(app, solve, common, quality, method, transfer, lights);
@@ -168,9 +241,18 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   bench_verb->require_subcommand(1);
   CLI::App* bench_solve_verb = add_bench_solve(*bench_verb, bench_solve);
   CLI::App* bench_effects_verb = add_bench_effects(*bench_verb, bench_effects);
+  CLI::App* bench_numerics_verb = add_bench_numerics(*bench_verb, bench_numerics);
+  CLI::App* bench_accuracy_verb = add_bench_accuracy(*bench_verb, bench_accuracy, set);
+  CLI::App* bench_photos_verb = add_bench_photos(*bench_verb, bench_photos);
+  CLI::App* bench_height_verb = add_bench_height(*bench_verb, bench_height);
+  CLI::App* bench_registration_verb = bench_verb->add_subcommand(
+      "registration", "Shots registered to each other: shift, error, cost and gain on three weaves");
+  CLI::App* bench_transport_verb = add_bench_transport(*bench_verb, bench_transport);
   CLI::App* demo_verb = add_demo(app, demo);
   for (CLI::App* verb :
-       {simulate_verb, solve_verb, compare_verb, bench_solve_verb, bench_effects_verb, demo_verb}) {
+       {simulate_verb, solve_verb, compare_verb, bench_solve_verb, bench_effects_verb, bench_numerics_verb,
+        bench_accuracy_verb, bench_photos_verb, bench_height_verb, bench_transport_verb, bench_registration_verb,
+        demo_verb}) {
     add_common(*verb, common);
   }
 
@@ -197,6 +279,15 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
     return Arguments{common, compare};
   }
   if (*demo_verb) return Arguments{common, demo};
+  if (*bench_numerics_verb) return Arguments{common, bench_numerics};
+  if (*bench_accuracy_verb) {
+    bench_accuracy.tuning = set == "tuning";
+    return Arguments{common, bench_accuracy};
+  }
+  if (*bench_photos_verb) return Arguments{common, bench_photos};
+  if (*bench_height_verb) return Arguments{common, bench_height};
+  if (*bench_registration_verb) return Arguments{common, BenchRegistrationArguments{}};
+  if (*bench_transport_verb) return Arguments{common, bench_transport};
   if (*bench_effects_verb) return Arguments{common, bench_effects};
   if (*bench_verb) return Arguments{common, bench_solve};
   if (solve.session.folder.empty() && solve.photos.folder.empty() && solve.photos.light_file.empty()) {

@@ -45,6 +45,14 @@ struct BenchSolveArguments {
   bool end_to_end = false;
 };
 
+struct BenchHeightArguments {
+  double megapixels = 4;
+};
+
+struct BenchTransportArguments {
+  double megapixels = 1;
+};
+
 struct BenchEffectsArguments {
   double megapixels = 1;
   bool rays = false;
@@ -52,6 +60,33 @@ struct BenchEffectsArguments {
   bool choice = false;            ///< --auto
   std::filesystem::path gallery;  ///< folder; empty: no pictures
 };
+
+struct BenchNumericsArguments {
+  bool curve = false;          ///< error against condition number, not the cases
+  std::filesystem::path docs;  ///< folder; empty: print
+  std::filesystem::path scenes = "testdata/scenes";
+};
+
+struct BenchAccuracyArguments {
+  bool quick = false;
+  bool tuning = false;  ///< the scenes to tune on, not those held out
+  std::string scene;    ///< one alone; empty: all
+  std::vector<std::string> methods;
+  bool bound = false;
+  bool leds = false;
+  bool specular = false;
+  std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
+};
+
+struct BenchPhotosArguments {
+  std::filesystem::path folder;
+  int pick = 10;
+  int subsets = 20;
+  std::uint32_t seed = 1;
+  std::vector<std::string> methods;
+};
+
+struct BenchRegistrationArguments {};
 
 struct DemoArguments {
   std::filesystem::path output = "demo";
@@ -62,7 +97,8 @@ struct DemoArguments {
 struct Arguments {
   CommonArguments common;
   std::variant<SimulateArguments, SolveArguments, CompareArguments, BenchSolveArguments,
-               BenchEffectsArguments, DemoArguments>
+               BenchTransportArguments, BenchEffectsArguments, BenchHeightArguments, BenchNumericsArguments, BenchAccuracyArguments,
+               BenchPhotosArguments, BenchRegistrationArguments, DemoArguments>
       verb;
 };
 

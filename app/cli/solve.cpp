@@ -19,6 +19,11 @@ std::string status_words(const Json& status) {
   return words.empty() ? " none" : words;
 }
 
+// A solve of an older version says nothing of warnings.
+Json warnings_of(const SolveReport& report) {
+  return report.document.value("warnings", Json::array());
+}
+
 Json json_of(const SolveReport& report) {
   const Json& d = report.document;
   return {{"normal", (report.folder / "normal.exr").string()},
@@ -32,11 +37,13 @@ Json json_of(const SolveReport& report) {
             {"solve", report.seconds.solve},
             {"write", report.seconds.write},
             {"pictures", report.seconds.pictures},
+            {"report", report.seconds.report},
             {"sync", report.seconds.sync},
             {"total", report.seconds.total}}},
           {"peak_bytes", peak_memory_bytes()},
           {"pixels", d["pixels"]},
           {"status", d["status"]},
+          {"warnings", warnings_of(report)},
           {"pictures", d["pictures"]}};
 }
 
@@ -53,11 +60,11 @@ void print_words(const SolveReport& report) {
   print("  pixels by status:" + status_words(d["status"]));
   const SolveSeconds& s = report.seconds;
   print(fmt::format(
-      "  {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, sync {:.2f}; peak {} MB",
-      s.total, s.read, s.solve, s.write, s.pictures, s.sync, peak_memory_bytes() >> 20));
-  for (const Json& name : d["pictures"]) {
-    if (name == "sheet.png") print(fmt::format("  look at {}", (report.folder / "sheet.png").string()));
-  }
+      "  {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, report {:.2f}, sync {:.2f}; "
+      "peak {} "
+      "MB",
+      s.total, s.read, s.solve, s.write, s.pictures, s.report, s.sync, peak_memory_bytes() >> 20));
+  print(fmt::format("  look at {}", (report.folder / "report.html").string()));
 }
 
 }  // namespace
@@ -80,8 +87,13 @@ Result<int> run_solve(const SolveArguments& arguments, const CommonArguments& co
   } else {
     print_words(*report);
   }
+  const Json warnings = warnings_of(*report);
+  for (const Json& warning : warnings) {
+    const std::string remedy = warning.value("remedy", "");
+    note(fmt::format("{}.{}", warning.value("text", ""), remedy.empty() ? "" : " To do: " + remedy + "."));
+  }
   const bool unsolved = report->document["status"]["NO_SOLUTION"].get<std::int64_t>() > 0;
-  return common.strict && unsolved ? kDoneWithWarnings : kDone;
+  return common.strict && (unsolved || !warnings.empty()) ? kDoneWithWarnings : kDone;
 }
 
 }  // namespace weft::app

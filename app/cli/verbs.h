@@ -12,7 +12,13 @@ Result<int> run_simulate(const SimulateArguments& arguments, const CommonArgumen
 Result<int> run_solve(const SolveArguments& arguments, const CommonArguments& common);
 Result<int> run_compare(const CompareArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_solve(const BenchSolveArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_accuracy(const BenchAccuracyArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_photos(const BenchPhotosArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_numerics(const BenchNumericsArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_effects(const BenchEffectsArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_height(const BenchHeightArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_transport(const BenchTransportArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_registration(const BenchRegistrationArguments& arguments, const CommonArguments& common);
 Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& common);
 
 }  // namespace weft::app

@@ -102,6 +102,20 @@ Vec3 Trial::normal(int x, int y) const {
   return {normals(x, y, 0), normals(x, y, 1), normals(x, y, 2)};
 }
 
+std::vector<solver::PixelRow> Trial::rows(int x, int y) const {
+  std::vector<solver::PixelRow> rows(field_->count());
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    for (int p = 0; p < planes_; ++p) {
+      const int c = planes_ == 1 ? cfa.channel_at(tile_.x0 + x, tile_.y0 + y) : p;
+      const LightField::Light light = field_->at(k, c, tile_.x0 + x, tile_.y0 + y);
+      rows[k].direction = light.direction;
+      rows[k].strength[static_cast<std::size_t>(p)] = light.strength;
+      rows[k].reading[static_cast<std::size_t>(p)] = readings_(x, y, static_cast<int>(k) * planes_ + p);
+    }
+  }
+  return rows;
+}
+
 double Trial::error_deg(int x, int y) const {
   return angle_deg(normal(x, y), truth_(x, y).normal);
 }

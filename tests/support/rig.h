@@ -11,6 +11,7 @@
 #include "core/light_field.h"
 #include "core/lights.h"
 #include "solver/method.h"
+#include "solver/reference/pixel.h"
 
 namespace weft::test {
 
@@ -48,6 +49,8 @@ class Trial {
   /// Degrees between the solved and the true normal at a pixel of the tile.
   double error_deg(int x, int y) const;
   Vec3 normal(int x, int y) const;
+  /// What light and readings of a pixel are, for the slow truth.
+  std::vector<solver::PixelRow> rows(int x, int y) const;
   View<float> reading(std::size_t light, int plane = 0) {
     return readings_.plane(static_cast<int>(light) * planes_ + plane);
   }

@@ -9,6 +9,7 @@
 
 #include "core/calibration.h"
 #include "core/camera.h"
+#include "core/files.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {
@@ -91,6 +92,20 @@ TEST_F(BadCalibration, OneOfAnotherFrameSizeIsRefused) {
 TEST_F(BadCalibration, OneOfFewerLedsIsRefused) {
   make_other([](Calibration& c) { std::get<NearLights>(*c.lights).leds.resize(9); });
   expect_other_refused({"does not suit", session_.string(), "9 LEDs", "LED 10", "calibrate the rig"});
+}
+
+TEST_F(BadCalibration, OneWithALedOfNoIntensityIsRefusedByItsNumber) {
+  const auto flux_becomes = [&](const Json& value) {
+    make_other([](Calibration&) {});
+    edit_json(other_ / "lights.json", [&](Json& lights) { lights["leds"][4]["flux_rgb"][1] = value; });
+    edit_json(other_ / "calibration.json",
+              [&](Json& c) { c["parts"]["lights.json"] = *sha256_of_file(other_ / "lights.json"); });
+  };
+  flux_becomes(0);
+  expect_other_refused({"lights.json: LED 5", "\"flux_rgb\" must be above 0 in every channel"});
+  fs::remove_all(other_);
+  flux_becomes(nullptr);  // what programs write for NaN
+  expect_other_refused({"lights.json: LED 5", "\"flux_rgb\" is [", "null"});
 }
 
 TEST_F(BadCalibration, OneWithoutLightsIsRefused) {

@@ -6,9 +6,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/image.h"
+#include "core/light_field.h"
+#include "solver/reference/pixel.h"
 
-// What the row kernels of linear-inl.h are given: plain pointers, so that one definition serves every target.
+// What the row kernels are given: plain pointers, so that one definition serves every target.
 
 namespace weft::solver {
 
@@ -27,9 +28,12 @@ struct RowLinePointer {
 };
 
 struct RowPoints {
+  LightField::Row row;  ///< what the pointers point to
   RowLinePointer x_mm, y_mm;
   std::array<RowLinePointer, 3> gain_rgb;
   std::vector<RowLinePointer> led_gain;  ///< empty: no gains
+
+  void read(const LightField& field, int y, int x0, int x1);
 };
 
 /// Set in `status` by a row kernel for pixels that must be solved again in double.
@@ -48,6 +52,10 @@ struct RowTask {
   std::size_t bright_rank = 0;   ///< how many of the brightest readings are kept sorted
   std::size_t bright_index = 0;  ///< which of them is "bright"
 
+  Estimator estimator = Estimator::kLeastSquares;
+  float trim_from = 0;
+  std::int64_t rejected = 0;  ///< readings that the kernel rejected so far
+
   bool has_noise = false;
   float noise_per_reading = 0;
   float noise_floor = 0;
@@ -62,11 +70,16 @@ struct RowTask {
   std::uint16_t* status = nullptr;
 };
 
-/// Vectors of the longest kind a light needs: direction, three planes, their sum, 1 / e; and one of the
-/// sorted list.
+/// With more lights than this, pixels whose readings scatter are trimmed in double.
+inline constexpr std::size_t kMostTrimmedLights = 15;
+
+/// Vectors that a light needs: direction, sum of the planes, 1 / e, three planes, what the shadow mask left
+/// out, weight.
+inline constexpr std::size_t kRowScratchSlots = 10;
+/// Those of every light, and one of the sorted list.
 inline std::size_t row_scratch_floats(std::size_t lights) {
   constexpr std::size_t kMostLanes = 64;
-  return lights * 9 * kMostLanes;
+  return lights * (kRowScratchSlots + 1) * kMostLanes;
 }
 
 }  // namespace weft::solver

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "bench/accuracy.h"
+#include "bench/plot_svg.h"
+#include "bench/report.h"
+#include "core/result.h"
+
+namespace weft::bench {
+
+/// All that docs/accuracy.md shows, as the benchmarks of the same names give it.
+struct AccuracyFigures {
+  Rows table, leds, bound, specular;
+};
+Result<AccuracyFigures> measure_figures(const AccuracyTableOptions& options);
+
+/// Mean error against time over all scenes: levels, other methods, and each level from three to ten LEDs.
+Plot accuracy_plot(const AccuracyFigures& figures);
+
+/// The page's generated part: plot and tables in Markdown.
+std::string accuracy_markdown(const AccuracyFigures& figures);
+
+/// `page` with what stands between its two marks replaced. kBadData where the marks are not there.
+inline constexpr const char* kFiguresBegin = "<!-- figures: made by weft bench accuracy --docs -->";
+inline constexpr const char* kFiguresEnd = "<!-- end of figures -->";
+Result<std::string> with_figures(const std::string& page, const std::string& figures);
+
+/// Renews the figures of `folder`/accuracy.md and writes pictures/accuracy.svg and pictures/accuracy.json.
+Result<void> write_accuracy_docs(const std::filesystem::path& folder, const AccuracyFigures& figures);
+
+}  // namespace weft::bench

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "app/jobs/photographs.h"
+#include "core/image.h"
+#include "core/light_field.h"
+#include "core/result.h"
+
+// What speed is measured against, in the same run.
+
+namespace weft::bench {
+
+/// Seconds to move `bytes`, half of them read and half written, in blocks that no cache holds.
+double copy_seconds(double bytes, int threads);
+
+/// A mosaic session in memory: every light of the field on a flat cloth of middle grey, as counts, and the
+/// dark shot.
+app::Photographs grey_mosaics(const LightField& field, Size size, int threads);
+
+/// Seconds that LibRaw alone takes to unpack all frames of a session, from DNG files written for it, by
+/// pixel.
+Result<double> unpack_seconds_a_pixel(const app::Photographs& photographs, int threads);
+
+struct Yardsticks {
+  double copy_seconds_a_byte = 0;     ///< read or written
+  double unpack_seconds_a_pixel = 0;  ///< of ten lit frames and the dark one together
+};
+/// Both, of 4 megapixels.
+Result<Yardsticks> measure_yardsticks(int threads);
+
+}  // namespace weft::bench

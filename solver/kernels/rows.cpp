@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/kernels/rows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/normals/pixelwise.h"
+
+namespace weft::solver {
+namespace {
+
+RowLinePointer pointer_to(const LightField::RowLine& line) {
+  return line.value.empty() ? RowLinePointer{} : RowLinePointer{line.value.data(), line.step.data()};
+}
+
+RowTask task_of(const TileInput& input, const PixelOptions& options) {
+  const std::size_t lights = input.field->count();
+  RowTask task;
+  task.light_count = lights;
+  task.width = static_cast<std::size_t>(input.tile.width());
+  task.shadow_mask = options.shadow_mask;
+  task.bright_rank = static_cast<std::size_t>(std::max(bright_rank(lights), kLeastKept));
+  task.bright_index = static_cast<std::size_t>(bright_rank(lights)) - 1;
+  task.estimator = options.estimator;
+  task.trim_from = static_cast<float>(options.trim_from);
+  task.has_noise = input.planes == 1 && options.noise.has_value();
+  if (task.has_noise) {
+    task.noise_per_reading = static_cast<float>(options.noise->per_reading);
+    task.noise_floor = static_cast<float>(options.noise->floor);
+    task.noise_shared = static_cast<float>(options.noise->shared);
+    task.dark_reading = static_cast<float>(3 * std::sqrt(options.noise->floor + options.noise->shared));
+  }
+  return task;
+}
+
+void point_to_row(const TileInput& input, const TileOutput& output, int y, RowTask& task) {
+  const auto planes = static_cast<std::size_t>(input.planes);
+  for (std::size_t c = 0; c < 3; ++c) task.normal[c] = output.normal[c].row(y);
+  for (std::size_t p = 0; p < planes; ++p) {
+    task.albedo[p] = output.albedo[p].row(y);
+    task.sigma_albedo[p] = output.sigma_albedo[p].row(y);
+  }
+  task.sigma_normal_deg = output.sigma_normal_deg.row(y);
+  task.residual = output.residual.row(y);
+  task.status = output.status.row(y);
+  if (planes == 1) {
+    const int py = input.tile.y0 + y;
+    task.channel[0] = static_cast<std::size_t>(input.cfa.channel_at(input.tile.x0, py));
+    task.channel[1] = static_cast<std::size_t>(input.cfa.channel_at(input.tile.x0 + 1, py));
+  }
+}
+
+}  // namespace
+
+std::vector<RowLight> row_lights(const LightField& field) {
+  std::vector<RowLight> lights;
+  if (const auto* distant = std::get_if<DistantLights>(&field.lights())) {
+    for (const DistantLight& light : distant->lights) {
+      RowLight row;
+      row.distant = true;
+      row.position[0] = static_cast<float>(light.direction.x);
+      row.position[1] = static_cast<float>(light.direction.y);
+      row.position[2] = static_cast<float>(light.direction.z);
+      for (std::size_t c = 0; c < 3; ++c)
+        row.inverse_flux[c] = static_cast<float>(1 / light.irradiance_rgb[c]);
+      lights.push_back(row);
+    }
+    return lights;
+  }
+  for (const NearLight& led : std::get<NearLights>(field.lights()).leds) {
+    RowLight row;
+    row.position[0] = static_cast<float>(led.position_mm.x);
+    row.position[1] = static_cast<float>(led.position_mm.y);
+    row.position[2] = static_cast<float>(led.position_mm.z - field.cloth_height_mm());
+    row.aim[0] = static_cast<float>(led.aim.x);
+    row.aim[1] = static_cast<float>(led.aim.y);
+    row.aim[2] = static_cast<float>(led.aim.z);
+    row.mu = static_cast<float>(led.mu);
+    for (std::size_t c = 0; c < 3; ++c) row.inverse_flux[c] = static_cast<float>(1 / led.flux_rgb[c]);
+    lights.push_back(row);
+  }
+  return lights;
+}
+
+void RowPoints::read(const LightField& field, int y, int x0, int x1) {
+  field.read_row(y, x0, x1, row);
+  x_mm = pointer_to(row.x_mm);
+  y_mm = pointer_to(row.y_mm);
+  for (std::size_t c = 0; c < 3; ++c) gain_rgb[c] = pointer_to(row.gain_rgb[c]);
+  led_gain.clear();
+  for (const LightField::RowLine& line : row.led_gain) led_gain.push_back(pointer_to(line));
+}
+
+void solve_rows(const TileInput& input, const TileOutput& output, const PixelOptions& options,
+                bool (*row_kernel)(RowTask&)) {
+  const std::vector<RowLight> lights = row_lights(*input.field);
+  std::vector<float> scratch(row_scratch_floats(lights.size()));
+  std::vector<const float*> readings(input.readings.size());
+  std::vector<PixelRow> pixel_rows(lights.size());
+  PixelSolver solve_in_double(options);
+  RowPoints points;
+  RowTask task = task_of(input, options);
+  task.lights = lights.data();
+  task.points = &points;
+  task.readings = readings.data();
+  task.scratch = scratch.data();
+  std::int64_t in_double = 0;
+  for (int y = 0; y < input.tile.height(); ++y) {
+    points.read(*input.field, input.tile.y0 + y, input.tile.x0, input.tile.x1);
+    for (std::size_t i = 0; i < readings.size(); ++i) readings[i] = input.readings[i].row(y);
+    point_to_row(input, output, y, task);
+    if (!row_kernel(task)) continue;
+    for (int x = 0; x < input.tile.width(); ++x) {
+      if (!(task.status[x] & kSolveAgain)) continue;
+      read_pixel(input, x, y, pixel_rows);
+      write_pixel(solve_in_double.solve(pixel_rows), input.planes, output, x, y);
+      ++in_double;
+    }
+  }
+  if (output.tally == nullptr) return;
+  output.tally->by_kernel += static_cast<std::int64_t>(input.tile.pixels()) - in_double;
+  output.tally->rejected_readings += task.rejected;
+}
+
+}  // namespace weft::solver

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "core/light_field.h"
+#include "solver/kernels/row_task.h"
+#include "solver/method.h"
+#include "solver/reference/pixel.h"
+
+namespace weft::solver {
+
+/// Float copies of what a row kernel needs of each light.
+std::vector<RowLight> row_lights(const LightField& field);
+
+/// Solves a tile row by row. `row_kernel` returns whether it left pixels marked kSolveAgain: those are solved
+/// by PixelSolver, with the same options.
+void solve_rows(const TileInput& input, const TileOutput& output, const PixelOptions& options,
+                bool (*row_kernel)(RowTask& task));
+
+}  // namespace weft::solver

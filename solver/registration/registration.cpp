@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/registration/registration.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/parallel.h"
+#include "solver/registration/tile_system.h"
+
+namespace weft::solver {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kMostRounds = 15;
+constexpr double kDone_px = 0.002;
+// Signal is believed in where it adds this share to the energy of noisy gradients.
+constexpr double kLeastSignal = 0.1;
+
+// Where the tiles lie, in pixels from the frame's centre, and what displaces them: each shot has x, y and a
+// turn, as pixels at the frame's corner so that all parameters are of one size.
+class Layout {
+ public:
+  Layout(std::span<const TileInput> tiles, Size frame, Eigen::Index shots)
+      : shots_(shots), corner_px_(std::hypot(frame.width, frame.height) / 2) {
+    for (const TileInput& t : tiles) {
+      x_.push_back((t.tile.x0 + t.tile.x1 - frame.width) / 2.0);
+      y_.push_back((t.tile.y0 + t.tile.y1 - frame.height) / 2.0);
+    }
+  }
+  Eigen::Index unknowns() const { return 3 * shots_; }
+  // Displacements (x, y) of all shots in a tile from all parameters.
+  MatrixXd jacobian(std::size_t tile) const {
+    MatrixXd j = MatrixXd::Zero(2 * shots_, unknowns());
+    for (Eigen::Index k = 0; k < shots_; ++k) {
+      j(2 * k, 3 * k) = j(2 * k + 1, 3 * k + 1) = 1;
+      j(2 * k, 3 * k + 2) = y_[tile] / corner_px_;
+      j(2 * k + 1, 3 * k + 2) = -x_[tile] / corner_px_;
+    }
+    return j;
+  }
+  ClothShift shift(const VectorXd& parameters, Eigen::Index k) const {
+    return {parameters[3 * k], parameters[3 * k + 1], parameters[3 * k + 2] / corner_px_};
+  }
+  ClothShift::Displacement at(const ClothShift& shift, std::size_t tile) const {
+    return shift.at(x_[tile], y_[tile]);
+  }
+  double most_px(const VectorXd& parameters) const {
+    double most = 0;
+    for (Eigen::Index k = 0; k < shots_; ++k) {
+      for (std::size_t t = 0; t < x_.size(); ++t) {
+        const ClothShift::Displacement d = at(shift(parameters, k), t);
+        most = std::max(most, std::hypot(d.x, d.y));
+      }
+    }
+    return most;
+  }
+  std::size_t tiles() const { return x_.size(); }
+
+ private:
+  Eigen::Index shots_;
+  double corner_px_;
+  std::vector<double> x_, y_;
+};
+
+// The systems of all tiles as one in the parameters.
+struct Whole {
+  MatrixXd information, noise, scatter;  // scatter: covariance of `score`
+  VectorXd score;
+  double chi2 = 0, freedom = 0, floor = 0;
+};
+
+Whole gather(const std::vector<TileSystem>& systems, const Layout& layout) {
+  const Eigen::Index n = layout.unknowns();
+  Whole w = {MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), VectorXd::Zero(n)};
+  double squares = 0;
+  for (std::size_t t = 0; t < systems.size(); ++t) {
+    const TileSystem& s = systems[t];
+    const MatrixXd j = layout.jacobian(t);
+    w.information += j.transpose() * s.information.selfadjointView<Eigen::Lower>() * j;
+    w.noise += j.transpose() * s.noise.selfadjointView<Eigen::Lower>() * j;
+    for (const VectorXd& block : s.block_scores) {
+      const VectorXd score = j.transpose() * block;
+      w.score += score;
+      w.scatter += score * score.transpose();
+    }
+    w.chi2 += s.chi2;
+    w.freedom += s.freedom;
+    squares += s.squares;
+  }
+  w.floor = w.freedom > 0 ? squares / w.freedom : 0;
+  return w;
+}
+
+// What is left of the information once the energy that noise lends to gradients is taken off, in the
+// directions that stand out of it.
+MatrixXd signal_of(const Whole& w) {
+  const Eigen::Index n = w.noise.rows();
+  const double size = w.information.trace() / static_cast<double>(n);
+  if (!(size > 0)) return MatrixXd::Zero(n, n);
+  const MatrixXd noise = w.noise + 1e-6 * size * MatrixXd::Identity(n, n);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(w.information, noise);
+  const VectorXd signal =
+      modes.eigenvalues().unaryExpr([](double v) { return v > 1 + kLeastSignal ? v - 1 : 0.0; });
+  const MatrixXd basis = noise * modes.eigenvectors();
+  return basis * signal.asDiagonal() * basis.transpose();
+}
+
+struct Step {
+  VectorXd parameters;
+  MatrixXd covariance;
+};
+
+// Ridge regression towards no shift, whose error is scatter of the score and what the ridge holds back.
+Step step_from(const VectorXd& parameters, const Whole& w) {
+  const Eigen::Index n = parameters.size();
+  const double prior2 = kUnknownShift_px * kUnknownShift_px;
+  const MatrixXd identity = MatrixXd::Identity(n, n), signal = signal_of(w);
+  const double trace = w.information.trace();
+  const double variance_of_score = trace > 0 ? w.scatter.trace() / trace : 1;
+  const double ridge = std::max(variance_of_score / prior2, 1e-9 * trace + 1e-300);
+  const MatrixXd gain = (signal + ridge * identity).ldlt().solve(identity);
+  const MatrixXd held_back = gain * signal - identity;
+  return {parameters + gain * (w.score - ridge * parameters),
+          gain * w.scatter * gain.transpose() + prior2 * held_back * held_back.transpose()};
+}
+
+// Takes the mean of all shots off each component.
+void centre(VectorXd& parameters) {
+  Eigen::Map<Eigen::Matrix3Xd> shots(parameters.data(), 3, parameters.size() / 3);
+  const Eigen::Vector3d mean = shots.rowwise().mean();
+  shots.colwise() -= mean;
+}
+MatrixXd centred(const MatrixXd& covariance) {
+  const Eigen::Index n = covariance.rows(), shots = n / 3;
+  MatrixXd q = MatrixXd::Identity(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index k = 0; k < shots; ++k) q(i, 3 * k + i % 3) -= 1.0 / static_cast<double>(shots);
+  }
+  return q * covariance * q.transpose();
+}
+
+// Takes the (lower) median of all shots off each component.
+void measure_from_median(VectorXd& parameters) {
+  const Eigen::Index shots = parameters.size() / 3;
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    std::vector<double> values;
+    for (Eigen::Index k = 0; k < shots; ++k) values.push_back(parameters[3 * k + c]);
+    const auto middle = values.begin() + (shots - 1) / 2;
+    std::nth_element(values.begin(), middle, values.end());
+    const double median = *middle;
+    for (Eigen::Index k = 0; k < shots; ++k) parameters[3 * k + c] -= median;
+  }
+}
+
+std::vector<ShotRegistration> describe(const VectorXd& parameters, const MatrixXd& covariance,
+                                       const std::vector<TileSystem>& systems, const Layout& layout) {
+  std::vector<ShotRegistration> shots;
+  const auto tiles = static_cast<double>(layout.tiles());
+  double readings = 0, shadowed = 0;
+  for (const TileSystem& s : systems) {
+    readings += s.readings;
+    shadowed += s.shadowed;
+  }
+  const double model_px = kModelShift_px + (readings > 0 ? kModelShiftOfShadow_px * shadowed / readings : 0);
+  for (Eigen::Index k = 0; 3 * k < parameters.size(); ++k) {
+    ShotRegistration s;
+    s.shift = layout.shift(parameters, k);
+    double variance = model_px * model_px, square = 0, cost2 = 0, points = 0;
+    for (std::size_t t = 0; t < layout.tiles(); ++t) {
+      const MatrixXd j = layout.jacobian(t).block(2 * k, 3 * k, 2, 3);
+      variance += (j * covariance.block(3 * k, 3 * k, 3, 3) * j.transpose()).trace() / 2 / tiles;
+      const ClothShift::Displacement d = layout.at(s.shift, t);
+      square += (d.x * d.x + d.y * d.y) / tiles;
+      const Eigen::Vector2d v(d.x, d.y);
+      cost2 += std::max(0.0, v.dot(systems[t].cost[static_cast<std::size_t>(k)] * v));
+      points += systems[t].points;
+    }
+    s.sigma_px = std::sqrt(variance);
+    s.cost_deg = points > 0 ? degrees(std::sqrt(cost2 / points)) : 0;
+    s.significant = square > 2 * 9 * variance;
+    shots.push_back(s);
+  }
+  return shots;
+}
+
+}  // namespace
+
+Registration register_shots(std::span<const TileInput> tiles, Size frame, int threads) {
+  const auto shots = static_cast<Eigen::Index>(tiles.empty() ? 0 : tiles.front().field->count());
+  const Layout layout(tiles, frame, shots);
+  std::vector<TileSystem> systems(tiles.size());
+  VectorXd parameters = VectorXd::Zero(layout.unknowns());
+  ResidualScale scale;
+  Registration result;
+  Step step;
+  double first_misfit = 0, misfit = 0, moved_px = std::numeric_limits<double>::infinity();
+  for (int round = 0;; ++round) {
+    parallel_for(tiles.size(), threads, [&](std::size_t t, int) {
+      std::vector<ClothShift::Displacement> shifts;
+      for (Eigen::Index k = 0; k < shots; ++k) shifts.push_back(layout.at(layout.shift(parameters, k), t));
+      systems[t] = tile_system(tiles[t], shifts, scale);
+    });
+    const Whole whole = gather(systems, layout);
+    misfit = whole.floor;
+    if (round == 0) first_misfit = misfit;
+    scale = {whole.floor, whole.freedom > 0 ? whole.chi2 / whole.freedom : scale.chi2};
+    step = step_from(parameters, whole);
+    if (moved_px < kDone_px || round == kMostRounds) break;
+    centre(step.parameters);
+    moved_px = layout.most_px(step.parameters - parameters);
+    if (!(layout.most_px(step.parameters) < kMostShift_px)) {
+      result.found = false;
+      break;
+    }
+    parameters = step.parameters;
+  }
+  result.found = result.found && moved_px < 10 * kDone_px && misfit <= first_misfit;
+  measure_from_median(parameters);
+  result.shots = describe(parameters, centred(step.covariance), systems, layout);
+  return result;
+}
+
+}  // namespace weft::solver

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <vector>
+
+#include "solver/registration/registration.h"
+
+namespace weft::solver {
+
+/// How far readings lie from what explains them, as the round before found.
+struct ResidualScale {
+  double floor = 0;  ///< mean square, readings over strength; 0 where nothing is known yet
+  double chi2 = 0;   ///< mean square over the expected variance; 0 where nothing is known yet
+};
+
+/// The normal equations of one tile for displacements (x, y) of K shots, b eliminated at every point:
+/// information * step = score. Matrices hold their lower triangle.
+struct TileSystem {
+  Eigen::MatrixXd information;  ///< 2 K x 2 K
+  Eigen::MatrixXd noise;        ///< what noise in the gradients adds to it on average
+  std::vector<Eigen::VectorXd> block_scores;
+  std::vector<Eigen::Matrix2d> cost;  ///< by shot: d . cost d = summed square angle, rad, of normals for d
+  double points = 0;
+  double readings = 0, shadowed = 0;          ///< usable readings at points, and those left out as in shadow
+  double chi2 = 0, squares = 0, freedom = 0;  ///< summed squares of residuals, and their number less 3
+};
+
+/// At the shots as seen through `shifts`.
+TileSystem tile_system(const TileInput& tile, std::span<const ClothShift::Displacement> shifts,
+                       const ResidualScale& scale);
+
+}  // namespace weft::solver

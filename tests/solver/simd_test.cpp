@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// How far apart the SIMD targets of one machine may be. Threads and tiles change no byte; another vector
+// length has other approximations of 1 / x and 1 / sqrt(x) to refine, and may fuse what this one rounds
+// twice.
+#include <gtest/gtest.h>
+
+#include <hwy/targets.h>
+#include <cmath>
+#include <limits>
+
+#include "tests/support/hard_lights.h"
+#include "tests/support/rig.h"
+
+namespace weft {
+namespace {
+
+using test::Random;
+using test::Trial;
+using test::Truth;
+
+// The bound that docs/numerics.md states, for lights of condition number up to 3: a few units in the last
+// place of float32 on the way, about one on arrival.
+constexpr double kNormalBound_deg = 5e-5;
+constexpr double kRelativeBound = 2e-6;       // of albedo
+constexpr double kSigmaRelativeBound = 5e-4;  // of sigma and residual, which are differences
+// A reading exactly on a threshold falls to one side or the other.
+constexpr double kShareThatDecidesOtherwise = 1e-3;
+
+const Size kSize = {320, 200};
+const Rect kTile = {64, 33, 64 + 131, 33 + 6};
+
+void expect_within_bound(const Trial& here, const Trial& there, int planes) {
+  int otherwise = 0;
+  double normal_deg = 0, albedo = 0, sigma = 0;
+  for (int y = 0; y < kTile.height(); ++y) {
+    for (int x = 0; x < kTile.width(); ++x) {
+      if (here.status(x, y) != there.status(x, y)) {
+        ++otherwise;
+        continue;
+      }
+      const double angle_here = here.sigma_normal_deg(x, y), angle_there = there.sigma_normal_deg(x, y);
+      normal_deg = std::max(normal_deg, angle_deg(here.normal(x, y), there.normal(x, y)));
+      sigma = std::max(sigma, std::abs(angle_here - angle_there) / (angle_there + 0.01));
+      for (int p = 0; p < planes; ++p) {
+        albedo = std::max<double>(
+            albedo, std::abs(here.albedo(x, y, p) - there.albedo(x, y, p)) / (there.albedo(x, y, p) + 1e-3));
+      }
+    }
+  }
+  EXPECT_LE(normal_deg, kNormalBound_deg);
+  EXPECT_LE(albedo, kRelativeBound);
+  EXPECT_LE(sigma, kSigmaRelativeBound);
+  EXPECT_LE(otherwise, kShareThatDecidesOtherwise * static_cast<double>(kTile.pixels()));
+}
+
+TEST(SimdTargets, AgreeWithinTheStatedBoundForEveryMethod) {
+  const LightField field = *LightField::make(test::ten_leds(1.3), overhead_camera(kSize, 600, 0.3), kSize, 2);
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
+    const auto solved_on = [&](std::int64_t target) {
+      Trial trial(field, kTile, planes, [](int x, int y) {
+        Random random(static_cast<std::uint64_t>(y) * 1000 + static_cast<std::uint64_t>(x));
+        const Vec3 n = test::random_normal(random, 45);
+        return Truth{n, {0.02 + 0.9 * random.uniform(), 0.3, 0.2}};
+      });
+      trial.add_noise({2e-5, 1e-8, 0}, 7);
+      for (int x = 0; x < kTile.width(); x += 3)
+        trial.reading(static_cast<std::size_t>(x) % 10)(x, 1) = std::numeric_limits<float>::infinity();
+      hwy::SetSupportedTargetsForTest(target);
+      trial.solve(method, planes == 1 ? std::optional(NoiseModel{2e-5, 1e-8, 0}) : std::nullopt);
+      hwy::SetSupportedTargetsForTest(0);
+      return trial;
+    };
+    const Trial first = solved_on(targets.front());
+    for (const std::int64_t target : targets) {
+      SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes, " << hwy::TargetName(target)
+                                      << " against " << hwy::TargetName(targets.front()));
+      expect_within_bound(solved_on(target), first, planes);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace weft

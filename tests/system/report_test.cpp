@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the report of a solve says of scans that went well and of scans that did not.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "app/jobs/evidence.h"
+#include "app/jobs/report.h"
+#include "app/jobs/report_page.h"
+#include "app/jobs/session_input.h"
+#include "simulator/scene/scene.h"
+#include "solver/diagnosis/diagnosis.h"
+#include "tests/system/samples.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+using solver::Diagnosis;
+using solver::FaultKind;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+
+/// 72 x 54 pixels of a family of plain weave, with every effect that light and cloth have on each other.
+simulator::Scene cloth(const std::string& family, const std::string& material, int seed) {
+  const bool dark = material == "velvet" || material == "dark-satin";
+  const std::string of_material = material == "lambert" ? "albedo = 0.5"
+                                  : material == "white" ? "albedo = 0.9"
+                                                        : "preset = \"" + material + "\"";
+  const std::string toml = "seed = " + std::to_string(seed) +
+                           "\n[camera]\nwidth = 72\nheight = 54\nmm_per_pixel = 0.04\nalbedo_at_full = " +
+                           (dark ? "0.2" : "0.99") + "\n[geometry]\nfamily = \"" + family +
+                           "\"\n[material]\n" + of_material +
+                           "\n[effects]\nnear_light = true\nrelief = true\ncast_shadows = true\n"
+                           "interreflection = true\nreflectance = true\nled_drift = true\nstray = true\n"
+                           "ambient = true\nnoise = true\n";
+  Result<simulator::Scene> scene = simulator::parse_scene(toml, "report_test");
+  if (!scene) throw std::runtime_error(scene.error().message());
+  return *std::move(scene);
+}
+
+solver::Evidence evidence_of(const fs::path& session) {
+  const Result<app::SessionPlan> plan = app::plan_session({.folder = session, .calibration = {}, .leds = {}});
+  if (!plan) throw std::runtime_error(plan.error().message());
+  const Result<app::Photographs> photographs = app::load_session(*plan, {});
+  if (!photographs) throw std::runtime_error(photographs.error().message());
+  return app::read_evidence(*photographs);
+}
+
+void swap_photographs(solver::Evidence& evidence, std::size_t a, std::size_t b) {
+  for (std::size_t p = 0; p < evidence.pixels(); ++p) {
+    std::swap(evidence.rows[p * evidence.lights + a - 1].reading,
+              evidence.rows[p * evidence.lights + b - 1].reading);
+  }
+}
+
+void scale(solver::Evidence& evidence, std::size_t led, double factor) {
+  for (std::size_t p = 0; p < evidence.pixels(); ++p) {
+    evidence.rows[p * evidence.lights + led - 1].reading *= factor;
+  }
+}
+
+class Cloths : public testing::TestWithParam<std::tuple<const char*, const char*>> {
+ protected:
+  void SetUp() override { simulate(cloth(std::get<0>(GetParam()), std::get<1>(GetParam()), 5), work_ / "c"); }
+  Workspace work_;
+};
+
+class HealthyCloth : public Cloths {};
+TEST_P(HealthyCloth, NamesNoLed) {
+  const Diagnosis d = solver::diagnose(evidence_of(work_ / "c"));
+  EXPECT_GT(d.pixels, 300U);
+  for (const solver::Fault& fault : d.faults) {
+    ADD_FAILURE() << "LED " << fault.lights[0] + 1 << " is named, kind " << static_cast<int>(fault.kind)
+                  << ", value " << fault.value << ", residual " << fault.residual_before << " to "
+                  << fault.residual_after;
+  }
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, HealthyCloth,
+                         testing::Combine(testing::Values("smooth", "plain", "deep"),
+                                          testing::Values("lambert", "white", "matte-cotton", "satin",
+                                                          "velvet", "dark-satin")));
+
+class FaultyScan : public Cloths {};
+TEST_P(FaultyScan, NamesWhatIsWrong) {
+  const solver::Evidence healthy = evidence_of(work_ / "c");
+  solver::Evidence evidence = healthy;
+  swap_photographs(evidence, 3, 4);
+  Diagnosis d = solver::diagnose(evidence);
+  ASSERT_EQ(d.faults.size(), 1U);
+  EXPECT_EQ(d.faults[0].kind, FaultKind::kExchanged);
+  EXPECT_THAT(d.faults[0].lights, testing::ElementsAre(2, 3));
+
+  swap_photographs(evidence, 6, 9);
+  d = solver::diagnose(evidence);
+  ASSERT_EQ(d.faults.size(), 2U);
+  EXPECT_THAT(d.faults[1].lights, testing::ElementsAre(5, 8));
+
+  evidence = healthy;
+  scale(evidence, 5, 0.001);
+  d = solver::diagnose(evidence);
+  ASSERT_EQ(d.faults.size(), 1U);
+  EXPECT_EQ(d.faults[0].kind, FaultKind::kDead);
+  EXPECT_THAT(d.faults[0].lights, testing::ElementsAre(4));
+
+  evidence = healthy;
+  scale(evidence, 7, 0.96);
+  d = solver::diagnose(evidence);
+  ASSERT_EQ(d.faults.size(), 1U);
+  EXPECT_EQ(d.faults[0].kind, FaultKind::kGain);
+  EXPECT_THAT(d.faults[0].lights, testing::ElementsAre(6));
+  EXPECT_NEAR(d.faults[0].value, 0.96, 0.012);
+}
+INSTANTIATE_TEST_SUITE_P(Scenes, FaultyScan,
+                         testing::Combine(testing::Values("smooth", "plain", "deep"),
+                                          testing::Values("lambert", "white", "matte-cotton", "velvet")));
+
+class Report : public testing::Test {
+ protected:
+  void SetUp() override { simulate(cloth("plain", "lambert", 1), session_); }
+  void swap_leds(int a, int b) {
+    edit_json(session_ / "session.json", [&](Json& session) {
+      Json *first = nullptr, *second = nullptr;
+      for (Json& shot : session["shots"]) {
+        if (shot["led"] == a) first = &shot;
+        if (shot["led"] == b) second = &shot;
+      }
+      for (const char* key : {"file", "sha256"}) std::swap((*first)[key], (*second)[key]);
+    });
+  }
+  Json report() const {
+    Result<Json> document = read_json(work_ / "maps" / "report.json", "weft.solve-report", 1);
+    return document ? *std::move(document) : Json(document.error().message());
+  }
+  Outcome solve(std::vector<std::string> more = {}) const {
+    std::vector<std::string> arguments = {"solve", session_.string(), "-o", (work_ / "maps").string(), "-q"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_weft(arguments);
+  }
+  Workspace work_;
+  const fs::path session_ = work_ / "cloth.weft";
+};
+
+TEST_F(Report, AloneTellsThatTwoLedsAreSwapped) {
+  swap_leds(3, 4);
+  const Outcome run = solve();
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const std::string sentence =
+      "LEDs 3 and 4 look swapped: with them exchanged the residual of their readings "
+      "falls from ";
+  EXPECT_THAT(run.error, HasSubstr(sentence));
+  const Json document = report();
+  ASSERT_EQ(document["faults"].size(), 1U) << document["faults"];
+  EXPECT_EQ(document["faults"][0]["kind"], "exchanged");
+  EXPECT_EQ(document["faults"][0]["lights"], Json({3, 4}));
+  ASSERT_EQ(document["warnings"].size(), 1U) << document["warnings"];
+  EXPECT_EQ(document["warnings"][0]["name"], "LEDS_EXCHANGED");
+  const std::string page = bytes_of(work_ / "maps" / "report.html");
+  EXPECT_THAT(page, HasSubstr(sentence));
+  EXPECT_THAT(page, HasSubstr("data:image/png;base64,iVBORw0KGgo"));
+  EXPECT_THAT(page, Not(HasSubstr("<script")));
+}
+
+TEST_F(Report, WarningsAreAnExitCodeUnderStrict) {
+  EXPECT_EQ(solve({"--strict"}).exit_code, 0);
+  fs::remove_all(work_ / "maps");
+  swap_leds(3, 4);
+  EXPECT_EQ(solve({"--strict"}).exit_code, 2);
+}
+
+TEST_F(Report, OfAHealthyScanSaysThatNothingStandsOut) {
+  ASSERT_EQ(solve({"--no-previews"}).exit_code, 0);
+  const Json document = report();
+  EXPECT_THAT(document["warnings"], IsEmpty()) << document["warnings"];
+  EXPECT_EQ(document["lights"].size(), 10U);
+  EXPECT_LT(document["residual"], 0.01);
+  EXPECT_GT(document["sigma_normal_deg"]["median"], 0.05);
+  EXPECT_LT(document["sigma_normal_deg"]["median"], 1);
+  const std::string page = bytes_of(work_ / "maps" / "report.html");
+  EXPECT_THAT(page, HasSubstr("Nothing stands out"));
+  EXPECT_THAT(page, Not(HasSubstr("data:image/png"))) << "there are no previews";
+}
+
+TEST_F(Report, OfPhotographsWithoutANoiseModel) {
+  const PhotographSample sample;
+  sample.write(work_ / "photos");
+  const Outcome run =
+      run_weft({"solve", "--photos", (work_ / "photos").string(), "-o", (work_ / "maps").string(), "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const Json document = report();
+  EXPECT_EQ(document["of"], "photographs");
+  EXPECT_THAT(document["warnings"], IsEmpty()) << document["warnings"];
+  EXPECT_THAT(bytes_of(work_ / "maps" / "report.html"), HasSubstr("Light 6"));
+}
+
+TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
+  EXPECT_THAT(app::verdicts_of({}, 0.2), IsEmpty());
+  const std::vector<app::Verdict> verdicts = app::verdicts_of({}, 0.21);
+  ASSERT_EQ(verdicts.size(), 1U);
+  EXPECT_EQ(verdicts[0].name, "SPECULAR_DOMINATED");
+  EXPECT_THAT(verdicts[0].text, HasSubstr("21 percent"));
+  EXPECT_THAT(verdicts[0].remedy, HasSubstr("crossed polarisers"));
+}
+
+TEST(ReportPage, LeavesOutWhatIsNotThereAndEscapesWhatIs) {
+  const Json report = {{"schema", "weft.solve-report/1"}, {"title", "wool & <b>silk</b>"},
+                       {"warnings", Json::array()},       {"status", {{"SHADOWED", 0.25}}},
+                       {"lights", Json::array()},         {"faults", Json::array()},
+                       {"budget", Json::array()},         {"sigma_normal_deg", {{"median", nullptr}}},
+                       {"seconds", {{"read", 1.5}}}};
+  const std::string page = app::report_page(report, {});
+  EXPECT_THAT(page, HasSubstr("wool &amp; &lt;b&gt;silk&lt;/b&gt;"));
+  EXPECT_THAT(page, HasSubstr("25.0 %"));
+  EXPECT_THAT(page, HasSubstr("1.50 s"));
+  EXPECT_THAT(page, Not(HasSubstr("Gates")));
+  EXPECT_THAT(page, Not(HasSubstr("Conditions")));
+  EXPECT_THAT(app::report_page(report, {{"a", "\x01"}, {"b", "Ma"}, {"c", "Man"}}),
+              testing::AllOf(HasSubstr("base64,AQ=="), HasSubstr("base64,TWE="), HasSubstr("base64,TWFu")));
+}
+
+}  // namespace
+}  // namespace weft::test

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// testdata/scenes/torture.toml: every pixel that is hard to solve says why, and no other does.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "app/jobs/solve.h"
+#include "core/image_io/image_io.h"
+#include "core/solve_record.h"
+#include "solver/method.h"
+#include "tests/system/samples.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Size kSize = {256, 192};
+constexpr int kLineColumn = 252;  // where the plane of the LEDs meets the cloth
+
+/// What the comments of the scene say of a pixel.
+int expected_status(int x, int y) {
+  const auto stripe = [&](int first) { return y >= first && y < first + 12; };
+  const int ill = x == kLineColumn ? kIllConditioned : 0;
+  if (stripe(24)) return kSaturated | ill;
+  if (stripe(48)) return kSaturated | kNoSolution;
+  if (stripe(72)) return kInvalidReading | ill;
+  if (stripe(96) || stripe(120)) return kInvalidReading | kNoSolution;
+  if (stripe(144)) return kDark | kNoSolution;
+  return ill;
+}
+
+class Torture : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    work_ = new Workspace;
+    simulate(scene_named("torture", kSize), *work_ / "torture.weft");
+  }
+  static void TearDownTestSuite() { delete std::exchange(work_, nullptr); }
+
+  static Image<float> map(const fs::path& file) {
+    Result<LoadedImage> image = read_image(file);
+    EXPECT_TRUE(image) << image.error().message();
+    return image ? std::move(image->planes) : Image<float>();
+  }
+
+  static Workspace* work_;
+};
+Workspace* Torture::work_ = nullptr;
+
+TEST_F(Torture, HasTheStatusMapThatItsSceneDescribesByEveryMethod) {
+  for (const solver::MethodName& method : solver::method_names()) {
+    SCOPED_TRACE(method.name);
+    const fs::path maps = *work_ / method.name;
+    app::SolveOptions options;
+    options.method = method.name;
+    options.output = maps;
+    options.previews = false;
+    const Result<app::SolveReport> report =
+        app::solve_session({.folder = *work_ / "torture.weft", .calibration = {}, .leds = {}}, options, {});
+    ASSERT_TRUE(report) << report.error().message();
+    const Image<float> status = map(maps / "status.png"), normal = map(maps / "normal.exr"),
+                       sigma = map(maps / "sigma.exr"),
+                       truth = map(*work_ / "torture.weft" / "truth" / "normal.exr");
+    ASSERT_EQ(status.size(), kSize);
+    int wrong = 0;
+    double worst_deg = 0;
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) {
+        const int is = static_cast<int>(std::lround(65535.0 * status(x, y))), should = expected_status(x, y);
+        if (is != should && wrong++ < 5)
+          ADD_FAILURE() << "pixel " << x << ", " << y << ": status " << is << ", not " << should;
+        const Vec3 n = {normal(x, y, 0), normal(x, y, 1), normal(x, y, 2)};
+        ASSERT_NEAR(length(n), 1, 1e-6) << x << ", " << y;
+        if ((should & kNoSolution) != 0) {
+          ASSERT_EQ(n, (Vec3{0, 0, 1})) << x << ", " << y;
+        } else if (x < 128) {  // where the condition number is below 7
+          worst_deg = std::max(worst_deg, angle_deg(n, {truth(x, y, 0), truth(x, y, 1), truth(x, y, 2)}));
+        }
+      }
+    }
+    EXPECT_EQ(wrong, 0) << "pixels";
+    EXPECT_LT(worst_deg, 1e-3) << "over twelve decades";
+  }
+}
+
+TEST_F(Torture, IsExplainedPassByPass) {
+  put_bytes(*work_ / "scene.toml", simulator::to_toml(scene_named("torture", {64, 48})));
+  const Outcome run = run_weft({"simulate", (*work_ / "scene.toml").string(), "-o",
+                                (*work_ / "explained.weft").string(), "--explain", "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_NE(run.output.find("damage"), std::string::npos) << run.output;
+  EXPECT_NE(run.output.find("makes parts of frames missing, saturated, black or fade"), std::string::npos)
+      << run.output;
+}
+
+}  // namespace
+}  // namespace weft::test
