@@ -133,7 +133,8 @@ Result<void> run_passes(const Plan& plan, Rect area, int threads, Patch& patch) 
     for (std::size_t c = 0; c < 3; ++c) {
       put(tile, patch.albedo.plane(static_cast<int>(c)), [&](std::size_t i) { return tile.albedo[i][c]; });
     }
-    put(tile, patch.openness.plane(), [&](std::size_t i) { return tile.openness[i]; });
+    put(tile, patch.openness.plane(),
+        [&](std::size_t i) { return tile.openness.empty() ? 1 : tile.openness[i]; });
   };
   const auto put_shot = [&](const Tile& tile) {
     const bool dark = tile.led == 0;

@@ -42,7 +42,7 @@ struct Patch {
   Image<float> visible;          ///< plane k: 1 where the point faces light k and sees it, else 0
   Image<float> normal;           ///< planes X, Y, Z
   Image<float> albedo;           ///< planes R, G, B: the diffuse part
-  Image<float> openness;         ///< share of an even sky that the point sees
+  Image<float> openness;         ///< share of an even sky that the point sees; 1 without interreflection
   CameraModel camera;            ///< of the patch
 
   const LightField& field() const { return *photographs.field; }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "app/jobs/solve_bands.h"
+#include "bench/cloth_mosaics.h"
 #include "bench/rig.h"
 #include "bench/yardsticks.h"
 #include "core/parallel.h"
@@ -105,7 +106,7 @@ Result<Rows> solve_speed(const SpeedOptions& options) {
   const double copy_a_byte = copy / (bare.bytes_a_pixel * pixels);
 
   const LightField field = *LightField::make(bench_lights(1, true), bench_camera(size), size, 0);
-  const app::Photographs photographs = grey_mosaics(field, size, threads);
+  app::Photographs photographs = grey_mosaics(field, size, threads);
   const Result<double> unpack = unpack_seconds_a_pixel(photographs, threads);
   if (!unpack) return unpack.error();
 
@@ -130,6 +131,24 @@ Result<Rows> solve_speed(const SpeedOptions& options) {
   add("method", "least-squares", *least_squares);
   const Timing seed = time_seed(field, size, threads);
   add("method", "seed", seed);
+  struct OnCloth {
+    const char* kind;
+    const char* name;
+    std::unique_ptr<solver::Method> (*make)();
+  };
+  constexpr OnCloth kMethods[] = {{"method", "wls", &solver::weighted_method},
+                                  {"quality", "standard", &solver::standard_method},
+                                  {"quality", "robust", &solver::robust_method},
+                                  {"method", "lts", &solver::trimmed_method}};
+  for (const Cloth cloth : {Cloth::kSmooth, Cloth::kSatin}) {
+    put_cloth(photographs, cloth, threads);
+    for (const OnCloth& m : kMethods) {
+      const Result<Timing> timing = time_method(photographs, *m.make(), threads);
+      if (!timing) return timing.error();
+      add(m.kind, m.name, *timing);
+      rows.back()["cloth"] = cloth == Cloth::kSmooth ? "smooth" : "satin";
+    }
+  }
   for (Json& row : rows) {
     row["times_quicker_than_seed"] =
         (seed.seconds / seed.pixels) / (row["ns_per_pixel"].get<double>() * 1e-9);

@@ -35,6 +35,15 @@ CLI::App* add_simulate(CLI::App& app, SimulateArguments& a) {
   return verb;
 }
 
+// The levels, or the methods for comparison.
+std::vector<std::string> names_of(bool quality) {
+  std::vector<std::string> names;
+  for (const solver::MethodName& name : solver::method_names()) {
+    if (name.is_quality == quality) names.emplace_back(name.name);
+  }
+  return names;
+}
+
 CLI::App* add_solve(CLI::App& app, SolveArguments& a, CommonArguments& common, std::string& quality,
                     std::string& method, std::string& transfer, std::vector<int>& lights) {
   CLI::App* verb = app.add_subcommand(
@@ -48,15 +57,17 @@ CLI::App* add_solve(CLI::App& app, SolveArguments& a, CommonArguments& common, s
       "--lp", a.photos.light_file, "RTI light file: a count, then a line \"file x y z\" a photograph");
   session->excludes(photos)->excludes(light_file);
   photos->excludes(light_file);
-  CLI::Option* level = verb->add_option("--quality", quality,
-                                        "Level, default fast: least squares on readings that are neither "
-                                        "saturated nor in attached shadow")
-                           ->check(CLI::IsMember({"fast"}));
-  verb->add_option(
-          "--method", method,
-          "Method for comparison: seed (four systems a pixel by SVD, after demosaicing), least-squares "
-          "(every valid reading)")
-      ->check(CLI::IsMember({"seed", "least-squares"}))
+  CLI::Option* level =
+      verb->add_option("--quality", quality,
+                       "Level: preview (half size, no masks), fast (least squares without shadows), standard "
+                       "(weighted, misfits rejected; default), robust (for highlights), reference (in double, "
+                       "shadows and light between yarns taken out where the cloth needs it)")
+          ->check(CLI::IsMember(names_of(true)));
+  verb->add_option("--method", method,
+                   "Method for comparison: seed (four systems a pixel by SVD, after demosaicing), "
+                   "least-squares (every valid reading), wls (weighted), l1 (least absolute residuals), sbl "
+                   "(sparse errors), lts (least trimmed squares)")
+      ->check(CLI::IsMember(names_of(false)))
       ->excludes(level);
   verb->add_option("--lights", lights,
                    "LEDs or photographs to solve from, numbered from 1: 1,4,7; default all")

@@ -2,6 +2,7 @@
 #include "app/jobs/light_correction.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -15,6 +16,8 @@ namespace weft::app {
 namespace {
 
 constexpr int kBlockColumns = 512;
+// As many lights as a normal takes and one to test it by.
+constexpr int kLeastSeen = 4;
 
 // The strength of light k in channel c along a row, straight between points a grid cell apart.
 void read_strengths(const LightField& field, std::size_t k, int c, int y, int x0, int x1, float* strength) {
@@ -163,6 +166,16 @@ Result<void> LightCorrection::prepare(Rect rows) {
   return {};
 }
 
+// Bits of the lights that a pixel of the slab sees, or all where they are too few to be believed and solved
+// with.
+bool LightCorrection::sees(int x, int y, std::size_t k) const {
+  if (!options_.stages.shadows) return true;
+  int seen = 0;
+  for (int w = 0; w < visible_.planes(); ++w) seen += std::popcount(visible_(x, y, w));
+  if (seen < kLeastSeen) return true;
+  return (visible_(x, y, static_cast<int>(k / 32)) >> (k % 32) & 1U) != 0;
+}
+
 void LightCorrection::apply(Rect tile, std::span<const View<float>> readings) const {
   const LightField& field = *photographs_->field;
   const bool mosaics = photographs_->rgb.empty();
@@ -173,25 +186,23 @@ void LightCorrection::apply(Rect tile, std::span<const View<float>> readings) co
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (std::size_t k = 0; k < lights; ++k) {
       if (options_.stages.interreflection) {
-        for (int c = 0; c < 3; ++c) {
-          read_strengths(field, k, c, y, tile.x0, tile.x1,
-                         strengths.data() + static_cast<std::size_t>(c) * width);
+        for (std::size_t c = 0; c < 3; ++c) {
+          read_strengths(field, k, static_cast<int>(c), y, tile.x0, tile.x1, strengths.data() + c * width);
         }
       }
       for (std::size_t p = 0; p < planes; ++p) {
         float* reading = readings[k * planes + p].row(y - tile.y0);
         for (std::size_t i = 0; i < width; ++i) {
-          const int x = tile.x0 + static_cast<int>(i);
+          const int x = tile.x0 + static_cast<int>(i), row = y - slab_.y0;
           if (options_.stages.interreflection) {
             const auto c = mosaics ? static_cast<std::size_t>(cfa.channel_at(x, y)) : p;
-            const float arriving = arriving_(x, y - slab_.y0, static_cast<int>(k * planes + p));
-            reading[i] -= solved_->albedo(x, y, mosaics ? 0 : static_cast<int>(p)) * arriving *
-                          strengths[c * width + i];
+            const float albedo = solved_->albedo(x, y, mosaics ? 0 : static_cast<int>(p));
+            reading[i] -=
+                albedo * arriving_(x, row, static_cast<int>(k * planes + p)) * strengths[c * width + i];
           }
-          const bool hidden = options_.stages.shadows &&
-                              (visible_(x, y - slab_.y0, static_cast<int>(k / 32)) >> (k % 32) & 1U) == 0;
           // What cannot be read stays so: the reason counts.
-          if (hidden && std::isfinite(reading[i])) reading[i] = -std::numeric_limits<float>::infinity();
+          if (std::isfinite(reading[i]) && !sees(x, row, k))
+            reading[i] = -std::numeric_limits<float>::infinity();
         }
       }
     }

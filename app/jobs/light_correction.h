@@ -59,6 +59,7 @@ class LightCorrection {
   struct Worker;
   Result<void> trace_block(Rect block, Worker& worker);
   void read_radiosity(Rect area, Worker& worker) const;
+  bool sees(int x, int y, std::size_t k) const;
 
   const Photographs* photographs_;
   const SolvedFrame* solved_;

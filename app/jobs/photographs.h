@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
+#include "core/camera.h"
 #include "core/image.h"
 #include "core/json_document.h"
 #include "core/light_field.h"
+#include "core/lights.h"
 #include "core/photosites.h"
 #include "core/radiometry.h"
 #include "core/raw_frame.h"
@@ -34,8 +36,10 @@ struct Photographs {
   std::vector<Image<float>> rgb;               ///< readings, planes R, G, B (core/radiometry.h)
   std::vector<solver::ClothShift> shifts;      ///< put right as tiles are read (app/jobs/registration.h)
   std::optional<LightField> field;
-  std::optional<NoiseModel> noise;        ///< of the mosaics; of brackets the worst
-  std::string albedo_scale = "relative";  ///< "absolute" where a measured patch fixed it
+  std::optional<CameraModel> camera;                ///< where the lights are near
+  std::optional<LightCovariance> light_covariance;  ///< where the calibration has one
+  std::optional<NoiseModel> noise;                  ///< of the mosaics; of brackets the worst
+  std::string albedo_scale = "relative";            ///< "absolute" where a measured patch fixed it
 
   /// What was found and corrected under way, for solve.json: docs/conditions.md.
   Json conditions = Json::object();

@@ -82,11 +82,11 @@ class Round {
   }
 
   Result<double> solve(const solver::Method& method, const TileOptions& tile, const JobContext& context,
-                       const BandSink& sink) {
+                       const BandSink& sink, solver::SolveTally* tally) {
     Stopwatch watch;
     LightCorrection correction(*photographs_, *solved_, relief_, options_, threads_);
     reach_is_capped = correction.shadow_reach_is_capped();
-    Result<double> waited = solve_bands(*photographs_, method, tile, context, sink, &correction);
+    Result<double> waited = solve_bands(*photographs_, method, tile, context, sink, {&correction, tally});
     facts.light_seconds = correction.seconds();
     facts.solve_seconds = watch.lap() - correction.seconds();
     return waited;
@@ -117,7 +117,8 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
   facts.stages = options.force_stages ? LightStages{true, true}
                                       : LightStages{gates->shadows(), gates->interreflection()};
   if (!facts.stages.shadows && !facts.stages.interreflection) {
-    const Result<double> waited = solve_bands(photographs, *exact, tile, context, sink);
+    const Result<double> waited =
+        solve_bands(photographs, *exact, tile, context, sink, {nullptr, &facts.tally});
     if (!waited) return waited.error();
     facts.waited_seconds = *waited;
     return facts;
@@ -134,8 +135,8 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
     Round round(photographs, frame, light, context.threads);
     if (Result<void> ok = round.integrate(); !ok) return std::move(ok).error();
     FrameKeeper next(photographs, &frame);
-    const Result<double> waited =
-        done ? round.solve(*exact, tile, context, sink) : round.solve(*quick, tile, context, std::ref(next));
+    const Result<double> waited = done ? round.solve(*exact, tile, context, sink, &facts.tally)
+                                       : round.solve(*quick, tile, context, std::ref(next), nullptr);
     if (!waited) return waited.error();
     if (done) {
       facts.waited_seconds = *waited;

@@ -10,6 +10,7 @@
 #include "core/result.h"
 #include "core/tiles.h"
 #include "solver/gates/gates.h"
+#include "solver/method.h"
 
 namespace weft::app {
 
@@ -32,6 +33,7 @@ struct ReferenceFacts {
   LightStages stages;
   std::vector<ReferenceRound> rounds;
   bool shadow_reach_is_capped = false;
+  solver::SolveTally tally;   ///< of the last solve
   double waited_seconds = 0;  ///< for the sink
 };
 

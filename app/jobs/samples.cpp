@@ -112,7 +112,7 @@ Json json_of(const solver::Gates& gates) {
                    {"value", gate.value},
                    {"limit", gate.limit},
                    {"unit", gate.unit},
-                   {"is_over", gate.is_over}});
+                   {"verdict", gate.is_over ? "over" : "under"}});
   }
   return all;
 }

@@ -30,7 +30,7 @@ std::vector<SampleMaps> solve_samples(const Photographs& photographs, const solv
 /// The gates of a solve, from its samples.
 Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples);
 
-/// {"name", "value", "limit", "unit", "is_over"} a gate, for solve.json.
+/// {"name", "value", "limit", "unit", "verdict": "over" | "under"} a gate, for solve.json.
 Json json_of(const solver::Gates& gates);
 
 }  // namespace weft::app

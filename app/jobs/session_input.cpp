@@ -303,6 +303,8 @@ Result<Photographs> load_session(const SessionPlan& plan, const JobContext& cont
       LightField::make(std::move(*lights), plan.calibration.camera, plan.size, plan.session.cloth_height_mm);
   if (!field) return std::move(field).error();
   photographs.field = std::move(*field);
+  photographs.camera = plan.calibration.camera;
+  photographs.light_covariance = plan.calibration.light_covariance;
 
   MoreFrames more;
   if (Result<void> read = plan.raw ? read_mosaics(plan, shots, context, photographs, more)

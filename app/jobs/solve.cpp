@@ -11,9 +11,12 @@
 #include <utility>
 #include <vector>
 
+#include "app/jobs/map_files.h"
 #include "app/jobs/pictures.h"
+#include "app/jobs/registration.h"
 #include "app/jobs/report.h"
 #include "app/jobs/solve_bands.h"
+#include "app/jobs/solve_frame.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 
@@ -70,52 +73,6 @@ class StatusCounts {
 
  private:
   std::array<std::int64_t, 256> seen_ = {};
-};
-
-// The map files of a solve, written band by band.
-class MapFiles {
- public:
-  static Result<MapFiles> open(const fs::path& folder, Size size, const std::string& compression) {
-    MapFiles files;
-    const std::array<std::pair<std::optional<ImageWriter>*, Spec>, 5> all = {
-        {{&files.normal_, {"normal.exr", {"X", "Y", "Z"}, SampleType::kFloat}},
-         {&files.albedo_, {"albedo.exr", {"R", "G", "B"}, SampleType::kHalf}},
-         {&files.sigma_, {"sigma.exr", {"R", "G", "B", "normal_deg"}, SampleType::kHalf}},
-         {&files.residual_, {"residual.exr", {"residual"}, SampleType::kHalf}},
-         {&files.status_, {"status.png", {"Y"}, SampleType::kUint16}}}};
-    for (const auto& [writer, spec] : all) {
-      Result<ImageWriter> opened = ImageWriter::open(folder / spec.name, size, spec.channels,
-                                                     {.type = spec.type, .compression = compression});
-      if (!opened) return std::move(opened).error();
-      writer->emplace(std::move(*opened));
-    }
-    return files;
-  }
-
-  Result<void> write(const MapBand& band) {
-    if (Result<void> ok = normal_->write_rows(band.normal); !ok) return ok;
-    if (Result<void> ok = residual_->write_rows(std::array{band.residual}); !ok) return ok;
-    if (Result<void> ok = status_->write_rows(band.status); !ok) return ok;
-    if (band.albedo_rows.height() == 0) return {};
-    if (Result<void> ok = albedo_->write_rows(band.albedo); !ok) return ok;
-    return sigma_->write_rows(
-        std::array{band.sigma_albedo[0], band.sigma_albedo[1], band.sigma_albedo[2], band.sigma_normal_deg});
-  }
-
-  Result<void> finish() {
-    for (std::optional<ImageWriter>* writer : {&normal_, &albedo_, &sigma_, &residual_, &status_}) {
-      if (Result<void> ok = (*writer)->finish(); !ok) return ok;
-    }
-    return {};
-  }
-
- private:
-  struct Spec {
-    const char* name;
-    std::vector<std::string> channels;
-    SampleType type;
-  };
-  std::optional<ImageWriter> normal_, albedo_, sigma_, residual_, status_;
 };
 
 // Where the maps go and by which name.
@@ -182,18 +139,22 @@ struct Facts {
   const std::string& id;
   const SolveOptions& options;
   const Input& input;
+  Size size;
   const StatusCounts& counts;
   std::string albedo_scale;
   std::size_t lights;
   std::vector<std::string> pictures;
   std::optional<NormalComparison> error;  // against the truth, where there is one
   std::vector<Verdict> verdicts;
+  FrameFacts frame;
+  Json registration;
+  Json conditions;
 };
 
 Json document_of(const Facts& facts) {
   Json status = Json::object();
   for (const StatusName& s : kStatusNames) status[s.name] = facts.counts.with(s.bit);
-  const Size size = facts.input.size;
+  const Size size = facts.size;
   Json document = {{"schema", std::string(kSchema) + "/1"},
                    {"id", facts.id},
                    {"solver_version", kSolverVersion},
@@ -206,8 +167,13 @@ Json document_of(const Facts& facts) {
                    {"albedo_scale", facts.albedo_scale},
                    {"pixels", size.pixels() - facts.counts.with(kNoSolution)},
                    {"status", std::move(status)},
+                   {"solved_by", json_of(facts.frame.tally)},
+                   {"conditions", facts.conditions},
+                   {"registration", facts.registration},
                    {"warnings", json_of(facts.verdicts)},
                    {"pictures", facts.pictures}};
+  if (!facts.frame.gates.is_null()) document["gates"] = facts.frame.gates;
+  if (!facts.frame.reference.is_null()) document["reference"] = facts.frame.reference;
   if (facts.error) {
     document["error"] = {{"mean_deg", facts.error->mean_deg},
                          {"median_deg", facts.error->median_deg},
@@ -220,7 +186,7 @@ Json document_of(const Facts& facts) {
 // Writes the pictures beside the maps, with their error where there is a truth.
 Result<void> draw(const Pictures& pictures, const Input& input, const fs::path& folder, Facts& facts) {
   std::optional<TruthError> error;
-  if (!input.truth.empty()) {
+  if (!input.truth.empty() && facts.size == input.size) {
     Result<TruthError> measured = error_against(input.truth, folder / "normal.exr");
     if (!measured) return std::move(measured).error();
     error = std::move(*measured);
@@ -236,7 +202,6 @@ Result<void> draw(const Pictures& pictures, const Input& input, const fs::path& 
 Result<SolveReport> run(const solver::MethodName& method_name, const Input& input,
                         const SolveOptions& options, const JobContext& context) {
   Stopwatch total, watch;
-  const Size size = input.size;
   Place place;
   place.id = id_of(input.description, options);
   place.folder = fs::absolute(options.output.empty() ? input.default_parent / place.id : options.output)
@@ -247,54 +212,84 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
 
   PartialFolder partial(place.folder.parent_path() /
                         fmt::format(".{}.{}.partial", place.folder.filename().string(), getpid()));
-  if (Result<void> room = check_disk(place.folder.parent_path(), size); !room) return std::move(room).error();
+  if (Result<void> room = check_disk(place.folder.parent_path(), input.size); !room)
+    return std::move(room).error();
   if (Result<void> made = make_writable_folder(partial.path()); !made) return std::move(made).error();
-  Result<MapFiles> files = MapFiles::open(partial.path(), size, options.compression);
-  if (!files) return std::move(files).error();
-
   SolveReport report;
   report.folder = place.folder;
   Result<Photographs> photographs = input.load();
   if (!photographs) return std::move(photographs).error();
   report.seconds.read = watch.lap();
 
+  const bool half = method_name.extent == solver::Extent::kHalfSize;
+  Json registration = Json::array();
+  if (half) {
+    photographs = half_size(*photographs, context.threads);
+    if (!photographs) return std::move(photographs).error();
+  } else {
+    const Result<SessionShifts> shifts = register_shots(*photographs, context);
+    if (!shifts) return shifts.error();
+    registration = registration_document(*shifts, photographs->leds);
+  }
+  std::optional<CalibrationChannels> calibration;
+  if (photographs->light_covariance) {
+    Result<CalibrationChannels> made = CalibrationChannels::make(*photographs, context.threads);
+    if (!made) return std::move(made).error();
+    calibration.emplace(std::move(*made));
+  }
+  const Size size = photographs->size;
+  Result<MapFiles> files = MapFiles::open(partial.path(), size, options.compression, calibration.has_value());
+  if (!files) return std::move(files).error();
+  report.seconds.prepare = watch.lap();
+
   StatusCounts counts;
   Pictures pictures(size);
   MapSummary maps(size);
-  const std::unique_ptr<solver::Method> method = method_name.make();
-  const Result<double> waited =
-      solve_bands(*photographs, *method, options.tile, context, [&](const MapBand& band) -> Result<void> {
+  const Result<FrameFacts> solved =
+      solve_frame(*photographs, method_name, options.tile, context, [&](const MapBand& band) -> Result<void> {
         counts.add(band.status);
         maps.add(band);
         if (options.previews) pictures.add(band);
-        return files->write(band);
+        return files->write(band, calibration ? &*calibration : nullptr);
       });
-  if (!waited) return waited.error();
-  report.seconds.solve = watch.lap() - *waited;
-  Facts facts = {place.id, options, input, counts, photographs->albedo_scale, photographs->count(),
-                 {},       {},      {}};
+  if (!solved) return solved.error();
+  report.seconds.solve = watch.lap() - solved->waited_seconds;
+  Facts facts = {place.id,
+                 options,
+                 input,
+                 size,
+                 counts,
+                 photographs->albedo_scale,
+                 photographs->count(),
+                 {},
+                 {},
+                 {},
+                 *solved,
+                 std::move(registration),
+                 photographs->conditions};
   const PhotographsSummary summary = summarize_photographs(*photographs, input.picked, context);
   report.seconds.report = watch.lap();
   photographs = Photographs();  // their memory is needed for nothing more
 
   if (Result<void> ok = files->finish(); !ok) return std::move(ok).error();
-  report.seconds.write = *waited + watch.lap();
+  report.seconds.write = solved->waited_seconds + watch.lap();
   if (options.previews) {
     Result<void> drawn = draw(pictures, input, partial.path(), facts);
     if (!drawn) return std::move(drawn).error();
   }
   report.seconds.pictures = watch.lap();
 
-  facts.verdicts =
-      verdicts_of(summary, static_cast<double>(counts.with(kSpecular)) / static_cast<double>(size.pixels()));
+  // What leaves no shadow out takes much for a highlight.
+  const bool tells_highlights = method_name.is_quality && !half;
+  facts.verdicts = verdicts_of(summary, tells_highlights ? static_cast<double>(counts.with(kSpecular)) /
+                                                               static_cast<double>(size.pixels())
+                                                         : 0.0);
   report.document = document_of(facts);
   if (Result<void> ok = write_json(partial.path() / "solve.json", report.document); !ok)
     return std::move(ok).error();
-  const Json seconds = {{"read", report.seconds.read},
-                        {"solve", report.seconds.solve},
-                        {"write", report.seconds.write},
-                        {"pictures", report.seconds.pictures},
-                        {"report", report.seconds.report}};
+  const Json seconds = {{"read", report.seconds.read},         {"prepare", report.seconds.prepare},
+                        {"solve", report.seconds.solve},       {"write", report.seconds.write},
+                        {"pictures", report.seconds.pictures}, {"report", report.seconds.report}};
   const Json page = report_document(input.title, report.document, summary, maps, seconds);
   if (Result<void> ok = write_report(partial.path(), page); !ok) return std::move(ok).error();
   report.seconds.report += watch.lap();

@@ -19,7 +19,7 @@
 namespace weft::app {
 
 struct SolveOptions {
-  std::string method = "fast";       ///< a name of solver::method_names()
+  std::string method = "standard";   ///< a name of solver::method_names()
   std::filesystem::path output;      ///< empty: <session>/solve/<id>, or ./<photographs>-solve/<id>
   std::string compression = "none";  ///< of EXR files: none, zip, piz
   TileOptions tile = kSolveTile;
@@ -27,7 +27,7 @@ struct SolveOptions {
 };
 
 struct SolveSeconds {
-  double read = 0, solve = 0, write = 0, pictures = 0, report = 0, sync = 0, total = 0;
+  double read = 0, prepare = 0, solve = 0, write = 0, pictures = 0, report = 0, sync = 0, total = 0;
 };
 
 /// What a solve left behind.

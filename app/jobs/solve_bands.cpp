@@ -125,7 +125,8 @@ class CorrectedTile {
 
 Result<double> solve_bands(const Photographs& photographs, const solver::Method& method,
                            const TileOptions& tile, const JobContext& context, const BandSink& sink,
-                           LightCorrection* correction) {
+                           const BandOptions& band_options) {
+  LightCorrection* const correction = band_options.correction;
   const Size size = photographs.size;
   const bool mosaics = photographs.rgb.empty();
   const bool to_rgb = mosaics && method.wants_rgb();
@@ -134,6 +135,7 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
 
   std::vector<TileReader> readers;
   for (int i = 0; i < threads; ++i) readers.emplace_back(photographs, tile, to_rgb ? kReach : 0, to_rgb);
+  std::vector<solver::SolveTally> tallies(static_cast<std::size_t>(threads));
   std::vector<CorrectedTile> corrected(correction == nullptr ? 0 : static_cast<std::size_t>(threads));
   std::array<BandMaps, 2> maps = {BandMaps(size.width), BandMaps(size.width)};
   Photosites photosites(demosaic_after ? size.width : 0);
@@ -178,6 +180,7 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
         output.albedo = crop(three(out.albedo), local);
         output.sigma_albedo = crop(three(out.sigma_albedo), local);
       }
+      output.tally = &tallies[static_cast<std::size_t>(worker)];
       method.solve(input, output);
     });
     mark_replaced(photographs.replaced, band, out.status.plane());
@@ -204,6 +207,9 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
     context.progress("solve", static_cast<double>(band.y1) / size.height);
   }
   if (Result<void> ok = wait_for_sink(); !ok) return std::move(ok).error();
+  for (const solver::SolveTally& tally : tallies) {
+    if (band_options.tally != nullptr) *band_options.tally += tally;
+  }
   return waited;
 }
 

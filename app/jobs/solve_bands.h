@@ -38,11 +38,16 @@ inline constexpr TileOptions kSolveTile = {.width = 8192, .height = 4};
 /// Called in order, from one thread at a time, while the next band is being solved.
 using BandSink = std::function<Result<void>(const MapBand&)>;
 
+struct BandOptions {
+  LightCorrection* correction = nullptr;  ///< readings go through it, if there is one
+  solver::SolveTally* tally = nullptr;    ///< added to, if there is one
+};
+
 /// Solves photographs band by band: memory stays at a few hundred rows of maps whatever the size of the
 /// image. The bytes that reach the sink depend on neither `tile` nor threads. Returns seconds that solving
-/// had to wait for the sink. `correction` may be null; else readings go through it.
+/// had to wait for the sink.
 Result<double> solve_bands(const Photographs& photographs, const solver::Method& method,
                            const TileOptions& tile, const JobContext& context, const BandSink& sink,
-                           LightCorrection* correction = nullptr);
+                           const BandOptions& options = {});
 
 }  // namespace weft::app

@@ -48,9 +48,11 @@ TEST(AccuracyScenes, PatchesLieInTheFrameOnWholeFilterCells) {
 
 class RenderedPatch : public testing::Test {
  protected:
-  // The first scene: smooth, Lambert. Near a corner, so that a field of the wrong place would show.
+  // The first scene, smooth and Lambert, without bounced light: all of it is in the solver's model. Near a
+  // corner, so that a field of the wrong place would show.
   static void SetUpTestSuite() {
-    const AccuracyScene scene = accuracy_scenes(SceneSet::kTuning, 1, false).front();
+    AccuracyScene scene = accuracy_scenes(SceneSet::kTuning, 1, false).front();
+    scene.scene.effects.interreflection = false;
     const Rect corner = scene.patches.back();
     Result<Patch> rendered =
         render_patch(scene.scene, {corner.x0, corner.y0, corner.x0 + 48, corner.y0 + 48}, 1);
@@ -76,15 +78,14 @@ TEST_F(RenderedPatch, ReadsWhatItsLightFieldAndItsTruthPredict) {
         const double predicted = patch_->albedo(x, y, c) * light.strength * cosine;
         const double error = patch_->readings(x, y, k) - predicted;
         bias += error / predicted;
-        normalized_square += error * error / patch_->photographs.noise->variance(predicted);
+        const NoiseModel& noise = *patch_->photographs.noise;
+        normalized_square += error * error / (noise.variance(predicted) + noise.shared);
         ++count;
       }
     }
   }
-  // Bounced light adds up to one percent on a smooth cloth; the rest is the noise that is promised.
-  EXPECT_GT(bias / count, 0);
-  EXPECT_LT(bias / count, 0.01);
-  EXPECT_NEAR(normalized_square / count, 1, 0.3);
+  EXPECT_NEAR(bias / count, 0, 5e-4);
+  EXPECT_NEAR(normalized_square / count, 1, 0.04);
 }
 
 TEST_F(RenderedPatch, KeepsReadingsAndFieldOfTheLightsThatAreChosen) {

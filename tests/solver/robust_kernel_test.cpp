@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solver/kernels/weighted.h"
 #include "solver/reference/pixel.h"
@@ -29,20 +30,15 @@ LightField field_of(const NearLights& lights) {
   return *LightField::make(lights, overhead_camera(kSize, 600, 0.3), kSize, 2);
 }
 
-NearLights fewer_leds(std::size_t count) {
+// The first of ten LEDs, or all and some of a ring between.
+NearLights leds(std::size_t count) {
   NearLights lights = test::ten_leds();
-  lights.leds.resize(count);
-  return lights;
-}
-
-// Ten LEDs and some of a third ring.
-NearLights more_leds(std::size_t count) {
-  NearLights lights = test::ten_leds();
+  lights.leds.resize(std::min<std::size_t>(count, 10));
   for (std::size_t i = 10; i < count; ++i) {
     const double azimuth = radians(40.0 * static_cast<double>(i)), zenith = radians(48);
     NearLight led = lights.leds[0];
-    led.position_mm = {600 * std::sin(zenith) * std::cos(azimuth),
-                       600 * std::sin(zenith) * std::sin(azimuth), 600 * std::cos(zenith)};
+    led.position_mm = {600 * std::sin(zenith) * std::cos(azimuth), 600 * std::sin(zenith) * std::sin(azimuth),
+                       600 * std::cos(zenith)};
     led.aim = -1.0 / 600 * led.position_mm;
     lights.leds.push_back(led);
   }
@@ -157,8 +153,11 @@ void expect_as_reference(const NearLights& lights, const Kernel& kernel, int pla
         if (is_as(trial, truth[i], planes, x, y)) continue;
         ++otherwise;
         SCOPED_TRACE(testing::Message() << "pixel " << x << ", " << y);
-        RecordProperty("first_otherwise", x);
-        if (getenv("VERBOSE")) printf("%d %d: %g deg status %x %x sigma %g %g residual %g %g albedo %g %g\n",x,y,angle_deg(trial.normal(x, y), truth[i].normal),trial.status(x,y),truth[i].status,trial.sigma_normal_deg(x,y),truth[i].sigma_normal_deg,trial.residual(x,y),truth[i].residual,trial.albedo(x,y,0),truth[i].albedo[0]);
+        if (getenv("VERBOSE"))
+          printf("%d %d: %g deg status %x %x sigma %g %g residual %g %g albedo %g %g\n", x, y,
+                 angle_deg(trial.normal(x, y), truth[i].normal), trial.status(x, y), truth[i].status,
+                 trial.sigma_normal_deg(x, y), truth[i].sigma_normal_deg, trial.residual(x, y),
+                 truth[i].residual, trial.albedo(x, y, 0), truth[i].albedo[0]);
       }
     }
     const auto pixels = static_cast<double>(kTile.pixels());
@@ -184,6 +183,213 @@ TEST(TrimmedKernel, AgreesWithItsReferenceOnEveryTarget) {
     expect_as_reference(test::ten_leds(), Kernel(Estimator::kTrimmed, trim_from), 1, kNoise);
     expect_as_reference(test::ten_leds(), Kernel(Estimator::kTrimmed, trim_from), 1, std::nullopt);
     expect_as_reference(test::ten_leds(), Kernel(Estimator::kTrimmed, trim_from), 3, std::nullopt);
+  }
+}
+
+TEST(WeightedKernel, AgreesWithItsReferenceForAnyNumberOfLights) {
+  for (const std::size_t count : {4u, 5u, 7u, 15u, 17u}) {
+    SCOPED_TRACE(count);
+    expect_as_reference(leds(count), Kernel(Estimator::kRejecting), 1, kNoise);
+    expect_as_reference(leds(count), Kernel(Estimator::kTrimmed), 1, kNoise);
+  }
+}
+
+double rms_error_deg(const Trial& trial) {
+  double square = 0;
+  for (int y = 0; y < kTile.height(); ++y) {
+    for (int x = 0; x < kTile.width(); ++x) square += std::pow(trial.error_deg(x, y), 2);
+  }
+  return std::sqrt(square / static_cast<double>(kTile.pixels()));
+}
+
+// The rms error of flat cloth where every pixel's readings were changed by `spoil_pixel(trial, x, y)`.
+template <typename Spoil>
+double error_deg_after(Spoil spoil_pixel, const Kernel& kernel) {
+  const LightField field = field_of(test::ten_leds());
+  Trial trial(field, kTile, 1, flat_grey);
+  trial.add_noise(kNoise, 11);
+  for (int y = 0; y < kTile.height(); ++y) {
+    for (int x = 0; x < kTile.width(); ++x) spoil_pixel(trial, x, y);
+  }
+  trial.solve(kernel, kNoise);
+  return rms_error_deg(trial);
+}
+
+TEST(Standard, LeavesOutOneHighlightOfTen) {
+  const auto nothing = [](Trial&, int, int) {};
+  const auto highlight = [](Trial& trial, int x, int y) {
+    trial.reading(static_cast<std::size_t>(x % 10))(x, y) *= 2;
+  };
+  const double clean = error_deg_after(nothing, Kernel(Estimator::kRejecting));
+  const Kernel rejecting(Estimator::kRejecting);
+  EXPECT_LT(error_deg_after(highlight, rejecting), 1.15 * clean) << "of nine readings instead of ten";
+  EXPECT_GE(rejecting.tally.rejected_readings, kTile.pixels());
+  EXPECT_GT(error_deg_after(highlight, Kernel(Estimator::kWeighted)), 5 * clean);
+}
+
+TEST(Standard, LeavesOutACastShadow) {
+  const auto nothing = [](Trial&, int, int) {};
+  for (const float left : {0.0f, 0.5f}) {
+    const auto shadow = [left](Trial& trial, int x, int y) {
+      trial.reading(static_cast<std::size_t>(x % 10))(x, y) *= left;
+    };
+    EXPECT_LT(error_deg_after(shadow, Kernel(Estimator::kRejecting)),
+              1.15 * error_deg_after(nothing, Kernel(Estimator::kRejecting)))
+        << "light left: " << left;
+  }
+}
+
+TEST(Standard, KeepsAllReadingsOfMostCleanPixels) {
+  const Kernel kernel(Estimator::kRejecting);
+  error_deg_after([](Trial&, int, int) {}, kernel);
+  const double rejecting =
+      static_cast<double>(kernel.tally.rejected_readings) / static_cast<double>(kTile.pixels());
+  EXPECT_GT(rejecting, 0.003);
+  EXPECT_LT(rejecting, 0.035);
+}
+
+TEST(Robust, LeavesOutThreeHighlightsOfTen) {
+  const auto nothing = [](Trial&, int, int) {};
+  const auto highlights = [](Trial& trial, int x, int y) {
+    for (const int k : {0, 1, 4}) trial.reading(static_cast<std::size_t>((x + k) % 10))(x, y) *= 2.5f;
+  };
+  const double clean = error_deg_after(nothing, Kernel(Estimator::kTrimmed));
+  EXPECT_LT(error_deg_after(highlights, Kernel(Estimator::kTrimmed)), 2 * clean);
+  EXPECT_GT(error_deg_after(highlights, Kernel(Estimator::kRejecting)), 10 * clean);
+}
+
+void expect_same_bits(const Trial& a, int ax, int ay, const Trial& b, int bx, int by) {
+  ASSERT_EQ(a.normal(ax, ay), b.normal(bx, by));
+  ASSERT_EQ(a.albedo(ax, ay), b.albedo(bx, by));
+  ASSERT_EQ(a.sigma_normal_deg(ax, ay), b.sigma_normal_deg(bx, by));
+  ASSERT_EQ(a.sigma_albedo(ax, ay), b.sigma_albedo(bx, by));
+  ASSERT_EQ(a.residual(ax, ay), b.residual(bx, by));
+  ASSERT_EQ(a.status(ax, ay), b.status(bx, by));
+}
+
+// Every seventh pixel asks for what the six beside it do not.
+void expect_same_bits_beside(const Kernel& kernel, int planes) {
+  const LightField field = field_of(test::ten_leds());
+  Trial alone(field, kTile, planes, cloth(30)), beside(field, kTile, planes, cloth(30));
+  alone.add_noise(kNoise, 5);
+  beside.add_noise(kNoise, 5);
+  for (int x = 0; x < kTile.width(); x += 7) {
+    for (int y = 0; y < kTile.height(); ++y) {
+      beside.reading(3)(x, y) *= y % 4 == 0 ? 3 : 1;
+      beside.reading(5)(x, y) *= y % 4 <= 1 ? 4 : 1;
+      beside.reading(7)(x, y) = y % 4 == 2 ? kNaN : 0;
+    }
+  }
+  on_every_target([&] {
+    alone.solve(kernel, kNoise);
+    beside.solve(kernel, kNoise);
+    for (int y = 0; y < kTile.height(); ++y) {
+      for (int x = 0; x < kTile.width(); ++x) {
+        SCOPED_TRACE(testing::Message() << planes << " planes, pixel " << x << ", " << y);
+        if (x % 7 != 0) expect_same_bits(alone, x, y, beside, x, y);
+      }
+    }
+  });
+}
+
+TEST(WeightedKernel, GivesTheSameBitsWhateverThePixelBeside) {
+  for (const int planes : {1, 3}) {
+    expect_same_bits_beside(Kernel(Estimator::kWeighted), planes);
+    expect_same_bits_beside(Kernel(Estimator::kRejecting), planes);
+    expect_same_bits_beside(Kernel(Estimator::kTrimmed), planes);
+    expect_same_bits_beside(Kernel(Estimator::kTrimmed, 0.0), planes);
+  }
+}
+
+TEST(TrimmedKernel, IsStandardToTheBitWhereNothingAsks) {
+  const LightField field = field_of(test::ten_leds());
+  Trial standard(field, kTile, 1, cloth(30)), robust(field, kTile, 1, cloth(30));
+  standard.add_noise(kNoise, 5);
+  robust.add_noise(kNoise, 5);
+  for (int x = 0; x < kTile.width(); x += 7) robust.reading(5)(x, 3) *= 5;
+  on_every_target([&] {
+    standard.solve(Kernel(Estimator::kRejecting), kNoise);
+    robust.solve(Kernel(Estimator::kTrimmed, 6.0), kNoise);
+    for (int x = 0; x < kTile.width(); ++x) {
+      SCOPED_TRACE(x);
+      if (x % 7 != 0) expect_same_bits(standard, x, 3, robust, x, 3);
+    }
+  });
+}
+
+TEST(WeightedKernel, GivesTheSameBitsAtAnyWidth) {
+  const LightField field = field_of(test::ten_leds());
+  const auto solved = [&](int width) {
+    const Rect tile = {kTile.x0, kTile.y0, kTile.x0 + width, kTile.y0 + 2};
+    Trial trial(field, tile, 1, cloth(45));
+    for (int x = 0; x < width; ++x)
+      trial.reading(static_cast<std::size_t>(x % 9))(x, 1) *= x % 3 == 0 ? 3 : 1;
+    const Kernel kernel(Estimator::kTrimmed);
+    trial.solve(kernel, kNoise);
+    return std::pair(std::move(trial), kernel.tally.rejected_readings);
+  };
+  on_every_target([&] {
+    const auto [whole, most] = solved(131);
+    std::int64_t before = 0;
+    for (const int width : {1, 2, 3, 5, 7, 8, 9, 15, 16, 17, 31, 33, 47, 63, 64, 65, 100, 127, 129, 130}) {
+      const auto [part, rejected] = solved(width);
+      SCOPED_TRACE(testing::Message() << "width " << width);
+      for (int y = 0; y < 2; ++y) {
+        for (int x = 0; x < width; ++x) expect_same_bits(whole, x, y, part, x, y);
+      }
+      EXPECT_GE(rejected, before);
+      EXPECT_LE(rejected, most);
+      before = rejected;
+    }
+    EXPECT_GT(most, 0);
+  });
+}
+
+TEST(WeightedKernel, CountsEveryPixelOnce) {
+  const LightField field = field_of(test::ten_leds());
+  Trial trial(field, kTile, 1, flat_grey);
+  for (std::size_t k = 0; k < 10; ++k) {
+    if (k > 0) trial.reading(k)(3, 4) = kNaN;
+    if (k > 2) trial.reading(k)(5, 4) = kInfinity;
+    trial.reading(k)(6, 4) = -kInfinity;
+  }
+  trial.reading(8)(7, 4) *= 2;
+  const Kernel kernel(Estimator::kRejecting);
+  trial.solve(kernel, kNoise);
+  const solver::SolveTally& t = kernel.tally;
+  EXPECT_EQ(t.unsolved, 2);
+  EXPECT_EQ(t.by_kernel + t.by_normal_equations + t.by_qr + t.by_svd + t.unsolved, kTile.pixels());
+  EXPECT_EQ(t.by_kernel, kTile.pixels() - 2);
+  EXPECT_EQ(t.rejected_readings, 1);
+  EXPECT_EQ(trial.status(3, 4), kInvalidReading | kNoSolution);
+  EXPECT_EQ(trial.status(5, 4), kSaturated | kZeroDof);
+  EXPECT_EQ(trial.status(6, 4), kShadowed | kNoSolution);
+}
+
+TEST(WeightedKernel, WeighsReadingsOverTwelveDecadesOfIntensity) {
+  for (const double decade : {-6.0, -3.0, 3.0, 6.0}) {
+    NearLights lights = test::ten_leds();
+    const double factor = std::pow(10, decade);
+    for (NearLight& led : lights.leds) {
+      for (double& flux : led.flux_rgb) flux *= factor;
+    }
+    const LightField field = field_of(lights), usual = field_of(test::ten_leds());
+    const NoiseModel noise = {kNoise.per_reading * factor, kNoise.floor * factor * factor,
+                              kNoise.shared * factor * factor};
+    for (const Estimator estimator : {Estimator::kWeighted, Estimator::kRejecting, Estimator::kTrimmed}) {
+      Trial scaled(field, kTile, 1, cloth(45)), unscaled(usual, kTile, 1, cloth(45));
+      for (Trial* trial : {&scaled, &unscaled}) {
+        for (int x = 0; x < kTile.width(); x += 2) trial->reading(3)(x, 2) *= 3;
+      }
+      const Kernel kernel(estimator);
+      unscaled.solve(kernel, kNoise);
+      scaled.solve(kernel, noise);
+      EXPECT_EQ(kernel.tally.by_kernel, kTile.pixels()) << "decade " << decade;
+      for (int x = 0; x < kTile.width(); ++x) {
+        ASSERT_LT(angle_deg(scaled.normal(x, 2), unscaled.normal(x, 2)), 1e-4) << "decade " << decade;
+        ASSERT_NEAR(scaled.sigma_normal_deg(x, 2) / unscaled.sigma_normal_deg(x, 2), 1, 1e-4);
+      }
+    }
   }
 }
 

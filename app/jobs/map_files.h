@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/photographs.h"
+#include "app/jobs/solve_bands.h"
+#include "core/image.h"
+#include "core/image_io/image_io.h"
+#include "core/result.h"
+#include "solver/uncertainty/calibration_sigma.h"
+
+namespace weft::app {
+
+/// What the calibration's covariance makes of solved maps, for the rows of a band whose albedo is ready: the
+/// `.calibration` channels of sigma.exr.
+class CalibrationChannels {
+ public:
+  /// kBadData as CalibrationSigmas::make. `photographs` must outlive this and hold a covariance.
+  static Result<CalibrationChannels> make(const Photographs& photographs, int threads);
+
+  /// R, G, B of the albedo, absolute, and the angle of the normal, over band.albedo_rows; valid until the
+  /// next call. Bands come in order.
+  std::array<View<const float>, 4> of(const MapBand& band);
+
+ private:
+  CalibrationChannels(const Photographs& photographs, solver::CalibrationSigmas sigmas, int threads);
+
+  const Photographs* photographs_;
+  solver::CalibrationSigmas sigmas_;
+  int threads_;
+  Image<float> normal_;  ///< of all rows whose albedo is to come
+  int rows_ = 0;         ///< of them
+  Image<float> albedo_, relative_, channels_;
+};
+
+/// The map files of a solve, written band by band: docs/formats.md.
+class MapFiles {
+ public:
+  /// `with_calibration` adds the channels of CalibrationChannels.
+  static Result<MapFiles> open(const std::filesystem::path& folder, Size size, const std::string& compression,
+                               bool with_calibration);
+  /// `calibration` may be null where there are no such channels.
+  Result<void> write(const MapBand& band, CalibrationChannels* calibration);
+  Result<void> finish();
+
+ private:
+  std::optional<ImageWriter> normal_, albedo_, sigma_, residual_, status_;
+};
+
+}  // namespace weft::app
