@@ -58,17 +58,35 @@ CLI::App* add_solve(CLI::App& app, SolveArguments& a, CommonArguments& common, s
   session->excludes(photos)->excludes(light_file);
   photos->excludes(light_file);
   CLI::Option* level =
-      verb->add_option("--quality", quality,
-                       "Level: preview (half size, no masks), fast (least squares without shadows), standard "
-                       "(weighted, misfits rejected; default), robust (for highlights), reference (in double, "
-                       "shadows and light between yarns taken out where the cloth needs it)")
+      verb->add_option(
+              "--quality", quality,
+              "Level: preview (half size, no masks), fast (least squares without shadows), standard "
+              "(weighted, misfits rejected; default), robust (for highlights), reference (in double, "
+              "shadows and light between yarns taken out where the cloth needs it)")
           ->check(CLI::IsMember(names_of(true)));
-  verb->add_option("--method", method,
-                   "Method for comparison: seed (four systems a pixel by SVD, after demosaicing), "
-                   "least-squares (every valid reading), wls (weighted), l1 (least absolute residuals), sbl "
-                   "(sparse errors), lts (least trimmed squares)")
-      ->check(CLI::IsMember(names_of(false)))
-      ->excludes(level);
+  CLI::Option* by_name =
+      verb->add_option(
+              "--method", method,
+              "Method for comparison: seed (four systems a pixel by SVD, after demosaicing), "
+              "least-squares (every valid reading), wls (weighted), l1 (least absolute residuals), sbl "
+              "(sparse errors), lts (least trimmed squares)")
+          ->check(CLI::IsMember(names_of(false)))
+          ->excludes(level);
+  CLI::Option* explain = verb->add_flag(
+      "--explain", a.explain,
+      "Solve nothing: predict, from sample tiles, each level's mean error in degrees and its seconds here");
+  CLI::Option* within = verb->add_option("--within", a.wish.within_seconds,
+                                         "Choose the best level that takes so many seconds, by --explain")
+                            ->check(CLI::PositiveNumber);
+  CLI::Option* to = verb->add_option("--to", a.wish.to_deg,
+                                     "Choose the cheapest level expected to be so many degrees off at most")
+                        ->check(CLI::PositiveNumber);
+  CLI::Option* ladder =
+      verb->add_option("--ladder", a.ladder,
+                       "Solve by every level, and draw the same 128 x 128 normals of each into this PNG")
+          ->needs(session);
+  for (CLI::Option* priced : {explain, within, to, ladder}) priced->excludes(level)->excludes(by_name);
+  ladder->excludes(explain)->excludes(within)->excludes(to);
   verb->add_option("--lights", lights,
                    "LEDs or photographs to solve from, numbered from 1: 1,4,7; default all")
       ->delimiter(',')
@@ -80,8 +98,10 @@ CLI::App* add_solve(CLI::App& app, SolveArguments& a, CommonArguments& common, s
           "How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb")
       ->check(CLI::IsMember({"auto", "linear", "srgb"}))
       ->capture_default_str();
-  verb->add_option("-o,--output", a.options.output,
-                   "Folder for the maps; default SESSION/solve/ID, or ./NAME-solve/ID for photographs");
+  CLI::Option* output =
+      verb->add_option("-o,--output", a.options.output,
+                       "Folder for the maps; default SESSION/solve/ID, or ./NAME-solve/ID for photographs");
+  for (CLI::Option* unsaved : {explain, ladder}) unsaved->excludes(output);
   verb->add_option("--compress", a.options.compression, "Of EXR files: none, zip, piz")
       ->check(CLI::IsMember({"none", "zip", "piz"}))
       ->capture_default_str();
@@ -177,6 +197,15 @@ CLI::App* add_bench_accuracy(CLI::App& bench, BenchAccuracyArguments& a, std::st
   return verb;
 }
 
+CLI::App* add_bench_explain(CLI::App& bench, BenchExplainArguments& a, std::string& set) {
+  CLI::App* verb = bench.add_subcommand("explain", "Errors that solve --explain predicts against true ones");
+  verb->add_flag("--quick", a.quick, "One small patch a scene");
+  verb->add_option("--set", set, "Scenes: those that the prediction is fitted to, or those held out")
+      ->check(CLI::IsMember({"tuning", "held-out"}))
+      ->capture_default_str();
+  return verb;
+}
+
 CLI::App* add_bench_photos(CLI::App& bench, BenchPhotosArguments& a) {
   CLI::App* verb = bench.add_subcommand("photos", "Errors on real photographs under known distant lights");
   verb->add_option("folder", a.folder,
@@ -241,6 +270,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   BenchHeightArguments bench_height;
   BenchNumericsArguments bench_numerics;
   BenchAccuracyArguments bench_accuracy;
+  BenchExplainArguments bench_explain;
   BenchPhotosArguments bench_photos;
   DemoArguments demo;
   std::string quality, method, transfer = "auto", kind = "normal", set = "held-out";
@@ -254,16 +284,16 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   CLI::App* bench_effects_verb = add_bench_effects(*bench_verb, bench_effects);
   CLI::App* bench_numerics_verb = add_bench_numerics(*bench_verb, bench_numerics);
   CLI::App* bench_accuracy_verb = add_bench_accuracy(*bench_verb, bench_accuracy, set);
+  CLI::App* bench_explain_verb = add_bench_explain(*bench_verb, bench_explain, set);
   CLI::App* bench_photos_verb = add_bench_photos(*bench_verb, bench_photos);
   CLI::App* bench_height_verb = add_bench_height(*bench_verb, bench_height);
   CLI::App* bench_registration_verb = bench_verb->add_subcommand(
       "registration", "Shots registered to each other: shift, error, cost and gain on three weaves");
   CLI::App* bench_transport_verb = add_bench_transport(*bench_verb, bench_transport);
   CLI::App* demo_verb = add_demo(app, demo);
-  for (CLI::App* verb :
-       {simulate_verb, solve_verb, compare_verb, bench_solve_verb, bench_effects_verb, bench_numerics_verb,
-        bench_accuracy_verb, bench_photos_verb, bench_height_verb, bench_transport_verb, bench_registration_verb,
-        demo_verb}) {
+  for (CLI::App* verb : {simulate_verb, solve_verb, compare_verb, bench_solve_verb, bench_effects_verb,
+                         bench_numerics_verb, bench_accuracy_verb, bench_explain_verb, bench_photos_verb,
+                         bench_height_verb, bench_transport_verb, bench_registration_verb, demo_verb}) {
     add_common(*verb, common);
   }
 
@@ -294,6 +324,10 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   if (*bench_accuracy_verb) {
     bench_accuracy.tuning = set == "tuning";
     return Arguments{common, bench_accuracy};
+  }
+  if (*bench_explain_verb) {
+    bench_explain.tuning = set == "tuning";
+    return Arguments{common, bench_explain};
   }
   if (*bench_photos_verb) return Arguments{common, bench_photos};
   if (*bench_height_verb) return Arguments{common, bench_height};

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/jobs/explain.h"
 #include "app/jobs/solve.h"
 
 namespace weft::app {
@@ -30,6 +31,9 @@ struct SolveArguments {
   SessionOptions session;
   PhotoOptions photos;
   SolveOptions options;
+  bool explain = false;
+  LevelWish wish;
+  std::filesystem::path ladder;  ///< a picture of all levels, instead of one solve
 };
 
 struct CompareArguments {
@@ -78,6 +82,11 @@ struct BenchAccuracyArguments {
   std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
 };
 
+struct BenchExplainArguments {
+  bool quick = false;
+  bool tuning = false;
+};
+
 struct BenchPhotosArguments {
   std::filesystem::path folder;
   int pick = 10;
@@ -98,7 +107,7 @@ struct Arguments {
   CommonArguments common;
   std::variant<SimulateArguments, SolveArguments, CompareArguments, BenchSolveArguments,
                BenchTransportArguments, BenchEffectsArguments, BenchHeightArguments, BenchNumericsArguments, BenchAccuracyArguments,
-               BenchPhotosArguments, BenchRegistrationArguments, DemoArguments>
+               BenchExplainArguments, BenchPhotosArguments, BenchRegistrationArguments, DemoArguments>
       verb;
 };
 

@@ -25,6 +25,7 @@ Result<int> run(const Arguments& arguments) {
                              [&](const BenchSolveArguments& a) { return run_bench_solve(a, common); },
                              [&](const BenchNumericsArguments& a) { return run_bench_numerics(a, common); },
                              [&](const BenchAccuracyArguments& a) { return run_bench_accuracy(a, common); },
+                             [&](const BenchExplainArguments& a) { return run_bench_explain(a, common); },
                              [&](const BenchPhotosArguments& a) { return run_bench_photos(a, common); },
                              [&](const BenchEffectsArguments& a) { return run_bench_effects(a, common); },
                              [&](const BenchHeightArguments& a) { return run_bench_height(a, common); },

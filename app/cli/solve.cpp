@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "app/cli/exit_code.h"
+#include "app/cli/explain.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "core/files.h"
@@ -70,12 +71,20 @@ void print_words(const SolveReport& report) {
 }  // namespace
 
 Result<int> run_solve(const SolveArguments& arguments, const CommonArguments& common) {
+  if (!arguments.ladder.empty()) return run_ladder(arguments, common);
+  if (arguments.explain) return run_explain(arguments, common);
+  SolveOptions options = arguments.options;
+  if (arguments.wish.is_one()) {
+    Result<std::string> level = chosen_level(arguments, common);
+    if (!level) return std::move(level).error();
+    options.method = std::move(*level);
+  }
   Result<SolveReport> report = [&] {
     ProgressLine line(common.quiet);
     const JobContext context = {common.threads, stop_on_signal(), line.callback()};
     const bool session = !arguments.session.folder.empty();
-    return session ? solve_session(arguments.session, arguments.options, context)
-                   : solve_photos(arguments.photos, arguments.options, context);
+    return session ? solve_session(arguments.session, options, context)
+                   : solve_photos(arguments.photos, options, context);
   }();
   if (!report) return std::move(report).error();
   if (arguments.session.folder.empty() && !common.quiet) {

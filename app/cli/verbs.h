@@ -13,6 +13,7 @@ Result<int> run_solve(const SolveArguments& arguments, const CommonArguments& co
 Result<int> run_compare(const CompareArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_solve(const BenchSolveArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_accuracy(const BenchAccuracyArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_explain(const BenchExplainArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_photos(const BenchPhotosArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_numerics(const BenchNumericsArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_effects(const BenchEffectsArguments& arguments, const CommonArguments& common);

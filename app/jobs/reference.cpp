@@ -110,7 +110,7 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
                                        const ReferenceOptions& options, const JobContext& context,
                                        const BandSink& sink) {
   ReferenceFacts facts;
-  const auto quick = solver::standard_method(), exact = solver::exact_method();
+  const auto quick = solver::robust_method(), exact = solver::exact_method();
   Result<solver::Gates> gates = measure_gates(solve_samples(photographs, *quick, context.threads));
   if (!gates) return std::move(gates).error();
   facts.gates = *gates;

@@ -45,9 +45,13 @@ SampleMaps solve_sample(const Photographs& photographs, const solver::Method& me
   const Size size = {tile.width(), tile.height()};
   const bool mosaics = photographs.rgb.empty();
   const int planes = mosaics && !method.wants_rgb() ? 1 : 3;
-  SampleMaps maps{tile, Image<float>(size, 3), Image<float>(size), Image<float>(size),
+  SampleMaps maps{tile,
+                  Image<float>(size, 3),
+                  Image<float>(size),
+                  Image<float>(size),
+                  Image<float>(size),
                   Image<std::uint16_t>(size)};
-  Image<float> albedo(size, 3), sigma_albedo(size, 3), residual(size);
+  Image<float> albedo(size, 3), sigma_albedo(size, 3);
   const std::vector<View<const float>>& readings = reader.read(tile);
   const solver::TileInput input = {tile,
                                    planes,
@@ -63,7 +67,7 @@ SampleMaps solve_sample(const Photographs& photographs, const solver::Method& me
     output.sigma_albedo[c] = sigma_albedo.plane(i);
   }
   output.sigma_normal_deg = maps.sigma_normal_deg.plane();
-  output.residual = residual.plane();
+  output.residual = maps.residual.plane();
   output.status = maps.status.plane();
   method.solve(input, output);
   const View<const float> shown = albedo.plane(planes == 1 ? 0 : 1);

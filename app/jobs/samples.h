@@ -17,6 +17,7 @@ struct SampleMaps {
   Image<float> normal;            ///< X, Y, Z
   Image<float> albedo;            ///< 1 plane
   Image<float> sigma_normal_deg;  ///< 1 plane
+  Image<float> residual;          ///< 1 plane
   Image<std::uint16_t> status;
   std::int64_t readings = 0, shadowed = 0;  ///< as of solver::SolvedSample
 

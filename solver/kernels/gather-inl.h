@@ -61,14 +61,15 @@ HWY_INLINE LightHere light_here(D d, const RowLight& light, V x_mm, V y_mm, V ga
   here.l = {hn::Mul(to_led.x, inverse_d), hn::Mul(to_led.y, inverse_d), hn::Mul(to_led.z, inverse_d)};
   if (light.mu == 0) {
     here.cosine = one;
-    here.inverse_shape = hn::Mul(d2, reciprocal(d, gain));
+    here.inverse_shape = hn::Div(d2, gain);
     return here;
   }
-  const Vector3 aim = {hn::Set(d, light.aim[0]), hn::Set(d, light.aim[1]), hn::Set(d, light.aim[2])};
-  here.cosine = hn::Neg(dot(here.l, aim));
+  const Vector3 back = {hn::Set(d, light.against_aim[0]), hn::Set(d, light.against_aim[1]),
+                        hn::Set(d, light.against_aim[2])};
+  here.cosine = dot(here.l, back);
   V lobe = here.cosine;
   if (light.mu != 1) lobe = hn::Exp(d, hn::Mul(hn::Set(d, light.mu), hn::Log(d, hn::Max(lobe, hn::Zero(d)))));
-  here.inverse_shape = hn::Mul(d2, reciprocal(d, hn::Mul(lobe, gain)));
+  here.inverse_shape = hn::Div(d2, hn::Mul(lobe, gain));
   return here;
 }
 
@@ -203,8 +204,8 @@ struct Columns {
 
 // Readings over strength of all lights, kept in `scratch`, and their normal equations as if every one
 // counted. Returns whether that holds for every lane: no reading is missing, saturated or behind a LED, none
-// is dark enough to be taken for a shadow, some stand out of the noise. A value that is not finite shows in
-// the sums.
+// is dark enough to be taken for a shadow, the first stands out of the noise. A value that is not finite
+// shows in the sums.
 template <std::size_t kPlanes>
 HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const Columns& columns,
                        Sums<kPlanes>& sums) {
@@ -224,7 +225,7 @@ HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const C
       inverse_gain[p] = reciprocal(d, gain_of(p));
     }
   }
-  V darkest = infinity, brightest = hn::Neg(infinity), brightest_reading = brightest, least_cosine = one;
+  V darkest = infinity, brightest = hn::Neg(infinity), least_cosine = one;
   for (std::size_t k = 0; k < task.light_count; ++k) {
     const RowLight& light = task.lights[k];
     const LightHere here = light_here(d, light, columns.x_mm, columns.y_mm,
@@ -243,7 +244,6 @@ HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const C
       const V ratio = hn::Mul(r, inverse_e);
       if constexpr (kPlanes == 1) {
         light_sum = ratio;
-        brightest_reading = hn::Max(brightest_reading, r);
       } else {
         light_sum = hn::MulAdd(hn::Set(d, static_cast<float>(kLuminance[p])), ratio, light_sum);
         scratch.store_plane(k, p, ratio);
@@ -260,7 +260,8 @@ HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const C
   sums.count = hn::Set(d, static_cast<float>(task.light_count));
   M all = hn::Lt(hn::Abs(hn::Add(sums.rhs.x, hn::Add(sums.rhs.y, sums.rhs.z))), infinity);
   all = hn::And(all, hn::Gt(least_cosine, hn::Zero(d)));
-  all = hn::And(all, kPlanes == 1 ? hn::Gt(brightest_reading, hn::Set(d, task.dark_reading))
+  const V first_reading = hn::LoadU(d, task.readings[0] + columns.x);
+  all = hn::And(all, kPlanes == 1 ? hn::Gt(first_reading, hn::Set(d, task.dark_reading))
                                   : hn::Gt(brightest, hn::Zero(d)));
   if (task.shadow_mask) {
     all = hn::And(all, hn::Ge(darkest, hn::Mul(hn::Set(d, static_cast<float>(kShadowShare)), brightest)));

@@ -28,7 +28,8 @@ void solve_linear(const TileInput& input, const TileOutput& output, const Linear
 
 void solve_bare(Rect tile, std::span<const View<const float>> readings, const LightField& field,
                 const std::array<View<float>, 3>& normal, const std::array<View<float>, 3>& albedo) {
-  const std::vector<RowLight> lights = row_lights(field);
+  std::vector<RowLight> lights;
+  write_row_lights(field, lights);
   std::vector<const float*> rows(readings.size());
   RowPoints points;
   RowTask task;

@@ -15,8 +15,8 @@ namespace weft::solver {
 
 struct RowLight {
   bool distant = false;
-  float position[3] = {};  ///< mm above the cloth plane; the direction of a distant light
-  float aim[3] = {};
+  float position[3] = {};     ///< mm above the cloth plane; the direction of a distant light
+  float against_aim[3] = {};  ///< minus the aim
   float mu = 0;
   float inverse_flux[3] = {};  ///< 1 / Phi_c
 };

@@ -3,11 +3,28 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "solver/normals/pixelwise.h"
 
 namespace weft::solver {
 namespace {
+
+// What one thread keeps from tile to tile, so that tiles allocate nothing.
+struct Workspace {
+  std::vector<RowLight> lights;
+  std::vector<float> scratch;
+  std::vector<const float*> readings;
+  std::vector<PixelRow> pixel_rows;
+  RowPoints points;
+
+  void reset(const TileInput& input) {
+    write_row_lights(*input.field, lights);
+    scratch.resize(row_scratch_floats(lights.size()));
+    readings.resize(input.readings.size());
+    pixel_rows.assign(lights.size(), {});
+  }
+};
 
 RowLinePointer pointer_to(const LightField::RowLine& line) {
   return line.value.empty() ? RowLinePointer{} : RowLinePointer{line.value.data(), line.step.data()};
@@ -52,34 +69,31 @@ void point_to_row(const TileInput& input, const TileOutput& output, int y, RowTa
 
 }  // namespace
 
-std::vector<RowLight> row_lights(const LightField& field) {
-  std::vector<RowLight> lights;
+void write_row_lights(const LightField& field, std::vector<RowLight>& rows) {
+  rows.clear();
   if (const auto* distant = std::get_if<DistantLights>(&field.lights())) {
     for (const DistantLight& light : distant->lights) {
-      RowLight row;
+      RowLight& row = rows.emplace_back();
       row.distant = true;
       row.position[0] = static_cast<float>(light.direction.x);
       row.position[1] = static_cast<float>(light.direction.y);
       row.position[2] = static_cast<float>(light.direction.z);
       for (std::size_t c = 0; c < 3; ++c)
         row.inverse_flux[c] = static_cast<float>(1 / light.irradiance_rgb[c]);
-      lights.push_back(row);
     }
-    return lights;
+    return;
   }
   for (const NearLight& led : std::get<NearLights>(field.lights()).leds) {
-    RowLight row;
+    RowLight& row = rows.emplace_back();
     row.position[0] = static_cast<float>(led.position_mm.x);
     row.position[1] = static_cast<float>(led.position_mm.y);
     row.position[2] = static_cast<float>(led.position_mm.z - field.cloth_height_mm());
-    row.aim[0] = static_cast<float>(led.aim.x);
-    row.aim[1] = static_cast<float>(led.aim.y);
-    row.aim[2] = static_cast<float>(led.aim.z);
+    row.against_aim[0] = static_cast<float>(-led.aim.x);
+    row.against_aim[1] = static_cast<float>(-led.aim.y);
+    row.against_aim[2] = static_cast<float>(-led.aim.z);
     row.mu = static_cast<float>(led.mu);
     for (std::size_t c = 0; c < 3; ++c) row.inverse_flux[c] = static_cast<float>(1 / led.flux_rgb[c]);
-    lights.push_back(row);
   }
-  return lights;
 }
 
 void RowPoints::read(const LightField& field, int y, int x0, int x1) {
@@ -93,27 +107,25 @@ void RowPoints::read(const LightField& field, int y, int x0, int x1) {
 
 void solve_rows(const TileInput& input, const TileOutput& output, const PixelOptions& options,
                 bool (*row_kernel)(RowTask&)) {
-  const std::vector<RowLight> lights = row_lights(*input.field);
-  std::vector<float> scratch(row_scratch_floats(lights.size()));
-  std::vector<const float*> readings(input.readings.size());
-  std::vector<PixelRow> pixel_rows(lights.size());
-  PixelSolver solve_in_double(options);
-  RowPoints points;
+  thread_local Workspace w;
+  w.reset(input);
+  std::optional<PixelSolver> solver_in_double;
   RowTask task = task_of(input, options);
-  task.lights = lights.data();
-  task.points = &points;
-  task.readings = readings.data();
-  task.scratch = scratch.data();
+  task.lights = w.lights.data();
+  task.points = &w.points;
+  task.readings = w.readings.data();
+  task.scratch = w.scratch.data();
   std::int64_t in_double = 0;
   for (int y = 0; y < input.tile.height(); ++y) {
-    points.read(*input.field, input.tile.y0 + y, input.tile.x0, input.tile.x1);
-    for (std::size_t i = 0; i < readings.size(); ++i) readings[i] = input.readings[i].row(y);
+    w.points.read(*input.field, input.tile.y0 + y, input.tile.x0, input.tile.x1);
+    for (std::size_t i = 0; i < w.readings.size(); ++i) w.readings[i] = input.readings[i].row(y);
     point_to_row(input, output, y, task);
     if (!row_kernel(task)) continue;
     for (int x = 0; x < input.tile.width(); ++x) {
       if (!(task.status[x] & kSolveAgain)) continue;
-      read_pixel(input, x, y, pixel_rows);
-      write_pixel(solve_in_double.solve(pixel_rows), input.planes, output, x, y);
+      if (!solver_in_double) solver_in_double.emplace(options);
+      read_pixel(input, x, y, w.pixel_rows);
+      write_pixel(solver_in_double->solve(w.pixel_rows), input.planes, output, x, y);
       ++in_double;
     }
   }

@@ -10,8 +10,8 @@
 
 namespace weft::solver {
 
-/// Float copies of what a row kernel needs of each light.
-std::vector<RowLight> row_lights(const LightField& field);
+/// Float copies of what a row kernel needs of each light, in place of what `rows` holds.
+void write_row_lights(const LightField& field, std::vector<RowLight>& rows);
 
 /// Solves a tile row by row. `row_kernel` returns whether it left pixels marked kSolveAgain: those are solved
 /// by PixelSolver, with the same options.

@@ -22,7 +22,7 @@ class InDouble : public Method {
 }  // namespace
 
 std::unique_ptr<Method> exact_method() {
-  return std::make_unique<InDouble>(Estimator::kRejecting, true);
+  return std::make_unique<InDouble>(Estimator::kTrimmed, true);
 }
 std::unique_ptr<Method> least_absolute_method() {
   return std::make_unique<InDouble>(Estimator::kLeastAbsolute, false);

@@ -8,10 +8,6 @@
 namespace weft::solver {
 namespace {
 
-float finite(double v) {
-  return static_cast<float>(std::min(v, double{std::numeric_limits<float>::max()}));
-}
-
 void count_pixel(const PixelSolution& s, SolveTally& tally) {
   switch (s.path) {
     case SolvedBy::kNothing:
@@ -31,6 +27,10 @@ void count_pixel(const PixelSolution& s, SolveTally& tally) {
 }
 
 }  // namespace
+
+float finite(double value) {
+  return static_cast<float>(std::min(value, double{std::numeric_limits<float>::max()}));
+}
 
 void read_pixel(const TileInput& input, int x, int y, std::span<PixelRow> rows) {
   const auto planes = static_cast<std::size_t>(input.planes);

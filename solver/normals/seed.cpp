@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/method.h"
+#include "solver/normals/pixelwise.h"
 
 namespace weft::solver {
 namespace {
@@ -74,12 +75,11 @@ class Seed : public Method {
     output.normal[1](x, y) = static_cast<float>(n.y);
     output.normal[2](x, y) = static_cast<float>(n.z);
     for (std::size_t c = 0; c < 3; ++c) {
-      output.albedo[c](x, y) =
-          static_cast<float>(solved && seed.solved[c] ? length(seed.n[c]) : facts.albedo[c]);
-      output.sigma_albedo[c](x, y) = static_cast<float>(facts.sigma_albedo[c]);
+      output.albedo[c](x, y) = finite(solved && seed.solved[c] ? length(seed.n[c]) : facts.albedo[c]);
+      output.sigma_albedo[c](x, y) = finite(facts.sigma_albedo[c]);
     }
     output.sigma_normal_deg(x, y) = static_cast<float>(facts.sigma_normal_deg);
-    output.residual(x, y) = static_cast<float>(facts.residual);
+    output.residual(x, y) = finite(facts.residual);
     output.status(x, y) = facts.status;
     if (output.tally != nullptr) ++(solved ? output.tally->by_svd : output.tally->unsolved);
   }

@@ -100,7 +100,7 @@ inline int bright_rank(std::size_t lights) {
 /// A reading is called specular above kSpecularTimes the prediction, plus 3 sigma, plus this share of the
 /// albedo.
 inline constexpr double kSpecularTimes = 3;
-inline constexpr double kSpecularMargin = 0.01;
+inline constexpr double kSpecularMargin = 0.08;
 
 /// Departures from Lambert's law that no noise model knows, as a share of the albedo: added to the noise
 /// wherever readings are weighed and judged.

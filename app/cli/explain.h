@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "app/cli/arguments.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// Prints what each level would give and cost, and which one the wishes choose.
+Result<int> run_explain(const SolveArguments& arguments, const CommonArguments& common);
+
+/// The level that the wishes choose, with a note of what is expected of it.
+Result<std::string> chosen_level(const SolveArguments& arguments, const CommonArguments& common);
+
+/// Solves a session by every level and draws them side by side.
+Result<int> run_ladder(const SolveArguments& arguments, const CommonArguments& common);
+
+}  // namespace weft::app

@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/explain.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <utility>
+
+#include "app/jobs/map_files.h"
+#include "app/jobs/reference.h"
+#include "app/jobs/registration.h"
+#include "app/jobs/samples.h"
+#include "app/jobs/solve_frame.h"
+#include "core/files.h"
+#include "core/lights.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Size kCut = {512, 256};
+
+// A part of photographs as photographs of their own, to be solved for the clock. Brackets stay behind, and so
+// does the fall of gain over the frame.
+class Cut {
+ public:
+  Cut(const Photographs& whole, Rect area) : whole_(&whole), area_(area) {
+    part.size = {area.width(), area.height()};
+    part.leds = whole.leds;
+    part.shifts = whole.shifts;
+    part.camera = whole.camera;
+    if (part.camera) {
+      part.camera->size = part.size;
+      part.camera->cx -= area.x0;
+      part.camera->cy -= area.y0;
+    }
+    for (const Image<float>& image : whole.rgb) part.rgb.push_back(cut(image));
+    for (const RawFrame& frame : whole.mosaics) part.mosaics.push_back(cut(frame));
+    if (whole.dark) part.dark = cut(*whole.dark);
+  }
+
+  Result<void> light() {
+    Lights lights = whole_->field->lights();
+    if (auto* near = std::get_if<NearLights>(&lights)) {
+      near->log_gain_rgb = {};
+      for (NearLight& led : near->leds) led.log_gain_quadratic = {};
+    }
+    Result<LightField> field =
+        LightField::make(std::move(lights), part.camera, part.size, whole_->field->cloth_height_mm());
+    if (!field) return std::move(field).error();
+    part.field = std::move(*field);
+    return {};
+  }
+  void expose(const SessionPlan& plan) {
+    const Shot& first = plan.lit.front();
+    part.radiometry.emplace(part.mosaics.front(), part.dark ? &*part.dark : nullptr,
+                            *plan.calibration.response, Radiometry::Exposure{first.exposure_us, first.iso});
+    part.noise = whole_->noise;
+  }
+
+  Photographs part;
+
+ private:
+  template <typename T>
+  Image<T> cut(const Image<T>& image) const {
+    Image<T> out({area_.width(), area_.height()}, image.planes());
+    for (int p = 0; p < image.planes(); ++p) {
+      for (int y = 0; y < out.height(); ++y)
+        std::copy_n(image.plane(p).row(area_.y0 + y) + area_.x0, out.width(), out.plane(p).row(y));
+    }
+    return out;
+  }
+  RawFrame cut(const RawFrame& frame) const {
+    return {cut(frame.counts), frame.cfa, frame.black, frame.white, frame.shot};
+  }
+
+  const Photographs* whole_;
+  Rect area_;
+};
+
+// The middle of a frame, on whole cells of the colour filter.
+Rect middle_of(Size size) {
+  const Size cut = {std::min(size.width, kCut.width), std::min(size.height, kCut.height)};
+  const int x0 = (size.width - cut.width) / 2 / 2 * 2, y0 = (size.height - cut.height) / 2 / 2 * 2;
+  return {x0, y0, x0 + cut.width, y0 + cut.height};
+}
+
+// Wall seconds of a run: the lesser of two unless the first is long.
+Result<double> seconds_of(const std::function<Result<void>()>& run) {
+  constexpr double kLong_s = 0.5;
+  Stopwatch watch;
+  if (Result<void> ran = run(); !ran) return std::move(ran).error();
+  const double first = watch.lap();
+  if (first > kLong_s) return first;
+  if (Result<void> ran = run(); !ran) return std::move(ran).error();
+  return std::min(first, watch.lap());
+}
+
+Result<double> solve_seconds(const Photographs& part, const solver::MethodName& level,
+                             const solver::Gates& gates, const TileOptions& tile, const JobContext& context) {
+  const BandSink nowhere = [](const MapBand&) -> Result<void> { return {}; };
+  return seconds_of([&]() -> Result<void> {
+    if (level.extent == solver::Extent::kWholeFrame && (gates.shadows() || gates.interreflection())) {
+      const auto solved = solve_reference(part, tile, {.force_stages = true}, context, nowhere);
+      return solved ? Result<void>() : solved.error();
+    }
+    Result<Photographs> half = Photographs();
+    const bool halves = level.extent == solver::Extent::kHalfSize;
+    if (halves) half = half_size(part, context.threads);
+    if (!half) return std::move(half).error();
+    const auto solved = solve_bands(halves ? *half : part, *level.make(), tile, context, nowhere);
+    return solved ? Result<void>() : solved.error();
+  });
+}
+
+// A folder that is gone afterwards.
+struct Scratch {
+  fs::path path = fs::temp_directory_path() / fmt::format("weft-explain-{}", getpid());
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+};
+
+struct WriteCost {
+  double maps_seconds = 0;   ///< grows with the frame
+  double files_seconds = 0;  ///< to open and to finish them
+};
+
+Result<WriteCost> measure_write(const Photographs& part, const SolveOptions& options,
+                                const JobContext& context) {
+  const Scratch scratch;
+  if (Result<void> made = make_writable_folder(scratch.path); !made) return std::move(made).error();
+  WriteCost cost;
+  Stopwatch watch;
+  Result<MapFiles> files = MapFiles::open(scratch.path, part.size, options.compression, false);
+  if (!files) return std::move(files).error();
+  cost.files_seconds = watch.lap();
+  const auto write = [&](const MapBand& band) -> Result<void> {
+    Stopwatch band_watch;
+    Result<void> written = files->write(band, nullptr);
+    cost.maps_seconds += band_watch.lap();
+    return written;
+  };
+  const auto solved = solve_bands(part, *solver::fast_method(), options.tile, context, write);
+  if (!solved) return solved.error();
+  watch.lap();
+  if (Result<void> finished = files->finish(); !finished) return std::move(finished).error();
+  cost.files_seconds += watch.lap();
+  return cost;
+}
+
+std::string words_of(const solver::Gates& gates) {
+  std::string words;
+  for (const solver::Gate& gate : gates.measured) {
+    words += fmt::format("{}{} {:.3g} of {:.3g}{}{}", words.empty() ? "" : ", ", gate.name, gate.value,
+                         gate.limit, gate.unit.empty() ? "" : " ", gate.unit);
+  }
+  return words;
+}
+
+// The cheapest of the levels that are better than all others by less than they are worth.
+std::size_t best_of(const Ladder& ladder, const std::vector<std::size_t>& from_cheapest) {
+  std::size_t best = from_cheapest.front();
+  for (const std::size_t i : from_cheapest) {
+    const double error = ladder.levels[i].error.total_deg(), before = ladder.levels[best].error.total_deg();
+    if (error < (1 - kWorthwhileGain) * before) best = i;
+  }
+  return best;
+}
+
+std::vector<std::size_t> from_cheapest(const Ladder& ladder) {
+  std::vector<std::size_t> order(ladder.levels.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return ladder.levels[a].seconds.total() < ladder.levels[b].seconds.total();
+  });
+  return order;
+}
+
+void add_notes(Ladder& ladder) {
+  std::vector<std::size_t> cheaper;
+  for (const std::size_t i : from_cheapest(ladder)) {
+    LevelPrice& level = ladder.levels[i];
+    if (!cheaper.empty()) {
+      const LevelPrice& best = ladder.levels[best_of(ladder, cheaper)];
+      if (level.error.total_deg() > (1 - kWorthwhileGain) * best.error.total_deg())
+        level.note = "nothing to gain over " + best.error.quality;
+    }
+    cheaper.push_back(i);
+  }
+  LevelPrice& reference = ladder.levels.back();
+  const bool open = ladder.gates.shadows() || ladder.gates.interreflection();
+  const char* gates = open                      ? "gates open"
+                      : ladder.gates.specular() ? "gates shut, as this cloth is no Lambertian one"
+                                                : "gates shut";
+  reference.note +=
+      fmt::format("{}{}: {}", reference.note.empty() ? "" : "; ", gates, words_of(ladder.gates));
+}
+
+Result<Ladder> price(const Photographs& photographs, const Photographs& part, double read, double prepare,
+                     const SolveOptions& options, const JobContext& context) {
+  const JobContext silent = {context.threads, context.stop};
+  context.progress("explain", 0);
+  const Result<Forecast> forecast = forecast_errors(photographs, context.threads);
+  if (!forecast) return forecast.error();
+  const Result<WriteCost> write = measure_write(part, options, silent);
+  if (!write) return write.error();
+  const auto cuts = static_cast<double>(photographs.size.pixels()) / static_cast<double>(part.size.pixels());
+  Ladder ladder = {forecast->gates, {}};
+  for (const ErrorForecast& error : forecast->levels) {
+    const auto names = solver::method_names();
+    const auto level = std::find_if(names.begin(), names.end(), [&](const solver::MethodName& name) {
+      return error.quality == name.name;
+    });
+    const Result<double> solve = solve_seconds(part, *level, ladder.gates, options.tile, silent);
+    if (!solve) return solve.error();
+    const bool half = level->extent == solver::Extent::kHalfSize;
+    ladder.levels.push_back({error,
+                             {read, half ? 0 : prepare, *solve * cuts,
+                              write->files_seconds + write->maps_seconds * cuts / (half ? 4 : 1)},
+                             ""});
+    if (context.stop.stop_requested()) return interrupted();
+    context.progress(
+        "explain", static_cast<double>(ladder.levels.size()) / static_cast<double>(forecast->levels.size()));
+  }
+  add_notes(ladder);
+  return ladder;
+}
+
+// `plan` is that of a session of mosaics, or null.
+Result<Ladder> explain(Result<Photographs> photographs, double read, const SessionPlan* plan,
+                       const SolveOptions& options, const JobContext& context) {
+  if (!photographs) return std::move(photographs).error();
+  Stopwatch watch;
+  const Result<SessionShifts> shifts = register_shots(*photographs, context);
+  if (!shifts) return shifts.error();
+  const double prepare = watch.lap();
+  Cut cut(*photographs, middle_of(photographs->size));
+  if (Result<void> lit = cut.light(); !lit) return std::move(lit).error();
+  if (plan != nullptr) cut.expose(*plan);
+  return price(*photographs, cut.part, read, prepare, options, context);
+}
+
+Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
+  const auto& levels = ladder.levels;
+  const auto quickest = std::min_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
+    return a.seconds.total() < b.seconds.total();
+  });
+  const auto closest = std::min_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
+    return a.error.total_deg() < b.error.total_deg();
+  });
+  const std::string quick =
+      fmt::format("the quickest, {}, takes {:.3g} s at {:.3g} degrees", quickest->error.quality,
+                  quickest->seconds.total(), quickest->error.total_deg());
+  const std::string close =
+      fmt::format("the closest, {}, is expected to be off by {:.3g} degrees in {:.3g} s",
+                  closest->error.quality, closest->error.total_deg(), closest->seconds.total());
+  std::string where, why, remedy;
+  if (wish.within_seconds) {
+    where = fmt::format("--within {:g}", *wish.within_seconds);
+    why = quick;
+    remedy = "allow more seconds";
+  }
+  if (wish.to_deg) {
+    where += fmt::format("{}--to {:g}", where.empty() ? "" : " ", *wish.to_deg);
+    why += (why.empty() ? "" : "; ") + close;
+    remedy += remedy.empty() ? "allow more degrees" : ", or more degrees";
+  }
+  return {ErrorKind::kUsage, wish.to_deg ? "no level is that good" : "no level is that quick", where, why,
+          remedy + "; --explain lists all levels"};
+}
+
+}  // namespace
+
+Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& options,
+                               const JobContext& context) {
+  const Result<SessionPlan> plan = plan_session(input);
+  if (!plan) return plan.error();
+  Stopwatch watch;
+  Result<Photographs> photographs = load_session(*plan, context);
+  return explain(std::move(photographs), watch.lap(), plan->raw ? &*plan : nullptr, options, context);
+}
+
+Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,
+                              const JobContext& context) {
+  const Result<PhotoPlan> plan = plan_photos(input);
+  if (!plan) return plan.error();
+  Stopwatch watch;
+  Result<Photographs> photographs = load_photos(*plan, context);
+  return explain(std::move(photographs), watch.lap(), nullptr, options, context);
+}
+
+Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish) {
+  std::vector<std::size_t> fitting;
+  for (const std::size_t i : from_cheapest(ladder)) {
+    const LevelPrice& level = ladder.levels[i];
+    const bool is_quick = !wish.within_seconds || level.seconds.total() <= *wish.within_seconds;
+    const bool is_close = !wish.to_deg || level.error.total_deg() <= *wish.to_deg;
+    if (is_quick && is_close) fitting.push_back(i);
+  }
+  if (fitting.empty()) return nothing_fits(ladder, wish);
+  return wish.to_deg ? fitting.front() : best_of(ladder, fitting);
+}
+
+Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen) {
+  Json levels = Json::array();
+  for (const LevelPrice& level : ladder.levels) {
+    const ErrorForecast& error = level.error;
+    const LevelSeconds& seconds = level.seconds;
+    levels.push_back({{"quality", error.quality},
+                      {"predicted_deg", error.total_deg()},
+                      {"parts_deg",
+                       {{"noise", error.noise_deg},
+                        {"misfit", error.misfit_deg},
+                        {"indirect", error.indirect_deg},
+                        {"shortcut", error.shortcut_deg},
+                        {"calibration", error.calibration_deg}}},
+                      {"seconds",
+                       {{"read", seconds.read},
+                        {"prepare", seconds.prepare},
+                        {"solve", seconds.solve},
+                        {"write", seconds.write},
+                        {"total", seconds.total()}}},
+                      {"note", level.note}});
+  }
+  return {{"levels", std::move(levels)},
+          {"gates", json_of(ladder.gates)},
+          {"chosen", chosen ? Json(ladder.levels[*chosen].error.quality) : Json()}};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a level is expected to give and cost, before it is paid.
+#include "app/jobs/explain.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/image_io/image_io.h"
+#include "tests/system/samples.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kLevels = {"preview", "fast", "standard", "robust", "reference"};
+
+class Explain : public testing::Test {
+ protected:
+  void SetUp() override { simulate(scene_named("smooth", {160, 128}), session_); }
+
+  Json explain() const { return run_weft({"solve", session_.string(), "--explain", "--json", "-q"}).json(); }
+
+  Workspace work_;
+  const fs::path session_ = work_ / "cloth.weft";
+};
+
+TEST_F(Explain, PricesEveryLevelAndLeavesNothingBehind) {
+  const auto before = contents_of(work_.path());
+  const Json document = explain();
+  EXPECT_EQ(contents_of(work_.path()), before);
+  ASSERT_EQ(document.at("levels").size(), kLevels.size()) << document;
+  for (std::size_t i = 0; i < kLevels.size(); ++i) {
+    const Json& level = document["levels"][i];
+    EXPECT_EQ(level.at("quality"), kLevels[i]);
+    EXPECT_GT(level.at("predicted_deg").get<double>(), 0) << level;
+    double sum = 0;
+    for (const char* part : {"read", "prepare", "solve", "write"}) {
+      sum += level.at("seconds").at(part).get<double>();
+    }
+    EXPECT_GT(level["seconds"].at("solve").get<double>(), 0) << level;
+    EXPECT_NEAR(level["seconds"].at("total").get<double>(), sum, 1e-9) << level;
+  }
+  EXPECT_EQ(document.at("gates").size(), 4u);
+  EXPECT_TRUE(document.at("chosen").is_null());
+}
+
+TEST_F(Explain, ForecastsTheErrorOfASmoothClothWithinAFactorOfTwo) {
+  const Json levels = explain().at("levels");
+  for (std::size_t i = 1; i < kLevels.size(); ++i) {
+    const fs::path maps = work_ / kLevels[i];
+    const Outcome solved =
+        run_weft({"solve", session_.string(), "--quality", kLevels[i], "-o", maps.string(), "-q"});
+    ASSERT_EQ(solved.exit_code, 0) << solved.error;
+    const double real = Json::parse(bytes_of(maps / "solve.json")).at("error").at("mean_deg").get<double>();
+    const double predicted = levels[i].at("predicted_deg").get<double>();
+    EXPECT_GT(predicted, real / 2) << kLevels[i] << ": " << predicted << " for " << real;
+    EXPECT_LT(predicted, real * 2) << kLevels[i] << ": " << predicted << " for " << real;
+  }
+}
+
+TEST_F(Explain, SaysWhereADearerLevelHasNothingToGain) {
+  const Json reference = explain().at("levels").back();
+  EXPECT_THAT(reference.at("note").get<std::string>(),
+              testing::AllOf(testing::HasSubstr("nothing to gain over"), testing::HasSubstr("gates shut"),
+                             testing::HasSubstr("slope")));
+}
+
+TEST_F(Explain, RefusesWhatNoLevelCanDoAndSaysWhatOneCan) {
+  expect_refusal(work_, {"solve", session_.string(), "-q", "--within", "0.000001"}, 64,
+                 {"no level is that quick", "--within 1e-06", "the quickest", " s at "});
+  expect_refusal(work_, {"solve", session_.string(), "-q", "--to", "0.0001"}, 64,
+                 {"no level is that good", "--to 0.0001", "the closest", "degrees"});
+  expect_refusal(work_, {"solve", session_.string(), "-q", "--to", "1", "--quality", "fast"}, 64,
+                 {"--to", "--quality"});
+}
+
+TEST_F(Explain, SolvesByTheLevelThatItChose) {
+  const Outcome run = run_weft({"solve", session_.string(), "--to", "1.5", "-o", (work_ / "maps").string()});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const std::string method = Json::parse(bytes_of(work_ / "maps" / "solve.json")).at("method");
+  EXPECT_NE(method, "preview");
+  EXPECT_THAT(run.error, testing::HasSubstr("chose " + method));
+}
+
+TEST_F(Explain, DrawsTheSameCropAtEveryLevel) {
+  const fs::path picture = work_ / "ladder.png";
+  const std::vector<std::string> command = {"solve",          session_.string(), "--ladder",
+                                            picture.string(), "--json",          "-q"};
+  const Json first = run_weft(command).json();
+  ASSERT_EQ(first.at("levels").size(), kLevels.size()) << first;
+  for (const Json& level : first["levels"]) {
+    EXPECT_TRUE(fs::exists(fs::path(level.at("folder").get<std::string>()) / "normal.exr")) << level;
+  }
+  // A preview cannot show what lies between its pixels.
+  EXPECT_GT(first["levels"][0].at("error_deg").get<double>(),
+            first["levels"][2].at("error_deg").get<double>());
+  const Result<ImageFileInfo> info = read_image_info(picture);
+  ASSERT_TRUE(info) << info.error().message();
+  EXPECT_GE(info->size.width, 6 * 256) << "five levels and the truth, twice enlarged";
+  EXPECT_EQ(run_weft(command).json(), first);
+}
+
+TEST(ExplainPhotographs, UnderDistantLightsHavePricesToo) {
+  const Workspace work;
+  PhotographSample().write(work / "photos");
+  const Json document =
+      run_weft({"solve", "--photos", (work / "photos").string(), "--explain", "--json", "-q"}).json();
+  ASSERT_EQ(document.at("levels").size(), kLevels.size()) << document;
+  for (const Json& level : document["levels"]) {
+    EXPECT_TRUE(level.at("predicted_deg").is_number()) << level;
+  }
+}
+
+// Degrees and seconds of preview, fast, standard, robust, reference.
+app::Ladder ladder_of(const std::vector<std::pair<double, double>>& levels) {
+  app::Ladder ladder;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    app::LevelPrice level;
+    level.error.quality = kLevels[i];
+    level.error.noise_deg = levels[i].first;
+    level.seconds.solve = levels[i].second;
+    ladder.levels.push_back(level);
+  }
+  return ladder;
+}
+
+std::string chosen(const app::Ladder& ladder, const app::LevelWish& wish) {
+  const Result<std::size_t> choice = app::choose_level(ladder, wish);
+  return choice ? ladder.levels[*choice].error.quality : choice.error().message();
+}
+
+TEST(ChooseLevel, TakesTheCheapestThatMeetsAllWishes) {
+  const app::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
+  EXPECT_EQ(chosen(ladder, {.to_deg = 1}), "fast");
+  EXPECT_EQ(chosen(ladder, {.to_deg = 0.5}), "reference");
+  EXPECT_EQ(chosen(ladder, {.within_seconds = 1}), "preview");
+  EXPECT_EQ(chosen(ladder, {.within_seconds = 1000}), "reference");
+  EXPECT_EQ(chosen(ladder, {.within_seconds = 10}), "standard") << "robust is dearer for a hundredth";
+  EXPECT_EQ(chosen(ladder, {.within_seconds = 10, .to_deg = 2}), "fast");
+}
+
+TEST(ChooseLevel, SaysBothLimitsWhereBothWishesCannotBeMet) {
+  const app::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
+  EXPECT_THAT(chosen(ladder, {.within_seconds = 10, .to_deg = 0.5}),
+              testing::AllOf(testing::HasSubstr("preview, takes 1 s"),
+                             testing::HasSubstr("reference, is expected to be off by 0.4 degrees in 100 s")));
+}
+
+}  // namespace
+}  // namespace weft::test
