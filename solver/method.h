@@ -81,10 +81,10 @@ std::unique_ptr<Method> least_squares_method();
 std::unique_ptr<Method> fast_method();
 
 /// Two-step weighted least squares of the readings that the shadow mask leaves: solved once, and again with
-/// every reading over the variance that the first solution predicts.
+/// every reading over the variance that the first solution predicts; shadowed readings that fit are taken
+/// back.
 std::unique_ptr<Method> weighted_method();
-/// Weighted, then readings that do not fit the others are left out one by one, and shadowed ones that do fit
-/// are taken back.
+/// Weighted, then readings that do not fit the others are left out one by one.
 std::unique_ptr<Method> standard_method();
 /// Standard in double: what the reference level solves its last round by.
 std::unique_ptr<Method> exact_method();

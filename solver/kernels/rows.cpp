@@ -97,11 +97,15 @@ void write_row_lights(const LightField& field, std::vector<RowLight>& rows) {
 }
 
 void RowPoints::read(const LightField& field, int y, int x0, int x1) {
+  // What the field does not write is left from another one.
+  row.x_mm.value.clear();
+  row.y_mm.value.clear();
   field.read_row(y, x0, x1, row);
   x_mm = pointer_to(row.x_mm);
   y_mm = pointer_to(row.y_mm);
-  for (std::size_t c = 0; c < 3; ++c) gain_rgb[c] = pointer_to(row.gain_rgb[c]);
   led_gain.clear();
+  if (!field.has_gain()) return;
+  for (std::size_t c = 0; c < 3; ++c) gain_rgb[c] = pointer_to(row.gain_rgb[c]);
   for (const LightField::RowLine& line : row.led_gain) led_gain.push_back(pointer_to(line));
 }
 

@@ -17,7 +17,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Shadowed readings that the others predict to be lit, and as bright as they are.
 HWY_NOINLINE M take_back_what_fits(D d, const RowTask& task, const Scratch& scratch, Estimate& e) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), minus_infinity = hn::Neg(hn::Inf(d));
-  const V three2 = hn::Set(d, 9.0f), reject_from = hn::Set(d, static_cast<float>(kRejectFrom));
+  const V least_lit = hn::Set(d, static_cast<float>(kTakenBackFrom * kTakenBackFrom)),
+          reject_from = hn::Set(d, static_cast<float>(kRejectFrom));
   const Variance variance(d, task, e.predictor);
   M any = hn::Lt(one, zero), left_out = any;
   for (std::size_t k = 0; k < task.light_count; ++k) {
@@ -28,7 +29,7 @@ HWY_NOINLINE M take_back_what_fits(D d, const RowTask& task, const Scratch& scra
     const V predicted = dot(l, e.fit.b), misfit = hn::Sub(light, predicted);
     const V sigma2 = hn::Add(variance.at(l, scratch.inverse_e(k)), quadratic(d, e.fit.inverse, l));
     const M lit =
-        hn::And(hn::Gt(predicted, zero), hn::Gt(hn::Mul(predicted, predicted), hn::Mul(three2, sigma2)));
+        hn::And(hn::Gt(predicted, zero), hn::Gt(hn::Mul(predicted, predicted), hn::Mul(least_lit, sigma2)));
     const M fits =
         hn::And(shadowed, hn::And(lit, hn::Le(hn::Mul(misfit, misfit), hn::Mul(reject_from, sigma2))));
     any = hn::Or(any, fits);
@@ -157,11 +158,10 @@ HWY_INLINE bool solve_weighted_columns(D d, RowTask& task, const Scratch& scratc
   Estimate e = first_estimate(d, task, scratch, !all_count, solved(d, sums.g, sums.rhs), sums.count,
                               selection.again, scale);
   fit_again<Weights::kPredicted>(d, task, scratch, all, e);
-  M shadowed = selection.shadowed;
+  M shadowed = selection.shadowed, trimmed = none;
+  if (task.estimator == Estimator::kTrimmed) trimmed = start_from_most_consistent(d, task, scratch, e);
+  if (!hn::AllFalse(d, shadowed)) shadowed = take_back_what_fits(d, task, scratch, e);
   if (task.estimator != Estimator::kWeighted) {
-    M trimmed = none;
-    if (task.estimator == Estimator::kTrimmed) trimmed = start_from_most_consistent(d, task, scratch, e);
-    if (!hn::AllFalse(d, shadowed)) shadowed = take_back_what_fits(d, task, scratch, e);
     const M judged = hn::Not(trimmed);
     if (!hn::AllFalse(d, judged)) {
       reject_misfits(d, task, scratch, judged, e);

@@ -137,7 +137,7 @@ struct PixelSolver::Work {
     for (Reading& r : readings) {
       if (r.use != Use::kShadowed) continue;
       const double predicted = r.l.dot(fit.b), sigma2 = r.variance + r.l.dot(fit.inverse * r.l);
-      if (predicted <= 3 * std::sqrt(sigma2) || std::pow(r.light - predicted, 2) > kRejectFrom * sigma2)
+      if (predicted <= kTakenBackFrom * std::sqrt(sigma2) || std::pow(r.light - predicted, 2) > kRejectFrom * sigma2)
         continue;
       r.use = Use::kFitted;
       any = true;
@@ -302,10 +302,10 @@ struct PixelSolver::Work {
     if (options.estimator == Estimator::kLeastAbsolute) return solve_least_absolute();
     if (options.estimator == Estimator::kSparse) return solve_sparse();
     if (!solve_weighted()) return false;
-    if (options.estimator == Estimator::kWeighted) return true;
     const bool trimming = options.estimator == Estimator::kTrimmed && asks_for_trimming();
     if (trimming && !start_from_most_consistent()) return false;
     if (take_back_what_fits() && !solve_weighted()) return false;
+    if (options.estimator == Estimator::kWeighted) return true;
     return trimming ? doubt_highlights() : reject_misfits() && solve_weighted();
   }
 

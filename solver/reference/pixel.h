@@ -27,8 +27,9 @@ enum class Estimator {
   kHuber,          ///< Huber's loss, by reweighting; from 1.345 times the median residual
   kLeastAbsolute,  ///< sum of |x_k - l_k . b|, by reweighting (L1)
   kSparse,         ///< least squares plus a sparse error a reading (Ikehata et al., CVPR 2012: SBL)
-  kWeighted,       ///< the same over the variances that a first solution predicts: two steps
-  kRejecting,      ///< weighted; shadowed readings that fit come back, those that do not fit the others go
+  kWeighted,       ///< the same over the variances that a first solution predicts; shadowed readings that
+                   ///< fit are taken back
+  kRejecting,      ///< weighted, without the readings that do not fit the others
   kTrimmed         ///< where they scatter, from a start that most readings agree on, highlights doubted; else
                    ///< rejecting
 };
@@ -104,7 +105,10 @@ inline constexpr double kSpecularMargin = 0.08;
 
 /// Departures from Lambert's law that no noise model knows, as a share of the albedo: added to the noise
 /// wherever readings are weighed and judged.
-inline constexpr double kModelShare = 0.003;
+inline constexpr double kModelShare = 0.001;
+/// A reading that was left out for a shadow is taken back where it fits the others and these predict it to be
+/// lit by so many sigma.
+inline constexpr double kTakenBackFrom = 1;
 /// A reading is rejected where its studentised residual, squared, is over this many times the scatter of the
 /// others.
 inline constexpr double kRejectFrom = 9;

@@ -150,14 +150,7 @@ void expect_as_reference(const NearLights& lights, const Kernel& kernel, int pla
     std::size_t i = 0;
     for (int y = 0; y < kTile.height(); ++y) {
       for (int x = 0; x < kTile.width(); ++x, ++i) {
-        if (is_as(trial, truth[i], planes, x, y)) continue;
-        ++otherwise;
-        SCOPED_TRACE(testing::Message() << "pixel " << x << ", " << y);
-        if (getenv("VERBOSE"))
-          printf("%d %d: %g deg status %x %x sigma %g %g residual %g %g albedo %g %g\n", x, y,
-                 angle_deg(trial.normal(x, y), truth[i].normal), trial.status(x, y), truth[i].status,
-                 trial.sigma_normal_deg(x, y), truth[i].sigma_normal_deg, trial.residual(x, y),
-                 truth[i].residual, trial.albedo(x, y, 0), truth[i].albedo[0]);
+        if (!is_as(trial, truth[i], planes, x, y)) ++otherwise;
       }
     }
     const auto pixels = static_cast<double>(kTile.pixels());
@@ -343,6 +336,29 @@ TEST(WeightedKernel, GivesTheSameBitsAtAnyWidth) {
     }
     EXPECT_GT(most, 0);
   });
+}
+
+TEST(WeightedKernel, ForgetsTheFieldOfTheTileBefore) {
+  DistantLights distant;
+  for (const NearLight& led : test::ten_leds().leds)
+    distant.lights.push_back({normalized(led.position_mm), {1, 2, 0.7}});
+  NearLights near = test::ten_leds(1.3);
+  near.leds[2].log_gain_quadratic = {0.1, 0.2, 0.1, 0, 0, 0};
+  near.log_gain_rgb[0] = near.log_gain_rgb[1] = near.log_gain_rgb[2] = {4, 4, std::vector<double>(16, 0.1)};
+  const LightField far_field = *LightField::make(distant, std::nullopt, kSize, 0),
+                   near_field = field_of(near);
+  Trial first(far_field, kTile, 1, cloth(45)), between(near_field, kTile, 1, cloth(45)),
+      after(far_field, kTile, 1, cloth(45));
+  const Kernel kernel(Estimator::kRejecting);
+  first.solve(kernel, kNoise);
+  between.solve(kernel, kNoise);
+  after.solve(kernel, kNoise);
+  for (int x = 0; x < kTile.width(); ++x) {
+    SCOPED_TRACE(x);
+    expect_same_bits(first, x, 3, after, x, 3);
+    ASSERT_LT(first.error_deg(x, 3), 1e-3);
+    ASSERT_LT(between.error_deg(x, 3), 1e-3);
+  }
 }
 
 TEST(WeightedKernel, CountsEveryPixelOnce) {
