@@ -37,9 +37,10 @@ struct Forecast {
 /// `standard`; a preview has the noise of four photosites and the mean normal of each cell. What `robust`
 /// turns was misfit. Indirect: degrees from the gate of that name, of which `reference` leaves less where the
 /// gate is open; two factors, fitted to simulated plain weaves without gloss (bench/accuracy_scenes.h, the
-/// tuning set). `weft bench explain` holds all of it against the truth: within a factor 1.5 on cloths without
-/// gloss, up to three off on glossy ones, whose highlights the residuals show but by half. Errors: as
-/// measure_gates and CalibrationSigmas::make.
+/// tuning set).
+/// `weft bench explain` holds all of it against the truth: on held-out cloths within a factor 1.7 without
+/// gloss, and from 0.4 to 1.6 of the truth with it, as residuals show only part of a highlight's harm.
+/// Errors: as measure_gates and CalibrationSigmas::make.
 Result<Forecast> forecast_errors(const Photographs& photographs, int threads);
 
 }  // namespace weft::app

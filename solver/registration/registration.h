@@ -31,8 +31,8 @@ inline constexpr double kMostShift_px = 8;
 /// What nothing was learnt about has this sigma_px: a shift of so much is taken to be likely beforehand.
 inline constexpr double kUnknownShift_px = 4;
 /// What shadow, bounces and gloss add to sigma_px: they look like a shift, the same on all of a cloth and so
-/// in no scatter. The second a unit of the share of readings that are in shadow (measured,
-/// docs/conditions.md).
+/// in no scatter. The second a unit of the share of readings that are in shadow, set so that
+/// the deep weave (a fifth in shadow) is still when it is.
 inline constexpr double kModelShift_px = 0.02;
 inline constexpr double kModelShiftOfShadow_px = 0.7;
 

@@ -43,7 +43,7 @@ TEST(ClothShift, MovesRightDownAndTurnsFromRightTowardsUp) {
   EXPECT_DOUBLE_EQ(shift.at(0, 100).x, 2);  // what lies below it goes right
 }
 
-TEST(ClothShift, IsUndoneToAPerMilleOnAWaveOfTwelvePixels) {
+TEST(ClothShift, IsUndoneToAHundredthOnAWaveOfTwelvePixels) {
   for (const int step : {1, 2}) {
     const ClothShift shift = {0.5, -1.3, 1e-4};
     const Image<float> back = resampled(moved(shift, 12), shift, kAll, step);
