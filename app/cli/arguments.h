@@ -106,8 +106,9 @@ struct DemoArguments {
 struct Arguments {
   CommonArguments common;
   std::variant<SimulateArguments, SolveArguments, CompareArguments, BenchSolveArguments,
-               BenchTransportArguments, BenchEffectsArguments, BenchHeightArguments, BenchNumericsArguments, BenchAccuracyArguments,
-               BenchExplainArguments, BenchPhotosArguments, BenchRegistrationArguments, DemoArguments>
+               BenchTransportArguments, BenchEffectsArguments, BenchHeightArguments, BenchNumericsArguments,
+               BenchAccuracyArguments, BenchExplainArguments, BenchPhotosArguments,
+               BenchRegistrationArguments, DemoArguments>
       verb;
 };
 

@@ -19,20 +19,21 @@ Overload(Run...) -> Overload<Run...>;
 
 Result<int> run(const Arguments& arguments) {
   const CommonArguments& common = arguments.common;
-  return std::visit(Overload{[&](const SimulateArguments& a) { return run_simulate(a, common); },
-                             [&](const SolveArguments& a) { return run_solve(a, common); },
-                             [&](const CompareArguments& a) { return run_compare(a, common); },
-                             [&](const BenchSolveArguments& a) { return run_bench_solve(a, common); },
-                             [&](const BenchNumericsArguments& a) { return run_bench_numerics(a, common); },
-                             [&](const BenchAccuracyArguments& a) { return run_bench_accuracy(a, common); },
-                             [&](const BenchExplainArguments& a) { return run_bench_explain(a, common); },
-                             [&](const BenchPhotosArguments& a) { return run_bench_photos(a, common); },
-                             [&](const BenchEffectsArguments& a) { return run_bench_effects(a, common); },
-                             [&](const BenchHeightArguments& a) { return run_bench_height(a, common); },
-                             [&](const BenchTransportArguments& a) { return run_bench_transport(a, common); },
-                             [&](const BenchRegistrationArguments& a) { return run_bench_registration(a, common); },
-                             [&](const DemoArguments& a) { return run_demo(a, common); }},
-                    arguments.verb);
+  return std::visit(
+      Overload{[&](const SimulateArguments& a) { return run_simulate(a, common); },
+               [&](const SolveArguments& a) { return run_solve(a, common); },
+               [&](const CompareArguments& a) { return run_compare(a, common); },
+               [&](const BenchSolveArguments& a) { return run_bench_solve(a, common); },
+               [&](const BenchNumericsArguments& a) { return run_bench_numerics(a, common); },
+               [&](const BenchAccuracyArguments& a) { return run_bench_accuracy(a, common); },
+               [&](const BenchExplainArguments& a) { return run_bench_explain(a, common); },
+               [&](const BenchPhotosArguments& a) { return run_bench_photos(a, common); },
+               [&](const BenchEffectsArguments& a) { return run_bench_effects(a, common); },
+               [&](const BenchHeightArguments& a) { return run_bench_height(a, common); },
+               [&](const BenchTransportArguments& a) { return run_bench_transport(a, common); },
+               [&](const BenchRegistrationArguments& a) { return run_bench_registration(a, common); },
+               [&](const DemoArguments& a) { return run_demo(a, common); }},
+      arguments.verb);
 }
 
 // The one place where an error becomes words and an exit code.

@@ -19,7 +19,8 @@ Result<int> run_bench_numerics(const BenchNumericsArguments& arguments, const Co
 Result<int> run_bench_effects(const BenchEffectsArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_height(const BenchHeightArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_transport(const BenchTransportArguments& arguments, const CommonArguments& common);
-Result<int> run_bench_registration(const BenchRegistrationArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_registration(const BenchRegistrationArguments& arguments,
+                                   const CommonArguments& common);
 Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& common);
 
 }  // namespace weft::app

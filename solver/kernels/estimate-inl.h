@@ -21,6 +21,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 // A reading pulls the solution to itself altogether below this freedom.
 inline constexpr float kLeastFreedom = 1e-6f;
 
+// Doubt carries the rounding of one round into the weights of the next, and grows it: it is left to double
+// from here.
+inline constexpr double kDoubtedCondition = 5;
+
 // What is known of a vector of pixels so far. A reading in use has a weight over zero in the scratch.
 struct Estimate {
   Fit fit;
@@ -37,7 +41,7 @@ class Variance {
       : b_(b),
         per_reading_(hn::Set(d, task.noise_per_reading)),
         floor_(hn::Set(d, task.noise_floor)),
-        model_(hn::Mul(hn::Set(d, static_cast<float>(kModelShare * kModelShare)), dot(b, b))),
+        model_(hn::Mul(hn::Set(d, static_cast<float>(std::pow(model_share(task.has_noise), 2))), dot(b, b))),
         zero_(hn::Zero(d)) {}
   HWY_INLINE V at(Vector3 l, V inverse_e) const {
     const V predicted = hn::Max(zero_, dot(l, b_));
@@ -98,7 +102,16 @@ HWY_NOINLINE void fit_again(D d, const RowTask& task, const Scratch& scratch, M 
     add_outer(g, wl, l);
     add_scaled(rhs, light, wl);
   }
-  const Fit fit = solved(d, g, rhs);
+  Fit fit = solved(d, g, rhs, kWeights == Weights::kDoubted ? kDoubtedCondition : kFloatCondition);
+  if constexpr (kWeights != Weights::kPredicted) {
+    // Few or unequal readings: the solution once more, of its residuals, which know b to more digits than G.
+    Vector3 gradient = {zero, zero, zero};
+    for (std::size_t k = 0; k < task.light_count; ++k) {
+      const Vector3 l = scratch.direction(k);
+      add_scaled(gradient, hn::Mul(scratch.weight(k), hn::Sub(scratch.light(k), dot(l, fit.b))), l);
+    }
+    add_scaled(fit.b, hn::Set(d, 1.0f), times(fit.inverse, gradient));
+  }
   e.fit.inverse = chosen(active, fit.inverse, e.fit.inverse);
   e.fit.b = chosen(active, fit.b, e.fit.b);
   e.again = hn::Or(e.again, hn::And(active, fit.poor));

@@ -22,15 +22,15 @@ namespace hn = hwy::HWY_NAMESPACE;
 struct Fit {
   Symmetric inverse;  // (sum w l l^T)^-1
   Vector3 b;
-  M poor;  // lanes whose condition number may be over kFloatCondition
+  M poor;  // lanes whose condition number may be over the most that is allowed
 };
 
-HWY_INLINE Fit solved(D d, const Symmetric& g, Vector3 rhs) {
+HWY_INLINE Fit solved(D d, const Symmetric& g, Vector3 rhs, double most_condition = kFloatCondition) {
   const Inverse inverse = inverted(d, g);
   // The eigenvalues of G sum to its trace and determinant / minors is a lower bound of the smallest, so this
-  // catches every condition number over kFloatCondition. Below the least determinant that goes with such a
+  // catches every condition number over `most_condition`. Below the least determinant that goes with such a
   // condition number, minors and determinant may both be nothing but rounding, and their quotient anything.
-  const V most_condition2 = hn::Set(d, static_cast<float>(kFloatCondition * kFloatCondition));
+  const V most_condition2 = hn::Set(d, static_cast<float>(most_condition * most_condition));
   const V sum = trace(g);
   const V least_determinant = hn::Mul(hn::Set(d, 1e-6f), hn::Mul(sum, hn::Mul(sum, sum)));
   const M good = hn::And(hn::Gt(hn::Mul(most_condition2, inverse.determinant), hn::Mul(sum, inverse.minors)),

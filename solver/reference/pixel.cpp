@@ -115,7 +115,7 @@ struct PixelSolver::Work {
     return rho > 0 && std::isfinite(rho);
   }
   void predict_variances() {
-    const double model = std::pow(kModelShare * fit.b.stableNorm(), 2);
+    const double model = std::pow(model_share(has_noise()) * fit.b.stableNorm(), 2);
     for (Reading& r : readings) r.variance = noise_variance(r) + model;
   }
   double noise_variance(const Reading& r) const {
@@ -137,7 +137,8 @@ struct PixelSolver::Work {
     for (Reading& r : readings) {
       if (r.use != Use::kShadowed) continue;
       const double predicted = r.l.dot(fit.b), sigma2 = r.variance + r.l.dot(fit.inverse * r.l);
-      if (predicted <= kTakenBackFrom * std::sqrt(sigma2) || std::pow(r.light - predicted, 2) > kRejectFrom * sigma2)
+      if (predicted <= kTakenBackFrom * std::sqrt(sigma2) ||
+          std::pow(r.light - predicted, 2) > kRejectFrom * sigma2)
         continue;
       r.use = Use::kFitted;
       any = true;

@@ -70,6 +70,7 @@ TEST(Golden, EverySimdTargetOfThisMachineSolvesToTheStoredMaps) {
     const Workspace work;
     hwy::SetSupportedTargetsForTest(target);
     app::SolveOptions options;
+    options.method = "fast";
     options.output = work / "maps";
     options.previews = false;
     const Result<app::SolveReport> report =

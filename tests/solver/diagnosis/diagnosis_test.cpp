@@ -64,7 +64,8 @@ void swap_photographs(Evidence& evidence, int a, int b) {
   }
 }
 
-/// Traps: a share of the readings cast into shadow, as large a share highlights of up to four times the light.
+/// Traps: a share of the readings cast into shadow, as large a share highlights of up to four times the
+/// light.
 void add_shadows_and_highlights(Evidence& evidence, double share, std::uint64_t seed) {
   Random random(seed);
   for (EvidenceRow& r : evidence.rows) {
