@@ -33,7 +33,7 @@ using Solve = std::function<Result<app::SolveReport>(const app::SolveOptions&, c
 
 /// Solves by every method, whole and divided in many ways, and compares the maps byte by byte.
 void expect_same_maps(const Workspace& work, const Solve& solve) {
-  for (const char* method : {"fast", "least-squares", "seed"}) {
+  for (const char* method : {"fast", "robust", "least-squares", "seed"}) {
     const auto maps_of = [&](const Division& division) {
       app::SolveOptions options;
       options.method = method;
