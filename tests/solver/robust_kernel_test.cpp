@@ -268,8 +268,8 @@ void expect_same_bits_beside(const Kernel& kernel, int planes) {
   beside.add_noise(kNoise, 5);
   for (int x = 0; x < kTile.width(); x += 7) {
     for (int y = 0; y < kTile.height(); ++y) {
-      beside.reading(3)(x, y) *= y % 4 == 0 ? 3 : 1;
-      beside.reading(5)(x, y) *= y % 4 <= 1 ? 4 : 1;
+      beside.reading(3)(x, y) *= y % 4 == 0 ? 3.0f : 1.0f;
+      beside.reading(5)(x, y) *= y % 4 <= 1 ? 4.0f : 1.0f;
       beside.reading(7)(x, y) = y % 4 == 2 ? kNaN : 0;
     }
   }
@@ -316,7 +316,7 @@ TEST(WeightedKernel, GivesTheSameBitsAtAnyWidth) {
     const Rect tile = {kTile.x0, kTile.y0, kTile.x0 + width, kTile.y0 + 2};
     Trial trial(field, tile, 1, cloth(45));
     for (int x = 0; x < width; ++x)
-      trial.reading(static_cast<std::size_t>(x % 9))(x, 1) *= x % 3 == 0 ? 3 : 1;
+      trial.reading(static_cast<std::size_t>(x % 9))(x, 1) *= x % 3 == 0 ? 3.0f : 1.0f;
     const Kernel kernel(Estimator::kTrimmed);
     trial.solve(kernel, kNoise);
     return std::pair(std::move(trial), kernel.tally.rejected_readings);
