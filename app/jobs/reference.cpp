@@ -111,7 +111,8 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
                                        const BandSink& sink) {
   ReferenceFacts facts;
   const auto quick = solver::robust_method(), exact = solver::exact_method();
-  Result<solver::Gates> gates = measure_gates(solve_samples(photographs, *quick, context.threads));
+  Result<solver::Gates> gates =
+      measure_gates(solve_samples(photographs, *solver::standard_method(), context.threads));
   if (!gates) return std::move(gates).error();
   facts.gates = *gates;
   facts.stages = options.force_stages ? LightStages{true, true}
