@@ -9,6 +9,8 @@
 #include <limits>
 #include <optional>
 
+#include "core/text.h"
+
 namespace weft::bench {
 namespace {
 
@@ -25,26 +27,6 @@ struct Box {
 
 bool is_shown(const PlotPoint& p) {
   return std::isfinite(p.x) && std::isfinite(p.y) && p.x > 0 && p.y > 0;
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
 }
 
 // A logarithmic axis from `low` to `high`, drawn from `from` to `to`.
@@ -128,7 +110,7 @@ class Drawing {
  private:
   void text(double x, double y, const char* anchor, const std::string& words, const char* more = "") {
     out_ += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='{}'{}>{}</text>\n", x, y, anchor, more,
-                        escaped(words));
+                        escape_markup(words));
   }
   void line(double x0, double y0, double x1, double y1, const char* style) {
     out_ +=

@@ -162,7 +162,7 @@ Result<Forecast> forecast_errors(const Photographs& photographs, int threads) {
   };
   const std::vector<SampleMaps> standard = solve(solver::standard_method());
   const std::vector<SampleMaps> robust = solve(solver::robust_method());
-  const Result<solver::Gates> gates = measure_gates(robust);
+  const Result<solver::Gates> gates = measure_gates(standard);
   if (!gates) return gates.error();
   const Result<double> calibration = calibration_deg(photographs, standard);
   if (!calibration) return calibration.error();

@@ -37,7 +37,7 @@ struct ReferenceFacts {
   double waited_seconds = 0;  ///< for the sink
 };
 
-/// The reference level: `standard`, then, where the gates say that this cloth needs it, its normals
+/// The reference level: `robust`, then, where the gates say that this cloth needs it, its normals
 /// integrated to a height, readings corrected for the shadows and the light that this relief casts on itself
 /// (LightCorrection), and solved again, until they settle. The last solve is in double, with the
 /// factorisation that each pixel's conditioning asks for. Without an open gate it is the only one.

@@ -9,6 +9,7 @@
 #include <set>
 #include <string_view>
 
+#include "core/text.h"
 #include "material/preview.h"
 
 namespace weft::app {
@@ -43,29 +44,6 @@ svg { display: block; width: 100%; height: auto; font: 12px "Source Sans 3", "Se
 @media (max-width: 760px) { .two { grid-template-columns: 1fr; } .pictures { grid-template-columns: 1fr 1fr; } }
 @media print { @page { size: A4; margin: 12mm; } main { padding: 0; max-width: none; } body { background: #fff; font-size: 11.5px; } section { margin-bottom: 14px; } .verdict { -webkit-print-color-adjust: exact; print-color-adjust: exact; } svg, img { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 )";
-
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 // RFC 4648, section 4.
 std::string base64(std::string_view bytes) {
@@ -118,19 +96,19 @@ std::string head(const Json& report) {
   const std::string title = report.value("title", "");
   return fmt::format(
       "<h1>{}</h1>\n<p class=\"meta\">solved by {} from {} lights · {} × {} pixels · {} albedo · {}</p>\n",
-      escaped(title.empty() ? "Untitled cloth" : title), escaped(report.value("method", "")),
+      escape_markup(title.empty() ? "Untitled cloth" : title), escape_markup(report.value("method", "")),
       report["lights"].size(), report.value("width", 0), report.value("height", 0),
-      escaped(report.value("albedo_scale", "relative")), escaped(report.value("id", "")));
+      escape_markup(report.value("albedo_scale", "relative")), escape_markup(report.value("id", "")));
 }
 
 std::string verdict(const Json& report) {
   std::string body;
   for (const Json& warning : report["warnings"]) {
-    body += fmt::format("<p>{}.</p>\n", escaped(warning.value("text", "")));
+    body += fmt::format("<p>{}.</p>\n", escape_markup(warning.value("text", "")));
     std::string remedy = warning.value("remedy", "");
     if (remedy.empty()) continue;
     remedy[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(remedy[0])));
-    body += fmt::format("<p class=\"do\">{}.</p>\n", escaped(remedy));
+    body += fmt::format("<p class=\"do\">{}.</p>\n", escape_markup(remedy));
   }
   if (!body.empty()) return "<div class=\"verdict alarm\">\n" + body + "</div>\n";
   if (report.value("looked_at", 0) == 0) {
@@ -154,7 +132,7 @@ std::string picture_row(const std::vector<PagePicture>& pictures) {
   for (const PagePicture& p : pictures) {
     body += fmt::format(
         "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
-        escaped(p.label), base64(p.png));
+        escape_markup(p.label), base64(p.png));
   }
   return "<section>" + body + "</div></section>\n";
 }
@@ -198,7 +176,7 @@ std::string status_chart(const Json& report) {
         "<tr><td>{}</td><td style=\"width:45%\"><svg viewBox=\"0 0 200 12\" preserveAspectRatio=\"none\" "
         "style=\"height:12px;margin-top:4px\"><rect width=\"200\" height=\"12\" fill=\"#eeebe3\"/>"
         "<rect width=\"{:.1f}\" height=\"12\" fill=\"#8f8a7e\"/></svg></td><td class=\"n\">{}</td></tr>\n",
-        escaped(name), 200 * std::clamp(s, 0.0, 1.0), percent(s));
+        escape_markup(name), 200 * std::clamp(s, 0.0, 1.0), percent(s));
   }
   return "<table>\n" + rows +
          "</table>\n<p class=\"note\">Share of pixels with each bit of status.png; a pixel may have "
@@ -257,7 +235,7 @@ std::string budget(const Json& report) {
     const bool degrees = b.value("unit", "") == "deg";
     const double value = number(b, "value");
     rows += fmt::format("<tr><td>{}<br><span class=\"note\">{}</span></td><td class=\"n\">{}</td></tr>\n",
-                        escaped(b.value("source", "")), escaped(b.value("what", "")),
+                        escape_markup(b.value("source", "")), escape_markup(b.value("what", "")),
                         degrees ? fmt::format("{:.3g}°", value) : percent(value / 100));
   }
   if (const auto error = report.find("error"); error != report.end()) {
@@ -314,7 +292,8 @@ void flatten(const Json& value, const std::string& name, std::string& rows) {
   const std::string text = value.is_string()         ? value.get<std::string>()
                            : value.is_number_float() ? fmt::format("{:.4g}", value.get<double>())
                                                      : value.dump();
-  rows += fmt::format("<tr><td>{}</td><td class=\"n\">{}</td></tr>\n", escaped(name), escaped(text));
+  rows +=
+      fmt::format("<tr><td>{}</td><td class=\"n\">{}</td></tr>\n", escape_markup(name), escape_markup(text));
 }
 
 std::string conditions(const Json& report) {
@@ -333,9 +312,9 @@ std::string gates(const Json& report) {
     const Json verdict_of = gate.value("verdict", Json());
     rows += fmt::format(
         "<tr><td>{}</td><td class=\"n\">{:.3g} {}</td><td class=\"n\">{:.3g} {}</td><td>{}</td></tr>\n",
-        escaped(gate.value("name", "")), number(gate, "value"), escaped(gate.value("unit", "")),
-        number(gate, "limit"), escaped(gate.value("unit", "")),
-        escaped(verdict_of.is_string() ? verdict_of.get<std::string>() : verdict_of.dump()));
+        escape_markup(gate.value("name", "")), number(gate, "value"), escape_markup(gate.value("unit", "")),
+        number(gate, "limit"), escape_markup(gate.value("unit", "")),
+        escape_markup(verdict_of.is_string() ? verdict_of.get<std::string>() : verdict_of.dump()));
   }
   return section("Gates",
                  "<table><tr><th>stage</th><th class=\"n\">measured</th><th class=\"n\">limit</th>"
@@ -346,7 +325,7 @@ std::string gates(const Json& report) {
 std::string time(const Json& report) {
   std::string rows;
   for (const auto& [phase, seconds] : report["seconds"].items()) {
-    rows += fmt::format("<tr><td>{}</td><td class=\"n\">{:.2f} s</td></tr>\n", escaped(phase),
+    rows += fmt::format("<tr><td>{}</td><td class=\"n\">{:.2f} s</td></tr>\n", escape_markup(phase),
                         seconds.get<double>());
   }
   return rows.empty() ? "" : section("Time by phase", "<table>\n" + rows + "</table>\n", "time");
@@ -361,8 +340,8 @@ std::string two(const std::string& left, const std::string& right) {
 std::string report_page(const Json& report, const std::vector<PagePicture>& pictures) {
   std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n";
   page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-          escaped(report.value("title", "")) + " · report of a solve</title>\n<style>" + std::string(kStyle) +
-          "</style></head>\n<body><main>\n";
+          escape_markup(report.value("title", "")) + " · report of a solve</title>\n<style>" +
+          std::string(kStyle) + "</style></head>\n<body><main>\n";
   page += head(report);
   page += verdict(report);
   page += picture_row(pictures);

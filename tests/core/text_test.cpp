@@ -16,5 +16,9 @@ TEST(Text, CountsTheEditsBetweenWords) {
   EXPECT_EQ(edit_distance("heigth", "height"), 2U) << "swapped letters are two substitutions";
 }
 
+TEST(EscapeMarkup, LeavesNothingThatAPageWouldTakeForItsOwn) {
+  EXPECT_EQ(escape_markup("a<b> & \"c\""), "a&lt;b&gt; &amp; &quot;c&quot;");
+}
+
 }  // namespace
 }  // namespace weft

@@ -54,7 +54,7 @@ TEST(HorizonScan, FindsWhatAWallHides) {
     const double expected = (1 + std::cos(std::atan(kHeight / (x - kEdge)))) / 2;
     const Rect column = {x - tile.x0, 0, x - tile.x0 + 1, 64};
     EXPECT_NEAR(mean_of(scanned, column), expected, 0.02) << x;
-    EXPECT_NEAR(mean_of(traced, column), expected, 0.008) << x;
+    EXPECT_NEAR(mean_of(traced, column), expected, 0.006) << x;
   }
 }
 
