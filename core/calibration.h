@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,7 @@ struct Response {
   /// lin_c(v) = v * (1 + a v + b v^2) for v = (count - black) / (white - black); {a, b} by channel.
   std::array<std::array<double, 2>, 3> linearity = {};
   std::vector<ExposureRatio> exposure_ratios = {};  ///< at one ISO and aperture
+  std::optional<double> black_counts = {};  ///< measured, where the file's own level is not to be trusted
 
   /// The measured ratio between two exposure times (alike to 0.1 percent), whichever way it was measured.
   std::optional<double> exposure_ratio(double exposure_us, double to_exposure_us) const;
@@ -45,6 +47,35 @@ struct CalibrationSubject {
   double f_number = 0;
   /// "absolute" where a patch of measured reflectance fixed the scale, else "relative".
   std::string albedo_scale = "relative";
+  std::string measured = {};  ///< when, ISO 8601; empty where nobody said
+};
+
+/// A square tag that stays on the table beside the cloth.
+struct Fiducial {
+  std::string dictionary;  ///< as OpenCV names it
+  int id = 0;
+  std::array<Vec3, 4> corners_mm;  ///< rig frame; upper left of the upright tag first, then clockwise
+
+  friend bool operator==(const Fiducial&, const Fiducial&) = default;
+};
+
+/// Affine, then a cubic by channel, then affine, in xyY (seed 004, "Calibrating Albedo"). The affine maps are
+/// 3 x 4 by rows; a cubic is c0 + c1 t + c2 t^2 + c3 t^3, four numbers a channel.
+struct ColorCurve {
+  std::array<double, 12> before = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  std::array<double, 12> cubic = {0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0};
+  std::array<double, 12> after = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+  friend bool operator==(const ColorCurve&, const ColorCurve&) = default;
+};
+
+/// What makes linear Rec.709 of solved albedo in the camera's own channels.
+struct ColorTransform {
+  Mat3 rec709_from_camera = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< rows sum to 1: white stays white
+  std::vector<double> covariance;   ///< 9 x 9 by rows, of its entries by rows; empty where unknown
+  std::optional<ColorCurve> curve;  ///< in place of the matrix
+
+  friend bool operator==(const ColorTransform&, const ColorTransform&) = default;
 };
 
 /// Everything measured about a rig, immutable, named by its content.
@@ -52,20 +83,36 @@ struct Calibration {
   std::string id;  ///< SHA-256 of the sorted (name, SHA-256) list of its parts
   CalibrationSubject subject;
   std::optional<CameraModel> camera;
+  std::optional<ParameterCovariance> camera_covariance;  ///< of camera.json
+  std::vector<Fiducial> fiducials;                       ///< of camera.json
   std::optional<Response> response;
+  std::optional<ColorTransform> color;
   std::optional<Lights> lights;
-  std::vector<WhitePatch> patches;                   ///< of lights.json
-  std::optional<LightCovariance> light_covariance;   ///< of lights.json, where they are near
+  std::vector<WhitePatch> patches;                      ///< of lights.json
+  std::optional<ParameterCovariance> light_covariance;  ///< of lights.json, where they are near
   std::optional<std::filesystem::path> hot_picture;  ///< the part hot.png, checked but not read: 8-bit grey
                                                      ///< on the active area, a bad photosite is not 0
 };
 
 /// Reads a calibration folder: calibration.json (schema weft.calibration/1) and its parts camera.json,
-/// response.json, lights.json, hot.png, each checked against the SHA-256 that calibration.json names.
+/// response.json, color.json, lights.json, hot.png, each checked against the SHA-256 that calibration.json
+/// names.
 Result<Calibration> read_calibration(const std::filesystem::path& folder);
 
 /// Writes the folder, which must not be there yet, with a copy of `hot_picture`, and returns the calibration
 /// with its id.
 Result<Calibration> write_calibration(const std::filesystem::path& folder, Calibration calibration);
+
+struct NamedFile {
+  std::string name;
+  std::string bytes;
+};
+
+/// A new calibration, which must not be there yet: the parts and the subject of `change`; every other part of
+/// the calibration `from` (empty: there is none) byte by byte; and report/ with these files. It is made
+/// aside: after an error there is nothing. `change.subject.measured` is the time now unless it is given.
+Result<Calibration> derive_calibration(const std::filesystem::path& from, Calibration change,
+                                       const std::filesystem::path& folder,
+                                       std::span<const NamedFile> report);
 
 }  // namespace weft

@@ -173,6 +173,25 @@ Result<void> publish_folder(const fs::path& folder, const fs::path& target) {
   return sync_path(parent_of(target));
 }
 
+PartialFolder::PartialFolder(fs::path target)
+    : target_(std::move(target)),
+      path_(parent_of(target_) / fmt::format(".{}.{}.partial", target_.filename().string(), ::getpid())) {
+  for (fs::path p = path_.parent_path(); !p.empty() && !is_there(p); p = p.parent_path()) made_.push_back(p);
+}
+
+PartialFolder::~PartialFolder() {
+  std::error_code ignored;
+  if (path_.empty()) return;
+  fs::remove_all(path_, ignored);
+  for (const fs::path& parent : made_) fs::remove(parent, ignored);
+}
+
+Result<void> PartialFolder::publish() {
+  Result<void> published = publish_folder(path_, target_);
+  if (published) path_.clear();
+  return published;
+}
+
 Result<void> make_writable_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);

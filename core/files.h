@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/result.h"
 
@@ -31,6 +32,23 @@ Result<void> publish_folder(const std::filesystem::path& folder, const std::file
 
 /// Makes `folder` and its parents and proves that files can be made in it.
 Result<void> make_writable_folder(const std::filesystem::path& folder);
+
+/// A folder aside that becomes `target`. Unless it is published it goes again, with the parents made for it.
+class PartialFolder {
+ public:
+  /// Its path is beside `target`, hidden, and of this process alone; nothing is made yet.
+  explicit PartialFolder(std::filesystem::path target);
+  ~PartialFolder();
+  PartialFolder(const PartialFolder&) = delete;
+  PartialFolder& operator=(const PartialFolder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+  /// publish_folder() to the target.
+  Result<void> publish();
+
+ private:
+  std::filesystem::path target_, path_;
+  std::vector<std::filesystem::path> made_;
+};
 
 /// SHA-256 of a file's bytes as 64 hexadecimal digits, read in blocks.
 Result<std::string> sha256_of_file(const std::filesystem::path& file);

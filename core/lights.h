@@ -58,10 +58,11 @@ struct WhitePatch {
   std::array<double, 3> reflectance_rgb = {1, 1, 1};
 };
 
-/// How far lights may be off, as the fit that found them says. Parameters are named "led01.position_mm.x",
-/// ".y", ".z" (mm), "led01.aim.x" ... (the aim is normalised after it was changed), "led01.mu",
-/// "led01.log_flux" (of all channels alike) and "led01.log_gain_quadratic.0" to ".5".
-struct LightCovariance {
+/// How far measured parameters may be off, as the fit that found them says. Those of lights are named
+/// "led01.position_mm.x", ".y", ".z" (mm), "led01.aim.x" ... (the aim is normalised after it was changed),
+/// "led01.mu", "led01.log_flux" (of all channels alike) and "led01.log_gain_quadratic.0" to ".5"; those of a
+/// camera as CameraModel names them.
+struct ParameterCovariance {
   std::vector<std::string> parameters;
   std::vector<double> matrix;  ///< row by row, symmetric, in the units of the parameters
 };

@@ -37,7 +37,7 @@ struct Photographs {
   std::vector<solver::ClothShift> shifts;      ///< put right as tiles are read (app/jobs/registration.h)
   std::optional<LightField> field;
   std::optional<CameraModel> camera;                ///< where the lights are near
-  std::optional<LightCovariance> light_covariance;  ///< where the calibration has one
+  std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
   std::optional<NoiseModel> noise;                  ///< of the mosaics; of brackets the worst
   std::string albedo_scale = "relative";            ///< "absolute" where a measured patch fixed it
 

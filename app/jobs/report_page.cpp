@@ -9,41 +9,12 @@
 #include <set>
 #include <string_view>
 
+#include "app/jobs/html.h"
 #include "core/text.h"
 #include "material/preview.h"
 
 namespace weft::app {
 namespace {
-
-constexpr std::string_view kStyle = R"(
-:root { --ink: #22211f; --faint: #77736b; --line: #dcd8cf; --paper: #fdfcf9; --bar: #8f8a7e; --alarm: #b3261e; --good: #2f6b4f; }
-* { box-sizing: border-box; }
-body { margin: 0; background: var(--paper); color: var(--ink); font: 14px/1.45 "Source Sans 3", "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
-main { max-width: 1020px; margin: 0 auto; padding: 28px 32px 40px; }
-h1 { font: 600 25px/1.2 Georgia, "Source Serif 4", serif; margin: 0; }
-h2 { font-size: 12px; font-weight: 600; letter-spacing: .06em; text-transform: uppercase; color: var(--faint); margin: 0 0 8px; }
-.meta { color: var(--faint); margin: 4px 0 0; }
-.verdict { margin: 18px 0 22px; padding: 14px 18px; border-left: 4px solid var(--good); background: #f3f1ea; }
-.verdict.alarm { border-color: var(--alarm); }
-.verdict p { margin: 0; font: 18px/1.4 Georgia, "Source Serif 4", serif; }
-.verdict p.do { font: 14px/1.45 "Source Sans 3", "Segoe UI", "Helvetica Neue", Arial, sans-serif; color: #55524b; margin-top: 3px; }
-.verdict p + p:not(.do) { margin-top: 12px; }
-section { margin: 0 0 24px; break-inside: avoid; }
-.two { display: grid; grid-template-columns: 1fr 1fr; gap: 0 36px; align-items: start; }
-.pictures { display: grid; grid-template-columns: repeat(4, 1fr); gap: 12px; }
-figure { margin: 0; }
-figure img { width: 100%; display: block; border: 1px solid var(--line); }
-figcaption, .note { color: var(--faint); font-size: 12px; margin: 4px 0 0; }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
-th, td { text-align: left; padding: 3px 10px 3px 0; border-bottom: 1px solid var(--line); vertical-align: top; }
-th { font-weight: 600; font-size: 12px; color: var(--faint); }
-td.n, th.n { text-align: right; }
-td:last-child, th:last-child { padding-right: 0; }
-tr.alarm td { color: var(--alarm); font-weight: 600; }
-svg { display: block; width: 100%; height: auto; font: 12px "Source Sans 3", "Segoe UI", "Helvetica Neue", Arial, sans-serif; }
-@media (max-width: 760px) { .two { grid-template-columns: 1fr; } .pictures { grid-template-columns: 1fr 1fr; } }
-@media print { @page { size: A4; margin: 12mm; } main { padding: 0; max-width: none; } body { background: #fff; font-size: 11.5px; } section { margin-bottom: 14px; } .verdict { -webkit-print-color-adjust: exact; print-color-adjust: exact; } svg, img { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
-)";
 
 // RFC 4648, section 4.
 std::string base64(std::string_view bytes) {
@@ -72,11 +43,6 @@ std::string percent(double share) {
   if (p == 0) return "0 %";
   if (p < 0.01) return "&lt; 0.01 %";
   return fmt::format(fmt::runtime(p < 1 ? "{:.2f} %" : "{:.1f} %"), p);
-}
-
-std::string section(std::string_view title, std::string_view body, std::string_view id = "") {
-  const std::string mark = id.empty() ? "" : fmt::format(" id=\"{}\"", id);
-  return fmt::format("<section{}><h2>{}</h2>\n{}</section>\n", mark, title, body);
 }
 
 std::string light_noun(const Json& report) {
@@ -183,11 +149,6 @@ std::string status_chart(const Json& report) {
          "several.</p>\n";
 }
 
-std::string css(material::Colour c) {
-  const auto byte = [](float v) { return static_cast<int>(std::lround(255 * std::clamp(v, 0.0F, 1.0F))); };
-  return fmt::format("#{:02x}{:02x}{:02x}", byte(c.r), byte(c.g), byte(c.b));
-}
-
 // Predicted angle of the normal over the frame, in squares, over a scale from 0.
 std::string sigma_map(const Json& report) {
   const Json& sigma = report["sigma_normal_deg"];
@@ -203,14 +164,15 @@ std::string sigma_map(const Json& report) {
   std::string squares;
   for (int i = 0; i < columns * rows; ++i) {
     const Json& v = sigma["grid"][static_cast<std::size_t>(i)];
-    squares += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"10.3\" height=\"10.3\" fill=\"{}\"/>",
-                           10 * (i % columns), 10 * (i / columns),
-                           v.is_number() ? css(material::heat_colour(v.get<double>() / full)) : "#ffffff");
+    squares +=
+        fmt::format("<rect x=\"{}\" y=\"{}\" width=\"10.3\" height=\"10.3\" fill=\"{}\"/>",
+                    10 * (i % columns), 10 * (i / columns),
+                    v.is_number() ? css_colour(material::heat_colour(v.get<double>() / full)) : "#ffffff");
   }
   std::string scale;
   for (int i = 0; i < 40; ++i) {
     scale += fmt::format("<rect x=\"{}\" width=\"8.2\" height=\"10\" fill=\"{}\"/>", 8 * i,
-                         css(material::heat_colour((i + 0.5) / 40)));
+                         css_colour(material::heat_colour((i + 0.5) / 40)));
   }
   const Json condition = report.value("condition", Json::object());
   std::string note =
@@ -219,7 +181,7 @@ std::string sigma_map(const Json& report) {
     note += fmt::format(" Condition number of all lights {:.2f}, at worst {:.2f}.",
                         number(condition, "median"), number(condition, "worst", INFINITY));
   }
-  return section(
+  return html_section(
       "How well the lights fix the normal",
       fmt::format(
           "<svg viewBox=\"0 0 {} {}\" role=\"img\">{}</svg>\n"
@@ -266,7 +228,7 @@ std::string light_table(const Json& report) {
         100 * number(light, "gradient_share"));
   }
   if (rows.empty()) return "";
-  return section(
+  return html_section(
       "Light by light",
       "<table><tr><th></th><th class=\"n\">rms residual</th><th class=\"n\">its mean</th><th "
       "class=\"n\">gain</th>"
@@ -301,7 +263,7 @@ std::string conditions(const Json& report) {
   for (const char* key : {"registration", "conditions"}) {
     if (const auto found = report.find(key); found != report.end()) flatten(*found, "", rows);
   }
-  return rows.empty() ? "" : section("Conditions", "<table>\n" + rows + "</table>\n");
+  return rows.empty() ? "" : html_section("Conditions", "<table>\n" + rows + "</table>\n");
 }
 
 std::string gates(const Json& report) {
@@ -316,10 +278,10 @@ std::string gates(const Json& report) {
         number(gate, "limit"), escape_markup(gate.value("unit", "")),
         escape_markup(verdict_of.is_string() ? verdict_of.get<std::string>() : verdict_of.dump()));
   }
-  return section("Gates",
-                 "<table><tr><th>stage</th><th class=\"n\">measured</th><th class=\"n\">limit</th>"
-                 "<th>verdict</th></tr>\n" +
-                     rows + "</table>\n");
+  return html_section("Gates",
+                      "<table><tr><th>stage</th><th class=\"n\">measured</th><th class=\"n\">limit</th>"
+                      "<th>verdict</th></tr>\n" +
+                          rows + "</table>\n");
 }
 
 std::string time(const Json& report) {
@@ -328,7 +290,7 @@ std::string time(const Json& report) {
     rows += fmt::format("<tr><td>{}</td><td class=\"n\">{:.2f} s</td></tr>\n", escape_markup(phase),
                         seconds.get<double>());
   }
-  return rows.empty() ? "" : section("Time by phase", "<table>\n" + rows + "</table>\n", "time");
+  return rows.empty() ? "" : html_section("Time by phase", "<table>\n" + rows + "</table>\n", "time");
 }
 
 std::string two(const std::string& left, const std::string& right) {
@@ -338,19 +300,15 @@ std::string two(const std::string& left, const std::string& right) {
 }  // namespace
 
 std::string report_page(const Json& report, const std::vector<PagePicture>& pictures) {
-  std::string page = "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n";
-  page += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" +
-          escape_markup(report.value("title", "")) + " · report of a solve</title>\n<style>" +
-          std::string(kStyle) + "</style></head>\n<body><main>\n";
-  page += head(report);
+  std::string page = head(report);
   page += verdict(report);
   page += picture_row(pictures);
-  page += two(section("Residual by light", residual_chart(report)),
-              section("Pixels by state", status_chart(report)));
-  page += two(section("Where the error comes from", budget(report)), sigma_map(report));
+  page += two(html_section("Residual by light", residual_chart(report)),
+              html_section("Pixels by state", status_chart(report)));
+  page += two(html_section("Where the error comes from", budget(report)), sigma_map(report));
   page += light_table(report);
   page += two(gates(report) + time(report), conditions(report));
-  return page + "</main></body></html>\n";
+  return html_page(report.value("title", "") + " · report of a solve", page);
 }
 
 }  // namespace weft::app

@@ -27,33 +27,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kSchema = "weft.solve";
 
-// A folder aside that becomes the output. Unless it is published it goes again, with the parents made for it.
-class PartialFolder {
- public:
-  explicit PartialFolder(fs::path path) : path_(std::move(path)) {
-    for (fs::path p = path_.parent_path(); !p.empty() && !is_there(p); p = p.parent_path())
-      made_.push_back(p);
-  }
-  ~PartialFolder() {
-    std::error_code ignored;
-    if (path_.empty()) return;
-    fs::remove_all(path_, ignored);
-    for (const fs::path& parent : made_) fs::remove(parent, ignored);
-  }
-  PartialFolder(const PartialFolder&) = delete;
-  PartialFolder& operator=(const PartialFolder&) = delete;
-  const fs::path& path() const { return path_; }
-  Result<void> publish(const fs::path& target) {
-    Result<void> published = publish_folder(path_, target);
-    if (published) path_.clear();
-    return published;
-  }
-
- private:
-  fs::path path_;
-  std::vector<fs::path> made_;  // from the deepest up
-};
-
 // Counts of pixels by status, gathered band by band.
 class StatusCounts {
  public:
@@ -210,8 +183,7 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
   if (!finished) return std::move(finished).error();
   if (*finished) return SolveReport{place.folder, true, std::move(**finished), {}};
 
-  PartialFolder partial(place.folder.parent_path() /
-                        fmt::format(".{}.{}.partial", place.folder.filename().string(), getpid()));
+  PartialFolder partial(place.folder);
   if (Result<void> room = check_disk(place.folder.parent_path(), input.size); !room)
     return std::move(room).error();
   if (Result<void> made = make_writable_folder(partial.path()); !made) return std::move(made).error();
@@ -294,7 +266,7 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
   if (Result<void> ok = write_report(partial.path(), page); !ok) return std::move(ok).error();
   report.seconds.report += watch.lap();
   if (context.stop.stop_requested()) return interrupted();
-  if (Result<void> ok = partial.publish(place.folder); !ok) return std::move(ok).error();
+  if (Result<void> ok = partial.publish(); !ok) return std::move(ok).error();
   report.seconds.sync = watch.lap();
   report.seconds.total = total.lap();
   return report;

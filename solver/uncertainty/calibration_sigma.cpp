@@ -65,7 +65,7 @@ std::optional<CalibrationSigmas::Parameter> CalibrationSigmas::parameter_named(c
 
 Result<CalibrationSigmas> CalibrationSigmas::make(const LightField& field, Size size,
                                                   std::span<const int> leds,
-                                                  const LightCovariance& covariance,
+                                                  const ParameterCovariance& covariance,
                                                   const std::optional<NoiseModel>& noise) {
   if (!std::holds_alternative<NearLights>(field.lights())) {
     return bad_covariance("lights", "they are distant; positions, aims and lobes are those of near lights");

@@ -37,7 +37,7 @@ class CalibrationSigmas {
   /// must outlive this object. Parameters of other LEDs are not used. kBadData where the lights are distant
   /// or a parameter's name is unknown.
   static Result<CalibrationSigmas> make(const LightField& field, Size size, std::span<const int> leds,
-                                        const LightCovariance& covariance,
+                                        const ParameterCovariance& covariance,
                                         const std::optional<NoiseModel>& noise);
 
   /// At pixel (x, y) with a unit normal and an albedo of channel c; 180 degrees and 1 where fewer than three

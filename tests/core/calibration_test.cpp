@@ -118,7 +118,7 @@ TEST(Calibration, ReturnsRatiosPatchesCovarianceAndHotPicture) {
   Calibration written = full_calibration();
   written.response->exposure_ratios = {{4000, 16000, 0.2512}, {64000, 16000, 4.03}};
   written.patches = {{{{1, 2.5}, {30, 2}, {15, 40}}, {0.88, 0.9, 0.91}}};
-  written.light_covariance = LightCovariance{{"led01.mu", "led02.log_flux"}, {4e-4, -1e-6, -1e-6, 1e-4}};
+  written.light_covariance = ParameterCovariance{{"led01.mu", "led02.log_flux"}, {4e-4, -1e-6, -1e-6, 1e-4}};
   put_bytes(folder / "bad.png", "bytes of a picture");
   written.hot_picture = folder / "bad.png";
   const std::string id = must_write(folder / "c", written);
@@ -141,6 +141,70 @@ TEST(Calibration, ReturnsRatiosPatchesCovarianceAndHotPicture) {
   EXPECT_EQ(response.exposure_ratio(16000, 4000), 1 / 0.2512);
   EXPECT_EQ(response.exposure_ratio(64001, 16000), 4.03);
   EXPECT_FALSE(response.exposure_ratio(4000, 64000)) << "was not measured";
+}
+
+TEST(Calibration, ReturnsColorFiducialsBlackAndTheCameraCovariance) {
+  const ScratchFolder folder;
+  Calibration written = full_calibration();
+  written.subject.measured = "2026-01-31T12:00:00Z";
+  written.response->black_counts = 600.25;
+  written.camera_covariance = ParameterCovariance{{"fx", "fy"}, {0.04, 0.01, 0.01, 0.09}};
+  written.fiducials = {{"DICT_APRILTAG_36h11", 3, {{{1, 2, 0}, {3, 2, 0}, {3, 0.1, 0}, {1, 0.1, 0}}}}};
+  written.color = ColorTransform{{{{1.5, -0.4, -0.1}, {-0.2, 1.3, -0.1}, {0, -1.0 / 3, 4.0 / 3}}},
+                                 std::vector<double>(81, 1e-6),
+                                 ColorCurve{}};
+  written.color->curve->cubic[7] = 0.1;
+  must_write(folder / "c", written);
+  const Calibration read = must_read(folder / "c");
+  EXPECT_EQ(read.subject.measured, written.subject.measured);
+  EXPECT_EQ(read.response, written.response);
+  EXPECT_EQ(read.fiducials, written.fiducials);
+  EXPECT_EQ(read.color, written.color);
+  ASSERT_TRUE(read.camera_covariance);
+  EXPECT_EQ(read.camera_covariance->parameters, written.camera_covariance->parameters);
+  EXPECT_EQ(read.camera_covariance->matrix, written.camera_covariance->matrix);
+}
+
+TEST(Calibration, RefusesColorsThatDoNotKeepWhite) {
+  const ScratchFolder folder;
+  Calibration calibration = full_calibration();
+  calibration.color.emplace();
+  must_write(folder / "c", calibration);
+  rewrite_part(folder / "c", "color.json", [](Json& json) { json["rec709_from_camera"][1][1] = 1.1; });
+  EXPECT_THAT(why_refused(folder / "c"), HasSubstr("three rows of three numbers that sum to 1"));
+}
+
+TEST(DerivedCalibration, ReplacesItsPartsAndCopiesTheOthersByteByByte) {
+  const ScratchFolder folder;
+  must_write(folder / "a", full_calibration());
+  rewrite_part(folder / "a", "camera.json", [](Json& json) { json["of_a_newer_version"] = 1; });
+  Calibration change;
+  change.subject = full_calibration().subject;
+  change.response = Response{2.5, 0.5, {}};
+  const NamedFile page = {"response.html", "<p>a page</p>"};
+  const Result<Calibration> derived = derive_calibration(folder / "a", change, folder / "b", {&page, 1});
+  ASSERT_TRUE(derived) << derived.error().message();
+  EXPECT_EQ(bytes_of(folder / "b/camera.json"), bytes_of(folder / "a/camera.json"));
+  EXPECT_EQ(bytes_of(folder / "b/lights.json"), bytes_of(folder / "a/lights.json"));
+  EXPECT_EQ(derived->response, change.response);
+  EXPECT_EQ(bytes_of(folder / "b/report/response.html"), page.bytes);
+  EXPECT_EQ(derived->subject.measured.size(), 20U) << derived->subject.measured;
+  EXPECT_NE(derived->id, must_read(folder / "a").id);
+}
+
+TEST(DerivedCalibration, LeavesNothingWhereItFails) {
+  const ScratchFolder folder;
+  must_write(folder / "a", full_calibration());
+  put_bytes(folder / "a/camera.json", "{}");
+  Calibration change;
+  change.response = Response{};
+  const Result<Calibration> derived = derive_calibration(folder / "a", change, folder / "new/b", {});
+  ASSERT_FALSE(derived);
+  EXPECT_THAT(derived.error().message(), HasSubstr("was changed after it was measured"));
+  EXPECT_FALSE(fs::exists(folder / "new"));
+  const Result<Calibration> over = derive_calibration({}, change, folder / "a", {});
+  ASSERT_FALSE(over);
+  EXPECT_EQ(over.error().kind, ErrorKind::kCannotCreate);
 }
 
 TEST(Calibration, ReturnsDistantLightsAndOnlyThePartsThereAre) {
@@ -264,7 +328,7 @@ TEST(Calibration, OfANewerMinorVersionIsReadAndItsNewFieldsAndPartsAreLeftAlone)
   Json document = json_of(folder / "c/calibration.json");
   document["schema"] = "weft.calibration/1.4";
   document["new"] = "field";
-  document["parts"]["color.json"] = std::string(64, '0');
+  document["parts"]["polariser.json"] = std::string(64, '0');
   put_bytes(folder / "c/calibration.json", document.dump());
   const Calibration read = must_read(folder / "c");
   EXPECT_NE(read.id, id);

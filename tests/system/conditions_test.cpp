@@ -397,7 +397,7 @@ TEST_F(Conditions, CalibrationsShareOfSigmaIsWorkedOutOnAGridAndBlended) {
   const app::Photographs photographs =
       need(app::load_session(need(app::plan_session({session_, {}, {}})), {}));
   const Solved solved = solve(photographs);
-  LightCovariance covariance;
+  ParameterCovariance covariance;
   for (const int led : photographs.leds)
     covariance.parameters.push_back("led" + std::to_string(led) + ".log_flux");
   covariance.matrix.resize(100);

@@ -35,8 +35,8 @@ struct Independent {
   std::vector<std::string> names;  // "position_mm.x"
   std::vector<double> sigmas;
 };
-LightCovariance covariance_of(const Independent& each) {
-  LightCovariance covariance;
+ParameterCovariance covariance_of(const Independent& each) {
+  ParameterCovariance covariance;
   std::vector<double> variances;
   for (int led = 1; led <= 10; ++led) {
     for (std::size_t i = 0; i < each.names.size(); ++i) {
@@ -49,7 +49,7 @@ LightCovariance covariance_of(const Independent& each) {
   for (std::size_t i = 0; i < n; ++i) covariance.matrix[i * n + i] = variances[i];
   return covariance;
 }
-LightCovariance position_covariance(double sigma_mm) {
+ParameterCovariance position_covariance(double sigma_mm) {
   return covariance_of({{"position_mm.x", "position_mm.y", "position_mm.z"}, {sigma_mm, sigma_mm, sigma_mm}});
 }
 
@@ -88,7 +88,7 @@ TEST(CalibrationSigma, OfLedsFiveMillimetresOffIsHalfADegree) {
   // Monte Carlo of a prototype, good to about 5 percent, at tilts of 0, 20 and 40 degrees: 5 mm .53 .51 .62;
   // 1 percent of flux .28 .26 .32.
   const LightField field = field_of(test::ten_leds());
-  const auto of = [&](const LightCovariance& covariance) {
+  const auto of = [&](const ParameterCovariance& covariance) {
     return CalibrationSigmas::make(field, kFrame, numbers(10), covariance, {}).value();
   };
   const CalibrationSigmas five_mm = of(position_covariance(5)),
@@ -170,7 +170,7 @@ TEST(CalibrationSigma, IsWhatAThousandPerturbedRigsShow) {
 
 TEST(CalibrationSigma, OfACommonFluxErrorIsAllAlbedo) {
   const LightField field = field_of(test::ten_leds());
-  LightCovariance common = covariance_of({{"log_flux"}, {0.02}});
+  ParameterCovariance common = covariance_of({{"log_flux"}, {0.02}});
   std::fill(common.matrix.begin(), common.matrix.end(), 0.02 * 0.02);
   const CalibrationSigma sigma = CalibrationSigmas::make(field, kFrame, numbers(10), common, {})
                                      .value()
@@ -184,16 +184,16 @@ TEST(CalibrationSigma, TakesTheParametersOfTheLedsThatAreLitAlone) {
   const LightField field = LightField::make(select_lights(Lights(test::ten_leds()), lit).value(),
                                             overhead_camera(kFrame, 600, 0.5), kFrame, 0)
                                .value();
-  LightCovariance of_led_five = covariance_of({{"log_flux"}, {0}});
+  ParameterCovariance of_led_five = covariance_of({{"log_flux"}, {0}});
   of_led_five.matrix[4 * 10 + 4] = 1e-4;
-  const auto at = [&](const LightCovariance& c) {
+  const auto at = [&](const ParameterCovariance& c) {
     return CalibrationSigmas::make(field, kFrame, lit, c, {})
         .value()
         .at(200, 130, 1, {0, 0, 1}, 0.5)
         .normal_deg;
   };
   EXPECT_GT(at(of_led_five), 0.1);
-  LightCovariance of_led_four = covariance_of({{"log_flux"}, {0}});
+  ParameterCovariance of_led_four = covariance_of({{"log_flux"}, {0}});
   of_led_four.matrix[3 * 10 + 3] = 1e-4;
   EXPECT_EQ(at(of_led_four), 0);
 }
