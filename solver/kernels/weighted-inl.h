@@ -3,8 +3,6 @@
 
 #include <hwy/highway.h>
 
-#include <cmath>
-
 #include "solver/kernels/estimate-inl.h"
 #include "solver/kernels/finish-inl.h"
 #include "solver/kernels/gather-inl.h"
@@ -19,7 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Shadowed readings that the others predict to be lit, and as bright as they are.
 HWY_NOINLINE M take_back_what_fits(D d, const RowTask& task, const Scratch& scratch, Estimate& e) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), minus_infinity = hn::Neg(hn::Inf(d));
-  const V least_lit = hn::Set(d, static_cast<float>(std::pow(taken_back_from(task.has_noise), 2))),
+  const V least_lit = hn::Set(d, static_cast<float>(kTakenBackFrom * kTakenBackFrom)),
           reject_from = hn::Set(d, static_cast<float>(kRejectFrom));
   const Variance variance(d, task, e.predictor);
   M any = hn::Lt(one, zero), left_out = any;

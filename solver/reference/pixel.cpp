@@ -137,7 +137,7 @@ struct PixelSolver::Work {
     for (Reading& r : readings) {
       if (r.use != Use::kShadowed) continue;
       const double predicted = r.l.dot(fit.b), sigma2 = r.variance + r.l.dot(fit.inverse * r.l);
-      if (predicted <= taken_back_from(has_noise()) * std::sqrt(sigma2) ||
+      if (predicted <= kTakenBackFrom * std::sqrt(sigma2) ||
           std::pow(r.light - predicted, 2) > kRejectFrom * sigma2)
         continue;
       r.use = Use::kFitted;

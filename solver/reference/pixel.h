@@ -109,10 +109,8 @@ inline double model_share(bool has_noise) {
   return has_noise ? 0.001 : 0.003;
 }
 /// A reading that was left out for a shadow is taken back where it fits the others and these predict it to be
-/// lit by so many sigma; by more where no noise model says what sigma is.
-inline double taken_back_from(bool has_noise) {
-  return has_noise ? 1 : 3;
-}
+/// lit by so many sigma.
+inline constexpr double kTakenBackFrom = 1;
 /// A reading is rejected where its studentised residual, squared, is over this many times the scatter of the
 /// others.
 inline constexpr double kRejectFrom = 9;
