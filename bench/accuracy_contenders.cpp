@@ -8,8 +8,8 @@
 #include <memory>
 #include <utility>
 
-#include "app/jobs/reference.h"
 #include "app/jobs/solve_bands.h"
+#include "app/jobs/solve_frame.h"
 #include "app/jobs/tile_reader.h"
 #include "core/tiles.h"
 #include "solver/kernels/demosaic.h"
@@ -23,21 +23,9 @@ Result<void> solve_patch(const solver::Method& method, const std::vector<View<co
                       patch.photographs.noise, threads, maps);
 }
 
-// A method as the product runs it: on the mosaic, or after demosaicing where that is what it wants.
-SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
-  return [method](const Patch& patch, int threads, SolvedMaps& maps) -> Result<void> {
-    if (!method->wants_rgb()) {
-      return solve_patch(*method, planes_of(patch.readings), patch, threads, maps);
-    }
-    const TileOptions whole = {.width = patch.size().width, .height = patch.size().height};
-    app::TileReader reader(patch.photographs, whole, solver::kDemosaicReach, true);
-    maps.planes = 3;
-    return solve_patch(*method, reader.read(patch.area()), patch, threads, maps);
-  };
-}
-
 // The reference level: maps of a whole frame, band by band.
-Result<void> solve_by_reference(const Patch& patch, int threads, SolvedMaps& maps) {
+Result<void> solve_by_reference(const Patch& patch, const app::ReferenceOptions& options, int threads,
+                                SolvedMaps& maps) {
   app::JobContext context;
   context.threads = threads;
   const auto keep = [&](const app::MapBand& band) -> Result<void> {
@@ -60,7 +48,7 @@ Result<void> solve_by_reference(const Patch& patch, int threads, SolvedMaps& map
     }
     return {};
   };
-  const auto solved = app::solve_reference(patch.photographs, app::kSolveTile, {}, context, keep);
+  const auto solved = app::solve_reference(patch.photographs, app::kSolveTile, options, context, keep);
   if (!solved) return solved.error();
   return {};
 }
@@ -79,14 +67,68 @@ Result<void> solve_oracle(const Patch& patch, int threads, SolvedMaps& maps) {
   return solve_patch(*solver::least_squares_method(), planes_of(seen), patch, threads, maps);
 }
 
+// Each pixel as four of twice its size.
+void enlarge(const SolvedMaps& half, SolvedMaps& maps) {
+  const Size size = maps.status.size();
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const int u = std::min(x / 2, half.status.width() - 1), v = std::min(y / 2, half.status.height() - 1);
+      for (int c = 0; c < 3; ++c) {
+        maps.normal(x, y, c) = half.normal(u, v, c);
+        maps.albedo(x, y, c) = half.albedo(u, v, c);
+        maps.sigma_albedo(x, y, c) = half.sigma_albedo(u, v, c);
+      }
+      maps.sigma_normal_deg(x, y) = half.sigma_normal_deg(u, v);
+      maps.residual(x, y) = half.residual(u, v);
+      maps.status(x, y) = half.status(u, v);
+    }
+  }
+}
+
+Result<void> solve_preview(const Patch& patch, int threads, SolvedMaps& maps) {
+  const Result<app::Photographs> half = app::half_size(patch.photographs, threads);
+  if (!half) return half.error();
+  SolvedMaps solved(half->size);
+  solved.planes = maps.planes = 3;
+  std::vector<View<const float>> readings;
+  for (const Image<float>& rgb : half->rgb) {
+    for (int c = 0; c < 3; ++c) readings.emplace_back(rgb.plane(c));
+  }
+  Result<void> ok = solve_images(*solver::fast_method(), readings, *half->field, {}, {}, threads, solved);
+  if (ok) enlarge(solved, maps);
+  return ok;
+}
+
 }  // namespace
+
+SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
+  return [method](const Patch& patch, int threads, SolvedMaps& maps) -> Result<void> {
+    if (!method->wants_rgb()) {
+      return solve_patch(*method, planes_of(patch.readings), patch, threads, maps);
+    }
+    const TileOptions whole = {.width = patch.size().width, .height = patch.size().height};
+    app::TileReader reader(patch.photographs, whole, solver::kDemosaicReach, true);
+    maps.planes = 3;
+    return solve_patch(*method, reader.read(patch.area()), patch, threads, maps);
+  };
+}
+
+SolvePatch by_reference(const app::ReferenceOptions& options) {
+  return [options](const Patch& patch, int threads, SolvedMaps& maps) {
+    return solve_by_reference(patch, options, threads, maps);
+  };
+}
+
+SolvePatch by_preview() {
+  return solve_preview;
+}
 
 std::vector<Contender> contenders() {
   std::vector<Contender> all;
   for (const solver::MethodName& name : solver::method_names()) {
     if (name.extent == solver::Extent::kHalfSize) continue;  // has no pixels to hold against the truth's
     if (name.extent == solver::Extent::kWholeFrame) {
-      all.push_back({name.name, solve_by_reference, true, false, 1});
+      all.push_back({name.name, by_reference({}), true, false, 1});
       continue;
     }
     std::shared_ptr<const solver::Method> method = name.make();

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "app/jobs/reference.h"
 #include "bench/accuracy_scenes.h"
 #include "bench/solved_maps.h"
 #include "core/result.h"
@@ -30,6 +32,13 @@ std::vector<Contender> contenders();
 /// Those with these names, and the yardsticks; all where there are no names. kUsage for a name that is not
 /// there.
 Result<std::vector<Contender>> contenders_named(const std::vector<std::string>& names);
+
+/// The reference level with these options.
+SolvePatch by_reference(const app::ReferenceOptions& options);
+/// The level preview, each of its pixels standing for the four photosites it was made of.
+SolvePatch by_preview();
+/// A method as the product runs it: on the mosaic, or after demosaicing where that is what it wants.
+SolvePatch as_product(std::shared_ptr<const solver::Method> method);
 
 /// A method over whole images in the tiles of `weft solve`; `readings` holds `maps.planes` views a light.
 Result<void> solve_images(const solver::Method& method, const std::vector<View<const float>>& readings,

@@ -11,6 +11,7 @@
 
 #include "bench/accuracy_bound.h"
 #include "bench/accuracy_contenders.h"
+#include "bench/accuracy_curves.h"
 #include "bench/accuracy_score.h"
 #include "core/files.h"
 
@@ -137,9 +138,11 @@ Result<AccuracyFigures> measure_figures(const AccuracyTableOptions& options) {
     if (contender.is_quality) levels.methods.push_back(contender.name);
   }
   AccuracyFigures figures;
-  const std::array<std::pair<Rows*, Result<Rows>>, 4> parts = {
+  const std::array<std::pair<Rows*, Result<Rows>>, 6> parts = {
       {{&figures.table, accuracy_table(options)},
        {&figures.leds, accuracy_by_leds(levels)},
+       {&figures.curves, accuracy_curves(options)},
+       {&figures.gates, accuracy_gates(options)},
        {&figures.bound, accuracy_bound({{}, options.threads})},
        {&figures.specular, specular_warnings(levels)}}};
   for (const auto& [rows, measured] : parts) {
@@ -187,6 +190,23 @@ Plot accuracy_plot(const AccuracyFigures& figures) {
   return plot;
 }
 
+Plot curves_plot(const AccuracyFigures& figures) {
+  Plot plot = {"What each setting buys, mean over all scenes",
+               "nanoseconds a pixel",
+               "mean angular error, degrees",
+               {},
+               false};
+  for (const std::string& name : distinct(figures.curves, "curve")) {
+    PlotSeries curve = {name, {}, true};
+    for (const Json& row : figures.curves) {
+      if (row["curve"] != name) continue;
+      curve.points.push_back({number(row, "ns_per_pixel"), number(row, "mean_deg"), row["setting"]});
+    }
+    plot.series.push_back(std::move(curve));
+  }
+  return plot;
+}
+
 std::string accuracy_markdown(const AccuracyFigures& figures) {
   std::string page = "![mean error against time](pictures/accuracy.svg)\n\n";
   page += fmt::format(
@@ -222,6 +242,17 @@ std::string accuracy_markdown(const AccuracyFigures& figures) {
                                        {"p95_deg", "95 %"},
                                        {"albedo_mean_rel", "albedo error"},
                                        {"ns_per_pixel", "ns a pixel"}});
+  page +=
+      "## Resolution, arithmetic, rays and rounds\n\n![error against time by "
+      "setting](pictures/curves.svg)\n\n";
+  page += columns_table(figures.curves, {{"curve", "what"},
+                                         {"setting", "setting"},
+                                         {"mean_deg", "mean, degrees"},
+                                         {"p95_deg", "95 %"},
+                                         {"albedo_mean_rel", "albedo error"},
+                                         {"ns_per_pixel", "ns a pixel"}});
+  page += "## What the gates leave out, mean error in degrees\n\n";
+  page += markdown_table(by_scene_and_method(figures.gates, "mean_deg"));
   page += "## Photon noise alone, over the bound\n\n";
   page += bound_table(figures.bound);
   page += "## Who says SPECULAR\n\n";
@@ -256,11 +287,14 @@ Result<void> write_accuracy_docs(const std::filesystem::path& folder, const Accu
   const Plot plot = accuracy_plot(figures);
   Json document = document_of(figures.table);
   document["leds"] = figures.leds;
+  document["curves"] = figures.curves;
+  document["gates"] = figures.gates;
   document["bound"] = figures.bound;
   document["specular"] = figures.specular;
   document["plot"] = plot_json(plot);
   if (Result<void> ok = write_file(pictures / "accuracy.json", document.dump(1) + "\n"); !ok) return ok;
   if (Result<void> ok = write_file(pictures / "accuracy.svg", plot_svg(plot)); !ok) return ok;
+  if (Result<void> ok = write_file(pictures / "curves.svg", plot_svg(curves_plot(figures))); !ok) return ok;
   return write_file(file, *renewed);
 }
 
