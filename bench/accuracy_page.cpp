@@ -137,12 +137,14 @@ Result<AccuracyFigures> measure_figures(const AccuracyTableOptions& options) {
   for (const Contender& contender : contenders()) {
     if (contender.is_quality) levels.methods.push_back(contender.name);
   }
+  AccuracyTableOptions small = options;
+  small.quick = true;
   AccuracyFigures figures;
   const std::array<std::pair<Rows*, Result<Rows>>, 6> parts = {
       {{&figures.table, accuracy_table(options)},
        {&figures.leds, accuracy_by_leds(levels)},
-       {&figures.curves, accuracy_curves(options)},
-       {&figures.gates, accuracy_gates(options)},
+       {&figures.curves, accuracy_curves(small)},
+       {&figures.gates, accuracy_gates(small)},
        {&figures.bound, accuracy_bound({{}, options.threads})},
        {&figures.specular, specular_warnings(levels)}}};
   for (const auto& [rows, measured] : parts) {
