@@ -65,18 +65,31 @@ namespace weft {
 
 HWY_EXPORT(read_row);
 
+namespace {
+
+// What the measured black level has over the file's; the sites of the filter cell keep their differences.
+float black_offset(const RawFrame& like, const Response& response) {
+  if (!response.black_counts) return 0;
+  double mean = 0;
+  for (const auto& row : like.black) mean += static_cast<double>(row[0] + row[1]) / 4;
+  return static_cast<float>(*response.black_counts - mean);
+}
+
+}  // namespace
+
 Radiometry::Radiometry(const RawFrame& like, const RawFrame* dark, const Response& response,
                        Exposure exposure)
     : dark_(dark != nullptr ? dark->counts.plane() : View<const std::uint16_t>()),
       cfa_(like.cfa),
       per_second_(static_cast<float>(1.0 / (exposure.exposure_us * 1e-6 * exposure.iso / 100))) {
+  const float measured = dark == nullptr ? black_offset(like, response) : 0;
   double mean_range = 0;
   for (std::size_t y = 0; y < 2; ++y) {
     for (std::size_t x = 0; x < 2; ++x) {
       const float range = like.white - like.black[y][x];
       const int site = like.cfa.site[y][x];
       const auto channel = static_cast<std::size_t>(site == 3 ? 1 : site);
-      black_[y][x] = like.black[y][x];
+      black_[y][x] = like.black[y][x] + measured;
       saturated_from_[y][x] = like.black[y][x] + static_cast<float>(kSaturatedFrom) * range;
       per_count_[y][x] = 1 / range;
       linearity_a_[y][x] = static_cast<float>(response.linearity[channel][0]);

@@ -44,7 +44,8 @@ class Radiometry {
     double iso = 100;
   };
   /// `like` is any frame of the session: its levels and filter pattern hold for all. `dark` (may be null)
-  /// must outlive this object and match `like` in size.
+  /// must outlive this object and match `like` in size. Without it, response.black_counts stands in the place
+  /// of the file's mean black level.
   Radiometry(const RawFrame& like, const RawFrame* dark, const Response& response, Exposure exposure);
 
   /// Readings of `tile` of a frame's counts, into `out` whose (0, 0) is the tile's corner. `tile.x0` must be

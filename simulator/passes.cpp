@@ -55,6 +55,22 @@ void PassRunner::run_stage(Stage stage, Worker& worker) const {
   }
 }
 
+void PassRunner::light(Worker& worker) const {
+  Tile& tile = worker.tile;
+  const bool one_each = tile.shot <= list_.leds || list_.leds == 0;
+  tile.led = one_each ? tile.shot : (tile.shot - 1) % list_.leds + 1;
+  if (list_.lit_together.empty()) return run_stage(Stage::kLight, worker);
+  worker.sum.assign(static_cast<std::size_t>(tile.area.pixels()), Rgb{});
+  for (const int led : list_.lit_together) {
+    tile.led = led;
+    run_stage(Stage::kLight, worker);
+    for (std::size_t i = 0; i < worker.sum.size(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) worker.sum[i][c] += tile.signal[i][c];
+    }
+  }
+  tile.signal.swap(worker.sum);
+}
+
 Result<void> PassRunner::run(Rect area, std::span<const int> shots, std::stop_token stop,
                              const std::function<void(const Tile&)>& with_surface,
                              const std::function<void(const Tile&)>& with_shot) {
@@ -70,8 +86,9 @@ Result<void> PassRunner::run(Rect area, std::span<const int> shots, std::stop_to
     with_surface(tile);
     for (const int shot : shots) {
       tile.shot = shot;
-      tile.led = shot <= list_.leds || list_.leds == 0 ? shot : (shot - 1) % list_.leds + 1;
+      tile.take = list_.takes_before + shot;
       if (list_.cloth_moves) run_stage(Stage::kSurface, worker);
+      light(worker);
       run_stage(Stage::kShot, worker);
       if (!tile.failure) with_shot(tile);
     }

@@ -35,7 +35,8 @@ inline constexpr int kCloth = -1;
 struct Tile {
   Rect rect;     ///< the pixels that are asked for
   Rect area;     ///< `rect` and the halo that shadows, bounces and blur look into
-  int shot = 0;  ///< number of the shot, which all that is drawn by chance depends on (PassRunner::run)
+  int shot = 0;  ///< number of the shot (PassRunner::run)
+  int take = 0;  ///< the same counted on from session to session: all that is drawn by chance depends on it
   int led = 0;   ///< LED of the shot, from 1; 0 is the dark shot
 
   // On `area`, once a tile.
@@ -84,8 +85,9 @@ void for_each_pixel(Rect rect, const Body& body) {
   }
 }
 
-/// What a pass works on: once a tile, whatever the light, or again for each shot.
-enum class Stage { kSurface, kShot };
+/// When a pass runs: once a tile, whatever the light; for each LED of each shot, to where its light leaves
+/// the cloth, which is then summed; once a shot.
+enum class Stage { kSurface, kLight, kShot };
 
 struct Pass {
   std::string name;
@@ -103,10 +105,12 @@ struct LeftOut {
 };
 
 struct PassList {
-  std::vector<Pass> passes;  ///< in the order they run; all of kSurface before those of kShot
-  int halo = 0;              ///< pixels around a tile that the passes need
-  int leds = 0;              ///< of the rig
-  bool cloth_moves = false;  ///< the surface is another one for each shot
+  std::vector<Pass> passes;       ///< in the order they run and of Stage
+  int halo = 0;                   ///< pixels around a tile that the passes need
+  int leds = 0;                   ///< of the rig
+  bool cloth_moves = false;       ///< the surface is another one for each shot
+  std::vector<int> lit_together;  ///< LEDs of every shot, whatever its number; empty: the one of its number
+  int takes_before = 0;           ///< Tile::take of shot 0
 };
 
 /// What a pass cost, summed over threads.
@@ -139,8 +143,10 @@ class PassRunner {
     Tile tile;
     std::vector<std::chrono::nanoseconds> spent;  ///< by pass
     std::vector<std::int64_t> pixels;
+    std::vector<Rgb> sum;  ///< signal of the LEDs so far, where several are lit
   };
   void run_stage(Stage stage, Worker& worker) const;
+  void light(Worker& worker) const;
 
   PassList list_;
   TileOptions options_;

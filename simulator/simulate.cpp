@@ -8,6 +8,7 @@
 #include <chrono>
 #include <new>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include "core/calibration.h"
@@ -149,6 +150,19 @@ DngTags tags_of(const Scene& scene) {
   return tags;
 }
 
+Result<void> check_leds(const std::vector<int>& lit, int leds) {
+  for (std::size_t i = 0; i < lit.size(); ++i) {
+    const bool is_there = lit[i] > 0 && lit[i] <= leds;
+    if (is_there && std::find(lit.begin(), lit.begin() + static_cast<std::ptrdiff_t>(i), lit[i]) ==
+                        lit.begin() + static_cast<std::ptrdiff_t>(i))
+      continue;
+    return Error{ErrorKind::kUsage, is_there ? "a LED is named twice" : "the scene has no such LED",
+                 fmt::format("LED {}", lit[i]),
+                 fmt::format("LEDs are numbered from 1 to {}; 0 is the dark shot", leds), "choose another"};
+  }
+  return {};
+}
+
 class SessionWriter {
  public:
   SessionWriter(const Scene& scene, const Plan& plan, PassList surface, PassList frames, PassList brackets,
@@ -169,6 +183,7 @@ class SessionWriter {
     if (!aside) return aside.error();
     folder_ = aside->path();
     for (const char* part : {"raw", "truth"}) {
+      if (part == std::string_view("truth") && !options_.truth) continue;
       if (Result<void> ok = make_writable_folder(folder_ / part); !ok) return ok.error();
     }
     using Step = Result<void> (SessionWriter::*)();
@@ -196,6 +211,7 @@ class SessionWriter {
   int frames() const { return static_cast<int>(exposures_.size()); }
   /// Planes of truth that each LED has of its own: what it is seen of and what reaches a point by the cloth.
   int planes_of_led() const {
+    if (!options_.truth) return 0;
     return (scene_.effects.cast_shadows ? 1 : 0) + (scene_.effects.interreflection ? 3 : 0);
   }
   std::string shot_name(int index, const char* ending) const {
@@ -228,8 +244,8 @@ class SessionWriter {
   }
 
   Result<void> write_calibration_folder() {
-    Result<Calibration> written =
-        write_calibration(folder_ / "calibration", exact_calibration(scene_, plan_.rig));
+    Result<Calibration> written = write_calibration(
+        folder_ / "calibration", options_.calibration.value_or(exact_calibration(scene_, plan_.rig)));
     if (!written) return written.error();
     session_.calibration_id = written->id;
     return {};
@@ -242,12 +258,13 @@ class SessionWriter {
       const int y1 = std::min(y0 + band_rows_, height());
       if (Result<void> ok = body(y0, y1); !ok) return ok;
       rows_done_ += y1 - y0;
-      if (options_.progress) options_.progress(rows_done_, 2 * height());
+      if (options_.progress) options_.progress(rows_done_, (options_.truth ? 2 : 1) * height());
     }
     return {};
   }
 
   Result<void> write_truth() {
+    if (!options_.truth) return {};
     if (Result<void> ok = write_file(folder_ / "truth" / "scene.toml", to_toml(given_)); !ok) return ok;
     Result<MapFiles> maps = MapFiles::open(
         folder_ / "truth", {width(), height()}, band_rows_,
@@ -344,7 +361,7 @@ class SessionWriter {
 
   Result<MapFiles> open_light_maps() const {
     std::vector<MapFiles::Map> maps;
-    for (int index = 0; index < leds(); ++index) {
+    for (int index = 0; options_.truth && index < leds(); ++index) {
       if (scene_.effects.cast_shadows) {
         maps.push_back({"visibility_" + shot_name(index, ".exr").substr(3), {"Y"}, SampleType::kHalf});
       }
@@ -461,6 +478,7 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
   bracket_rig.exposure_us = bracket_exposure_us(plan->scene.camera.retakes, plan->rig, true);
   Result<PassList> brackets = build_passes(plan->scene, bracket_rig, output);
   if (!brackets) return brackets.error();
+  frames->takes_before = brackets->takes_before = options.takes_before;
   return SessionWriter(scene, *plan, std::move(*surface), std::move(*frames), std::move(*brackets), options)
       .write(target);
 } catch (const std::bad_alloc&) {
@@ -468,22 +486,32 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
 }
 
 Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file,
-                            const SimulateOptions& options) try {
+                            const SimulateOptions& options) {
+  const std::vector<int> leds = led == 0 ? std::vector<int>() : std::vector<int>{led};
+  return simulate_photograph(scene, {leds, {}}, file, options);
+}
+
+Result<void> simulate_photograph(const Scene& scene, const PhotographSettings& photograph,
+                                 const fs::path& file, const SimulateOptions& options) try {
   const Result<Plan> plan = plan_of(scene);
   if (!plan) return plan.error();
-  const int leds = static_cast<int>(plan->rig.leds.leds.size());
   if (plan->scene.frames == FrameFile::kExr) {
     return Error{ErrorKind::kUsage, "one frame alone is a raw file", "frames", "the scene's frames are EXR",
                  "simulate the whole session, or set frames = \"dng\""};
   }
-  if (led < 0 || led > leds) {
-    return Error{ErrorKind::kUsage, "the scene has no such LED", fmt::format("LED {}", led),
-                 fmt::format("LEDs are numbered from 1 to {}; 0 is the dark shot", leds), "choose another"};
-  }
-  Result<PassList> passes = build_passes(plan->scene, plan->rig, Output::kCounts);
+  if (Result<void> ok = check_leds(photograph.leds, static_cast<int>(plan->rig.leds.leds.size())); !ok)
+    return ok;
+  Rig rig = plan->rig;
+  const double exposure_us = photograph.exposure_us.value_or(rig.exposure_us);
+  if (exposure_us != rig.exposure_us)
+    rig.exposure_us = exposure_us * (1 + scene.camera.retakes.shutter_error);
+  Result<PassList> passes = build_passes(plan->scene, rig, Output::kCounts);
   if (!passes) return passes.error();
-  RawFrame frame = frame_head(*plan, plan->rig.exposure_us);
-  const Size size = plan->rig.camera.size;
+  passes->lit_together = photograph.leds;
+  passes->takes_before = options.takes_before;
+  const int shot = photograph.leds.empty() ? 0 : photograph.leds.front();
+  RawFrame frame = frame_head(*plan, exposure_us);
+  const Size size = rig.camera.size;
   if (Result<void> ok = check_memory(2 * sizeof(std::uint16_t) * static_cast<std::uint64_t>(size.pixels()));
       !ok) {
     return ok;
@@ -491,7 +519,7 @@ Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file,
   frame.counts = Image<std::uint16_t>(size);
   PassRunner runner(std::move(*passes), options.tiles);
   Result<void> ran = runner.run(
-      {0, 0, size.width, size.height}, {&led, 1}, options.stop, [](const Tile&) {},
+      {0, 0, size.width, size.height}, {&shot, 1}, options.stop, [](const Tile&) {},
       [&](const Tile& tile) { copy_counts(tile, 0, frame.counts.plane()); });
   if (!ran) return ran;
   return write_dng(file, frame, tags_of(plan->scene));

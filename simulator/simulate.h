@@ -3,10 +3,12 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
 
+#include "core/calibration.h"
 #include "core/image.h"
 #include "core/result.h"
 #include "core/tiles.h"
@@ -20,6 +22,9 @@ struct SimulateOptions {
   std::stop_token stop;
   /// Called after each band of rows: of the truth, then of all frames together.
   std::function<void(int rows_done, int rows)> progress;
+  std::optional<Calibration> calibration = {};  ///< what a session holds in the place of the exact one
+  bool truth = true;                       ///< write truth/
+  int takes_before = 0;  ///< photographs that the sensor took before: others draw other noise
 };
 
 /// What a simulation did.
@@ -50,6 +55,17 @@ Result<SimulationReport> simulate_session(const Scene& scene, const std::filesys
 /// above; kUsage where the scene has no such LED.
 Result<void> simulate_frame(const Scene& scene, int led, const std::filesystem::path& file,
                             const SimulateOptions& options);
+
+/// A photograph that is no shot of a session.
+struct PhotographSettings {
+  std::vector<int> leds;              ///< lit at once, from 1; none: dark
+  std::optional<double> exposure_us;  ///< whole; else the scene's. Another one than that gathers what
+                                      ///< [camera.retakes] shutter_error says
+};
+
+/// Writes it as DNG. Errors as simulate_frame(); kUsage for a LED that is named twice.
+Result<void> simulate_photograph(const Scene& scene, const PhotographSettings& photograph,
+                                 const std::filesystem::path& file, const SimulateOptions& options);
 
 /// Part of a simulated picture as numbers, without mosaic, converter or files.
 struct Rendering {

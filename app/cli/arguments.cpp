@@ -23,7 +23,8 @@ CLI::App* add_simulate(CLI::App& app, SimulateArguments& a) {
       app.add_subcommand("simulate", "Render a scene (TOML) into a session of raw DNG frames with its truth");
   verb->add_option("scene", a.scene, "Scene file; docs/scenes.md lists its keys and units")->required();
   verb->add_option("-o,--output", a.output,
-                   "Session folder to make, NAME.weft, which must not exist; with --led the DNG file")
+                   "Session folder to make, NAME.weft, which must not exist; with --led the DNG file, with "
+                   "--captures the folder of the parts")
       ->required();
   CLI::Option* led =
       verb->add_option("--led", a.led, "Render one frame alone: of this LED, 0 for the dark shot")
@@ -31,6 +32,12 @@ CLI::App* add_simulate(CLI::App& app, SimulateArguments& a) {
   verb->add_flag("--explain", a.explain,
                  "List the passes that run and why, the effects left out with what they would change and "
                  "cost, and after the run what each pass cost")
+      ->excludes(led);
+  verb->add_option("--captures", a.parts,
+                   "Take what calibrating this scene's rig needs, a folder a part: all, or some of start, "
+                   "camera, response, color, lights, check")
+      ->delimiter(',')
+      ->expected(0, 6)
       ->excludes(led);
   return verb;
 }
@@ -239,6 +246,35 @@ CLI::App* add_bench_transport(CLI::App& bench, BenchTransportArguments& a) {
   return verb;
 }
 
+CLI::App* add_rectify(CLI::App& app, RectifyOptions& a) {
+  CLI::App* verb =
+      app.add_subcommand("rectify", "Put the maps of a solve on a square grid of the table, lens removed");
+  verb->add_option("session", a.session, "Session folder, NAME.weft")->required();
+  verb->add_option("--solve", a.solve, "Id of the solve; default the newest complete one");
+  verb->add_option("--calibration", a.calibration, "Calibration folder; default the session's own");
+  verb->add_option("-o,--output", a.output, "Folder for the maps; default SESSION/rectified/ID");
+  verb->add_option("--mm-per-pixel", a.mm_per_pixel, "Of the grid; default what the camera sees")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--turn", a.turn_deg, "Degrees that the grid is turned, counterclockwise from above")
+      ->check(CLI::Range(-360.0, 360.0))
+      ->capture_default_str();
+  verb->add_option("--compress", a.compression, "Of EXR files: none, zip, piz")
+      ->check(CLI::IsMember({"none", "zip", "piz"}))
+      ->capture_default_str();
+  return verb;
+}
+
+CLI::App* add_bench_calibration(CLI::App& bench, BenchCalibrationArguments& a) {
+  CLI::App* verb = bench.add_subcommand("calibration", "What calibrating a simulated rig recovers");
+  verb->add_option("--part", a.part, "camera, response, color, lights, moved, end-to-end")
+      ->check(CLI::IsMember({"camera", "response", "color", "lights", "moved", "end-to-end"}))
+      ->capture_default_str();
+  verb->add_option("--seeds", a.seeds, "Rigs or noises to average over; 0 is as many as docs/calibration.md")
+      ->check(CLI::Range(0, 10000))
+      ->capture_default_str();
+  return verb;
+}
+
 CLI::App* add_demo(CLI::App& app, DemoArguments& a) {
   CLI::App* verb = app.add_subcommand("demo", "Scan a simulated cloth, solve it and show the result");
   verb->add_option("scene", a.scene, "Scene file (TOML)")->required();
@@ -272,12 +308,18 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   BenchAccuracyArguments bench_accuracy;
   BenchExplainArguments bench_explain;
   BenchPhotosArguments bench_photos;
+  BenchCalibrationArguments bench_calibration;
   DemoArguments demo;
+  CalibrateForms calibrate;
+  RectifyOptions rectify;
   std::string quality, method, transfer = "auto", kind = "normal", set = "held-out";
   std::vector<int> lights;
   CLI::App* simulate_verb = add_simulate(app, simulate);
   CLI::App* solve_verb = add_solve(app, solve, common, quality, method, transfer, lights);
   CLI::App* compare_verb = add_compare(app, compare, kind);
+  const std::vector<CLI::App*> calibrate_steps = add_calibrate(app, calibrate);
+  CLI::App* calibrate_verb = calibrate_steps.front()->get_parent();
+  CLI::App* rectify_verb = add_rectify(app, rectify);
   CLI::App* bench_verb = app.add_subcommand("bench", "Measure");
   bench_verb->require_subcommand(1);
   CLI::App* bench_solve_verb = add_bench_solve(*bench_verb, bench_solve);
@@ -290,11 +332,17 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   CLI::App* bench_registration_verb = bench_verb->add_subcommand(
       "registration", "Shots registered to each other: shift, error, cost and gain on three weaves");
   CLI::App* bench_transport_verb = add_bench_transport(*bench_verb, bench_transport);
+  CLI::App* bench_calibration_verb = add_bench_calibration(*bench_verb, bench_calibration);
   CLI::App* demo_verb = add_demo(app, demo);
-  for (CLI::App* verb : {simulate_verb, solve_verb, compare_verb, bench_solve_verb, bench_effects_verb,
-                         bench_numerics_verb, bench_accuracy_verb, bench_explain_verb, bench_photos_verb,
-                         bench_height_verb, bench_transport_verb, bench_registration_verb, demo_verb}) {
+  for (CLI::App* verb :
+       {simulate_verb, solve_verb, compare_verb, rectify_verb, bench_solve_verb, bench_effects_verb,
+        bench_numerics_verb, bench_accuracy_verb, bench_explain_verb, bench_photos_verb, bench_height_verb,
+        bench_transport_verb, bench_registration_verb, bench_calibration_verb, demo_verb}) {
     add_common(*verb, common);
+  }
+  for (CLI::App* step : calibrate_steps) {
+    add_common(*step, common);
+    step->add_flag("--strict", common.strict, "Exit with 2 where the report has something to say");
   }
 
   const auto usage = [&](const std::string& why) {
@@ -314,12 +362,17 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
     return std::nullopt;
   }
 
-  if (*simulate_verb) return Arguments{common, simulate};
+  if (*simulate_verb) {
+    simulate.captures |= simulate_verb->count("--captures") > 0;
+    return Arguments{common, simulate};
+  }
   if (*compare_verb) {
     compare.albedo = kind == "albedo";
     return Arguments{common, compare};
   }
   if (*demo_verb) return Arguments{common, demo};
+  if (*rectify_verb) return Arguments{common, rectify};
+  if (*calibrate_verb) return Arguments{common, chosen_step(*calibrate_verb, calibrate)};
   if (*bench_numerics_verb) return Arguments{common, bench_numerics};
   if (*bench_accuracy_verb) {
     bench_accuracy.tuning = set == "tuning";
@@ -332,6 +385,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   if (*bench_photos_verb) return Arguments{common, bench_photos};
   if (*bench_height_verb) return Arguments{common, bench_height};
   if (*bench_registration_verb) return Arguments{common, BenchRegistrationArguments{}};
+  if (*bench_calibration_verb) return Arguments{common, bench_calibration};
   if (*bench_transport_verb) return Arguments{common, bench_transport};
   if (*bench_effects_verb) return Arguments{common, bench_effects};
   if (*bench_verb) return Arguments{common, bench_solve};

@@ -7,7 +7,9 @@
 #include <variant>
 #include <vector>
 
+#include "app/cli/calibrate_arguments.h"
 #include "app/jobs/explain.h"
+#include "app/jobs/rectify.h"
 #include "app/jobs/solve.h"
 
 namespace weft::app {
@@ -25,6 +27,8 @@ struct SimulateArguments {
   std::filesystem::path output;
   std::optional<int> led;  ///< one frame alone: a LED from 1, or 0 for the dark shot
   bool explain = false;
+  bool captures = false;           ///< what calibrating the scene's rig needs, instead of one scan
+  std::vector<std::string> parts;  ///< of it; empty: all
 };
 
 struct SolveArguments {
@@ -97,6 +101,11 @@ struct BenchPhotosArguments {
 
 struct BenchRegistrationArguments {};
 
+struct BenchCalibrationArguments {
+  std::string part = "camera";
+  int seeds = 0;  ///< 0: as many as the part is quoted for
+};
+
 struct DemoArguments {
   std::filesystem::path output = "demo";
   std::optional<double> megapixels;
@@ -105,10 +114,10 @@ struct DemoArguments {
 
 struct Arguments {
   CommonArguments common;
-  std::variant<SimulateArguments, SolveArguments, CompareArguments, BenchSolveArguments,
-               BenchTransportArguments, BenchEffectsArguments, BenchHeightArguments, BenchNumericsArguments,
-               BenchAccuracyArguments, BenchExplainArguments, BenchPhotosArguments,
-               BenchRegistrationArguments, DemoArguments>
+  std::variant<SimulateArguments, CalibrateArguments, SolveArguments, CompareArguments, RectifyOptions,
+               BenchSolveArguments, BenchTransportArguments, BenchEffectsArguments, BenchHeightArguments,
+               BenchNumericsArguments, BenchAccuracyArguments, BenchExplainArguments, BenchPhotosArguments,
+               BenchRegistrationArguments, BenchCalibrationArguments, DemoArguments>
       verb;
 };
 

@@ -21,6 +21,8 @@ Result<int> run(const Arguments& arguments) {
   const CommonArguments& common = arguments.common;
   return std::visit(
       Overload{[&](const SimulateArguments& a) { return run_simulate(a, common); },
+               [&](const CalibrateArguments& a) { return run_calibrate(a, common); },
+               [&](const RectifyOptions& a) { return run_rectify(a, common); },
                [&](const SolveArguments& a) { return run_solve(a, common); },
                [&](const CompareArguments& a) { return run_compare(a, common); },
                [&](const BenchSolveArguments& a) { return run_bench_solve(a, common); },
@@ -32,6 +34,7 @@ Result<int> run(const Arguments& arguments) {
                [&](const BenchHeightArguments& a) { return run_bench_height(a, common); },
                [&](const BenchTransportArguments& a) { return run_bench_transport(a, common); },
                [&](const BenchRegistrationArguments& a) { return run_bench_registration(a, common); },
+               [&](const BenchCalibrationArguments& a) { return run_bench_calibration(a, common); },
                [&](const DemoArguments& a) { return run_demo(a, common); }},
       arguments.verb);
 }

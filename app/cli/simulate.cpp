@@ -9,6 +9,7 @@
 #include "app/cli/verbs.h"
 #include "core/files.h"
 #include "simulator/build_passes.h"
+#include "simulator/captures.h"
 #include "simulator/effects/bounds.h"
 #include "simulator/plan.h"
 #include "simulator/scene/scene.h"
@@ -112,6 +113,28 @@ Result<int> run_frame(const simulator::Scene& scene, const SimulateArguments& ar
   return kDone;
 }
 
+Result<int> run_captures(const simulator::Scene& scene, const SimulateArguments& arguments,
+                         const CommonArguments& common, simulator::SimulateOptions options) {
+  simulator::CapturesOptions captures;
+  captures.parts = arguments.parts;
+  captures.seed = scene.seed;
+  captures.simulate = std::move(options);
+  const Result<simulator::CapturesReport> report =
+      simulator::simulate_captures(scene, arguments.output, captures);
+  if (!report) return report.error();
+  const std::string folder = std::filesystem::absolute(arguments.output).lexically_normal().string();
+  if (common.json) {
+    print_json({{"folder", folder},
+                {"parts", report->parts},
+                {"photographs", report->photographs},
+                {"sessions", report->sessions}});
+  } else {
+    print(fmt::format("{}: {}; {} photographs and {} sessions", folder, fmt::join(report->parts, ", "),
+                      report->photographs, report->sessions));
+  }
+  return kDone;
+}
+
 }  // namespace
 
 Result<int> run_simulate(const SimulateArguments& arguments, const CommonArguments& common) {
@@ -123,6 +146,7 @@ Result<int> run_simulate(const SimulateArguments& arguments, const CommonArgumen
   options.stop = stop_on_signal();
   options.progress = [&](int done, int parts) { line.update("simulate", static_cast<double>(done) / parts); };
   if (arguments.led) return run_frame(*scene, arguments, common, options);
+  if (arguments.captures) return run_captures(*scene, arguments, common, options);
   if (arguments.explain && !common.json) {
     const Result<Explanation> explanation = explain(*scene);
     if (!explanation) return explanation.error();

@@ -9,6 +9,8 @@
 namespace weft::app {
 
 Result<int> run_simulate(const SimulateArguments& arguments, const CommonArguments& common);
+Result<int> run_calibrate(const CalibrateArguments& arguments, const CommonArguments& common);
+Result<int> run_rectify(const RectifyOptions& options, const CommonArguments& common);
 Result<int> run_solve(const SolveArguments& arguments, const CommonArguments& common);
 Result<int> run_compare(const CompareArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_solve(const BenchSolveArguments& arguments, const CommonArguments& common);
@@ -21,6 +23,7 @@ Result<int> run_bench_height(const BenchHeightArguments& arguments, const Common
 Result<int> run_bench_transport(const BenchTransportArguments& arguments, const CommonArguments& common);
 Result<int> run_bench_registration(const BenchRegistrationArguments& arguments,
                                    const CommonArguments& common);
+Result<int> run_bench_calibration(const BenchCalibrationArguments& arguments, const CommonArguments& common);
 Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& common);
 
 }  // namespace weft::app

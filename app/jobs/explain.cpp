@@ -137,12 +137,12 @@ Result<WriteCost> measure_write(const Photographs& part, const SolveOptions& opt
   if (Result<void> made = make_writable_folder(scratch.path); !made) return std::move(made).error();
   WriteCost cost;
   Stopwatch watch;
-  Result<MapFiles> files = MapFiles::open(scratch.path, part.size, options.compression, false);
+  Result<MapFiles> files = MapFiles::open(scratch.path, part.size, options.compression, {});
   if (!files) return std::move(files).error();
   cost.files_seconds = watch.lap();
   const auto write = [&](const MapBand& band) -> Result<void> {
     Stopwatch band_watch;
-    Result<void> written = files->write(band, nullptr);
+    Result<void> written = files->write(band, {});
     cost.maps_seconds += band_watch.lap();
     return written;
   };

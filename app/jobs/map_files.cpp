@@ -77,7 +77,8 @@ std::array<View<const float>, 4> CalibrationChannels::of(const MapBand& band) {
 }
 
 Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size,
-                                const std::string& compression, bool with_calibration) {
+                                const std::string& compression,
+                                const std::vector<std::string>& calibration) {
   struct Spec {
     std::optional<ImageWriter>* writer;
     const char* name;
@@ -86,9 +87,7 @@ Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size,
   };
   MapFiles files;
   std::vector<std::string> sigma = {"R", "G", "B", "normal_deg"};
-  if (with_calibration) {
-    sigma.insert(sigma.end(), {"R.calibration", "G.calibration", "B.calibration", "normal_deg.calibration"});
-  }
+  for (const std::string& name : calibration) sigma.push_back(name + ".calibration");
   for (const Spec& spec : {Spec{&files.normal_, "normal.exr", {"X", "Y", "Z"}, SampleType::kFloat},
                            Spec{&files.albedo_, "albedo.exr", {"R", "G", "B"}, SampleType::kHalf},
                            Spec{&files.sigma_, "sigma.exr", sigma, SampleType::kHalf},
@@ -102,16 +101,13 @@ Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size,
   return files;
 }
 
-Result<void> MapFiles::write(const MapBand& band, CalibrationChannels* calibration) {
+Result<void> MapFiles::write(const MapBand& band, std::span<const View<const float>> calibration) {
   if (Result<void> ok = normal_->write_rows(band.normal); !ok) return ok;
   if (Result<void> ok = residual_->write_rows(std::array{band.residual}); !ok) return ok;
   if (Result<void> ok = status_->write_rows(band.status); !ok) return ok;
   std::vector<View<const float>> sigma(band.sigma_albedo.begin(), band.sigma_albedo.end());
   sigma.push_back(band.sigma_normal_deg);
-  if (calibration != nullptr) {
-    const auto channels = calibration->of(band);
-    sigma.insert(sigma.end(), channels.begin(), channels.end());
-  }
+  sigma.insert(sigma.end(), calibration.begin(), calibration.end());
   if (band.albedo_rows.height() == 0) return {};
   if (Result<void> ok = albedo_->write_rows(band.albedo); !ok) return ok;
   return sigma_->write_rows(sigma);

@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,11 +42,12 @@ class CalibrationChannels {
 /// The map files of a solve, written band by band: docs/formats.md.
 class MapFiles {
  public:
-  /// `with_calibration` adds the channels of CalibrationChannels.
+  /// `calibration` names what sigma.exr has beside the noise: "R", "G", "B", "normal_deg", as
+  /// "R.calibration" and so on.
   static Result<MapFiles> open(const std::filesystem::path& folder, Size size, const std::string& compression,
-                               bool with_calibration);
-  /// `calibration` may be null where there are no such channels.
-  Result<void> write(const MapBand& band, CalibrationChannels* calibration);
+                               const std::vector<std::string>& calibration);
+  /// `calibration` has a view over band.albedo_rows for each of those names.
+  Result<void> write(const MapBand& band, std::span<const View<const float>> calibration);
   Result<void> finish();
 
  private:

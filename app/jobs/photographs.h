@@ -40,6 +40,7 @@ struct Photographs {
   std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
   std::optional<NoiseModel> noise;                  ///< of the mosaics; of brackets the worst
   std::string albedo_scale = "relative";            ///< "absolute" where a measured patch fixed it
+  std::optional<ColorTransform> color;              ///< of solved albedo, where the calibration has one
 
   /// What was found and corrected under way, for solve.json: docs/conditions.md.
   Json conditions = Json::object();

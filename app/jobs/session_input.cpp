@@ -305,6 +305,7 @@ Result<Photographs> load_session(const SessionPlan& plan, const JobContext& cont
   photographs.field = std::move(*field);
   photographs.camera = plan.calibration.camera;
   photographs.light_covariance = plan.calibration.light_covariance;
+  photographs.color = plan.calibration.color;
 
   MoreFrames more;
   if (Result<void> read = plan.raw ? read_mosaics(plan, shots, context, photographs, more)

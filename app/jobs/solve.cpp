@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/jobs/albedo_color.h"
 #include "app/jobs/map_files.h"
 #include "app/jobs/pictures.h"
 #include "app/jobs/registration.h"
@@ -115,6 +116,7 @@ struct Facts {
   Size size;
   const StatusCounts& counts;
   std::string albedo_scale;
+  const char* color;
   std::size_t lights;
   std::vector<std::string> pictures;
   std::optional<NormalComparison> error;  // against the truth, where there is one
@@ -138,6 +140,7 @@ Json document_of(const Facts& facts) {
                    {"width", size.width},
                    {"height", size.height},
                    {"albedo_scale", facts.albedo_scale},
+                   {"color", facts.color},
                    {"pixels", size.pixels() - facts.counts.with(kNoSolution)},
                    {"status", std::move(status)},
                    {"solved_by", json_of(facts.frame.tally)},
@@ -210,7 +213,12 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
     calibration.emplace(std::move(*made));
   }
   const Size size = photographs->size;
-  Result<MapFiles> files = MapFiles::open(partial.path(), size, options.compression, calibration.has_value());
+  std::optional<AlbedoColor> color;
+  if (photographs->color) color.emplace(*photographs->color, size.width, context.threads);
+  std::vector<std::string> shares;
+  if (calibration || (color && color->has_covariance())) shares = {"R", "G", "B"};
+  if (calibration) shares.push_back("normal_deg");
+  Result<MapFiles> files = MapFiles::open(partial.path(), size, options.compression, shares);
   if (!files) return std::move(files).error();
   report.seconds.prepare = watch.lap();
 
@@ -218,11 +226,17 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
   Pictures pictures(size);
   MapSummary maps(size);
   const Result<FrameFacts> solved =
-      solve_frame(*photographs, method_name, options.tile, context, [&](const MapBand& band) -> Result<void> {
+      solve_frame(*photographs, method_name, options.tile, context, [&](const MapBand& camera_band) -> Result<void> {
+        std::vector<View<const float>> share;
+        if (calibration) {
+          const auto channels = calibration->of(camera_band);
+          share.assign(channels.begin(), channels.end());
+        }
+        const MapBand band = color ? color->of(camera_band, share) : camera_band;
         counts.add(band.status);
         maps.add(band);
         if (options.previews) pictures.add(band);
-        return files->write(band, calibration ? &*calibration : nullptr);
+        return files->write(band, share);
       });
   if (!solved) return solved.error();
   report.seconds.solve = watch.lap() - solved->waited_seconds;
@@ -232,6 +246,7 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
                  size,
                  counts,
                  photographs->albedo_scale,
+                 color ? "rec709" : "camera",
                  photographs->count(),
                  {},
                  {},

@@ -110,6 +110,7 @@ Result<Photographs> half_size(const Photographs& photographs, int threads) {
   half.size = size;
   half.leds = photographs.leds;
   half.albedo_scale = photographs.albedo_scale;
+  half.color = photographs.color;
   half.conditions = photographs.conditions;
   half.warnings = photographs.warnings;
   half.camera = photographs.camera;

@@ -4,7 +4,7 @@
 namespace weft::simulator {
 
 Pass lambert_pass(const Scene& scene, const Rig& rig) {
-  return {"lambert", "reflects light alike in all directions", Stage::kShot,
+  return {"lambert", "reflects light alike in all directions", Stage::kLight,
           [unit = rig.signal_of_unit(scene.camera.iso)](Tile& tile) {
             tile.signal_rect = tile.area;
             tile.signal.resize(tile.irradiance.size());

@@ -46,7 +46,7 @@ Pass noise_pass(const Scene& scene, const Rig& rig) {
                 double& sample = tile.samples[channels * i + c];
                 sample = noisy(sensor, sample,
                                philox({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                       static_cast<std::uint32_t>(tile.shot), static_cast<std::uint32_t>(c)},
+                                       static_cast<std::uint32_t>(tile.take), static_cast<std::uint32_t>(c)},
                                       key));
               }
             });

@@ -63,7 +63,7 @@ Pass reflectance_pass(const Scene& scene, const Rig& rig) {
     };
   };
   return {"reflectance", "reflects light as the material does: highlights, sheen, rough diffuse",
-          Stage::kShot, std::visit(pass, scene.material.reflectance)};
+          Stage::kLight, std::visit(pass, scene.material.reflectance)};
 }
 
 }  // namespace weft::simulator

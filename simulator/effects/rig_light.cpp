@@ -8,11 +8,11 @@ namespace {
 
 /// Brightness of the LED in a shot from 1: warming LEDs fade in a straight line over the session, and each
 /// shot is a little off by itself. A LED's bracket follows its shot at once, the repeat comes after them all.
-double gain_of(const LightSettings& lights, int leds, int shot, std::array<std::uint32_t, 2> key) {
+double gain_of(const LightSettings& lights, int leds, int shot, int take, std::array<std::uint32_t, 2> key) {
   const int turn = shot == leds + 1 ? leds : (shot - 1) % leds;
   const double time = leds < 2 ? 0 : static_cast<double>(turn) / (leds - 1);
   const NormalPair normal =
-      normal_pair(philox({static_cast<std::uint32_t>(shot - 1), 0, kFlickerStream, 0}, key));
+      normal_pair(philox({static_cast<std::uint32_t>(take - 1), 0, kFlickerStream, 0}, key));
   return (1 - lights.drift * time) * (1 + lights.flicker * normal.first);
 }
 
@@ -41,11 +41,11 @@ std::vector<Rgb> signal_at_centre(const Scene& scene, const Rig& rig) {
 }  // namespace
 
 Pass led_drift_pass(const Scene& scene, const Rig& rig) {
-  return {"led drift", "fades the LEDs over the session and lets each shot flicker", Stage::kShot,
+  return {"led drift", "fades the LEDs over the session and lets each shot flicker", Stage::kLight,
           [lights = scene.lights, leds = static_cast<int>(rig.leds.leds.size()),
            key = random_key(scene)](Tile& tile) {
             if (tile.led == 0) return;
-            const double gain = gain_of(lights, leds, tile.shot, key);
+            const double gain = gain_of(lights, leds, tile.shot, tile.take, key);
             for (Rgb& signal : tile.signal) {
               for (double& s : signal) s *= gain;
             }
@@ -58,7 +58,7 @@ Pass stray_pass(const Scene& scene, const Rig& rig) {
     for (double& l : light) l *= scene.lights.stray;
     of_led.push_back(light);
   }
-  return {"stray", "adds light of the LED that comes back from the rig, evenly from all sides", Stage::kShot,
+  return {"stray", "adds light of the LED that comes back from the rig, evenly from all sides", Stage::kLight,
           even_light(std::move(of_led))};
 }
 

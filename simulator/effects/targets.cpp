@@ -73,7 +73,7 @@ Pass targets_pass(const Scene& scene, const Rig& rig, bool seen_by_camera) {
 Pass paper_pass(const Scene& scene) {
   std::vector<double> non_lambertian;
   for (const TargetSettings& target : scene.targets) non_lambertian.push_back(target.sheet.non_lambertian);
-  return {"paper", "lets paper depart from Lambert's law", Stage::kShot,
+  return {"paper", "lets paper depart from Lambert's law", Stage::kLight,
           [non_lambertian = std::move(non_lambertian)](Tile& tile) {
             for (std::size_t i = 0; i < tile.irradiance.size(); ++i) {
               if (tile.target[i] == kCloth) continue;

@@ -83,6 +83,16 @@ const ChannelWeights& rec709_weights() {
   return weights;
 }
 
+ChannelWeights observer_weights() {
+  ChannelWeights weights{};
+  for (std::size_t i = 0; i < Spectrum::kSamples; ++i) {
+    const auto xyz = observer_xyz(Spectrum::nm(i));
+    for (std::size_t c = 0; c < 3; ++c) weights[c][i] = xyz[c];
+  }
+  for (Samples& channel : weights) divide(channel, sum(channel));
+  return weights;
+}
+
 Rgb channel_reflectance(const ChannelWeights& weights, const Spectrum& reflectance) {
   Rgb seen{};
   for (std::size_t c = 0; c < 3; ++c) {

@@ -26,6 +26,9 @@ Result<ChannelWeights> camera_weights(const Spectrum& led, const Filters& filter
 /// Those of linear Rec.709 under CIE D65.
 const ChannelWeights& rec709_weights();
 
+/// The observer's x, y, z themselves, each summing to 1: what all cameras without colour errors see.
+ChannelWeights observer_weights();
+
 /// What a surface gives relative to a perfect white under the same light: 0 to 1 with the camera's weights.
 Rgb channel_reflectance(const ChannelWeights& weights, const Spectrum& reflectance);
 

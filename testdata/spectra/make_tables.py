@@ -211,6 +211,8 @@ def main():
         what = "Patch {}, {}: sRGB {} {} {}".format(number, name, *display)
         how = "0.5 + x / (2 sqrt(1 + x^2)), x = ({:.6f} t + {:.6f}) t + {:.6f}, t = (nm - 555) / 175".format(*c)
         write(f"chart/{number:02}.txt", [what, how], sigmoid_of_parabola(c))
+    rows = [f"  [{red}, {green}, {blue}],  # {name}" for name, red, green, blue in CHART]
+    (HERE / "chart" / "chart.toml").write_text("\n".join(["srgb = [", *rows, "]"]) + "\n")
 
 
 if __name__ == "__main__":

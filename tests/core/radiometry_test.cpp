@@ -142,6 +142,19 @@ TEST(Radiometry, HasABlackLevelForEverySiteOfTheCell) {
   }
 }
 
+TEST(Radiometry, UsesTheMeasuredBlackLevelWhereThereIsNoDarkShot) {
+  RawFrame frame = frame_of({8, 4});
+  frame.counts(0, 0) = 612;  // the file's level there is 600, the cell's mean 601.25
+  Response response;
+  response.black_counts = 601.25 + 12;
+  const Rect all = {0, 0, 8, 4};
+  EXPECT_EQ(readings_of(Radiometry(frame, nullptr, response, {1e6, 100}), frame, all)(0, 0), 0.0F);
+  EXPECT_NEAR(readings_of(Radiometry(frame, nullptr, {}, {1e6, 100}), frame, all)(0, 0), 12.0 / 15200, 1e-9);
+  const RawFrame dark = dark_of({8, 4});
+  const float with_dark = readings_of(Radiometry(frame, &dark, {}, {1e6, 100}), frame, all)(0, 0);
+  EXPECT_EQ(readings_of(Radiometry(frame, &dark, response, {1e6, 100}), frame, all)(0, 0), with_dark);
+}
+
 TEST(Radiometry, IsTheScalarFormulaOnEveryTargetAtAnyWidth) {
   const Size size = {197, 6};
   const RawFrame dark = dark_of(size);

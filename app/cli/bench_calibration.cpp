@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/cli/bench_rows.h"
+#include "app/cli/verbs.h"
+#include "bench/calibration_camera.h"
+#include "bench/calibration_color.h"
+#include "bench/calibration_end_to_end.h"
+#include "bench/calibration_lights.h"
+#include "bench/calibration_moved.h"
+#include "bench/calibration_response.h"
+
+namespace weft::app {
+namespace {
+
+// Options of a part, with as many seeds as were asked for.
+template <typename Options>
+Options seeded(const BenchCalibrationArguments& a, int threads) {
+  Options options;
+  options.threads = threads;
+  if (a.seeds > 0) options.seeds = a.seeds;
+  return options;
+}
+
+Result<bench::Rows> measure(const BenchCalibrationArguments& a, int threads) {
+  using namespace bench;
+  if (a.part == "camera") return calibration_camera_table(seeded<CalibrationCameraBenchOptions>(a, threads));
+  if (a.part == "response")
+    return calibration_response_table(seeded<CalibrationResponseBenchOptions>(a, threads));
+  if (a.part == "color") {
+    CalibrationColorBenchOptions options;
+    options.threads = threads;
+    return calibration_color_table(options);
+  }
+  if (a.part == "lights") return calibration_lights_table(seeded<CalibrationLightsBenchOptions>(a, threads));
+  if (a.part == "moved") return calibration_moved_table(seeded<CalibrationMovedBenchOptions>(a, threads));
+  CalibrationEndToEndBenchOptions options;
+  options.threads = threads;
+  return calibration_end_to_end_table(options);
+}
+
+}  // namespace
+
+Result<int> run_bench_calibration(const BenchCalibrationArguments& arguments, const CommonArguments& common) {
+  return print_rows(measure(arguments, common.threads), common);
+}
+
+}  // namespace weft::app

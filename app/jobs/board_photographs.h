@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/job.h"
+#include "calibration/camera/boards.h"
+#include "calibration/camera/markers.h"
+#include "core/calibration.h"
+#include "core/image.h"
+#include "core/raw_frame.h"
+#include "core/result.h"
+
+// A folder of photographs of a board: which can be used, and what they show.
+
+namespace weft::app {
+
+/// How a board was printed, as far as somebody said.
+struct BoardSettings {
+  std::optional<std::string> kind;  ///< "charuco" or "checkerboard"
+  std::optional<int> squares_x, squares_y;
+  std::optional<double> square_mm, marker_share, thickness_mm;
+  std::optional<std::string> dictionary;
+};
+
+/// A board that lies on something.
+struct PrintedBoard {
+  calibration::Board board;
+  double thickness_mm = 0;
+};
+
+/// The keys of `file` (board.toml; it may be absent), overridden by `said`. kBadData names a key that is
+/// unknown, missing or wrong; kUsage as check_board().
+Result<PrintedBoard> read_board_file(const std::filesystem::path& file, const BoardSettings& said);
+
+struct BoardPhotograph {
+  std::string name;       ///< of the file
+  bool of_table = false;  ///< its name starts with "table"
+  ShotMetadata shot;      ///< empty of a developed photograph
+  Size size;
+  calibration::BoardSighting sighting;
+  std::vector<calibration::TagSighting> tags;  ///< of photographs of the table, without the board's own
+  std::string left_out;                        ///< why it is not used; empty: it is
+};
+
+struct BoardPhotographs {
+  std::vector<BoardPhotograph> photographs;  ///< by name
+  ShotMetadata camera;                       ///< what those that are used agree in: model, serial, f_number
+  Size size;
+};
+
+struct BoardFolderOptions {
+  std::filesystem::path folder;
+  calibration::Board board;
+  std::string tag_dictionary = "DICT_APRILTAG_36h11";
+  calibration::BoardLimits limits = {};
+  /// The camera they must be of; without one that of most photographs.
+  std::optional<CalibrationSubject> subject = {};
+};
+
+/// Looks at every photograph of a folder (all files but hidden ones and .toml, .json, .txt, .md), several at
+/// once: memory holds one a thread, 8 bytes a photosite of a raw one and 17 a pixel of a developed one.
+/// Photographs that cannot be read, are of another camera, size or aperture, or show no board that can be
+/// used are left out and say why; so is one that is 1.7 times as blurred as the median. kNoInput for a folder
+/// that is not there or holds none; kBadData where none is of `subject`.
+Result<BoardPhotographs> read_board_photographs(const BoardFolderOptions& options, const JobContext& context);
+
+}  // namespace weft::app

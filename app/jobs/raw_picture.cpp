@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/raw_picture.h"
+
+#include "core/radiometry.h"
+
+namespace weft::app {
+
+Image<float> half_size_picture(const RawFrame& frame, const Response& response) {
+  const Radiometry radiometry(frame, nullptr, response, {1e6, 100});
+  const Size size = frame.counts.size();
+  Image<float> half({size.width / 2, size.height / 2}, 3), rows({size.width, 2});
+  for (int y = 0; y < half.height(); ++y) {
+    radiometry.read(frame.counts.plane(), {0, 2 * y, size.width, 2 * y + 2}, rows.plane());
+    for (int x = 0; x < half.width(); ++x) {
+      std::array<float, 3> sum = {}, count = {};
+      for (int j = 0; j < 2; ++j) {
+        for (int i = 0; i < 2; ++i) {
+          const auto c = static_cast<std::size_t>(frame.cfa.channel_at(i, j));
+          sum[c] += rows(2 * x + i, j);
+          ++count[c];
+        }
+      }
+      for (int c = 0; c < 3; ++c) {
+        half(x, y, c) = sum[static_cast<std::size_t>(c)] / count[static_cast<std::size_t>(c)];
+      }
+    }
+  }
+  return half;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/calibration.h"
+#include "core/image.h"
+#include "core/raw_frame.h"
+
+namespace weft::app {
+
+/// A mosaic as a linear picture of half its size: planes R, G, B of v = (count - black) / (white - black),
+/// linearised; each pixel is a cell of the filter pattern, full (+infinity) where a photosite of the channel
+/// is. An odd last row or column is left out.
+Image<float> half_size_picture(const RawFrame& frame, const Response& response);
+
+}  // namespace weft::app

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/rectify.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/calibration.h"
+#include "core/files.h"
+#include "core/image_io/image_io.h"
+#include "core/session.h"
+#include "core/solve_record.h"
+#include "material/rectify.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using material::MapKind;
+using material::TableGrid;
+
+constexpr const char* kSchema = "weft.rectified";
+constexpr int kVersion = 1;  // raised whenever the bytes of a map may change
+constexpr const char* kFilter =
+    "cubic convolution, a = -1/2 (Keys 1981), stretched to the grid where it is coarser than the frame";
+
+struct Solve {
+  std::string id;
+  fs::path folder;
+};
+
+Error no_solve(const fs::path& where, std::string why) {
+  return {ErrorKind::kNoInput, "there is no complete solve", where.string(), std::move(why),
+          "solve the session first with weft solve"};
+}
+
+// The one with the id, or the newest; of two alike the last by name.
+Result<Solve> find_solve(const fs::path& session, const std::string& id) {
+  const fs::path parent = session / "solve";
+  if (!id.empty()) {
+    const bool is_name = fs::path(id).filename() == id && !id.starts_with('.');
+    if (is_name && is_there(parent / id / "solve.json")) return Solve{id, parent / id};
+    return no_solve(parent / id, "it holds no solve.json");
+  }
+  std::error_code failure;
+  std::optional<std::pair<fs::file_time_type, fs::path>> newest;
+  for (const auto& entry : fs::directory_iterator(parent, failure)) {
+    const fs::path document = entry.path() / "solve.json";
+    if (entry.path().filename().string().starts_with('.') || !is_there(document)) continue;
+    const std::pair candidate = {fs::last_write_time(document, failure), entry.path()};
+    if (!newest || candidate > *newest) newest = candidate;
+  }
+  if (!newest) return no_solve(parent, "no folder there holds a solve.json");
+  return Solve{newest->second.filename().string(), newest->second};
+}
+
+Result<CameraModel> camera_of_maps(const CameraModel& camera, Size maps, const fs::path& folder) {
+  const auto reduces = [&](int factor) {
+    return maps.width == camera.size.width / factor && maps.height == camera.size.height / factor;
+  };
+  for (const int factor : {1, 2}) {
+    if (reduces(factor)) return material::reduced_camera(camera, factor);
+  }
+  return Error{ErrorKind::kBadData, "maps are not of the calibrated camera", folder.string(),
+               fmt::format("they have {} x {} pixels, its frames {} x {}", maps.width, maps.height,
+                           camera.size.width, camera.size.height),
+               "name the calibration that the session was taken with"};
+}
+
+// Everything that one map after another is made with.
+struct Rectification {
+  CameraModel camera;
+  TableGrid grid;
+  Image<std::uint16_t> status;
+  fs::path from, to;
+  const RectifyOptions& options;
+  const JobContext& context;
+};
+
+// Calls make(first row, rows) band by band.
+template <typename Make>
+Result<void> by_bands(const Rectification& r, const Make& make) {
+  const int height = r.grid.size.height;
+  for (int y = 0; y < height; y += r.options.band_rows) {
+    if (r.context.stop.stop_requested()) return interrupted();
+    if (const Result<void> made = make(y, std::min(r.options.band_rows, height - y)); !made) return made;
+  }
+  return {};
+}
+
+Result<void> rectify_map(const Rectification& r, const std::string& name, MapKind kind, SampleType type) {
+  const Result<LoadedImage> map = read_image(r.from / name);
+  if (!map) return map.error();
+  if (map->info.size != r.status.size()) {
+    return Error{ErrorKind::kBadData, "maps of a solve differ in size", (r.from / name).string(),
+                 fmt::format("it has {} x {} pixels, status.png {} x {}", map->info.size.width,
+                             map->info.size.height, r.status.width(), r.status.height()),
+                 "solve the session again"};
+  }
+  std::vector<View<const float>> planes;
+  for (int p = 0; p < map->planes.planes(); ++p) planes.push_back(map->planes.plane(p));
+  if (planes.empty() || planes.size() > material::kMostPlanes ||
+      (kind == MapKind::kNormal && planes.size() != 3)) {
+    return Error{ErrorKind::kBadData, "map has other channels than a solve writes", (r.from / name).string(),
+                 fmt::format("{} channels", planes.size()), "solve the session again"};
+  }
+  Result<ImageWriter> writer =
+      ImageWriter::open(r.to / name, r.grid.size, map->info.channels, {type, r.options.compression});
+  if (!writer) return std::move(writer).error();
+  Image<float> band({r.grid.size.width, r.options.band_rows}, static_cast<int>(planes.size()));
+  const Result<void> done = by_bands(r, [&](int y, int rows) {
+    std::vector<View<float>> out;
+    for (int p = 0; p < band.planes(); ++p)
+      out.push_back(band.plane(p).crop({0, 0, r.grid.size.width, rows}));
+    rectify_rows(r.camera, r.grid, kind, planes, r.status.plane(), y, r.context.threads, out);
+    return writer->write_rows(std::vector<View<const float>>(out.begin(), out.end()));
+  });
+  if (!done) return done;
+  return writer->finish();
+}
+
+Result<void> rectify_status(const Rectification& r, std::int64_t& solved) {
+  Result<ImageWriter> writer =
+      ImageWriter::open(r.to / "status.png", r.grid.size, {"Y"}, {.type = SampleType::kUint16});
+  if (!writer) return std::move(writer).error();
+  Image<std::uint16_t> band({r.grid.size.width, r.options.band_rows});
+  const Result<void> done = by_bands(r, [&](int y, int rows) {
+    const View<std::uint16_t> out = band.plane().crop({0, 0, r.grid.size.width, rows});
+    rectify_status_rows(r.camera, r.grid, r.status.plane(), y, r.context.threads, out);
+    for (int j = 0; j < rows; ++j) {
+      solved += std::count_if(out.row(j), out.row(j) + out.width(),
+                              [](auto bits) { return (bits & kNoSolution) == 0; });
+    }
+    return writer->write_rows(View<const std::uint16_t>(out));
+  });
+  if (!done) return done;
+  return writer->finish();
+}
+
+Result<Image<std::uint16_t>> read_status(const fs::path& file) {
+  const Result<LoadedImage> image = read_image(file);
+  if (!image) return image.error();
+  Image<std::uint16_t> status(image->info.size);
+  for (int y = 0; y < status.height(); ++y) {
+    for (int x = 0; x < status.width(); ++x)
+      status(x, y) = static_cast<std::uint16_t>(std::lround(65535 * image->planes(x, y)));
+  }
+  return status;
+}
+
+Json document_of(const std::string& id, const Solve& solve, const Calibration& calibration,
+                 const Rectification& r, std::int64_t solved) {
+  const TableGrid& g = r.grid;
+  const Vec3 corner = g.point_mm(0, 0);
+  return {{"schema", fmt::format("{}/1", kSchema)},
+          {"id", id},
+          {"solve", solve.id},
+          {"calibration", calibration.id},
+          {"width", g.size.width},
+          {"height", g.size.height},
+          {"mm_per_pixel", g.mm_per_pixel},
+          {"height_mm", g.height_mm},
+          {"turn_deg", g.turn_deg},
+          {"centre_mm", {g.centre_x_mm, g.centre_y_mm}},
+          {"first_pixel_mm", {corner.x, corner.y}},
+          {"normals", "in the grid's axes: x along its rows, y up its columns, z to the camera"},
+          {"filter", kFilter},
+          {"compression", r.options.compression},
+          {"pixels", solved}};
+}
+
+// A complete one of the same inputs, if the folder holds one; an error if it holds anything else.
+Result<std::optional<Json>> find_finished(const fs::path& folder, const std::string& id) {
+  if (!is_there(folder)) return std::optional<Json>();
+  if (is_there(folder / "rectify.json")) {
+    Result<Json> document = read_json(folder / "rectify.json", kSchema, 1);
+    if (!document) return std::move(document).error();
+    if (JsonFields(*document, folder.string()).text_or("id", "") == id)
+      return std::optional<Json>(std::move(*document));
+  }
+  return Error{ErrorKind::kCannotCreate, "output folder is taken", folder.string(),
+               "it holds something other than these maps", "name another folder with -o, or remove it"};
+}
+
+Result<Calibration> calibration_with_camera(const fs::path& folder) {
+  Result<Calibration> calibration = read_calibration(folder);
+  if (!calibration || calibration->camera) return calibration;
+  return Error{ErrorKind::kBadData, "calibration has no camera", folder.string(), "there is no camera.json",
+               "calibrate the camera with weft calibrate camera"};
+}
+
+Result<void> check_options(const RectifyOptions& options) {
+  const auto refused = [](const char* name, const char* rule) {
+    return Error{ErrorKind::kUsage, "option is out of its range", name, rule, "give a value in that range"};
+  };
+  if (!(options.turn_deg >= -360 && options.turn_deg <= 360)) return refused("turn_deg", "it is -360 to 360");
+  if (options.band_rows < 1) return refused("band_rows", "it is 1 or more");
+  return {};
+}
+
+}  // namespace
+
+Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobContext& context) {
+  if (const Result<void> ok = check_options(options); !ok) return ok.error();
+  const Result<Session> session = read_session(options.session);
+  if (!session) return session.error();
+  const Result<Calibration> calibration = calibration_with_camera(
+      options.calibration.empty() ? session->calibration_folder() : options.calibration);
+  if (!calibration) return calibration.error();
+  const Result<Solve> solve = find_solve(session->folder, options.solve);
+  if (!solve) return solve.error();
+  Result<Image<std::uint16_t>> status = read_status(solve->folder / "status.png");
+  if (!status) return std::move(status).error();
+  const Result<CameraModel> camera = camera_of_maps(*calibration->camera, status->size(), solve->folder);
+  if (!camera) return camera.error();
+  const Result<TableGrid> grid =
+      material::table_grid(*camera, {options.mm_per_pixel, session->cloth_height_mm, options.turn_deg});
+  if (!grid) return grid.error();
+
+  const Json inputs = {{"version", kVersion},
+                       {"solve", solve->id},
+                       {"calibration", calibration->id},
+                       {"mm_per_pixel", grid->mm_per_pixel},
+                       {"height_mm", grid->height_mm},
+                       {"turn_deg", grid->turn_deg},
+                       {"compression", options.compression}};
+  const std::string id = sha256_of(inputs.dump()).substr(0, 16);
+  const fs::path folder =
+      fs::absolute(options.output.empty() ? session->folder / "rectified" / id : options.output)
+          .lexically_normal();
+  Result<std::optional<Json>> finished = find_finished(folder, id);
+  if (!finished) return std::move(finished).error();
+  if (*finished) return RectifyReport{folder, true, std::move(**finished)};
+
+  PartialFolder partial(folder);
+  if (const Result<void> made = make_writable_folder(partial.path()); !made) return made.error();
+  const Rectification r = {*camera, *grid,  std::move(*status), solve->folder, partial.path(),
+                           options, context};
+  std::int64_t solved = 0;
+  if (const Result<void> ok = rectify_status(r, solved); !ok) return ok.error();
+  context.progress("rectify", 0.1);
+  if (const Result<void> ok = rectify_map(r, "normal.exr", MapKind::kNormal, SampleType::kFloat); !ok)
+    return ok.error();
+  context.progress("rectify", 0.4);
+  if (const Result<void> ok = rectify_map(r, "albedo.exr", MapKind::kValue, SampleType::kHalf); !ok)
+    return ok.error();
+  context.progress("rectify", 0.7);
+  if (const Result<void> ok = rectify_map(r, "sigma.exr", MapKind::kSigma, SampleType::kHalf); !ok)
+    return ok.error();
+  Json document = document_of(id, *solve, *calibration, r, solved);
+  if (const Result<void> ok = write_json(partial.path() / "rectify.json", document); !ok) return ok.error();
+  if (const Result<void> ok = partial.publish(); !ok) return ok.error();
+  context.progress("rectify", 1);
+  return RectifyReport{folder, false, std::move(document)};
+}
+
+}  // namespace weft::app

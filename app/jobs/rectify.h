@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/jobs/job.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+struct RectifyOptions {
+  std::filesystem::path session;
+  std::string solve;                  ///< id of the solve; empty: the newest complete one
+  std::filesystem::path calibration;  ///< empty: the session's own
+  std::filesystem::path output;       ///< empty: <session>/rectified/<id>
+  double mm_per_pixel = 0;            ///< 0: what the camera sees at the grid's centre; else above 0
+  double turn_deg = 0;  ///< of the grid's columns against the rig's x axis, counterclockwise; -360 to 360
+  std::string compression = "none";  ///< of EXR files: none, zip, piz
+  int band_rows = 64;                ///< changes no byte; from 1
+};
+
+/// What a rectification left behind.
+struct RectifyReport {
+  std::filesystem::path folder;
+  bool was_there = false;  ///< a complete one of the same solve and options was found
+  Json document;           ///< rectify.json
+};
+
+/// Puts the maps of a solve on a square grid of the table at the session's cloth_height_mm, lens and
+/// perspective removed (material/rectify.h): normal.exr, albedo.exr, sigma.exr, status.png and rectify.json
+/// (weft.rectified/1), made aside and published whole. Sigma is that of the photographed pixels around: a
+/// mean of several, which the filter takes, has less. Maps of half the frame's size, as the level preview
+/// gives, have half the camera's. Memory holds one map of the solve at a time: 16 to 32 bytes a pixel.
+///
+/// Errors: kUsage (an option), kNoInput (no session, no complete solve of it), kBadData (a calibration
+/// without camera, maps that are not of its size), kCannotCreate, kInputOutput, kInterrupted.
+Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobContext& context);
+
+}  // namespace weft::app

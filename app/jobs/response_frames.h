@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "app/jobs/job.h"
+#include "calibration/response/block_light.h"
+#include "calibration/response/photon_transfer.h"
+#include "core/calibration.h"
+#include "core/image.h"
+#include "core/raw_frame.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// Frames of the same light and exposure, as numbers.
+struct ExposureFrames {
+  double exposure_us = 0;
+  std::vector<std::filesystem::path> files;
+  calibration::BlockLight light;
+  std::vector<double> brightness;  ///< of each frame that is not full: mean v of all channels
+};
+
+/// What a folder of a response capture says, frame by frame read once and not kept.
+struct ResponseFrames {
+  ShotMetadata camera;  ///< of all frames, but for exposure_us
+  Size size;
+  CfaPattern cfa;
+  std::array<std::array<float, 2>, 2> file_black = {};
+  double file_white = 0;
+  std::map<std::vector<int>, std::vector<ExposureFrames>> by_leds;  ///< by rising exposure; {} is dark
+  std::vector<std::filesystem::path> scale;                         ///< frames of the grey scale
+  std::vector<calibration::TransferPoint> transfer;                 ///< of all pairs of frames
+  int pairs = 0;                                                    ///< of frames
+  Image<std::uint8_t> bad;  ///< hot and dead photosites are 255; empty without dark frames
+  int hot = 0, dead = 0;
+  std::vector<std::string> full;      ///< files of frames that were left out, being full everywhere
+  std::vector<std::string> warnings;  ///< folders that mean nothing here
+
+  double mean_black() const;
+  double counts_at_full() const { return file_white - mean_black(); }
+  const std::vector<ExposureFrames>* of(const std::vector<int>& leds) const;
+};
+
+/// Reads dark/, ledNN/, ledNN+ledMM/ of `folder` and lists scale/: raw frames of one body, ISO and aperture,
+/// in each folder sorted by their exposure. A frame more than nine tenths of which are full in every channel
+/// is left out. Memory: eight frames, and 100 bytes for 32 x 32 photosites a pair. Errors: kNoInput (no such
+/// folder, no frames), kBadData (a frame of another body, ISO, aperture or size, or not that of `subject`
+/// where there is one; a developed picture; a frame that cannot be decoded).
+Result<ResponseFrames> read_response_frames(const std::filesystem::path& folder,
+                                            const CalibrationSubject* subject, const JobContext& context);
+
+}  // namespace weft::app

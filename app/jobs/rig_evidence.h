@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/photographs.h"
+#include "calibration/camera/markers.h"
+#include "calibration/checks/movement.h"
+#include "core/calibration.h"
+#include "core/result.h"
+
+// What photographs show of the rig itself: tags and white patches on the table.
+
+namespace weft::app {
+
+/// Tags of one dictionary each of `dictionaries`, found in the first photographs of a session; corners are
+/// means over at most three photographs in which the tag was found.
+Result<std::vector<calibration::TagSighting>> tags_in(const Photographs& photographs,
+                                                      const std::vector<std::string>& dictionaries);
+
+/// Height of the tags on the table, rig frame: patches are taken to lie there, too.
+double tag_height_mm(const std::vector<Fiducial>& fiducials);
+
+/// Where a patch is in the pictures of a camera that has moved: its own pixels by way of the plane of the
+/// tags.
+WhitePatch relocated(const WhitePatch& patch, const CameraModel& before, const CameraModel& now,
+                     double plane_mm);
+
+/// The tags that the calibration knows, and what its white patches read. Where tags say that the camera and
+/// the table moved to each other, the patches are looked for where they are now. `lights` of readings are
+/// those of `photographs.leds`; a LED that was left out has no reading.
+Result<calibration::RigEvidence> rig_evidence(const Calibration& calibration, const Photographs& photographs);
+
+}  // namespace weft::app

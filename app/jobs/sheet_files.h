@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "calibration/camera/markers.h"
+#include "calibration/lights/sheet.h"
+#include "core/lights.h"
+#include "core/result.h"
+
+// What people write beside photographs of a sheet of white paper.
+
+namespace weft::app {
+
+/// A sheet with tags printed in its border.
+struct TaggedSheet {
+  calibration::Sheet sheet;  ///< its printed squares are the tags with their quiet zone
+  std::vector<calibration::SheetTag> tags;
+};
+
+/// sheet.toml: width_mm and height_mm (to 10000), margin_mm (default 5), reflectance (0 to 1, one number or
+/// three; absent where nobody measured it), and for each tag a [[tag]] of dictionary (default
+/// DICT_APRILTAG_36h11), id, side_mm with its black border, centre_mm = [u, v] from the sheet's centre.
+/// kBadData names the key that is unknown, missing or wrong.
+Result<TaggedSheet> read_sheet_file(const std::filesystem::path& file);
+
+/// rig.toml: for each LED, from LED 1, a [[led]] of position_mm, and if known aim (default: at the table's
+/// centre) and mu (default 1). Fluxes are 1. Errors as above.
+Result<NearLights> read_rig_file(const std::filesystem::path& file);
+
+}  // namespace weft::app

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibration/camera/lens.h"
+
+// The least squares of fit_lens(): one camera, one pose a board.
+
+namespace weft::calibration {
+
+/// All that is estimated. Corners of board i are at (u, v, board_z_mm[i]) in its own frame.
+struct Bundle {
+  CameraModel camera;  ///< its pose is not used
+  std::vector<Pose> camera_from_board;
+  std::vector<double> board_z_mm;
+};
+
+/// Brings fx, fy, cx, cy, the named distortion terms and all poses to the least sum of squares by Gauss and
+/// Newton's steps, halved where they would raise it. False where they lead nowhere.
+bool fit(const std::vector<const BoardView*>& views, const std::vector<std::string>& distortion,
+         Bundle& bundle);
+
+/// sigma^2 (J^T J)^-1 of the camera's parameters and the pose of board `table`, all other poses being
+/// estimated too; not finite where they cannot be told apart.
+ParameterCovariance covariance_of(const std::vector<const BoardView*>& views,
+                                  const std::vector<std::string>& distortion, const Bundle& bundle,
+                                  std::size_t table, double corner_sigma_px);
+
+/// Sum of squares of one board, its pose alone fitted from a start nearby.
+std::optional<double> squares_with_pose_fitted(const BoardView& view, const CameraModel& camera,
+                                               const Pose& start, double board_z_mm);
+
+Pose pose_by_opencv(const BoardView& view, const CameraModel& camera);
+
+/// Seen less predicted, by corner.
+std::vector<PixelPoint> residuals_of(const BoardView& view, const CameraModel& camera,
+                                     const Pose& camera_from_board, double board_z_mm);
+
+/// A focal length, principal point or distortion term by its name; null for any other.
+double* number_of(CameraModel& camera, const std::string& parameter);
+/// A step for its numerical derivative.
+double step_of(const std::string& parameter);
+
+}  // namespace weft::calibration

@@ -1,0 +1,491 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/lights/physical.h"
+
+#include <ceres/ceres.h>
+#include <fmt/format.h>
+#include <glog/logging.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "calibration/lights/reading_cost.h"
+
+namespace weft::calibration {
+namespace {
+
+constexpr std::size_t kFewestReadings = 30;
+constexpr double kGainsFrom = 3;          // times what the cost falls by where LEDs have no gains
+constexpr double kGainsFromShare = 0.05;  // of the cost
+constexpr std::size_t kPatches = 12;      // of a sheet, 4 x 3 of the frame
+constexpr double kSettled = 2e-3;         // share of the cost that the last step may change
+constexpr double kHuberFrom = 3.5;        // of the length of three residuals, which 99 percent stay below
+
+// All parameters, in blocks as Ceres wants them.
+struct LedParameters {
+  std::array<double, 3> position_mm, aim, log_flux;
+  double mu = 1;
+  std::array<double, kOwnGains> quadratic = {};
+};
+struct Parameters {
+  std::vector<LedParameters> leds;
+  std::array<std::vector<double>, 3> splines;
+  std::array<double, 6> paper = {};           // log albedo, delta
+  std::vector<std::array<double, 6>> sheets;  // turn and shift from the pose that the tags gave
+};
+
+std::array<double, 3> array_of(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+Vec3 vec_of(const double* p) {
+  return {p[0], p[1], p[2]};
+}
+
+NearLight led_of(const LedParameters& p) {
+  NearLight led;
+  led.position_mm = vec_of(p.position_mm.data());
+  led.aim = vec_of(p.aim.data());
+  led.mu = p.mu;
+  for (std::size_t c = 0; c < 3; ++c) led.flux_rgb[c] = std::exp(p.log_flux[c]);
+  std::copy(p.quadratic.begin(), p.quadratic.end(), led.log_gain_quadratic.begin() + 1);
+  return led;
+}
+
+Error cannot_fit(std::string where, std::string why, std::string remedy) {
+  return {ErrorKind::kBadData, "lights cannot be fitted", std::move(where), std::move(why),
+          std::move(remedy)};
+}
+
+// A whitening matrix W with W^T W the inverse of the covariance; widths of nothing become tiny ones.
+RowMatrix whitening(const SheetPose& pose) {
+  Eigen::Matrix<double, 6, 6> covariance;
+  for (int i = 0; i < 36; ++i) covariance(i / 6, i % 6) = pose.covariance[static_cast<std::size_t>(i)];
+  for (int i = 0; i < 6; ++i) covariance(i, i) += i < 3 ? 1e-12 : 1e-8;
+  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(covariance);
+  if (factor.info() != Eigen::Success) return {};
+  return factor.matrixL().solve(Eigen::Matrix<double, 6, 6>::Identity());
+}
+
+// Rows of the parameters that the covariance names, from those of the fit.
+struct Named {
+  std::string name;
+  Eigen::VectorXd row;
+};
+
+class Fit {
+ public:
+  Fit(const PaperScene& start, std::span<const PaperReading> readings, const LightFitOptions& options)
+      : start_(start), readings_(readings), options_(options) {}
+
+  Result<LightFit> run() {
+    if (Result<void> ok = check(); !ok) return std::move(ok).error();
+    if (Result<void> ok = begin(); !ok) return std::move(ok).error();
+    add_readings();
+    add_priors();
+    solve();
+    measure_misfit();
+    find_covariance();
+    settle();
+    if (Result<void> ok = check_leds(); !ok) return std::move(ok).error();
+    return std::move(fit_);
+  }
+
+ private:
+  Result<void> check() const;
+  Result<void> begin();
+  void add_readings();
+  void add_priors();
+  void solve();
+  void minimise();
+  bool leds_have_gains();
+  void measure_misfit();
+  void find_covariance();
+  void settle();
+  Result<void> check_leds() const;
+  void find_normal_matrix();
+  std::size_t patch_of(const PaperReading& reading) const;
+  double likeness_of_neighbours(const Eigen::MatrixXd& sigma);
+  std::vector<double*> blocks();
+  static ceres::Problem::Options shared_loss() {
+    ceres::Problem::Options options;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    return options;
+  }
+
+  const PaperScene& start_;
+  std::span<const PaperReading> readings_;
+  const LightFitOptions& options_;
+  std::vector<std::array<double, 3>> sigmas_;  // of the readings
+  Parameters p_;
+  ceres::LossFunctionWrapper loss_{nullptr, ceres::TAKE_OWNERSHIP};
+  ceres::Problem problem_{shared_loss()};
+  std::vector<ceres::ResidualBlockId> reading_blocks_, prior_blocks_;
+  Eigen::MatrixXd normal_;  // lower half
+  Eigen::VectorXd gradient_;
+  std::vector<Eigen::VectorXd> pull_;  // share of the gradient, by patch
+  std::map<const double*, Eigen::Index> begin_;
+  LightFit fit_;
+};
+
+Result<void> Fit::check() const {
+  std::vector<std::size_t> of_led(start_.lights.leds.size());
+  for (const PaperReading& r : readings_) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (!(r.reading_rgb[c] > 0 && std::isfinite(r.reading_rgb[c]) && r.relative_sigma[c] >= 0 &&
+            r.relative_sigma[c] + options_.unevenness + options_.flatness_deg > 0)) {
+        return cannot_fit(
+            fmt::format("LED {}, sheet {}, pixel ({:.0f}, {:.0f})", r.led + 1, r.sheet + 1, r.x_px, r.y_px),
+            fmt::format("its average is {:.3g} with a relative error of {:.3g}", r.reading_rgb[c],
+                        r.relative_sigma[c]),
+            "leave out blocks that are not lit");
+      }
+    }
+    ++of_led[r.led];
+  }
+  for (std::size_t k = 0; k < of_led.size(); ++k) {
+    if (of_led[k] >= kFewestReadings) continue;
+    return cannot_fit(
+        fmt::format("LED {}", k + 1),
+        fmt::format("{} blocks of paper are lit by it, {} are needed", of_led[k], kFewestReadings),
+        "photograph a larger sheet, or look whether the LED lights");
+  }
+  return {};
+}
+
+// Lights where the tape says, each with the flux that suits its readings best.
+Result<void> Fit::begin() {
+  p_.sheets.resize(start_.sheets.size());
+  for (auto& spline : p_.splines)
+    spline.resize(static_cast<std::size_t>(options_.spline_columns) *
+                  static_cast<std::size_t>(options_.spline_rows));
+  std::vector<double> count(start_.lights.leds.size());
+  for (const NearLight& led : start_.lights.leds) {
+    LedParameters& p = p_.leds.emplace_back();
+    p.position_mm = array_of(led.position_mm);
+    p.aim = array_of(normalized(led.aim));
+    p.mu = led.mu;
+    p.log_flux = {};
+  }
+  for (const PaperReading& r : readings_) {
+    const auto term = paper_term(sight_of(start_.camera, r.x_px, r.y_px), start_.lights.leds[r.led],
+                                 start_.paper, start_.sheets[r.sheet].rig_from_sheet);
+    const auto sigma = sigma_of(start_, r, options_);
+    if (!term || !sigma) {
+      return cannot_fit(fmt::format("LED {}, sheet {}", r.led + 1, r.sheet + 1),
+                        "where the rig file has it, it does not light the sheet at all",
+                        "correct the LED's position and aim in rig.toml, or the tags in sheet.toml");
+    }
+    sigmas_.push_back(*sigma);
+    ++count[r.led];
+    for (std::size_t c = 0; c < 3; ++c)
+      p_.leds[r.led].log_flux[c] +=
+          std::log(r.reading_rgb[c] / start_.paper.reflectance_rgb[c]) - term->log_value;
+  }
+  for (std::size_t k = 0; k < count.size(); ++k) {
+    for (double& flux : p_.leds[k].log_flux) flux /= count[k];
+  }
+  p_.paper[5] = options_.lambertian ? 0 : start_.paper.delta;
+  return {};
+}
+
+void Fit::add_readings() {
+  for (std::size_t i = 0; i < readings_.size(); ++i) {
+    const PaperReading& r = readings_[i];
+    LedParameters& led = p_.leds[r.led];
+    reading_blocks_.push_back(problem_.AddResidualBlock(
+        new ReadingCost(start_, r, sigmas_[i], options_), &loss_,
+        std::vector<double*>{led.position_mm.data(), led.aim.data(), &led.mu, led.log_flux.data(),
+                             led.quadratic.data(), p_.splines[0].data(), p_.splines[1].data(),
+                             p_.splines[2].data(), p_.paper.data(), p_.sheets[r.sheet].data()}));
+  }
+  for (LedParameters& led : p_.leds) {
+    problem_.SetManifold(led.aim.data(), new ceres::SphereManifold<3>());
+    problem_.SetParameterLowerBound(&led.mu, 0, 0);
+  }
+  if (options_.lambertian) problem_.SetManifold(p_.paper.data(), new ceres::SubsetManifold(6, {5}));
+}
+
+void Fit::add_priors() {
+  const auto add = [&](ceres::CostFunction* cost, std::vector<double*> at) {
+    prior_blocks_.push_back(problem_.AddResidualBlock(cost, nullptr, at));
+  };
+  constexpr std::array<double, kOwnGains> kNone = {};
+  for (LedParameters& led : p_.leds) {
+    add(prior(led.position_mm, options_.position_sigma_mm), {led.position_mm.data()});
+    add(prior(led.aim, radians(options_.aim_sigma_deg)), {led.aim.data()});
+    add(prior({&led.mu, 1}, options_.mu_sigma), {&led.mu});
+    add(prior(kNone, options_.quadratic_sigma), {led.quadratic.data()});
+  }
+  // What all LEDs have in common belongs to the shared gain, and its mean to the fluxes. No reading
+  // contradicts these gauges; were they tighter they would slow Levenberg and Marquardt's steps.
+  constexpr double kGauge = 1e-3;
+  const auto n = static_cast<Eigen::Index>(p_.leds.size() * kOwnGains);
+  RowMatrix sum(static_cast<Eigen::Index>(kOwnGains), n);
+  for (Eigen::Index i = 0; i < n; ++i)
+    sum.col(i) =
+        Eigen::VectorXd::Unit(sum.rows(), i % sum.rows()) / (kGauge * static_cast<double>(p_.leds.size()));
+  std::vector<double*> quadratics;
+  for (LedParameters& led : p_.leds) quadratics.push_back(led.quadratic.data());
+  add(new LinearPrior(sum, Eigen::VectorXd::Zero(n),
+                      std::vector<int>(p_.leds.size(), static_cast<int>(kOwnGains))),
+      quadratics);
+  const std::vector<double> mean = mean_basis(options_);
+  const auto coefficients = static_cast<Eigen::Index>(mean.size());
+  for (auto& spline : p_.splines) {
+    add(prior(spline, options_.spline_sigma), {spline.data()});
+    add(new LinearPrior(third_differences(options_) / options_.spline_bend_sigma,
+                        Eigen::VectorXd::Zero(coefficients), {static_cast<int>(coefficients)}),
+        {spline.data()});
+    add(new LinearPrior(Eigen::Map<const RowMatrix>(mean.data(), 1, coefficients) / kGauge,
+                        Eigen::VectorXd::Zero(coefficients), {static_cast<int>(coefficients)}),
+        {spline.data()});
+  }
+  RowMatrix widths = RowMatrix::Identity(6, 6) / options_.log_albedo_sigma;
+  widths(5, 5) = 1 / options_.delta_sigma;
+  add(new LinearPrior(widths, Eigen::VectorXd::Zero(6), {6}), {p_.paper.data()});
+  for (std::size_t j = 0; j < p_.sheets.size(); ++j) {
+    add(new LinearPrior(whitening(start_.sheets[j]), Eigen::VectorXd::Zero(6), {6}), {p_.sheets[j].data()});
+  }
+}
+
+// From a tape ten millimetres wrong every reading looks like an outlier: plain squares lead near, Huber's
+// loss to the end. LEDs get gains of their own only where the readings ask for them, as those take away most
+// of what tells how far a LED is.
+void Fit::solve() {
+  FLAGS_minloglevel = google::GLOG_FATAL;  // failed steps are not worth a line on standard error
+  const auto hold_gains = [&](bool hold) {
+    for (LedParameters& led : p_.leds) {
+      double* gains = led.quadratic.data();
+      hold ? problem_.SetParameterBlockConstant(gains) : problem_.SetParameterBlockVariable(gains);
+    }
+  };
+  hold_gains(true);
+  minimise();
+  loss_.Reset(new ceres::HuberLoss(kHuberFrom), ceres::TAKE_OWNERSHIP);
+  minimise();
+  hold_gains(false);
+  fit_.leds_have_gains = leds_have_gains();
+  if (fit_.leds_have_gains) {
+    minimise();
+  } else {
+    hold_gains(true);
+  }
+}
+
+void Fit::minimise() {
+  ceres::Solver::Options how;
+  how.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  how.max_num_iterations = options_.most_iterations;
+  how.initial_trust_region_radius = 1e8;  // valleys are long and nearly straight: begin with Gauss and Newton
+  how.function_tolerance = 1e-6;
+  how.parameter_tolerance = 1e-9;
+  how.num_threads = options_.threads;
+  how.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(how, &problem_, &summary);
+  fit_.iterations += static_cast<int>(summary.iterations.size()) - 1;
+  // Where paper is wavy its residuals bend the valley, and the last steps along it are many and change
+  // nothing.
+  fit_.settled = summary.IsSolutionUsable() &&
+                 std::abs(summary.iterations.back().cost_change) <= kSettled * summary.final_cost;
+}
+
+// By the score test: whether freeing all gains would lower the cost by far more than so many idle parameters
+// do, and by a share that is worth it where residuals are not random.
+bool Fit::leds_have_gains() {
+  find_normal_matrix();
+  const double expected = static_cast<double>(kOwnGains * p_.leds.size());
+  const double drop = gradient_.dot(normal_.selfadjointView<Eigen::Lower>().ldlt().solve(gradient_));
+  double cost = 0;
+  problem_.Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  const double chi_square = 2 * cost / (3 * static_cast<double>(readings_.size()));
+  return drop > kGainsFrom * expected * std::max(1.0, chi_square) && drop > kGainsFromShare * 2 * cost;
+}
+
+void Fit::measure_misfit() {
+  const auto cost_of = [&](const std::vector<ceres::ResidualBlockId>& which, std::vector<double>* residuals) {
+    ceres::Problem::EvaluateOptions plain;
+    plain.residual_blocks = which;
+    plain.apply_loss_function = false;
+    double cost = 0;
+    problem_.Evaluate(plain, &cost, residuals, nullptr, nullptr);
+    return 2 * cost;
+  };
+  std::vector<double> residuals;
+  const double readings = cost_of(reading_blocks_, &residuals), priors = cost_of(prior_blocks_, nullptr);
+  const double prior_rows = problem_.NumResiduals() - 3.0 * static_cast<double>(readings_.size());
+  double free = 0;
+  for (double* block : blocks()) {
+    if (!problem_.IsParameterBlockConstant(block)) free += problem_.ParameterBlockTangentSize(block);
+  }
+  fit_.degrees_of_freedom = 3.0 * static_cast<double>(readings_.size()) + prior_rows - free;
+  fit_.chi_square = (readings + priors) / fit_.degrees_of_freedom;
+  for (std::size_t i = 0; i < readings_.size(); ++i) {
+    std::array<double, 3>& of = fit_.residuals.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) of[c] = -residuals[3 * i + c] * sigmas_[i][c];
+  }
+}
+
+std::vector<double*> Fit::blocks() {
+  std::vector<double*> all;
+  problem_.GetParameterBlocks(&all);
+  return all;
+}
+
+// Of all that is free, each block in the tangent of its manifold, and where each block begins in it.
+void Fit::find_normal_matrix() {
+  ceres::Problem::EvaluateOptions all;
+  begin_.clear();
+  Eigen::Index size = 0;
+  for (double* block : blocks()) {
+    if (problem_.IsParameterBlockConstant(block)) continue;
+    all.parameter_blocks.push_back(block);
+    begin_[block] = size;
+    size += problem_.ParameterBlockTangentSize(block);
+  }
+  all.residual_blocks = reading_blocks_;
+  all.residual_blocks.insert(all.residual_blocks.end(), prior_blocks_.begin(), prior_blocks_.end());
+  ceres::CRSMatrix jacobian;
+  std::vector<double> gradient, residuals;
+  problem_.Evaluate(all, nullptr, &residuals, &gradient, &jacobian);
+  pull_.assign(start_.sheets.size() * kPatches, Eigen::VectorXd::Zero(size));
+  gradient_ = Eigen::Map<const Eigen::VectorXd>(gradient.data(), size);
+  normal_ = Eigen::MatrixXd::Zero(size, size);
+  for (int row = 0; row < jacobian.num_rows; ++row) {
+    const auto begin = static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row)]);
+    const auto end = static_cast<std::size_t>(jacobian.rows[static_cast<std::size_t>(row) + 1]);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (jacobian.values[i] == 0) continue;
+      for (std::size_t j = begin; j <= i; ++j)
+        normal_(jacobian.cols[i], jacobian.cols[j]) += jacobian.values[i] * jacobian.values[j];
+    }
+    const auto reading = static_cast<std::size_t>(row) / 3;
+    if (reading >= readings_.size()) continue;
+    Eigen::VectorXd& pull = pull_[patch_of(readings_[reading])];
+    for (std::size_t i = begin; i < end; ++i)
+      pull[jacobian.cols[i]] += residuals[static_cast<std::size_t>(row)] * jacobian.values[i];
+  }
+}
+
+// Sheets in patches that are larger than waves of paper.
+std::size_t Fit::patch_of(const PaperReading& r) const {
+  const auto place = [](double at, int pixels, std::size_t count) {
+    return std::min(static_cast<std::size_t>(std::max(at, 0.0) / pixels * static_cast<double>(count)),
+                    count - 1);
+  };
+  const Size frame = start_.camera.size;
+  return r.sheet * kPatches + place(r.y_px, frame.height, 3) * 4 + place(r.x_px, frame.width, 4);
+}
+
+// How many times larger the variance of positions is than residuals of independent noise would make it: by
+// the variance that is robust to whatever residuals of one patch have in common (Liang and Zeger 1986).
+double Fit::likeness_of_neighbours(const Eigen::MatrixXd& sigma) {
+  double sum = 0, count = 0;
+  for (const LedParameters& led : p_.leds) {
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const Eigen::Index at = begin_[led.position_mm.data()] + axis;
+      double variance = 0;
+      for (const Eigen::VectorXd& pull : pull_) variance += std::pow(sigma.row(at).dot(pull), 2);
+      sum += variance / sigma(at, at);
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+void Fit::find_covariance() {
+  find_normal_matrix();
+  const Eigen::Index size = normal_.rows();
+  const Eigen::VectorXd scale = normal_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd scaled = scale.asDiagonal() * normal_ * scale.asDiagonal();
+  Eigen::MatrixXd sigma =
+      scaled.selfadjointView<Eigen::Lower>().ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  sigma = (scale.asDiagonal() * sigma * scale.asDiagonal()).eval();
+  fit_.inflation = std::max({1.0, fit_.chi_square, likeness_of_neighbours(sigma)});
+  sigma *= fit_.inflation;
+
+  std::vector<Named> named;
+  const auto name = [&](std::string text, const double* block, Eigen::VectorXd of_block) {
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(size);
+    row.segment(begin_[block], of_block.size()) = of_block;
+    named.push_back({std::move(text), std::move(row)});
+  };
+  for (std::size_t k = 0; k < p_.leds.size(); ++k) {
+    const LedParameters& led = p_.leds[k];
+    const std::string prefix = fmt::format("led{:02}.", k + 1);
+    for (int i = 0; i < 3; ++i)
+      name(prefix + "position_mm." + "xyz"[i], led.position_mm.data(), Eigen::Vector3d::Unit(i));
+    RowMatrix ambient_from_tangent(3, 2);
+    ceres::SphereManifold<3>().PlusJacobian(led.aim.data(), ambient_from_tangent.data());
+    for (int i = 0; i < 3; ++i) name(prefix + "aim." + "xyz"[i], led.aim.data(), ambient_from_tangent.row(i));
+    name(prefix + "mu", &led.mu, Eigen::VectorXd::Ones(1));
+    name(prefix + "log_flux", led.log_flux.data(), Eigen::Vector3d::Constant(1.0 / 3));
+    for (int i = 0; fit_.leds_have_gains && i < static_cast<int>(kOwnGains); ++i)
+      name(prefix + fmt::format("log_gain_quadratic.{}", i + 1), led.quadratic.data(),
+           Eigen::VectorXd::Unit(static_cast<Eigen::Index>(kOwnGains), i));
+  }
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(named.size()), size);
+  for (std::size_t i = 0; i < named.size(); ++i) {
+    fit_.covariance.parameters.push_back(named[i].name);
+    rows.row(static_cast<Eigen::Index>(i)) = named[i].row;
+  }
+  const RowMatrix covariance = rows * sigma * rows.transpose();
+  fit_.covariance.matrix.assign(covariance.data(), covariance.data() + covariance.size());
+
+  for (const LedParameters& led : p_.leds) {
+    const Eigen::Index at = begin_[led.position_mm.data()];
+    fit_.position_sigma_mm.push_back(
+        {std::sqrt(sigma(at, at)), std::sqrt(sigma(at + 1, at + 1)), std::sqrt(sigma(at + 2, at + 2))});
+  }
+  if (!options_.lambertian) {
+    const Eigen::Index delta = begin_[p_.paper.data()] + 5;
+    fit_.delta_sigma = std::sqrt(sigma(delta, delta));
+  }
+}
+
+// Writes the scene, and gives the last of the shared gain's mean to the fluxes.
+void Fit::settle() {
+  fit_.scene = start_;
+  fit_.sheets_before = start_.sheets;
+  const std::vector<double> mean = mean_basis(options_);
+  for (std::size_t c = 0; c < 3; ++c) {
+    const double constant = std::inner_product(mean.begin(), mean.end(), p_.splines[c].begin(), 0.0);
+    for (double& coefficient : p_.splines[c]) coefficient -= constant;
+    for (LedParameters& led : p_.leds) led.log_flux[c] += constant;
+    fit_.scene.lights.log_gain_rgb[c] = {options_.spline_columns, options_.spline_rows, p_.splines[c]};
+  }
+  for (std::size_t k = 0; k < p_.leds.size(); ++k) fit_.scene.lights.leds[k] = led_of(p_.leds[k]);
+  std::copy_n(p_.paper.begin(), 5, fit_.scene.paper.log_albedo.begin());
+  fit_.scene.paper.delta = p_.paper[5];
+  for (std::size_t j = 0; j < p_.sheets.size(); ++j)
+    fit_.scene.sheets[j].rig_from_sheet = pose_of(start_.sheets[j].rig_from_sheet, p_.sheets[j].data());
+}
+
+Result<void> Fit::check_leds() const {
+  for (std::size_t k = 0; k < p_.leds.size(); ++k) {
+    const Vec3 off = fit_.scene.lights.leds[k].position_mm - start_.lights.leds[k].position_mm;
+    if (length(off) <= kAstrayFrom_sigmas * options_.position_sigma_mm) continue;
+    return cannot_fit(fmt::format("LED {}", k + 1),
+                      fmt::format("the paper places it {:.0f} mm from where rig.toml has it", length(off)),
+                      "measure its position again, and look whether two LEDs are exchanged");
+  }
+  return {};
+}
+
+}  // namespace
+
+double LightFit::worst_position_sigma_mm() const {
+  double worst = 0;
+  for (const Vec3& s : position_sigma_mm) worst = std::max({worst, s.x, s.y, s.z});
+  return worst;
+}
+
+Result<LightFit> fit_lights(const PaperScene& start, std::span<const PaperReading> readings,
+                            const LightFitOptions& options) {
+  return Fit(start, readings, options).run();
+}
+
+}  // namespace weft::calibration

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/camera/boards.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/aruco.hpp>
+#include <opencv2/aruco/charuco.hpp>
+#include <utility>
+
+#include "calibration/camera/markers.h"
+#include "tests/calibration/camera/frames.h"
+
+namespace weft::test {
+namespace {
+
+using calibration::Board;
+using calibration::BoardCorner;
+using calibration::BoardFault;
+using calibration::BoardKind;
+using calibration::BoardSighting;
+using calibration::find_board;
+using calibration::PixelPoint;
+using testing::HasSubstr;
+
+Board charuco() {
+  return {BoardKind::kCharuco, 9, 6, 13, 0.7, "DICT_5X5_100"};
+}
+Board checkerboard() {
+  return {BoardKind::kCheckerboard, 10, 7, 12, 0, ""};
+}
+
+simulator::TargetSettings printed(const Board& board) {
+  simulator::TargetSettings target;
+  if (board.kind == BoardKind::kCharuco) {
+    target.pattern = simulator::CharucoSettings{board.squares_x,    board.squares_y,  board.square_mm,
+                                                board.marker_share, board.dictionary, 8};
+  } else {
+    target.pattern = simulator::CheckerboardSettings{board.squares_x, board.squares_y, board.square_mm, 8};
+  }
+  target.centre_mm = {2, -3, 5};
+  target.tilt_deg = 18;
+  target.azimuth_deg = 110;
+  target.rotation_deg = 6;
+  return target;
+}
+
+simulator::Scene scene_of(const Board& board) {
+  simulator::Scene scene = board_scene();
+  scene.targets.push_back(printed(board));
+  return scene;
+}
+
+Image<std::uint8_t> grey_of(const simulator::Scene& scene) {
+  return calibration::grey_picture(photographed(scene));
+}
+
+Offsets errors_of(const simulator::Scene& scene, const BoardSighting& sighting) {
+  std::vector<PixelPoint> differences;
+  for (const BoardCorner& corner : sighting.corners) {
+    const PixelPoint truth = seen_at(scene, 0, corner.u_mm, corner.v_mm);
+    differences.push_back({corner.px.x - truth.x, corner.px.y - truth.y});
+  }
+  return offsets_of(differences);
+}
+
+TEST(FindBoard, PutsCornersOfBothKindsWithinAFewHundredthsOfAPixel) {
+  for (const Board& board : {charuco(), checkerboard()}) {
+    for (const double rotation_deg : {6.0, 171.0, -97.0}) {
+      simulator::Scene scene = scene_of(board);
+      scene.targets[0].rotation_deg = rotation_deg;
+      if (rotation_deg < -90) scene.camera.mm_per_pixel = 0.4;  // upright in a frame that is wide
+      const BoardSighting sighting = find_board(grey_of(scene).plane(), board);
+      ASSERT_EQ(sighting.fault, BoardFault::kNone) << name_of(sighting.fault) << ": " << sighting.why;
+      EXPECT_EQ(sighting.corners.size(), static_cast<std::size_t>(board.corners()));
+      const Offsets offsets = errors_of(scene, sighting);
+      EXPECT_NEAR(offsets.mean_x, 0, 0.015);
+      EXPECT_NEAR(offsets.mean_y, 0, 0.015);
+      EXPECT_LT(offsets.rms, 0.06) << "rotation " << rotation_deg;
+      EXPECT_LT(offsets.farthest, 0.25);
+      EXPECT_LT(sighting.edge_px, 4.5);
+    }
+  }
+}
+
+TEST(FindBoard, NeedsNoneOfTheHalfPixelThatOpenCvsCharucoCornersAreOff) {
+  const Board board = charuco();
+  const simulator::Scene scene = scene_of(board);
+  const Image<std::uint8_t> grey = grey_of(scene);
+  const cv::Mat picture(grey.height(), grey.width(), CV_8UC1, const_cast<std::uint8_t*>(grey.plane().row(0)),
+                        static_cast<std::size_t>(grey.plane().stride()));
+  const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_5X5_100);
+  const auto theirs = cv::aruco::CharucoBoard::create(board.squares_x, board.squares_y, 13, 9.1F, dictionary);
+  std::vector<std::vector<cv::Point2f>> markers;
+  std::vector<int> ids, corner_ids;
+  cv::aruco::detectMarkers(picture, dictionary, markers, ids);
+  std::vector<cv::Point2f> corners;
+  ASSERT_GT(cv::aruco::interpolateCornersCharuco(markers, ids, picture, theirs, corners, corner_ids), 20);
+  std::vector<PixelPoint> differences;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const int column = corner_ids[k] % (board.squares_x - 1) + 1,
+              row = corner_ids[k] / (board.squares_x - 1) + 1;
+    const PixelPoint truth = seen_at(scene, 0, (column - board.squares_x / 2.0) * board.square_mm,
+                                     (board.squares_y / 2.0 - row) * board.square_mm);
+    differences.push_back(
+        {static_cast<double>(corners[k].x) - truth.x, static_cast<double>(corners[k].y) - truth.y});
+  }
+  const Offsets offsets = offsets_of(differences);
+  EXPECT_NEAR(offsets.mean_x, 0.5, 0.05);
+  EXPECT_NEAR(offsets.mean_y, 0.5, 0.05);
+}
+
+TEST(FindBoard, NamesABlurredPhotograph) {
+  for (const Board& board : {charuco(), checkerboard()}) {
+    simulator::Scene scene = scene_of(board);
+    scene.camera.blur = {.defocus_px = 9, .spread_px = 1};
+    const BoardSighting sighting = find_board(grey_of(scene).plane(), board);
+    EXPECT_EQ(sighting.fault, BoardFault::kBlurred) << name_of(sighting.fault) << ": " << sighting.why;
+    EXPECT_GT(sighting.edge_px, 5);
+  }
+}
+
+TEST(FindBoard, NamesABoardThatLeavesTheFrame) {
+  for (const Board& board : {charuco(), checkerboard()}) {
+    simulator::Scene scene = scene_of(board);
+    scene.targets[0].centre_mm.x = 62;
+    const BoardSighting sighting = find_board(grey_of(scene).plane(), board);
+    EXPECT_EQ(sighting.fault, BoardFault::kPartial) << name_of(sighting.fault) << ": " << sighting.why;
+  }
+}
+
+TEST(FindBoard, NamesAMirroredBoard) {
+  const Image<std::uint8_t> grey = grey_of(scene_of(charuco()));
+  Image<std::uint8_t> mirrored(grey.size());
+  for (int y = 0; y < grey.height(); ++y)
+    std::reverse_copy(grey.plane().row(y), grey.plane().row(y) + grey.width(), mirrored.plane().row(y));
+  const BoardSighting sighting = find_board(mirrored.plane(), charuco());
+  EXPECT_EQ(sighting.fault, BoardFault::kMirrored) << name_of(sighting.fault) << ": " << sighting.why;
+}
+
+TEST(FindBoard, NamesABoardOfAnotherNumberOfSquares) {
+  for (const Board& board : {charuco(), checkerboard()}) {
+    const Image<std::uint8_t> grey = grey_of(scene_of(board));
+    for (const auto& [more_x, more_y] : {std::pair{1, 0}, {0, 2}, {0, -1}}) {
+      Board other = board;
+      other.squares_x += more_x;
+      other.squares_y += more_y;
+      const BoardSighting sighting = find_board(grey.plane(), other);
+      EXPECT_EQ(sighting.fault, BoardFault::kWrongSquares)
+          << name_of(sighting.fault) << ": " << sighting.why << " (" << more_x << ", " << more_y << ")";
+    }
+  }
+}
+
+TEST(FindBoard, FindsNoneOnAnEmptyTableNorInNoPicture) {
+  const Image<std::uint8_t> grey = grey_of(board_scene());
+  const Image<std::uint8_t> black({64, 48});
+  for (const Board& board : {charuco(), checkerboard()}) {
+    EXPECT_EQ(find_board(grey.plane(), board).fault, BoardFault::kNotFound);
+    EXPECT_EQ(find_board(black.plane(), board).fault, BoardFault::kNotFound);
+  }
+}
+
+TEST(FindBoard, NeverTakesABoardSeenEdgeOnForAGoodOne) {
+  // At 80 degrees squares are a few pixels high: it is refused, or its corners are where they are.
+  for (const Board& board : {charuco(), checkerboard()}) {
+    for (const double tilt_deg : {65.0, 79.0}) {
+      simulator::Scene scene = scene_of(board);
+      scene.targets[0].tilt_deg = tilt_deg;
+      scene.targets[0].centre_mm.z = 70;
+      const BoardSighting sighting = find_board(grey_of(scene).plane(), board);
+      if (sighting.fault != BoardFault::kNone) continue;
+      EXPECT_LT(errors_of(scene, sighting).farthest, 0.7) << "tilt " << tilt_deg;
+    }
+  }
+}
+
+TEST(CheckBoard, NamesWhatIsOutOfRange) {
+  Board board = charuco();
+  board.squares_x = 2;
+  EXPECT_THAT(check_board(board).error().message(), HasSubstr("squares_x"));
+  board = charuco();
+  board.square_mm = 0;
+  EXPECT_THAT(check_board(board).error().message(), HasSubstr("square_mm"));
+  board = charuco();
+  board.squares_x = board.squares_y = 30;
+  EXPECT_THAT(check_board(board).error().message(), HasSubstr("needs 450"));
+  board = charuco();
+  board.dictionary = "DICT";
+  EXPECT_THAT(check_board(board).error().message(), HasSubstr("DICT"));
+  board = checkerboard();
+  board.squares_y = board.squares_x;
+  EXPECT_THAT(check_board(board).error().message(), HasSubstr("as many rows as columns"));
+}
+
+}  // namespace
+}  // namespace weft::test

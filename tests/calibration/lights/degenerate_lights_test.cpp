@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibration/lights/physical.h"
+#include "tests/support/paper_oracle.h"
+
+// Captures that cannot say what they are asked: the fit must say so, never be sure of something wrong.
+
+namespace weft::calibration {
+namespace {
+
+using test::PaperErrors;
+using test::PaperRig;
+
+// The fit is refused, misfits, or is within its own sigma: over all LEDs and axes, root mean square
+// below 1.5.
+void expect_honest(const PaperRig& rig, std::uint64_t seed) {
+  PaperErrors errors;
+  errors.seed = seed;
+  errors.noise = 0.002 / std::sqrt(11.0);
+  const auto captures = test::captures_of(rig, errors, 8, 5);
+  const Result<LightFit> fit = fit_lights(captures.start, captures.readings, {});
+  if (!fit || fit->misfits()) return;
+  double sum = 0, worst = 0;
+  for (std::size_t k = 0; k < rig.lights.leds.size(); ++k) {
+    const Vec3 off = fit->scene.lights.leds[k].position_mm - rig.lights.leds[k].position_mm;
+    const Vec3 sigma = fit->position_sigma_mm[k];
+    for (const double normalised : {off.x / sigma.x, off.y / sigma.y, off.z / sigma.z}) {
+      sum += normalised * normalised;
+      worst = std::max(worst, std::abs(normalised));
+    }
+  }
+  EXPECT_LT(std::sqrt(sum / (3.0 * static_cast<double>(rig.lights.leds.size()))), 1.5)
+      << "worst " << worst << " sigma, chi-square " << fit->chi_square << ", seed " << seed;
+}
+
+TEST(DegenerateLights, OneFlatSheet) {
+  PaperRig rig = test::common_rig();
+  rig.sheets = test::lies(1);
+  for (const std::uint64_t seed : {1u, 2u, 3u}) expect_honest(rig, seed);
+}
+
+TEST(DegenerateLights, FiveTimesTheSamePose) {
+  PaperRig rig = test::common_rig();
+  rig.sheets.assign(5, {});
+  for (const std::uint64_t seed : {1u, 2u}) expect_honest(rig, seed);
+}
+
+TEST(DegenerateLights, AllTiltsUnderTwoDegrees) {
+  PaperRig rig = test::common_rig();
+  rig.sheets = test::lies(5, 1.5);
+  for (const std::uint64_t seed : {1u, 2u}) expect_honest(rig, seed);
+}
+
+TEST(DegenerateLights, ALedOnTheOpticalAxis) {
+  PaperRig rig = test::common_rig();
+  rig.lights.leds[0].position_mm = {0, 0, 590};
+  rig.lights.leds[0].aim = {0, 0, -1};
+  for (const std::uint64_t seed : {1u, 2u}) expect_honest(rig, seed);
+}
+
+TEST(DegenerateLights, OneFlatSheetOfPaperThatIsNotLambertian) {
+  PaperRig rig = test::common_rig();
+  rig.sheets = test::lies(1);
+  rig.delta = 0.05;
+  for (const std::uint64_t seed : {1u, 2u}) expect_honest(rig, seed);
+}
+
+}  // namespace
+}  // namespace weft::calibration

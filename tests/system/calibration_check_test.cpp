@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/jobs/calibrate_check.h"
+#include "app/jobs/calibrate_history.h"
+#include "app/jobs/calibrate_patches.h"
+#include "app/jobs/calibrate_update.h"
+#include "app/jobs/check_result.h"
+#include "app/jobs/rig_evidence.h"
+#include "app/jobs/session_input.h"
+#include "app/jobs/solve.h"
+#include "core/files.h"
+#include "simulator/captures.h"
+#include "simulator/captures_layout.h"
+#include "simulator/scene/rig.h"
+
+// A rig that is checked, moves, is found out and updated: 600 x 400 pixels over 200 mm of table.
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using simulator::Scene;
+using simulator::TargetSettings;
+using testing::HasSubstr;
+
+Scene rig_scene() {
+  Scene scene;
+  scene.fabric = "grey card";
+  scene.camera.width = 600;
+  scene.camera.height = 400;
+  scene.camera.mm_per_pixel = 200.0 / 600;
+  scene.material.albedo.fill(0.2);
+  scene.effects.near_light = true;
+  for (const double y : {58.0, -58.0}) {
+    for (const double x : {-45.0, 45.0}) {
+      TargetSettings& patch = scene.targets.emplace_back();
+      patch.pattern = simulator::PaperSettings{14, 12};
+      patch.centre_mm = {x, y, 0.3};
+      patch.white = 0.88;
+    }
+  }
+  const CameraModel camera = simulator::rig_of(scene)->camera;
+  Scene bare = scene;
+  bare.targets.clear();
+  for (const TargetSettings& tag : simulator::furniture(bare, camera)) scene.targets.push_back(tag);
+  return scene;
+}
+
+/// One folder for all tests of a suite: a session, what was calibrated from it, and captures for checks.
+class CalibrationCheck : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    root_ = fs::path(testing::TempDir()) / "weft_calibration_check";
+    fs::remove_all(root_);
+    fs::create_directories(root_);
+    simulate(rig_scene(), "cloth.weft");
+    simulator::CapturesOptions options;
+    options.parts = {"start", "check"};
+    const auto captures = simulator::simulate_captures(rig_scene(), root_, options);
+    ASSERT_TRUE(captures) << captures.error().message();
+    calibrate();
+  }
+  static void TearDownTestSuite() { fs::remove_all(root_); }
+
+  static void simulate(const Scene& scene, const char* name) {
+    simulator::SimulateOptions options;
+    options.truth = false;
+    const auto report = simulator::simulate_session(scene, root_ / name, options);
+    ASSERT_TRUE(report) << report.error().message();
+  }
+
+  /// The exact calibration with the tags that the session shows and its patches.
+  static void calibrate() {
+    const auto plan = plan_session({root_ / "cloth.weft", {}, {}});
+    ASSERT_TRUE(plan) << plan.error().message();
+    const auto photographs = load_session(*plan, {});
+    ASSERT_TRUE(photographs) << photographs.error().message();
+    const auto tags = tags_in(*photographs, {simulator::TagSettings().dictionary});
+    ASSERT_TRUE(tags) << tags.error().message();
+    ASSERT_EQ(tags->size(), 4U);
+    Calibration rig = plan->calibration;
+    for (const calibration::TagSighting& tag : *tags) {
+      Fiducial& fiducial = rig.fiducials.emplace_back(Fiducial{tag.dictionary, tag.id, {}});
+      for (std::size_t i = 0; i < 4; ++i)
+        fiducial.corners_mm[i] = point_on_plane(*rig.camera, tag.corners_px[i].x, tag.corners_px[i].y, 0.3);
+    }
+    for (const TargetSettings& target : rig_scene().targets) {
+      if (kind_of(target.pattern) != simulator::TargetKind::kPaper) continue;
+      WhitePatch& patch = rig.patches.emplace_back();
+      patch.reflectance_rgb.fill(0.88);
+      for (const auto& [x, y] : {std::pair{-6.0, 5.0}, {6.0, 5.0}, {6.0, -5.0}, {-6.0, -5.0}}) {
+        const Vec3 p = project(*rig.camera, target.centre_mm + Vec3{x, y, 0});
+        patch.polygon_px.push_back({p.x, p.y});
+      }
+    }
+    rig.subject.measured = "2026-03-01T08:00:00Z";
+    const auto written = write_calibration(root_ / "rig" / "first", rig);
+    ASSERT_TRUE(written) << written.error().message();
+  }
+
+  static Scene with_table_lower() {
+    Scene scene = rig_scene();
+    for (TargetSettings& target : scene.targets) target.centre_mm.z -= 2;
+    scene.geometry.cloth_height_mm = -2;
+    return scene;
+  }
+
+  static fs::path root_;
+};
+fs::path CalibrationCheck::root_;
+
+TEST_F(CalibrationCheck, AcceptsWhatIsRight) {
+  const fs::path result = root_ / "accepted";
+  const auto outcome =
+      calibrate_check({.input = root_ / "check", .from = root_ / "rig" / "first", .output = result}, {});
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_TRUE(outcome->report.verdicts.empty()) << outcome->report.verdicts.front().text;
+  const auto document = read_json(result / kCheckResultFile, kCheckResultSchema, 1);
+  ASSERT_TRUE(document) << document.error().message();
+  EXPECT_TRUE((*document)["passed"].get<bool>());
+  const Json& sheets = (*document)["numbers"]["sheets"];
+  ASSERT_EQ(sheets.size(), 3U);
+  for (const Json& sheet : sheets) {
+    EXPECT_LT(sheet["rms_deg"].get<double>(), 0.1) << sheet.dump();
+    EXPECT_EQ(sheet.contains("slope_gain"), sheet["session"] == "plane.weft");
+    if (sheet.contains("slope_gain")) {
+      EXPECT_NEAR(sheet["slope_gain"].get<double>(), 1, 0.004);
+    }
+  }
+  EXPECT_TRUE(is_there(result / "check.html"));
+}
+
+TEST_F(CalibrationCheck, RefusesTapeMeasuredLights) {
+  const auto outcome = calibrate_check({.input = root_ / "check", .from = root_ / "start"}, {});
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_FALSE(outcome->report.verdicts.empty());
+  EXPECT_THAT(outcome->report.summary, HasSubstr("Refused"));
+}
+
+TEST_F(CalibrationCheck, NamesWhatItCannotCheckWith) {
+  const auto empty = calibrate_check({.input = root_ / "rig"}, {});
+  ASSERT_FALSE(empty);
+  EXPECT_EQ(empty.error().kind, ErrorKind::kNoInput);
+  // A session of no sheet.
+  const auto cloth =
+      calibrate_check({.input = root_ / "cloth.weft", .sheet = root_ / "check" / "sheet.toml"}, {});
+  ASSERT_FALSE(cloth);
+  EXPECT_THAT(cloth.error().message(), HasSubstr("cloth.weft"));
+  const auto squares = calibrate_check({.input = root_ / "check", .square_px = 7}, {});
+  ASSERT_FALSE(squares);
+  EXPECT_EQ(squares.error().kind, ErrorKind::kUsage);
+}
+
+TEST_F(CalibrationCheck, FindsNothingOnARigThatStoodStill) {
+  const auto rig = look_at_rig({.session = root_ / "cloth.weft", .from = root_ / "rig" / "first"}, {});
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_TRUE(rig->movement.changes.empty());
+  EXPECT_EQ(rig->movement.corners, 16);
+  EXPECT_EQ(rig->movement.readings, 40);
+  const auto update = calibrate_update(
+      {.session = root_ / "cloth.weft", .from = root_ / "rig" / "first", .output = root_ / "needless"}, {});
+  ASSERT_FALSE(update);
+  EXPECT_THAT(update.error().message(), HasSubstr("nothing to update"));
+  EXPECT_FALSE(is_there(root_ / "needless"));
+}
+
+TEST_F(CalibrationCheck, ATableThatSankIsFoundUpdatedAndInTheHistory) {
+  simulate(with_table_lower(), "sunk.weft");
+  const fs::path first = root_ / "rig" / "first", second = root_ / "rig" / "second";
+  const auto check = calibrate_check_rig(
+      {.session = root_ / "sunk.weft", .from = first, .output = root_ / "rig" / "check"}, {});
+  ASSERT_TRUE(check) << check.error().message();
+  ASSERT_EQ(check->report.verdicts.size(), 1U);
+  EXPECT_EQ(check->report.verdicts[0].name, "TABLE_MOVED");
+
+  const auto update = calibrate_update({.session = root_ / "sunk.weft", .from = first, .output = second}, {});
+  ASSERT_TRUE(update) << update.error().message();
+  EXPECT_NE(update->calibration.id, read_calibration(first)->id);
+  const auto again = look_at_rig({.session = root_ / "sunk.weft", .from = second}, {});
+  ASSERT_TRUE(again) << again.error().message();
+  EXPECT_TRUE(again->movement.changes.empty());
+
+  // The old session keeps its calibration and can be solved with the new one.
+  const auto solved =
+      solve_session({root_ / "sunk.weft", second, {}}, {.method = "fast", .output = root_ / "solved"}, {});
+  ASSERT_TRUE(solved) << solved.error().message();
+  EXPECT_EQ(solved->document["input"]["calibration"], update->calibration.id);
+  EXPECT_NE(read_session(root_ / "sunk.weft")->calibration_id, update->calibration.id);
+
+  const auto history = calibrate_history({root_ / "rig", {}}, {});
+  ASSERT_TRUE(history) << history.error().message();
+  EXPECT_EQ(history->report.numbers["calibrations"].size(), 2U);
+  EXPECT_EQ(history->report.numbers["checks"].size(), 1U);
+  EXPECT_NEAR(history->report.numbers["calibrations"][1]["led_moved_most_mm"].get<double>(), 2, 0.2);
+}
+
+TEST_F(CalibrationCheck, PatchesAreMeasuredByTheLightThatIsKnown) {
+  const auto exact = read_calibration(root_ / "rig" / "first");
+  std::string text;
+  for (const WhitePatch& patch : exact->patches) {
+    text += "[[patch]]\npolygon_px = [";
+    for (const auto& [x, y] : patch.polygon_px)
+      text += "[" + std::to_string(x) + ", " + std::to_string(y) + "],";
+    text += "]\n";
+  }
+  ASSERT_TRUE(write_file(root_ / "patches.toml", text));
+  const auto measured =
+      calibrate_patches({.session = root_ / "cloth.weft", .output = root_ / "with patches"}, {});
+  ASSERT_TRUE(measured) << measured.error().message();
+  ASSERT_EQ(measured->calibration.patches.size(), 4U);
+  for (const WhitePatch& patch : measured->calibration.patches) {
+    for (const double r : patch.reflectance_rgb) EXPECT_NEAR(r, 0.88, 0.003);
+  }
+  // A corner outside the frame.
+  ASSERT_TRUE(write_file(root_ / "wrong.toml", "[[patch]]\npolygon_px = [[1, 1], [700, 1], [1, 30]]\n"));
+  const auto wrong = calibrate_patches(
+      {.session = root_ / "cloth.weft", .patches = root_ / "wrong.toml", .output = root_ / "never"}, {});
+  ASSERT_FALSE(wrong);
+  EXPECT_THAT(wrong.error().message(), HasSubstr("patch 1"));
+  EXPECT_FALSE(is_there(root_ / "never"));
+}
+
+TEST_F(CalibrationCheck, ADimmedLedIsFoundInTheLightOfThePatches) {
+  Scene scene = rig_scene();
+  const NearLights lights = simulator::rig_of(scene)->leds;
+  scene.camera.exposure_us = simulator::rig_of(scene)->exposure_us;
+  scene.lights.rings.clear();
+  for (const NearLight& led : lights.leds)
+    scene.lights.leds.push_back({led.position_mm, led.aim, led.mu, led.flux_rgb});
+  for (double& flux : *scene.lights.leds[3].flux_rgb) flux *= 0.95;
+  simulate(scene, "dim.weft");
+  const auto check =
+      calibrate_check_rig({.session = root_ / "dim.weft", .from = root_ / "rig" / "first"}, {});
+  ASSERT_TRUE(check) << check.error().message();
+  ASSERT_EQ(check->report.verdicts.size(), 1U);
+  EXPECT_EQ(check->report.verdicts[0].name, "LED_FADED");
+  EXPECT_EQ(check->report.numbers["changes"][0]["led"], 4);
+  EXPECT_NEAR(check->report.numbers["changes"][0]["factor"].get<double>(), 0.95, 0.005);
+}
+
+TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
+  const fs::path rig = root_ / "old rig", sessions = root_ / "sessions";
+  fs::create_directories(sessions);
+  fs::create_directories(rig);
+  fs::copy(root_ / "rig" / "first", rig / "first");
+  const auto calibration = read_calibration(rig / "first");
+  ASSERT_TRUE(calibration);
+  CalibrationReport good, bad;
+  good.part = bad.part = "check";
+  bad.numbers = {{"cost_mean_deg", 0.4}, {"cost_worst_deg", 0.9}, {"changes", Json::array()}};
+  bad.verdicts = {{"TABLE_MOVED", "The table has moved", "update"}};
+  ASSERT_TRUE(write_check_result(rig / "a", "session", *calibration, good, "2026-03-02T08:00:00Z"));
+  ASSERT_TRUE(write_check_result(rig / "b", "session", *calibration, bad, "2026-03-04T08:00:00+01:00"));
+  const char* kTimes[] = {"2026-03-01T12:00:00Z", "2026-03-03T12:00:00Z", "2026-03-04T07:30:00Z", ""};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const fs::path folder = sessions / ("s" + std::to_string(i) + ".weft");
+    fs::create_directories(folder);
+    Session session = *read_session(root_ / "cloth.weft");
+    session.folder = folder;
+    session.document = {};
+    session.calibration_id = calibration->id;
+    for (Shot& shot : session.shots) shot.time = kTimes[i];
+    const auto written = write_session(session);
+    ASSERT_TRUE(written) << written.error().message();
+  }
+  const auto history = calibrate_history({rig, sessions}, {});
+  ASSERT_TRUE(history) << history.error().message();
+  ASSERT_EQ(history->affected.size(), 1U);
+  EXPECT_EQ(history->affected[0].folder.filename(), "s1.weft");
+  EXPECT_EQ(history->affected[0].predicted_mean_deg, 0.4);
+  ASSERT_EQ(history->warnings.size(), 1U);
+  EXPECT_THAT(history->warnings[0], HasSubstr("s3.weft"));
+}
+
+TEST(CalibrationHistory, ReadsDatesAndRefusesWhatIsNone) {
+  EXPECT_EQ(seconds_of("1970-01-02T00:00:00Z"), 86400.0);
+  EXPECT_EQ(seconds_of("1970-01-01T02:00:00+02:00"), 0.0);
+  EXPECT_EQ(seconds_of("1970-01-01T00:00:00.5Z"), 0.5);
+  for (const char* wrong : {"", "yesterday", "2026-13-01T00:00:00Z", "2026-01-01", "2026-01-01T00:00:00 UTC"})
+    EXPECT_FALSE(seconds_of(wrong)) << wrong;
+}
+
+}  // namespace
+}  // namespace weft::app
