@@ -65,7 +65,8 @@ Result<void> capture(const simulator::Scene& scene, double scene_exposure_us, co
     return {};
   };
   for (const double share : {kShares.front(), kShares.back()}) {
-    if (Result<void> ok = take({}, "dark", std::round(share * scene_exposure_us), kDarkFrames); !ok) return ok;
+    if (Result<void> ok = take({}, "dark", std::round(share * scene_exposure_us), kDarkFrames); !ok)
+      return ok;
   }
   for (const double share : kShares) {
     const double exposure_us = std::round(share * scene_exposure_us);

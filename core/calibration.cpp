@@ -102,6 +102,21 @@ Result<void> copy_other_parts(const fs::path& from, const fs::path& folder, Dige
   return {};
 }
 
+// Writes the reports of this step, and keeps those of earlier ones.
+Result<void> write_reports(const fs::path& from, const fs::path& folder, std::span<const NamedFile> reports) {
+  std::error_code none;
+  for (fs::directory_iterator entry(from / "report", none), end; !from.empty() && !none && entry != end;
+       entry.increment(none)) {
+    if (!entry->is_regular_file(none)) continue;
+    fs::copy_file(entry->path(), folder / entry->path().filename(), none);
+    if (none) return cannot_write(folder / entry->path().filename(), none.value());
+  }
+  for (const NamedFile& file : reports) {
+    if (Result<void> written = write_file(folder / file.name, file.bytes); !written) return written;
+  }
+  return {};
+}
+
 Result<void> write_subject(const fs::path& folder, const CalibrationSubject& subject,
                            const Digests& digests) {
   Json document = {{"schema", subject.measured.empty() ? "weft.calibration/1" : "weft.calibration/1.1"},
@@ -215,9 +230,7 @@ Result<Calibration> derive_calibration(const fs::path& from, Calibration change,
     change.subject.measured = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
   }
   if (written) written = write_subject(partial.path(), change.subject, digests);
-  for (const NamedFile& file : report) {
-    if (written) written = write_file(partial.path() / "report" / file.name, file.bytes);
-  }
+  if (written) written = write_reports(from, partial.path() / "report", report);
   if (written) written = partial.publish();
   if (!written) return std::move(written).error();
   return read_calibration(folder);

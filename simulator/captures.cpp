@@ -16,6 +16,7 @@
 #include "simulator/captures_layout.h"
 #include "simulator/plan.h"
 #include "simulator/sampling/random.h"
+#include "simulator/spectra/observer.h"
 
 namespace weft::simulator {
 namespace {
@@ -123,6 +124,16 @@ std::string rig_toml(const std::vector<Vec3>& positions_mm) {
   return text;
 }
 
+// The patches as the observer sees them.
+std::string chart_toml(const std::vector<Spectrum>& patches) {
+  std::string text = "rec709 = [\n";
+  for (const Spectrum& patch : patches) {
+    const auto [r, g, b] = rec709_albedo(patch);
+    text += fmt::format("  [{:.6f}, {:.6f}, {:.6f}],\n", r, g, b);
+  }
+  return text + "]\n";
+}
+
 std::string board_toml(const CharucoSettings& board) {
   return fmt::format(
       "kind = \"charuco\"\nsquares_x = {}\nsquares_y = {}\nsquare_mm = {}\nmarker_share = {}\ndictionary = "
@@ -199,7 +210,8 @@ class CaptureWriter {
     Scene scene = with({chart});
     scene.camera.exposure_us = session_exposure_us({chart});
     scene.fabric = "colour chart";
-    return session(scene, folder / "chart.weft");
+    if (Result<void> ok = session(scene, folder / "chart.weft"); !ok) return ok;
+    return write_file(folder / "chart.toml", chart_toml(scene_.spectra.chart));
   }
 
   Result<void> write_lights(const fs::path& folder) {

@@ -14,8 +14,9 @@ namespace {
 constexpr double kBoardShare = 0.55;  // of the frame's width
 constexpr int kBoardColumns = 18, kBoardRows = 12;
 constexpr double kLeastSquare_px = 32;
-constexpr double kTagShare = 0.05;     // of the frame's width
-constexpr double kLeastTag_px = 40;    // which has 10 cells
+constexpr double kTagShare = 0.05;   // of the frame's width
+constexpr double kLeastTag_px = 40;  // which has 10 cells
+constexpr double kMostTagShare = 0.12;
 constexpr double kTagBorder = 0.2;     // white around a tag, in sides of a tag
 constexpr double kInsideFrame = 0.01;  // of the frame's width stays free
 constexpr double kInk_mm = 0.02;       // what is printed lies over its paper, so that the ray meets it first
@@ -31,7 +32,8 @@ double rounded(double mm) {
   return std::round(10 * mm) / 10;
 }
 double tag_side_mm(const Scene& scene) {
-  const double side_px = std::max(kTagShare * scene.camera.width, kLeastTag_px);
+  const double width_px = scene.camera.width;
+  const double side_px = std::clamp(kLeastTag_px, kTagShare * width_px, kMostTagShare * width_px);
   return rounded(side_px * scene.camera.mm_per_pixel);
 }
 

@@ -23,7 +23,7 @@ struct SimulateOptions {
   /// Called after each band of rows: of the truth, then of all frames together.
   std::function<void(int rows_done, int rows)> progress;
   std::optional<Calibration> calibration = {};  ///< what a session holds in the place of the exact one
-  bool truth = true;                       ///< write truth/
+  bool truth = true;                            ///< write truth/
   int takes_before = 0;  ///< photographs that the sensor took before: others draw other noise
 };
 

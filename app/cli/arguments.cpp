@@ -363,7 +363,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   }
 
   if (*simulate_verb) {
-    simulate.captures |= simulate_verb->count("--captures") > 0;
+    simulate.captures = simulate_verb->count("--captures") > 0;
+    std::erase_if(simulate.parts, [](const std::string& part) { return part.empty() || part == "all"; });
     return Arguments{common, simulate};
   }
   if (*compare_verb) {

@@ -35,6 +35,9 @@ Result<CalibrateOutcome> run_step(const CalibrateCheckOptions& options, const Jo
 Result<CalibrateOutcome> run_step(const CheckRigOptions& options, const JobContext& context) {
   return calibrate_check_rig(options, context);
 }
+Result<CalibrateOutcome> run_step(const CalibratePatchesOptions& options, const JobContext& context) {
+  return calibrate_patches(options, context);
+}
 Result<CalibrateOutcome> run_step(const CalibrateUpdateOptions& options, const JobContext& context) {
   return calibrate_update(options, context);
 }

@@ -86,6 +86,9 @@ CLI::App* add_lights(CLI::App& calibrate, CalibrateLightsOptions& a, std::string
   verb->add_option("--tape-sigma", a.tape_sigma_mm, "How well positions were measured, mm an axis")
       ->check(CLI::Range(0.1, 1000.0))
       ->capture_default_str();
+  verb->add_option("--flatness", a.flatness_deg, "Rms waviness of the sheet, degrees")
+      ->check(CLI::Range(0.0, 2.0))
+      ->capture_default_str();
   verb->add_flag("--lambertian", a.lambertian, "Take the paper to follow Lambert's law");
   verb->add_flag("--accept-misfit", a.accept_misfit,
                  "Write the calibration although readings and model contradict each other");
@@ -127,6 +130,21 @@ CLI::App* add_check(CLI::App& calibrate, CalibrateCheckOptions& a, CheckRigOptio
   return verb;
 }
 
+CLI::App* add_patches(CLI::App& calibrate, CalibratePatchesOptions& a) {
+  CLI::App* verb = calibrate.add_subcommand(
+      "patches", "White patches beside the cloth, by which later scans tell drift and moves");
+  verb->add_option("session", a.session, "A scan of the table while the calibration is fresh")->required();
+  verb->add_option("--patches", a.patches, "patches.toml: where they lie; default beside the session");
+  verb->add_option("--from", a.from, "The calibration to add them to; default the session's own");
+  verb->add_option(
+          "--paper-delta", a.paper_delta,
+          "The paper reflects 1 - delta (1 - cosine) of Lambert's law; default as the lights' report has it")
+      ->check(CLI::Range(-0.5, 1.0));
+  verb->add_option("-o,--output", a.output, "Folder of the new calibration, which must not exist")
+      ->required();
+  return verb;
+}
+
 CLI::App* add_update(CLI::App& calibrate, CalibrateUpdateOptions& a) {
   CLI::App* verb = calibrate.add_subcommand("update", "Fit again what moved, the rest held by its prior");
   verb->add_option("session", a.session, "A scan after the move that shows tags, white patches or the sheet")
@@ -155,6 +173,7 @@ std::vector<CLI::App*> add_calibrate(CLI::App& app, CalibrateForms& forms) {
           add_color(*calibrate, forms.color, forms.chart_corners),
           add_lights(*calibrate, forms.lights, forms.lights_method),
           add_check(*calibrate, forms.check, forms.check_rig),
+          add_patches(*calibrate, forms.patches),
           add_update(*calibrate, forms.update),
           add_history(*calibrate, forms.history)};
 }
@@ -171,6 +190,7 @@ CalibrateArguments chosen_step(const CLI::App& calibrate, const CalibrateForms& 
     lights.method = methods.at(forms.lights_method);
     return lights;
   }
+  if (step == "patches") return forms.patches;
   if (step == "update") return forms.update;
   if (step == "history") return forms.history;
   if (step == "check") {

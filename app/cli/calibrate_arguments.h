@@ -10,6 +10,7 @@
 #include "app/jobs/calibrate_color.h"
 #include "app/jobs/calibrate_history.h"
 #include "app/jobs/calibrate_lights.h"
+#include "app/jobs/calibrate_patches.h"
 #include "app/jobs/calibrate_response.h"
 #include "app/jobs/calibrate_update.h"
 
@@ -20,9 +21,10 @@ class App;
 namespace weft::app {
 
 /// `weft calibrate`: one step of it.
-using CalibrateArguments = std::variant<CalibrateCameraOptions, CalibrateResponseOptions,
-                                        CalibrateColorOptions, CalibrateLightsOptions, CalibrateCheckOptions,
-                                        CheckRigOptions, CalibrateUpdateOptions, CalibrateHistoryOptions>;
+using CalibrateArguments =
+    std::variant<CalibrateCameraOptions, CalibrateResponseOptions, CalibrateColorOptions,
+                 CalibrateLightsOptions, CalibrateCheckOptions, CheckRigOptions, CalibratePatchesOptions,
+                 CalibrateUpdateOptions, CalibrateHistoryOptions>;
 
 /// What is filled in while the command line is read: a form a step.
 struct CalibrateForms {
@@ -34,6 +36,7 @@ struct CalibrateForms {
   std::string lights_method = "physical";
   CalibrateCheckOptions check;
   CheckRigOptions check_rig;
+  CalibratePatchesOptions patches;
   CalibrateUpdateOptions update;
   CalibrateHistoryOptions history;
 };

@@ -136,7 +136,7 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
   change.camera = fit->camera;
   change.camera_covariance = fit->covariance;
   change.fiducials = fiducials_of(*all, fit->camera);
-  const CameraFacts facts = {*all, *viewed, views, *fit, *board, change.fiducials, from, change.subject.rig};
+  const CameraFacts facts = {*all, *viewed, views, *fit, change.fiducials, from, change.subject.rig};
   outcome.report = camera_report(facts);
   outcome.warnings = left_out(facts);
   Result<Calibration> written =

@@ -198,7 +198,7 @@ class ChartReader {
         "WHITE_OFF",
         fmt::format("the chart's greys come out with {:+.1f} percent red and {:+.1f} percent blue over green",
                     100 * (gain[0] - 1), 100 * (gain[2] - 1)),
-        "calibrate the lights on a white sheet without brighteners, or measure its colour");
+        "calibrate the lights first, on a white sheet without brighteners");
   }
 
   Result<void> take_light_out(const ChartPicture& picture, FlatChart& chart) {

@@ -68,7 +68,7 @@ Result<ScaleSettings> read_scale_settings(const fs::path& file) {
       if (!(r > 0 && r <= 1)) return refuse("a reflectance is not a number above 0 and to 1");
       settings.reflectances.push_back(r);
     }
-    if (settings.reflectances.size() < 4) return refuse("a scale has four patches or more");
+    if (settings.reflectances.size() < 5) return refuse("a scale has five patches or more");
   }
   if (const toml::array* list = table["corners_px"].as_array()) {
     calibration::ChartCorners corners;
@@ -164,7 +164,7 @@ ReportSection summary_section(const ResponseFrames& frames, const ResponseMeasur
 }
 
 ReportSection transfer_section(const ResponseMeasurement& m) {
-  Curve measured = {"measured", {}, {}, false}, fitted = {"read noise^2 + signal / gain", {}, {}, true};
+  Curve measured = {"measured", {}, {}, false}, fitted = {"fitted line", {}, {}, true};
   for (const calibration::TransferBin& bin : m.transfer.bins) {
     measured.x.push_back(bin.signal_counts);
     measured.y.push_back(bin.variance_counts2);
@@ -248,11 +248,9 @@ ReportSection ratio_section(const ResponseMeasurement& m) {
 ReportSection scale_section(const ScaleReading& scale) {
   ReportSection section = {"Grey scale"};
   section.paragraphs = {fmt::format(
-      "Each patch against its reflectance, light along the scale fitted as a straight line ({:+.1f} "
-      "percent). "
-      "Off by {:.2f} percent rms before the correction of linearity, by {:.2f} after. At its middle a "
-      "perfect "
-      "white would be at {:.3f}, {:.3f}, {:.3f} of full scale.",
+      "Each patch against its reflectance, light along the scale fitted as a parabola ({:+.1f} percent from "
+      "end to end). Off by {:.2f} percent rms before the correction of linearity, by {:.2f} after. At its "
+      "middle a perfect white would be at {:.3f}, {:.3f}, {:.3f} of full scale.",
       100 * scale.corrected.shading, scale.straight.rms_percent, scale.corrected.rms_percent,
       scale.corrected.v_of_white[0], scale.corrected.v_of_white[1], scale.corrected.v_of_white[2])};
   ReportTable table = {{"patch", "reflectance", "off before, %", "off after, %"}, {}};

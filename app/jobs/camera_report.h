@@ -19,7 +19,6 @@ struct CameraFacts {
   std::span<const std::size_t> viewed;            ///< the photograph of each view
   std::span<const calibration::BoardView> views;  ///< as fitted
   const calibration::LensFit& fit;
-  PrintedBoard board;
   std::vector<Fiducial> fiducials;
   std::optional<Calibration> from;  ///< the calibration that the other parts come from
   std::string rig;

@@ -3,12 +3,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 
 #include "calibration/camera/board_grid.h"
 #include "calibration/camera/dictionary.h"
+#include "calibration/camera/picture.h"
 
 namespace weft::calibration {
 namespace {
@@ -93,6 +95,8 @@ Result<void> check_board(const Board& board) {
 }
 
 BoardSighting find_board(View<const std::uint8_t> grey, const Board& board, const BoardLimits& limits) {
+  if (std::min(grey.width(), grey.height()) < kLeastSide)
+    return faulty(BoardFault::kNotFound, "the picture is tiny");
   const BoardSighting sighting = board.kind == BoardKind::kCharuco ? find_charuco(grey, board, limits)
                                                                    : find_checkerboard(grey, board, limits);
   if (sighting.fault != BoardFault::kNotFound) return sighting;

@@ -17,6 +17,9 @@ namespace weft::calibration {
 /// whole.
 inline constexpr int kSearchSide = 1640;
 
+/// OpenCV's detectors are not asked about smaller pictures.
+inline constexpr int kLeastSide = 32;
+
 /// A header over the pixels of a view; OpenCV has no const one.
 inline cv::Mat mat_of(View<const std::uint8_t> grey) {
   return {grey.height(), grey.width(), CV_8UC1, const_cast<std::uint8_t*>(grey.row(0)),

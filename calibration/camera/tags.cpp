@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <opencv2/aruco.hpp>
 #include <optional>
 #include <vector>
@@ -121,6 +122,7 @@ std::optional<Corners> refined(View<const std::uint8_t> grey, Corners corners, i
 Result<std::vector<TagSighting>> find_tags(View<const std::uint8_t> grey, const std::string& dictionary) {
   const auto known = find_dictionary(dictionary);
   if (!known) return known.error();
+  if (std::min(grey.width(), grey.height()) < kLeastSide) return std::vector<TagSighting>();
   const ReducedPicture picture = reduced(grey);
   std::vector<std::vector<cv::Point2f>> corners;
   std::vector<int> ids;

@@ -464,7 +464,9 @@ void Fit::settle() {
     fit_.scene.sheets[j].rig_from_sheet = pose_of(start_.sheets[j].rig_from_sheet, p_.sheets[j].data());
 }
 
+// Of readings that contradict each other, where LEDs come to lie says nothing.
 Result<void> Fit::check_leds() const {
+  if (fit_.misfits()) return {};
   for (std::size_t k = 0; k < p_.leds.size(); ++k) {
     const Vec3 off = fit_.scene.lights.leds[k].position_mm - start_.lights.leds[k].position_mm;
     if (length(off) <= kAstrayFrom_sigmas * options_.position_sigma_mm) continue;

@@ -10,7 +10,7 @@ namespace weft::calibration {
 namespace {
 
 constexpr double kLeast_v = 0.01;
-constexpr std::size_t kFewest = 4;
+constexpr std::size_t kFewest = 5;
 
 }  // namespace
 
@@ -37,7 +37,6 @@ Result<ScaleCheck> check_scale(std::span<const double> reflectances,
                              reflectances.size()),
                  "name the reflectances of all patches in scale.toml"};
   }
-  // Where the line along the scale is the same for all channels, levels drop out as means.
   const auto place = [&](std::size_t i) {
     return static_cast<double>(i) / static_cast<double>(reflectances.size() - 1) - 0.5;
   };
@@ -51,28 +50,38 @@ Result<ScaleCheck> check_scale(std::span<const double> reflectances,
                  fmt::format("{} of its patches are above 1 percent of full scale and not full", used.size()),
                  "photograph it so that its white patch is at 80 percent"};
   }
+  // Log light along the scale is level[channel] + slope x + bend x^2. The regressors are the same for all
+  // channels, so that levels drop out with the means.
   const auto count = static_cast<double>(used.size());
-  double mean_place = 0;
-  for (const std::size_t i : used) mean_place += place(i) / count;
   std::array<double, 3> mean = {};
-  double xy = 0, xx = 0;
-  for (std::size_t c = 0; c < 3; ++c) {
-    for (const std::size_t i : used) mean[c] += std::log(linear_v[i][c] / reflectances[i]) / count;
-    for (const std::size_t i : used) {
-      const double x = place(i) - mean_place;
-      xx += x * x;
-      xy += x * (std::log(linear_v[i][c] / reflectances[i]) - mean[c]);
+  double x1 = 0, x2 = 0, s11 = 0, s12 = 0, s22 = 0, s1y = 0, s2y = 0;
+  for (const std::size_t i : used) {
+    x1 += place(i) / count;
+    x2 += place(i) * place(i) / count;
+    for (std::size_t c = 0; c < 3; ++c) mean[c] += std::log(linear_v[i][c] / reflectances[i]) / count;
+  }
+  for (const std::size_t i : used) {
+    const double d1 = place(i) - x1, d2 = place(i) * place(i) - x2;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double y = std::log(linear_v[i][c] / reflectances[i]) - mean[c];
+      s11 += d1 * d1;
+      s12 += d1 * d2;
+      s22 += d2 * d2;
+      s1y += d1 * y;
+      s2y += d2 * y;
     }
   }
-  const double slope = xy / xx;
+  const double determinant = s11 * s22 - s12 * s12;
+  const double slope = (s22 * s1y - s12 * s2y) / determinant, bend = (s11 * s2y - s12 * s1y) / determinant;
+  const auto light = [&](std::size_t i) { return std::exp(place(i) * (slope + bend * place(i))); };
   ScaleCheck check;
-  check.shading = std::expm1(slope);
-  for (std::size_t c = 0; c < 3; ++c) check.v_of_white[c] = std::exp(mean[c] - slope * mean_place);
+  check.shading = light(reflectances.size() - 1) / light(0) - 1;
+  for (std::size_t c = 0; c < 3; ++c) check.v_of_white[c] = std::exp(mean[c] - slope * x1 - bend * x2);
   double square = 0;
   for (std::size_t i = 0; i < reflectances.size(); ++i) {
     double off = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      off += linear_v[i][c] / (reflectances[i] * check.v_of_white[c] * std::exp(slope * place(i))) - 1;
+      off += linear_v[i][c] / (reflectances[i] * check.v_of_white[c] * light(i)) - 1;
     }
     check.off_percent.push_back(100 * off / 3);
   }

@@ -32,9 +32,9 @@ struct ScaleCheck {
   double rms_percent = 0;
 };
 
-/// Fits log v = log(reflectance) + level of the channel + a straight line along the scale (LEDs stand to one
-/// side) to the linear v of each patch, by least squares of patches above 1 percent of full scale. kBadData
-/// where fewer than four are; kUsage where the numbers differ.
+/// Fits log v = log(reflectance) + level of the channel + a parabola along the scale (LEDs stand near and to
+/// one side) to the linear v of each patch, by least squares of patches above 1 percent of full scale.
+/// kBadData where fewer than five are; kUsage where the numbers differ.
 Result<ScaleCheck> check_scale(std::span<const double> reflectances,
                                std::span<const std::array<double, 3>> linear_v);
 

@@ -57,9 +57,9 @@ double departure_from_line(std::array<double, 2> linearity);
 
 /// Least squares over all squares of all triples: lin(first) + lin(second) = lin(both), which is linear in a,
 /// b and nearly so in the offset. A gain a triple and LED, with `drift` as prior, stands for light that is
-/// not quite the same twice. Each channel's a and b is a common one, with a prior of 0.1, and a departure of its
-/// own with `channel_spread` as prior: a channel in which the LEDs are dim follows the others where it was not
-/// seen. The scale is fixed by lin'(0) = 1. kBadData if no square can be used.
+/// not quite the same twice. Each channel's a and b is a common one, with a prior of 0.1, and a departure of
+/// its own with `channel_spread` as prior: a channel in which the LEDs are dim follows the others where it
+/// was not seen. The scale is fixed by lin'(0) = 1. kBadData if no square can be used.
 Result<Superposition> fit_superposition(std::span<const SuperposedLight> lights,
                                         const SuperpositionNoise& noise);
 

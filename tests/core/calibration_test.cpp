@@ -190,6 +190,12 @@ TEST(DerivedCalibration, ReplacesItsPartsAndCopiesTheOthersByteByByte) {
   EXPECT_EQ(bytes_of(folder / "b/report/response.html"), page.bytes);
   EXPECT_EQ(derived->subject.measured.size(), 20U) << derived->subject.measured;
   EXPECT_NE(derived->id, must_read(folder / "a").id);
+
+  const NamedFile other = {"lights.html", "<p>another</p>"};
+  const Result<Calibration> next = derive_calibration(folder / "b", change, folder / "c", {&other, 1});
+  ASSERT_TRUE(next) << next.error().message();
+  EXPECT_EQ(bytes_of(folder / "c/report/response.html"), page.bytes) << "of the earlier step";
+  EXPECT_EQ(bytes_of(folder / "c/report/lights.html"), other.bytes);
 }
 
 TEST(DerivedCalibration, LeavesNothingWhereItFails) {

@@ -54,6 +54,7 @@ simulator::Scene scene_of(const Sheet& sheet, std::int64_t seed) {
   scene.camera.full_well_electrons = 160000;
   scene.camera.exposure_us = 12000;
   scene.camera.vignette = {4, 0};
+  scene.lights.rings = {{3, 35, 0}, {3, 62, 60}};
   scene.geometry.cloth_height_mm = -80;  // the table, below every sheet
   scene.effects.near_light = scene.effects.noise = scene.effects.vignetting = true;
   scene.material.albedo = {0.1, 0.1, 0.1};
@@ -162,7 +163,7 @@ TEST_F(CalibrateLights, FindsTheRigFromFiveSessionsOfASheet) {
   const NearLights found = std::get<NearLights>(*written->lights);
   EXPECT_LT(test::position_error_mm(found, exact_lights()), 0.5);
   EXPECT_LT(test::direction_error_deg(found, exact_lights()), 0.05);
-  for (std::size_t k = 0; k < 10; ++k) {
+  for (std::size_t k = 0; k < found.leds.size(); ++k) {
     // The gain's mean is 0 in ours and the vignette's is 1 at the centre: the product counts.
     const double ours = found.leds[k].flux_rgb[1] * std::exp(found.log_gain(k, 1, 0, 0));
     const NearLights truth = exact_lights();
@@ -180,11 +181,11 @@ TEST_F(CalibrateLights, FindsTheRigFromFiveSessionsOfASheet) {
 TEST_F(CalibrateLights, ByThePixelWritesMapsOfEveryLed) {
   options_.method = LightsMethod::kPerPixel;
   const CalibrateOutcome outcome = done();
-  const auto map = read_image(options_.output / "report" / "led10_direction.exr");
+  const auto map = read_image(options_.output / "report" / "led06_direction.exr");
   ASSERT_TRUE(map) << map.error().message();
   EXPECT_EQ(map->info.size.width, 26);
   const View<const float> z = map->channel("Z");
-  const Vec3 led = exact_lights().leds[9].position_mm;
+  const Vec3 led = exact_lights().leds[5].position_mm;
   EXPECT_NEAR(static_cast<double>(z(13, 8)), led.z / length(led), 0.02);
   EXPECT_TRUE(fs::exists(options_.output / "report" / "led01_intensity.exr"));
   EXPECT_GT(outcome.report.numbers["per_pixel"]["rounds"].get<int>(), 1);
@@ -251,13 +252,12 @@ TEST_F(CalibrateLights, RefusesASheetThatMovedBetweenItsPhotographs) {
   render({17, 0}, other, 5);
   Session session = *read_session(folder);
   for (Shot& shot : session.shots) {
-    if (shot.led <= 5) continue;
+    if (shot.led <= 3) continue;
     fs::copy_file(other / shot.file, folder / shot.file, fs::copy_options::overwrite_existing);
     shot.sha256.clear();
   }
   ASSERT_TRUE(write_session(session));
-  EXPECT_THAT(refusal(), AnyOf(HasSubstr("contradict each other"), HasSubstr("not an even, flat white"),
-                               HasSubstr("sheet2.weft")));
+  EXPECT_THAT(refusal(), AnyOf(HasSubstr("contradict each other"), HasSubstr("not an even, flat white")));
 }
 
 TEST_F(CalibrateLights, NamesALedThatDidNotLight) {

@@ -160,6 +160,7 @@ TEST(FindBoard, FindsNoneOnAnEmptyTableNorInNoPicture) {
   for (const Board& board : {charuco(), checkerboard()}) {
     EXPECT_EQ(find_board(grey.plane(), board).fault, BoardFault::kNotFound);
     EXPECT_EQ(find_board(black.plane(), board).fault, BoardFault::kNotFound);
+    EXPECT_EQ(find_board(Image<std::uint8_t>({3, 1}).plane(), board).fault, BoardFault::kNotFound);
   }
 }
 

@@ -79,7 +79,8 @@ TEST(ColorFit, FindsItUnderALampThatStandsToOneSide) {
 TEST(ColorFit, KeepsWhiteWhite) {
   std::vector<ChartSample> samples = samples_of(1, 0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    for (std::size_t c = 0; c < 3; ++c) samples[i].camera[c] *= 1 + 0.05 * std::sin(static_cast<double>(7 * i + 2 * c));
+    for (std::size_t c = 0; c < 3; ++c)
+      samples[i].camera[c] *= 1 + 0.05 * std::sin(static_cast<double>(7 * i + 2 * c));
   }
   const auto fit = fit_color(samples, ChartLight::kEven, false);
   ASSERT_TRUE(fit);

@@ -47,7 +47,7 @@ TEST(NeutralScale, FindsWhiteAndLightThatFallsOffAlongIt) {
 }
 
 TEST(NeutralScale, SeesABentResponse) {
-  const Scale scale(0, 0.2);
+  const Scale scale(0, 0.4);
   const auto check = check_scale(scale.reflectances, scale.v);
   ASSERT_TRUE(check);
   EXPECT_GT(check->rms_percent, 0.5);
