@@ -110,7 +110,8 @@ struct NamedFile {
 
 /// A new calibration, which must not be there yet: the parts and the subject of `change`; every other part of
 /// the calibration `from` (empty: there is none) byte by byte, its reports too; and in report/ these files.
-/// It is made aside: after an error there is nothing. `change.subject.measured` is the time now unless it is given.
+/// It is made aside: after an error there is nothing. `change.subject.measured` is the time now unless it is
+/// given.
 Result<Calibration> derive_calibration(const std::filesystem::path& from, Calibration change,
                                        const std::filesystem::path& folder,
                                        std::span<const NamedFile> report);

@@ -77,8 +77,7 @@ std::array<View<const float>, 4> CalibrationChannels::of(const MapBand& band) {
 }
 
 Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size,
-                                const std::string& compression,
-                                const std::vector<std::string>& calibration) {
+                                const std::string& compression, const std::vector<std::string>& calibration) {
   struct Spec {
     std::optional<ImageWriter>* writer;
     const char* name;

@@ -36,11 +36,11 @@ struct Photographs {
   std::vector<Image<float>> rgb;               ///< readings, planes R, G, B (core/radiometry.h)
   std::vector<solver::ClothShift> shifts;      ///< put right as tiles are read (app/jobs/registration.h)
   std::optional<LightField> field;
-  std::optional<CameraModel> camera;                ///< where the lights are near
+  std::optional<CameraModel> camera;                    ///< where the lights are near
   std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
-  std::optional<NoiseModel> noise;                  ///< of the mosaics; of brackets the worst
-  std::string albedo_scale = "relative";            ///< "absolute" where a measured patch fixed it
-  std::optional<ColorTransform> color;              ///< of solved albedo, where the calibration has one
+  std::optional<NoiseModel> noise;                      ///< of the mosaics; of brackets the worst
+  std::string albedo_scale = "relative";                ///< "absolute" where a measured patch fixed it
+  std::optional<ColorTransform> color;                  ///< of solved albedo, where the calibration has one
 
   /// What was found and corrected under way, for solve.json: docs/conditions.md.
   Json conditions = Json::object();

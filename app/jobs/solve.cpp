@@ -225,8 +225,8 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
   StatusCounts counts;
   Pictures pictures(size);
   MapSummary maps(size);
-  const Result<FrameFacts> solved =
-      solve_frame(*photographs, method_name, options.tile, context, [&](const MapBand& camera_band) -> Result<void> {
+  const Result<FrameFacts> solved = solve_frame(
+      *photographs, method_name, options.tile, context, [&](const MapBand& camera_band) -> Result<void> {
         std::vector<View<const float>> share;
         if (calibration) {
           const auto channels = calibration->of(camera_band);
