@@ -184,6 +184,7 @@ Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
   const auto lights = static_cast<int>(field->count());
   Patch patch;
   patch.camera = camera;
+  patch.photographs.camera = camera;
   patch.readings = Image<float>(size, lights);
   patch.visible = Image<float>(size, lights);
   patch.normal = Image<float>(size, 3);
