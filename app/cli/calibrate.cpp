@@ -8,6 +8,7 @@
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -80,8 +81,10 @@ void print_outcome(const CalibrateOutcome& outcome, const CommonArguments& commo
   if (!outcome.folder.empty()) print(outcome.folder.string());
   print("  " + outcome.report.summary);
   if (!outcome.folder.empty()) {
-    const std::string page = outcome.report.part + ".html";
-    print(fmt::format("  look at {}", (outcome.folder / "report" / page).string()));
+    const std::filesystem::path reports = outcome.folder / "report";
+    print(fmt::format(
+        "  look at {}",
+        ((is_there(reports) ? reports : outcome.folder) / (outcome.report.part + ".html")).string()));
     return;
   }
   for (const ReportSection& section : outcome.report.sections) {

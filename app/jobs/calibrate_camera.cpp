@@ -101,6 +101,10 @@ CalibrationSubject subject_of(const CalibrateCameraOptions& options, const std::
 
 Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options, const JobContext& context) {
   if (const Result<void> ok = check_options(options); !ok) return ok.error();
+  if (!is_there(options.input)) {
+    return Error{ErrorKind::kNoInput, "there are no photographs", options.input.string(),
+                 "the folder is not there", "check the path"};
+  }
   const Result<PrintedBoard> board = read_board_file(options.input / "board.toml", options.board);
   if (!board) return board.error();
   std::optional<Calibration> from;

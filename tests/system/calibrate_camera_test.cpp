@@ -226,7 +226,7 @@ TEST_F(CalibrateCamera, RefusesWhatCannotBeUsedAndWritesNothing) {
   wrong = options();
   wrong.input = work_ / "nothing";
   wrong.board = {{}, 11, 8, 12, 0.7, 3, "DICT_5X5_100"};
-  expect_refused(wrong, "nothing");
+  expect_refused(wrong, "nothing", "the folder is not there");
 }
 
 TEST_F(CalibrateCamera, KeepsTheOtherPartsAndSaysThatTheLightsAreOfAnotherFrame) {
