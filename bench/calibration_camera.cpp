@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/calibrate_camera.h"
+#include "app/jobs/calibrate/camera.h"
 #include "bench/rig.h"
 #include "calibration/camera/lens.h"
 #include "capture/raw/decode.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/calibrate_color.h"
+#include "app/jobs/calibrate/color.h"
 #include "calibration/color/color_fit.h"
 #include "core/files.h"
 #include "simulator/scene/rig.h"

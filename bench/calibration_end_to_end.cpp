@@ -9,11 +9,11 @@
 #include <map>
 #include <vector>
 
-#include "app/jobs/calibrate_camera.h"
-#include "app/jobs/calibrate_check.h"
-#include "app/jobs/calibrate_color.h"
-#include "app/jobs/calibrate_lights.h"
-#include "app/jobs/calibrate_response.h"
+#include "app/jobs/calibrate/camera.h"
+#include "app/jobs/calibrate/check.h"
+#include "app/jobs/calibrate/color.h"
+#include "app/jobs/calibrate/lights.h"
+#include "app/jobs/calibrate/response.h"
 #include "app/jobs/solve.h"
 #include "calibration/color/color_fit.h"
 #include "core/image_io/image_io.h"

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <optional>
 
-#include "app/jobs/calibrate_lights.h"
+#include "app/jobs/calibrate/lights.h"
 #include "calibration/lights/per_pixel.h"
 #include "calibration/lights/physical.h"
 #include "calibration/lights/seed_iteration.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "app/jobs/calibrate_response.h"
+#include "app/jobs/calibrate/response.h"
 #include "calibration/response/superposition.h"
 #include "core/files.h"
 #include "simulator/scene/rig.h"

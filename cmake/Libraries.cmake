@@ -15,6 +15,11 @@ find_package(CLI11 REQUIRED CONFIG)
 find_package(tomlplusplus REQUIRED CONFIG)
 find_package(GTest REQUIRED CONFIG)
 pkg_check_modules(LIBRAW_R REQUIRED IMPORTED_TARGET libraw_r)
+pkg_check_modules(GPHOTO2 REQUIRED IMPORTED_TARGET libgphoto2)
+pkg_check_modules(SERIALPORT REQUIRED IMPORTED_TARGET libserialport)
+pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
+pkg_check_modules(SIMAVR REQUIRED IMPORTED_TARGET simavr)  # GPL-3: only the virtual rig links it
+pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)  # its header, for the stand-in
 if(NOT WEFT_PLAIN_THREADS)
   find_package(TBB REQUIRED CONFIG)
 endif()

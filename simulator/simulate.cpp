@@ -204,6 +204,12 @@ class SessionWriter {
     return std::move(report_);
   }
 
+  Result<void> write_truth_of(const fs::path& session) {
+    folder_ = session;
+    if (Result<void> ok = make_writable_folder(folder_ / "truth"); !ok) return ok;
+    return write_truth();
+  }
+
  private:
   int width() const { return scene_.camera.width; }
   int height() const { return scene_.camera.height; }
@@ -481,6 +487,16 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
   frames->takes_before = brackets->takes_before = options.takes_before;
   return SessionWriter(scene, *plan, std::move(*surface), std::move(*frames), std::move(*brackets), options)
       .write(target);
+} catch (const std::bad_alloc&) {
+  return no_memory("the system refused some");
+}
+
+Result<void> simulate_truth(const Scene& scene, const fs::path& session, const SimulateOptions& options) try {
+  const Result<Plan> plan = plan_of(scene);
+  if (!plan) return plan.error();
+  Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
+  if (!surface) return surface.error();
+  return SessionWriter(scene, *plan, std::move(*surface), {}, {}, options).write_truth_of(session);
 } catch (const std::bad_alloc&) {
   return no_memory("the system refused some");
 }

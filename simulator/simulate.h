@@ -51,6 +51,11 @@ struct SimulationReport {
 Result<SimulationReport> simulate_session(const Scene& scene, const std::filesystem::path& session_folder,
                                           const SimulateOptions& options);
 
+/// Adds to a session that was photographed of this scene the folder truth/ that simulate_session() writes,
+/// but for what each LED has of its own. Errors as above.
+Result<void> simulate_truth(const Scene& scene, const std::filesystem::path& session,
+                            const SimulateOptions& options);
+
 /// One frame alone, the same bytes as in the session: of a LED from 1, or with 0 the dark shot. Errors as
 /// above; kUsage where the scene has no such LED.
 Result<void> simulate_frame(const Scene& scene, int led, const std::filesystem::path& file,

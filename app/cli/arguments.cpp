@@ -275,6 +275,28 @@ CLI::App* add_bench_calibration(CLI::App& bench, BenchCalibrationArguments& a) {
   return verb;
 }
 
+CLI::App* add_bench_capture(CLI::App& bench, BenchCaptureArguments& a) {
+  CLI::App* verb = bench.add_subcommand("capture", "Scans: their speed, and what faults do to them");
+  verb->add_option(
+          "--part", a.part,
+          "board, camera, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that "
+          "it starts")
+      ->check(CLI::IsMember({"board", "camera", "scans", "faults"}))
+      ->capture_default_str();
+  verb->add_option("--rig", a.rig, "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
+  verb->add_option("--runs", a.runs, "Commands, shots, scans or runs; 0 is as many as docs/reliability.md")
+      ->check(CLI::Range(0, 1000000));
+  verb->add_option("--scene", a.scene, "Scene of the fault matrix")->capture_default_str();
+  verb->add_option("--megapixels", a.megapixels, "Size of its frames, millions of pixels")
+      ->check(CLI::Range(0.05, 200.0))
+      ->capture_default_str();
+  verb->add_option("--rigs", a.rigs, "Rigs side by side")->check(CLI::Range(1, 64))->capture_default_str();
+  verb->add_option("--seed", a.seed, "Of shots and moments")->capture_default_str();
+  verb->add_option("--fault", a.faults, "These faults alone, by their names in the table");
+  verb->add_option("--keep", a.keep, "Folder for the sessions and logs of runs that went wrong");
+  return verb;
+}
+
 CLI::App* add_demo(CLI::App& app, DemoArguments& a) {
   CLI::App* verb = app.add_subcommand("demo", "Scan a simulated cloth, solve it and show the result");
   verb->add_option("scene", a.scene, "Scene file (TOML)")->required();
@@ -292,9 +314,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   app.set_version_flag("--version", WEFT_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Exit codes: 0 done, 2 done with warnings under --strict, 64 usage, 65 bad data, 66 no input, 70 our "
-      "own bug,\n"
-      "73 cannot create, 74 input/output, 75 try again, 130 interrupted.");
+      "Exit codes: 0 done, 2 done with warnings under --strict, 64 usage, 65 bad data, 66 no input, 69 "
+      "device not there,\n"
+      "70 our own bug, 73 cannot create, 74 input/output, 75 try again, 76 protocol, 130 interrupted.");
 
   CommonArguments common;
   SimulateArguments simulate;
@@ -309,7 +331,9 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   BenchExplainArguments bench_explain;
   BenchPhotosArguments bench_photos;
   BenchCalibrationArguments bench_calibration;
+  BenchCaptureArguments bench_capture;
   DemoArguments demo;
+  RigForms rig;
   CalibrateForms calibrate;
   RectifyOptions rectify;
   std::string quality, method, transfer = "auto", kind = "normal", set = "held-out";
@@ -320,6 +344,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   const std::vector<CLI::App*> calibrate_steps = add_calibrate(app, calibrate);
   CLI::App* calibrate_verb = calibrate_steps.front()->get_parent();
   CLI::App* rectify_verb = add_rectify(app, rectify);
+  const RigVerbs rig_verbs = add_rig_verbs(app, rig);
   CLI::App* bench_verb = app.add_subcommand("bench", "Measure");
   bench_verb->require_subcommand(1);
   CLI::App* bench_solve_verb = add_bench_solve(*bench_verb, bench_solve);
@@ -333,11 +358,30 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
       "registration", "Shots registered to each other: shift, error, cost and gain on three weaves");
   CLI::App* bench_transport_verb = add_bench_transport(*bench_verb, bench_transport);
   CLI::App* bench_calibration_verb = add_bench_calibration(*bench_verb, bench_calibration);
+  CLI::App* bench_capture_verb = add_bench_capture(*bench_verb, bench_capture);
   CLI::App* demo_verb = add_demo(app, demo);
-  for (CLI::App* verb :
-       {simulate_verb, solve_verb, compare_verb, rectify_verb, bench_solve_verb, bench_effects_verb,
-        bench_numerics_verb, bench_accuracy_verb, bench_explain_verb, bench_photos_verb, bench_height_verb,
-        bench_transport_verb, bench_registration_verb, bench_calibration_verb, demo_verb}) {
+  for (CLI::App* verb : {simulate_verb,
+                         solve_verb,
+                         compare_verb,
+                         rectify_verb,
+                         bench_solve_verb,
+                         bench_effects_verb,
+                         bench_numerics_verb,
+                         bench_accuracy_verb,
+                         bench_explain_verb,
+                         bench_photos_verb,
+                         bench_height_verb,
+                         bench_transport_verb,
+                         bench_registration_verb,
+                         bench_calibration_verb,
+                         bench_capture_verb,
+                         demo_verb,
+                         rig_verbs.serve,
+                         rig_verbs.scan,
+                         rig_verbs.status,
+                         rig_verbs.lights,
+                         rig_verbs.test,
+                         rig_verbs.doctor}) {
     add_common(*verb, common);
   }
   for (CLI::App* step : calibrate_steps) {
@@ -373,6 +417,13 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   }
   if (*demo_verb) return Arguments{common, demo};
   if (*rectify_verb) return Arguments{common, rectify};
+  if (*rig_verbs.serve) return Arguments{common, rig.serve};
+  if (*rig_verbs.scan) return Arguments{common, rig.scan};
+  if (*rig_verbs.doctor) return Arguments{common, rig.doctor};
+  if (*rig_verbs.rig) {
+    rig.rig.task = *rig_verbs.lights ? RigTask::kLights : *rig_verbs.test ? RigTask::kTest : RigTask::kStatus;
+    return Arguments{common, rig.rig};
+  }
   if (*calibrate_verb) return Arguments{common, chosen_step(*calibrate_verb, calibrate)};
   if (*bench_numerics_verb) return Arguments{common, bench_numerics};
   if (*bench_accuracy_verb) {
@@ -387,6 +438,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   if (*bench_height_verb) return Arguments{common, bench_height};
   if (*bench_registration_verb) return Arguments{common, BenchRegistrationArguments{}};
   if (*bench_calibration_verb) return Arguments{common, bench_calibration};
+  if (*bench_capture_verb) return Arguments{common, bench_capture};
   if (*bench_transport_verb) return Arguments{common, bench_transport};
   if (*bench_effects_verb) return Arguments{common, bench_effects};
   if (*bench_verb) return Arguments{common, bench_solve};

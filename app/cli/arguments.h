@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "app/cli/calibrate_arguments.h"
+#include "app/cli/rig_arguments.h"
 #include "app/jobs/explain.h"
 #include "app/jobs/rectify.h"
 #include "app/jobs/solve.h"
@@ -106,6 +107,18 @@ struct BenchCalibrationArguments {
   int seeds = 0;  ///< 0: as many as the part is quoted for
 };
 
+struct BenchCaptureArguments {
+  std::string part = "scans";  ///< board, camera, scans: of a running rig; faults: of rigs that it starts
+  std::filesystem::path rig;
+  int runs = 0;  ///< commands, shots, scans or runs; 0: as many as docs/reliability.md
+  std::filesystem::path scene = "testdata/scenes/satin.toml";
+  double megapixels = 0.2;
+  int rigs = 16;
+  std::uint64_t seed = 1;
+  std::vector<std::string> faults;
+  std::filesystem::path keep;
+};
+
 struct DemoArguments {
   std::filesystem::path output = "demo";
   std::optional<double> megapixels;
@@ -117,7 +130,8 @@ struct Arguments {
   std::variant<SimulateArguments, CalibrateArguments, SolveArguments, CompareArguments, RectifyOptions,
                BenchSolveArguments, BenchTransportArguments, BenchEffectsArguments, BenchHeightArguments,
                BenchNumericsArguments, BenchAccuracyArguments, BenchExplainArguments, BenchPhotosArguments,
-               BenchRegistrationArguments, BenchCalibrationArguments, DemoArguments>
+               BenchRegistrationArguments, BenchCalibrationArguments, BenchCaptureArguments, DemoArguments,
+               ServeArguments, ScanArguments, RigArguments, DoctorArguments>
       verb;
 };
 

@@ -45,7 +45,7 @@ Result<CalibrateOutcome> run_step(const CalibrateUpdateOptions& options, const J
 Result<CalibrateOutcome> run_step(const CalibrateHistoryOptions& options, const JobContext& context) {
   Result<CalibrationHistory> history = calibrate_history(options, context);
   if (!history) return std::move(history).error();
-  return CalibrateOutcome{{}, {}, std::move(history->report), std::move(history->warnings)};
+  return CalibrateOutcome{options.output, {}, std::move(history->report), std::move(history->warnings)};
 }
 
 // A table of a report in columns of even width.

@@ -160,6 +160,7 @@ CLI::App* add_history(CLI::App& calibrate, CalibrateHistoryOptions& a) {
   verb->add_option("rig", a.rig, "Folder that holds calibrations and results of checks")->required();
   verb->add_option("--affected", a.sessions,
                    "Folder of sessions: lists those shot between the last check that passed and a move");
+  verb->add_option("-o,--output", a.output, "Folder to make for the page; default none");
   return verb;
 }
 

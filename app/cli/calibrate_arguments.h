@@ -5,14 +5,14 @@
 #include <variant>
 #include <vector>
 
-#include "app/jobs/calibrate_camera.h"
-#include "app/jobs/calibrate_check.h"
-#include "app/jobs/calibrate_color.h"
-#include "app/jobs/calibrate_history.h"
-#include "app/jobs/calibrate_lights.h"
-#include "app/jobs/calibrate_patches.h"
-#include "app/jobs/calibrate_response.h"
-#include "app/jobs/calibrate_update.h"
+#include "app/jobs/calibrate/camera.h"
+#include "app/jobs/calibrate/check.h"
+#include "app/jobs/calibrate/color.h"
+#include "app/jobs/calibrate/history.h"
+#include "app/jobs/calibrate/lights.h"
+#include "app/jobs/calibrate/patches.h"
+#include "app/jobs/calibrate/response.h"
+#include "app/jobs/calibrate/update.h"
 
 namespace CLI {
 class App;

@@ -1,32 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/compare.h"
 #include "app/jobs/solve.h"
+#include "bench/capture/rig_process.h"
 #include "core/files.h"
+#include "core/session.h"
+#include "simulator/scene/resolution.h"
 #include "simulator/simulate.h"
 
 namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-// The scene at another resolution: the same piece of cloth, more or fewer pixels a millimetre.
-void resize(simulator::CameraSettings& camera, double megapixels) {
-  const double factor = std::sqrt(megapixels * 1e6 / (static_cast<double>(camera.width) * camera.height));
-  const auto even = [&](int side) {
-    return std::max(2, 2 * static_cast<int>(std::lround(side * factor / 2)));
-  };
-  const int width = even(camera.width);
-  camera.mm_per_pixel *= static_cast<double>(camera.width) / width;
-  camera.height = even(camera.height);
-  camera.width = width;
-}
 
 Result<std::uint64_t> bytes_in(const fs::path& folder) {
   std::uint64_t bytes = 0;
@@ -39,30 +28,60 @@ Result<std::uint64_t> bytes_in(const fs::path& folder) {
 }
 
 struct Outcome {
-  simulator::SimulationReport simulated;
+  double scan_seconds = 0;
+  std::size_t frames = 0;
   SolveReport solved;
   NormalComparison normal;
   AlbedoComparison albedo;
   std::uint64_t session_bytes = 0, map_bytes = 0;
 };
 
-Result<Outcome> scan_and_solve(const simulator::Scene& scene, const fs::path& session,
-                               const CommonArguments& common) {
-  ProgressLine line(common.quiet);
+/// `weft scan` on a virtual rig that lasts for it, and the truth beside what it photographed.
+Result<void> scan(const DemoArguments& arguments, const simulator::Scene& scene, const fs::path& session,
+                  const CommonArguments& common) {
+  std::error_code failed;
+  const auto rig =
+      bench::RigProcess::start({.programs = fs::read_symlink("/proc/self/exe", failed).parent_path(),
+                                .scene = arguments.scene,
+                                .folder = arguments.output / "rig",
+                                .megapixels = arguments.megapixels});
+  if (!rig) return rig.error();
+  std::vector<std::string> command = {"scan",     "-o",         session.string(),
+                                      "--fabric", scene.fabric, "--no-preview"};
+  if (common.quiet) command.emplace_back("--quiet");
+  const auto weft = (*rig)->weft(std::move(command), {});
+  if (!weft) return weft.error();
   const std::stop_token stop = stop_on_signal();
+  std::optional<int> code;
+  while (!(code = (*weft)->wait(1))) {
+    if (stop.stop_requested()) return interrupted();
+  }
+  if (*code != kDone) {
+    return Error{ErrorKind::kTryAgain, "the scan has failed", session.string(),
+                 fmt::format("exit code {}", *code), "read what it said above"};
+  }
+  simulator::SimulateOptions options;
+  options.tiles.threads = common.threads;
+  options.stop = stop;
+  return simulator::simulate_truth(scene, session, options);
+}
+
+Result<Outcome> scan_and_solve(const DemoArguments& arguments, const simulator::Scene& scene,
+                               const fs::path& session, const CommonArguments& common) {
   Outcome outcome;
-  auto simulated = simulator::simulate_session(
-      scene, session,
-      {.tiles = {.threads = common.threads}, .stop = stop, .progress = [&](int done, int parts) {
-         line.update("simulate", static_cast<double>(done) / parts);
-       }});
-  if (!simulated) return std::move(simulated).error();
-  outcome.simulated = std::move(*simulated);
+  Stopwatch watch;
+  if (Result<void> ok = scan(arguments, scene, session, common); !ok) return std::move(ok).error();
+  outcome.scan_seconds = watch.lap();
+  const Result<Session> scanned = read_session(session);
+  if (!scanned) return scanned.error();
+  outcome.frames = scanned->shots.size();
   const Result<std::uint64_t> session_bytes = bytes_in(session / "raw");
   if (!session_bytes) return session_bytes.error();
   outcome.session_bytes = *session_bytes;
 
-  Result<SolveReport> solved = solve_session({session, {}, {}}, {}, {common.threads, stop, line.callback()});
+  ProgressLine line(common.quiet);
+  Result<SolveReport> solved =
+      solve_session({session, {}, {}}, {}, {common.threads, stop_on_signal(), line.callback()});
   if (!solved) return std::move(solved).error();
   outcome.solved = std::move(*solved);
   const fs::path& maps = outcome.solved.folder;
@@ -81,13 +100,13 @@ Result<Outcome> scan_and_solve(const simulator::Scene& scene, const fs::path& se
 void print_table(const simulator::Scene& scene, const Outcome& o) {
   const SolveSeconds& s = o.solved.seconds;
   print(fmt::format("{}, {} x {} pixels, {} frames", scene.fabric, scene.camera.width, scene.camera.height,
-                    o.simulated.frames));
+                    o.frames));
   print(fmt::format("  normal error    mean {:.3f}, median {:.3f}, 95 % under {:.3f} degrees",
                     o.normal.mean_deg, o.normal.median_deg, o.normal.p95_deg));
   print(fmt::format("  albedo error    mean {:.2f} %, bias {:+.2f} %", 100 * o.albedo.mean_rel,
                     100 * o.albedo.bias_rel));
-  print(fmt::format("  scan            {:.2f} s rendering, {:.2f} s writing, {} MB of raw frames",
-                    o.simulated.render_seconds, o.simulated.write_seconds, o.session_bytes / 1000000));
+  print(fmt::format("  scan            {:.2f} s with the virtual rig's start; {} MB of raw frames",
+                    o.scan_seconds, o.session_bytes / 1000000));
   print(
       fmt::format("  solve           {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, "
                   "sync {:.2f}; {} MB of maps",
@@ -104,7 +123,7 @@ Json json_of(const Outcome& o) {
        {{"mean_deg", o.normal.mean_deg}, {"median_deg", o.normal.median_deg}, {"p95_deg", o.normal.p95_deg}}},
       {"albedo", {{"mean_rel", o.albedo.mean_rel}, {"bias_rel", o.albedo.bias_rel}}},
       {"seconds",
-       {{"simulate", o.simulated.render_seconds + o.simulated.write_seconds},
+       {{"scan", o.scan_seconds},
         {"read", s.read},
         {"solve", s.solve},
         {"write", s.write},
@@ -120,14 +139,14 @@ Json json_of(const Outcome& o) {
 Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& common) {
   Result<simulator::Scene> scene = simulator::read_scene(arguments.scene);
   if (!scene) return std::move(scene).error();
-  if (arguments.megapixels) resize(scene->camera, *arguments.megapixels);
+  if (arguments.megapixels) simulator::resize(scene->camera, *arguments.megapixels);
   // A demo is made again each time it is asked for; it removes only what an earlier one left under this name.
   const fs::path session = arguments.output / (arguments.scene.stem().string() + ".weft");
   std::error_code failed;
   if (is_there(session / "truth" / "scene.toml")) fs::remove_all(session, failed);
   if (failed) return cannot_write(session, failed.value());
   if (Result<void> made = make_writable_folder(arguments.output); !made) return std::move(made).error();
-  const Result<Outcome> outcome = scan_and_solve(*scene, session, common);
+  const Result<Outcome> outcome = scan_and_solve(arguments, *scene, session, common);
   if (!outcome) return outcome.error();
   if (common.json) {
     print_json(json_of(*outcome));

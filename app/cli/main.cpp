@@ -35,6 +35,11 @@ Result<int> run(const Arguments& arguments) {
                [&](const BenchTransportArguments& a) { return run_bench_transport(a, common); },
                [&](const BenchRegistrationArguments& a) { return run_bench_registration(a, common); },
                [&](const BenchCalibrationArguments& a) { return run_bench_calibration(a, common); },
+               [&](const BenchCaptureArguments& a) { return run_bench_capture(a, common); },
+               [&](const ServeArguments& a) { return run_serve(a, common); },
+               [&](const ScanArguments& a) { return run_scan(a, common); },
+               [&](const RigArguments& a) { return run_rig(a, common); },
+               [&](const DoctorArguments& a) { return run_doctor(a, common); },
                [&](const DemoArguments& a) { return run_demo(a, common); }},
       arguments.verb);
 }

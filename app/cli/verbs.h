@@ -24,6 +24,11 @@ Result<int> run_bench_transport(const BenchTransportArguments& arguments, const 
 Result<int> run_bench_registration(const BenchRegistrationArguments& arguments,
                                    const CommonArguments& common);
 Result<int> run_bench_calibration(const BenchCalibrationArguments& arguments, const CommonArguments& common);
+Result<int> run_bench_capture(const BenchCaptureArguments& arguments, const CommonArguments& common);
+Result<int> run_serve(const ServeArguments& arguments, const CommonArguments& common);
+Result<int> run_scan(const ScanArguments& arguments, const CommonArguments& common);
+Result<int> run_rig(const RigArguments& arguments, const CommonArguments& common);
+Result<int> run_doctor(const DoctorArguments& arguments, const CommonArguments& common);
 Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& common);
 
 }  // namespace weft::app

@@ -65,6 +65,8 @@ enum Tag : std::uint16_t {
   kIsoSpeed = 34855,
   kExifVersion = 36864,
   kDateTimeOriginal = 36867,
+  kImageNumber = 37393,  // of TIFF/EP (ISO 12234-2), where readers look for it among the EXIF tags
+  kSubSecTimeOriginal = 37521,
   kDngVersion = 50706,
   kDngBackwardVersion = 50707,
   kUniqueCameraModel = 50708,
@@ -182,6 +184,10 @@ Directory exif_directory(const ShotMetadata& shot, const DngTags& tags) {
   if (shot.iso > 0) exif.push_back(shorts(kIsoSpeed, {static_cast<std::uint16_t>(std::lround(shot.iso))}));
   exif.push_back({kExifVersion, Type::kUndefined, 4, "0230"});
   if (!tags.date_time_original.empty()) exif.push_back(ascii(kDateTimeOriginal, tags.date_time_original));
+  if (tags.image_number) exif.push_back(longs(kImageNumber, {*tags.image_number}));
+  if (tags.milliseconds) {
+    exif.push_back(ascii(kSubSecTimeOriginal, fmt::format("{:03}", *tags.milliseconds)));
+  }
   return exif;
 }
 
@@ -289,6 +295,8 @@ std::string fault_of(const RawFrame& frame, Size size, const DngTags& tags) {
   const auto& date = tags.date_time_original;
   if (!date.empty() && (date.size() != kDateLength || !std::all_of(date.begin(), date.end(), is_printable)))
     return fmt::format("its date \"{}\" is not as EXIF has it", date);
+  if (const int milliseconds = tags.milliseconds.value_or(0); milliseconds < 0 || milliseconds > 999)
+    return fmt::format("its {} milliseconds are not between 0 and 999", milliseconds);
   const auto in_range = [](double value) { return std::abs(value) <= 1000; };
   if (!std::all_of(tags.as_shot_neutral.begin(), tags.as_shot_neutral.end(), in_range) ||
       !std::all_of(tags.camera_from_xyz.begin(), tags.camera_from_xyz.end(), in_range))
@@ -305,18 +313,34 @@ Result<std::string> checked_head(const std::filesystem::path& file, const RawFra
   return dng_head(frame, size, tags);
 }
 
+using Bytes = std::vector<std::uint8_t>;
+
+Result<Bytes> whole_file(const std::filesystem::path& file, const RawFrame& frame, const DngTags& tags) {
+  const bool is_mosaic = frame.counts.planes() == 1;
+  const View<const std::uint16_t> counts = frame.counts.plane();
+  const Result<std::string> head = checked_head(file, frame, is_mosaic ? counts.size() : Size(), tags);
+  if (!head) return head.error();
+  const std::size_t row_bytes = sizeof(std::uint16_t) * static_cast<std::size_t>(counts.width());
+  Bytes bytes;
+  bytes.reserve(head->size() + strip_bytes(counts.size()));
+  bytes.assign(head->begin(), head->end());
+  for (int y = 0; y < counts.height(); ++y) {
+    const auto* row = reinterpret_cast<const std::uint8_t*>(counts.row(y));
+    bytes.insert(bytes.end(), row, row + row_bytes);
+  }
+  return bytes;
+}
+
 }  // namespace
 
 Result<void> write_dng(const std::filesystem::path& file, const RawFrame& frame, const DngTags& tags) {
-  const bool is_mosaic = frame.counts.planes() == 1;
-  const View<const std::uint16_t> counts = frame.counts.plane();
-  Result<std::string> bytes = checked_head(file, frame, is_mosaic ? counts.size() : Size(), tags);
+  const Result<Bytes> bytes = whole_file(file, frame, tags);
   if (!bytes) return bytes.error();
-  const std::size_t row_bytes = sizeof(std::uint16_t) * static_cast<std::size_t>(counts.width());
-  bytes->reserve(bytes->size() + strip_bytes(counts.size()));
-  for (int y = 0; y < counts.height(); ++y)
-    bytes->append(reinterpret_cast<const char*>(counts.row(y)), row_bytes);
-  return write_file(file, *bytes);
+  return write_file(file, {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+}
+
+Result<std::vector<std::uint8_t>> dng_bytes(const RawFrame& frame, const DngTags& tags) {
+  return whole_file("DNG", frame, tags);
 }
 
 Result<DngWriter> DngWriter::open(const std::filesystem::path& file, const RawFrame& frame, Size size,

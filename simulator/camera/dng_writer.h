@@ -2,10 +2,13 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/raw_frame.h"
 #include "core/result.h"
@@ -14,7 +17,9 @@ namespace weft::simulator {
 
 /// What a DNG says about the camera and a RawFrame does not.
 struct DngTags {
-  std::string date_time_original;  ///< "2026:01:31 23:59:58" of EXIF; empty: the file names no time
+  std::string date_time_original;        ///< "2026:01:31 23:59:58" of EXIF; empty: the file names no time
+  std::optional<int> milliseconds = {};  ///< of that time, 0 to 999
+  std::optional<std::uint32_t> image_number = {};  ///< the body's count of shots
   /// Camera RGB of a neutral patch under the scene's light, green = 1.
   std::array<double, 3> as_shot_neutral = {1, 1, 1};
   /// Camera RGB from XYZ under D65, by rows. By default the filters of the made-up body are those of linear
@@ -35,6 +40,9 @@ struct DngTags {
 /// The file is written aside and renamed (core/files.h). Errors: kUsage where the frame breaks a rule above;
 /// kCannotCreate and kInputOutput with the system's reason.
 Result<void> write_dng(const std::filesystem::path& file, const RawFrame& frame, const DngTags& tags = {});
+
+/// The bytes of that file, in memory. kUsage as write_dng().
+Result<std::vector<std::uint8_t>> dng_bytes(const RawFrame& frame, const DngTags& tags = {});
 
 /// The same file row band by row band. It is not written aside: make it in a folder that is published when
 /// it is complete (core/files.h). Errors as write_dng(); a file that is there is kCannotCreate.

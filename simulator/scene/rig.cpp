@@ -109,6 +109,12 @@ double brightest_reading(const DistantLights& lights) {
   return brightest;
 }
 
+/// A model as readers of raw files call it: the maker's name is not repeated.
+std::string name_of_model(const Sensor& sensor) {
+  const std::string maker = sensor.make.substr(0, sensor.make.find(' '));
+  return sensor.model.starts_with(maker + " ") ? sensor.model.substr(maker.size() + 1) : sensor.model;
+}
+
 }  // namespace
 
 std::vector<Rgb> Rig::signal_of_unit(double iso) const {
@@ -184,7 +190,7 @@ double bracket_exposure_us(const RetakeSettings& retakes, const Rig& rig, bool a
 Calibration exact_calibration(const Scene& scene, const Rig& rig) {
   Calibration calibration;
   calibration.subject.rig = "virtual rig";
-  calibration.subject.camera_model = rig.sensor.model;
+  calibration.subject.camera_model = name_of_model(rig.sensor);
   calibration.subject.camera_serial = "virtual";
   calibration.subject.f_number = scene.camera.f_number;
   calibration.subject.albedo_scale = "absolute";

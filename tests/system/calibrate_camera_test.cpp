@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <string>
 
-#include "app/jobs/calibrate_camera.h"
+#include "app/jobs/calibrate/camera.h"
 #include "app/jobs/rectify.h"
 #include "app/jobs/solve.h"
 #include "calibration/camera/boards.h"

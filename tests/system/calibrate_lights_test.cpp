@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/calibrate_lights.h"
+#include "app/jobs/calibrate/lights.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@
 #include <functional>
 #include <vector>
 
-#include "app/jobs/sheet_files.h"
+#include "app/jobs/calibrate/sheet_files.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/jobs/calibrate_check.h"
-#include "app/jobs/calibrate_history.h"
-#include "app/jobs/calibrate_patches.h"
-#include "app/jobs/calibrate_update.h"
-#include "app/jobs/check_result.h"
-#include "app/jobs/rig_evidence.h"
+#include "app/jobs/calibrate/check.h"
+#include "app/jobs/calibrate/history.h"
+#include "app/jobs/calibrate/patches.h"
+#include "app/jobs/calibrate/update.h"
+#include "app/jobs/calibrate/check_result.h"
+#include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
 #include "core/files.h"
@@ -192,11 +192,12 @@ TEST_F(CalibrationCheck, ATableThatSankIsFoundUpdatedAndInTheHistory) {
   EXPECT_EQ(solved->document["input"]["calibration"], update->calibration.id);
   EXPECT_NE(read_session(root_ / "sunk.weft")->calibration_id, update->calibration.id);
 
-  const auto history = calibrate_history({root_ / "rig", {}}, {});
+  const auto history = calibrate_history({root_ / "rig", {}, root_ / "page"}, {});
   ASSERT_TRUE(history) << history.error().message();
   EXPECT_EQ(history->report.numbers["calibrations"].size(), 2U);
   EXPECT_EQ(history->report.numbers["checks"].size(), 1U);
   EXPECT_NEAR(history->report.numbers["calibrations"][1]["led_moved_most_mm"].get<double>(), 2, 0.2);
+  EXPECT_TRUE(is_there(root_ / "page/history.html"));
 }
 
 TEST_F(CalibrationCheck, PatchesAreMeasuredByTheLightThatIsKnown) {
@@ -268,7 +269,7 @@ TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
     const auto written = write_session(session);
     ASSERT_TRUE(written) << written.error().message();
   }
-  const auto history = calibrate_history({rig, sessions}, {});
+  const auto history = calibrate_history({rig, sessions, {}}, {});
   ASSERT_TRUE(history) << history.error().message();
   ASSERT_EQ(history->affected.size(), 1U);
   EXPECT_EQ(history->affected[0].folder.filename(), "s1.weft");

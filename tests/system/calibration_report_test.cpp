@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/calibration_report.h"
+#include "app/jobs/calibrate/report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -149,6 +149,34 @@ TEST(Dng, StoresWhatCameraTookTheShotAndHow) {
   EXPECT_EQ(nothing.f_number, 0);
 }
 
+TEST(Dng, HasTheSameBytesInMemory) {
+  const RawFrame frame = sample_frame({23, 29});
+  const Result<std::vector<std::uint8_t>> bytes = dng_bytes(frame);
+  ASSERT_TRUE(bytes) << bytes.error().message();
+  EXPECT_EQ(std::string(bytes->begin(), bytes->end()), written(frame));
+  RawFrame nameless = sample_frame({24, 24});
+  nameless.shot.make.clear();
+  EXPECT_EQ(dng_bytes(nameless).error().kind, ErrorKind::kUsage);
+}
+
+TEST(Dng, StoresTheCountOfShotsAndTheMillisecondOnlyWhereTheyAreGiven) {
+  DngTags tags;
+  tags.date_time_original = "2026:01:31 23:59:58";
+  tags.milliseconds = 42;
+  tags.image_number = 0x01020304;
+  const std::string number = {'\x11', '\x92', 4, 0, 1, 0, 0, 0, 4, 3, 2, 1};              // 0x9211, one LONG
+  const std::string milliseconds = {'\x91', '\x92', 2, 0, 4, 0, 0, 0, '0', '4', '2', 0};  // 0x9291, ASCII
+  const std::string bytes = written(sample_frame({24, 24}), tags);
+  EXPECT_THAT(bytes, HasSubstr(number));
+  EXPECT_THAT(bytes, HasSubstr(milliseconds));
+  EXPECT_EQ(decoded(sample_frame({24, 24}), tags).counts(7, 7), sample_frame({24, 24}).counts(7, 7));
+  const std::string silent = written(sample_frame({24, 24}));
+  EXPECT_THAT(silent, testing::Not(HasSubstr(number.substr(0, 4))));
+  EXPECT_THAT(silent, testing::Not(HasSubstr(milliseconds.substr(0, 4))));
+  tags.milliseconds = 1000;
+  EXPECT_FALSE(dng_bytes(sample_frame({24, 24}), tags));
+}
+
 TEST(Dng, StoresColorAndDateAsTheyAreGiven) {
   DngTags tags;
   tags.date_time_original = "2026:01:31 23:59:58";

@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/rig.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <chrono>
+#include <numeric>
+#include <thread>
+
+#include "app/cli/exit_code.h"
+#include "app/cli/rig_devices.h"
+#include "app/cli/terminal.h"
+#include "app/cli/verbs.h"
+#include "bench/report.h"
+#include "capture/scan/scan.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<int> chosen_leds(const RigArguments& arguments, int leds) {
+  if (!arguments.leds.empty()) return arguments.leds;
+  std::vector<int> all(static_cast<std::size_t>(leds));
+  std::iota(all.begin(), all.end(), 1);
+  return all;
+}
+
+Result<int> show_status(const capture::Rig& rig, const CommonArguments& common) {
+  const auto board = open_board(rig);
+  if (!board) return board.error();
+  const capture::BoardFacts& lamps = (*board)->facts();
+  auto camera = open_camera(rig);
+  if (!camera) return std::move(camera).error();
+  const Result<capture::CameraFacts> facts = (*camera)->connect();
+  if (!facts) return facts.error();
+  if (common.json) {
+    print_json({{"rig", rig.name},
+                {"board",
+                 {{"port", rig.board.port},
+                  {"firmware", fmt::format("{}.{}", lamps.firmware_major, lamps.firmware_minor)},
+                  {"leds", lamps.leds},
+                  {"began_from", capture::name_of(lamps.reset)}}},
+                {"camera",
+                 {{"model", facts->model},
+                  {"serial", facts->serial},
+                  {"port", facts->port},
+                  {"battery", facts->battery},
+                  {"exposure_us", facts->exposure.exposure_us},
+                  {"iso", facts->exposure.iso},
+                  {"f_number", facts->exposure.f_number},
+                  {"clock_offset_s", facts->clock_offset_s}}}});
+    return kDone;
+  }
+  print(fmt::format("board   {}: {}", rig.board.port, words_of(lamps)));
+  print(fmt::format("camera  {} {} at {}, battery {:.0f} %, {:.6g} s, ISO {:g}, f/{:g}, clock {:+.1f} s",
+                    facts->model, facts->serial, facts->port, 100 * facts->battery,
+                    1e-6 * facts->exposure.exposure_us, facts->exposure.iso, facts->exposure.f_number,
+                    facts->clock_offset_s));
+  return kDone;
+}
+
+Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments,
+                          const CommonArguments& common) {
+  const auto board = open_board(rig);
+  if (!board) return board.error();
+  const std::stop_token stop = stop_on_signal();
+  const double most_s = arguments.seconds + 1;
+  for (const int led : chosen_leds(arguments, (*board)->leds())) {
+    if (stop.stop_requested()) return interrupted();
+    if (Result<void> ok = (*board)->light(std::array{led}, most_s); !ok) return std::move(ok).error();
+    if (!common.json) print(fmt::format("LED {}", led));
+    std::this_thread::sleep_for(std::chrono::duration<double>(arguments.seconds));
+  }
+  if (Result<void> ok = (*board)->light({}, 0); !ok) return std::move(ok).error();
+  if (common.json) print_json({{"leds", chosen_leds(arguments, (*board)->leds())}});
+  return kDone;
+}
+
+/// The mean of a histogram, as share of the way from black to white.
+double mean_of(const capture::RawHistogram& histogram) {
+  double sum = 0, count = 0;
+  for (std::size_t i = 0; i < histogram.bins.size(); ++i) {
+    sum += (static_cast<double>(i) + 0.5) * histogram.bins[i];
+    count += histogram.bins[i];
+  }
+  return count > 0 ? sum / count / static_cast<double>(histogram.bins.size()) : 0;
+}
+
+/// A scan that nobody keeps.
+Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& arguments,
+                               const CommonArguments& common) {
+  Result<RigDevices> devices = open_devices(rig);
+  if (!devices) return std::move(devices).error();
+  const bench::ScratchFolder scratch;
+  capture::ScanRequest request;
+  request.session = scratch.path() / "test.weft";
+  request.fabric = "test";
+  request.cloth_height_mm = rig.scan.cloth_height_mm;
+  request.rig = rig.name;
+  request.calibration = rig.scan.calibration;
+  request.exposure = {rig.scan.exposure_us.value_or(0), rig.scan.iso, rig.scan.f_number};
+  request.leds = arguments.leds;
+  Json rows = Json::array();
+  const auto show = [&](const capture::KeptFrame& frame) {
+    const auto& rgb = frame.histogram_rgb;
+    rows.push_back({{"led", frame.shot.led},
+                    {"mean_rgb", {mean_of(rgb[0]), mean_of(rgb[1]), mean_of(rgb[2])}},
+                    {"clipped_rgb", {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped}},
+                    {"warnings", frame.warnings}});
+    if (common.json) return;
+    print(fmt::format("{:8} mean {:5.1f} {:5.1f} {:5.1f} %  clipped {:.2g} %",
+                      frame.shot.led > 0 ? fmt::format("LED {}", frame.shot.led) : "dark",
+                      100 * mean_of(rgb[0]), 100 * mean_of(rgb[1]), 100 * mean_of(rgb[2]),
+                      100 * std::max({rgb[0].clipped, rgb[1].clipped, rgb[2].clipped})));
+    for (const std::string& warning : frame.warnings) print(fmt::format("{:8} {}", "", warning));
+  };
+  const Result<capture::ScanOutcome> outcome =
+      capture::scan(request, *devices->lamps, *devices->camera, {.kept = show},
+                    {.cancel = stop_on_signal(), .pause = nullptr});
+  if (!outcome) return outcome.error();
+  if (common.json) {
+    print_json({{"rig", rig.name}, {"frames", rows}, {"warnings", outcome->warnings}});
+  } else {
+    for (const std::string& warning : outcome->warnings) note("weft: " + warning);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Result<int> run_rig(const RigArguments& arguments, const CommonArguments& common) {
+  const Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
+  if (!rig) return rig.error();
+  switch (arguments.task) {
+    case RigTask::kStatus:
+      return show_status(*rig, common);
+    case RigTask::kLights:
+      return light_in_turn(*rig, arguments, common);
+    case RigTask::kTest:
+      return photograph_in_turn(*rig, arguments, common);
+  }
+  return kDone;
+}
+
+}  // namespace weft::app

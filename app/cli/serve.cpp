@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <thread>
+
+#include "app/cli/exit_code.h"
+#include "app/cli/rig_devices.h"
+#include "app/cli/terminal.h"
+#include "app/cli/verbs.h"
+#include "app/daemon/client.h"
+#include "app/daemon/rig_server.h"
+#include "app/daemon/service_manager.h"
+#include "capture/rig.h"
+#include "capture/scan/scan.h"
+
+namespace weft::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto kTick = std::chrono::milliseconds(50);
+
+Result<capture::ScanOutcome> run_scan_of(const capture::ScanRequest& request, capture::Lamps& lamps,
+                                         capture::Camera& camera, const capture::ScanEvents& events,
+                                         const capture::ScanControl& control) {
+  return capture::scan(request, lamps, camera, events, control);
+}
+
+Result<void> say_address(const RigServer& server, const std::string& rig, bool json) {
+  if (json) {
+    print_json({{"rig", rig}, {"address", server.address()}, {"port", server.port()}});
+  } else {
+    print(server.address());
+  }
+  return flush_output();
+}
+
+/// Tells the service manager that all is well for as long as the server answers a client.
+class Watchdog {
+ public:
+  explicit Watchdog(const RigServer& server) : server_(server), interval_(watchdog_interval()) {}
+
+  void look() {
+    if (!interval_ || Clock::now() < next_) return;
+    next_ = Clock::now() + *interval_;
+    if (RigClient::connect(server_.address(), server_.token())) tell_service_manager("WATCHDOG=1");
+  }
+
+ private:
+  const RigServer& server_;
+  std::optional<std::chrono::milliseconds> interval_;
+  Clock::time_point next_ = {};
+};
+
+}  // namespace
+
+Result<int> run_serve(const ServeArguments& arguments, const CommonArguments& common) {
+  const std::stop_token stop = stop_on_signal();
+  Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
+  if (!rig) return std::move(rig).error();
+  if (arguments.host) rig->daemon.host = *arguments.host;
+  if (arguments.port) rig->daemon.port = *arguments.port;
+
+  const Result<std::unique_ptr<RigServer>> server = RigServer::start(*rig, open_devices, run_scan_of);
+  if (!server) return server.error();
+  if (Result<void> said = say_address(**server, rig->name, common.json); !said)
+    return std::move(said).error();
+  tell_service_manager(fmt::format("READY=1\nSTATUS=rig {} at {}", rig->name, (*server)->address()));
+
+  Watchdog watchdog(**server);
+  while (!stop.stop_requested()) {
+    watchdog.look();
+    std::this_thread::sleep_for(kTick);
+  }
+  tell_service_manager("STOPPING=1");
+  if ((*server)->stop()) return kDone;
+  // The board turns its lights off when it hears no more of us, and the session is a journal: a device that
+  // does not answer is no reason to stay.
+  note("weft: a device did not answer in time; the lights go off by the board's own timer");
+  std::_Exit(kDone);
+}
+
+}  // namespace weft::app

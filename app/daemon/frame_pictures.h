@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// A raw frame on disk and the digest that names it.
+struct FrameFile {
+  std::filesystem::path file;
+  std::string sha256;
+};
+
+/// What of frames is shown to people: a thumbnail and the histogram, kept in a folder under the frame's
+/// digest, so that each frame is decoded once however often its session is looked at, moved or renamed. The
+/// folder may be emptied at any time. Safe from any thread; one frame is decoded at a time.
+class FramePictures {
+ public:
+  /// Removes all but the newest `most` from the folder.
+  explicit FramePictures(std::filesystem::path folder, std::size_t most = 2000);
+  ~FramePictures();
+
+  /// Has it made soon, if it is not there.
+  void prepare(FrameFile frame);
+  /// The bytes of a PNG of 320 pixels at most: linear counts without the camera's white balance but grey on
+  /// average, sRGB-encoded. Made now if it is not there. Errors: those of decode_raw(), kTryAgain where too
+  /// many wait for theirs, kInterrupted.
+  Result<std::string> thumbnail(const FrameFile& frame);
+  /// {"red", "green", "blue": {"bins": [64 counts from black to white], "clipped": share}}. The same errors.
+  Result<Json> histogram(const FrameFile& frame);
+  /// The histogram, if it is there already.
+  std::optional<Json> ready_histogram(const FrameFile& frame) const;
+  /// Ends waiting and making.
+  void stop();
+
+ private:
+  std::filesystem::path path_of(const FrameFile& frame, const char* ending) const;
+  Result<void> make(const FrameFile& frame);
+  Result<void> make_files(const FrameFile& frame);
+  void run();
+
+  std::filesystem::path folder_;
+  mutable std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<FrameFile> wanted_;
+  std::size_t waiting_ = 0;  ///< in make()
+  bool making_ = false;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace weft::app

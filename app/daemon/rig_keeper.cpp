@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/daemon/rig_keeper.h"
+
+#include <utility>
+
+#include "app/daemon/error_json.h"
+#include "app/daemon/session_catalog.h"
+#include "app/daemon/watched_camera.h"
+
+namespace weft::app {
+namespace {
+
+std::string name_of_session(const capture::ScanRequest& request) {
+  return request.session.stem().string();
+}
+
+Error nothing_runs(const std::string& rig, const char* remedy) {
+  return {ErrorKind::kTryAgain, "no scan is running", rig, "", remedy};
+}
+
+Json to_json(const capture::CameraFacts& facts) {
+  return {{"model", facts.model},
+          {"serial", facts.serial},
+          {"port", facts.port},
+          {"exposure_us", facts.exposure.exposure_us},
+          {"iso", facts.exposure.iso},
+          {"f_number", facts.exposure.f_number},
+          {"battery", facts.battery},
+          {"clock_offset_s", facts.clock_offset_s},
+          {"clock_uncertainty_s", facts.clock_uncertainty_s}};
+}
+
+}  // namespace
+
+RigKeeper::RigKeeper(capture::Rig rig, OpenDevices open, RunScan run, EventLog& events,
+                     FramePictures& pictures)
+    : rig_(std::move(rig)),
+      open_(std::move(open)),
+      run_(std::move(run)),
+      events_(events),
+      pictures_(pictures) {
+  tell_status_locked();
+}
+
+RigKeeper::~RigKeeper() {
+  scan_.request_stop();
+}
+
+const char* RigKeeper::name_of(State state) {
+  switch (state) {
+    case State::kIdle:
+      return "idle";
+    case State::kConnecting:
+      return "connecting";
+    case State::kScanning:
+      return "scanning";
+    case State::kPaused:
+      return "paused";
+    case State::kFailed:
+      return "failed";
+  }
+  return "failed";
+}
+
+Result<void> RigKeeper::begin(capture::ScanRequest request) {
+  const std::lock_guard lock(mutex_);
+  if (running_ || stopping_) {
+    return Error{ErrorKind::kTryAgain, "the rig is busy", rig_.name,
+                 running_ ? "it scans " + name_of_session(*request_) : "the daemon is ending",
+                 "wait for its end, or cancel it"};
+  }
+  running_ = true;
+  state_ = State::kConnecting;
+  status_ = {};
+  error_.reset();
+  warnings_.clear();
+  facts_.reset();
+  pause_ = false;
+  request_ = request;
+  tell_status_locked();
+  // The last one's thread has done its last deed once running_ is false: joining it here takes no time.
+  scan_ = std::jthread(
+      [this, request = std::move(request)](const std::stop_token& cancel) { run(request, cancel); });
+  return {};
+}
+
+Result<void> RigKeeper::pause() {
+  const std::lock_guard lock(mutex_);
+  if (!running_) return nothing_runs(rig_.name, "start one");
+  pause_ = true;
+  return {};
+}
+
+Result<void> RigKeeper::resume() {
+  std::optional<capture::ScanRequest> again;
+  {
+    const std::lock_guard lock(mutex_);
+    const bool finished = state_ == State::kIdle && status_.phase == capture::ScanPhase::kComplete;
+    if (!running_ && request_ && !finished) again = request_;
+    if (!running_ && !again) {
+      return nothing_runs(rig_.name, "start a scan with the name of the session to be resumed");
+    }
+    pause_ = false;
+  }
+  if (again) return begin(std::move(*again));
+  return {};
+}
+
+Result<void> RigKeeper::cancel() {
+  const std::lock_guard lock(mutex_);
+  if (!running_) return nothing_runs(rig_.name, "start one");
+  scan_.request_stop();
+  return {};
+}
+
+bool RigKeeper::stop(std::chrono::milliseconds most) {
+  std::unique_lock lock(mutex_);
+  stopping_ = true;
+  scan_.request_stop();
+  return ended_.wait_for(lock, most, [&] { return !running_; });
+}
+
+void RigKeeper::run(const capture::ScanRequest& request, const std::stop_token& cancel) {
+  on_end(scan_with_devices(request, cancel));
+}
+
+Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanRequest& request,
+                                                          const std::stop_token& cancel) {
+  Result<RigDevices> devices = open_(rig_);
+  if (!devices) return std::move(devices).error();
+  WatchedCamera camera(*devices->camera, [this](const capture::CameraFacts& facts) { on_facts(facts); });
+  const capture::ScanEvents events = {[this](const capture::ScanStatus& status) { on_status(status); },
+                                      [&](const capture::KeptFrame& frame) { on_kept(request, frame); }};
+  return run_(request, *devices->lamps, camera, events, {cancel, &pause_});
+}
+
+void RigKeeper::on_status(const capture::ScanStatus& status) {
+  const std::lock_guard lock(mutex_);
+  status_ = status;
+  switch (status.phase) {
+    case capture::ScanPhase::kConnecting:
+      state_ = State::kConnecting;
+      break;
+    case capture::ScanPhase::kPaused:
+      state_ = State::kPaused;
+      break;
+    default:
+      state_ = State::kScanning;  // until on_end() says how it ended
+  }
+  tell_status_locked();
+}
+
+void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::KeptFrame& frame) {
+  pictures_.prepare({request.session / frame.shot.file, frame.shot.sha256});
+  const std::string name = name_of_session(request);
+  const auto& rgb = frame.histogram_rgb;
+  events_.add("frame", {{"session", name},
+                        {"index", frame.shot.index},
+                        {"led", frame.shot.led},
+                        {"role", app::name_of(frame.shot.role)},
+                        {"clipped_rgb", {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped}},
+                        {"warnings", frame.warnings},
+                        {"thumbnail", "/api/v1/sessions/" + name + "/frames/" +
+                                          std::to_string(frame.shot.index) + "/thumbnail"}});
+}
+
+void RigKeeper::on_facts(const capture::CameraFacts& facts) {
+  const std::lock_guard lock(mutex_);
+  facts_ = facts;
+}
+
+void RigKeeper::on_end(const Result<capture::ScanOutcome>& outcome) {
+  const std::lock_guard lock(mutex_);
+  const bool cancelled = !outcome && outcome.error().kind == ErrorKind::kInterrupted;
+  if (outcome) {
+    status_.phase = capture::ScanPhase::kComplete;
+    warnings_ = outcome->warnings;
+  } else {
+    status_.phase = cancelled ? capture::ScanPhase::kCancelled : capture::ScanPhase::kFailed;
+    status_.why = outcome.error().message();
+    if (!cancelled) error_ = outcome.error();
+  }
+  state_ = outcome || cancelled ? State::kIdle : State::kFailed;
+  status_.led = 0;
+  running_ = false;
+  tell_status_locked();
+  ended_.notify_all();
+}
+
+Json RigKeeper::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_locked();
+}
+
+std::string RigKeeper::session() const {
+  const std::lock_guard lock(mutex_);
+  return running_ ? name_of_session(*request_) : "";
+}
+
+Json RigKeeper::status_locked() const {
+  const Json nothing;
+  return {{"rig", rig_.name},
+          {"state", name_of(state_)},
+          {"phase", request_ ? Json(capture::name_of(status_.phase)) : nothing},
+          {"session", request_ ? Json(name_of_session(*request_)) : nothing},
+          {"led", status_.led},
+          {"frames", status_.frames},
+          {"frames_planned", status_.frames_planned},
+          {"exposure_us", status_.exposure_us},
+          {"why", status_.why},
+          {"error", error_ ? error_document(*error_)["error"] : nothing},
+          {"warnings", warnings_},
+          {"devices",
+           {{"board", {{"port", rig_.board.port}, {"leds", rig_.leds}, {"open", running_}}},
+            {"camera",
+             {{"profile", rig_.camera.profile},
+              {"port", rig_.camera.port},
+              {"serial", rig_.camera.serial},
+              {"open", running_},
+              {"says", facts_ ? to_json(*facts_) : nothing}}}}}};
+}
+
+}  // namespace weft::app

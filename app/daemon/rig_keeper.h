@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "app/daemon/event_log.h"
+#include "app/daemon/frame_pictures.h"
+#include "capture/devices.h"
+#include "capture/rig.h"
+#include "capture/scan/scan.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// The opened devices of a rig.
+struct RigDevices {
+  std::unique_ptr<capture::Lamps> lamps;
+  std::unique_ptr<capture::Camera> camera;
+};
+using OpenDevices = std::function<Result<RigDevices>(const capture::Rig&)>;
+
+/// capture::scan, or what stands for it where no rig leads.
+using RunScan =
+    std::function<Result<capture::ScanOutcome>(const capture::ScanRequest&, capture::Lamps&, capture::Camera&,
+                                               const capture::ScanEvents&, const capture::ScanControl&)>;
+
+/// The state machine of a rig, drawn in docs/http.md:
+///
+///   idle, failed --begin--> connecting --> scanning <--> paused
+///   connecting, scanning, paused --> idle (finished, cancelled) or failed (error says why)
+///
+/// One scan at a time, on a thread of its own; its devices are open while it runs and closed in idle and
+/// failed, so that other programs can use them. Safe from any thread.
+class RigKeeper {
+ public:
+  RigKeeper(capture::Rig rig, OpenDevices open, RunScan run, EventLog& events, FramePictures& pictures);
+  ~RigKeeper();
+
+  /// Starts a scan, or resumes a session that is there. kTryAgain while one runs.
+  Result<void> begin(capture::ScanRequest request);
+  /// kTryAgain where there is nothing to pause, resume or cancel. Resuming what failed or was cancelled
+  /// begins it again.
+  Result<void> pause();
+  Result<void> resume();
+  Result<void> cancel();
+
+  /// {"rig", "state", "phase", "session", "led", "frames", "frames_planned", "exposure_us", "why", "error",
+  /// "warnings", "devices"}
+  Json status() const;
+  /// The name of the session being scanned; empty: none.
+  std::string session() const;
+
+  /// Cancels and waits; whether the scan has ended. It cannot begin another one after that.
+  bool stop(std::chrono::milliseconds most);
+
+ private:
+  enum class State { kIdle, kConnecting, kScanning, kPaused, kFailed };
+  static const char* name_of(State state);
+  void run(const capture::ScanRequest& request, const std::stop_token& cancel);
+  Result<capture::ScanOutcome> scan_with_devices(const capture::ScanRequest& request,
+                                                 const std::stop_token& cancel);
+  void on_status(const capture::ScanStatus& status);
+  void on_kept(const capture::ScanRequest& request, const capture::KeptFrame& frame);
+  void on_facts(const capture::CameraFacts& facts);
+  void on_end(const Result<capture::ScanOutcome>& outcome);
+  Json status_locked() const;
+  void tell_status_locked() { events_.add("status", status_locked()); }
+
+  const capture::Rig rig_;
+  const OpenDevices open_;
+  const RunScan run_;
+  EventLog& events_;
+  FramePictures& pictures_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable ended_;
+  State state_ = State::kIdle;
+  bool running_ = false;
+  bool stopping_ = false;
+  capture::ScanStatus status_;
+  std::optional<capture::ScanRequest> request_;  ///< the last one
+  std::optional<Error> error_;
+  std::vector<std::string> warnings_;
+  std::optional<capture::CameraFacts> facts_;
+  std::atomic<bool> pause_ = false;
+  std::jthread scan_;
+};
+
+}  // namespace weft::app

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "app/daemon/descriptor.h"
+#include "capture/rig.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// The folder of what a daemon of this rig leaves: rig.daemon.state, or NAME.state beside the rig file.
+std::filesystem::path state_folder(const capture::Rig& rig);
+
+/// Of all processes on this machine only one owns a rig: the one that holds the lock in its state folder. The
+/// system takes it back when the process ends, however it ends.
+class RigLock {
+ public:
+  /// kTryAgain, naming the process, where another one has it.
+  static Result<RigLock> take(const capture::Rig& rig);
+  RigLock(RigLock&&) = default;
+  RigLock& operator=(RigLock&&) = default;
+  ~RigLock();
+
+  /// Tells clients where the owner answers: `state`/address, removed with the lock.
+  Result<void> publish_address(const std::string& address);
+  const std::filesystem::path& folder() const { return folder_; }
+
+ private:
+  RigLock(Descriptor file, std::filesystem::path folder)
+      : file_(std::move(file)), folder_(std::move(folder)) {}
+  Descriptor file_;
+  std::filesystem::path folder_;
+};
+
+/// Where the process that owns this rig answers ("http://127.0.0.1:8470"); nothing where none does.
+std::optional<std::string> address_of_owner(const capture::Rig& rig);
+
+}  // namespace weft::app

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/daemon/rig_server.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "app/daemon/event_log.h"
+#include "app/daemon/frame_pictures.h"
+#include "app/daemon/rig_lock.h"
+#include "app/daemon/rig_routes.h"
+#include "app/daemon/session_catalog.h"
+
+namespace weft::app {
+
+struct RigServer::State {
+  State(const capture::Rig& its_rig, RigLock its_lock, OpenDevices open, RunScan run)
+      : rig(its_rig),
+        lock(std::move(its_lock)),
+        pictures(lock.folder() / "pictures"),
+        sessions(rig.scan.sessions, rig.name, pictures),
+        keeper(rig, std::move(open), std::move(run), events, pictures),
+        parts{rig, lock.folder(), keeper, sessions, pictures} {}
+
+  const capture::Rig rig;
+  RigLock lock;
+  EventLog events;
+  FramePictures pictures;
+  SessionCatalog sessions;
+  RigKeeper keeper;
+  RigParts parts;
+  std::string token, address;
+  std::unique_ptr<HttpServer> http;
+};
+
+Result<std::unique_ptr<RigServer>> RigServer::start(const capture::Rig& rig, OpenDevices open, RunScan run,
+                                                    const HttpLimits& limits) {
+  Result<RigLock> lock = RigLock::take(rig);
+  if (!lock) return std::move(lock).error();
+  Result<std::string> token =
+      rig.daemon.token.empty() ? std::string() : read_token(rig.daemon.token.string());
+  if (!token) return std::move(token).error();
+  auto state = std::make_unique<State>(rig, std::move(*lock), std::move(open), std::move(run));
+  state->token = *token;
+  Result<std::unique_ptr<HttpServer>> http = HttpServer::start(
+      rig.daemon.port, {rig.daemon.host, *token}, rig_routes(state->parts), state->events, limits);
+  if (!http) return std::move(http).error();
+  state->http = std::move(*http);
+  const bool v6 = rig.daemon.host.find(':') != std::string::npos;
+  const std::string host = v6 ? "[" + rig.daemon.host + "]" : rig.daemon.host;
+  state->address = fmt::format("http://{}:{}", host, state->http->port());
+  if (Result<void> told = state->lock.publish_address(state->address); !told) return std::move(told).error();
+  return std::unique_ptr<RigServer>(new RigServer(std::move(state)));
+}
+
+RigServer::RigServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+RigServer::~RigServer() {
+  stop();
+}
+
+int RigServer::port() const {
+  return state_->http->port();
+}
+const std::string& RigServer::address() const {
+  return state_->address;
+}
+const std::string& RigServer::token() const {
+  return state_->token;
+}
+Json RigServer::status() const {
+  return state_->keeper.status();
+}
+
+std::vector<std::string> RigServer::calls() const {
+  std::vector<std::string> calls;
+  for (const Route& route : rig_routes(state_->parts)) calls.push_back(route.method + " " + route.path);
+  return calls;
+}
+
+bool RigServer::stop(std::chrono::milliseconds most) {
+  const bool ended = state_->keeper.stop(most);
+  state_->events.close();
+  state_->pictures.stop();
+  state_->http->stop();
+  return ended;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <string>
+
+#include "app/daemon/http_server.h"
+#include "app/daemon/rig_keeper.h"
+#include "capture/rig.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// One rig behind HTTP (docs/http.md): its lock, its scan, its sessions. Run by weft serve for as long as the
+/// machine is up, and by weft scan within its own process where no daemon is.
+class RigServer {
+ public:
+  /// Takes the rig's lock, listens at rig.daemon.host and port, and leaves its address in the state folder.
+  /// Errors: kTryAgain (another process owns the rig, or the port is in use), kUsage (open to the network
+  /// without a token), kBadData (a bad token file), kCannotCreate.
+  static Result<std::unique_ptr<RigServer>> start(const capture::Rig& rig, OpenDevices open, RunScan run,
+                                                  const HttpLimits& limits = {});
+  /// Waits for a running scan to end.
+  ~RigServer();
+
+  int port() const;
+  const std::string& address() const;  ///< "http://127.0.0.1:8470"
+  const std::string& token() const;    ///< that clients must send; empty: none
+  Json status() const;
+  /// Every "METHOD path" there is.
+  std::vector<std::string> calls() const;
+
+  /// Cancels the scan (lights off, session resumable), ends all connections. False if the scan has not ended
+  /// in this time: its board turns the lights off by itself once this process is gone.
+  bool stop(std::chrono::milliseconds most = std::chrono::milliseconds(2300));
+
+ private:
+  struct State;
+  explicit RigServer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace weft::app

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// A request that the guard let in, as a handler sees it.
+struct Call {
+  std::vector<std::string> segments;         ///< what stands for {...} in the path, decoded
+  std::map<std::string, std::string> query;  ///< decoded
+  std::string body;
+};
+
+/// What is answered.
+struct Reply {
+  int status = 200;
+  std::string type = "application/json";
+  std::string body = {};
+};
+
+Reply json_reply(const Json& document, int status = 200);
+
+/// One call of the interface. `path` has {names} for segments. An Error is answered by error_document().
+struct Route {
+  std::string method;
+  std::string path;
+  std::function<Result<Reply>(const Call&)> handle;  ///< empty: the stream of events
+};
+
+}  // namespace weft::app

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/daemon/session_catalog.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <ctime>
+#include <functional>
+#include <utility>
+
+#include "app/daemon/error_json.h"
+#include "app/daemon/session_name.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+constexpr const char* kEnding = ".weft";
+
+Json clipped_of(const Json& histogram) {
+  return Json::array(
+      {histogram["red"]["clipped"], histogram["green"]["clipped"], histogram["blue"]["clipped"]});
+}
+
+/// Whether a file is really there: a link in a session could lead out of it.
+bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code file_error, folder_error;
+  const auto real_file = std::filesystem::canonical(file, file_error);
+  const auto real_folder = std::filesystem::canonical(folder, folder_error);
+  if (file_error || folder_error) return false;
+  return std::mismatch(real_folder.begin(), real_folder.end(), real_file.begin(), real_file.end()).first ==
+         real_folder.end();
+}
+
+Json to_json(const Shot& shot, const std::string& name) {
+  const std::string path = fmt::format("/api/v1/sessions/{}/frames/{}", name, shot.index);
+  Json warnings = Json::array();
+  if (shot.document.contains("warnings") && shot.document["warnings"].is_array()) {
+    warnings = shot.document["warnings"];
+  }
+  return {{"index", shot.index},
+          {"led", shot.led},
+          {"role", name_of(shot.role)},
+          {"file", shot.file},
+          {"sha256", shot.sha256},
+          {"exposure_us", shot.exposure_us},
+          {"iso", shot.iso},
+          {"f_number", shot.f_number},
+          {"time", shot.time},
+          {"thumbnail", path + "/thumbnail"},
+          {"warnings", warnings}};
+}
+
+}  // namespace
+
+const char* name_of(ShotRole role) {
+  switch (role) {
+    case ShotRole::kLit:
+      return "lit";
+    case ShotRole::kDark:
+      return "dark";
+    case ShotRole::kRepeat:
+      return "repeat";
+    case ShotRole::kBracket:
+      return "bracket";
+  }
+  return "lit";
+}
+
+std::string iso_time(std::filesystem::file_time_type time) {
+  const auto system =
+      std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::file_clock::to_sys(time));
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(system);
+  std::tm parts = {};
+  gmtime_r(&seconds, &parts);
+  std::array<char, 32> text = {};
+  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
+}
+
+SessionCatalog::SessionCatalog(std::filesystem::path sessions, std::string rig, FramePictures& pictures)
+    : sessions_(std::move(sessions)), rig_(std::move(rig)), pictures_(pictures) {}
+
+Json SessionCatalog::list() {
+  const std::lock_guard lock(mutex_);
+  std::map<std::string, Known> found;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(sessions_, error)) {
+    const std::string name = entry.path().stem().string();
+    if (entry.path().extension() != kEnding || !session_folder(sessions_, name)) continue;
+    const auto written = std::filesystem::last_write_time(entry.path() / "session.json", error);
+    if (error) continue;
+    const auto known = known_.find(name);
+    const bool same = known != known_.end() && known->second.written == written;
+    found[name] = same ? known->second : Known{written, summary_of(name, entry.path())};
+  }
+  known_ = std::move(found);
+  std::vector<const Known*> newest_first;
+  for (const auto& [name, known] : known_) newest_first.push_back(&known);
+  std::ranges::stable_sort(newest_first, std::greater{}, &Known::written);
+  Json list = Json::array();
+  for (const Known* known : newest_first) list.push_back(known->summary);
+  return list;
+}
+
+Json SessionCatalog::summary_of(const std::string& name, const std::filesystem::path& folder) const {
+  std::error_code ignored;
+  Json summary = {{"name", name}, {"state", "unreadable"}, {"resumable", false}, {"frames", 0}};
+  summary["written"] = iso_time(std::filesystem::last_write_time(folder / "session.json", ignored));
+  const Result<Session> session = read_session(folder);
+  if (!session) {
+    summary["error"] = error_document(session.error())["error"];
+    return summary;
+  }
+  summary["state"] = session->state;
+  summary["resumable"] = is_resumable(*session);
+  summary["frames"] = session->shots.size();
+  summary["fabric"] = session->fabric;
+  summary["rig"] = session->rig;
+  return summary;
+}
+
+Json SessionCatalog::resumable() {
+  Json names = Json::array();
+  for (const Json& session : list()) {
+    if (session["resumable"] == true) names.push_back(session["name"]);
+  }
+  return names;
+}
+
+Result<Session> SessionCatalog::find(const std::string& name) const {
+  Result<std::filesystem::path> folder = session_folder(sessions_, name);
+  if (!folder) return std::move(folder).error();
+  if (!is_there(*folder / "session.json")) {
+    return Error{ErrorKind::kNoInput, "there is no such session", name, "",
+                 "see /api/v1/sessions for those there are"};
+  }
+  return read_session(*folder);
+}
+
+Result<Json> SessionCatalog::describe(const std::string& name) {
+  const Result<Session> session = find(name);
+  if (!session) return session.error();
+  Json frames = Json::array(), by_led = Json::array(), warnings = Json::array();
+  bool whole = true;
+  for (const Shot& shot : session->shots) {
+    const FrameFile file = {session->path_of(shot), shot.sha256};
+    const std::optional<Json> histogram = pictures_.ready_histogram(file);
+    Json frame = to_json(shot, name);
+    frame["histogram"] = histogram ? *histogram : Json();
+    if (!histogram) {
+      whole = false;
+      if (lies_in(file.file, session->folder)) pictures_.prepare(file);
+    } else if (shot.role == ShotRole::kLit) {
+      by_led.push_back({{"led", shot.led}, {"clipped_rgb", clipped_of(*histogram)}});
+    }
+    for (const Json& warning : frame["warnings"]) warnings.push_back(warning);
+    frames.push_back(std::move(frame));
+  }
+  return Json{{"name", name},
+              {"fabric", session->fabric},
+              {"rig", session->rig},
+              {"state", session->state},
+              {"resumable", is_resumable(*session)},
+              {"cloth_height_mm", session->cloth_height_mm},
+              {"calibration", session->calibration_id},
+              {"frames", std::move(frames)},
+              {"histograms_complete", whole},
+              {"clipping_by_led", std::move(by_led)},
+              {"warnings", std::move(warnings)}};
+}
+
+Result<FrameFile> SessionCatalog::frame(const std::string& name, const std::string& index) const {
+  const Result<Session> session = find(name);
+  if (!session) return session.error();
+  int wanted = -1;
+  const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), wanted);
+  if (error != std::errc() || end != index.data() + index.size()) {
+    return Error{ErrorKind::kUsage, "this is no number of a frame", index.substr(0, 20), "",
+                 "use a frame's index, from 0"};
+  }
+  const auto shot = std::ranges::find(session->shots, wanted, &Shot::index);
+  if (shot == session->shots.end() || !lies_in(session->path_of(*shot), session->folder)) {
+    return Error{ErrorKind::kNoInput, "there is no such frame", fmt::format("{}, frame {}", name, wanted), "",
+                 "see the session for the frames there are"};
+  }
+  return FrameFile{session->path_of(*shot), shot->sha256};
+}
+
+}  // namespace weft::app

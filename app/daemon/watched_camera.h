@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "capture/devices.h"
+
+namespace weft::app {
+
+/// A camera that tells what it says of itself, each time it is asked.
+class WatchedCamera : public capture::Camera {
+ public:
+  using Told = std::function<void(const capture::CameraFacts&)>;
+
+  WatchedCamera(capture::Camera& camera, Told told) : camera_(camera), told_(std::move(told)) {}
+
+  Result<capture::CameraFacts> connect() override { return pass_on(camera_.connect()); }
+  Result<capture::CameraFacts> set(const capture::ExposureSettings& exposure) override {
+    return pass_on(camera_.set(exposure));
+  }
+  Result<std::vector<double>> shutter_times_us() override { return camera_.shutter_times_us(); }
+  Result<capture::Photograph> take(const std::filesystem::path& file,
+                                   const std::function<void()>& exposed) override {
+    return camera_.take(file, exposed);
+  }
+  Result<capture::CameraFacts> recover() override { return pass_on(camera_.recover()); }
+
+ private:
+  Result<capture::CameraFacts> pass_on(Result<capture::CameraFacts> facts) {
+    if (facts) told_(*facts);
+    return facts;
+  }
+
+  capture::Camera& camera_;
+  Told told_;
+};
+
+}  // namespace weft::app

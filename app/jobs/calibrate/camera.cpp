@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/calibrate/camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "app/jobs/calibrate/camera_report.h"
+#include "calibration/camera/lens.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using calibration::BoardView;
+using calibration::LensFit;
+using calibration::TagSighting;
+
+Result<void> check_options(const CalibrateCameraOptions& options) {
+  const auto refused = [](const char* name, const char* rule) {
+    return Error{ErrorKind::kUsage, "option is out of its range", name, rule, "give a value in that range"};
+  };
+  if (!(options.most_blur_px >= 1 && options.most_blur_px <= 100))
+    return refused("most_blur_px", "it is 1 to 100");
+  if (options.least_boards < 3 || options.least_boards > 1000)
+    return refused("least_boards", "it is 3 to 1000");
+  if (!(options.most_focal_percent >= 0.001 && options.most_focal_percent <= 10))
+    return refused("most_focal_percent", "it is 0.001 to 10");
+  if (is_there(options.output)) {
+    return Error{ErrorKind::kCannotCreate, "the new calibration is there already", options.output.string(),
+                 "a calibration is never changed in place", "name another folder"};
+  }
+  return {};
+}
+
+// The views to fit, the first of them on the table.
+Result<std::vector<std::size_t>> views_of(const BoardPhotographs& all, const fs::path& folder) {
+  std::vector<std::size_t> viewed;
+  std::string why;
+  for (std::size_t i = 0; i < all.photographs.size(); ++i) {
+    const BoardPhotograph& p = all.photographs[i];
+    if (p.left_out.empty()) viewed.push_back(i);
+    if (p.of_table && !p.left_out.empty())
+      why += fmt::format("{}{}: {}", why.empty() ? "" : "; ", p.name, p.left_out);
+  }
+  std::stable_partition(viewed.begin(), viewed.end(),
+                        [&](std::size_t i) { return all.photographs[i].of_table; });
+  if (!viewed.empty() && all.photographs[viewed.front()].of_table) return viewed;
+  return Error{ErrorKind::kBadData, "no photograph shows the board on the table", folder.string(),
+               why.empty() ? "none is named table..." : why,
+               "lay the board flat on the table, photograph it and name the file table1 with its ending"};
+}
+
+// The error of a fit with the photographs that it had to do without.
+Error with_names(Error error, const BoardPhotographs& all) {
+  for (const BoardPhotograph& p : all.photographs) {
+    if (!p.left_out.empty()) error.why += fmt::format("; {}: {}", p.name, p.left_out);
+  }
+  return error;
+}
+
+// Where each tag lies that photographs of the table show: the mean over them, on the table.
+std::vector<Fiducial> fiducials_of(const BoardPhotographs& all, const CameraModel& camera) {
+  std::map<std::pair<std::string, int>, std::vector<TagSighting>> seen;
+  for (const BoardPhotograph& p : all.photographs) {
+    if (p.size != camera.size) continue;
+    for (const TagSighting& tag : p.tags) seen[{tag.dictionary, tag.id}].push_back(tag);
+  }
+  std::vector<Fiducial> fiducials;
+  for (const auto& [name, sightings] : seen) {
+    Fiducial fiducial = {name.first, name.second, {}};
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (const TagSighting& tag : sightings) {
+        const Vec3 on_table = point_on_plane(camera, tag.corners_px[k].x, tag.corners_px[k].y, 0);
+        fiducial.corners_mm[k] =
+            fiducial.corners_mm[k] + 1.0 / static_cast<double>(sightings.size()) * on_table;
+      }
+    }
+    fiducials.push_back(fiducial);
+  }
+  return fiducials;
+}
+
+CalibrationSubject subject_of(const CalibrateCameraOptions& options, const std::optional<Calibration>& from,
+                              const ShotMetadata& camera) {
+  CalibrationSubject subject = from ? from->subject : CalibrationSubject();
+  subject.measured.clear();
+  if (!options.rig.empty()) subject.rig = options.rig;
+  if (subject.rig.empty())
+    subject.rig = fs::absolute(options.input).lexically_normal().parent_path().filename().string();
+  if (!camera.model.empty()) subject.camera_model = camera.model;
+  if (!camera.serial.empty()) subject.camera_serial = camera.serial;
+  if (camera.f_number > 0) subject.f_number = camera.f_number;
+  return subject;
+}
+
+}  // namespace
+
+Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options, const JobContext& context) {
+  if (const Result<void> ok = check_options(options); !ok) return ok.error();
+  if (!is_there(options.input)) {
+    return Error{ErrorKind::kNoInput, "there are no photographs", options.input.string(),
+                 "the folder is not there", "check the path"};
+  }
+  const Result<PrintedBoard> board = read_board_file(options.input / "board.toml", options.board);
+  if (!board) return board.error();
+  std::optional<Calibration> from;
+  if (!options.from.empty()) {
+    Result<Calibration> read = read_calibration(options.from);
+    if (!read) return std::move(read).error();
+    from = std::move(*read);
+  }
+
+  BoardFolderOptions folder = {options.input, board->board, options.tag_dictionary};
+  folder.limits.most_edge_px = options.most_blur_px;
+  if (from) folder.subject = from->subject;
+  const Result<BoardPhotographs> all = read_board_photographs(folder, context);
+  if (!all) return all.error();
+  const Result<std::vector<std::size_t>> viewed = views_of(*all, options.input);
+  if (!viewed) return viewed.error();
+  std::vector<BoardView> views;
+  for (const std::size_t i : *viewed)
+    views.push_back({all->photographs[i].name, all->photographs[i].sighting.corners});
+
+  const Result<LensFit> fit =
+      calibration::fit_lens(views, all->size,
+                            {.table = 0,
+                             .thickness_mm = board->thickness_mm,
+                             .least_boards = static_cast<std::size_t>(options.least_boards),
+                             .most_focal_sigma = options.most_focal_percent / 100});
+  if (!fit) return with_names(fit.error(), *all);
+  if (context.stop.stop_requested()) return interrupted();
+
+  CalibrateOutcome outcome;
+  Calibration change;
+  change.subject = subject_of(options, from, all->camera);
+  change.camera = fit->camera;
+  change.camera_covariance = fit->covariance;
+  change.fiducials = fiducials_of(*all, fit->camera);
+  const CameraFacts facts = {*all, *viewed, views, *fit, change.fiducials, from, change.subject.rig};
+  outcome.report = camera_report(facts);
+  outcome.warnings = left_out(facts);
+  Result<Calibration> written =
+      derive_calibration(options.from, std::move(change), options.output, report_files(outcome.report));
+  if (!written) return std::move(written).error();
+  outcome.folder = options.output;
+  outcome.calibration = std::move(*written);
+  return outcome;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,371 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/calibrate/check.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "app/jobs/calibrate/check_result.h"
+#include "app/jobs/figures.h"
+#include "app/jobs/calibrate/movement_words.h"
+#include "app/jobs/calibrate/rig_evidence.h"
+#include "app/jobs/session_input.h"
+#include "app/jobs/calibrate/sheet_evidence.h"
+#include "app/jobs/calibrate/sheet_files.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using calibration::SheetCheck;
+
+struct CheckedSheet {
+  std::string name;
+  SheetCheck check;
+  int columns = 0, rows = 0;
+  std::optional<double> drift;  ///< of the LED that changed most, relative
+  std::vector<std::string> warnings;
+};
+
+Error usage(const char* name, const char* rule) {
+  return {ErrorKind::kUsage, "option is out of its range", name, rule, "give a value in that range"};
+}
+
+Result<std::vector<fs::path>> sessions_in(const fs::path& input) {
+  if (is_there(input / "session.json")) return std::vector{input};
+  std::vector<fs::path> sessions;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(input, failed)) {
+    if (is_there(entry.path() / "session.json")) sessions.push_back(entry.path());
+  }
+  if (sessions.empty()) {
+    return Error{ErrorKind::kNoInput, "there is no session to check with", input.string(),
+                 "it is no session and has none in it",
+                 "scan a sheet of white paper with tags that lights were not fitted to"};
+  }
+  std::sort(sessions.begin(), sessions.end());
+  return sessions;
+}
+
+/// Normals of sheets on wedges, by session, of check.toml.
+Result<std::map<std::string, Vec3>> known_planes(const fs::path& input) {
+  std::map<std::string, Vec3> planes;
+  const fs::path file = input / "check.toml";
+  if (!is_there(file)) return planes;
+  const Result<std::string> text = read_text(file);
+  if (!text) return text.error();
+  const auto refused = [&](std::string why) {
+    return Error{ErrorKind::kBadData, "the description of planes cannot be used", file.string(),
+                 std::move(why), "give each [[plane]] a session, tilt_deg from 0 to 60 and azimuth_deg"};
+  };
+  try {
+    const toml::table table = toml::parse(*text);
+    const toml::array* list = table["plane"].as_array();
+    if (list == nullptr) return refused("there is no [[plane]]");
+    for (const toml::node& entry : *list) {
+      const toml::table* plane = entry.as_table();
+      if (plane == nullptr) return refused("a plane is no table");
+      const auto session = (*plane)["session"].value<std::string>();
+      const auto tilt_deg = (*plane)["tilt_deg"].value<double>();
+      const auto azimuth_deg = (*plane)["azimuth_deg"].value<double>();
+      if (!session || !tilt_deg || !azimuth_deg || !(*tilt_deg >= 0 && *tilt_deg <= 60) ||
+          !std::isfinite(*azimuth_deg))
+        return refused("a plane lacks a key or has one out of range");
+      if (!is_there(input / *session)) return refused(*session + " is not there");
+      const double t = radians(*tilt_deg), a = radians(*azimuth_deg);
+      planes[*session] = {std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)};
+    }
+  } catch (const toml::parse_error& e) {
+    return refused(fmt::format("line {}: {}", e.source().begin.line, e.description()));
+  }
+  return planes;
+}
+
+std::optional<double> drift_in(const Json& conditions) {
+  if (!conditions.contains("drift")) return std::nullopt;
+  double most = 0;
+  for (const Json& led : conditions["drift"])
+    most = std::max(most, std::abs(led["factor"].get<double>() - 1));
+  return most;
+}
+
+Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const fs::path& session,
+                                   const TaggedSheet& sheet, const std::map<std::string, Vec3>& planes,
+                                   const JobContext& context, Calibration& calibration,
+                                   std::string& taken_at) {
+  Result<SessionPlan> plan = plan_session({session, options.from, {}});
+  if (!plan) return plan.error();
+  plan->calibration.patches.clear();  // the sheet may cover them: drift is what the repeat shot says
+  const Result<Photographs> photographs = load_session(*plan, context);
+  if (!photographs) return photographs.error();
+  calibration = plan->calibration;
+  if (!std::holds_alternative<NearLights>(*calibration.lights)) {
+    return Error{ErrorKind::kBadData, "the calibration cannot be checked", session.string(),
+                 "its lights are distant", "calibrate the rig's lights first"};
+  }
+  Result<calibration::SheetEvidence> evidence =
+      sheet_evidence(calibration, *photographs, sheet, options.square_px, session.string(), context);
+  if (!evidence) return std::move(evidence).error();
+  const auto plane = planes.find(session.filename().string());
+  if (plane != planes.end()) evidence->known_normal = plane->second;
+  const fs::path folder = options.from.empty() ? session / "calibration" : options.from;
+  evidence->paper_delta = options.paper_delta.value_or(reported_delta(folder));
+  CheckedSheet checked;
+  checked.name = session.filename().string();
+  checked.check = check_sheet(*calibration.camera, std::get<NearLights>(*calibration.lights), *evidence);
+  checked.columns = evidence->columns;
+  checked.rows = evidence->rows;
+  checked.drift = drift_in(photographs->conditions);
+  checked.warnings = photographs->warnings;
+  if (!plan->lit.empty()) taken_at = plan->lit.front().time;
+  return checked;
+}
+
+/// What a sheet says against the calibration.
+std::vector<Verdict> verdicts_of(const CheckedSheet& sheet, const calibration::CheckLimits& limits) {
+  constexpr const char* kRemedy = "calibrate the lights again, and camera and response before them";
+  std::vector<Verdict> verdicts;
+  const SheetCheck& check = sheet.check;
+  if (check.squares == 0) {
+    return {{"NO_NORMALS", fmt::format("{}: fewer than three LEDs light any square of the sheet", sheet.name),
+             "see whether the LEDs light and the frames are neither dark nor saturated"}};
+  }
+  if (check.slope_gain) {
+    if (std::abs(*check.slope_gain - 1) > limits.slope_gain) {
+      verdicts.push_back(
+          {"SLOPE_GAIN",
+           fmt::format("{}: slopes come out {:.4f} ± {:.4f} times as steep as they are, and 1 ± {} is "
+                       "allowed",
+                       sheet.name, *check.slope_gain, check.slope_gain_sigma, limits.slope_gain),
+           kRemedy});
+    }
+  } else if (check.rms_deg > limits.flat_rms_deg) {
+    verdicts.push_back(
+        {"NOT_FLAT",
+         fmt::format("{}: a flat sheet is {:.3f} degrees rms from flat ({:.3f} about its mean), and {} "
+                     "are allowed",
+                     sheet.name, check.rms_deg, check.pattern_rms_deg, limits.flat_rms_deg),
+         kRemedy});
+  }
+  if (sheet.drift && *sheet.drift > limits.drift) {
+    verdicts.push_back({"DRIFT",
+                        fmt::format("{}: a LED changed by {:.2f} percent during the scan, and {} are allowed",
+                                    sheet.name, 100 * *sheet.drift, 100 * limits.drift),
+                        "let the LEDs warm up, or give them a steadier supply"});
+  }
+  return verdicts;
+}
+
+std::string number(double value, int digits) {
+  return fmt::format("{:.{}f}", value, digits);
+}
+
+CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const Calibration& calibration,
+                                const CalibrateCheckOptions& options) {
+  CalibrationReport report;
+  report.part = "check";
+  report.title = fmt::format("Check of the calibration of {}", calibration.subject.rig);
+  ReportSection section = {"Sheets", {}, ReportTable{}, {}};
+  section.paragraphs = {fmt::format(
+      "Each sheet was solved in squares of {} pixels, at the point that its tags give. A flat sheet may be "
+      "{} "
+      "degrees rms from flat, slopes 1 ± {} times as steep as they are, LEDs may drift by {} percent.",
+      options.square_px, options.limits.flat_rms_deg, options.limits.slope_gain, 100 * options.limits.drift)};
+  section.table->header = {"sheet",          "tilt, degrees", "squares",    "rms, degrees",
+                           "about the mean", "worst",         "slope gain", "drift, percent"};
+  bool has_tilted = false;
+  double worst_flat = 0;
+  for (const CheckedSheet& sheet : sheets) {
+    const SheetCheck& c = sheet.check;
+    has_tilted = has_tilted || c.slope_gain.has_value();
+    if (!c.slope_gain) worst_flat = std::max(worst_flat, c.rms_deg);
+    section.table->rows.push_back(
+        {sheet.name, number(c.tilt_deg, 2), std::to_string(c.squares), number(c.rms_deg, 3),
+         number(c.pattern_rms_deg, 3), number(c.worst_deg, 3),
+         c.slope_gain ? fmt::format("{:.4f} ± {:.4f}", *c.slope_gain, c.slope_gain_sigma) : "",
+         sheet.drift ? number(100 * *sheet.drift, 2) : ""});
+    section.pictures.push_back({fmt::format("Angle between {} as it is solved and as it lies", sheet.name),
+                                frame_map_svg({sheet.columns, sheet.rows, c.error_deg, "degrees"})});
+    Json json = {{"session", sheet.name},
+                 {"tilt_deg", c.tilt_deg},
+                 {"squares", c.squares},
+                 {"rms_deg", c.rms_deg},
+                 {"worst_deg", c.worst_deg},
+                 {"pattern_rms_deg", c.pattern_rms_deg},
+                 {"reflectance_rgb", Json(c.reflectance_rgb)}};
+    if (c.slope_gain) {
+      json["slope_gain"] = *c.slope_gain;
+      json["slope_gain_sigma"] = c.slope_gain_sigma;
+    }
+    if (sheet.drift) json["drift"] = *sheet.drift;
+    report.numbers["sheets"].push_back(std::move(json));
+    for (Verdict& verdict : verdicts_of(sheet, options.limits)) report.verdicts.push_back(std::move(verdict));
+  }
+  if (!has_tilted)
+    section.paragraphs.push_back("No sheet was tilted: how steep slopes come out was not checked.");
+  report.sections.push_back(std::move(section));
+  report.summary = fmt::format("{}: {} sheets, the flat ones within {:.3f} degrees rms",
+                               report.verdicts.empty() ? "Accepted" : "Refused", sheets.size(), worst_flat);
+  return report;
+}
+
+CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
+  CalibrationReport report;
+  const calibration::Movement& movement = rig.movement;
+  report.part = "check";
+  report.title = fmt::format("Has {} moved?", rig.calibration.subject.rig);
+  ReportSection section = {"What the session shows", {}, {}, {}};
+  section.paragraphs.push_back(fmt::format(
+      "{} corners of tags and {} readings were compared with what the calibration predicts: chi-square "
+      "{:.2f} each "
+      "before, {:.2f} with what was found.",
+      movement.corners, movement.readings, movement.chi_square_before, movement.chi_square_after));
+  if (movement.corners == 0) {
+    section.paragraphs.push_back(
+        "No tag of the calibration was in sight: whether camera and table moved to each other was not "
+        "checked.");
+  }
+  if (movement.readings == 0) {
+    section.paragraphs.push_back(
+        "No white patch and no sheet was read: LEDs were not checked, and a moved camera cannot be told from "
+        "a moved "
+        "table.");
+  }
+  report.numbers = {{"session", session},
+                    {"corners", movement.corners},
+                    {"readings", movement.readings},
+                    {"chi_square_before", movement.chi_square_before},
+                    {"chi_square_after", movement.chi_square_after},
+                    {"cost_mean_deg", rig.cost.mean_deg},
+                    {"cost_worst_deg", rig.cost.worst_deg},
+                    {"changes", Json::array()}};
+  for (const calibration::RigChange& change : movement.changes) {
+    report.verdicts.push_back(verdict_of(change));
+    section.paragraphs.push_back(report.verdicts.back().text + ".");
+    report.numbers["changes"].push_back(json_of(change));
+  }
+  if (movement.chi_square_after > calibration::kUnexplainedFrom) {
+    report.verdicts.push_back(
+        {"UNEXPLAINED",
+         fmt::format(
+             "What is seen contradicts the calibration (chi-square {:.1f} for each observation), and no "
+             "change of camera, table or LEDs explains it",
+             movement.chi_square_after),
+         "see whether a patch is covered or a tag was laid elsewhere, else calibrate again"});
+  }
+  if (!movement.changes.empty()) {
+    report.summary = fmt::format(
+        "The rig has changed; scanning on would cost {:.2f} degrees in the mean and {:.2f} at "
+        "worst",
+        rig.cost.mean_deg, rig.cost.worst_deg);
+  } else {
+    report.summary = report.verdicts.empty() ? "Nothing has moved since the rig was calibrated"
+                                             : "The rig is not as it was calibrated, and nothing says why";
+  }
+  report.sections.push_back(std::move(section));
+  return report;
+}
+
+struct Look {
+  RigCheck rig;
+  std::vector<std::string> warnings;
+  std::string taken_at;
+};
+
+Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
+  const Result<SessionPlan> plan = plan_session({options.session, options.from, {}});
+  if (!plan) return plan.error();
+  const Result<Photographs> photographs = load_session(*plan, context);
+  if (!photographs) return photographs.error();
+  Look out = {{{}, {}, plan->calibration}, photographs->warnings, plan->lit.front().time};
+  const Calibration& calibration = out.rig.calibration;
+  Result<calibration::RigEvidence> evidence = rig_evidence(calibration, *photographs);
+  if (!evidence) return std::move(evidence).error();
+  if (!options.sheet.empty()) {
+    constexpr int kSquare_px = 128;
+    const Result<TaggedSheet> sheet = read_sheet_file(options.sheet);
+    if (!sheet) return sheet.error();
+    const int side = std::clamp(plan->size.width / 10 & ~1, 16, kSquare_px);
+    const auto seen =
+        sheet_evidence(calibration, *photographs, *sheet, side, options.session.string(), context);
+    if (!seen) return seen.error();
+    for (calibration::LitPlace& place : places_of(*seen, *calibration.camera))
+      evidence->places.push_back(std::move(place));
+  }
+  calibration::MovementOptions settings = options.movement;
+  const fs::path folder = options.from.empty() ? options.session / "calibration" : options.from;
+  settings.paper_delta = options.paper_delta.value_or(reported_delta(folder));
+  Result<calibration::Movement> movement = find_movement(calibration, *evidence, settings);
+  if (!movement) {
+    Error error = movement.error();
+    error.where = options.session.string();
+    return error;
+  }
+  out.rig.movement = std::move(*movement);
+  out.rig.cost = calibration::cost_of(*calibration.camera, std::get<NearLights>(*calibration.lights),
+                                      out.rig.movement.camera, out.rig.movement.lights);
+  return out;
+}
+
+}  // namespace
+
+Result<CalibrateOutcome> calibrate_check(const CalibrateCheckOptions& options, const JobContext& context) {
+  if (options.square_px < 8 || options.square_px > 512 || options.square_px % 2 != 0)
+    return usage("square_px", "it is even, 8 to 512");
+  if (options.paper_delta && !(*options.paper_delta >= -0.5 && *options.paper_delta <= 1))
+    return usage("paper_delta", "it is -0.5 to 1");
+  if (!options.output.empty() && is_there(options.output)) {
+    return Error{ErrorKind::kCannotCreate, "there is a result already", options.output.string(),
+                 "results are never overwritten", "choose another name with -o"};
+  }
+  const Result<std::vector<fs::path>> sessions = sessions_in(options.input);
+  if (!sessions) return sessions.error();
+  const Result<TaggedSheet> sheet = read_sheet_file(sheet_file_of(options.sheet, options.input));
+  if (!sheet) return sheet.error();
+  const auto planes = known_planes(options.input);
+  if (!planes) return planes.error();
+  std::vector<CheckedSheet> sheets;
+  CalibrateOutcome outcome;
+  std::string taken_at;
+  for (const fs::path& session : *sessions) {
+    if (context.stop.stop_requested()) return interrupted();
+    Result<CheckedSheet> checked =
+        check_session(options, session, *sheet, *planes, context, outcome.calibration, taken_at);
+    if (!checked) return std::move(checked).error();
+    for (const std::string& warning : checked->warnings)
+      outcome.warnings.push_back(fmt::format("{}: {}", checked->name, warning));
+    sheets.push_back(std::move(*checked));
+  }
+  outcome.report = sheets_report(sheets, outcome.calibration, options);
+  outcome.folder = options.output;
+  const Result<void> written =
+      write_check_result(options.output, "sheets", outcome.calibration, outcome.report, taken_at);
+  if (!written) return written.error();
+  return outcome;
+}
+
+Result<RigCheck> look_at_rig(const CheckRigOptions& options, const JobContext& context) {
+  Result<Look> seen = look(options, context);
+  if (!seen) return std::move(seen).error();
+  return std::move(seen->rig);
+}
+
+Result<CalibrateOutcome> calibrate_check_rig(const CheckRigOptions& options, const JobContext& context) {
+  Result<Look> seen = look(options, context);
+  if (!seen) return std::move(seen).error();
+  CalibrateOutcome outcome;
+  outcome.report = rig_report(seen->rig, options.session.string());
+  outcome.calibration = std::move(seen->rig.calibration);
+  outcome.warnings = std::move(seen->warnings);
+  outcome.folder = options.output;
+  const Result<void> written =
+      write_check_result(options.output, "session", outcome.calibration, outcome.report, seen->taken_at);
+  if (!written) return written.error();
+  return outcome;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/jobs/calibrate/report.h"
+#include "core/calibration.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// The name of a result in its folder, and its schema.
+inline constexpr const char* kCheckResultFile = "result.json";
+inline constexpr const char* kCheckResultSchema = "weft.calibration-check";
+
+/// Writes a result folder aside and renames it: result.json and the files of the report. Nothing where
+/// `folder` is empty. `of` is "sheets" or "session". `checked_at` is when the evidence was taken, else now
+/// (ISO 8601). Errors: kCannotCreate where it is there.
+Result<void> write_check_result(const std::filesystem::path& folder, const std::string& of,
+                                const Calibration& calibration, const CalibrationReport& report,
+                                const std::string& checked_at);
+
+/// What `calibrate lights` found the paper to be, if its report is in a calibration's folder; else 0.
+double reported_delta(const std::filesystem::path& calibration);
+
+}  // namespace weft::app

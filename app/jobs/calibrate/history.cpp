@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/calibrate/history.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <limits>
+
+#include "app/jobs/calibrate/check_result.h"
+#include "app/jobs/figures.h"
+#include "calibration/camera/pose.h"
+#include "core/files.h"
+#include "core/session.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kDay_s = 86400;
+
+struct DatedCalibration {
+  double time_s = 0;
+  std::string name;
+  Calibration calibration;
+};
+
+struct DatedCheck {
+  double time_s = 0;
+  std::string name;
+  std::string date, of, calibration;
+  bool passed = false;
+  double mean_deg = 0, worst_deg = 0;
+  std::string found;  ///< what it said, in a few words
+};
+
+struct Records {
+  std::vector<DatedCalibration> calibrations;
+  std::vector<DatedCheck> checks;
+  std::vector<std::string> warnings;
+};
+
+/// Folders below `root` that hold a file of this name, in order of their paths; those inside sessions are
+/// copies and left out.
+std::vector<fs::path> folders_with(const fs::path& root, const char* name) {
+  std::vector<fs::path> found;
+  std::error_code failed;
+  fs::recursive_directory_iterator walk(root, fs::directory_options::skip_permission_denied, failed), end;
+  for (; !failed && walk != end; walk.increment(failed)) {
+    std::error_code ignored;
+    if (!walk->is_directory(ignored)) continue;
+    if (is_there(walk->path() / name)) found.push_back(walk->path());
+    if (is_there(walk->path() / "session.json")) walk.disable_recursion_pending();
+  }
+  if (is_there(root / name)) found.push_back(root);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+void read_calibrations(const fs::path& root, Records& records) {
+  for (const fs::path& folder : folders_with(root, "calibration.json")) {
+    Result<Calibration> calibration = read_calibration(folder);
+    if (!calibration) {
+      records.warnings.push_back(calibration.error().message());
+      continue;
+    }
+    const auto time_s = seconds_of(calibration->subject.measured);
+    if (!time_s) {
+      records.warnings.push_back(
+          fmt::format("{} says no time at which it was measured and was left out", folder.string()));
+      continue;
+    }
+    records.calibrations.push_back({*time_s, fs::relative(folder, root).string(), std::move(*calibration)});
+  }
+  std::stable_sort(records.calibrations.begin(), records.calibrations.end(),
+                   [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+}
+
+Result<DatedCheck> read_check(const fs::path& folder) {
+  const Result<Json> result = read_json(folder / kCheckResultFile, kCheckResultSchema, 1);
+  if (!result) return result.error();
+  JsonFields fields(*result, (folder / kCheckResultFile).string());
+  DatedCheck check;
+  check.date = fields.text("date");
+  check.of = fields.text("of");
+  check.calibration = fields.text("calibration");
+  const Json& numbers = fields.object("numbers");
+  if (!result->contains("passed") || !(*result)["passed"].is_boolean()) {
+    fields.reject("passed", "must be true or false");
+  }
+  const auto time_s = seconds_of(check.date);
+  if (!time_s) fields.reject("date", "must be a date and time of ISO 8601");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  check.time_s = *time_s;
+  check.passed = (*result)["passed"].get<bool>();
+  JsonFields costs(numbers, "numbers");
+  check.mean_deg = costs.optional_number("cost_mean_deg").value_or(0);
+  check.worst_deg = costs.optional_number("cost_worst_deg").value_or(0);
+  if (numbers.contains("changes") && numbers["changes"].is_array()) {
+    for (const Json& change : numbers["changes"]) {
+      JsonFields one(change, "change");
+      check.found += fmt::format("{}{}", check.found.empty() ? "" : ", ", one.text("change"));
+      if (const auto led = one.optional_number("led")) check.found += fmt::format(" {:.0f}", *led);
+    }
+  }
+  return check;
+}
+
+void read_checks(const fs::path& root, Records& records) {
+  for (const fs::path& folder : folders_with(root, kCheckResultFile)) {
+    Result<DatedCheck> check = read_check(folder);
+    if (!check) {
+      records.warnings.push_back(check.error().message());
+      continue;
+    }
+    check->name = fs::relative(folder, root).string();
+    records.checks.push_back(std::move(*check));
+  }
+  std::stable_sort(records.checks.begin(), records.checks.end(),
+                   [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+}
+
+const NearLights* near_lights(const Calibration& calibration) {
+  return calibration.lights ? std::get_if<NearLights>(&*calibration.lights) : nullptr;
+}
+
+Vec3 camera_centre_mm(const CameraModel& camera) {
+  return inverse(calibration::Pose{camera.camera_from_rig_rotation, camera.camera_from_rig_translation_mm})
+      .translation_mm;
+}
+
+/// Angle between the line of sight and straight down.
+double camera_tilt_deg(const CameraModel& camera) {
+  const auto& r = camera.camera_from_rig_rotation;
+  return angle_deg({r[2][0], r[2][1], r[2][2]}, {0, 0, -1});
+}
+
+std::string number(double value, int digits) {
+  return fmt::format("{:.{}f}", value, digits);
+}
+
+/// A value of each LED over time, against that of the first calibration with lights.
+template <typename Value>
+std::string plot_of_leds(const std::vector<DatedCalibration>& all, const std::string& label,
+                         const Value& value) {
+  LinePlot plot;
+  plot.x_label = "days";
+  plot.y_label = label;
+  const NearLights* first = nullptr;
+  for (const DatedCalibration& each : all) {
+    const NearLights* lights = near_lights(each.calibration);
+    if (lights == nullptr) continue;
+    if (first == nullptr) first = lights;
+    for (std::size_t k = 0; k < std::min(first->leds.size(), lights->leds.size()); ++k) {
+      if (plot.curves.size() <= k) plot.curves.push_back({fmt::format("LED {}", k + 1), {}, {}});
+      plot.curves[k].x.push_back((each.time_s - all.front().time_s) / kDay_s);
+      plot.curves[k].y.push_back(value(lights->leds[k], first->leds[k]));
+    }
+  }
+  return plot.curves.empty() ? "" : lines_svg(plot);
+}
+
+std::string plot_of_camera(const std::vector<DatedCalibration>& all) {
+  LinePlot plot = {
+      "days", "mm against the first calibration", {{"x", {}, {}}, {"y", {}, {}}, {"height", {}, {}}}};
+  std::optional<Vec3> first;
+  for (const DatedCalibration& each : all) {
+    if (!each.calibration.camera) continue;
+    const Vec3 centre = camera_centre_mm(*each.calibration.camera);
+    if (!first) first = centre;
+    const Vec3 moved = centre - *first;
+    for (Curve& curve : plot.curves) curve.x.push_back((each.time_s - all.front().time_s) / kDay_s);
+    plot.curves[0].y.push_back(moved.x);
+    plot.curves[1].y.push_back(moved.y);
+    plot.curves[2].y.push_back(moved.z);
+  }
+  return first ? lines_svg(plot) : "";
+}
+
+ReportSection calibrations_section(const std::vector<DatedCalibration>& all, Json& numbers) {
+  ReportSection section = {"Calibrations", {}, ReportTable{}, {}};
+  section.table->header = {"measured",
+                           "folder",
+                           "id",
+                           "LEDs",
+                           "moved most, mm",
+                           "brightness, percent",
+                           "camera height, mm",
+                           "camera tilt, degrees"};
+  const NearLights* before = nullptr;
+  for (const DatedCalibration& each : all) {
+    const NearLights* lights = near_lights(each.calibration);
+    const std::optional<CameraModel>& camera = each.calibration.camera;
+    std::string moved, brightness;
+    Json json = {
+        {"measured", each.calibration.subject.measured}, {"folder", each.name}, {"id", each.calibration.id}};
+    if (lights != nullptr && before != nullptr) {
+      double most_mm = 0, flux = 0;
+      const std::size_t n = std::min(lights->leds.size(), before->leds.size());
+      for (std::size_t k = 0; k < n; ++k) {
+        most_mm = std::max(most_mm, length(lights->leds[k].position_mm - before->leds[k].position_mm));
+        flux += lights->leds[k].flux_rgb[1] / before->leds[k].flux_rgb[1] / static_cast<double>(n);
+      }
+      moved = number(most_mm, 2);
+      brightness = number(100 * flux, 2);
+      json["led_moved_most_mm"] = most_mm;
+      json["brightness_factor"] = flux;
+    }
+    if (camera) {
+      json["camera_height_mm"] = camera_centre_mm(*camera).z;
+      json["camera_tilt_deg"] = camera_tilt_deg(*camera);
+    }
+    section.table->rows.push_back({each.calibration.subject.measured, each.name,
+                                   each.calibration.id.substr(0, 12),
+                                   lights == nullptr ? "" : std::to_string(lights->leds.size()), moved,
+                                   brightness, camera ? number(camera_centre_mm(*camera).z, 2) : "",
+                                   camera ? number(camera_tilt_deg(*camera), 3) : ""});
+    if (lights != nullptr) before = lights;
+    numbers["calibrations"].push_back(std::move(json));
+  }
+  const auto add = [&](const char* label, std::string svg) {
+    if (!svg.empty()) section.pictures.push_back({label, std::move(svg)});
+  };
+  add("Distance of each LED from where it was first",
+      plot_of_leds(all, "mm", [](const NearLight& now, const NearLight& first) {
+        return length(now.position_mm - first.position_mm);
+      }));
+  add("Flux of each LED over its first",
+      plot_of_leds(all, "percent", [](const NearLight& now, const NearLight& first) {
+        return 100 * now.flux_rgb[1] / first.flux_rgb[1];
+      }));
+  add("Where the camera is", plot_of_camera(all));
+  return section;
+}
+
+ReportSection checks_section(const std::vector<DatedCheck>& all, Json& numbers) {
+  ReportSection section = {"Checks", {}, ReportTable{}, {}};
+  section.table->header = {"date", "folder", "of", "calibration", "passed", "found", "cost, degrees"};
+  for (const DatedCheck& check : all) {
+    section.table->rows.push_back({check.date, check.name, check.of, check.calibration.substr(0, 12),
+                                   check.passed ? "yes" : "no", check.found,
+                                   check.passed ? "" : number(check.mean_deg, 2)});
+    numbers["checks"].push_back({{"date", check.date},
+                                 {"folder", check.name},
+                                 {"calibration", check.calibration},
+                                 {"passed", check.passed},
+                                 {"found", check.found}});
+  }
+  return section;
+}
+
+/// The time when a check's calibration was last known to hold before it.
+double held_until(const Records& records, const DatedCheck& failed) {
+  double time_s = -std::numeric_limits<double>::infinity();
+  for (const DatedCalibration& each : records.calibrations) {
+    if (each.calibration.id == failed.calibration) time_s = std::max(time_s, each.time_s);
+  }
+  for (const DatedCheck& check : records.checks) {
+    if (check.passed && check.calibration == failed.calibration && check.time_s <= failed.time_s)
+      time_s = std::max(time_s, check.time_s);
+  }
+  return time_s;
+}
+
+std::vector<AffectedSession> affected_in(const fs::path& folder, const Records& records,
+                                         std::vector<std::string>& warnings) {
+  std::vector<AffectedSession> affected;
+  for (const fs::path& path : folders_with(folder, "session.json")) {
+    const Result<Session> session = read_session(path);
+    if (!session) {
+      warnings.push_back(session.error().message());
+      continue;
+    }
+    const std::string time = session->shots.empty() ? "" : session->shots.front().time;
+    const auto time_s = seconds_of(time);
+    if (!time_s) {
+      warnings.push_back(fmt::format(
+          "{} says no time at which it was taken: whether a move affects it is not known", path.string()));
+      continue;
+    }
+    for (const DatedCheck& check : records.checks) {
+      if (check.passed || check.calibration != session->calibration_id) continue;
+      if (!(*time_s > held_until(records, check) && *time_s <= check.time_s)) continue;
+      affected.push_back({path, time, check.mean_deg, check.worst_deg});
+      break;
+    }
+  }
+  return affected;
+}
+
+ReportSection affected_section(const std::vector<AffectedSession>& all, Json& numbers) {
+  ReportSection section = {"Affected sessions", {}, ReportTable{}, {}};
+  section.paragraphs = {
+      "These were taken after the last check that their calibration passed and up to the one that found the "
+      "move. The "
+      "error is that of a session taken after the move; one taken before it has none. Solve them again with "
+      "the "
+      "updated calibration and compare."};
+  section.table->header = {"session", "taken", "predicted mean error, degrees", "at worst"};
+  numbers["affected"] = Json::array();
+  for (const AffectedSession& each : all) {
+    section.table->rows.push_back({each.folder.string(), each.time, number(each.predicted_mean_deg, 2),
+                                   number(each.predicted_worst_deg, 2)});
+    numbers["affected"].push_back({{"session", each.folder.string()},
+                                   {"time", each.time},
+                                   {"predicted_mean_deg", each.predicted_mean_deg},
+                                   {"predicted_worst_deg", each.predicted_worst_deg}});
+  }
+  return section;
+}
+
+}  // namespace
+
+std::optional<double> seconds_of(const std::string& iso_8601) {
+  int year = 0, month = 0, day = 0, hour = 0, minute = 0, read = 0;
+  double second = 0;
+  if (std::sscanf(iso_8601.c_str(), "%4d-%2d-%2dT%2d:%2d:%lf%n", &year, &month, &day, &hour, &minute, &second,
+                  &read) != 6)
+    return std::nullopt;
+  if (month < 1 || month > 12 || day < 1 || day > 31 || hour < 0 || hour > 24 || minute < 0 || minute > 59 ||
+      !(second >= 0 && second < 61))
+    return std::nullopt;
+  const std::string zone = iso_8601.substr(static_cast<std::size_t>(read));
+  int zone_hours = 0, zone_minutes = 0;
+  char sign = '+';
+  if (zone != "Z" && !zone.empty() &&
+      std::sscanf(zone.c_str(), "%c%2d:%2d", &sign, &zone_hours, &zone_minutes) != 3)
+    return std::nullopt;
+  if (sign != '+' && sign != '-') return std::nullopt;
+  std::tm tm = {};
+  tm.tm_year = year - 1900, tm.tm_mon = month - 1, tm.tm_mday = day, tm.tm_hour = hour, tm.tm_min = minute;
+  const double utc = static_cast<double>(::timegm(&tm)) + second;
+  return utc - (sign == '-' ? -1 : 1) * (zone_hours * 3600.0 + zone_minutes * 60.0);
+}
+
+Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
+                                             const JobContext& context) {
+  Records records;
+  read_calibrations(options.rig, records);
+  if (records.calibrations.empty()) {
+    return Error{
+        ErrorKind::kNoInput, "there is no calibration", options.rig.string(),
+        records.warnings.empty() ? "no folder in it holds calibration.json" : records.warnings.front(),
+        "name the folder that holds the rig's calibrations"};
+  }
+  if (context.stop.stop_requested()) return interrupted();
+  read_checks(options.rig, records);
+  CalibrationHistory history;
+  history.warnings = std::move(records.warnings);
+  CalibrationReport& report = history.report;
+  report.part = "history";
+  report.title = fmt::format("History of {}", records.calibrations.back().calibration.subject.rig);
+  report.sections.push_back(calibrations_section(records.calibrations, report.numbers));
+  if (!records.checks.empty()) report.sections.push_back(checks_section(records.checks, report.numbers));
+  if (!options.sessions.empty()) {
+    history.affected = affected_in(options.sessions, records, history.warnings);
+    report.sections.push_back(affected_section(history.affected, report.numbers));
+  }
+  report.summary = fmt::format("{} calibrations and {} checks, {} sessions affected by a move",
+                               records.calibrations.size(), records.checks.size(), history.affected.size());
+  if (options.output.empty()) return history;
+  if (Result<void> ok = write_report(report, options.output); !ok) return std::move(ok).error();
+  return history;
+}
+
+}  // namespace weft::app

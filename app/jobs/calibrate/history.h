@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/calibrate/report.h"
+#include "app/jobs/job.h"
+#include "core/calibration.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+struct CalibrateHistoryOptions {
+  std::filesystem::path rig;       ///< folder that holds calibrations and results of checks, at any depth
+  std::filesystem::path sessions;  ///< folder of sessions to look for affected ones in; empty: none
+  std::filesystem::path output;    ///< folder to make for history.html and history.json; empty: none
+};
+
+/// A session that was taken with a calibration that did not hold any more, or may not have.
+struct AffectedSession {
+  std::filesystem::path folder;
+  std::string time;               ///< of its first shot
+  double predicted_mean_deg = 0;  ///< error of its normals, as the check that found the move predicts it
+  double predicted_worst_deg = 0;
+};
+
+struct CalibrationHistory {
+  CalibrationReport report;  ///< table and plots of what was measured, and what checks said
+  std::vector<AffectedSession> affected;
+  std::vector<std::string> warnings;  ///< folders that could not be read, and sessions without a time
+};
+
+/// Everything that is known of a rig over time: positions and flux of its LEDs and pose of its camera, from
+/// the calibrations in their order of `measured`, and the results of checks. Affected are sessions that were
+/// taken with the calibration that a check found moved, after the last check of it that passed (or since it
+/// was measured) and up to the one that did not: the rig moved somewhere between them. Errors: kNoInput where
+/// there is no calibration in the folder.
+Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
+                                             const JobContext& context);
+
+/// Seconds since 1970 of an ISO 8601 date and time with Z or an offset; nothing where it is none.
+std::optional<double> seconds_of(const std::string& iso_8601);
+
+}  // namespace weft::app

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "app/jobs/calibrate/outcome.h"
+#include "app/jobs/job.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+enum class LightsMethod {
+  kPhysical,  ///< a model of every LED, the paper and the poses (calibration/lights/physical.h)
+  kPerPixel,  ///< its directions and intensities cell by cell (calibration/lights/per_pixel.h)
+  kSeed,      ///< the iteration of seed 000 on one flat sheet (calibration/lights/seed_iteration.h)
+};
+
+struct CalibrateLightsOptions {
+  std::filesystem::path input;   ///< *.weft, sheet.toml and, where the LEDs were measured anew, rig.toml
+  std::filesystem::path from;    ///< the calibration to change: camera and response are needed
+  std::filesystem::path output;  ///< the new one; must not be there
+  LightsMethod method = LightsMethod::kPhysical;
+  double tape_sigma_mm = 10;   ///< how well positions were measured, along each axis: 0.1 to 1000
+  double flatness_deg = 0.05;  ///< of the sheet's slow waves, rms: 0 to 2
+  bool lambertian = false;     ///< takes the paper to follow Lambert's law
+  bool accept_misfit = false;  ///< writes the calibration although readings and model contradict each other
+};
+
+/// Measures the lights of a rig from sessions of a sheet of white paper in several poses, which its tags tell
+/// (app/jobs/calibrate/sheet_captures.h), and writes a calibration with lights.json and report/lights.html. Fluxes are
+/// absolute where sheet.toml gives the paper's reflectance. kPerPixel also writes the maps of each LED to
+/// report/ (ledNN_direction.exr: X, Y, Z; ledNN_intensity.exr: R, G, B; a pixel a cell), and so does kSeed.
+///
+/// Stains and folds of the paper are found, named and left out. Nothing is written unless all went well.
+/// Errors beside those of reading: kUsage without `from` or with an option out of its range; kBadData for
+/// paper of which more than a twentieth is faulty, and for a misfit (chi-square, calibration::kMisfitFrom)
+/// that is not accepted. A calibration from one sheet is written with a warning and its predicted error.
+Result<CalibrateOutcome> calibrate_lights(const CalibrateLightsOptions& options, const JobContext& context);
+
+}  // namespace weft::app

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/calibrate/report.h"
+#include "app/jobs/calibrate/sheet_captures.h"
+#include "calibration/lights/light_map.h"
+#include "calibration/lights/paper_faults.h"
+#include "calibration/lights/per_pixel.h"
+#include "calibration/lights/physical.h"
+#include "calibration/lights/seed_iteration.h"
+
+namespace weft::app {
+
+/// Degrees that the lights' covariance makes of a normal (rms), level and at a slope of 20 degrees, by cell.
+struct PredictedError {
+  calibration::CellGrid grid;
+  std::vector<double> level_deg, slope_deg;
+  double centre_deg = 0, corner_deg = 0;  ///< of slope_deg; of the worst corner
+};
+
+/// What a calibration of lights did, for its report.
+struct LightsEvidence {
+  std::string rig;
+  calibration::PaperScene start;
+  std::vector<std::string> captures;  ///< names
+  std::vector<calibration::PaperReading> readings;
+  std::vector<calibration::PaperFault> faults;
+  std::optional<calibration::LightFit> fit;
+  std::optional<PredictedError> predicted;
+  std::optional<calibration::PerPixelLights> per_pixel;
+  std::optional<calibration::SeedLights> seed;
+};
+
+CalibrationReport lights_report(const LightsEvidence& evidence, const std::vector<std::string>& warnings);
+
+/// Which capture and which LED depart most from the fit: "sheet03.weft (0.71 percent rms) and LED 4 (0.52)".
+std::string worst_of(const LightsEvidence& evidence);
+
+}  // namespace weft::app

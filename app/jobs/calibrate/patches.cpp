@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/calibrate/patches.h"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/jobs/calibrate/check_result.h"
+#include "app/jobs/calibrate/rig_evidence.h"
+#include "app/jobs/session_input.h"
+#include "calibration/checks/light_at.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr double kMostSpread = 0.1;
+
+Error bad_patches(const std::string& where, std::string why) {
+  return {ErrorKind::kBadData, "white patches cannot be used", where, std::move(why),
+          "give each [[patch]] a polygon_px of three corners or more inside the frame"};
+}
+
+Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame) {
+  const Result<std::string> text = read_text(file);
+  if (!text) return text.error();
+  std::vector<WhitePatch> patches;
+  try {
+    const toml::table table = toml::parse(*text);
+    const toml::array* list = table["patch"].as_array();
+    if (list == nullptr || list->empty()) return bad_patches(file.string(), "there is no [[patch]]");
+    for (const toml::node& entry : *list) {
+      WhitePatch& patch = patches.emplace_back();
+      const auto where = fmt::format("{}: patch {}", file.string(), patches.size());
+      const toml::array* corners = entry.is_table() ? (*entry.as_table())["polygon_px"].as_array() : nullptr;
+      if (corners == nullptr) return bad_patches(where, "it has no polygon_px");
+      for (const toml::node& corner : *corners) {
+        const toml::array* xy = corner.as_array();
+        if (xy == nullptr || xy->size() != 2) return bad_patches(where, "a corner is not [x, y]");
+        const auto x = (*xy)[0].value<double>(), y = (*xy)[1].value<double>();
+        if (!x || !y || !(*x >= 0 && *x < frame.width && *y >= 0 && *y < frame.height))
+          return bad_patches(where, "a corner lies outside the frame");
+        patch.polygon_px.push_back({*x, *y});
+      }
+      if (patch.polygon_px.size() < 3) return bad_patches(where, "it has fewer than three corners");
+    }
+  } catch (const toml::parse_error& e) {
+    return bad_patches(fmt::format("{}: line {}", file.string(), e.source().begin.line),
+                       std::string(e.description()));
+  }
+  return patches;
+}
+
+/// Reflectance of a place by the light of each LED, means of those that can be read.
+struct Reflectance {
+  std::array<double, 3> rgb = {};
+  double least = 1e9, most = 0;  ///< of all LEDs, green
+  int leds = 0;
+};
+
+Reflectance reflectance_of(const calibration::LitPlace& place, const NearLights& lights, Size frame,
+                           double delta) {
+  Reflectance out;
+  const auto [u, v] = calibration::gain_place(frame, place.x_px, place.y_px);
+  for (std::size_t k = 0; k < std::min(lights.leds.size(), place.reading_rgb.size()); ++k) {
+    const auto light = calibration::light_at(lights.leds[k], place.point_mm);
+    const double cosine = light ? dot(light->direction, place.normal) : 0;
+    if (!(cosine > 0)) continue;
+    std::array<double, 3> rgb = {};
+    for (int c = 0; c < 3; ++c) {
+      const auto channel = static_cast<std::size_t>(c);
+      const double white = lights.leds[k].flux_rgb[channel] *
+                           std::exp(light->log_geometry + lights.log_gain(k, c, u, v)) * cosine *
+                           (1 - delta * (1 - cosine));
+      rgb[channel] = place.reading_rgb[k][channel] / white;
+    }
+    if (!std::isfinite(rgb[0] + rgb[1] + rgb[2])) continue;
+    for (std::size_t c = 0; c < 3; ++c) out.rgb[c] += rgb[c];
+    out.least = std::min(out.least, rgb[1]);
+    out.most = std::max(out.most, rgb[1]);
+    ++out.leds;
+  }
+  for (double& r : out.rgb) r /= std::max(out.leds, 1);
+  return out;
+}
+
+}  // namespace
+
+Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& options,
+                                           const JobContext& context) {
+  if (is_there(options.output)) {
+    return Error{ErrorKind::kCannotCreate, "the new calibration is there already", options.output.string(),
+                 "a calibration is never changed in place", "name another folder"};
+  }
+  Result<SessionPlan> plan = plan_session({options.session, options.from, {}});
+  if (!plan) return std::move(plan).error();
+  const fs::path file =
+      options.patches.empty() ? options.session.parent_path() / "patches.toml" : options.patches;
+  Result<std::vector<WhitePatch>> patches = read_patches(file, plan->size);
+  if (!patches) return std::move(patches).error();
+  if (!std::holds_alternative<NearLights>(*plan->calibration.lights)) {
+    return bad_patches(options.session.string(), "the calibration's lights are distant");
+  }
+  plan->calibration.patches.clear();  // those of before say nothing of these
+  const Result<Photographs> photographs = load_session(*plan, context);
+  if (!photographs) return photographs.error();
+
+  const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
+  const double delta = options.paper_delta.value_or(reported_delta(from));
+  Calibration change = plan->calibration;
+  change.patches = std::move(*patches);
+  const auto evidence = rig_evidence(change, *photographs);
+  if (!evidence) return evidence.error();
+  CalibrateOutcome outcome;
+  ReportSection section = {
+      "Patches", {}, ReportTable{{"patch", "red", "green", "blue", "spread, percent"}, {}}, {}};
+  for (std::size_t p = 0; p < change.patches.size(); ++p) {
+    const Reflectance r =
+        reflectance_of(evidence->places[p], std::get<NearLights>(*change.lights), plan->size, delta);
+    const std::string where = fmt::format("{}: patch {}", file.string(), p + 1);
+    if (r.leds < 3) return bad_patches(where, "fewer than three LEDs light it, or it is saturated");
+    const double spread = (r.most - r.least) / r.rgb[1];
+    if (spread > kMostSpread) {
+      return bad_patches(where,
+                         fmt::format("its reflectance differs by {:.1f} percent from LED to LED: it is not "
+                                     "white, flat and in the light",
+                                     100 * spread));
+    }
+    change.patches[p].reflectance_rgb = r.rgb;
+    section.table->rows.push_back({std::to_string(p + 1), fmt::format("{:.4f}", r.rgb[0]),
+                                   fmt::format("{:.4f}", r.rgb[1]), fmt::format("{:.4f}", r.rgb[2]),
+                                   fmt::format("{:.2f}", 100 * spread)});
+    outcome.report.numbers["patches"].push_back({{"reflectance_rgb", Json(r.rgb)}, {"spread", spread}});
+  }
+  outcome.report.part = "patches";
+  outcome.report.title = fmt::format("White patches of {}", change.subject.rig);
+  outcome.report.summary = fmt::format("{} patches measured", change.patches.size());
+  outcome.report.sections.push_back(std::move(section));
+  Calibration parts;
+  parts.subject = change.subject;
+  parts.subject.measured.clear();
+  parts.lights = change.lights;
+  parts.light_covariance = change.light_covariance;
+  parts.patches = change.patches;
+  Result<Calibration> written =
+      derive_calibration(from, std::move(parts), options.output, report_files(outcome.report));
+  if (!written) return std::move(written).error();
+  outcome.folder = options.output;
+  outcome.calibration = std::move(*written);
+  return outcome;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "app/jobs/calibrate/outcome.h"
+#include "app/jobs/job.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+struct CalibratePatchesOptions {
+  std::filesystem::path session = {};  ///< taken with the rig as it was calibrated
+  std::filesystem::path patches = {};  ///< where white patches lie in its pictures; empty: beside the session
+  std::filesystem::path from = {};     ///< the calibration to add them to; empty: the session's own
+  std::filesystem::path output = {};   ///< the new calibration, which must not be there yet
+  std::optional<double> paper_delta = {};  ///< as CalibrateCheckOptions has it
+};
+
+/// Measures white patches on the table by the light that the calibration knows, and writes a calibration with
+/// them in its lights.json: what later scans tell of drift and of moves by. patches.toml: for each a
+/// [[patch]] of polygon_px, three corners or more, [[x, y], ...]; only what lies well inside is read.
+///
+/// Errors: as plan_session(); kBadData for a description that cannot be used, a patch that cannot be read, or
+/// one whose reflectance differs from LED to LED by more than 10 percent: it is not white, flat and in the
+/// light. Then nothing is written.
+Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& options, const JobContext& context);
+
+}  // namespace weft::app

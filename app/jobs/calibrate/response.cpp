@@ -1,0 +1,419 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/calibrate/response.h"
+
+#include <fmt/format.h>
+
+#include <toml++/toml.h>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "app/jobs/figures.h"
+#include "app/jobs/raw_picture.h"
+#include "app/jobs/calibrate/response_measurement.h"
+#include "calibration/color/chart.h"
+#include "calibration/response/neutral_scale.h"
+#include "capture/raw/decode.h"
+#include "core/files.h"
+#include "core/image_io/image_io.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kBigHotShare = 1e-3;
+constexpr double kScaleOff_percent = 3;
+constexpr std::array<const char*, 3> kChannels = {"red", "green", "blue"};
+
+// What a grey scale said.
+struct ScaleReading {
+  std::vector<double> reflectances;
+  calibration::ScaleCheck straight;  // without the measured curve
+  calibration::ScaleCheck corrected;
+};
+
+struct ScaleSettings {
+  std::vector<double> reflectances;
+  std::optional<calibration::ChartCorners> corners_px;
+};
+
+Result<ScaleSettings> read_scale_settings(const fs::path& file) {
+  ScaleSettings settings;
+  for (const calibration::MunsellPatch& patch : calibration::munsell_scale()) {
+    settings.reflectances.push_back(patch.reflectance);
+  }
+  if (!is_there(file)) return settings;
+  const Result<std::string> text = read_text(file);
+  if (!text) return text.error();
+  const auto refuse = [&](std::string why) {
+    return Error{ErrorKind::kBadData, "scale.toml cannot be used", file.string(), std::move(why),
+                 "give reflectances = [...], each above 0 and to 1, and corners_px = [[x, y], ...], four"};
+  };
+  toml::table table;
+  try {
+    table = toml::parse(*text);
+  } catch (const toml::parse_error& e) {
+    return refuse(fmt::format("line {}: {}", e.source().begin.line, e.description()));
+  }
+  for (const auto& [key, value] : table) {
+    if (key != "reflectances" && key != "corners_px")
+      return refuse(fmt::format("{} means nothing", key.str()));
+  }
+  if (const toml::array* list = table["reflectances"].as_array()) {
+    settings.reflectances.clear();
+    for (const toml::node& node : *list) {
+      const double r = node.value_or(0.0);
+      if (!(r > 0 && r <= 1)) return refuse("a reflectance is not a number above 0 and to 1");
+      settings.reflectances.push_back(r);
+    }
+    if (settings.reflectances.size() < 5) return refuse("a scale has five patches or more");
+  }
+  if (const toml::array* list = table["corners_px"].as_array()) {
+    calibration::ChartCorners corners;
+    if (list->size() != 4) return refuse("a scale has four corners");
+    for (std::size_t i = 0; i < 4; ++i) {
+      const toml::array* corner = list->get_as<toml::array>(i);
+      if (corner == nullptr || corner->size() != 2) return refuse("a corner is [x, y]");
+      corners[i] = {corner->get(0)->value_or(NAN), corner->get(1)->value_or(NAN)};
+    }
+    settings.corners_px = corners;
+  }
+  return settings;
+}
+
+// Mean linear v of each patch over all frames.
+Result<std::vector<std::array<double, 3>>> read_scale(const ResponseFrames& frames, const Response& response,
+                                                      const ScaleSettings& settings) {
+  std::vector<std::array<double, 3>> mean(settings.reflectances.size());
+  calibration::ChartCorners corners = *settings.corners_px;
+  for (auto& corner : corners) {
+    for (double& v : corner) v = (v - 0.5) / 2;  // pictures are of half size
+  }
+  for (const fs::path& file : frames.scale) {
+    const Result<RawFrame> frame = capture::decode_raw(file, {.size = frames.size, .cfa = {}, .model = {}});
+    if (!frame) return frame.error();
+    const auto patches = calibration::read_patches(half_size_picture(*frame, response), corners,
+                                                   static_cast<int>(mean.size()), 1);
+    if (!patches) return patches.error();
+    for (std::size_t i = 0; i < mean.size(); ++i) {
+      const bool is_full = (*patches)[i].full_share > 0;
+      for (std::size_t c = 0; c < 3; ++c) {
+        mean[i][c] += is_full ? 0 : (*patches)[i].mean[c] / static_cast<double>(frames.scale.size());
+      }
+    }
+  }
+  return mean;
+}
+
+Result<std::optional<ScaleReading>> check_scale(const fs::path& folder, const ResponseFrames& frames,
+                                                const Response& response,
+                                                std::vector<std::string>& warnings) {
+  if (frames.scale.empty()) return std::optional<ScaleReading>();
+  const Result<ScaleSettings> settings = read_scale_settings(folder / "scale.toml");
+  if (!settings) return settings.error();
+  if (!settings->corners_px) {
+    warnings.push_back(fmt::format("{} was not read: its scale.toml has no corners_px", folder.string()));
+    return std::optional<ScaleReading>();
+  }
+  Response straight = response;
+  straight.linearity = {};
+  ScaleReading reading;
+  reading.reflectances = settings->reflectances;
+  const auto check = [&](const Response& used, calibration::ScaleCheck& out) -> Result<void> {
+    const auto v = read_scale(frames, used, *settings);
+    if (!v) return v.error();
+    Result<calibration::ScaleCheck> checked = calibration::check_scale(reading.reflectances, *v);
+    if (!checked) return std::move(checked).error();
+    out = std::move(*checked);
+    return {};
+  };
+  if (Result<void> ok = check(straight, reading.straight); !ok) return std::move(ok).error();
+  if (Result<void> ok = check(response, reading.corrected); !ok) return std::move(ok).error();
+  return std::optional<ScaleReading>(std::move(reading));
+}
+
+std::string percent(double share, int digits = 2) {
+  return fmt::format("{:.{}f} %", 100 * share, digits);
+}
+
+ReportSection summary_section(const ResponseFrames& frames, const ResponseMeasurement& m) {
+  const calibration::PhotonTransfer& t = m.transfer;
+  ReportTable table = {{"what", "measured", "standard deviation"}, {}};
+  table.rows.push_back({"gain, electrons a count", fmt::format("{:.4f}", t.electrons_per_count),
+                        fmt::format("{:.4f}", t.sigma_electrons_per_count)});
+  table.rows.push_back({"read noise, counts", fmt::format("{:.4f}", t.read_noise_counts),
+                        fmt::format("{:.4f}", t.sigma_read_noise_counts)});
+  table.rows.push_back({fmt::format("black level, counts, from {}", name_of(m.black_from)),
+                        fmt::format("{:.3f}", m.black_counts), fmt::format("{:.3f}", m.sigma_black_counts)});
+  table.rows.push_back({"dark signal, counts a second", fmt::format("{:.3f}", m.dark_counts_per_s), ""});
+  for (std::size_t c = 0; c < 3 && m.superposition; ++c) {
+    table.rows.push_back({fmt::format("non-linearity, {}, of full scale", kChannels[c]),
+                          percent(m.superposition->departure(c), 3),
+                          percent(m.superposition->sigma_departure(c), 3)});
+  }
+  table.rows.push_back({"hot photosites", std::to_string(frames.hot), ""});
+  table.rows.push_back({"dead photosites", std::to_string(frames.dead), ""});
+  table.rows.push_back({"light from frame to frame", percent(m.drift, 3), ""});
+  table.rows.push_back({"pairs of frames", std::to_string(frames.pairs), ""});
+  table.rows.push_back({"frames left out, being full", std::to_string(frames.full.size()), ""});
+  ReportSection section = {"Measured"};
+  section.table = std::move(table);
+  return section;
+}
+
+ReportSection transfer_section(const ResponseMeasurement& m) {
+  Curve measured = {"measured", {}, {}, false}, fitted = {"fitted line", {}, {}, true};
+  for (const calibration::TransferBin& bin : m.transfer.bins) {
+    measured.x.push_back(bin.signal_counts);
+    measured.y.push_back(bin.variance_counts2);
+    fitted.x.push_back(bin.signal_counts);
+    fitted.y.push_back(bin.fitted_counts2);
+  }
+  ReportSection section = {"Photon transfer"};
+  section.paragraphs = {fmt::format(
+      "Half the variance of the difference of two frames alike, in squares of {} photosites, against their "
+      "mean. Chi-square a degree of freedom: {:.3f}; well above 1 the noise is not that of photons.",
+      calibration::kResponseBlock, m.transfer.chi_square_per_freedom)};
+  section.pictures = {{"variance by signal, both linear in light",
+                       lines_svg({"signal, counts", "variance, counts^2", {measured, fitted}, true, true})}};
+  return section;
+}
+
+ReportSection linearity_section(const calibration::Superposition& s) {
+  ReportSection section = {"Linearity"};
+  section.paragraphs = {fmt::format(
+      "What the light of two LEDs one by one has over that of both together, with what the LEDs drifted "
+      "taken "
+      "out. Chi-square a degree of freedom: {:.2f}; well above 1 something else changed between the frames.",
+      s.chi_square_per_freedom)};
+  ReportTable table = {{"channel", "a", "b", "seen up to", "off a line before", "left, by the fit's sigma"},
+                       {}};
+  for (std::size_t c = 0; c < 3; ++c) {
+    Curve before = {"before", {}, {}, true}, after = {"after", {}, {}, true};
+    for (const calibration::SuperpositionBin& bin : s.bins[c]) {
+      before.x.push_back(100 * bin.v);
+      before.y.push_back(100 * bin.before);
+      after.x.push_back(100 * bin.v);
+      after.y.push_back(100 * bin.after);
+    }
+    section.pictures.push_back(
+        {kChannels[c], lines_svg({"both, percent of full scale", "missing, percent", {before, after}})});
+    table.rows.push_back({kChannels[c], fmt::format("{:.5f}", s.linearity[c][0]),
+                          fmt::format("{:.5f}", s.linearity[c][1]), percent(s.highest_v[c], 0),
+                          percent(s.departure(c), 3), percent(s.sigma_departure(c), 3)});
+  }
+  section.table = std::move(table);
+  return section;
+}
+
+ReportSection balance_section(const ResponseMeasurement& m, const Calibration* from) {
+  ReportSection section = {"White balance of the LEDs"};
+  section.paragraphs = {
+      "Light by channel over that in green, mean over the frame: that of the LED where the scene is white or "
+      "grey, and of the same scene differences from LED to LED are those of the LEDs."};
+  ReportTable table = {{"LED", "red / green", "blue / green", "in the calibration before"}, {}};
+  const NearLights* lights =
+      from != nullptr && from->lights ? std::get_if<NearLights>(&*from->lights) : nullptr;
+  for (const LedBalance& b : m.balance) {
+    std::string before;
+    const auto at = static_cast<std::size_t>(b.led - 1);
+    if (lights != nullptr && at < lights->leds.size()) {
+      const auto& flux = lights->leds[at].flux_rgb;
+      before = fmt::format("{:.4f}, {:.4f}", flux[0] / flux[1], flux[2] / flux[1]);
+    }
+    table.rows.push_back({fmt::format("LED {}", b.led), fmt::format("{:.4f}", b.light[0] / b.light[1]),
+                          fmt::format("{:.4f}", b.light[2] / b.light[1]), before});
+  }
+  section.table = std::move(table);
+  return section;
+}
+
+ReportSection ratio_section(const ResponseMeasurement& m) {
+  ReportSection section = {"Exposure times"};
+  section.paragraphs = {
+      "Light gathered by the longer over the shorter exposure, against what their times say."};
+  ReportTable table = {{"longer, us", "shorter, us", "measured", "by the times", "among LEDs"}, {}};
+  for (const MeasuredRatio& r : m.ratios) {
+    table.rows.push_back({fmt::format("{:.0f}", r.ratio.exposure_us),
+                          fmt::format("{:.0f}", r.ratio.to_exposure_us), fmt::format("{:.5f}", r.ratio.ratio),
+                          fmt::format("{:.5f}", r.ratio.exposure_us / r.ratio.to_exposure_us),
+                          percent(r.scatter, 3)});
+  }
+  section.table = std::move(table);
+  return section;
+}
+
+ReportSection scale_section(const ScaleReading& scale) {
+  ReportSection section = {"Grey scale"};
+  section.paragraphs = {fmt::format(
+      "Each patch against its reflectance, light along the scale fitted as a parabola ({:+.1f} percent from "
+      "end to end). Off by {:.2f} percent rms before the correction of linearity, by {:.2f} after. At its "
+      "middle a perfect white would be at {:.3f}, {:.3f}, {:.3f} of full scale.",
+      100 * scale.corrected.shading, scale.straight.rms_percent, scale.corrected.rms_percent,
+      scale.corrected.v_of_white[0], scale.corrected.v_of_white[1], scale.corrected.v_of_white[2])};
+  ReportTable table = {{"patch", "reflectance", "off before, %", "off after, %"}, {}};
+  for (std::size_t i = 0; i < scale.reflectances.size(); ++i) {
+    table.rows.push_back({std::to_string(i + 1), fmt::format("{:.4f}", scale.reflectances[i]),
+                          fmt::format("{:+.2f}", scale.straight.off_percent[i]),
+                          fmt::format("{:+.2f}", scale.corrected.off_percent[i])});
+  }
+  section.table = std::move(table);
+  return section;
+}
+
+Json numbers_of(const ResponseFrames& frames, const ResponseMeasurement& m,
+                const std::optional<ScaleReading>& scale) {
+  Json numbers = {{"electrons_per_count", m.transfer.electrons_per_count},
+                  {"sigma_electrons_per_count", m.transfer.sigma_electrons_per_count},
+                  {"read_noise_counts", m.transfer.read_noise_counts},
+                  {"sigma_read_noise_counts", m.transfer.sigma_read_noise_counts},
+                  {"transfer_chi_square", m.transfer.chi_square_per_freedom},
+                  {"black_counts", m.black_counts},
+                  {"sigma_black_counts", m.sigma_black_counts},
+                  {"black_from", name_of(m.black_from)},
+                  {"dark_counts_per_s", m.dark_counts_per_s},
+                  {"clipped_share", m.clipped_share},
+                  {"drift", m.drift},
+                  {"hot", frames.hot},
+                  {"dead", frames.dead},
+                  {"pairs", frames.pairs},
+                  {"full_frames", frames.full}};
+  if (m.superposition) {
+    const calibration::Superposition& s = *m.superposition;
+    numbers["linearity"] = s.linearity;
+    numbers["departure"] = {s.departure(0), s.departure(1), s.departure(2)};
+    numbers["sigma_departure"] = {s.sigma_departure(0), s.sigma_departure(1), s.sigma_departure(2)};
+    numbers["linearity_seen_to"] = s.highest_v;
+    numbers["superposition_chi_square"] = s.chi_square_per_freedom;
+  }
+  numbers["white_balance"] = Json::array();
+  for (const LedBalance& b : m.balance) {
+    numbers["white_balance"].push_back({{"led", b.led}, {"light_rgb", b.light}});
+  }
+  numbers["exposure_ratios"] = Json::array();
+  for (const MeasuredRatio& r : m.ratios) {
+    numbers["exposure_ratios"].push_back({{"exposure_us", r.ratio.exposure_us},
+                                          {"to_exposure_us", r.ratio.to_exposure_us},
+                                          {"ratio", r.ratio.ratio},
+                                          {"scatter", r.scatter}});
+  }
+  if (scale) {
+    numbers["scale"] = {{"reflectances", scale->reflectances},
+                        {"off_percent", scale->corrected.off_percent},
+                        {"rms_percent", scale->corrected.rms_percent},
+                        {"rms_percent_before", scale->straight.rms_percent},
+                        {"v_of_white", scale->corrected.v_of_white}};
+  }
+  return numbers;
+}
+
+std::vector<Verdict> verdicts_of(const ResponseFrames& frames, const ResponseMeasurement& m,
+                                 const std::optional<ScaleReading>& scale) {
+  std::vector<Verdict> verdicts = m.verdicts;
+  if (!frames.full.empty()) {
+    verdicts.push_back({"FULL_FRAMES",
+                        fmt::format("{} frames were full everywhere and left out, {} the first",
+                                    frames.full.size(), frames.full.front()),
+                        "leave out the longest exposures next time"});
+  }
+  if (frames.hot > kBigHotShare * static_cast<double>(frames.size.pixels())) {
+    verdicts.push_back({"MANY_HOT",
+                        fmt::format("{} photosites are hot: were the dark frames dark?", frames.hot),
+                        "cover the lens, put out all lights and take dark/ again"});
+  }
+  if (scale && scale->corrected.rms_percent > kScaleOff_percent) {
+    verdicts.push_back({"SCALE_OFF",
+                        fmt::format("the grey scale is off its reflectances by {:.1f} percent rms",
+                                    scale->corrected.rms_percent),
+                        "check scale.toml and that no patch shines"});
+  }
+  return verdicts;
+}
+
+CalibrationReport report_of(const ResponseFrames& frames, const ResponseMeasurement& m,
+                            const std::optional<ScaleReading>& scale, const Calibration* from,
+                            const std::string& rig) {
+  CalibrationReport report;
+  report.part = "response";
+  report.title = fmt::format("Response of {} {}, rig {}", frames.camera.model, frames.camera.serial, rig);
+  report.summary = fmt::format("{:.3f} electrons a count, read noise {:.3f} counts, black at {:.2f} counts",
+                               m.transfer.electrons_per_count, m.transfer.read_noise_counts, m.black_counts);
+  if (m.superposition) {
+    report.summary +=
+        fmt::format(", {:.2f} percent from a straight line in green", 100 * m.superposition->departure(1));
+  }
+  report.summary += fmt::format(", {} bad photosites", frames.hot + frames.dead);
+  report.verdicts = verdicts_of(frames, m, scale);
+  report.sections = {summary_section(frames, m), transfer_section(m)};
+  if (m.superposition) report.sections.push_back(linearity_section(*m.superposition));
+  if (!m.ratios.empty()) report.sections.push_back(ratio_section(m));
+  if (!m.balance.empty()) report.sections.push_back(balance_section(m, from));
+  if (scale) report.sections.push_back(scale_section(*scale));
+  report.numbers = numbers_of(frames, m, scale);
+  return report;
+}
+
+std::string rig_name(const CalibrateResponseOptions& options) {
+  if (!options.rig.empty()) return options.rig;
+  const fs::path folder = fs::absolute(options.input).lexically_normal();
+  return (folder.has_filename() ? folder : folder.parent_path()).filename().string();
+}
+
+Result<void> write_hot_picture(const fs::path& file, View<const std::uint8_t> bad) {
+  Image<float> picture(bad.size());
+  for (int y = 0; y < bad.height(); ++y) {
+    for (int x = 0; x < bad.width(); ++x) picture(x, y) = bad(x, y) != 0 ? 1.0F : 0.0F;
+  }
+  const std::array<View<const float>, 1> planes = {picture.plane()};
+  return write_image(file, planes, {"Y"}, {.type = SampleType::kUint8});
+}
+
+}  // namespace
+
+Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& options,
+                                            const JobContext& context) {
+  std::optional<Calibration> from;
+  if (!options.from.empty()) {
+    Result<Calibration> read = read_calibration(options.from);
+    if (!read) return std::move(read).error();
+    from = std::move(*read);
+  }
+  const Result<ResponseFrames> frames =
+      read_response_frames(options.input, from ? &from->subject : nullptr, context);
+  if (!frames) return frames.error();
+  const Result<ResponseMeasurement> measured = measure_response(*frames);
+  if (!measured) return measured.error();
+  CalibrateOutcome outcome;
+  outcome.warnings = frames->warnings;
+  const auto scale = check_scale(options.input / "scale", *frames, measured->response, outcome.warnings);
+  if (!scale) return scale.error();
+
+  Calibration change;
+  change.subject = from ? from->subject
+                        : CalibrationSubject{rig_name(options), frames->camera.model, frames->camera.serial,
+                                             frames->camera.f_number, "relative"};
+  change.subject.measured.clear();
+  change.response = measured->response;
+  outcome.report = report_of(*frames, *measured, *scale, from ? &*from : nullptr, change.subject.rig);
+
+  fs::path beside = fs::absolute(options.output).lexically_normal();
+  beside += ".hot";
+  const PartialFolder aside(beside);
+  if (!frames->bad.empty()) {
+    if (Result<void> ok = make_writable_folder(aside.path()); !ok) return std::move(ok).error();
+    change.hot_picture = aside.path() / "hot.png";
+    if (Result<void> ok = write_hot_picture(*change.hot_picture, frames->bad.plane()); !ok) {
+      return std::move(ok).error();
+    }
+  }
+  Result<Calibration> written =
+      derive_calibration(options.from, std::move(change), options.output, report_files(outcome.report));
+  if (!written) return std::move(written).error();
+  outcome.calibration = std::move(*written);
+  outcome.folder = options.output;
+  return outcome;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/jobs/calibrate/outcome.h"
+#include "app/jobs/job.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+struct CalibrateResponseOptions {
+  std::filesystem::path input;   ///< dark/, ledNN/, ledNN+ledMM/ and scale/, any of the last three absent
+  std::filesystem::path from;    ///< the calibration to change; empty: none
+  std::filesystem::path output;  ///< the new one; must not be there
+  std::string rig;               ///< its name where there is no `from`; empty: the input folder's
+};
+
+/// Measures gain, read noise, black level, linearity, bad photosites, exposure ratios and the white balance
+/// of the LEDs from raw frames (app/jobs/calibrate/response_measurement.h), checks linearity on a grey scale where
+/// there is one, and writes a calibration with response.json, hot.png (where there are dark frames) and
+/// report/response.html. scale.toml: `reflectances` (default the neutral scale of Munsell) and `corners_px`,
+/// the outer corners of the row of patches, [[x, y], ...] clockwise from the first patch, on the active area.
+/// Nothing is written unless all went well. Errors as read_response_frames() and measure_response().
+Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& options,
+                                            const JobContext& context);
+
+}  // namespace weft::app

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/jobs/job.h"
+#include "app/jobs/calibrate/sheet_files.h"
+#include "calibration/lights/paper_model.h"
+#include "calibration/lights/sheet_blocks.h"
+#include "core/calibration.h"
+#include "core/result.h"
+
+// Sessions of a sheet of white paper, as averages of blocks.
+
+namespace weft::app {
+
+/// One session: the sheet in one pose under every LED.
+struct SheetCapture {
+  std::string name;                          ///< of the session's folder
+  calibration::SheetPose pose;               ///< from its tags
+  std::vector<calibration::BlockGrid> leds;  ///< of each LED of the rig; no columns where it was not lit
+  std::vector<char> is_paper;                ///< by block of a grid: shows nothing but paper
+};
+
+struct SheetCaptures {
+  int block_px = 16;
+  int columns = 0, rows = 0;  ///< of blocks
+  std::vector<SheetCapture> captures;
+  std::vector<std::string> warnings;
+};
+
+struct SheetCapturesOptions {
+  std::filesystem::path folder;  ///< of *.weft
+  Calibration calibration;       ///< camera and response; its lights say how many LEDs there are
+  TaggedSheet sheet;
+};
+
+/// Reads every session of a folder, in the order of their names. Blocks are of 16 pixels, or of 8 where the
+/// frame is less than 1000 pixels wide. Two frames at a time are in memory; what stays is the blocks, 4.5
+/// bytes a photosite for ten LEDs in five poses.
+///
+/// kNoInput for a folder without sessions. kBadData, naming the file: of another rig, camera, aperture or
+/// size; exposures that differ between sessions without a measured ratio; a LED that did not light; paper
+/// full over more than half of it; a sheet whose tags are not found. Warnings: two captures of one pose, full
+/// blocks, LEDs that some session did not light.
+Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, const JobContext& context);
+
+/// What a fit takes of captures. `left_out[capture]` marks blocks that are not to be used, by block.
+/// Single blocks, those of one place side by side for all LEDs of a capture:
+std::vector<calibration::PaperReading> single_blocks(const SheetCaptures& captures,
+                                                     const std::vector<std::vector<char>>& left_out);
+/// `side` x `side` blocks as one, where at least half of them are paper.
+std::vector<calibration::PaperReading> merged_blocks(const SheetCaptures& captures,
+                                                     const std::vector<std::vector<char>>& left_out,
+                                                     int side);
+
+}  // namespace weft::app

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/jobs/job.h"
+#include "app/jobs/photographs.h"
+#include "app/jobs/calibrate/sheet_files.h"
+#include "calibration/checks/flatness.h"
+#include "calibration/checks/movement.h"
+#include "core/calibration.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// What a sheet of paper with tags reads in squares of `square_px` (even) that show nothing but paper. LED k
+/// of a square's readings is LED k + 1 of the rig; one that was left out has none. Errors as sheet_pose(),
+/// with `where`; kBadData where no square shows paper alone.
+Result<calibration::SheetEvidence> sheet_evidence(const Calibration& calibration,
+                                                  const Photographs& photographs, const TaggedSheet& sheet,
+                                                  int square_px, const std::string& where,
+                                                  const JobContext& context);
+
+/// The same squares as places that tell of movement: a surface of unknown reflectance, seen through the
+/// camera.
+std::vector<calibration::LitPlace> places_of(const calibration::SheetEvidence& sheet,
+                                             const CameraModel& camera);
+
+/// sheet.toml: `named` where it is not empty, else that of the folder, else that beside the folder.
+std::filesystem::path sheet_file_of(const std::filesystem::path& named, const std::filesystem::path& folder);
+
+}  // namespace weft::app

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/calibrate/sheet_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "core/toml/toml_keys.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A tag is read by the white about it: a quarter of its side on each side is not paper.
+constexpr double kQuietShare = 1.5;
+
+constexpr const char* kPage = "docs/calibration.md";
+
+}  // namespace
+
+Result<TaggedSheet> read_sheet_file(const fs::path& file) {
+  const Result<toml::table> table = read_toml(file);
+  if (!table) return table.error();
+  TaggedSheet out;
+  calibration::Sheet& sheet = out.sheet;
+  TomlKeys keys(*table, file.string(), kPage);
+  keys.know({"width_mm", "height_mm", "margin_mm", "reflectance", "tag"});
+  sheet.width_mm = keys.number("width_mm", 1, 10000);
+  sheet.height_mm = keys.number("height_mm", 1, 10000);
+  sheet.margin_mm = keys.number_or("margin_mm", 5, 0, 10000);
+  if (2 * sheet.margin_mm >= std::min(sheet.width_mm, sheet.height_mm))
+    keys.reject("margin_mm", "it leaves no paper to use");
+  if (keys.has("reflectance")) {
+    std::vector<double> values = keys.numbers("reflectance", 1, 3);
+    if (values.size() == 2) keys.reject("reflectance", "it must be one number or three");
+    for (const double value : values) keys.within("reflectance", value, 0.01, 1);
+    if (values.size() == 1) values.resize(3, values[0]);
+    if (values.size() == 3) sheet.reflectance_rgb = {values[0], values[1], values[2]};
+  }
+  const std::vector<const toml::table*> tags = keys.tables("tag");
+  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
+  for (std::size_t i = 0; i < tags.size(); ++i) {
+    TomlKeys tag_keys(*tags[i], fmt::format("{}: tag {}", file.string(), i + 1), kPage);
+    tag_keys.know({"dictionary", "id", "side_mm", "centre_mm"});
+    calibration::SheetTag& tag = out.tags.emplace_back();
+    tag.dictionary = tag_keys.text_or("dictionary", "DICT_APRILTAG_36h11");
+    if (!tag_keys.has("id")) tag_keys.reject("id", "it is missing");
+    tag.id = tag_keys.integer_or("id", 0, 0, 1000000);
+    tag.side_mm = tag_keys.number("side_mm", 0.1, 10000);
+    const std::vector<double> centre = tag_keys.numbers("centre_mm", 2, 2);
+    if (Result<void> ok = tag_keys.status(); !ok) return std::move(ok).error();
+    tag.centre_u_mm = centre[0];
+    tag.centre_v_mm = centre[1];
+    const auto twin = [&](const calibration::SheetTag& other) {
+      return &other != &tag && other.dictionary == tag.dictionary && other.id == tag.id;
+    };
+    if (std::any_of(out.tags.begin(), out.tags.end(), twin)) {
+      tag_keys.reject("id", "another tag has it, too");
+      return std::move(tag_keys.status()).error();
+    }
+    sheet.printed.push_back({tag.centre_u_mm, tag.centre_v_mm, kQuietShare * tag.side_mm});
+  }
+  return out;
+}
+
+Result<NearLights> read_rig_file(const fs::path& file) {
+  const Result<toml::table> table = read_toml(file);
+  if (!table) return table.error();
+  TomlKeys keys(*table, file.string(), kPage);
+  keys.know({"led"});
+  const std::vector<const toml::table*> leds = keys.tables("led");
+  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
+  NearLights lights;
+  for (std::size_t k = 0; k < leds.size(); ++k) {
+    TomlKeys led_keys(*leds[k], fmt::format("{}: LED {}", file.string(), k + 1), kPage);
+    led_keys.know({"position_mm", "aim", "mu"});
+    NearLight& led = lights.leds.emplace_back();
+    const std::vector<double> at = led_keys.numbers("position_mm", 3, 3);
+    const std::vector<double> aim =
+        led_keys.has("aim") ? led_keys.numbers("aim", 3, 3) : std::vector<double>();
+    led.mu = led_keys.number_or("mu", 1, 0, 100);
+    if (!at.empty()) led.position_mm = {at[0], at[1], at[2]};
+    if (!at.empty() && !(at[2] >= 1 && length(led.position_mm) < 1e5))
+      led_keys.reject("position_mm", "it must be at least 1 mm above the table");
+    led.aim = aim.empty() ? -1.0 * led.position_mm : Vec3{aim[0], aim[1], aim[2]};
+    if (!(length(led.aim) > 0)) led_keys.reject("aim", "it has no length");
+    if (Result<void> ok = led_keys.status(); !ok) return std::move(ok).error();
+    led.aim = normalized(led.aim);
+  }
+  return lights;
+}
+
+}  // namespace weft::app

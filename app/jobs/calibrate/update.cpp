@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/calibrate/update.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/jobs/calibrate/check.h"
+#include "app/jobs/calibrate/movement_words.h"
+#include "app/jobs/calibrate/rig_evidence.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using calibration::ChangeKind;
+using calibration::Movement;
+using calibration::RigChange;
+
+bool moves_body(ChangeKind kind) {
+  return kind == ChangeKind::kCamera || kind == ChangeKind::kTable;
+}
+
+/// The part of an old covariance that still holds, with what was fitted in its place.
+std::optional<ParameterCovariance> merged(const std::optional<ParameterCovariance>& old,
+                                          const ParameterCovariance& fitted) {
+  if (!old || fitted.parameters.empty()) return old;
+  ParameterCovariance out = *old;
+  const std::size_t n = out.parameters.size();
+  std::vector<std::size_t> place;
+  for (const std::string& name : fitted.parameters) {
+    const auto found = std::find(out.parameters.begin(), out.parameters.end(), name);
+    place.push_back(static_cast<std::size_t>(found - out.parameters.begin()));
+  }
+  for (const std::size_t p : place) {
+    for (std::size_t i = 0; p < n && i < n; ++i) out.matrix[p * n + i] = out.matrix[i * n + p] = 0;
+  }
+  for (std::size_t a = 0; a < place.size(); ++a) {
+    for (std::size_t b = 0; b < place.size(); ++b) {
+      if (place[a] < n && place[b] < n)
+        out.matrix[place[a] * n + place[b]] = fitted.matrix[a * place.size() + b];
+    }
+  }
+  return out;
+}
+
+/// The first change that something else explains as well and that would be put right in another way.
+const RigChange* ambiguous(const Movement& movement) {
+  for (const RigChange& change : movement.changes) {
+    const bool body = moves_body(change.kind);
+    const bool both =
+        std::any_of(change.alternatives.begin(), change.alternatives.end(), [&](const RigChange& other) {
+          return moves_body(other.kind) != body || (body && other.kind != change.kind);
+        });
+    if (both) return &change;
+  }
+  return nullptr;
+}
+
+Error refused(const CalibrateUpdateOptions& options, std::string what, std::string why, std::string remedy) {
+  return {ErrorKind::kBadData, std::move(what), options.session.string(), std::move(why), std::move(remedy)};
+}
+
+/// The parts that have changed.
+Calibration change_of(const RigCheck& rig) {
+  const Calibration& before = rig.calibration;
+  const std::vector<RigChange>& changes = rig.movement.changes;
+  const bool body =
+      std::any_of(changes.begin(), changes.end(), [](const RigChange& c) { return moves_body(c.kind); });
+  const bool lights = std::any_of(changes.begin(), changes.end(),
+                                  [](const RigChange& c) { return c.kind != ChangeKind::kCamera; });
+  Calibration change;
+  change.subject = before.subject;
+  change.subject.measured.clear();
+  if (body) {
+    change.camera = rig.movement.camera;
+    change.camera_covariance = before.camera_covariance;
+    change.fiducials = before.fiducials;
+  }
+  if (lights || (body && !before.patches.empty())) {
+    change.lights = rig.movement.lights;
+    change.light_covariance = merged(before.light_covariance, rig.movement.covariance);
+    for (const WhitePatch& patch : before.patches) {
+      change.patches.push_back(
+          relocated(patch, *before.camera, rig.movement.camera, tag_height_mm(before.fiducials)));
+    }
+  }
+  return change;
+}
+
+CalibrationReport report_of(const RigCheck& rig, const fs::path& session) {
+  CalibrationReport report;
+  report.part = "update";
+  report.title = fmt::format("Update of {}", rig.calibration.subject.rig);
+  ReportSection section = {"What was fitted again", {}, {}, {}};
+  report.numbers = {{"session", session.string()},
+                    {"updates", rig.calibration.id},
+                    {"chi_square_before", rig.movement.chi_square_before},
+                    {"chi_square_after", rig.movement.chi_square_after},
+                    {"cost_mean_deg", rig.cost.mean_deg},
+                    {"cost_worst_deg", rig.cost.worst_deg}};
+  for (const RigChange& change : rig.movement.changes) {
+    section.paragraphs.push_back(verdict_of(change).text + ".");
+    report.numbers["changes"].push_back(json_of(change));
+  }
+  section.paragraphs.push_back(
+      "Everything else is as it was. The rig frame stays with the table: a table that moved is seen as a "
+      "camera and "
+      "LEDs that moved the other way.");
+  report.sections.push_back(std::move(section));
+  report.summary =
+      fmt::format("Without this update scans would be off by {:.2f} degrees in the mean, {:.2f} at worst",
+                  rig.cost.mean_deg, rig.cost.worst_deg);
+  return report;
+}
+
+}  // namespace
+
+Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options, const JobContext& context) {
+  if (is_there(options.output)) {
+    return Error{ErrorKind::kCannotCreate, "the new calibration is there already", options.output.string(),
+                 "a calibration is never changed in place", "name another folder"};
+  }
+  const Result<RigCheck> rig = look_at_rig(
+      {options.session, options.from, options.sheet, {}, options.paper_delta, options.movement}, context);
+  if (!rig) return rig.error();
+  if (rig->movement.chi_square_after > calibration::kUnexplainedFrom) {
+    return refused(
+        options, "what has happened is not understood",
+        fmt::format("with every change that was found, chi-square is still {:.1f} for each observation",
+                    rig->movement.chi_square_after),
+        "see whether a patch is covered or a tag was laid elsewhere, else calibrate again");
+  }
+  if (rig->movement.changes.empty()) {
+    return refused(options, "there is nothing to update",
+                   "tags and readings are what the calibration predicts",
+                   "go on with the calibration that there is");
+  }
+  if (const RigChange* change = ambiguous(rig->movement)) {
+    return refused(options, "what has moved cannot be told", sentence(*change),
+                   "show the sheet of white paper and name its sheet.toml, or calibrate again");
+  }
+  CalibrateOutcome outcome;
+  outcome.report = report_of(*rig, options.session);
+  const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
+  Result<Calibration> written =
+      derive_calibration(from, change_of(*rig), options.output, report_files(outcome.report));
+  if (!written) return std::move(written).error();
+  outcome.folder = options.output;
+  outcome.calibration = std::move(*written);
+  return outcome;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "app/jobs/calibrate/outcome.h"
+#include "app/jobs/job.h"
+#include "calibration/checks/movement.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+struct CalibrateUpdateOptions {
+  std::filesystem::path session =
+      {};                           ///< taken after the move: any that shows tags, white patches or the sheet
+  std::filesystem::path from = {};  ///< the calibration to update; empty: the session's own
+  std::filesystem::path sheet = {};   ///< sheet.toml where the session shows that sheet; empty: it does not
+  std::filesystem::path output = {};  ///< the new calibration, which must not be there yet
+  std::optional<double> paper_delta = {};  ///< of patches and sheet, as CalibrateCheckOptions has it
+  calibration::MovementOptions movement = {};
+};
+
+/// Fits again what has moved (calibration/checks/movement.h), the rest held by what the calibration knows of
+/// it, and writes a new calibration: camera.json where camera and table moved to each other, lights.json
+/// where LEDs moved to the table or changed, every other part as it was, and report/update.html. The rig
+/// frame stays with the table. Sessions keep the calibration that they were taken with; `weft solve
+/// --calibration` solves them again with this one.
+///
+/// Errors: as look_at_rig(); kBadData where nothing has moved, and so there is nothing to update, or where
+/// what moved cannot be told from something else that calls for another update; then nothing is written.
+Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options, const JobContext& context);
+
+}  // namespace weft::app

@@ -1,0 +1,294 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/doctor.h"
+
+#include <fmt/format.h>
+#include <sys/timex.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+#include "core/calibration.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Verdict = Finding::Verdict;
+
+constexpr double kLowBattery = 0.2;
+constexpr double kMegabyte = 1e6;
+constexpr int kSessionFrames = 12;
+
+/// Programs that take devices of a rig away, and what keeps them off.
+struct Thief {
+  std::string_view name;  ///< as /proc/PID/comm has it: at most 15 letters
+  std::string_view takes;
+  std::string_view does;
+  std::string_view remedy;
+};
+constexpr std::array kThieves = {
+    Thief{"ModemManager", "board", "sends modem commands to every new serial port",
+          "sudo systemctl disable --now ModemManager"},
+    Thief{"brltty", "board", "takes boards with a CH340 for a braille display", "sudo apt-get remove brltty"},
+    Thief{"gvfs-gphoto2-vo", "camera", "claims every camera that is plugged in",
+          "systemctl --user mask --now gvfs-gphoto2-volume-monitor"},
+    Thief{"gvfsd-gphoto2", "camera", "has the camera mounted as a disk", "gio mount -s gphoto2"},
+};
+
+std::string first_line(const fs::path& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+std::optional<int> number_of(const std::string& text) {
+  int value = 0;
+  const auto end = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (end.ec != std::errc() || end.ptr != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// visit(pid, folder) for each process that can be seen.
+template <typename Visit>
+void for_each_process(const SystemPlaces& places, const Visit& visit) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(places.proc, ignored)) {
+    if (const std::optional<int> pid = number_of(entry.path().filename().string())) visit(*pid, entry.path());
+  }
+}
+
+Finding fault(std::string part, std::string says, std::string remedy) {
+  return {Verdict::kFault, std::move(part), std::move(says), std::move(remedy)};
+}
+
+void report_holders(const std::vector<Holder>& holders, const std::string& part, const fs::path& file,
+                    std::vector<Finding>& found) {
+  for (const Holder& holder : holders) {
+    const auto* const thief =
+        std::find_if(kThieves.begin(), kThieves.end(), [&](const Thief& t) { return t.name == holder.name; });
+    const bool known = thief != kThieves.end();
+    found.push_back(fault(part,
+                          fmt::format("{} (process {}) holds {}", holder.name, holder.pid, file.string()),
+                          known ? std::string(thief->remedy) : fmt::format("kill {}", holder.pid)));
+  }
+}
+
+/// Programs that hold nothing now and will take the device at the next replug.
+void report_thieves(std::string_view part, const SystemPlaces& places, std::vector<Finding>& found) {
+  if (is_there(places.udev / "70-weft.rules")) return;
+  for_each_process(places, [&](int pid, const fs::path& folder) {
+    const std::string name = first_line(folder / "comm");
+    for (const Thief& thief : kThieves) {
+      if (thief.takes != part || thief.name != name) continue;
+      found.push_back({Verdict::kWarning, std::string(part),
+                       fmt::format("{} (process {}) runs and {}", name, pid, thief.does),
+                       std::string(thief.remedy)});
+    }
+  });
+}
+
+bool has_fault(const std::vector<Finding>& found, std::size_t from) {
+  return std::any_of(found.begin() + static_cast<std::ptrdiff_t>(from), found.end(),
+                     [](const Finding& f) { return f.verdict == Verdict::kFault; });
+}
+
+void examine_board_port(const capture::Rig& rig, const SystemPlaces& places, std::vector<Finding>& found) {
+  const std::size_t before = found.size();
+  std::error_code failed;
+  const fs::path port = fs::weakly_canonical(rig.board.port, failed);
+  if (failed || !is_there(port)) {
+    found.push_back(fault("board", fmt::format("there is no port {}", rig.board.port),
+                          "plug the board in; ls -l /dev/serial/by-id names what is there"));
+    return;
+  }
+  if (::access(port.c_str(), R_OK | W_OK) != 0) {
+    found.push_back(fault("board", fmt::format("this user may not use {}", port.string()),
+                          "sudo usermod -aG dialout $USER, then log in again"));
+  }
+  report_holders(holders_of(port, places), "board", port, found);
+  report_thieves("board", places, found);
+  if (!has_fault(found, before)) found.push_back({Verdict::kFine, "board", port.string() + " is free", ""});
+}
+
+struct UsbCamera {
+  std::string name;
+  fs::path node;  ///< /dev/bus/usb/BBB/DDD
+  int megabits = 0;
+};
+
+/// Still-image devices (USB class 6) that are plugged in.
+std::vector<UsbCamera> usb_cameras(const SystemPlaces& places) {
+  std::vector<UsbCamera> cameras;
+  std::error_code ignored;
+  const fs::path devices = places.sys / "bus/usb/devices";
+  for (const fs::directory_entry& entry : fs::directory_iterator(devices, ignored)) {
+    const fs::path& device = entry.path();
+    const fs::path interface = device / (device.filename().string() + ":1.0");
+    const std::optional<int> bus = number_of(first_line(device / "busnum"));
+    const std::optional<int> number = number_of(first_line(device / "devnum"));
+    if (first_line(interface / "bInterfaceClass") != "06" || !bus || !number) continue;
+    cameras.push_back({first_line(device / "product"),
+                       places.dev / "bus/usb" / fmt::format("{:03}", *bus) / fmt::format("{:03}", *number),
+                       number_of(first_line(device / "speed")).value_or(0)});
+  }
+  return cameras;
+}
+
+void examine_usb(const SystemPlaces& places, std::vector<Finding>& found) {
+  const std::vector<UsbCamera> cameras = usb_cameras(places);
+  if (cameras.empty()) {
+    found.push_back(fault("camera", "no camera is plugged in",
+                          "switch it on, and use its own cable without a hub; lsusb lists what is there"));
+  }
+  for (const UsbCamera& camera : cameras) {
+    const std::size_t before = found.size();
+    if (::access(camera.node.c_str(), R_OK | W_OK) != 0) {
+      found.push_back(fault("camera", fmt::format("this user may not use {}", camera.node.string()),
+                            "sudo usermod -aG plugdev $USER, then log in again"));
+    }
+    report_holders(holders_of(camera.node, places), "camera", camera.node, found);
+    if (camera.megabits > 0 && camera.megabits < 480) {
+      found.push_back({Verdict::kWarning, "camera",
+                       fmt::format("{} runs at {} Mbit/s", camera.name, camera.megabits),
+                       "use a port and cable of USB 2 or better"});
+    }
+    if (!has_fault(found, before))
+      found.push_back(
+          {Verdict::kFine, "camera", fmt::format("{} at {} is free", camera.name, camera.node.string()), ""});
+  }
+  report_thieves("camera", places, found);
+}
+
+void examine_room(const std::string& part, const fs::path& folder, std::uint64_t frame_bytes,
+                  std::vector<Finding>& found) {
+  if (Result<void> ok = make_writable_folder(folder); !ok) {
+    found.push_back(fault(part, ok.error().message(), ok.error().remedy));
+    return;
+  }
+  const double free = static_cast<double>(free_disk_bytes(folder));
+  const double session = static_cast<double>(frame_bytes * kSessionFrames);
+  const std::string room = fmt::format("{} has {:.0f} MB free, room for {:.0f} sessions", folder.string(),
+                                       free / kMegabyte, session > 0 ? std::floor(free / session) : 0);
+  if (free < session) {
+    found.push_back(fault(part, room, "free some, or name another disk in the rig file"));
+  } else if (free < 20 * session) {
+    found.push_back({Verdict::kWarning, part, room, "free some before the night"});
+  } else {
+    found.push_back({Verdict::kFine, part, room, ""});
+  }
+}
+
+void examine_calibration(const capture::Rig& rig, std::vector<Finding>& found) {
+  if (rig.scan.calibration.empty()) {
+    found.push_back({Verdict::kWarning, "calibration",
+                     "the rig file names none: frames are not compared with it",
+                     "calibrate the rig (docs/calibration.md) and name the folder under [scan]"});
+    return;
+  }
+  const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
+  if (!calibration) {
+    found.push_back(fault("calibration", calibration.error().message(), calibration.error().remedy));
+    return;
+  }
+  const std::size_t before = found.size();
+  const CalibrationSubject& subject = calibration->subject;
+  const auto wrong = [&](const std::string& says) {
+    found.push_back(
+        fault("calibration", says, "name the calibration of this rig under [scan], or calibrate again"));
+  };
+  if (subject.rig != rig.name)
+    wrong(fmt::format("it is of the rig {}, this one is {}", subject.rig, rig.name));
+  if (subject.f_number > 0 && std::abs(subject.f_number / rig.scan.f_number - 1) > 0.01)
+    wrong(fmt::format("it was measured at f/{:g}, scans are at f/{:g}", subject.f_number, rig.scan.f_number));
+  if (!rig.camera.serial.empty() && !subject.camera_serial.empty() &&
+      rig.camera.serial != subject.camera_serial)
+    wrong(fmt::format("it is of camera {}, this one is {}", subject.camera_serial, rig.camera.serial));
+  if (!calibration->lights) wrong("it has no lights");
+  if (!has_fault(found, before)) {
+    found.push_back({Verdict::kFine, "calibration",
+                     fmt::format("{}{}", calibration->id.substr(0, 12),
+                                 subject.measured.empty() ? "" : ", measured " + subject.measured),
+                     ""});
+  }
+}
+
+void examine_clock(std::vector<Finding>& found) {
+  struct timex clock = {};
+  const bool synchronised = ::adjtimex(&clock) != TIME_ERROR && (clock.status & STA_UNSYNC) == 0;
+  found.push_back(
+      synchronised ? Finding{Verdict::kFine, "clock", "it is set by the network", ""}
+                   : Finding{Verdict::kWarning, "clock", "nothing sets it", "sudo timedatectl set-ntp true"});
+}
+
+}  // namespace
+
+std::vector<Holder> holders_of(const fs::path& file, const SystemPlaces& places) {
+  std::vector<Holder> holders;
+  for_each_process(places, [&](int pid, const fs::path& folder) {
+    if (pid == ::getpid()) return;
+    std::error_code ignored;
+    for (const fs::directory_entry& fd : fs::directory_iterator(folder / "fd", ignored)) {
+      std::error_code unreadable;
+      if (fs::read_symlink(fd.path(), unreadable) != file || unreadable) continue;
+      holders.push_back({pid, first_line(folder / "comm")});
+      return;
+    }
+  });
+  std::sort(holders.begin(), holders.end(), [](const Holder& a, const Holder& b) { return a.pid < b.pid; });
+  return holders;
+}
+
+std::vector<Finding> examine_ports(const capture::Rig& rig, const SystemPlaces& places) {
+  std::vector<Finding> found;
+  examine_board_port(rig, places, found);
+  if (!rig.camera.port.starts_with("ptpip:")) examine_usb(places, found);
+  return found;
+}
+
+std::vector<Finding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes) {
+  std::vector<Finding> found;
+  examine_calibration(rig, found);
+  examine_room("disk", rig.scan.sessions, frame_bytes, found);
+  if (!rig.scan.copy.empty()) examine_room("second disk", rig.scan.copy, frame_bytes, found);
+  examine_clock(found);
+  return found;
+}
+
+std::vector<Finding> examine_devices(const capture::Rig& rig, const Opened& open) {
+  std::vector<Finding> found;
+  if (const Result<std::string> greeting = open.board(); greeting) {
+    found.push_back({Verdict::kFine, "board", *greeting, ""});
+  } else {
+    found.push_back(fault("board", greeting.error().message(), greeting.error().remedy));
+  }
+  const Result<capture::CameraFacts> facts = open.camera();
+  if (!facts) {
+    found.push_back(fault("camera", facts.error().message(), facts.error().remedy));
+    return found;
+  }
+  found.push_back({Verdict::kFine, "camera",
+                   fmt::format("{} {} at {}, battery {:.0f} %", facts->model, facts->serial, facts->port,
+                               100 * facts->battery),
+                   ""});
+  if (facts->battery < kLowBattery)
+    found.push_back(
+        {Verdict::kWarning, "camera", "its battery will not last", "charge it, or use mains power"});
+  if (rig.camera.serial.empty())
+    found.push_back({Verdict::kWarning, "camera", "the rig file takes any camera",
+                     fmt::format("write serial = \"{}\" under [camera]", facts->serial)});
+  if (std::abs(facts->clock_offset_s) > 60 + facts->clock_uncertainty_s)
+    found.push_back({Verdict::kWarning, "camera",
+                     fmt::format("its clock is off by {:.0f} s", facts->clock_offset_s),
+                     "set date and time in the camera's menu"});
+  return found;
+}
+
+}  // namespace weft::app

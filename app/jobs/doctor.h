@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "capture/devices.h"
+#include "capture/rig.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// What is right or wrong with one part of a rig's set-up.
+struct Finding {
+  enum class Verdict { kFine, kWarning, kFault };
+  Verdict verdict = Verdict::kFine;
+  std::string part;    ///< "board", "camera", "disk"
+  std::string says;    ///< one sentence
+  std::string remedy;  ///< the command that mends it, or what to do; empty where all is well
+};
+
+/// Where the system tells about itself; tests bring their own.
+struct SystemPlaces {
+  std::filesystem::path proc = "/proc";
+  std::filesystem::path sys = "/sys";
+  std::filesystem::path dev = "/dev";
+  std::filesystem::path udev = "/etc/udev/rules.d";
+};
+
+/// A process that holds a file open, or that is known to take devices away.
+struct Holder {
+  int pid = 0;
+  std::string name;
+
+  friend bool operator==(const Holder&, const Holder&) = default;
+};
+
+/// The processes that hold `file` open, by what this user may see of them.
+std::vector<Holder> holders_of(const std::filesystem::path& file, const SystemPlaces& places);
+
+/// Without touching the devices: who holds the board's port or the camera, and who would take them
+/// (ModemManager and brltty of boards, gvfs of cameras); permissions; the camera's USB speed.
+std::vector<Finding> examine_ports(const capture::Rig& rig, const SystemPlaces& places = {});
+
+/// Room for sessions of `frame_bytes` a frame, whether the folders can be written, the calibration, the
+/// machine's clock.
+std::vector<Finding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes);
+
+/// What the devices say of themselves when they are opened.
+struct Opened {
+  std::function<Result<std::string>()> board;  ///< its greeting in words
+  std::function<Result<capture::CameraFacts>()> camera;
+};
+std::vector<Finding> examine_devices(const capture::Rig& rig, const Opened& open);
+
+}  // namespace weft::app

@@ -1,0 +1,406 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/capture/fault_matrix.h"
+
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <random>
+#include <set>
+#include <thread>
+
+#include "bench/capture/rig_process.h"
+#include "capture/raw/decode.h"
+#include "core/files.h"
+#include "core/session.h"
+
+namespace weft::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using Steady = std::chrono::steady_clock;
+
+constexpr int kShots = 12;      // ten LEDs, the first once more, the dark one
+constexpr double kScan_s = 90;  // a scan that takes longer hangs
+constexpr double kUsual_s = 5;  // moments are drawn from this
+
+/// What is done to a rig, and when.
+enum class When { kAtShot, kAtMoment };
+enum class What { kSay, kKillHost, kKillWorker, kKillRig };
+
+struct Fault {
+  const char* name;
+  What what;
+  When when;
+  const char* say;         ///< to the rig; {} is the shot
+  const char* mends = "";  ///< said to the rig after two seconds
+};
+
+// Faults of a shot choose the step themselves: before, in the exposure, in the transfer, after it.
+constexpr std::array kFaults = {
+    Fault{"camera link breaks in the exposure", What::kSay, When::kAtShot, "camera drop_in_exposure {}"},
+    Fault{"camera link breaks before the picture", What::kSay, When::kAtShot, "camera drop_before_object {}"},
+    Fault{"camera link breaks in the transfer", What::kSay, When::kAtShot, "camera drop_in_data {}"},
+    Fault{"an old shot comes after a reconnect", What::kSay, When::kAtShot, "camera old_shot {}"},
+    Fault{"camera does not answer", What::kSay, When::kAtShot, "camera no_answer {}"},
+    Fault{"transfer stalls", What::kSay, When::kAtShot, "camera data_stalls {}"},
+    Fault{"transfer ends early", What::kSay, When::kAtShot, "camera data_ends_early {}"},
+    Fault{"camera busy for a second", What::kSay, When::kAtShot, "camera capture_busy {}"},
+    Fault{"camera busy for ever", What::kSay, When::kAtShot, "camera busy_for_ever {}"},
+    Fault{"picture is never announced", What::kSay, When::kAtShot, "camera no_object {}"},
+    Fault{"picture's size is a lie", What::kSay, When::kAtShot, "camera object_size_lie {}"},
+    Fault{"file is cut short", What::kSay, When::kAtShot, "camera short_data {}"},
+    Fault{"capture is never complete", What::kSay, When::kAtShot, "camera no_capture_complete {}"},
+    Fault{"noise of events", What::kSay, When::kAtShot, "camera property_noise {}"},
+    Fault{"event of an unknown property", What::kSay, When::kAtShot, "camera unsupported_property {}"},
+    Fault{"file comes late", What::kSay, When::kAtShot, "camera file_late {}"},
+    Fault{"frame comes twice", What::kSay, When::kAtShot, "camera duplicate_frame {}"},
+    Fault{"camera off and on", What::kSay, When::kAtShot, "camera power_cycle {}"},
+    Fault{"camera off", What::kSay, When::kAtShot, "camera power_off {}", "camera power_on"},
+    Fault{"battery falls", What::kSay, When::kAtMoment, "camera battery_low"},
+    Fault{"exposure changed by hand", What::kSay, When::kAtMoment, "camera exposure_changed"},
+    Fault{"raw switched off", What::kSay, When::kAtMoment, "camera raw_off"},
+    Fault{"board unplugged and plugged in", What::kSay, When::kAtMoment, "board unplug", "board replug"},
+    Fault{"board reset", What::kSay, When::kAtMoment, "board reset"},
+    Fault{"board's firmware hangs", What::kSay, When::kAtMoment, "board hang"},
+    Fault{"garbage on the line", What::kSay, When::kAtMoment, "board garbage"},
+    Fault{"board hears nothing for a while", What::kSay, When::kAtMoment, "board deaf", "board hear"},
+    Fault{"board is slow", What::kSay, When::kAtMoment, "board slow", "board hear"},
+    Fault{"wrong baud rate for a while", What::kSay, When::kAtMoment, "board wrong_baud", "board hear"},
+    Fault{"LED dies", What::kSay, When::kAtMoment, "light dead 5"},
+    Fault{"LED stays lit", What::kSay, When::kAtMoment, "light stuck 4"},
+    Fault{"wires swapped", What::kSay, When::kAtMoment, "light swap 9 10"},
+    Fault{"room light goes on", What::kSay, When::kAtMoment, "light ambient 0.2"},
+    Fault{"weft is killed", What::kKillHost, When::kAtMoment, ""},
+    Fault{"weft-camera is killed", What::kKillWorker, When::kAtMoment, ""},
+    Fault{"power cut of camera and board", What::kKillRig, When::kAtMoment, ""},
+};
+
+const Fault* fault_named(const std::string& name) {
+  const auto* const found =
+      std::find_if(kFaults.begin(), kFaults.end(), [&](const Fault& f) { return f.name == name; });
+  return found == kFaults.end() ? nullptr : found;
+}
+
+/// An undisturbed scan: what each of its frames shows.
+using Frames = std::map<std::pair<int, ShotRole>, RawFrame>;
+
+Result<Frames> frames_of(const Session& session) {
+  Frames frames;
+  for (const Shot& shot : session.shots) {
+    Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
+    if (!frame) return std::move(frame).error();
+    frames.insert_or_assign({shot.led, shot.role}, std::move(*frame));
+  }
+  return frames;
+}
+
+bool same_counts(const RawFrame& a, const RawFrame& b) {
+  const View<const std::uint16_t> x = a.counts.plane(), y = b.counts.plane();
+  if (x.size() != y.size()) return false;
+  for (int row = 0; row < x.size().height; ++row) {
+    if (!std::equal(x.row(row), x.row(row) + x.size().width, y.row(row))) return false;
+  }
+  return true;
+}
+
+/// One run of the matrix.
+struct Run {
+  int number = 0;
+  const Fault* fault = nullptr;
+  int shot = 1;
+  double moment_s = 0;
+};
+
+std::vector<Run> runs_of(const FaultMatrixOptions& options) {
+  std::vector<const Fault*> faults;
+  for (const std::string& name : options.faults) {
+    if (const Fault* fault = fault_named(name)) faults.push_back(fault);
+  }
+  if (options.faults.empty()) {
+    for (const Fault& fault : kFaults) faults.push_back(&fault);
+  }
+  std::mt19937_64 random(options.seed);
+  std::uniform_int_distribution<int> shot(1, kShots);
+  std::uniform_real_distribution<double> moment(0.05, kUsual_s);
+  std::vector<Run> runs;
+  for (int i = 0; i < options.runs && !faults.empty(); ++i)
+    runs.push_back({i, faults[static_cast<std::size_t>(i) % faults.size()], shot(random), moment(random)});
+  return runs;
+}
+
+/// One rig of the matrix, which takes run after run.
+class Bench {
+ public:
+  Bench(const FaultMatrixOptions& options, fs::path folder) : options_(options), folder_(std::move(folder)) {}
+
+  Result<void> start() {
+    auto rig = RigProcess::start({.programs = options_.programs,
+                                  .scene = options_.scene,
+                                  .folder = folder_,
+                                  .megapixels = options_.megapixels,
+                                  .same_noise = true});
+    if (!rig) return std::move(rig).error();
+    rig_ = std::move(*rig);
+    return {};
+  }
+
+  /// A scan without any fault.
+  Result<Session> undisturbed(const fs::path& session) {
+    auto weft = scan(session);
+    if (!weft) return std::move(weft).error();
+    const std::optional<int> code = (*weft)->wait(kScan_s);
+    if (code == 0) return read_session(session);
+    return Error{ErrorKind::kTryAgain, "an undisturbed scan fails", session.string(), (*weft)->said(),
+                 "mend that first"};
+  }
+
+  Result<void> run(const Run& run, const Frames& truth, FaultTally& tally) {
+    const fs::path session = folder_ / fmt::format("run{:04}.weft", run.number);
+    ++tally.runs;
+    const Steady::time_point began = Steady::now();
+    const Result<std::optional<int>> code = disturbed(run, session);
+    if (!code) return code.error();
+    tally.most_s = std::max(tally.most_s, std::chrono::duration<double>(Steady::now() - began).count());
+    const std::size_t wrong_before = tally.wrong.size();
+    judge_end(run, *code, tally);
+    if (Result<void> ok = make_well(); !ok) return ok;
+    bool ended_well = *code == 0;
+    if (!ended_well) {
+      const Result<bool> resumed = resume(run, session, tally);
+      if (!resumed) return resumed.error();
+      ended_well = *resumed;
+    }
+    const bool right = judge_session(run, session, truth, tally) && ended_well;
+    if (right) ++(*code == 0 ? tally.complete : tally.resumed);
+    clear(run, session, tally.wrong.size() > wrong_before);
+    return {};
+  }
+
+ private:
+  Result<std::unique_ptr<ChildProcess>> scan(const fs::path& session) const {
+    return rig_->weft(
+        {"scan", "-o", session.string(), "--fabric", "matrix", "--exposure", "20000", "--no-preview"},
+        "scan.log");
+  }
+
+  static void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
+
+  /// Exit code of the scan that the fault befalls; nothing where it had to be killed.
+  Result<std::optional<int>> disturbed(const Run& run, const fs::path& session) {
+    const Fault& fault = *run.fault;
+    if (fault.when == When::kAtShot) {
+      if (auto said = rig_->say(fmt::format(fmt::runtime(fault.say), run.shot)); !said)
+        return std::move(said).error();
+    }
+    auto weft = scan(session);
+    if (!weft) return std::move(weft).error();
+    if (fault.when == When::kAtMoment && !(*weft)->wait(run.moment_s)) {
+      if (Result<void> ok = befall(fault, **weft); !ok) return ok.error();
+    }
+    if (*fault.mends != '\0' && !(*weft)->wait(2)) {
+      if (auto said = rig_->say(fault.mends); !said) return std::move(said).error();
+    }
+    const std::optional<int> code = (*weft)->wait(kScan_s);
+    if (!code) (*weft)->signal(SIGKILL);
+    (*weft)->wait(kScan_s);
+    said_ = (*weft)->said();
+    return code;
+  }
+
+  Result<void> befall(const Fault& fault, const ChildProcess& weft) {
+    switch (fault.what) {
+      case What::kSay:
+        if (auto said = rig_->say(fault.say); !said) return std::move(said).error();
+        return {};
+      case What::kKillHost:
+        weft.signal(SIGKILL);
+        return {};
+      case What::kKillWorker:
+        if (const std::optional<pid_t> worker = child_of(weft.pid(), "weft-camera")) ::kill(*worker, SIGKILL);
+        return {};
+      case What::kKillRig:
+        ::kill(rig_->pid(), SIGKILL);
+        rig_.reset();
+        return start();
+    }
+    return {};
+  }
+
+  Result<void> make_well() {
+    for (const char* line :
+         {"board replug", "board hear", "light normal", "camera power_on", "camera well"}) {
+      if (auto said = rig_->say(line); !said && said.error().kind != ErrorKind::kUsage)
+        return std::move(said).error();
+    }
+    return {};
+  }
+
+  void judge_end(const Run& run, std::optional<int> code, FaultTally& tally) const {
+    const bool killed = run.fault->what == What::kKillHost && code == 128 + SIGKILL;
+    const bool has_sentence = code != 0 && said_.find("weft: ") != std::string::npos;
+    if (code == 0 || killed || has_sentence) return;
+    ++tally.silent;
+    tally.wrong.push_back(fmt::format("run {}: {}: {}", run.number,
+                                      code ? fmt::format("ended with {}", *code) : "did not end", said_));
+  }
+
+  /// Whether the same command finishes the scan.
+  Result<bool> resume(const Run& run, const fs::path& session, FaultTally& tally) {
+    auto weft = scan(session);
+    if (!weft) return std::move(weft).error();
+    const std::optional<int> code = (*weft)->wait(kScan_s);
+    if (code != 0) tally.wrong.push_back(fmt::format("run {}: not resumed: {}", run.number, (*weft)->said()));
+    return code == 0;
+  }
+
+  /// Whether the session is complete and every frame right.
+  static bool judge_session(const Run& run, const fs::path& folder, const Frames& truth, FaultTally& tally) {
+    const Result<Session> session = read_session(folder);
+    if (!session) {
+      tally.lost += static_cast<int>(truth.size());
+      tally.wrong.push_back(fmt::format("run {}: {}", run.number, session.error().message()));
+      return false;
+    }
+    const int before = tally.lost + tally.mislabelled + tally.half_written;
+    std::set<fs::path> named;
+    std::set<std::pair<int, ShotRole>> seen;
+    for (const Shot& shot : session->shots) {
+      named.insert(session->path_of(shot));
+      seen.insert({shot.led, shot.role});
+      judge_frame(run, *session, shot, truth, tally);
+    }
+    for (const auto& [what, frame] : truth) tally.lost += seen.contains(what) ? 0 : 1;
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder / "raw", ignored))
+      tally.half_written += named.contains(entry.path()) ? 0 : 1;
+    if (tally.lost + tally.mislabelled + tally.half_written == before && session->state == "complete")
+      return true;
+    tally.wrong.push_back(fmt::format("run {} (shot {}, {:.2f} s): state {}, {} of {} frames", run.number,
+                                      run.shot, run.moment_s, session->state, session->shots.size(),
+                                      truth.size()));
+    return false;
+  }
+
+  static void judge_frame(const Run& run, const Session& session, const Shot& shot, const Frames& truth,
+                          FaultTally& tally) {
+    const fs::path file = session.path_of(shot);
+    const Result<std::string> digest = sha256_of_file(file);
+    const Result<RawFrame> frame = capture::decode_raw(file);
+    if (!digest || *digest != shot.sha256 || !frame) {
+      ++tally.half_written;
+      tally.wrong.push_back(fmt::format("run {}: {} is not whole", run.number, shot.file));
+      return;
+    }
+    const auto expected = truth.find({shot.led, shot.role});
+    if (expected != truth.end() && same_counts(*frame, expected->second)) return;
+    ++tally.mislabelled;
+    tally.wrong.push_back(fmt::format("run {} (shot {}, {:.2f} s): {} is not what LED {} shows", run.number,
+                                      run.shot, run.moment_s, shot.file, shot.led));
+  }
+
+  void clear(const Run& run, const fs::path& session, bool wrong) const {
+    std::error_code ignored;
+    if (wrong && !options_.keep.empty()) {
+      fs::create_directories(options_.keep, ignored);
+      fs::copy(session, options_.keep / fmt::format("run{:04}.weft", run.number), fs::copy_options::recursive,
+               ignored);
+      fs::copy(folder_ / "scan.log", options_.keep / fmt::format("run{:04}.log", run.number), ignored);
+    }
+    fs::remove_all(session, ignored);
+  }
+
+  const FaultMatrixOptions& options_;
+  fs::path folder_;
+  std::unique_ptr<RigProcess> rig_;
+  std::string said_;
+};
+
+}  // namespace
+
+std::vector<std::string> fault_names() {
+  std::vector<std::string> names;
+  for (const Fault& fault : kFaults) names.emplace_back(fault.name);
+  return names;
+}
+
+Result<std::vector<FaultTally>> fault_matrix(const FaultMatrixOptions& options) {
+  const ScratchFolder scratch;
+  const std::vector<Run> runs = runs_of(options);
+  Bench first(options, scratch.path() / "rig0");
+  if (Result<void> ok = first.start(); !ok) return std::move(ok).error();
+  const Result<Session> undisturbed = first.undisturbed(scratch.path() / "truth.weft");
+  if (!undisturbed) return undisturbed.error();
+  const Result<Frames> truth = frames_of(*undisturbed);
+  if (!truth) return truth.error();
+
+  std::mutex mutex;
+  std::map<std::string, FaultTally> tallies;
+  std::optional<Error> failure;
+  std::atomic<std::size_t> next = 0;
+  int done = 0;
+  const auto work = [&](Bench& bench) {
+    for (std::size_t i = next++; i < runs.size(); i = next++) {
+      FaultTally tally;
+      const Result<void> ran = bench.run(runs[i], *truth, tally);
+      const std::lock_guard lock(mutex);
+      if (!ran) {
+        failure = ran.error();
+        next = runs.size();
+        return;
+      }
+      FaultTally& sum = tallies[runs[i].fault->name];
+      sum.fault = runs[i].fault->name;
+      for (int FaultTally::*const count :
+           {&FaultTally::runs, &FaultTally::complete, &FaultTally::resumed, &FaultTally::lost,
+            &FaultTally::mislabelled, &FaultTally::half_written, &FaultTally::silent}) {
+        sum.*count += tally.*count;
+      }
+      sum.most_s = std::max(sum.most_s, tally.most_s);
+      sum.wrong.insert(sum.wrong.end(), tally.wrong.begin(), tally.wrong.end());
+      options.progress(++done, static_cast<int>(runs.size()));
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (int r = 1; r < options.rigs; ++r) {
+    threads.emplace_back([&, r] {
+      Bench bench(options, scratch.path() / fmt::format("rig{}", r));
+      if (Result<void> ok = bench.start(); ok) {
+        work(bench);
+      } else {
+        const std::lock_guard lock(mutex);
+        failure = ok.error();
+      }
+    });
+  }
+  work(first);
+  threads.clear();
+  if (failure) return *failure;
+  std::vector<FaultTally> all;
+  for (const Fault& fault : kFaults) {
+    if (const auto found = tallies.find(fault.name); found != tallies.end()) all.push_back(found->second);
+  }
+  return all;
+}
+
+Rows rows_of(const std::vector<FaultTally>& tallies) {
+  Rows rows;
+  for (const FaultTally& t : tallies) {
+    rows.push_back({{"fault", t.fault},
+                    {"runs", t.runs},
+                    {"complete", t.complete},
+                    {"resumed", t.resumed},
+                    {"lost", t.lost},
+                    {"mislabelled", t.mislabelled},
+                    {"half_written", t.half_written},
+                    {"silent", t.silent},
+                    {"most_s", t.most_s}});
+  }
+  return rows;
+}
+
+}  // namespace weft::bench

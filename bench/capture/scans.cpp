@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/capture/scans.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <map>
+
+#include "app/jobs/job.h"
+#include "bench/capture/rig_process.h"
+#include "capture/raw/decode.h"
+#include "capture/scan/scan.h"
+#include "core/files.h"
+
+namespace weft::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kRows = 10;
+
+/// What frames show, whatever their times and numbers.
+using Digests = std::map<std::string, std::string>;
+
+Result<Digests> digests_of(const Session& session) {
+  Digests digests;
+  for (const Shot& shot : session.shots) {
+    const Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
+    if (!frame) return frame.error();
+    const View<const std::uint16_t> counts = frame->counts.plane();
+    std::string bytes;
+    for (int y = 0; y < counts.size().height; ++y) {
+      bytes.append(reinterpret_cast<const char*>(counts.row(y)),
+                   static_cast<std::size_t>(counts.size().width) * sizeof(std::uint16_t));
+    }
+    digests[shot.file] = sha256_of(bytes);
+  }
+  return digests;
+}
+
+struct OneScan {
+  double seconds = 0;
+  std::size_t frames = 0;
+  Digests digests;
+};
+
+Result<OneScan> scan_once(const ScansOptions& options, const fs::path& folder) {
+  app::Stopwatch watch;
+  Result<app::RigDevices> devices = options.open(options.rig);
+  if (!devices) return std::move(devices).error();
+  capture::ScanRequest request;
+  request.session = folder;
+  request.fabric = "bench";
+  request.rig = options.rig.name;
+  request.calibration = options.rig.scan.calibration;
+  request.exposure = {options.exposure_us, options.rig.scan.iso, options.rig.scan.f_number};
+  const Result<capture::ScanOutcome> outcome = capture::scan(request, *devices->lamps, *devices->camera, {},
+                                                             {.cancel = options.stop, .pause = nullptr});
+  if (!outcome) return outcome.error();
+  OneScan one;
+  one.seconds = watch.lap();
+  one.frames = outcome->session.shots.size();
+  Result<Digests> digests = digests_of(outcome->session);
+  if (!digests) return std::move(digests).error();
+  one.digests = std::move(*digests);
+  return one;
+}
+
+}  // namespace
+
+Result<Rows> capture_scans_table(const ScansOptions& options) {
+  const ScratchFolder scratch;
+  Rows rows;
+  Digests first;
+  std::vector<double> seconds;
+  int differ = 0;
+  for (int i = 1; i <= options.scans; ++i) {
+    const fs::path session = scratch.path() / "scan.weft";
+    const Result<OneScan> one = scan_once(options, session);
+    if (!one) return one.error();
+    if (i == 1) first = one->digests;
+    for (const auto& [file, digest] : one->digests) differ += first[file] == digest ? 0 : 1;
+    seconds.push_back(one->seconds);
+    std::error_code failed;
+    fs::remove_all(session, failed);
+    if (failed) return cannot_write(session, failed.value());
+    options.progress(i);
+    if (i != 1 && i != options.scans && i % std::max(1, options.scans / kRows) != 0) continue;
+    std::vector<double> sorted = seconds;
+    std::sort(sorted.begin(), sorted.end());
+    const ProcessSize size = size_of(::getpid()).value_or(ProcessSize{});
+    rows.push_back({{"scans", i},
+                    {"frames", one->frames},
+                    {"least_s", sorted.front()},
+                    {"median_s", sorted[sorted.size() / 2]},
+                    {"median_s_per_frame", sorted[sorted.size() / 2] / static_cast<double>(one->frames)},
+                    {"resident_mb", static_cast<double>(size.resident_bytes) / 1e6},
+                    {"descriptors", size.descriptors},
+                    {"frames_that_differ", differ}});
+  }
+  return rows;
+}
+
+}  // namespace weft::bench

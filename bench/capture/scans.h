@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <stop_token>
+
+#include "app/daemon/rig_keeper.h"
+#include "bench/report.h"
+#include "capture/rig.h"
+#include "core/result.h"
+
+namespace weft::bench {
+
+struct ScansOptions {
+  capture::Rig rig;
+  app::OpenDevices open;
+  int scans = 1;
+  double exposure_us = 20000;
+  std::stop_token stop = {};
+  std::function<void(int done)> progress = [](int) {};
+};
+
+/// Scans the same cloth again and again, each time with the devices opened anew, looks whether every frame
+/// shows what it showed in the first scan (so the rig's noise must depend on the light alone), and removes
+/// the session. Rows, at about ten points along the way: scans, seconds a scan and a frame (least, median),
+/// memory and open descriptors of this process, frames that differ.
+Result<Rows> capture_scans_table(const ScansOptions& options);
+
+}  // namespace weft::bench

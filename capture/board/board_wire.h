@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "capture/board/reply_parser.h"
+#include "capture/board/serial_port.h"
+#include "core/result.h"
+
+namespace weft::capture {
+
+/// Requests to a LED board and their replies. A request that gets no reply in 150 ms is sent again under its
+/// sequence number, three times at most, so that the board does once what it is asked for once.
+class BoardWire {
+ public:
+  explicit BoardWire(std::unique_ptr<SerialPort> port) : port_(std::move(port)) {}
+
+  /// The reply, which may be kWeftError. Errors: kTryAgain (silent), kNoDevice (gone).
+  Result<BoardReply> ask(std::uint8_t command, std::span<const std::uint8_t> payload = {});
+  /// Resets the board by DTR and asks for its greeting until it answers or `most_s` have passed. A bootloader
+  /// swallows what it hears, for up to two seconds.
+  Result<BoardReply> greet(double most_s);
+
+  SerialPort& port() { return *port_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Result<BoardReply> ask_until(Clock::time_point end, std::chrono::milliseconds each, std::uint8_t command,
+                               std::span<const std::uint8_t> payload);
+  /// True and a reply, or false and none in time.
+  Result<bool> listen(Clock::time_point end, std::uint8_t command, BoardReply& reply);
+
+  std::unique_ptr<SerialPort> port_;
+  ReplyParser parser_;
+  std::uint8_t sequence_ = 0;
+};
+
+}  // namespace weft::capture

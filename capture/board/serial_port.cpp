@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/board/serial_port.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <libserialport.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/sysmacros.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "core/files.h"
+
+namespace weft::capture {
+namespace {
+
+constexpr int kBaud = 115200;
+
+Error no_port(const std::string& name, const std::string& what, const std::string& why,
+              const std::string& remedy) {
+  return {ErrorKind::kNoDevice, what, name, why, remedy};
+}
+
+/// Who holds a lock on the device, "weft (process 1234)", as /proc/locks says; empty where it does not.
+std::string holder_of(const struct stat& device) {
+  const std::string inode =
+      fmt::format("{:02x}:{:02x}:{}", major(device.st_dev), minor(device.st_dev), device.st_ino);
+  std::ifstream locks("/proc/locks");
+  for (std::string line; std::getline(locks, line);) {
+    std::istringstream words(line);
+    std::string number, kind, manner, access, at;
+    int process = 0;
+    if (!(words >> number >> kind >> manner >> access >> process >> at)) continue;
+    if (kind != "FLOCK" || at != inode || process <= 0) continue;
+    std::string program = "another program";
+    std::ifstream comm(fmt::format("/proc/{}/comm", process));
+    std::getline(comm, program);
+    return fmt::format("{} (process {})", program, process);
+  }
+  return {};
+}
+
+Error busy(const std::string& name, const std::string& holder) {
+  return no_port(name, "the LED board is held by another program",
+                 holder.empty() ? "it is not said by which" : holder,
+                 "end that program, or scan through its daemon");
+}
+
+Error cannot_open(const std::string& name, int error_number) {
+  if (error_number == EACCES || error_number == EPERM) {
+    return no_port(name, "the LED board's port may not be opened by this user", system_reason(error_number),
+                   "run `sudo usermod -aG dialout $USER` and log in again");
+  }
+  if (error_number == EBUSY) return busy(name, {});
+  return no_port(
+      name, "the LED board is not there", system_reason(error_number),
+      "plug it in, or name its port in the rig file: `ls /dev/serial/by-id` lists those there are");
+}
+
+/// Opens the device and locks it, without its serial settings being touched.
+Result<int> lock_device(const std::string& name) {
+  const int device = ::open(name.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
+  if (device < 0) return cannot_open(name, errno);
+  if (flock(device, LOCK_EX | LOCK_NB) == 0) return device;
+  struct stat facts {};
+  const bool known = fstat(device, &facts) == 0;
+  ::close(device);
+  return busy(name, known ? holder_of(facts) : std::string());
+}
+
+unsigned int milliseconds(std::chrono::milliseconds time) {
+  return static_cast<unsigned int>(std::max<std::int64_t>(1, time.count()));  // 0 would be for ever
+}
+
+}  // namespace
+
+void SerialPort::FreePort::operator()(sp_port* port) const {
+  sp_close(port);
+  sp_free_port(port);
+}
+
+Result<std::unique_ptr<SerialPort>> SerialPort::open(const std::string& name) {
+  auto lock = lock_device(name);
+  if (!lock) return std::move(lock).error();
+  std::unique_ptr<SerialPort> port(new SerialPort(name, *lock));
+  if (auto ready = port->set_up(); !ready) return std::move(ready).error();
+  return port;
+}
+
+SerialPort::~SerialPort() {
+  port_.reset();
+  ::close(lock_);
+}
+
+Result<void> SerialPort::set_up() {
+  sp_port* port = nullptr;
+  if (sp_get_port_by_name(name_.c_str(), &port) != SP_OK) {
+    return no_port(name_, "this is not a serial port", "libserialport does not know it",
+                   "name the LED board's port in the rig file: `ls /dev/serial/by-id` lists those there are");
+  }
+  if (sp_open(port, SP_MODE_READ_WRITE) != SP_OK) {
+    const int why = sp_last_error_code();
+    sp_free_port(port);
+    return cannot_open(name_, why);
+  }
+  port_.reset(port);
+  int descriptor = -1;
+  const bool set = sp_set_baudrate(port, kBaud) == SP_OK && sp_set_bits(port, 8) == SP_OK &&
+                   sp_set_parity(port, SP_PARITY_NONE) == SP_OK && sp_set_stopbits(port, 1) == SP_OK &&
+                   sp_set_flowcontrol(port, SP_FLOWCONTROL_NONE) == SP_OK &&
+                   sp_get_port_handle(port, &descriptor) == SP_OK &&
+                   fcntl(descriptor, F_SETFD, FD_CLOEXEC) == 0;
+  if (!set) return gone();
+  return {};
+}
+
+Result<void> SerialPort::pulse_dtr() {
+  constexpr auto kLow = std::chrono::milliseconds(20);  // the reset capacitor discharges in a few
+  bool done = sp_set_dtr(port_.get(), SP_DTR_OFF) == SP_OK;
+  std::this_thread::sleep_for(kLow);
+  done = done && sp_flush(port_.get(), SP_BUF_BOTH) == SP_OK && sp_set_dtr(port_.get(), SP_DTR_ON) == SP_OK;
+  if (!done) return gone();
+  return {};
+}
+
+Result<void> SerialPort::write(std::span<const std::uint8_t> bytes, std::chrono::milliseconds most) {
+  const int written = sp_blocking_write(port_.get(), bytes.data(), bytes.size(), milliseconds(most));
+  if (written < 0) return gone();
+  if (static_cast<std::size_t>(written) < bytes.size()) {
+    return Error{ErrorKind::kTryAgain, "the LED board's port takes no bytes", name_,
+                 fmt::format("{} of {} in {} ms", written, bytes.size(), most.count()),
+                 "plug the board out and in"};
+  }
+  return {};
+}
+
+Result<std::size_t> SerialPort::read(std::span<std::uint8_t> bytes, std::chrono::milliseconds most) {
+  const int count = sp_blocking_read_next(port_.get(), bytes.data(), bytes.size(), milliseconds(most));
+  // A port that has gone reads as one that is silent, until it is asked how much is waiting.
+  if (count < 0 || (count == 0 && sp_input_waiting(port_.get()) < 0)) return gone();
+  return static_cast<std::size_t>(count);
+}
+
+std::string SerialPort::usb_identity() const {
+  int vendor = 0, product = 0;
+  if (sp_get_port_usb_vid_pid(port_.get(), &vendor, &product) != SP_OK) return {};
+  const char* serial = sp_get_port_usb_serial(port_.get());
+  return fmt::format("{:04x}:{:04x} {}", vendor, product, serial ? serial : "");
+}
+
+Error SerialPort::gone() const {
+  return no_port(name_, "the LED board is gone", "its port does not exist any more",
+                 "check its cable and plug it in");
+}
+
+}  // namespace weft::capture

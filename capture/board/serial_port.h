@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "core/result.h"
+
+struct sp_port;
+
+namespace weft::capture {
+
+/// A serial port at 115200 baud, 8N1, that no other weft can open (libserialport 0.1.1 has no exclusive open:
+/// this holds a lock on the device itself, which goes with the process). Errors: kNoDevice where it is gone,
+/// held by another program, or may not be opened; kTryAgain where it does not take what is written in time.
+class SerialPort {
+ public:
+  static Result<std::unique_ptr<SerialPort>> open(const std::string& name);
+  ~SerialPort();
+  SerialPort(const SerialPort&) = delete;
+  SerialPort& operator=(const SerialPort&) = delete;
+
+  /// Lowers and raises DTR, which resets an Arduino, and throws away what was heard before.
+  Result<void> pulse_dtr();
+  Result<void> write(std::span<const std::uint8_t> bytes, std::chrono::milliseconds most);
+  /// Reads what comes first; 0 bytes where nothing came in time and the port is still there.
+  Result<std::size_t> read(std::span<std::uint8_t> bytes, std::chrono::milliseconds most);
+
+  const std::string& name() const { return name_; }
+  /// Which USB device it is, "2341:0043 5573"; empty where it is none.
+  std::string usb_identity() const;
+
+ private:
+  struct FreePort {
+    void operator()(sp_port* port) const;
+  };
+  SerialPort(std::string name, int lock) : name_(std::move(name)), lock_(lock) {}
+  Result<void> set_up();
+  Error gone() const;
+
+  std::string name_;
+  int lock_;
+  std::unique_ptr<sp_port, FreePort> port_;
+};
+
+}  // namespace weft::capture

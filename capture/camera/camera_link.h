@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/camera/camera_profile.h"
+#include "capture/camera/photograph_evidence.h"
+#include "capture/camera/worker_process.h"
+#include "capture/devices.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::capture {
+
+struct CameraLinkOptions {
+  std::string profile = "nikon-d5100";  ///< built in, or the path of a TOML file
+  std::string port;              ///< "ptpip:ADDRESS:PORT:PORT"; "usb:BUS,DEVICE" or empty: found on USB
+  std::string serial;            ///< empty: whichever camera is there, and from then on that one
+  std::filesystem::path worker;  ///< weft-camera; empty: beside the running program
+  std::filesystem::path state;   ///< folder for what libgphoto2 remembers; empty: one that goes with the link
+  Environment environment;       ///< for the worker, on top of this process's
+};
+
+/// The camera through weft-camera, a process that is killed when it hangs, and started again when it has
+/// crashed. For one thread at a time.
+///
+/// A photograph lands as `FILE.arrived` and gets its name only after its own header has proved it to be the
+/// one that was asked for: raw, its count after the last one's, its time between trigger and now by the
+/// camera's clock, its exposure as set. Else it is removed: kProtocol ("an older photograph arrived") or
+/// kBadData. After kTryAgain, kProtocol and kNoDevice the camera takes nothing until recover().
+class CameraLink : public Camera {
+ public:
+  static Result<std::unique_ptr<CameraLink>> make(CameraLinkOptions options);
+  /// Ends the camera's session, within a second.
+  ~CameraLink() override;
+  CameraLink(const CameraLink&) = delete;
+  CameraLink& operator=(const CameraLink&) = delete;
+
+  Result<CameraFacts> connect() override;
+  Result<CameraFacts> set(const ExposureSettings& exposure) override;
+  Result<std::vector<double>> shutter_times_us() override;
+  Result<Photograph> take(const std::filesystem::path& file, const std::function<void()>& exposed) override;
+  Result<CameraFacts> recover() override;
+
+  /// Of the worker; 0 where none runs.
+  pid_t worker_pid() const { return worker_ ? worker_->pid() : 0; }
+
+ private:
+  CameraLink(CameraLinkOptions options, CameraProfile profile, bool own_state);
+
+  Result<CameraFacts> open(const std::string& serial, bool watch_clock);
+  Result<CameraFacts> note_opened(const Json& opened);
+  void note_clock(const Json& clock);
+  Result<void> start_worker();
+  void end_worker();
+  Result<Json> request(
+      Json asked, double most_s, const std::function<void()>& exposed = [] {});
+  Result<Json> answer_of(WorkerProcess::Deadline deadline, const std::function<void()>& exposed);
+  Result<Photograph> examined(const std::filesystem::path& aside, const Json& landed) const;
+
+  CameraLinkOptions options_;
+  CameraProfile profile_;
+  bool own_state_;
+  std::unique_ptr<WorkerProcess> worker_;
+  int id_ = 0;
+  bool ready_ = false;
+  CameraFacts facts_;
+  std::optional<CameraClock> clock_;
+  std::optional<std::uint32_t> last_image_number_;
+  std::optional<ExposureSettings> wanted_;  // set again after a reconnect
+};
+
+}  // namespace weft::capture

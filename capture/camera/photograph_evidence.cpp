@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/camera/photograph_evidence.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <string>
+
+namespace weft::capture {
+namespace {
+
+// Bodies write nominal values, 1/60 or 0.0167.
+constexpr double kExposureTolerance = 0.02;
+// A clock's seconds as a property and as a photograph's sub-seconds need not turn at the same moment.
+constexpr double kClockSlackS = 0.25;
+
+Error older(const std::string& why) {
+  return {ErrorKind::kProtocol, "an older photograph arrived", "", why, "take this one again"};
+}
+
+Result<void> check_kind(const PhotographFacts& facts) {
+  if (is_raw_ending(facts.ending)) return {};
+  if (facts.ending.empty()) {
+    return Error{ErrorKind::kProtocol, "what arrived is no photograph", "", "its header cannot be read",
+                 "take it again"};
+  }
+  return Error{ErrorKind::kBadData, "the camera sends no raw photographs", "",
+               "a " + facts.ending + " arrived", "set its image quality to raw alone"};
+}
+
+Result<void> check_order(const PhotographFacts& facts, const AskedFor& asked) {
+  if (facts.image_number && asked.last_image_number && *facts.image_number <= *asked.last_image_number)
+    return older(fmt::format("image {} after image {}", *facts.image_number, *asked.last_image_number));
+  const std::optional<double> taken = taken_s(facts, asked.clock);
+  if (!taken) return {};
+  const double slack_s = asked.clock->uncertainty_s + facts.resolution_s + kClockSlackS;
+  if (*taken < asked.triggered_s - slack_s)
+    return older(fmt::format("it was taken {:.1f} s before it was asked for", asked.triggered_s - *taken));
+  if (*taken <= asked.arrived_s + slack_s) return {};
+  return Error{ErrorKind::kProtocol, "the photograph's time lies ahead", "",
+               fmt::format("by {:.1f} s: the camera's clock was set", *taken - asked.arrived_s),
+               "connect the camera again"};
+}
+
+Result<void> check_exposure(const PhotographFacts& facts, const ExposureSettings& set) {
+  const auto differs = [](double said, double wanted) {
+    return said > 0 && wanted > 0 && std::abs(said / wanted - 1) > kExposureTolerance;
+  };
+  const auto refuse = [](const char* name, double said, double wanted) {
+    return Error{ErrorKind::kBadData, "the photograph was not taken as set", "",
+                 fmt::format("{} is {:g}, not {:g}", name, said, wanted),
+                 "leave the camera's dials alone during a scan"};
+  };
+  if (differs(facts.exposure_us, set.exposure_us))
+    return refuse("exposure in us", facts.exposure_us, set.exposure_us);
+  if (differs(facts.iso, set.iso)) return refuse("ISO", facts.iso, set.iso);
+  if (differs(facts.f_number, set.f_number)) return refuse("f-number", facts.f_number, set.f_number);
+  return {};
+}
+
+}  // namespace
+
+std::optional<double> taken_s(const PhotographFacts& facts, const std::optional<CameraClock>& clock) {
+  if (!facts.taken_s || !clock) return {};
+  return *facts.taken_s - clock->offset_s;
+}
+
+Result<void> check_photograph(const PhotographFacts& facts, const AskedFor& asked) {
+  if (Result<void> raw = check_kind(facts); !raw) return raw;
+  if (asked.bytes < facts.data_end) {
+    return Error{
+        ErrorKind::kProtocol, "the photograph is not whole", "",
+        fmt::format("{} bytes arrived, and by its header there are at least {}", asked.bytes, facts.data_end),
+        "take it again"};
+  }
+  if (Result<void> newer = check_order(facts, asked); !newer) return newer;
+  return check_exposure(facts, asked.exposure);
+}
+
+}  // namespace weft::capture

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "capture/raw/tiff_tags.h"
+#include "core/result.h"
+
+namespace weft::capture {
+
+/// What a photograph says of itself, in its own header. What it does not say is empty or 0.
+struct PhotographFacts {
+  std::string
+      ending;  ///< by its content: "dng", "nef", "cr2", "arw", "pef", "tif", "jpg"; empty: none of these
+  std::uint64_t data_end = 0;  ///< the file's least size in bytes, by where its image data lie
+  /// EXIF ImageNumber (TIFF/EP 0x9211), or the shutter count of a Nikon's maker note (0x00A7).
+  std::optional<std::uint32_t> image_number;
+  /// DateTimeOriginal with SubSecTimeOriginal: seconds since 1970 if the camera's clock showed UTC.
+  std::optional<double> taken_s;
+  double resolution_s = 1;  ///< of that: 1 without sub-seconds
+  double exposure_us = 0;
+  double iso = 0;
+  double f_number = 0;
+};
+
+/// Whether this ending is a raw file's.
+bool is_raw_ending(const std::string& ending);
+
+/// Reads the header of any file; nothing in it is believed that does not make sense.
+PhotographFacts photograph_facts(const ReadAt& read_at);
+
+/// kNoInput where the file cannot be read.
+Result<PhotographFacts> read_photograph_facts(const std::filesystem::path& file);
+
+}  // namespace weft::capture

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/camera/worker.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <future>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "capture/camera/camera_profile.h"
+#include "capture/camera/camera_setup.h"
+#include "capture/camera/gphoto_camera.h"
+#include "capture/camera/request_lines.h"
+#include "capture/camera/worker_lines.h"
+#include "core/files.h"
+
+namespace weft::capture {
+namespace {
+
+using Steady = std::chrono::steady_clock;
+
+double seconds_since(Steady::time_point begin) {
+  return std::chrono::duration<double>(Steady::now() - begin).count();
+}
+
+double seconds_since_1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+Error bad_request(const std::string& why) {
+  return {ErrorKind::kUsage, "weft-camera was asked for nothing it knows", "", why, "see docs/protocol.md"};
+}
+
+class Worker {
+ public:
+  Worker(int in, int out) : requests_(in), out_(out) {}
+
+  void serve() {
+    while (const std::optional<std::string> line = requests_.next()) answer(*line);
+    camera_.reset();
+  }
+
+ private:
+  void answer(const std::string& line) {
+    const Json request = Json::parse(line, nullptr, false);
+    id_ = request.is_object() && request.contains("id") ? request["id"] : Json();
+    const Result<Json> done = request.is_object() ? perform(request) : bad_request("the line is no object");
+    if (done) {
+      say("ok", *done);
+    } else {
+      say("error", line_of(done.error()));
+    }
+    if (landed_) camera_->forget(*std::exchange(landed_, std::nullopt));
+  }
+
+  Result<Json> perform(const Json& request) {
+    JsonFields fields(request, "request");
+    const std::string what = fields.text("do");
+    if (Result<void> ok = fields.status(); !ok) return bad_request(ok.error().why);
+    if (what == "open") return open(fields);
+    if (what == "close") {
+      camera_.reset();
+      return Json::object();
+    }
+    const bool known = what == "set" || what == "shutters" || what == "take" || what == "bare";
+    if (!known) return bad_request("\"do\" is \"" + what + "\"");
+    if (!camera_) return bad_request("no camera is open");
+    if (what == "set") return set(fields);
+    if (what == "shutters") return shutters();
+    return what == "take" ? take(fields) : bare(fields);
+  }
+
+  Result<Json> open(JsonFields& fields) {
+    camera_.reset();
+    const std::string name = fields.text("profile");
+    const WantedCamera wanted{fields.text("port"), fields.text("serial")};
+    const bool watched = fields.has("watch_clock");
+    if (Result<void> ok = fields.status(); !ok) return bad_request(ok.error().why);
+    Result<CameraProfile> profile = read_camera_profile(name);
+    if (!profile) return std::move(profile).error();
+    profile_ = std::move(*profile);
+
+    auto opened = open_camera(profile_, wanted);
+    if (!opened) return std::move(opened).error();
+    GphotoCamera& camera = **opened;
+    const Result<std::string> serial = serial_of(camera, profile_);
+    if (!serial) return serial.error();
+    const Result<int> dropped = drop_old_photographs(camera);
+    if (!dropped) return dropped.error();
+    if (Result<void> right = check_body(camera, profile_); !right) return std::move(right).error();
+    if (Result<void> locked = lock_settings(camera, profile_); !locked) return std::move(locked).error();
+    const Result<double> battery = battery_of(camera, profile_);
+    if (!battery) return battery.error();
+    const Result<ExposureSettings> exposure = exposure_of(camera, profile_);
+    if (!exposure) return exposure.error();
+    const auto clock = read_clock(camera, profile_, watched);
+    camera_ = std::move(*opened);
+    return Json{{"model", profile_.model},
+                {"serial", *serial},
+                {"port", camera_->address().port},
+                {"battery", *battery},
+                {"exposure", line_of(*exposure)},
+                {"clock", clock ? Json{{"offset_s", clock->offset_s}, {"uncertainty_s", clock->uncertainty_s}}
+                                : Json()},
+                {"dropped", *dropped}};
+  }
+
+  Result<Json> set(JsonFields& fields) {
+    const Result<ExposureSettings> wanted = exposure_of_line(fields.object("exposure"));
+    if (!wanted) return bad_request(wanted.error().why);
+    const Result<ExposureSettings> exposure = set_exposure(*camera_, profile_, *wanted);
+    if (!exposure) return exposure.error();
+    const Result<double> battery = battery_of(*camera_, profile_);
+    if (!battery) return battery.error();
+    return Json{{"exposure", line_of(*exposure)}, {"battery", *battery}};
+  }
+
+  Result<Json> shutters() {
+    const auto times = shutter_times_us(*camera_, profile_);
+    if (!times) return times.error();
+    return Json{{"exposure_us", *times}};
+  }
+
+  Result<Json> take(JsonFields& fields) {
+    const std::string file = fields.text("file");
+    const double deadline_s = fields.number("deadline_s");
+    if (Result<void> ok = fields.status(); !ok) return bad_request(ok.error().why);
+    if (Result<void> right = check_body(*camera_, profile_); !right) return std::move(right).error();
+    if (Result<void> quiet = drain(); !quiet) return std::move(quiet).error();
+
+    const double triggered_s = seconds_since_1970();
+    const auto triggered = Steady::now();
+    if (Result<void> released = camera_->trigger(); !released) return std::move(released).error();
+    say("event", "exposed");
+    const Result<CameraFileName> name = arrival(triggered, deadline_s);
+    if (!name) return name.error();
+    const Result<FetchedFile> fetched = camera_->fetch(*name);
+    if (!fetched) return fetched.error();
+    landed_ = *name;
+    Result<Json> landed = land(file + ".arrived", fetched->bytes());
+    if (!landed) return landed;
+    (*landed)["triggered_s"] = triggered_s;
+    return landed;
+  }
+
+  /// Takes the events that are still there from the shot before, and drops what must not be taken for the
+  /// next photograph.
+  Result<void> drain() {
+    for (int events = 0; events < 100; ++events) {
+      const auto event = camera_->wait_for_event(1);
+      if (!event) return event.error();
+      if (event->quiet) return {};
+      if (event->file) camera_->forget(*event->file);
+    }
+    return Error{ErrorKind::kProtocol, "the camera never stops reporting", camera_->address().port,
+                 "100 events without a pause", "switch the camera off and on"};
+  }
+
+  Result<CameraFileName> arrival(Steady::time_point triggered, double deadline_s) {
+    while (seconds_since(triggered) < deadline_s && !requests_.ended()) {
+      const auto event = camera_->wait_for_event(kPollMs);
+      if (!event) return event.error();
+      if (event->file) return *event->file;
+    }
+    return Error{ErrorKind::kTryAgain, "no photograph came", camera_->address().port,
+                 "the camera was busy or lost it", "take it again"};
+  }
+
+  /// The bytes in a file, synced, while another thread sums them up.
+  static Result<Json> land(const std::string& file, std::span<const std::uint8_t> bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    auto sum = std::async(std::launch::async, [text] { return sha256_of(text); });
+    const Result<void> written = write_file(file, text);
+    const std::string sha256 = sum.get();
+    if (!written) return written.error();
+    return Json{{"file", file}, {"sha256", sha256}, {"bytes", bytes.size()}};
+  }
+
+  Result<Json> bare(JsonFields& fields) {
+    const int shots = fields.integer("shots");
+    if (Result<void> ok = fields.status(); !ok) return bad_request(ok.error().why);
+    Json seconds = Json::array();
+    for (int shot = 0; shot < shots && !requests_.ended(); ++shot) {
+      const auto begin = Steady::now();
+      if (Result<void> released = camera_->trigger(); !released) return std::move(released).error();
+      std::optional<CameraFileName> name;
+      while (!name && seconds_since(begin) < kBareDeadlineS) {
+        auto event = camera_->wait_for_event(kBareWaitMs);
+        if (!event) return std::move(event).error();
+        name = std::move(event->file);
+      }
+      if (!name) return Error{ErrorKind::kTryAgain, "no photograph came", camera_->address().port, "", ""};
+      if (const auto fetched = camera_->fetch(*name); !fetched) return fetched.error();
+      seconds.push_back(seconds_since(begin));
+      camera_->forget(*name);
+    }
+    return Json{{"seconds", seconds}};
+  }
+
+  void say(const char* key, const Json& value) {
+    std::string line =
+        Json{{"id", id_}, {key, value}}.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
+    std::string_view rest = line;
+    while (!rest.empty()) {
+      const ssize_t n = ::write(out_, rest.data(), rest.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) return;  // the parent is gone, which the end of the input tells as well
+      rest.remove_prefix(static_cast<std::size_t>(n));
+    }
+  }
+
+  static constexpr int kPollMs = 20;
+  static constexpr int kBareWaitMs = 200;
+  static constexpr double kBareDeadlineS = 60;
+
+  RequestLines requests_;
+  int out_;
+  Json id_;
+  CameraProfile profile_;
+  std::unique_ptr<GphotoCamera> camera_;
+  std::optional<CameraFileName> landed_;  // to be forgotten once the parent has been told
+};
+
+}  // namespace
+
+void serve_camera(int in, int out) {
+  Worker(in, out).serve();
+}
+
+}  // namespace weft::capture

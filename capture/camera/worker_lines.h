@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "capture/devices.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::capture {
+
+// What the lines between weft-camera and its parent are made of (worker.h describes them).
+
+Json line_of(const Error& error);
+Error error_of_line(const Json& line);  ///< kProtocol where the line is no error
+
+Json line_of(const ExposureSettings& exposure);
+/// kProtocol where a field is missing.
+Result<ExposureSettings> exposure_of_line(const Json& line);
+
+}  // namespace weft::capture

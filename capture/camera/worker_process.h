@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+
+namespace weft::capture {
+
+using Environment = std::vector<std::pair<std::string, std::string>>;
+
+/// weft-camera, where it is installed: beside the running program.
+std::filesystem::path weft_camera_program();
+
+/// A child process that is spoken to in lines. It never outlives this object, nor keeps anybody waiting past
+/// a deadline. Signals of the terminal do not reach it.
+class WorkerProcess {
+ public:
+  using Deadline = std::chrono::steady_clock::time_point;
+
+  /// Starts `program` with these variables on top of this process's. kNoInput, kTryAgain.
+  static Result<std::unique_ptr<WorkerProcess>> start(const std::filesystem::path& program,
+                                                      const Environment& environment);
+  /// Kills it if it is still there.
+  ~WorkerProcess();
+  WorkerProcess(const WorkerProcess&) = delete;
+  WorkerProcess& operator=(const WorkerProcess&) = delete;
+
+  pid_t pid() const { return pid_; }
+  /// Sends a line. kTryAgain where it is dead or takes nothing any more.
+  Result<void> send(std::string_view line);
+  /// The next line without its end. kTryAgain at the deadline, and where it has ended: `why` says by what.
+  Result<std::string> read_line(Deadline deadline);
+  /// Closes its input, gives it until the deadline to end, then kills it.
+  void end(Deadline deadline);
+
+ private:
+  WorkerProcess(pid_t pid, int socket) : pid_(pid), socket_(socket) {}
+  bool wait_readable(Deadline deadline) const;
+  Error ended();
+
+  pid_t pid_;
+  int socket_;
+  int status_ = 0;
+  std::string received_;
+};
+
+}  // namespace weft::capture

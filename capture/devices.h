@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+
+namespace weft::capture {
+
+// The two devices of a rig as a scan sees them. What their errors mean to it:
+//   kNoDevice   the device is gone (unplugged, switched off, held by another program): wait for it or pause;
+//   kTryAgain   it did not answer in time: recover() and take the shot again;
+//   kProtocol   it answered against its protocol: the same;
+//   kBadData    it is there and set up wrongly (dial, battery, serial number): a person must act.
+
+/// The LED board.
+class Lamps {
+ public:
+  virtual ~Lamps() = default;
+
+  virtual int leds() const = 0;
+  /// Lights these LEDs (from 1; at most two; none: all off) and no other, until the next call or for at most
+  /// `most_s` seconds, whichever ends first. Returns when the board has said that it is so.
+  virtual Result<void> light(std::span<const int> leds, double most_s) = 0;
+  /// After an error: finds the board again, all off. The same board or an error.
+  virtual Result<void> recover() = 0;
+};
+
+/// What a scan asks of a camera for each shot.
+struct ExposureSettings {
+  double exposure_us = 0;
+  double iso = 100;
+  double f_number = 8;
+
+  friend bool operator==(const ExposureSettings&, const ExposureSettings&) = default;
+};
+
+/// What a camera says of itself.
+struct CameraFacts {
+  std::string model;
+  std::string serial;
+  std::string port;  ///< where it was found: "usb:001,007", "ptpip:127.0.0.1:15740:15740"
+  ExposureSettings exposure;
+  double battery = 1;              ///< share left
+  double clock_offset_s = 0;       ///< camera's clock minus this machine's
+  double clock_uncertainty_s = 1;  ///< of that
+};
+
+/// A photograph that has landed on this machine's disk, synced.
+struct Photograph {
+  std::filesystem::path file;
+  std::string sha256;
+  std::uint64_t bytes = 0;
+  std::string ending;                         ///< by its content: "dng", "nef"
+  std::optional<std::uint32_t> image_number;  ///< the camera's own count of shots, from the file
+  std::optional<double> taken_s;  ///< by the camera's clock, in seconds since 1970 of this machine's clock
+  double triggered_s = 0;         ///< since 1970: when it was asked for
+  ExposureSettings exposure;      ///< as the file says
+};
+
+/// The camera.
+class Camera {
+ public:
+  virtual ~Camera() = default;
+
+  /// Finds the camera, checks that it is the rig's (model, serial number), that dial, battery, lens and
+  /// storage allow a scan, sets everything that is not exposure (raw, memory of the camera as target, no
+  /// autofocus, fixed white balance), and throws away what it still had to deliver.
+  virtual Result<CameraFacts> connect() = 0;
+  /// Sets the exposure and reads it back.
+  virtual Result<CameraFacts> set(const ExposureSettings& exposure) = 0;
+  /// Shutter times it can be set to, in us, rising.
+  virtual Result<std::vector<double>> shutter_times_us() = 0;
+  /// Takes one photograph and writes it to `file` with its ending added. `exposed` is called once the shutter
+  /// has closed, while the picture is still on its way: light may change from then on.
+  virtual Result<Photograph> take(const std::filesystem::path& file,
+                                  const std::function<void()>& exposed) = 0;
+  /// After an error: ends whatever hangs and connects again, at most a few seconds.
+  virtual Result<CameraFacts> recover() = 0;
+};
+
+}  // namespace weft::capture

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/rig.h"
+
+#include "core/toml/toml_keys.h"
+
+namespace weft::capture {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPage = "docs/rig.md";
+
+/// A path of the file, made absolute; empty stays empty.
+fs::path beside(const fs::path& file, const std::string& path) {
+  return path.empty() ? fs::path() : (fs::absolute(file).parent_path() / path).lexically_normal();
+}
+
+std::string place(const fs::path& file, const char* table) {
+  return file.string() + ": [" + table + "]";
+}
+
+Result<void> read_board(const toml::table& table, Rig& rig) {
+  TomlKeys keys(table, place(rig.file, "board"), kPage);
+  keys.know({"port"});
+  rig.board.port = keys.text_or("port", rig.board.port);
+  if (rig.board.port.empty()) keys.reject("port", "it is empty");
+  return keys.status();
+}
+
+Result<void> read_camera(const toml::table& table, Rig& rig) {
+  TomlKeys keys(table, place(rig.file, "camera"), kPage);
+  keys.know({"profile", "port", "serial"});
+  rig.camera.profile = keys.text_or("profile", rig.camera.profile);
+  if (rig.camera.profile.ends_with(".toml"))
+    rig.camera.profile = beside(rig.file, rig.camera.profile).string();
+  rig.camera.port = keys.text_or("port", rig.camera.port);
+  rig.camera.serial = keys.text_or("serial", rig.camera.serial);
+  const bool known =
+      rig.camera.port.empty() || rig.camera.port.starts_with("usb:") || rig.camera.port.starts_with("ptpip:");
+  if (!known) keys.reject("port", "it must be empty, usb:BUS,DEVICE or ptpip:ADDRESS:PORT:PORT");
+  return keys.status();
+}
+
+Result<void> read_scan(const toml::table& table, Rig& rig) {
+  TomlKeys keys(table, place(rig.file, "scan"), kPage);
+  keys.know({"calibration", "iso", "f_number", "exposure_us", "cloth_height_mm", "sessions", "copy",
+             "session_name"});
+  Rig::Scan& scan = rig.scan;
+  scan.calibration = beside(rig.file, keys.text_or("calibration", ""));
+  scan.iso = keys.number_or("iso", scan.iso, 1, 1e6);
+  scan.f_number = keys.number_or("f_number", scan.f_number, 0.5, 128);
+  if (keys.has("exposure_us")) scan.exposure_us = keys.number("exposure_us", 1, 1e9);
+  scan.cloth_height_mm = keys.number_or("cloth_height_mm", 0, -1000, 1000);
+  scan.sessions = beside(rig.file, keys.text_or("sessions", scan.sessions.string()));
+  scan.copy = beside(rig.file, keys.text_or("copy", ""));
+  scan.session_name = keys.text_or("session_name", scan.session_name);
+  if (scan.session_name.empty() || scan.session_name.find('/') != std::string::npos)
+    keys.reject("session_name", "it must be the name of one folder");
+  return keys.status();
+}
+
+Result<void> read_daemon(const toml::table& table, Rig& rig) {
+  TomlKeys keys(table, place(rig.file, "daemon"), kPage);
+  keys.know({"host", "port", "token", "state"});
+  rig.daemon.host = keys.text_or("host", rig.daemon.host);
+  rig.daemon.port = keys.integer_or("port", rig.daemon.port, 0, 65535);
+  rig.daemon.token = beside(rig.file, keys.text_or("token", ""));
+  rig.daemon.state = beside(rig.file, keys.text_or("state", rig.name + ".state"));
+  return keys.status();
+}
+
+}  // namespace
+
+Result<Rig> read_rig(const fs::path& file) {
+  const Result<toml::table> table = read_toml(file);
+  if (!table) return table.error();
+  Rig rig;
+  rig.file = file;
+  TomlKeys keys(*table, file.string(), kPage);
+  keys.know({"name", "leds", "board", "camera", "scan", "daemon"});
+  rig.name = keys.text_or("name", "rig");
+  if (rig.name.empty() || rig.name.find('/') != std::string::npos)
+    keys.reject("name", "it must be a plain name");
+  rig.leds = keys.integer_or("leds", rig.leds, 1, 10);
+  const toml::table& board = keys.table("board");
+  const toml::table& camera = keys.table("camera");
+  const toml::table& scan = keys.table("scan");
+  const toml::table& daemon = keys.table("daemon");
+  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
+  for (const Result<void>& read :
+       {read_board(board, rig), read_camera(camera, rig), read_scan(scan, rig), read_daemon(daemon, rig)}) {
+    if (!read) return read.error();
+  }
+  return rig;
+}
+
+}  // namespace weft::capture

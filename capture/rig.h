@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/result.h"
+
+namespace weft::capture {
+
+/// What a person writes about a rig, in TOML (docs/rig.md). Paths in the file are relative to its folder.
+struct Rig {
+  std::filesystem::path file;  ///< it was read from
+  std::string name;            ///< in every session and calibration of it
+  int leds = 10;               ///< 1 to 10
+
+  struct Board {
+    std::string port = "/dev/weft-led";  ///< as libserialport names it
+  } board;
+
+  struct Camera {
+    std::string profile = "nikon-d5100";  ///< built in, or a path to a profile
+    std::string port;                     ///< "ptpip:127.0.0.1:15740:15740"; empty: found on USB
+    std::string serial;                   ///< empty: any, and then the calibration's
+  } camera;
+
+  struct Scan {
+    std::filesystem::path calibration;  ///< folder
+    double iso = 100;
+    double f_number = 8;
+    std::optional<double> exposure_us;         ///< none: metered for each cloth
+    double cloth_height_mm = 0;                ///< of the cloth's surface above the table
+    std::filesystem::path sessions = "scans";  ///< where sessions without a path of their own go
+    std::filesystem::path copy;                ///< a second copy of each finished session; empty: none
+    std::string session_name = "{date}_{fabric}_{count}";
+  } scan;
+
+  struct Daemon {
+    std::string host = "127.0.0.1";  ///< another one needs a token
+    int port = 8470;                 ///< 0: any free one, written to `state`/address
+    std::filesystem::path token;     ///< a file that holds it; empty: none
+    std::filesystem::path state;     ///< folder for its lock, address and log; empty: beside the rig file
+  } daemon;
+};
+
+/// Reads and checks the file. kNoInput, kBadData with the key and what is allowed there.
+Result<Rig> read_rig(const std::filesystem::path& file);
+
+}  // namespace weft::capture

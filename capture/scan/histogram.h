@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "capture/scan/scan.h"
+#include "core/raw_frame.h"
+
+namespace weft::capture {
+
+/// Histograms of red, green and blue.
+std::array<RawHistogram, 3> histogram_rgb(const RawFrame& frame);
+
+/// How bright a frame is for the meter: shares of the way from black to white, the largest of the three
+/// channels. A photosite counts for no more than the brightest of its four neighbours of the same filter
+/// says, so that hot ones do not count.
+struct Brightness {
+  double bright = 0;     ///< 99.9 percent of the photosites are below
+  double brightest = 0;  ///< 99.999 percent
+  double median = 0;
+  double clipped = 0;  ///< share that the solver takes to be full (kSaturatedFrom of core/radiometry.h)
+};
+Brightness brightness_of(const RawFrame& frame);
+
+}  // namespace weft::capture

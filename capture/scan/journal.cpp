@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/journal.h"
+
+#include <fcntl.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+
+#include "core/files.h"
+
+namespace weft::capture {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCapturing = "capturing";
+constexpr const char* kComplete = "complete";
+
+/// ISO 8601 in UTC with milliseconds.
+std::string iso_time(double since_1970_s) {
+  const auto seconds = static_cast<std::time_t>(std::floor(since_1970_s));
+  const int milliseconds = static_cast<int>(1000 * (since_1970_s - std::floor(since_1970_s)));
+  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(seconds), milliseconds);
+}
+
+/// Folders aside that a process left which is no more.
+void remove_abandoned(const fs::path& session) {
+  const std::string start = "." + session.filename().string() + ".", end = ".partial";
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(session.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(start) || !name.ends_with(end) || name.size() <= start.size() + end.size())
+      continue;
+    pid_t owner = 0;
+    const char* const last = name.data() + name.size() - end.size();
+    const auto [stop, failed] = std::from_chars(name.data() + start.size(), last, owner);
+    if (failed == std::errc() && stop == last && owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) {
+      fs::remove_all(entry.path(), ignored);
+    }
+  }
+}
+
+Result<void> make_session(const ScanRequest& request, const std::string& calibration_id, const ShotList& list,
+                          const AfterStep& after_step) {
+  remove_abandoned(fs::absolute(request.session));
+  PartialFolder aside(request.session);
+  if (Result<void> made = make_writable_folder(aside.path() / "raw"); !made) return made;
+  after_step("raw made");
+  if (!request.calibration.empty()) {
+    std::error_code failed;
+    fs::copy(request.calibration, aside.path() / "calibration", fs::copy_options::recursive, failed);
+    if (failed) return cannot_write(aside.path() / "calibration", failed.value());
+  }
+  after_step("calibration copied");
+  Session session;
+  session.folder = aside.path();
+  session.fabric = request.fabric;
+  session.cloth_height_mm = request.cloth_height_mm;
+  session.rig = request.rig;
+  session.calibration_id = calibration_id;
+  session.state = kCapturing;
+  session.document = Json::object();
+  session.document["schema"] = "weft.session/1.1";
+  session.document["plan"] = to_json(list);
+  if (!request.metadata.empty()) session.document["metadata"] = request.metadata;
+  if (Result<void> written = write_session(session); !written) return written;
+  after_step("session.json made");
+  if (Result<void> published = aside.publish(); !published) return published;
+  after_step("session published");
+  return {};
+}
+
+Error cannot_resume(const Session& session, const std::string& why) {
+  return {ErrorKind::kCannotCreate, "session was begun as another scan", session.folder.string(), why,
+          "scan under another name, or ask for what the session was begun with"};
+}
+
+Result<void> check_same_scan(const Session& session, const ScanRequest& request,
+                             const std::string& calibration_id, const ShotList& list) {
+  if (session.rig != request.rig) {
+    return cannot_resume(session,
+                         fmt::format("it is of rig \"{}\", this is \"{}\"", session.rig, request.rig));
+  }
+  if (session.calibration_id != calibration_id) {
+    return cannot_resume(session, fmt::format("its calibration is {:.12}, the rig's now {:.12}",
+                                              session.calibration_id, calibration_id));
+  }
+  if (session.fabric != request.fabric || session.cloth_height_mm != request.cloth_height_mm) {
+    return cannot_resume(session,
+                         fmt::format("its cloth is \"{}\" at {} mm, this is \"{}\" at {} mm", session.fabric,
+                                     session.cloth_height_mm, request.fabric, request.cloth_height_mm));
+  }
+  if (!session.document.contains("plan") || session.document["plan"] != to_json(list)) {
+    return cannot_resume(session, "its LEDs, repeat or brackets are others");
+  }
+  return {};
+}
+
+/// Removes everything in a folder that `stays` does not say stays.
+template <typename Stays>
+Result<void> remove_from(const fs::path& folder, const Stays& stays) {
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(folder, failed)) {
+    if (!stays(entry.path())) fs::remove_all(entry.path(), failed);
+    if (failed) break;
+  }
+  if (failed && failed != std::errc::no_such_file_or_directory) return cannot_write(folder, failed.value());
+  return {};
+}
+
+}  // namespace
+
+Journal::Lock::~Lock() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<Journal::Lock> Journal::Lock::of(const fs::path& folder) {
+  Lock lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (lock.descriptor_ < 0) return cannot_write(folder, errno);
+  if (::flock(lock.descriptor_, LOCK_EX | LOCK_NB) == 0) return lock;
+  if (errno != EWOULDBLOCK) return cannot_write(folder, errno);
+  return Error{ErrorKind::kTryAgain, "another scan writes this session", folder.string(),
+               "its folder is locked by another process", "wait for that scan, or choose another name"};
+}
+
+Result<void> Journal::check_name(const fs::path& session) {
+  if (!is_there(session)) return {};
+  const Result<Session> there = read_session(session);
+  if (!there) return there.error();
+  if (there->state != kComplete) return {};
+  return Error{ErrorKind::kCannotCreate, "session is finished", session.string(),
+               "sessions are never overwritten", "scan under another name with -o"};
+}
+
+Result<Journal> Journal::open(const ScanRequest& request, const std::string& calibration_id,
+                              const ShotList& list, AfterStep after_step) {
+  const bool was_there = is_there(request.session);
+  if (!was_there) {
+    if (Result<void> made = make_session(request, calibration_id, list, after_step); !made)
+      return made.error();
+  }
+  Result<Lock> lock = Lock::of(request.session);
+  if (!lock) return lock.error();
+  // Under the lock: another scan may have finished it meanwhile.
+  if (Result<void> ok = check_name(request.session); !ok) return ok.error();
+  Result<Session> session = read_session(request.session);
+  if (!session) return session.error();
+  if (Result<void> ok = check_same_scan(*session, request, calibration_id, list); !ok) return ok.error();
+
+  Journal journal(std::move(*session), std::move(*lock), std::move(after_step), was_there);
+  if (Result<void> made = make_writable_folder(journal.incoming_); !made) return made.error();
+  if (Result<void> cleared = journal.clear_incoming(); !cleared) return cleared.error();
+  if (Result<void> forgotten = journal.forget_damaged(); !forgotten) return forgotten.error();
+  if (Result<void> removed = journal.remove_unnamed(); !removed) return removed.error();
+  return journal;
+}
+
+Result<void> Journal::clear_incoming() const {
+  return remove_from(incoming_, [](const fs::path&) { return false; });
+}
+
+Result<void> Journal::forget_damaged() {
+  std::vector<int> damaged;
+  for (const Shot& shot : session_.shots) {
+    const Result<std::string> digest = sha256_of_file(session_.path_of(shot));
+    if (!digest || *digest != shot.sha256) damaged.push_back(shot.index);
+  }
+  return damaged.empty() ? Result<void>() : discard(damaged);
+}
+
+Result<void> Journal::remove_unnamed() const {
+  return remove_from(session_.folder / "raw", [&](const fs::path& file) {
+    return std::any_of(session_.shots.begin(), session_.shots.end(), [&](const Shot& shot) {
+      return session_.path_of(shot).filename() == file.filename();
+    });
+  });
+}
+
+Result<void> Journal::replace(Session session) {
+  if (Result<void> written = write_session(session); !written) return written;
+  session_ = std::move(session);
+  return {};
+}
+
+Result<void> Journal::set_exposure(const Json& exposure) {
+  Session session = session_;
+  session.document["exposure"] = exposure;
+  Result<void> done = replace(std::move(session));
+  after_step_("exposure written");
+  return done;
+}
+
+Result<Shot> Journal::keep(const PlannedShot& planned, const Photograph& photograph, const Json& notes) {
+  const Result<std::string> digest = sha256_of_file(photograph.file);
+  if (!digest) return digest.error();
+  if (*digest != photograph.sha256) {
+    return Error{ErrorKind::kTryAgain, "photograph was damaged on its way", photograph.file.string(),
+                 "its SHA-256 is not the one it was received with",
+                 "scan again; check the disk if it comes again"};
+  }
+  after_step_("digest verified");
+
+  Shot shot;
+  shot.index = planned.index;
+  shot.led = planned.led;
+  shot.role = planned.role;
+  shot.file = fmt::format("raw/{}.{}", file_stem(planned), photograph.ending);
+  shot.sha256 = photograph.sha256;
+  shot.exposure_us = planned.exposure.exposure_us;
+  shot.iso = planned.exposure.iso;
+  shot.f_number = planned.exposure.f_number;
+  shot.time = iso_time(photograph.taken_s.value_or(photograph.triggered_s));
+  shot.document = notes;
+  if (photograph.image_number) shot.document["image_number"] = *photograph.image_number;
+
+  if (::chmod(photograph.file.c_str(), 0444) != 0) return cannot_write(photograph.file, errno);
+  if (Result<void> synced = sync_path(photograph.file); !synced) return synced.error();
+  after_step_("photograph synced");
+  if (::rename(photograph.file.c_str(), session_.path_of(shot).c_str()) != 0) {
+    return cannot_write(session_.path_of(shot), errno);
+  }
+  after_step_("photograph moved");
+  if (Result<void> synced = sync_path(session_.folder / "raw"); !synced) return synced.error();
+  after_step_("raw synced");
+
+  Session session = session_;
+  const auto place = std::find_if(session.shots.begin(), session.shots.end(),
+                                  [&](const Shot& other) { return other.index > shot.index; });
+  session.shots.insert(place, shot);
+  if (Result<void> written = replace(std::move(session)); !written) return written.error();
+  after_step_("session.json replaced");
+  return shot;
+}
+
+Result<void> Journal::discard(const std::vector<int>& indices) {
+  Session session = session_;
+  std::vector<fs::path> files;
+  std::erase_if(session.shots, [&](const Shot& shot) {
+    if (std::count(indices.begin(), indices.end(), shot.index) == 0) return false;
+    files.push_back(session_.path_of(shot));
+    return true;
+  });
+  if (Result<void> written = replace(std::move(session)); !written) return written;
+  after_step_("frames forgotten");
+  std::error_code ignored;  // the next open() removes what stays
+  for (const fs::path& file : files) fs::remove(file, ignored);
+  return {};
+}
+
+Result<void> Journal::finish(const std::vector<std::string>& warnings) {
+  std::error_code failed;
+  fs::remove_all(incoming_, failed);
+  if (failed) return cannot_write(incoming_, failed.value());
+  after_step_("incoming removed");
+  Session session = session_;
+  session.state = kComplete;
+  if (!warnings.empty()) session.document["warnings"] = warnings;
+  Result<void> done = replace(std::move(session));
+  after_step_("session complete");
+  return done;
+}
+
+}  // namespace weft::capture

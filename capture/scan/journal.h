@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "capture/devices.h"
+#include "capture/scan/plan.h"
+#include "capture/scan/scan.h"
+#include "core/result.h"
+#include "core/session.h"
+
+namespace weft::capture {
+
+/// Called after each step of the journal by its name, so that a test can end the process there.
+using AfterStep = std::function<void(const char* step)>;
+
+/// The session folder of a scan. Whenever the process or the machine ends, the folder holds whole frames that
+/// session.json names, and perhaps files that it does not, which the next open() removes. One process at a
+/// time writes it (flock on the folder).
+class Journal {
+ public:
+  /// Makes the session, or takes up one that is not finished: frames that are missing or whose bytes changed
+  /// are forgotten, so that they are taken again. Errors: kCannotCreate (finished; of another rig,
+  /// calibration, cloth or plan), kTryAgain (another scan writes it), kInputOutput, kBadData (not a session).
+  static Result<Journal> open(
+      const ScanRequest& request, const std::string& calibration_id, const ShotList& list,
+      AfterStep after_step = [](const char*) {});
+  /// kCannotCreate where the session is finished: worth asking before a device is.
+  static Result<void> check_name(const std::filesystem::path& session);
+
+  const Session& session() const { return session_; }
+  bool was_there() const { return was_there_; }
+  /// A file for the camera to write to, in a folder that lasts as long as the scan.
+  std::filesystem::path incoming(const std::string& stem) const { return incoming_ / stem; }
+  /// Removes what landed there and was not kept.
+  Result<void> clear_incoming() const;
+
+  /// Exposure of the lit shots and where it comes from.
+  Result<void> set_exposure(const Json& exposure);
+  /// Puts a photograph in its place, read-only, its digest verified (kTryAgain where it is another), and then
+  /// into session.json. `notes` are further fields of the shot.
+  Result<Shot> keep(const PlannedShot& planned, const Photograph& photograph, const Json& notes);
+  /// Takes frames out again.
+  Result<void> discard(const std::vector<int>& indices);
+  Result<void> finish(const std::vector<std::string>& warnings);
+
+ private:
+  class Lock {
+   public:
+    explicit Lock(int descriptor) : descriptor_(descriptor) {}
+    Lock(Lock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
+    Lock& operator=(Lock&& other) noexcept {
+      std::swap(descriptor_, other.descriptor_);
+      return *this;
+    }
+    ~Lock();
+    static Result<Lock> of(const std::filesystem::path& folder);
+
+   private:
+    int descriptor_;
+  };
+  Journal(Session session, Lock lock, AfterStep after_step, bool was_there)
+      : session_(std::move(session)),
+        incoming_(session_.folder / "incoming"),
+        lock_(std::move(lock)),
+        after_step_(std::move(after_step)),
+        was_there_(was_there) {}
+  Result<void> forget_damaged();
+  Result<void> remove_unnamed() const;
+  Result<void> replace(Session session);
+
+  Session session_;
+  std::filesystem::path incoming_;
+  Lock lock_;
+  AfterStep after_step_;
+  bool was_there_;
+};
+
+}  // namespace weft::capture

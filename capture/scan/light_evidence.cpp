@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/light_evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::capture {
+namespace {
+
+// Where evidence speaks. Measured over the example scenes: docs/reliability.md.
+constexpr double kLitFrom = 0.005;           // of full scale: the brightest patches of a frame that is lit
+constexpr double kDarkTo = 0.02;             // of full scale: light in the dark shot that stops a scan
+constexpr double kDarkWarns = 0.004;         // that is only spoken of
+constexpr double kDarkLevel = 0.1;           // of the brightness that other LEDs let expect: did not light
+constexpr double kDimLevel = 0.35;           // gave too little
+constexpr double kDimWarns = 0.6;            // is only spoken of: glossy cloth may look so
+constexpr std::size_t kEnoughFrames = 5;     // four of one ring may be its mirror image as well
+constexpr double kSuspiciousMisfit = 0.002;  // below it the plan is believed without trying other stories
+constexpr std::size_t kStoryStep =
+    5;  // patches from one that is looked at to the next: 48 columns have no factor 5
+constexpr double kFarBetter = 0.6;       // of the plan's misfit, at most, for another story to be believed
+constexpr double kBetterBy = 0.002;      // and by this at least
+constexpr double kDriftWarns = 0.01;     // of a repeat's brightness
+constexpr double kRepeatLevel = 0.08;    // beyond it a repeat is not the same light
+constexpr double kRepeatPattern = 0.05;  // scatter of a repeat over its first, beyond noise
+constexpr double kBracketLevel = 0.25;   // of a bracket's brightness over the ratio of its times
+
+/// The value that a share of the finite ones is below.
+double quantile(std::vector<double> values, double share) {
+  std::erase_if(values, [](double v) { return !std::isfinite(v); });
+  if (values.empty()) return 0;
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+/// What a frame has over another, and how unevenly.
+struct Ratio {
+  double median = 1;
+  double scatter = 0;  ///< median deviation from it, relative
+};
+
+Ratio ratio_of(const std::vector<double>& light, const std::vector<double>& before) {
+  const double least = 0.2 * quantile(before, 0.5);
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    if (std::isfinite(light[i]) && before[i] > least) ratios.push_back(light[i] / before[i]);
+  }
+  if (ratios.empty()) return {0, 0};
+  const double median = median_of(ratios);
+  for (double& ratio : ratios) ratio = std::abs(ratio / median - 1);
+  return {median, median_of(std::move(ratios))};
+}
+
+std::vector<Vec3> together(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double times) {
+  std::vector<Vec3> sum;
+  sum.reserve(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i) sum.push_back(a[i] + times * b[i]);
+  return sum;
+}
+
+}  // namespace
+
+LightEvidence::LightEvidence(PatchGrid grid, std::optional<LightModel> model)
+    : grid_(grid), model_(std::move(model)) {}
+
+std::vector<double> LightEvidence::glance(const RawFrame& frame) const {
+  return glance_at(frame, grid_, model_ ? model_->scale : GlanceScale());
+}
+
+void LightEvidence::accept(const PlannedShot& shot, std::vector<double> light) {
+  if (shot.role == ShotRole::kDark) dark_ = std::move(light);
+  if (shot.role == ShotRole::kLit) lit_[shot.index] = {shot, std::move(light)};
+}
+
+void LightEvidence::forget(int index) {
+  lit_.erase(index);
+}
+
+const LightEvidence::Seen* LightEvidence::of_led(int led) const {
+  const auto seen =
+      std::find_if(lit_.begin(), lit_.end(), [&](const auto& each) { return each.second.shot.led == led; });
+  return seen == lit_.end() ? nullptr : &seen->second;
+}
+
+std::vector<double> LightEvidence::without_dark(const std::vector<double>& light) const {
+  std::vector<double> left = light;
+  for (std::size_t i = 0; dark_ && i < left.size(); ++i) left[i] -= (*dark_)[i];
+  return left;
+}
+
+Verdict LightEvidence::judge(const PlannedShot& shot, const std::vector<double>& light) const {
+  switch (shot.role) {
+    case ShotRole::kDark:
+      return judge_dark(shot, light);
+    case ShotRole::kLit:
+      return judge_lit(shot, light);
+    case ShotRole::kRepeat:
+    case ShotRole::kBracket:
+      break;
+  }
+  return judge_again(shot, light);
+}
+
+Verdict LightEvidence::judge_dark(const PlannedShot& shot, const std::vector<double>& light) const {
+  const double bright = quantile(light, 0.9);
+  if (bright > kDarkTo || !std::isfinite(light.front())) {
+    return {
+        Finding::kRoomLight,
+        fmt::format("the dark shot is lit ({:.2g} of full scale): there is a lamp on in the room, or a LED "
+                    "stays lit",
+                    bright),
+        {shot.index},
+        {},
+        {},
+        {}};
+  }
+  Verdict verdict;
+  if (bright > kDarkWarns) {
+    verdict.warnings.push_back(
+        fmt::format("the dark shot has {:.2g} of full scale: darken the room for cleaner maps", bright));
+  }
+  return verdict;
+}
+
+double LightEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
+  const auto of_flat_cloth = [&](int led, std::size_t i) {
+    return model_->leds[static_cast<std::size_t>(led - 1)][i].z;
+  };
+  std::vector<double> levels;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    std::vector<double> albedo;
+    for (const auto& [index, seen] : lit_) {
+      const double z = of_flat_cloth(seen.shot.led, i);
+      if (std::isfinite(seen.light[i]) && z > 0) {
+        albedo.push_back((seen.light[i] - (dark_ ? (*dark_)[i] : 0)) / z);
+      }
+    }
+    const double expected = median_of(std::move(albedo)) * of_flat_cloth(shot.led, i);
+    if (expected > 0 && std::isfinite(light[i])) levels.push_back(light[i] / expected);
+  }
+  return levels.empty() ? 1 : median_of(std::move(levels));
+}
+
+Verdict LightEvidence::judge_lit(const PlannedShot& shot, const std::vector<double>& light) const {
+  const std::vector<double> own = without_dark(light);
+  const auto found = [&](Finding finding, std::string sentence) {
+    return Verdict{finding, std::move(sentence), {shot.index}, {}, {}, {}};
+  };
+  if (std::isfinite(quantile(own, 0.5)) && quantile(own, 0.99) < kLitFrom &&
+      std::count_if(own.begin(), own.end(), [](double v) { return std::isnan(v); }) == 0) {
+    return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
+  }
+  if (!model_ || lit_.empty()) return {};
+  const double level = level_of(shot, own);
+  if (level < kDarkLevel) return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
+  if (level < kDimLevel) {
+    return found(Finding::kDim,
+                 fmt::format("LED {} gives {:.0f} percent of the light it should", shot.led, 100 * level));
+  }
+  Verdict verdict = judge_pattern(shot, light);
+  verdict.level = level;
+  if (verdict.finding == Finding::kAgrees && level < kDimWarns) {
+    verdict.warnings.push_back(
+        fmt::format("LED {} gives {:.0f} percent of the light that the others let expect: look at it before "
+                    "the next scan",
+                    shot.led, 100 * level));
+  }
+  return verdict;
+}
+
+Verdict LightEvidence::judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const {
+  std::vector<Seen> frames;
+  for (const auto& [index, seen] : lit_) {
+    if (index != shot.index) frames.push_back({seen.shot, without_dark(seen.light)});
+  }
+  frames.push_back({shot, without_dark(light)});
+  if (frames.size() < kEnoughFrames) return {};
+
+  const auto of_led = [&](int led) { return &model_->leds[static_cast<std::size_t>(led - 1)]; };
+  std::vector<const std::vector<double>*> readings;
+  std::vector<const std::vector<Vec3>*> plan;
+  for (const Seen& seen : frames) {
+    readings.push_back(&seen.light);
+    plan.push_back(of_led(seen.shot.led));
+  }
+  Verdict best;
+  const double planned = fit_light(readings, plan, kStoryStep).misfit;
+  best.misfit = planned;
+  if (planned < kSuspiciousMisfit) return best;
+
+  double least = std::min(kFarBetter * planned, planned - kBetterBy);
+  const auto try_story = [&](const std::vector<const std::vector<Vec3>*>& story, Finding finding,
+                             std::vector<int> accused, const auto& sentence) {
+    const double misfit = fit_light(readings, story, kStoryStep).misfit;
+    if (misfit >= least) return;
+    least = misfit;
+    best = {finding, sentence(), std::move(accused), {}, {}, planned};
+  };
+  const int leds = static_cast<int>(model_->leds.size());
+  const auto led_of = [&](std::size_t f) { return frames[f].shot.led; };
+
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    for (int led = 1; led <= leds; ++led) {
+      if (led == led_of(f)) continue;
+      auto story = plan;
+      story[f] = of_led(led);
+      try_story(story, Finding::kOther, {frames[f].shot.index}, [&] {
+        return fmt::format("LED {} lights where LED {} should: are their wires swapped?", led, led_of(f));
+      });
+    }
+    for (std::size_t g = f + 1; g < frames.size(); ++g) {
+      auto story = plan;
+      std::swap(story[f], story[g]);
+      try_story(story, Finding::kOther, {frames[f].shot.index, frames[g].shot.index}, [&] {
+        return fmt::format(
+            "LED {} lights where LED {} should and the other way round: are their wires swapped?", led_of(g),
+            led_of(f));
+      });
+    }
+  }
+
+  const auto try_more_light = [&](const std::vector<Vec3>& more, int led, double times, Finding finding,
+                                  const std::string& sentence) {
+    for (std::size_t from = 0; from < frames.size(); ++from) {
+      std::vector<std::vector<Vec3>> sums;
+      auto story = plan;
+      std::vector<int> accused;
+      sums.reserve(frames.size());
+      for (std::size_t f = from; f < frames.size(); ++f) {
+        if (led_of(f) == led) continue;
+        sums.push_back(together(*plan[f], more, times));
+        story[f] = &sums.back();
+        accused.push_back(frames[f].shot.index);
+      }
+      if (!accused.empty()) try_story(story, finding, accused, [&] { return sentence; });
+    }
+  };
+  for (int led = 1; led <= leds; ++led) {
+    try_more_light(*of_led(led), led, 1, Finding::kStaysLit, fmt::format("LED {} stays lit", led));
+  }
+  for (const double times : {0.1, 0.3, 1.0, 3.0}) {
+    try_more_light(model_->room, 0, times, Finding::kRoomLight, "there is light beside the LEDs");
+  }
+  return best;
+}
+
+Verdict LightEvidence::judge_again(const PlannedShot& shot, const std::vector<double>& light) const {
+  const Seen* first = of_led(shot.led);
+  if (first == nullptr) return {};
+  const double times = shot.exposure.exposure_us / first->shot.exposure.exposure_us;
+  const std::vector<double> own = without_dark(light), before = without_dark(first->light);
+  const Ratio ratio = ratio_of(own, before);
+  Verdict verdict;
+  verdict.level = ratio.median / times;
+  const bool is_repeat = shot.role == ShotRole::kRepeat;
+  const auto refuse = [&](Finding finding, std::string sentence) {
+    verdict.finding = finding;
+    verdict.sentence = std::move(sentence);
+    verdict.accused = {shot.index};
+  };
+  const double off = std::abs(*verdict.level - 1);
+  if (ratio.median == 0) return verdict;  // all of it is full
+  if (*verdict.level < kDarkLevel) {
+    refuse(Finding::kDark, fmt::format("LED {} is dark", shot.led));
+  } else if (off > (is_repeat ? kRepeatLevel : kBracketLevel)) {
+    refuse(Finding::kChanged, fmt::format("{} is {:.2f} times as bright as its first photograph lets expect",
+                                          name_of(shot), *verdict.level));
+  } else if (is_repeat && ratio.scatter > kRepeatPattern) {
+    refuse(Finding::kChanged,
+           fmt::format(
+               "{} differs from its first photograph by {:.0f} percent from place to place: the cloth or "
+               "the camera was moved, or another light is on",
+               name_of(shot), 100 * ratio.scatter));
+  } else if (is_repeat && off > kDriftWarns) {
+    verdict.warnings.push_back(fmt::format("LED {} gave {:.1f} percent {} light at the end than at first",
+                                           shot.led, 100 * off, *verdict.level < 1 ? "less" : "more"));
+  }
+  return verdict;
+}
+
+}  // namespace weft::capture

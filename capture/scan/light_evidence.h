@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/scan/light_fit.h"
+#include "capture/scan/plan.h"
+
+namespace weft::capture {
+
+// Is this the photograph of this LED? Patches of the frames of a session are held against the lights of its
+// calibration. The albedo of the cloth cancels between frames, its normals once there are four, and what then
+// is left of the readings tells which LEDs were lit: every likely mix-up is tried, and one that leaves far
+// less than the planned order is what happened. docs/reliability.md has how often it is wrong.
+
+enum class Finding {
+  kAgrees,
+  kDark,       ///< the LED did not light
+  kDim,        ///< it gave far less light than it should
+  kOther,      ///< another LED lit in its place
+  kStaysLit,   ///< another LED lit as well
+  kRoomLight,  ///< light beside the LEDs
+  kChanged,    ///< not the same cloth or light as at first
+};
+
+struct Verdict {
+  Finding finding = Finding::kAgrees;
+  std::string sentence;      ///< names the LED
+  std::vector<int> accused;  ///< indices of shots that are not what they should be, this one or before
+  std::vector<std::string> warnings;  ///< of a frame that is kept
+  /// A lit frame's brightness over what the frames before let expect; a repeat's over its first.
+  std::optional<double> level;
+  std::optional<double> misfit;  ///< of LightFit, as planned
+
+  /// Whether the same shot once more may come out right.
+  bool may_pass() const {
+    return finding == Finding::kDark || finding == Finding::kDim || finding == Finding::kChanged;
+  }
+};
+
+class LightEvidence {
+ public:
+  /// Without a model only darkness, the repeat and the brackets are looked at.
+  LightEvidence(PatchGrid grid, std::optional<LightModel> model);
+
+  std::vector<double> glance(const RawFrame& frame) const;
+  Verdict judge(const PlannedShot& shot, const std::vector<double>& light) const;
+  void accept(const PlannedShot& shot, std::vector<double> light);
+  void forget(int index);
+
+ private:
+  struct Seen {
+    PlannedShot shot;
+    std::vector<double> light;
+  };
+  const Seen* of_led(int led) const;
+  std::vector<double> without_dark(const std::vector<double>& light) const;
+  Verdict judge_dark(const PlannedShot& shot, const std::vector<double>& light) const;
+  Verdict judge_lit(const PlannedShot& shot, const std::vector<double>& light) const;
+  Verdict judge_again(const PlannedShot& shot, const std::vector<double>& light) const;
+  double level_of(const PlannedShot& shot, const std::vector<double>& light) const;
+  Verdict judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const;
+
+  PatchGrid grid_;
+  std::optional<LightModel> model_;
+  std::optional<std::vector<double>> dark_;
+  std::map<int, Seen> lit_;  ///< kept frames of role lit by index, the dark shot taken off
+};
+
+}  // namespace weft::capture

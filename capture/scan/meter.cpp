@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/meter.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/scan/plan.h"
+
+namespace weft::capture {
+namespace {
+
+constexpr int kMostTries = 8;           // of one LED until its test shot is neither full nor dark
+constexpr double kReadableFrom = 0.05;  // 99.9 percent of a test shot below less than this: too dark to tell
+constexpr double kReadableTo = 0.97;
+constexpr double kStepDown = 0.125, kMostStepUp = 32;
+constexpr double kAgree = 0.1;  // of two LEDs' brightness with what the lights let expect
+constexpr double kMostClipped = 1e-5;
+constexpr double kPoorRange = 0.5;  // 99.9 percent below less than this share of white
+constexpr double kLongestBracket = 100;
+
+/// What a LED gives a second, from a test shot that could be read.
+struct Rate {
+  int led = 0;
+  double exposure_us = 0;
+  Brightness seen;
+  /// Longest exposure at which the cloth under it is held.
+  double longest_us() const {
+    return exposure_us * std::min(kMeteredTo / seen.bright, kMeteredBelow / std::max(seen.brightest, 1e-9));
+  }
+};
+
+Json to_json(const Rate& rate) {
+  return {{"led", rate.led},
+          {"exposure_us", rate.exposure_us},
+          {"bright", rate.seen.bright},
+          {"brightest", rate.seen.brightest},
+          {"clipped", rate.seen.clipped}};
+}
+
+class Meter {
+ public:
+  Meter(const MeterInput& input, const TestShot& shoot)
+      : input_(input), shoot_(shoot), exposure_us_(settable(input.start_us)) {}
+
+  Result<Metering> run() {
+    if (Result<void> tried = try_leds(); !tried) return tried.error();
+    const Rate& brightest = *std::min_element(rates_.begin(), rates_.end(), [](const Rate& a, const Rate& b) {
+      return a.longest_us() < b.longest_us();
+    });
+    const double wanted_us = brightest.longest_us();
+    Metering metering;
+    metering.exposure_us = longest_below(wanted_us);
+    judge_range(brightest, metering);
+    Json shots = Json::array();
+    for (const Rate& rate : rates_) shots.push_back(to_json(rate));
+    metering.record = {{"led", brightest.led}, {"wanted_us", wanted_us}, {"test_shots", std::move(shots)}};
+    return metering;
+  }
+
+ private:
+  double settable(double wanted_us) const { return nearest_time_us(input_.shutter_times_us, wanted_us); }
+
+  /// The longest time that is not above (by a percent, which no shutter keeps); the shortest where all are.
+  double longest_below(double wanted_us) const {
+    const auto& times = input_.shutter_times_us;
+    if (times.empty()) return std::floor(wanted_us);
+    const auto above = std::upper_bound(times.begin(), times.end(), 1.01 * wanted_us);
+    return above == times.begin() ? times.front() : *std::prev(above);
+  }
+
+  Result<void> try_leds() {
+    if (input_.expected.empty()) return try_each(input_.leds);
+    const auto [least, most] = std::minmax_element(input_.expected.begin(), input_.expected.end());
+    const int bright = led_at(most), dark = led_at(least);
+    if (Result<void> tried = try_each({bright}); !tried) return tried;
+    if (dark == bright) return {};
+    if (Result<void> tried = try_each({dark}); !tried) return tried;
+    const auto rate = [](const Rate& r) { return r.seen.bright / r.exposure_us; };
+    const double off = rate(rates_[1]) / rate(rates_[0]) / (*least / *most) - 1;
+    if (std::abs(off) <= kAgree) return {};
+    std::vector<int> others = input_.leds;
+    std::erase_if(others, [&](int led) { return led == bright || led == dark; });
+    return try_each(others);
+  }
+
+  int led_at(std::vector<double>::const_iterator expected) const {
+    return input_.leds[static_cast<std::size_t>(expected - input_.expected.begin())];
+  }
+
+  Result<void> try_each(const std::vector<int>& leds) {
+    for (const int led : leds) {
+      Result<Rate> rate = try_led(led);
+      if (!rate) return rate.error();
+      rates_.push_back(*rate);
+    }
+    return {};
+  }
+
+  /// Shorter or longer until the test shot can be read; the next LED starts where this one ended.
+  Result<Rate> try_led(int led) {
+    Brightness seen;
+    for (int i = 0; i < kMostTries; ++i) {
+      Result<Brightness> shot = shoot_(led, exposure_us_);
+      if (!shot) return shot.error();
+      seen = *shot;
+      const bool is_full = seen.clipped > kMostClipped || seen.brightest > kReadableTo;
+      if (!is_full && seen.bright >= kReadableFrom) return Rate{led, exposure_us_, seen};
+      const double step =
+          is_full ? kStepDown : std::min(kMostStepUp, 0.5 * kMeteredTo / std::max(seen.brightest, 1e-4));
+      const double next_us = settable(step * exposure_us_);
+      if (next_us == exposure_us_) break;
+      exposure_us_ = next_us;
+    }
+    const bool is_full = seen.clipped > kMostClipped;
+    return Error{ErrorKind::kBadData, is_full ? "cloth is too bright" : "cloth is too dark",
+                 fmt::format("LED {}", led),
+                 fmt::format("at {:.6g} us its brightest photosites come to {:.3f} of white", exposure_us_,
+                             seen.bright),
+                 is_full ? "lower the LEDs' current or close the aperture and calibrate again"
+                         : "check that the LED lights and the lens is open, or scan with --exposure"};
+  }
+
+  /// Speaks where one exposure uses the range poorly: highlights that a few photosites see hold it down.
+  void judge_range(const Rate& brightest, Metering& metering) const {
+    const double bright = brightest.seen.bright * metering.exposure_us / brightest.exposure_us;
+    if (bright >= kPoorRange) return;
+    const double times = std::min(std::round(kMeteredTo / bright), kLongestBracket);
+    metering.warnings.push_back(fmt::format(
+        "highlights hold the exposure at {:.6g} us, where 99.9 percent of the cloth stay below {:.0f} "
+        "percent of the range; scan with --bracket {:.0f} for the rest",
+        metering.exposure_us, 100 * bright, times));
+  }
+
+  const MeterInput& input_;
+  const TestShot& shoot_;
+  double exposure_us_;
+  std::vector<Rate> rates_;
+};
+
+}  // namespace
+
+Result<Metering> meter(const MeterInput& input, const TestShot& shoot) {
+  return Meter(input, shoot).run();
+}
+
+}  // namespace weft::capture

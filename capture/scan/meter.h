@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "capture/scan/histogram.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::capture {
+
+// One exposure for all shots of a scan, from test shots of the cloth itself.
+
+/// The brightest photosites (99.9 percent are below, by channel) of the brightest LED come to this share of
+/// the way from black to white.
+inline constexpr double kMeteredTo = 0.8;
+/// All but one in 100 000 stay below this one.
+inline constexpr double kMeteredBelow = 0.95;
+
+struct Metering {
+  double exposure_us = 0;
+  std::vector<std::string> warnings;
+  Json record;  ///< for session.json: test shots, what they showed, what was made of it
+};
+
+struct MeterInput {
+  std::vector<int> leds;                 ///< that will be lit, from 1
+  std::vector<double> expected;          ///< of each of them, any unit: light on a flat cloth; empty: unknown
+  std::vector<double> shutter_times_us;  ///< rising
+  double start_us = 0;                   ///< of the first test shot
+};
+
+/// A test shot: how bright the cloth is under a LED at an exposure.
+using TestShot = std::function<Result<Brightness>(int led, double exposure_us)>;
+
+/// Finds the exposure. With `expected`, two LEDs are tried, the one that should be brightest and the one most
+/// unlike it; where they agree with it the others are believed, else all are tried. Errors are those of the
+/// test shots, and kBadData where no exposure of the camera suits.
+Result<Metering> meter(const MeterInput& input, const TestShot& shoot);
+
+}  // namespace weft::capture

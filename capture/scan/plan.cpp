@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::capture {
+
+int ShotList::count() const {
+  const int lit = static_cast<int>(leds.size());
+  return 1 + lit + (repeat ? 1 : 0) + (bracket ? lit : 0);
+}
+
+Json to_json(const ShotList& list) {
+  Json json = {{"leds", list.leds}, {"repeat", list.repeat}};
+  if (list.bracket) json["bracket"] = *list.bracket;
+  return json;
+}
+
+std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
+                                    double bracket_us) {
+  std::vector<PlannedShot> plan;
+  const auto add = [&](int led, ShotRole role, double exposure_us) {
+    plan.push_back(
+        {static_cast<int>(plan.size()), led, role, {exposure_us, exposure.iso, exposure.f_number}});
+  };
+  add(0, ShotRole::kDark, exposure.exposure_us);
+  for (const int led : list.leds) add(led, ShotRole::kLit, exposure.exposure_us);
+  if (list.repeat) add(list.leds.front(), ShotRole::kRepeat, exposure.exposure_us);
+  if (!list.bracket) return plan;
+  for (const int led : list.leds) add(led, ShotRole::kBracket, bracket_us);
+  return plan;
+}
+
+std::string file_stem(const PlannedShot& shot) {
+  return fmt::format("{:02}_led{:02}", shot.index, shot.led);
+}
+
+std::vector<PlannedShot> missing_shots(const std::vector<PlannedShot>& plan, const Session& session) {
+  std::vector<PlannedShot> missing;
+  std::copy_if(plan.begin(), plan.end(), std::back_inserter(missing), [&](const PlannedShot& planned) {
+    return std::none_of(session.shots.begin(), session.shots.end(),
+                        [&](const Shot& shot) { return shot.index == planned.index; });
+  });
+  return missing;
+}
+
+double nearest_time_us(const std::vector<double>& times_us, double wanted_us) {
+  const auto distance = [&](double time_us) { return std::abs(std::log(time_us / wanted_us)); };
+  const auto nearest = std::min_element(times_us.begin(), times_us.end(),
+                                        [&](double a, double b) { return distance(a) < distance(b); });
+  return nearest == times_us.end() ? wanted_us : *nearest;
+}
+
+std::string name_of(const PlannedShot& shot) {
+  switch (shot.role) {
+    case ShotRole::kDark:
+      return "the dark shot";
+    case ShotRole::kRepeat:
+      return fmt::format("the repeat of LED {}", shot.led);
+    case ShotRole::kBracket:
+      return fmt::format("the bracket of LED {}", shot.led);
+    case ShotRole::kLit:
+      break;
+  }
+  return fmt::format("LED {}", shot.led);
+}
+
+}  // namespace weft::capture

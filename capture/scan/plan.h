@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "capture/devices.h"
+#include "capture/scan/scan.h"
+#include "core/json_document.h"
+#include "core/session.h"
+
+namespace weft::capture {
+
+/// One shot of a scan.
+struct PlannedShot {
+  int index = 0;  ///< order in the session, from 0
+  int led = 0;    ///< from 1; 0: none
+  ShotRole role = ShotRole::kLit;
+  ExposureSettings exposure;
+};
+
+/// Which shots a scan takes, whatever their exposure. It is kept in session.json ("plan").
+struct ShotList {
+  std::vector<int> leds;
+  bool repeat = true;
+  std::optional<double> bracket;  ///< times the exposure
+
+  int count() const;
+};
+Json to_json(const ShotList& list);
+
+/// The shots in order: the dark one, the LEDs, the first LED again, each LED at `bracket_us`. The dark shot
+/// is the first, because whatever lights it (a lamp in the room, a LED that stays lit) lights all the others
+/// too.
+std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
+                                    double bracket_us);
+
+/// "03_led04": its file without the ending.
+std::string file_stem(const PlannedShot& shot);
+
+/// The shots that the session does not have.
+std::vector<PlannedShot> missing_shots(const std::vector<PlannedShot>& plan, const Session& session);
+
+/// The time of `times_us` (rising) that is nearest to `wanted_us` by ratio; `wanted_us` where there is none.
+double nearest_time_us(const std::vector<double>& times_us, double wanted_us);
+
+/// "LED 3", "the dark shot".
+std::string name_of(const PlannedShot& shot);
+
+}  // namespace weft::capture

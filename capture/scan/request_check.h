@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "capture/devices.h"
+#include "capture/scan/plan.h"
+#include "capture/scan/scan.h"
+#include "core/calibration.h"
+#include "core/result.h"
+
+namespace weft::capture {
+
+/// Everything that can be known to be wrong before a shot. kBadData, kUsage and kCannotCreate with what to
+/// do.
+Result<ShotList> checked_shots(const ScanRequest& request, int leds_of_board,
+                               const std::optional<Calibration>& calibration);
+
+/// Whether rig, camera and aperture are those that the calibration is of.
+Result<void> check_calibration(const ScanRequest& request, const CameraFacts& camera,
+                               const Calibration& calibration);
+
+/// Whether there is room for `frames` more frames of `bytes` each in the session, and for `all` of them in
+/// the second copy. kInputOutput.
+Result<void> check_room(const ScanRequest& request, int frames, int all, std::uint64_t bytes);
+
+}  // namespace weft::capture

@@ -1,0 +1,444 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/scan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <future>
+#include <map>
+#include <new>
+
+#include "capture/raw/decode.h"
+#include "capture/scan/frame_check.h"
+#include "capture/scan/histogram.h"
+#include "capture/scan/journal.h"
+#include "capture/scan/light_evidence.h"
+#include "capture/scan/meter.h"
+#include "capture/scan/plan.h"
+#include "capture/scan/request_check.h"
+#include "capture/scan/second_copy.h"
+#include "capture/scan/shooter.h"
+
+namespace weft::capture {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostClipped = 1e-5;  // of a channel of a metered frame
+constexpr int kTimesWrong = 2;         // a shot whose light is wrong ends the scan
+constexpr double kWhite = 0.8;         // albedo that the first test shot holds
+
+/// What became of a frame on its way into the session.
+struct Kept {
+  std::optional<Error> error;   ///< it is not in the session
+  std::vector<int> take_again;  ///< these shots, if the error may pass
+};
+
+class Scan {
+ public:
+  Scan(const ScanRequest& request, Lamps& lamps, Camera& camera, const ScanEvents& events,
+       const ScanControl& control, const ScanOptions& options)
+      : request_(request),
+        report_(events),
+        shooter_(lamps, camera, control, options, report_),
+        leds_of_board_(lamps.leds()) {}
+
+  Result<ScanOutcome> run() {
+    Result<void> done = steps();
+    const Result<void> off = shooter_.lamps_off();
+    if (done && !off) warnings_.push_back("LEDs could not be switched off: " + off.error().message());
+    if (!done) {
+      const bool stopped = done.error().kind == ErrorKind::kInterrupted;
+      report_.phase(stopped ? ScanPhase::kCancelled : ScanPhase::kFailed, done.error().message());
+      return done.error();
+    }
+    report_.phase(ScanPhase::kComplete);
+    return ScanOutcome{journal_->session(), frames_resumed_, shooter_.retaken() + frames_wrong_, warnings_};
+  }
+
+ private:
+  Result<void> steps() {
+    using Step = Result<void> (Scan::*)();
+    for (const Step step : {&Scan::check_request, &Scan::connect, &Scan::open_session, &Scan::choose_exposure,
+                            &Scan::look_at_kept, &Scan::photograph_missing, &Scan::finish}) {
+      if (Result<void> ok = (this->*step)(); !ok) return ok;
+    }
+    return {};
+  }
+
+  Result<void> check_request() {
+    if (Result<void> ok = Journal::check_name(request_.session); !ok) return ok;
+    if (!request_.calibration.empty()) {
+      Result<Calibration> calibration = read_calibration(request_.calibration);
+      if (!calibration) return calibration.error();
+      calibration_ = std::move(*calibration);
+    }
+    Result<ShotList> list = checked_shots(request_, leds_of_board_, calibration_);
+    if (!list) return list.error();
+    list_ = std::move(*list);
+    report_.change([&](ScanStatus& status) { status.frames_planned = list_.count(); });
+    if (!calibration_ || !calibration_->lights || !calibration_->camera) {
+      warnings_.push_back(
+          "there is no calibration of camera and lights: frames are not held against the LEDs");
+      return {};
+    }
+    Result<LightModel> model = LightModel::make(*calibration_, request_.cloth_height_mm);
+    if (!model) return model.error();
+    model_ = std::move(*model);
+    // What the frames will take is known well enough before the first one: 16 bits a photosite.
+    const auto bytes = static_cast<std::uint64_t>(2 * calibration_->camera->size.pixels());
+    return is_resuming() ? Result<void>() : check_room(request_, list_.count(), list_.count(), bytes);
+  }
+
+  bool is_resuming() const {
+    std::error_code ignored;
+    return fs::exists(request_.session, ignored);
+  }
+
+  Result<void> connect() {
+    Result<CameraFacts> facts = shooter_.connect();
+    if (!facts) return facts.error();
+    if (calibration_) {
+      if (Result<void> ok = check_calibration(request_, *facts, *calibration_); !ok) return ok;
+    }
+    Result<std::vector<double>> times = shooter_.shutter_times_us();
+    if (!times) return times.error();
+    shutter_times_us_ = std::move(*times);
+    return {};
+  }
+
+  Result<void> open_session() {
+    Result<Journal> journal = Journal::open(request_, calibration_ ? calibration_->id : "", list_);
+    if (!journal) return journal.error();
+    journal_.emplace(std::move(*journal));
+    frames_resumed_ = static_cast<int>(journal_->session().shots.size());
+    report_.change([&](ScanStatus& status) { status.frames = frames_resumed_; });
+    return {};
+  }
+
+  /// The session's exposure, else the one asked for, else a metered one.
+  Result<void> choose_exposure() {
+    exposure_ = request_.exposure;
+    const Json& document = journal_->session().document;
+    if (document.contains("exposure")) return take_up_exposure(document["exposure"]);
+    Json record = {{"from", "request"}};
+    if (exposure_.exposure_us > 0) {
+      exposure_.exposure_us = nearest_time_us(shutter_times_us_, exposure_.exposure_us);
+    } else {
+      Result<Metering> metering = metered();
+      if (!metering) return metering.error();
+      exposure_.exposure_us = metering->exposure_us;
+      warnings_.insert(warnings_.end(), metering->warnings.begin(), metering->warnings.end());
+      record = {{"from", "meter"}, {"meter", metering->record}};
+    }
+    bracket_us_ = nearest_time_us(shutter_times_us_, exposure_.exposure_us * list_.bracket.value_or(1));
+    record["exposure_us"] = exposure_.exposure_us;
+    record["iso"] = exposure_.iso;
+    record["f_number"] = exposure_.f_number;
+    if (list_.bracket) record["bracket_us"] = bracket_us_;
+    warn_of_bracket();
+    report_.change([&](ScanStatus& status) { status.exposure_us = exposure_.exposure_us; });
+    return journal_->set_exposure(record);
+  }
+
+  Result<void> take_up_exposure(const Json& record) {
+    JsonFields fields(record, (request_.session / "session.json").string() + ": exposure");
+    const ExposureSettings of_session = {fields.number("exposure_us"), fields.number("iso"),
+                                         fields.number("f_number")};
+    bracket_us_ = fields.optional_number("bracket_us").value_or(of_session.exposure_us);
+    if (Result<void> ok = fields.status(); !ok) return ok;
+    const double asked_us = request_.exposure.exposure_us;
+    const bool other_time =
+        asked_us > 0 && nearest_time_us(shutter_times_us_, asked_us) != of_session.exposure_us;
+    if (other_time || of_session.iso != exposure_.iso || of_session.f_number != exposure_.f_number) {
+      return Error{ErrorKind::kCannotCreate, "session was begun with another exposure",
+                   request_.session.string(),
+                   fmt::format("its frames are taken at {:.6g} us, ISO {:g}, f/{:g}", of_session.exposure_us,
+                               of_session.iso, of_session.f_number),
+                   "scan under another name, or leave the exposure as it was"};
+    }
+    exposure_ = of_session;
+    report_.change([&](ScanStatus& status) { status.exposure_us = exposure_.exposure_us; });
+    return {};
+  }
+
+  void warn_of_bracket() {
+    if (!list_.bracket || !calibration_ || !calibration_->response ||
+        calibration_->response->exposure_ratio(bracket_us_, exposure_.exposure_us)) {
+      return;
+    }
+    warnings_.push_back(fmt::format(
+        "the calibration has no measured ratio of {:.6g} us to {:.6g} us, without which the brackets are not "
+        "used: measure it with weft calibrate response",
+        bracket_us_, exposure_.exposure_us));
+  }
+
+  Result<Metering> metered() {
+    report_.phase(ScanPhase::kMetering);
+    MeterInput input = {list_.leds, {}, shutter_times_us_, 1e6 / 125};
+    if (model_) {
+      double most = 0;
+      for (const int led : list_.leds) {
+        double brightest = 0;
+        for (const Vec3& s : model_->leds[static_cast<std::size_t>(led - 1)])
+          brightest = std::max(brightest, s.z);
+        input.expected.push_back(brightest);
+        most = std::max(most, input.expected.back());
+      }
+      input.start_us = 1e6 * kMeteredTo / (kWhite * most * model_->reading * exposure_.iso / 100);
+    }
+    return meter(input, [&](int led, double exposure_us) -> Result<Brightness> {
+      const ExposureSettings exposure = {exposure_us, exposure_.iso, exposure_.f_number};
+      Result<Photograph> photograph = shoot(led, exposure, "test");
+      if (!photograph) return photograph.error();
+      Result<RawFrame> frame = decode_raw(photograph->file);
+      if (!frame) return frame.error();
+      if (Result<void> cleared = journal_->clear_incoming(); !cleared) return cleared.error();
+      return brightness_of(*frame);
+    });
+  }
+
+  Result<Photograph> shoot(int led, const ExposureSettings& exposure, const std::string& stem) {
+    return shooter_.take(led, exposure, journal_->incoming(stem), [&] {
+      std::error_code ignored;
+      for (const auto& entry : fs::directory_iterator(journal_->incoming("").parent_path(), ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with(stem)) fs::remove_all(entry.path(), ignored);
+      }
+    });
+  }
+
+  /// Frames of an earlier run are evidence for those of this one.
+  Result<void> look_at_kept() {
+    plan_ = plan_shots(list_, exposure_, bracket_us_);
+    std::optional<std::uint32_t> last;
+    for (const Shot& shot : journal_->session().shots) {
+      if (shot.document.contains("image_number") && shot.document["image_number"].is_number_unsigned()) {
+        last = std::max(last.value_or(0), shot.document["image_number"].get<std::uint32_t>());
+      }
+      Result<RawFrame> frame = decode_raw(journal_->session().path_of(shot));
+      if (!frame) return frame.error();
+      if (Result<void> ok = check_frame(*frame, shot.file); !ok) return ok;
+      evidence_->accept(plan_[static_cast<std::size_t>(shot.index)], evidence_->glance(*frame));
+    }
+    shooter_.follow(last);
+    return {};
+  }
+
+  /// The first frame says what all are like.
+  Result<void> check_frame(RawFrame& frame, const std::string& where) {
+    if (!first_) {
+      first_size_ = frame.counts.size();
+      first_ = RawFrame{{}, frame.cfa, frame.black, frame.white, frame.shot};
+      if (model_ && model_->grid.frame != first_size_) {
+        return Error{ErrorKind::kBadData, "calibration is not of this camera", where,
+                     fmt::format("its camera has {} x {} pixels, the frame {} x {}", model_->grid.frame.width,
+                                 model_->grid.frame.height, first_size_.width, first_size_.height),
+                     "name the calibration of this camera"};
+      }
+      if (Result<void> ok = check_body(frame.shot, where); !ok) return ok;
+      const PatchGrid grid = model_ ? model_->grid : PatchGrid::over(first_size_);
+      evidence_.emplace(grid, std::move(model_));
+      model_.reset();
+      return {};
+    }
+    return check_alike(frame, *first_, first_size_, where);
+  }
+
+  /// As the solver will ask: by the names that files have.
+  Result<void> check_body(const ShotMetadata& shot, const std::string& where) const {
+    if (!calibration_) return {};
+    const CalibrationSubject& subject = calibration_->subject;
+    const auto differs = [](const std::string& a, const std::string& b) {
+      return !a.empty() && !b.empty() && a != b;
+    };
+    if (!differs(shot.model, subject.camera_model) && !differs(shot.serial, subject.camera_serial)) return {};
+    return Error{ErrorKind::kBadData, "calibration is not of this camera", where,
+                 fmt::format("it is of a {} with serial number {}, the frame of a {} with {}",
+                             subject.camera_model, subject.camera_serial, shot.model, shot.serial),
+                 "name the calibration of this camera"};
+  }
+
+  /// While a shot is taken, the frame before it is decoded, checked and kept on another thread.
+  Result<void> photograph_missing() {
+    const std::vector<PlannedShot> missing = missing_shots(plan_, journal_->session());
+    std::deque<PlannedShot> queue(missing.begin(), missing.end());
+    std::future<Kept> on_its_way;
+    while (!queue.empty() || on_its_way.valid()) {
+      std::optional<Photograph> photograph;
+      std::optional<Error> fault;
+      PlannedShot shot;
+      if (!queue.empty()) {
+        shot = queue.front();
+        queue.pop_front();
+        // A name of its own: the one before may still be read while this one lands.
+        Result<Photograph> taken = shoot(shot.led, shot.exposure, file_stem(shot) + (is_odd_ ? "_b" : "_a"));
+        is_odd_ = !is_odd_;
+        if (taken)
+          photograph = std::move(*taken);
+        else
+          fault = taken.error();
+      }
+      if (on_its_way.valid()) {
+        const Kept before = on_its_way.get();
+        if (before.error && !fault) {
+          if (Result<void> ok = take_again(before, queue); !ok) fault = ok.error();
+        }
+      }
+      if (fault) return *fault;
+      if (!photograph) continue;
+      if (Result<void> room = check_room_once(*photograph, queue.size()); !room) return room;
+      on_its_way = std::async(std::launch::async, [this, shot, taken = std::move(*photograph)] {
+        return checked_and_kept(shot, taken);
+      });
+    }
+    return {};
+  }
+
+  Result<void> take_again(const Kept& kept, std::deque<PlannedShot>& queue) {
+    if (kept.take_again.empty()) return *kept.error;
+    report_.phase(ScanPhase::kRecovering, kept.error->message());
+    for (const int index : kept.take_again) {
+      if (++times_wrong_[index] >= kTimesWrong) return *kept.error;
+      ++frames_wrong_;
+      queue.push_front(plan_[static_cast<std::size_t>(index)]);
+    }
+    return {};
+  }
+
+  Result<void> check_room_once(const Photograph& photograph, std::size_t more) {
+    if (std::exchange(has_room_, true)) return {};
+    return check_room(request_, static_cast<int>(more), list_.count(), photograph.bytes);
+  }
+
+  Kept checked_and_kept(const PlannedShot& shot, const Photograph& photograph) try {
+    const std::string where = fmt::format("{} ({})", name_of(shot), file_stem(shot));
+    Result<RawFrame> frame = decode_raw(photograph.file);
+    if (!frame) return {frame.error(), {shot.index}};
+    if (Result<void> alike = check_frame(*frame, where); !alike) return {alike.error(), {shot.index}};
+
+    std::vector<double> light = evidence_->glance(*frame);
+    const Verdict verdict = evidence_->judge(shot, light);
+    if (verdict.finding != Finding::kAgrees) return refused(shot, verdict);
+
+    KeptFrame kept = {{}, histogram_rgb(*frame), verdict.warnings};
+    warn_of_clipping(shot, kept);
+    Json notes = Json::object();
+    if (verdict.level) notes["level"] = *verdict.level;
+    if (!kept.warnings.empty()) notes["warnings"] = kept.warnings;
+    Result<Shot> in_session = journal_->keep(shot, photograph, notes);
+    if (!in_session) {
+      const bool may_pass = in_session.error().kind == ErrorKind::kTryAgain;
+      return {in_session.error(), may_pass ? std::vector<int>{shot.index} : std::vector<int>()};
+    }
+    kept.shot = std::move(*in_session);
+    evidence_->accept(shot, std::move(light));
+    for (const std::string& warning : kept.warnings) warnings_of_frames_.push_back(warning);
+    report_.kept(kept);
+    return {};
+  } catch (const std::bad_alloc&) {
+    return {Error{ErrorKind::kTryAgain, "not enough memory", file_stem(shot), "the system refused some",
+                  "close other programs and run the same command again"},
+            {}};
+  }
+
+  /// Takes what is accused out of the session, so that it is taken again, now or by the next scan.
+  Kept refused(const PlannedShot& shot, const Verdict& verdict) {
+    Kept kept = {
+        Error{ErrorKind::kBadData, verdict.sentence, fmt::format("{} ({})", name_of(shot), file_stem(shot)),
+              "the photograph does not agree with the calibrated light",
+              "mend the light, then run the same command again"},
+        {}};
+    const Result<void> out = journal_->discard(verdict.accused);
+    if (!out) return {out.error(), {}};
+    for (const int index : verdict.accused) evidence_->forget(index);
+    report_.change(
+        [&](ScanStatus& status) { status.frames = static_cast<int>(journal_->session().shots.size()); });
+    if (verdict.may_pass()) kept.take_again = verdict.accused;
+    return kept;
+  }
+
+  void warn_of_clipping(const PlannedShot& shot, KeptFrame& kept) const {
+    if (shot.role == ShotRole::kBracket) return;
+    double clipped = 0;
+    for (const RawHistogram& histogram : kept.histogram_rgb) clipped = std::max(clipped, histogram.clipped);
+    if (clipped <= kMostClipped) return;
+    kept.warnings.push_back(
+        fmt::format("{} has {:.2g} percent of a channel full: scan with a shorter --exposure, or "
+                    "with --bracket 0.25",
+                    name_of(shot), 100 * clipped));
+  }
+
+  Result<void> finish() {
+    report_.phase(ScanPhase::kFinishing);
+    for (const std::string& warning : warnings_of_frames_) warnings_.push_back(warning);
+    if (Result<void> done = journal_->finish(warnings_); !done) return done;
+    if (request_.copy.empty()) return {};
+    if (Result<void> copied = copy_session(request_.session, request_.copy); !copied) {
+      warnings_.push_back("there is no second copy: " + copied.error().message());
+    }
+    return {};
+  }
+
+  const ScanRequest& request_;
+  Report report_;
+  Shooter shooter_;
+  int leds_of_board_;
+  std::optional<Calibration> calibration_;
+  ShotList list_;
+  std::optional<LightModel> model_;  ///< until the first frame has come
+  std::optional<Journal> journal_;
+  std::vector<double> shutter_times_us_;
+  ExposureSettings exposure_;
+  double bracket_us_ = 0;
+  std::vector<PlannedShot> plan_;
+  int frames_resumed_ = 0, frames_wrong_ = 0;
+  std::map<int, int> times_wrong_;
+  std::vector<std::string> warnings_;
+  bool has_room_ = false, is_odd_ = false;
+
+  // While a frame is on its way, its thread's alone.
+  std::optional<RawFrame> first_;  ///< without its counts
+  Size first_size_;
+  std::optional<LightEvidence> evidence_;
+  std::vector<std::string> warnings_of_frames_;
+};
+
+}  // namespace
+
+const char* name_of(ScanPhase phase) {
+  switch (phase) {
+    case ScanPhase::kConnecting:
+      return "connecting";
+    case ScanPhase::kMetering:
+      return "metering";
+    case ScanPhase::kExposing:
+      return "exposing";
+    case ScanPhase::kFetching:
+      return "fetching";
+    case ScanPhase::kRecovering:
+      return "recovering";
+    case ScanPhase::kPaused:
+      return "paused";
+    case ScanPhase::kFinishing:
+      return "finishing";
+    case ScanPhase::kComplete:
+      return "complete";
+    case ScanPhase::kCancelled:
+      return "cancelled";
+    case ScanPhase::kFailed:
+      return "failed";
+  }
+  return "failed";
+}
+
+Result<ScanOutcome> scan(const ScanRequest& request, Lamps& lamps, Camera& camera, const ScanEvents& events,
+                         const ScanControl& control, const ScanOptions& options) {
+  ScanRequest normal = request;
+  if (!normal.session.has_filename()) normal.session = normal.session.parent_path();
+  return Scan(normal, lamps, camera, events, control, options).run();
+}
+
+}  // namespace weft::capture

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "capture/devices.h"
+#include "core/calibration.h"
+#include "core/json_document.h"
+#include "core/result.h"
+#include "core/session.h"
+
+namespace weft::capture {
+
+/// One scan of one cloth, as it is asked for.
+struct ScanRequest {
+  std::filesystem::path session;  ///< NAME.weft: not there yet, or an unfinished session of the same rig
+  std::string fabric;
+  double cloth_height_mm = 0;
+  Json metadata =
+      Json::object();  ///< id, tags, composition, weight, construction, side, notes: kept as given
+  std::string rig;
+  std::filesystem::path calibration;  ///< folder, copied into the session; empty: none, and no light model
+  ExposureSettings exposure;          ///< exposure_us 0: metered
+  std::vector<int> leds;              ///< empty: all of the board
+  bool repeat = true;                 ///< the first LED once more at the end
+  std::optional<double> bracket;      ///< each LED once more at this times the exposure, 0.001 to 100
+  std::filesystem::path copy;         ///< folder for a second copy of the finished session; empty: none
+};
+
+/// What a scan does at the moment (the machine is drawn in docs/reliability.md).
+enum class ScanPhase {
+  kConnecting,
+  kMetering,
+  kExposing,
+  kFetching,
+  kRecovering,
+  kPaused,
+  kFinishing,
+  kComplete,
+  kCancelled,
+  kFailed
+};
+const char* name_of(ScanPhase phase);  ///< "connecting"
+
+/// Counts of one channel of a raw frame in 64 equal bins from black to white, and what is at or above white.
+struct RawHistogram {
+  std::array<std::uint32_t, 64> bins = {};
+  double clipped = 0;  ///< share
+};
+
+/// A frame that is kept.
+struct KeptFrame {
+  Shot shot;
+  std::array<RawHistogram, 3> histogram_rgb;
+  std::vector<std::string> warnings;
+};
+
+struct ScanStatus {
+  ScanPhase phase = ScanPhase::kConnecting;
+  int led = 0;     ///< being photographed
+  int frames = 0;  ///< kept
+  int frames_planned = 0;
+  double exposure_us = 0;
+  std::string why;  ///< of a pause, a failure, a recovery: one sentence with what to do
+};
+
+/// Called from the scan's own threads, one call at a time.
+struct ScanEvents {
+  std::function<void(const ScanStatus&)> status = [](const ScanStatus&) {};
+  std::function<void(const KeptFrame&)> kept = [](const KeptFrame&) {};
+};
+
+/// What a person may ask of a running scan, from any thread.
+struct ScanControl {
+  std::stop_token cancel = {};               ///< stops after the shot on its way; the session can be resumed
+  const std::atomic<bool>* pause = nullptr;  ///< while true no new shot begins, all LEDs are off
+};
+
+struct ScanOptions {
+  double device_patience_s = 30;  ///< how long a device that is gone is waited for before the scan ends
+  int tries_per_shot = 3;         ///< takes of one shot before the scan ends
+};
+
+struct ScanOutcome {
+  Session session;
+  int frames_resumed = 0;  ///< that were there before
+  int frames_retaken = 0;  ///< for a fault on the way
+  std::vector<std::string> warnings;
+};
+
+/// Scans a cloth: see docs/reliability.md for what each fault leads to. The session folder is the journal:
+/// session.json is replaced after each synced frame, so that the same call resumes at the first frame that is
+/// missing, whatever ended the last one. A frame is kept only if its own count and time, its size and digest,
+/// and its pixels under the calibration's light model say that it is the photograph of this LED.
+///
+/// Errors: kCannotCreate (the session is finished, another rig's, or cannot be made), kInputOutput (no room
+/// for the whole scan, checked before), kNoDevice, kBadData (camera or light not as calibrated: the sentence
+/// names LED and cause), kTryAgain, kProtocol, kInterrupted. The session keeps what it has in every case.
+Result<ScanOutcome> scan(const ScanRequest& request, Lamps& lamps, Camera& camera, const ScanEvents& events,
+                         const ScanControl& control, const ScanOptions& options = {});
+
+}  // namespace weft::capture

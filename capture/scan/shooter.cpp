@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/shooter.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <thread>
+
+namespace weft::capture {
+namespace {
+
+using std::chrono::steady_clock;
+
+constexpr double kLampMargin_s =
+    8;  // a LED goes out by itself this long after its exposure should have begun
+constexpr auto kPause = std::chrono::milliseconds(20);
+constexpr auto kBetweenSearches = std::chrono::milliseconds(500);
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+bool may_pass(ErrorKind kind) {
+  return kind == ErrorKind::kTryAgain || kind == ErrorKind::kProtocol || kind == ErrorKind::kNoDevice;
+}
+
+}  // namespace
+
+void Report::change(const std::function<void(ScanStatus&)>& change) {
+  const std::lock_guard lock(mutex_);
+  change(status_);
+  events_.status(status_);
+}
+
+void Report::phase(ScanPhase phase, std::string why) {
+  change([&](ScanStatus& status) {
+    status.phase = phase;
+    status.why = std::move(why);
+  });
+}
+
+void Report::kept(const KeptFrame& frame) {
+  const std::lock_guard lock(mutex_);
+  ++status_.frames;
+  events_.kept(frame);
+  events_.status(status_);
+}
+
+Error cancelled(const std::string& where) {
+  return {ErrorKind::kInterrupted, "scan was stopped", where, "on request",
+          "run the same command again to go on"};
+}
+
+Result<void> Shooter::wait_for(const std::function<Result<void>()>& find) {
+  const auto until = steady_clock::now() + std::chrono::duration<double>(options_.device_patience_s);
+  for (;;) {
+    Result<void> found = find();
+    if (found || !may_pass(found.error().kind)) return found;
+    report_.phase(ScanPhase::kRecovering, found.error().message());
+    if (steady_clock::now() >= until) return found;
+    const auto next = std::min<steady_clock::time_point>(
+        steady_clock::now() + kBetweenSearches, std::chrono::time_point_cast<steady_clock::duration>(until));
+    while (steady_clock::now() < next) {
+      if (is_cancelled()) return cancelled("devices");
+      std::this_thread::sleep_for(kPause);
+    }
+  }
+}
+
+Result<CameraFacts> Shooter::recovered_camera() {
+  Result<CameraFacts> facts = camera_.recover();
+  if (facts) facts_ = *facts;
+  return facts;
+}
+
+Result<CameraFacts> Shooter::connect() {
+  report_.phase(ScanPhase::kConnecting);
+  bool is_first = true;
+  Result<void> found = wait_for([&]() -> Result<void> {
+    Result<CameraFacts> facts = is_first ? camera_.connect() : camera_.recover();
+    is_first = false;
+    if (!facts) return facts.error();
+    facts_ = *facts;
+    return {};
+  });
+  if (!found) return found.error();
+  found = wait_for([&]() -> Result<void> {
+    if (Result<void> off = lamps_off(); off) return off;
+    return lamps_.recover();
+  });
+  if (!found) return found.error();
+  follow({});
+  return facts_;
+}
+
+Result<std::vector<double>> Shooter::shutter_times_us() {
+  Result<std::vector<double>> times = camera_.shutter_times_us();
+  for (int i = 1; !times && may_pass(times.error().kind) && i < options_.tries_per_shot; ++i) {
+    if (Result<void> again = recover(times.error()); !again) return again.error();
+    times = camera_.shutter_times_us();
+  }
+  return times;
+}
+
+Result<void> Shooter::wait_while_paused() {
+  if (control_.pause == nullptr || !control_.pause->load()) return {};
+  report_.phase(ScanPhase::kPaused, "paused on request; resume to go on");
+  while (control_.pause->load()) {
+    if (is_cancelled()) return cancelled("scan");
+    std::this_thread::sleep_for(kPause);
+  }
+  return {};
+}
+
+Result<void> Shooter::recover(const Error& error) {
+  report_.phase(ScanPhase::kRecovering, error.message());
+  set_.reset();
+  if (!lamps_off()) lamps_failed_ = true;
+  if (lamps_failed_) {
+    Result<void> back = wait_for([&] { return lamps_.recover(); });
+    if (!back) return back;
+    lamps_failed_ = false;
+  }
+  Result<void> back = wait_for([&]() -> Result<void> {
+    const Result<CameraFacts> facts = recovered_camera();
+    return facts ? Result<void>() : facts.error();
+  });
+  if (back) follow({});
+  return back;
+}
+
+Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
+                                      const std::filesystem::path& file) {
+  if (set_ != exposure) {
+    const Result<CameraFacts> set = camera_.set(exposure);
+    if (!set) return set.error();
+    set_ = exposure;
+  }
+  report_.change([&](ScanStatus& status) {
+    status.led = led;
+    status.why.clear();
+    if (status.phase != ScanPhase::kMetering) status.phase = ScanPhase::kExposing;
+  });
+  const std::array<int, 1> one = {led};
+  const auto light = [&](std::span<const int> leds) {
+    Result<void> lit = lamps_.light(leds, exposure.exposure_us * 1e-6 + kLampMargin_s);
+    if (!lit) lamps_failed_ = true;
+    return lit;
+  };
+  if (Result<void> lit = light(led == 0 ? std::span<const int>() : std::span<const int>(one)); !lit) {
+    return lit.error();
+  }
+  Result<void> off;
+  bool is_exposed = false;
+  Result<Photograph> photograph = camera_.take(file, [&] {
+    is_exposed = true;
+    off = light({});
+    report_.change([](ScanStatus& status) {
+      if (status.phase != ScanPhase::kMetering) status.phase = ScanPhase::kFetching;
+    });
+  });
+  if (!is_exposed) off = light({});
+  if (!photograph) return photograph;
+  // Asked first: a photograph that is not used counts all the same.
+  if (Result<void> ours = check_.check(*photograph, exposure, now_s()); !ours) return ours.error();
+  if (!off) return off.error();
+  return photograph;
+}
+
+Result<Photograph> Shooter::take(int led, const ExposureSettings& exposure, const std::filesystem::path& file,
+                                 const std::function<void()>& clear) {
+  for (int i = 1;; ++i) {
+    if (Result<void> go = wait_while_paused(); !go) return go.error();
+    if (is_cancelled()) return cancelled("scan");
+    Result<Photograph> photograph = take_once(led, exposure, file);
+    if (photograph) return photograph;
+    check_.failed();
+    if (!may_pass(photograph.error().kind) || i >= options_.tries_per_shot) {
+      (void)lamps_off();
+      return photograph;
+    }
+    ++retaken_;
+    if (Result<void> again = recover(photograph.error()); !again) return again.error();
+    clear();
+  }
+}
+
+}  // namespace weft::capture

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "capture/devices.h"
+#include "capture/scan/frame_check.h"
+#include "capture/scan/scan.h"
+#include "core/result.h"
+
+namespace weft::capture {
+
+/// What a scan tells of itself: one call at a time, from whatever thread.
+class Report {
+ public:
+  explicit Report(const ScanEvents& events) : events_(events) {}
+  void change(const std::function<void(ScanStatus&)>& change);
+  void phase(ScanPhase phase, std::string why = {});
+  void kept(const KeptFrame& frame);
+
+ private:
+  const ScanEvents& events_;
+  std::mutex mutex_;
+  ScanStatus status_;
+};
+
+/// Takes single photographs and gets over what devices do: LEDs are off whenever no shutter is open, every
+/// fault is followed by recover(), and what a camera delivers is checked to be what was asked for.
+class Shooter {
+ public:
+  Shooter(Lamps& lamps, Camera& camera, const ScanControl& control, const ScanOptions& options,
+          Report& report)
+      : lamps_(lamps), camera_(camera), control_(control), options_(options), report_(report) {}
+
+  /// Finds both devices, waits for one that is not there. kInterrupted, kNoDevice, kBadData.
+  Result<CameraFacts> connect();
+  /// The last count of shots that the session knows.
+  void follow(std::optional<std::uint32_t> image_number) {
+    check_.begin(facts_.clock_uncertainty_s, image_number);
+  }
+  Result<std::vector<double>> shutter_times_us();
+  /// One photograph under a LED (0: dark) to `file` with an ending. Tries again where that may help; in
+  /// between `clear` removes what a failed take left. Waits while the scan is paused.
+  Result<Photograph> take(int led, const ExposureSettings& exposure, const std::filesystem::path& file,
+                          const std::function<void()>& clear);
+  Result<void> lamps_off() { return lamps_.light({}, 1); }
+  bool is_cancelled() const { return control_.cancel.stop_requested(); }
+  int retaken() const { return retaken_; }
+
+ private:
+  Result<Photograph> take_once(int led, const ExposureSettings& exposure, const std::filesystem::path& file);
+  Result<void> wait_while_paused();
+  /// Whether devices answer again after `error`; else the error that ends the scan.
+  Result<void> recover(const Error& error);
+  Result<void> wait_for(const std::function<Result<void>()>& find);
+  Result<CameraFacts> recovered_camera();
+
+  Lamps& lamps_;
+  Camera& camera_;
+  const ScanControl& control_;
+  const ScanOptions& options_;
+  Report& report_;
+  PhotographCheck check_;
+  CameraFacts facts_;
+  std::optional<ExposureSettings> set_;  ///< what the camera is set to
+  bool lamps_failed_ = false;
+  int retaken_ = 0;
+};
+
+/// The error of a scan that was cancelled.
+Error cancelled(const std::string& where);
+
+}  // namespace weft::capture

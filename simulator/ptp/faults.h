@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weft::simulator::ptp {
+
+enum class Fault : std::uint8_t {
+  kDropInExposure,
+  kDropBeforeObject,
+  kDropInData,
+  kOldShot,
+  kNoAnswer,
+  kDataStalls,
+  kDataEndsEarly,
+  kOpenSessionSilent,
+  kInitFail,
+  kRefused,
+  kCaptureBusy,
+  kBusyForEver,
+  kNoObject,
+  kObjectSizeLie,
+  kShortData,
+  kNoCaptureComplete,
+  kPropertyNoise,
+  kUnsupportedProperty,
+  kFileLate,
+  kDuplicateFrame,
+  kPowerCycle,
+  kPowerOff,
+  kPowerOn,
+  kBatteryLow,
+  kDialTurned,
+  kRawOff,
+  kExposureChanged,
+  kUsbUnplug,
+  kUsbReplug,
+  kUsbClaimed,
+  kUsbTimeout,
+  kUsbStaleSession,
+  kWell,
+};
+
+/// What a fault waits for.
+enum class Befalls {
+  kShot,        ///< an exposure
+  kConnection,  ///< a host that connects
+  kBefore,      ///< the end of the exposure before; at once for the first
+};
+
+struct FaultKind {
+  Fault fault;
+  Befalls befalls;
+  const char* name;
+  const char* sentence;
+};
+
+const std::vector<FaultKind>& fault_kinds();
+const FaultKind* find_fault(std::string_view name);
+
+/// Faults that wait for their turn. Not safe from several threads.
+class FaultSchedule {
+ public:
+  void add(Fault fault, int at) { waiting_.push_back({fault, at}); }
+  /// Whether it befalls turn `now`; if so, it has.
+  bool take(Fault fault, int now);
+  bool waits(Fault fault, int at) const;
+  void forget() { waiting_.clear(); }
+
+ private:
+  struct Waiting {
+    Fault fault;
+    int at;
+  };
+  std::vector<Waiting> waiting_;
+};
+
+}  // namespace weft::simulator::ptp

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <vector>
+
+namespace weft::simulator {
+
+using RigClock = std::chrono::steady_clock;
+
+/// What the pins of a board did: the wire between the virtual board, which records, and the virtual camera,
+/// which asks what an exposure gathered. Safe from any thread.
+class LitLog {
+ public:
+  /// From `when` on the LEDs of `mask` are lit, bit 0 is LED 1. Times do not fall.
+  void record(RigClock::time_point when, std::uint16_t mask);
+  std::uint16_t now() const;
+  /// Seconds between the two times that each of LEDs 1 to `leds` was lit. The last 1000 s are kept.
+  std::vector<double> lit_seconds(RigClock::time_point from, RigClock::time_point to, int leds) const;
+
+ private:
+  struct Edge {
+    RigClock::time_point when;
+    std::uint16_t mask;
+  };
+  mutable std::mutex mutex_;
+  std::deque<Edge> edges_;
+};
+
+}  // namespace weft::simulator

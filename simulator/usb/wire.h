@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+/// The cable between the stand-in for libusb in a host's process and a virtual camera: calls and replies over
+/// a Unix socket on one machine, one at a time a connection. A connection that ends is a device that is gone.
+namespace weft::simulator::usb {
+
+enum class Call : std::uint32_t {
+  kDescribe,   ///< replies with the address: one byte
+  kConfigure,  ///< set configuration, clear halt: what waits to be read is thrown away
+  kClaim,      ///< needed for all below but events; ends with the connection
+  kRelease,
+  kReset,
+  kControl,  ///< `value` is a class request; replies with its data
+  kBulkOut,  ///< `length` bytes follow
+  kBulkIn,   ///< at most `length` bytes come, one transfer's
+  kEvents    ///< nothing is called on this connection any more; a reply with data comes an event
+};
+
+struct CallHead {
+  Call call;
+  std::uint32_t length;
+  std::uint32_t timeout_ms;  ///< 0: none
+  std::uint32_t value;
+};
+
+enum class Status : std::int32_t { kDone, kBusy, kTimeOut, kStall };
+
+struct ReplyHead {
+  Status status;
+  std::uint32_t length;  ///< of the data that follow
+};
+
+constexpr std::uint16_t kNikon = 0x04b0, kD5100 = 0x0429;
+constexpr std::uint16_t kPacket = 512;  ///< bytes, of the bulk endpoints; a shorter one ends a transfer
+
+}  // namespace weft::simulator::usb

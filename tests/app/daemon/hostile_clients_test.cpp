@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+// Clients that break every rule, and what others notice of them.
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/app/daemon/raw_client.h"
+#include "tests/app/daemon/scripted_rig.h"
+
+namespace weft::app {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+
+class HostileClients : public testing::Test {
+ protected:
+  void start(const HttpLimits& limits = {}) {
+    server_ = scripted_.started(limits);
+    port_ = server_->port();
+  }
+  /// Milliseconds that each of `count` good requests took, sorted.
+  std::vector<double> good_requests_ms(int count) const {
+    std::vector<double> took;
+    for (int i = 0; i < count; ++i) {
+      const auto began = std::chrono::steady_clock::now();
+      const Answer answer = ask(port_, "GET", "/api/v1/rig");
+      took.push_back(
+          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count());
+      EXPECT_EQ(answer.status, 200) << "request " << i;
+    }
+    std::ranges::sort(took);
+    return took;
+  }
+  ScriptedRig scripted_{"hostile"};
+  std::unique_ptr<RigServer> server_;
+  int port_ = 0;
+};
+
+TEST_F(HostileClients, SilentOnesAreNotNoticedByAGoodOneAndAreDropped) {
+  HttpLimits limits;
+  limits.door.request_deadline_s = 1.5;
+  start(limits);
+  good_requests_ms(5);
+  std::vector<RawClient> silent;
+  for (int i = 0; i < 64; ++i) {
+    silent.emplace_back(port_);
+    ASSERT_TRUE(silent.back().connected()) << i;
+    if (i % 2 == 1) silent.back().say("POST /api/v1/scan HTTP/1.1\r\nContent-Le");
+  }
+  const std::vector<double> took = good_requests_ms(50);
+  const double median = took[25], worst = took.back();
+  fmt::print("64 silent clients: a good one is answered in {:.1f} ms (median of 50), {:.1f} ms at most\n",
+             median, worst);
+  RecordProperty("median_us", static_cast<int>(1000 * median));
+  // The figure is under 50 ms on an idle machine (docs/reliability.md); this holds on a busy one.
+  EXPECT_LT(median, 1000) << "at most " << worst << " ms";
+  for (std::size_t i = 0; i < silent.size(); ++i) EXPECT_TRUE(silent[i].closed_within(seconds(10))) << i;
+}
+
+TEST_F(HostileClients, OneThatTricklesIsDroppedAtTheDeadline) {
+  HttpLimits limits;
+  limits.door.request_deadline_s = 0.5;
+  start(limits);
+  RawClient slow(port_);
+  const auto began = std::chrono::steady_clock::now();
+  while (slow.say("G") && std::chrono::steady_clock::now() - began < seconds(10)) {
+    if (slow.closed_within(milliseconds(20))) break;
+  }
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  EXPECT_GT(took_s, 0.3);
+  EXPECT_LT(took_s, 5);
+  EXPECT_EQ(good_requests_ms(1).size(), 1U);
+}
+
+TEST_F(HostileClients, MoreThanTheDoorHoldsPushOutTheOldest) {
+  HttpLimits limits;
+  limits.door.waiting = 8;
+  start(limits);
+  std::vector<RawClient> silent;
+  for (int i = 0; i < 20; ++i) silent.emplace_back(port_);
+  EXPECT_TRUE(silent[0].closed_within(seconds(5)));
+  good_requests_ms(3);
+}
+
+/// A request made wrong in one of many ways.
+std::string malformed(std::mt19937& random, int port) {
+  const auto number = [&](int most) { return std::uniform_int_distribution<int>(0, most)(random); };
+  const auto bytes = [&](int most) {
+    std::string text(static_cast<std::size_t>(number(most)), '\0');
+    for (char& c : text) c = static_cast<char>(number(255));
+    return text;
+  };
+  const auto good =
+      request_text(port, "POST", "/api/v1/scan", R"({"fabric": "satin", "leds": [1, 2], "iso": 100})");
+  switch (number(8)) {
+    case 0:
+      return bytes(3000);
+    case 1:
+      return good.substr(0, static_cast<std::size_t>(number(static_cast<int>(good.size()) - 1)));
+    case 2: {
+      std::string changed = good;
+      for (int i = 0; i < 4; ++i) {
+        changed[static_cast<std::size_t>(number(static_cast<int>(good.size()) - 1))] =
+            static_cast<char>(number(255));
+      }
+      return changed;
+    }
+    case 3:
+      return request_text(port, "GET", "/api/v1/rig", "",
+                          {{"X-" + std::string(50, 'x'), std::string(20000, 'y')}});
+    case 4:
+      return request_text(port, "POST", "/api/v1/scan", bytes(500));
+    case 5:
+      return request_text(port, "POST", "/api/v1/scan",
+                          std::string(static_cast<std::size_t>(number(30000)), number(1) == 0 ? '[' : '{'));
+    case 6:
+      return request_text(port, "GET", "/" + bytes(200));
+    case 7:
+      return request_text(port, "POST", "/api/v1/scan", "{}",
+                          {{"Content-Length", std::to_string(number(2000000000)) + "0"}});
+    default:
+      return request_text(port, "GET",
+                          "/api/v1/sessions/" + std::string(static_cast<std::size_t>(number(900)), '%'));
+  }
+}
+
+TEST_F(HostileClients, AThousandMalformedRequestsLeaveItAnswering) {
+  HttpLimits limits;
+  limits.door.request_deadline_s = 1;
+  scripted_.devices = Error{ErrorKind::kNoDevice, "no LED board", "", "", "plug it in"};  // what few become
+  start(limits);
+  std::mt19937 random(20261121);
+  int answered = 0, taken = 0;
+  for (int i = 0; i < 1000; ++i) {
+    RawClient client(port_);
+    ASSERT_TRUE(client.connected()) << i;
+    client.say(malformed(random, port_));
+    client.end_of_words();
+    const Answer answer = parsed(client.hear(seconds(5)));
+    answered += answer.status != 0;
+    taken += answer.status == 202 || answer.status == 200;
+    if (answer.status >= 400) {
+      ASSERT_TRUE(answer.json().contains("error")) << answer.body;
+      ASSERT_TRUE(answer.status < 500 || answer.status == 505) << i << ": " << answer.body;
+    }
+  }
+  EXPECT_GT(answered, 500) << "most were told what is wrong";
+  EXPECT_LT(taken, 50);
+  const std::vector<double> took = good_requests_ms(50);
+  fmt::print(
+      "after 1000 malformed requests a good one is answered in {:.1f} ms (median of 50), {:.1f} ms at most\n",
+      took[25], took.back());
+  EXPECT_LT(took[25], 1000);
+}
+
+TEST_F(HostileClients, NoPathLeadsOutOfTheSessions) {
+  start();
+  scripted_.leave_unfinished("real");
+  std::ofstream(scripted_.rig.scan.sessions / "secret.txt") << "secret";
+  for (const char* name : {"..",
+                           "../state",
+                           "..%2fstate",
+                           "%2e%2e",
+                           "%2e%2e%2fstate",
+                           "..%5c..",
+                           "%252e%252e%252f",
+                           "real/../..",
+                           "real%00",
+                           "%c0%ae%c0%ae",
+                           "real.weft/../secret.txt",
+                           "/etc/passwd",
+                           "%2fetc%2fpasswd",
+                           "real/frames/0/../../..",
+                           "real/frames/-1/thumbnail",
+                           "real/frames/0x0/thumbnail",
+                           "real/frames/99/thumbnail",
+                           "real/frames/99999999999999/histogram",
+                           "real/frames/%30%00/thumbnail",
+                           "none"}) {
+    const Answer answer = ask(port_, "GET", std::string("/api/v1/sessions/") + name);
+    EXPECT_TRUE(answer.status == 400 || answer.status == 404) << name << ": " << answer.status << answer.body;
+    EXPECT_TRUE(answer.json().contains("error")) << name;
+    EXPECT_THAT(answer.body, testing::Not(HasSubstr("secret"))) << name;
+  }
+  EXPECT_EQ(ask(port_, "GET", "/api/v1/sessions/real").status, 200);
+}
+
+TEST_F(HostileClients, AFrameThatIsALinkOutOfItsSessionIsNotServed) {
+  start();
+  scripted_.leave_unfinished("a");
+  scripted_.leave_unfinished("b");
+  const Session a = read_session(scripted_.session("a")).value(),
+                b = read_session(scripted_.session("b")).value();
+  std::filesystem::remove(a.path_of(a.shots[0]));
+  std::filesystem::create_symlink(b.path_of(b.shots[0]), a.path_of(a.shots[0]));
+  EXPECT_EQ(ask(port_, "GET", "/api/v1/sessions/a/frames/0/thumbnail").status, 404);
+  EXPECT_EQ(ask(port_, "GET", "/api/v1/sessions/b/frames/0/thumbnail").status, 200);
+}
+
+TEST_F(HostileClients, ForeignPagesAreTurnedAway) {
+  start();
+  const std::string body = R"({"fabric": "satin"})";
+  EXPECT_EQ(ask(port_, "GET", "/api/v1/rig", "", {{"Host", "evil.example"}}).status, 421);
+  EXPECT_EQ(
+      ask(port_, "POST", "/api/v1/scan", body, {{"Host", fmt::format("evil.example:{}", port_)}}).status,
+      421);
+  EXPECT_EQ(ask(port_, "GET", "/api/v1/rig", "", {{"Origin", "http://evil.example"}}).status, 403);
+  EXPECT_EQ(ask(port_, "POST", "/api/v1/scan", body, {{"Origin", "null"}}).status, 403);
+  EXPECT_EQ(ask(port_, "POST", "/api/v1/scan", body, {{"Content-Type", "text/plain"}}).status, 415);
+  EXPECT_EQ(ask(port_, "OPTIONS", "/api/v1/scan").status, 405);
+  EXPECT_EQ(ask(port_, "DELETE", "/api/v1/sessions").status, 405);
+  EXPECT_EQ(ask(port_, "GET", "/api/v1/scan").status, 405);
+  EXPECT_EQ(ask(port_, "GET", "/nothing").status, 404);
+  EXPECT_EQ(wait_for_state(port_, "idle")["session"], Json());
+}
+
+TEST_F(HostileClients, ABodyThatIsTooLongIsRefusedWithoutReadingIt) {
+  start();
+  const Answer told = ask(port_, "POST", "/api/v1/scan", "", {{"Content-Length", "99999999999"}});
+  EXPECT_EQ(told.status, 413);
+  const Answer sent = ask(port_, "POST", "/api/v1/scan", std::string(1 << 20, ' '));
+  EXPECT_EQ(sent.status, 413) << "one that sends it all the same reads its answer";
+  EXPECT_EQ(ask(port_, "POST", "/api/v1/scan/pause", std::string(65536, ' ')).status, 409)
+      << "64 kB are taken";
+}
+
+TEST_F(HostileClients, StreamsOfEventsAreLimitedAndFreeAgainOnceLeft) {
+  HttpLimits limits;
+  limits.streams = 4;
+  start(limits);
+  std::vector<RawClient> followers;
+  for (int i = 0; i < 4; ++i) {
+    followers.emplace_back(port_);
+    followers.back().say(request_text(port_, "GET", "/api/v1/events"));
+    EXPECT_THAT(followers.back().hear(seconds(5), "\n\n"), HasSubstr("event: status"));
+  }
+  const Answer fifth = ask(port_, "GET", "/api/v1/events");
+  EXPECT_EQ(fifth.status, 503) << fifth.head;
+  EXPECT_EQ(fifth.json()["error"]["kind"], "try_again");
+  followers.clear();
+  const auto began = std::chrono::steady_clock::now();
+  std::string heard;
+  while (heard.find("event: status") == std::string::npos) {
+    ASSERT_LT(std::chrono::steady_clock::now() - began, seconds(5)) << heard;
+    RawClient next(port_);
+    next.say(request_text(port_, "GET", "/api/v1/events"));
+    heard = next.hear(seconds(2), "\n\n");
+  }
+}
+
+}  // namespace
+}  // namespace weft::app

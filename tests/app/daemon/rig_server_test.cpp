@@ -1,0 +1,309 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rig's states and sessions over HTTP, by a scan that does what the test says.
+#include "app/daemon/rig_server.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <fstream>
+#include <string>
+#include <thread>
+
+#include "app/daemon/rig_lock.h"
+#include "core/files.h"
+#include "tests/app/daemon/raw_client.h"
+#include "tests/app/daemon/scripted_rig.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+constexpr const char* kScan = "/api/v1/scan";
+
+TEST(RigServer, ScansAClothAndShowsItsFrames) {
+  ScriptedRig scripted("flow");
+  const auto server = scripted.started();
+  const int port = server->port();
+  EXPECT_EQ(wait_for_state(port, "idle")["session"], Json());
+
+  const Answer begun =
+      ask(port, "POST", kScan, R"({"fabric": "satin", "session": "first", "metadata": {"id": "7"}})");
+  ASSERT_EQ(begun.status, 202) << begun.body;
+  EXPECT_EQ(begun.json(), (Json{{"session", "first"}, {"resumed", false}}));
+  const Json status = wait_for_state(port, "idle");
+  EXPECT_EQ(status["phase"], "complete");
+  EXPECT_EQ(status["session"], "first");
+  EXPECT_EQ(status["frames"], 4);
+  EXPECT_EQ(status["devices"]["camera"]["says"]["serial"], "SN-0042");
+  EXPECT_EQ(status["lock"]["pid"], getpid());
+
+  const Answer picture = ask(port, "GET", "/api/v1/sessions/first/frames/2/thumbnail");
+  ASSERT_EQ(picture.status, 200) << picture.body;
+  EXPECT_THAT(picture.head, HasSubstr("image/png"));
+  EXPECT_THAT(picture.body, StartsWith("\x89PNG"));
+  const Json histogram = ask(port, "GET", "/api/v1/sessions/first/frames/2/histogram").json();
+  // Of 640 columns those from x = 597 on are full, a share that green, on both rows, has as red and blue do.
+  for (const char* channel : {"red", "green", "blue"}) {
+    EXPECT_EQ(histogram[channel]["bins"].size(), 64U);
+    EXPECT_NEAR(histogram[channel]["clipped"].get<double>(), 43.0 / 640, 2.0 / 640) << channel;
+  }
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_EQ(ask(port, "GET", "/api/v1/sessions/first/frames/" + std::to_string(i) + "/histogram").status,
+              200);
+  }
+  const Json session = ask(port, "GET", "/api/v1/sessions/first").json();
+  EXPECT_EQ(session["state"], "complete");
+  EXPECT_EQ(session["frames"].size(), 4U);
+  EXPECT_EQ(session["histograms_complete"], true);
+  ASSERT_EQ(session["clipping_by_led"].size(), 3U) << session.dump(1);
+  EXPECT_EQ(session["clipping_by_led"][1]["led"], 2);
+  EXPECT_EQ(read_session(scripted.session("first"))->document["metadata"]["id"], "7");
+}
+
+TEST(RigServer, HasAThumbnailWithinASecondOfEachFrame) {
+  ScriptedRig scripted("thumbs");
+  Gate gate;
+  scripted.before = [&](int frame) -> Result<void> {
+    if (frame == 1) gate.pass();
+    return {};
+  };
+  const auto server = scripted.started();
+  ASSERT_EQ(ask(server->port(), "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  wait_for_state(server->port(), "scanning");
+  const fs::path pictures = scripted.rig.daemon.state / "pictures";
+  const auto began = std::chrono::steady_clock::now();
+  while (!fs::exists(pictures) || fs::is_empty(pictures)) {
+    ASSERT_LT(std::chrono::steady_clock::now() - began, seconds(1))
+        << "nobody asked for it, and it is not there";
+    std::this_thread::sleep_for(milliseconds(5));
+  }
+  gate.open();
+  wait_for_state(server->port(), "idle");
+}
+
+TEST(RigServer, PausesResumesAndCancels) {
+  ScriptedRig scripted("states");
+  Gate at_one, at_two;
+  scripted.before = [&](int frame) -> Result<void> {
+    if (frame == 1) at_one.pass();
+    if (frame == 2) at_two.pass();
+    return {};
+  };
+  const auto server = scripted.started();
+  const int port = server->port();
+  for (const char* call : {"/api/v1/scan/pause", "/api/v1/scan/resume", "/api/v1/scan/cancel"}) {
+    const Answer none = ask(port, "POST", call, "{}");
+    EXPECT_EQ(none.status, 409) << call;
+    EXPECT_EQ(none.json()["error"]["kind"], "try_again") << call;
+  }
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  wait_for_state(port, "scanning");
+  const Answer second = ask(port, "POST", kScan, R"({"fabric": "satin", "session": "b"})");
+  EXPECT_EQ(second.status, 409) << second.body;
+  EXPECT_THAT(second.json()["error"]["why"].get<std::string>(), HasSubstr("scans a"));
+
+  ASSERT_EQ(ask(port, "POST", "/api/v1/scan/pause", "").status, 202);
+  at_one.open();
+  wait_for_state(port, "paused");
+  ASSERT_EQ(ask(port, "POST", "/api/v1/scan/resume", "").status, 202);
+  wait_for_state(port, "scanning");
+  ASSERT_EQ(ask(port, "POST", "/api/v1/scan/cancel", "").status, 202);
+  at_two.open();
+  const Json cancelled = wait_for_state(port, "idle");
+  EXPECT_EQ(cancelled["phase"], "cancelled");
+  EXPECT_EQ(cancelled["resumable"], Json::array({"a"}));
+
+  ASSERT_EQ(ask(port, "POST", "/api/v1/scan/resume", "").status, 202) << "a cancelled scan goes on";
+  const Json status = wait_for_state(port, "idle");
+  EXPECT_EQ(status["phase"], "complete");
+  EXPECT_EQ(status["frames"], 4);
+  EXPECT_EQ(ask(port, "POST", "/api/v1/scan/resume", "").status, 409) << "a finished one does not";
+}
+
+TEST(RigServer, SaysWhyAScanFailedAndLetsItBeResumed) {
+  ScriptedRig scripted("fails");
+  bool cable = false;
+  scripted.before = [&](int frame) -> Result<void> {
+    if (frame < 2 || cable) return {};
+    return Error{ErrorKind::kNoDevice, "the camera is gone", "usb:001,007", "its cable was pulled",
+                 "plug it in again"};
+  };
+  const auto server = scripted.started();
+  const int port = server->port();
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  const Json failed = wait_for_state(port, "failed");
+  EXPECT_EQ(failed["error"]["kind"], "no_device");
+  EXPECT_THAT(failed["why"].get<std::string>(), HasSubstr("plug it in again"));
+  EXPECT_EQ(failed["devices"]["camera"]["open"], false);
+  cable = true;
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"session": "a"})").status, 202);
+  EXPECT_EQ(wait_for_state(port, "idle")["frames"], 4);
+}
+
+TEST(RigServer, SaysThatADeviceIsNotThere) {
+  ScriptedRig scripted("nodevice");
+  scripted.devices =
+      Error{ErrorKind::kNoDevice, "no LED board", "/dev/weft-led", "nothing there", "plug it in"};
+  const auto server = scripted.started();
+  ASSERT_EQ(ask(server->port(), "POST", kScan, R"({"fabric": "satin"})").status, 202);
+  EXPECT_EQ(wait_for_state(server->port(), "failed")["error"]["where"], "/dev/weft-led");
+}
+
+TEST(RigServer, FindsUnfinishedSessionsWhenItStarts) {
+  ScriptedRig scripted("finds");
+  scripted.leave_unfinished("left");
+  fs::create_directories(scripted.session("broken"));
+  std::ofstream(scripted.session("broken") / "session.json") << "{";
+  fs::create_directory_symlink("/", scripted.session("link"));
+  const auto server = scripted.started();
+  const int port = server->port();
+  EXPECT_EQ(wait_for_state(port, "idle")["resumable"], Json::array({"left"}));
+  const Json sessions = ask(port, "GET", "/api/v1/sessions").json()["sessions"];
+  ASSERT_EQ(sessions.size(), 2U) << sessions.dump(1);
+  for (const Json& each : sessions)
+    EXPECT_EQ(each["state"], each["name"] == "left" ? "capturing" : "unreadable");
+  EXPECT_EQ(ask(port, "GET", "/api/v1/sessions/broken").status, 422);
+
+  const Answer resumed = ask(port, "POST", kScan, R"({"session": "left"})");
+  ASSERT_EQ(resumed.status, 202) << resumed.body;
+  EXPECT_EQ(resumed.json()["resumed"], true);
+  EXPECT_EQ(wait_for_state(port, "idle")["frames"], 4);
+  EXPECT_EQ(read_session(scripted.session("left"))->fabric, "linen");
+}
+
+TEST(RigServer, NeverOverwritesASession) {
+  ScriptedRig scripted("never");
+  scripted.rig.scan.session_name = "{fabric}_{count}";
+  scripted.leave_unfinished("linen_001");
+  Session finished = read_session(scripted.session("linen_001")).value();
+  finished.state = "complete";
+  ASSERT_TRUE(write_session(finished));
+  const auto server = scripted.started();
+  const Answer again = ask(server->port(), "POST", kScan, R"({"fabric": "linen", "session": "linen_001"})");
+  EXPECT_EQ(again.status, 409);
+  EXPECT_EQ(again.json()["error"]["kind"], "cannot_create");
+  EXPECT_EQ(ask(server->port(), "GET", "/api/v1/next-name?fabric=linen").json()["session"], "linen_002");
+  EXPECT_EQ(ask(server->port(), "POST", kScan, R"({"fabric": "linen"})").json()["session"], "linen_002");
+  wait_for_state(server->port(), "idle");
+}
+
+TEST(RigServer, TellsItsEventsToWhoFollows) {
+  ScriptedRig scripted("events");
+  Gate gate;
+  scripted.before = [&](int frame) -> Result<void> {
+    if (frame == 2) gate.pass();
+    return {};
+  };
+  HttpLimits limits;
+  limits.heartbeat_s = 0.3;
+  const auto server = scripted.started(limits);
+  const int port = server->port();
+  RawClient follower(port);
+  follower.say(request_text(port, "GET", "/api/v1/events"));
+  EXPECT_THAT(follower.hear(seconds(5), "\n\n"), HasSubstr("event: status")) << "first of all how things are";
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  const std::string frames = follower.hear(seconds(5), "\"index\":1");
+  EXPECT_THAT(frames, HasSubstr("event: frame"));
+  EXPECT_THAT(frames, HasSubstr("/api/v1/sessions/a/frames/1/thumbnail"));
+  EXPECT_THAT(follower.hear(seconds(5), "heartbeat"), HasSubstr("event: heartbeat"));
+  gate.open();
+  const std::string rest = follower.hear(seconds(5), "\"phase\":\"complete\"");
+  EXPECT_THAT(rest, HasSubstr("\"index\":3"));
+
+  // One that comes back is told what it missed: the frame it saw last was number 1.
+  const std::size_t id_at = frames.rfind("id: ", frames.find("\"index\":1"));
+  ASSERT_NE(id_at, std::string::npos) << frames;
+  const std::string id = frames.substr(id_at + 4, frames.find('\n', id_at) - id_at - 4);
+  RawClient again(port);
+  again.say(request_text(port, "GET", "/api/v1/events", "", {{"Last-Event-ID", id}}));
+  const std::string missed = again.hear(seconds(5), "\"phase\":\"complete\"");
+  EXPECT_THAT(missed, testing::AllOf(HasSubstr("\"index\":2"), HasSubstr("\"index\":3"),
+                                     testing::Not(HasSubstr("\"index\":1,"))));
+}
+
+TEST(RigServer, EndsWithinThreeSecondsInTheMiddleOfAScan) {
+  ScriptedRig scripted("ends");
+  Gate gate;
+  scripted.before = [&](int frame) -> Result<void> {
+    if (frame == 1) gate.pass();
+    return {};
+  };
+  auto server = scripted.started();
+  const int port = server->port();
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  wait_for_state(port, "scanning");
+  RawClient follower(port), silent(port);
+  follower.say(request_text(port, "GET", "/api/v1/events"));
+  EXPECT_THAT(follower.hear(seconds(5), "\n\n"), HasSubstr("200"));
+  const auto began = std::chrono::steady_clock::now();
+  EXPECT_FALSE(server->stop()) << "the shot on its way does not end";
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  EXPECT_LT(took_s, 3.0);
+  EXPECT_TRUE(follower.closed_within(milliseconds(100)));
+  EXPECT_TRUE(silent.closed_within(milliseconds(100)));
+  gate.open();
+  server.reset();
+  EXPECT_FALSE(fs::exists(scripted.rig.daemon.state / "address"));
+  EXPECT_EQ(read_session(scripted.session("a"))->shots.size(), 1U) << "cancelled after the shot on its way";
+}
+
+TEST(RigServer, IsTheOnlyOneOfItsRig) {
+  ScriptedRig scripted("only");
+  auto first = scripted.started();
+  EXPECT_EQ(address_of_owner(scripted.rig), first->address());
+  const auto second = scripted.start();
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().kind, ErrorKind::kTryAgain);
+  EXPECT_THAT(second.error().message(), HasSubstr("process " + std::to_string(getpid())));
+  first.reset();
+  EXPECT_EQ(address_of_owner(scripted.rig), std::nullopt);
+  EXPECT_TRUE(scripted.start());
+}
+
+TEST(RigServer, SharesNothingWithThatOfAnotherRig) {
+  ScriptedRig north("north"), south("south");
+  const auto a = north.started(), b = south.started();
+  ASSERT_EQ(ask(a->port(), "POST", kScan, R"({"fabric": "satin", "session": "same"})").status, 202);
+  ASSERT_EQ(ask(b->port(), "POST", kScan, R"({"fabric": "wool", "session": "same"})").status, 202);
+  wait_for_state(a->port(), "idle");
+  wait_for_state(b->port(), "idle");
+  EXPECT_EQ(ask(a->port(), "GET", "/api/v1/sessions/same").json()["fabric"], "satin");
+  EXPECT_EQ(ask(b->port(), "GET", "/api/v1/sessions/same").json()["fabric"], "wool");
+}
+
+TEST(RigServer, SaysThatItsPortIsTaken) {
+  ScriptedRig north("taken"), south("late");
+  const auto first = north.started();
+  south.rig.daemon.port = first->port();
+  const auto second = south.start();
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().kind, ErrorKind::kTryAgain) << second.error().message();
+}
+
+TEST(RigServer, IsOpenToTheNetworkOnlyWithAToken) {
+  ScriptedRig scripted("network");
+  scripted.rig.daemon.host = "0.0.0.0";
+  const auto open = scripted.start();
+  ASSERT_FALSE(open);
+  EXPECT_EQ(open.error().kind, ErrorKind::kUsage) << open.error().message();
+
+  scripted.rig.daemon.token = scripted.rig.file.parent_path() / "token";
+  std::ofstream(scripted.rig.daemon.token) << "0123456789abcdef\n";
+  fs::permissions(scripted.rig.daemon.token, fs::perms::owner_read);
+  const auto server = scripted.started();
+  EXPECT_EQ(ask(server->port(), "GET", "/api/v1/rig").status, 401);
+  EXPECT_EQ(
+      ask(server->port(), "GET", "/api/v1/rig", "", {{"Authorization", "Bearer 0123456789abcdeF"}}).status,
+      401);
+  wait_for_state(server->port(), "idle", "0123456789abcdef");
+}
+
+}  // namespace
+}  // namespace weft::app

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/doctor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Contains;
+using testing::Each;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using Verdict = Finding::Verdict;
+
+/// A machine as its /proc, /sys and /dev show it.
+class Machine {
+ public:
+  explicit Machine(const std::string& name) : root_(fs::path(testing::TempDir()) / ("doctor_" + name)) {
+    fs::remove_all(root_);
+    for (const char* part : {"proc", "sys/bus/usb/devices", "dev/bus/usb/001", "udev"})
+      fs::create_directories(root_ / part);
+    write("dev/ttyACM0", "");
+    rig_.board.port = (root_ / "dev/ttyACM0").string();
+    rig_.camera.port = "ptpip:127.0.0.1:1:1";
+  }
+  ~Machine() { fs::remove_all(root_); }
+  void write(const fs::path& file, const std::string& text) const {
+    fs::create_directories((root_ / file).parent_path());
+    std::ofstream(root_ / file) << text;
+  }
+  /// A process, with a file of this machine open.
+  void runs(int pid, const std::string& name, const fs::path& holds = {}) const {
+    const fs::path folder = fs::path("proc") / std::to_string(pid);
+    write(folder / "comm", name + "\n");
+    fs::create_directories(root_ / folder / "fd");
+    if (!holds.empty()) fs::create_symlink(fs::canonical(root_ / holds), root_ / folder / "fd/7");
+  }
+  void plug_camera(const std::string& speed) {
+    const fs::path device = "sys/bus/usb/devices/1-2";
+    write(device / "busnum", "1\n");
+    write(device / "devnum", "5\n");
+    write(device / "speed", speed + "\n");
+    write(device / "product", "NIKON DSC D5100\n");
+    write(device / "1-2:1.0/bInterfaceClass", "06\n");
+    write("dev/bus/usb/001/005", "");
+    rig_.camera.port.clear();
+  }
+  void use_usb() { rig_.camera.port.clear(); }
+  std::vector<Finding> examine() const {
+    return examine_ports(rig_, {root_ / "proc", root_ / "sys", root_ / "dev", root_ / "udev"});
+  }
+  const fs::path& root() const { return root_; }
+  capture::Rig& rig() { return rig_; }
+
+ private:
+  fs::path root_;
+  capture::Rig rig_;
+};
+
+auto faults(const std::string& part, const std::string& says, const std::string& remedy) {
+  return AllOf(Field("verdict", &Finding::verdict, Verdict::kFault), Field("part", &Finding::part, part),
+               Field("says", &Finding::says, HasSubstr(says)),
+               Field("remedy", &Finding::remedy, HasSubstr(remedy)));
+}
+
+TEST(Doctor, FindsNothingWrongWithAFreePort) {
+  const Machine machine("free");
+  EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)));
+}
+
+TEST(Doctor, NamesTheModemManagerThatHoldsTheBoard) {
+  const Machine machine("modem");
+  machine.runs(421, "ModemManager", "dev/ttyACM0");
+  EXPECT_THAT(machine.examine(), Contains(faults("board", "ModemManager (process 421)",
+                                                 "systemctl disable --now ModemManager")));
+}
+
+TEST(Doctor, NamesBrlttyAndAnyOtherHolderWithItsOwnRemedy) {
+  const Machine machine("brltty");
+  machine.runs(99, "brltty", "dev/ttyACM0");
+  machine.runs(100, "minicom", "dev/ttyACM0");
+  const std::vector<Finding> found = machine.examine();
+  EXPECT_THAT(found, Contains(faults("board", "brltty (process 99)", "apt-get remove brltty")));
+  EXPECT_THAT(found, Contains(faults("board", "minicom (process 100)", "kill 100")));
+}
+
+TEST(Doctor, WarnsOfAModemManagerThatWaitsUnlessOurRulesKeepItOff) {
+  const Machine machine("waits");
+  machine.runs(421, "ModemManager");
+  EXPECT_THAT(machine.examine(), Contains(Field("verdict", &Finding::verdict, Verdict::kWarning)));
+  machine.write("udev/70-weft.rules", "");
+  EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)));
+}
+
+TEST(Doctor, SaysThatAPortIsNotThere) {
+  Machine machine("absent");
+  machine.rig().board.port = (machine.root() / "dev/ttyUSB3").string();
+  EXPECT_THAT(machine.examine(), Contains(faults("board", "there is no port", "plug the board in")));
+}
+
+TEST(Doctor, NamesTheDesktopThatClaimsTheCamera) {
+  Machine machine("gvfs");
+  machine.plug_camera("480");
+  machine.runs(77, "gvfsd-gphoto2", "dev/bus/usb/001/005");
+  EXPECT_THAT(machine.examine(),
+              Contains(faults("camera", "gvfsd-gphoto2 (process 77)", "gio mount -s gphoto2")));
+}
+
+TEST(Doctor, SaysThatNoCameraIsPluggedInOrASlowOne) {
+  Machine machine("usb");
+  machine.use_usb();
+  EXPECT_THAT(machine.examine(), Contains(faults("camera", "no camera", "switch it on")));
+  machine.plug_camera("12");
+  EXPECT_THAT(machine.examine(), Contains(AllOf(Field(&Finding::verdict, Verdict::kWarning),
+                                                Field(&Finding::says, HasSubstr("12 Mbit/s")))));
+}
+
+TEST(Doctor, PassesOnWhatAPersonMustDoToTheCamera) {
+  Machine machine("dial");
+  const auto found = examine_devices(
+      machine.rig(),
+      {[]() -> Result<std::string> { return std::string("weft lights 1.0"); },
+       []() -> Result<capture::CameraFacts> {
+         return Error{ErrorKind::kBadData, "the dial is not on M", "camera", "it is on A", "turn it to M"};
+       }});
+  EXPECT_THAT(found, Contains(faults("camera", "the dial is not on M", "turn it to M")));
+}
+
+TEST(Doctor, WarnsOfALowBatteryAndAClockThatIsOff) {
+  Machine machine("battery");
+  machine.rig().camera.serial = "6000001";
+  capture::CameraFacts facts;
+  facts.battery = 0.1;
+  facts.clock_offset_s = -3600;
+  const auto found =
+      examine_devices(machine.rig(), {[]() -> Result<std::string> { return std::string("weft lights 1.0"); },
+                                      [&]() -> Result<capture::CameraFacts> { return facts; }});
+  EXPECT_THAT(found, Contains(Field(&Finding::says, HasSubstr("battery will not last"))));
+  EXPECT_THAT(found, Contains(Field(&Finding::says, HasSubstr("off by -3600 s"))));
+}
+
+TEST(Doctor, CountsTheSessionsThatFitOnTheDisk) {
+  Machine machine("disk");
+  machine.rig().scan.sessions = machine.root() / "scans";
+  const auto fits = examine_folders(machine.rig(), 1);
+  EXPECT_THAT(fits, Contains(AllOf(Field(&Finding::part, "disk"), Field(&Finding::verdict, Verdict::kFine))));
+  const auto full = examine_folders(machine.rig(), std::uint64_t{1} << 56);
+  EXPECT_THAT(full, Contains(faults("disk", "room for 0 sessions", "free some")));
+}
+
+TEST(Doctor, RefusesTheCalibrationOfAnotherApertureOrNone) {
+  Machine machine("calibration");
+  machine.rig().scan.sessions = machine.root() / "scans";
+  machine.rig().scan.calibration = machine.root() / "nowhere";
+  EXPECT_THAT(examine_folders(machine.rig(), 1), Contains(faults("calibration", "", "")));
+}
+
+}  // namespace
+}  // namespace weft::app

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ports that cannot be opened and boards that cannot be used: what a person is told.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "capture/board/led_board.h"
+#include "tests/capture/board/desk.h"
+
+namespace weft::capture {
+namespace {
+
+using test::Desk;
+using test::LightHolder;
+using testing::HasSubstr;
+
+Error error_of(const LedBoardOptions& options) {
+  const auto board = LedBoard::open(options);
+  return board ? Error{} : board.error();
+}
+
+TEST(OpeningALedBoard, SaysThatItIsNotThere) {
+  const Error error = error_of({"/dev/weft-no-such-board"});
+  EXPECT_EQ(error.kind, ErrorKind::kNoDevice);
+  EXPECT_THAT(error.message(), HasSubstr("/dev/weft-no-such-board: No such file"));
+  EXPECT_THAT(error.remedy, HasSubstr("ls /dev/serial/by-id"));
+}
+
+TEST(OpeningALedBoard, RefusesAFileThatIsNoSerialPort) {
+  const std::string file = testing::TempDir() + "no_port_" + std::to_string(getpid());
+  std::ofstream(file) << "text";
+  const Error error = error_of({file});
+  std::filesystem::remove(file);
+  EXPECT_EQ(error.kind, ErrorKind::kNoDevice);
+  EXPECT_THAT(error.message(), HasSubstr("not a serial port"));
+}
+
+TEST(OpeningALedBoard, IsRefusedASecondTimeInOneProcess) {
+  Desk desk;
+  const auto board = desk.open();
+  const Error error = error_of(desk.options());
+  EXPECT_EQ(error.kind, ErrorKind::kNoDevice) << error.message();
+  EXPECT_THAT(error.message(), HasSubstr("held by another program"));
+  const auto status = board->status();
+  EXPECT_TRUE(status) << "the one that has it was disturbed: " << status.error().message();
+}
+
+TEST(OpeningALedBoard, SaysWhichProcessHoldsIt) {
+  Desk desk;
+  LightHolder host(desk.port(), 3);
+  ASSERT_TRUE(desk.comes_to_light({3}, 10));
+  const Error error = error_of(desk.options());
+  EXPECT_EQ(error.kind, ErrorKind::kNoDevice);
+  EXPECT_THAT(error.message(), HasSubstr("hold_light (process " + std::to_string(host.process()) + ")"));
+  EXPECT_EQ(desk.pins().now(), 4) << "asking for the port disturbed the light";
+}
+
+TEST(OpeningALedBoard, IsFreeAgainWhenItIsClosed) {
+  Desk desk;
+  for (int i = 0; i < 3; ++i) EXPECT_NO_THROW(desk.open()) << i;
+}
+
+// In a child that is nobody: root may open anything.
+TEST(OpeningALedBoard, SaysHowToBeAllowedTo) {
+  if (geteuid() != 0) GTEST_SKIP() << "needs root to become somebody else";
+  Desk desk;
+  const pid_t child = fork();
+  if (child == 0) {
+    const std::string terminal = std::filesystem::read_symlink(desk.terminal());
+    if (chmod(terminal.c_str(), 0600) != 0 || setuid(65534) != 0) _exit(3);
+    const Error error = error_of({terminal});
+    _exit(error.kind == ErrorKind::kNoDevice && error.remedy.find("dialout") != std::string::npos ? 0 : 1);
+  }
+  int state = 0;
+  waitpid(child, &state, 0);
+  EXPECT_TRUE(WIFEXITED(state) && WEXITSTATUS(state) == 0) << state;
+}
+
+TEST(OpeningALedBoard, RefusesAnOlderAndANewerFirmware) {
+  for (const std::string version : {"older", "newer"}) {
+    Desk desk("firmware_" + version);
+    const Error error = error_of(desk.options());
+    EXPECT_EQ(error.kind, ErrorKind::kBadData) << error.message();
+    EXPECT_THAT(error.message(), HasSubstr(version == "older" ? "too old" : "newer than this weft"));
+    EXPECT_THAT(error.remedy, HasSubstr("./dev flash"));
+  }
+}
+
+TEST(OpeningALedBoard, GivesUpOnABoardThatIsSilent) {
+  Desk desk;
+  desk.inject(simulator::BoardFault::kDeaf);
+  const Error error = error_of({desk.port(), 0.5});
+  EXPECT_EQ(error.kind, ErrorKind::kTryAgain) << error.message();
+  EXPECT_THAT(error.message(), HasSubstr("does not answer"));
+}
+
+}  // namespace
+}  // namespace weft::capture

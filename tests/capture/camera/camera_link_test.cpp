@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+// The link through the real weft-camera and libgphoto2 to a virtual D5100.
+#include "capture/camera/camera_link.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cerrno>
+#include <cmath>
+
+#include "tests/capture/camera/link_bench.h"
+
+namespace weft::capture {
+namespace {
+
+using simulator::VirtualCameraOptions;
+using testing::HasSubstr;
+
+TEST(CameraLink, KnowsTheCameraOnceItIsConnected) {
+  VirtualCameraOptions options;
+  options.serial = "6004711";
+  options.battery = 0.62;
+  LinkBench bench(options);
+  bench.options().serial = "6004711";
+  const auto facts = bench.link().connect();
+  ASSERT_TRUE(facts) << facts.error().message();
+  EXPECT_EQ(facts->model, "D5100");
+  EXPECT_EQ(facts->serial, "6004711");
+  EXPECT_EQ(facts->port, bench.options().port);
+  EXPECT_NEAR(facts->battery, 0.62, 0.006);
+}
+
+TEST(CameraLink, ReadsTheCamerasClockToAFewHundredths) {
+  VirtualCameraOptions options;
+  options.clock_offset_s = -3723.4;
+  LinkBench bench(options);
+  const auto facts = bench.link().connect();
+  ASSERT_TRUE(facts) << facts.error().message();
+  EXPECT_LT(facts->clock_uncertainty_s, 0.2);
+  EXPECT_NEAR(facts->clock_offset_s, -3723.4, facts->clock_uncertainty_s + 0.005);
+}
+
+TEST(CameraLink, SetsAnExposureAndReadsItBack) {
+  LinkBench bench;
+  ASSERT_TRUE(bench.link().connect());
+  const auto facts = bench.link().set({399000, 200, 11});
+  ASSERT_TRUE(facts) << facts.error().message();
+  EXPECT_EQ(facts->exposure, (ExposureSettings{4e5, 200, 11}));
+  const auto none = bench.link().set({16000, 100, 8});
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(none.error().message(), HasSubstr("1/80 and 1/60"));
+  const auto times = bench.link().shutter_times_us();
+  ASSERT_TRUE(times) << times.error().message();
+  EXPECT_TRUE(std::ranges::is_sorted(*times));
+  EXPECT_EQ(times->front(), 250);
+  EXPECT_EQ(times->back(), 3e7);
+}
+
+TEST(CameraLink, TakesTwentyPhotographs) {
+  LinkBench bench;
+  CameraLink& link = bench.ready();
+  for (int i = 1; i <= 20; ++i) {
+    int exposed = 0;
+    const auto taken = link.take(bench.raw(i), [&] { ++exposed; });
+    ASSERT_TRUE(taken) << i << ": " << taken.error().message();
+    EXPECT_EQ(wrong_with(*taken, static_cast<std::uint32_t>(i)), "");
+    EXPECT_EQ(exposed, 1);
+    EXPECT_EQ(taken->ending, "dng");
+    EXPECT_EQ(taken->file, bench.raw(i).string() + ".dng");
+    EXPECT_NEAR(taken->exposure.exposure_us, 1e6 / 60, 1);
+    ASSERT_TRUE(taken->taken_s);
+    EXPECT_NEAR(*taken->taken_s, taken->triggered_s, 0.2)
+        << "seconds between trigger and the photograph's own time";
+  }
+  EXPECT_EQ(left_over(bench.folder() / "raw"), 0);
+}
+
+TEST(CameraLink, RefusesAnotherCameraThanTheRigs) {
+  LinkBench bench;
+  bench.options().serial = "6009999";
+  const auto facts = bench.link().connect();
+  ASSERT_FALSE(facts);
+  EXPECT_EQ(facts.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(facts.error().message(), HasSubstr("6000001, not 6009999"));
+}
+
+TEST(CameraLink, SendsAPersonToTheDialAndTheBattery) {
+  VirtualCameraOptions off_m;
+  off_m.dial_manual = false;
+  VirtualCameraOptions low;
+  low.battery = 0.04;
+  for (const auto& [options, remedy] : {std::pair{off_m, "dial to M"}, std::pair{low, "charge"}}) {
+    LinkBench bench(options);
+    const auto facts = bench.link().connect();
+    ASSERT_FALSE(facts) << remedy;
+    EXPECT_EQ(facts.error().kind, ErrorKind::kBadData) << facts.error().message();
+    EXPECT_THAT(facts.error().remedy, HasSubstr(remedy));
+  }
+}
+
+TEST(CameraLink, SetsTheCameraToRaw) {
+  VirtualCameraOptions options;
+  options.raw = false;
+  LinkBench bench(options);
+  const auto taken = bench.ready().take(bench.raw(1), [] {});
+  ASSERT_TRUE(taken) << taken.error().message();
+  EXPECT_EQ(taken->ending, "dng");
+}
+
+TEST(CameraLink, SaysSoWhereTheCameraTakesNoRaw) {
+  LinkBench bench;
+  std::string toml(nikon_d5100_toml());
+  const std::string_view right = "NEF (Raw)";
+  toml.replace(toml.find(right), right.size(), "NEF (lossless)");
+  bench.options().profile = bench.folder() / "body.toml";
+  ASSERT_TRUE(write_file(bench.options().profile, toml));
+  const auto facts = bench.link().connect();
+  ASSERT_FALSE(facts);
+  EXPECT_EQ(facts.error().kind, ErrorKind::kBadData) << facts.error().message();
+  EXPECT_THAT(facts.error().message(), HasSubstr("imagequality"));
+}
+
+/// What somebody does to the camera between two shots: no photograph that is not as it was asked for is kept.
+TEST(CameraLink, NoticesWhatSomebodyTurnsBetweenShots) {
+  for (const char* fault : {"dial_turned", "battery_low", "raw_off", "exposure_changed"}) {
+    LinkBench bench;
+    CameraLink& link = bench.ready();
+    ASSERT_TRUE(bench.camera().inject({fault, 2}));
+    ASSERT_TRUE(link.take(bench.raw(1), [] {})) << fault;
+    const auto taken = link.take(bench.raw(2), [] {});
+    ASSERT_FALSE(taken) << fault;
+    EXPECT_EQ(taken.error().kind, ErrorKind::kBadData) << fault << ": " << taken.error().message();
+    EXPECT_FALSE(taken.error().remedy.empty());
+    EXPECT_EQ(left_over(bench.folder() / "raw"), 0);
+  }
+}
+
+TEST(CameraLink, PutsRawAndExposureRightWhenItConnectsAgain) {
+  for (const char* fault : {"raw_off", "exposure_changed"}) {
+    LinkBench bench;
+    CameraLink& link = bench.ready();
+    ASSERT_TRUE(bench.camera().inject({fault, 1}));
+    ASSERT_FALSE(link.take(bench.raw(1), [] {})) << fault;
+    const auto facts = link.recover();
+    ASSERT_TRUE(facts) << facts.error().message();
+    EXPECT_NEAR(facts->exposure.exposure_us, 1e6 / 60, 1);
+    const auto taken = link.take(bench.raw(1), [] {});
+    EXPECT_TRUE(taken) << fault << ": " << taken.error().message();
+  }
+}
+
+TEST(CameraLink, SaysThatNoCameraIsThere) {
+  LinkBench bench;
+  bench.ready();
+  bench.switch_off();
+  const auto taken = bench.link().take(bench.raw(1), [] {});
+  ASSERT_FALSE(taken);
+  const auto begin = std::chrono::steady_clock::now();
+  const auto facts = bench.link().recover();
+  ASSERT_FALSE(facts);
+  EXPECT_EQ(facts.error().kind, ErrorKind::kNoDevice) << facts.error().message();
+  EXPECT_LT(seconds_since(begin), 4);
+}
+
+TEST(CameraLink, TakesNothingUntilItHasRecovered) {
+  LinkBench bench;
+  EXPECT_EQ(bench.link().take(bench.raw(1), [] {}).error().kind, ErrorKind::kTryAgain);
+  CameraLink& link = bench.ready();
+  ::kill(link.worker_pid(), SIGKILL);
+  const auto crashed = link.take(bench.raw(1), [] {});
+  ASSERT_FALSE(crashed);
+  EXPECT_EQ(crashed.error().kind, ErrorKind::kTryAgain) << crashed.error().message();
+  EXPECT_EQ(link.take(bench.raw(1), [] {}).error().what, "the camera is not connected");
+  ASSERT_TRUE(link.recover());
+  EXPECT_TRUE(link.take(bench.raw(1), [] {}));
+}
+
+TEST(CameraLink, LeavesNoProcessAndNoFolderBehind) {
+  LinkBench bench;
+  bench.options().state.clear();
+  bench.ready();
+  const pid_t worker = bench.link().worker_pid();
+  ASSERT_EQ(::kill(worker, 0), 0);
+  bench.drop_link();
+  EXPECT_EQ(::kill(worker, 0), -1);
+  EXPECT_EQ(errno, ESRCH) << "it is still there";
+}
+
+TEST(CameraLink, SaysWhereItsProgramShouldBe) {
+  LinkBench bench;
+  bench.options().worker = bench.folder() / "absent";
+  const auto facts = bench.link().connect();
+  ASSERT_FALSE(facts);
+  EXPECT_EQ(facts.error().kind, ErrorKind::kNoInput);
+  EXPECT_THAT(facts.error().message(), HasSubstr("absent"));
+}
+
+TEST(CameraLink, SaysThatTheDiskTakesNoFileAndGoesOn) {
+  LinkBench bench;
+  CameraLink& link = bench.ready();
+  const auto nowhere = link.take(bench.folder() / "nowhere" / "01", [] {});
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.error().kind, ErrorKind::kCannotCreate) << nowhere.error().message();
+  const auto taken = link.take(bench.raw(2), [] {});
+  ASSERT_TRUE(taken) << taken.error().message();
+  EXPECT_EQ(wrong_with(*taken, 2), "");
+}
+
+}  // namespace
+}  // namespace weft::capture

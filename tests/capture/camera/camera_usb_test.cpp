@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same link through libgphoto2's usb1 driver, with no cable: libusb-1.0 is stood in for.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <string>
+
+#include "tests/capture/camera/link_bench.h"
+
+namespace weft::capture {
+namespace {
+
+using simulator::VirtualCameraOptions;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+/// A socket's path may have 107 characters, fewer than a test's folder.
+std::string socket_path(const std::string& name) {
+  return "/tmp/weft_usb_" + std::to_string(getpid()) + "_" + name;
+}
+
+class UsbBench : public LinkBench {
+ public:
+  explicit UsbBench(const std::string& name, const std::string& serial = "6000001")
+      : LinkBench(options(name, serial)), socket_(socket_path(name)) {
+    use_usb(socket_);
+  }
+  ~UsbBench() { std::filesystem::remove(socket_); }
+  const std::string& socket() const { return socket_; }
+
+ private:
+  static VirtualCameraOptions options(const std::string& name, const std::string& serial) {
+    VirtualCameraOptions options;
+    options.serial = serial;
+    options.usb = socket_path(name);
+    options.away_s = 1.5;
+    return options;
+  }
+  std::string socket_;
+};
+
+TEST(CameraUsb, TakesPhotographs) {
+  UsbBench bench("plain");
+  CameraLink& link = bench.ready();
+  for (std::uint32_t i = 1; i <= 3; ++i) {
+    const auto taken = link.take(bench.raw(static_cast<int>(i)), [] {});
+    ASSERT_TRUE(taken) << taken.error().message();
+    EXPECT_EQ(wrong_with(*taken, i), "");
+  }
+}
+
+TEST(CameraUsb, FindsTheRigsCameraAmongOthersByItsSerialNumber) {
+  UsbBench first("first", "6000011"), second("second", "6000022");
+  second.use_usb(first.socket() + ":" + second.socket());
+  for (const char* serial : {"6000022", "6000011"}) {
+    second.drop_link();
+    second.LinkBench::options().serial = serial;
+    const auto facts = second.link().connect();
+    ASSERT_TRUE(facts) << facts.error().message();
+    EXPECT_EQ(facts->serial, serial);
+    EXPECT_THAT(facts->port, StartsWith("usb:"));
+  }
+  second.drop_link();
+  second.LinkBench::options().serial = "6000033";
+  const auto absent = second.link().connect();
+  ASSERT_FALSE(absent);
+  EXPECT_EQ(absent.error().kind, ErrorKind::kBadData) << absent.error().message();
+  EXPECT_THAT(absent.error().message(), HasSubstr("6000011"));
+}
+
+TEST(CameraUsb, FindsTheCameraAgainUnderANewAddress) {
+  UsbBench bench("replug");
+  CameraLink& link = bench.ready();
+  const std::string before = link.connect()->port;
+  ASSERT_TRUE(bench.camera().inject({"usb_replug", 1}));
+  ASSERT_TRUE(link.recover() || link.recover() || link.recover() || link.recover());
+  const auto taken = bench.take_patiently(1);
+  ASSERT_TRUE(taken) << taken.error().message();
+  EXPECT_NE(link.recover()->port, before);
+}
+
+TEST(CameraUsb, SaysThatNoCameraIsPluggedIn) {
+  UsbBench bench("none");
+  bench.use_usb(socket_path("nobody"));
+  const auto facts = bench.link().connect();
+  ASSERT_FALSE(facts);
+  EXPECT_EQ(facts.error().kind, ErrorKind::kNoDevice) << facts.error().message();
+  EXPECT_THAT(facts.error().message(), HasSubstr("D5100"));
+}
+
+TEST(CameraUsb, NamesWhatMendsACameraThatAnotherProgramHolds) {
+  UsbBench bench("claimed");
+  ASSERT_TRUE(bench.camera().inject({"usb_claimed", 1}));
+  const auto facts = bench.link().connect();
+  ASSERT_FALSE(facts);
+  EXPECT_EQ(facts.error().kind, ErrorKind::kNoDevice) << facts.error().message();
+  EXPECT_THAT(facts.error().remedy, HasSubstr("gio mount -s gphoto2"));
+}
+
+TEST(CameraUsb, OpensASessionThatAKilledWorkerLeftOpen) {
+  UsbBench bench("stale");
+  bench.ready();
+  for (int i = 1; i <= 3; ++i) {
+    ::kill(bench.link().worker_pid(), SIGKILL);
+    const auto taken = bench.take_patiently(i);
+    ASSERT_TRUE(taken) << taken.error().message();
+    EXPECT_EQ(wrong_with(*taken, static_cast<std::uint32_t>(bench.camera().shots())), "");
+  }
+}
+
+TEST(CameraUsb, LosesNothingToFaultsOfTheCable) {
+  for (const char* fault : {"drop_in_exposure", "drop_in_data", "usb_timeout", "usb_stale_session"}) {
+    UsbBench bench(fault);
+    bench.ready();
+    ASSERT_TRUE(bench.camera().inject({fault, 1}));
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 1; i <= 2; ++i) {
+      const auto taken = bench.take_patiently(i);
+      ASSERT_TRUE(taken) << fault << ": " << taken.error().message();
+      EXPECT_EQ(wrong_with(*taken, static_cast<std::uint32_t>(bench.camera().shots())), "") << fault;
+    }
+    EXPECT_LT(seconds_since(begin), 12) << fault << ": " << bench.last_error().message();
+    EXPECT_LE(bench.retakes(), 1) << fault;
+  }
+}
+
+}  // namespace
+}  // namespace weft::capture

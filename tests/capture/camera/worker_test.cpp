@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// weft-camera by its lines.
+#include "capture/camera/worker.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <cerrno>
+#include <filesystem>
+
+#include "capture/camera/worker_process.h"
+#include "core/json_document.h"
+#include "tests/capture/camera/link_bench.h"
+
+namespace weft::capture {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using std::chrono::steady_clock;
+
+class Spoken {
+ public:
+  explicit Spoken(const std::filesystem::path& home) {
+    auto started = WorkerProcess::start(weft_camera_program(), {{"HOME", home.string()}});
+    if (!started) throw std::runtime_error(started.error().message());
+    worker = std::move(*started);
+  }
+  Json ask(const std::string& line) {
+    EXPECT_TRUE(worker->send(line));
+    return hear();
+  }
+  Json hear() {
+    const auto answer = worker->read_line(steady_clock::now() + seconds(10));
+    return answer ? Json::parse(*answer, nullptr, false) : Json(answer.error().message());
+  }
+  std::unique_ptr<WorkerProcess> worker;
+};
+
+std::string open_line(LinkBench& bench) {
+  return Json{
+      {"id", 1}, {"do", "open"}, {"profile", "nikon-d5100"}, {"port", bench.options().port}, {"serial", ""}}
+      .dump();
+}
+
+TEST(Worker, AnswersEveryLineThatIsNoRequestByAnError) {
+  LinkBench bench;
+  Spoken spoken(bench.folder());
+  for (const std::string& line : std::vector<std::string>{
+           "", "{", "[]", "7", "{}", R"({"do": 3})", R"({"do": "dance"})", R"({"do": "take"})",
+           R"({"do": "open"})", std::string(100000, 'x'), "\xff\xfe"}) {
+    const Json answer = spoken.ask(line);
+    ASSERT_TRUE(answer.contains("error")) << line.substr(0, 40) << " -> " << answer;
+    EXPECT_EQ(answer["error"]["kind"], "usage");
+  }
+  EXPECT_EQ(spoken.ask(R"({"id": 5, "do": "close"})"), Json::parse(R"({"id": 5, "ok": {}})"));
+}
+
+TEST(Worker, TakesByHandWhatTheLinkAsksFor) {
+  LinkBench bench;
+  Spoken spoken(bench.folder());
+  const Json opened = spoken.ask(open_line(bench));
+  ASSERT_TRUE(opened.contains("ok")) << opened;
+  EXPECT_EQ(opened["ok"]["dropped"], 0);
+  const Json request = {{"id", "a"}, {"do", "take"}, {"file", bench.raw(1).string()}, {"deadline_s", 5}};
+  EXPECT_EQ(spoken.ask(request.dump()), (Json{{"id", "a"}, {"event", "exposed"}}));
+  const Json taken = spoken.hear();
+  ASSERT_TRUE(taken.contains("ok")) << taken;
+  EXPECT_EQ(std::filesystem::file_size(taken["ok"]["file"].get<std::string>()), taken["ok"]["bytes"]);
+}
+
+TEST(Worker, EndsWhenItsInputEnds) {
+  LinkBench bench;
+  Spoken spoken(bench.folder());
+  ASSERT_TRUE(spoken.ask(open_line(bench)).contains("ok"));
+  const pid_t pid = spoken.worker->pid();
+  const auto begin = steady_clock::now();
+  spoken.worker->end(begin + seconds(5));
+  EXPECT_LT(seconds_since(begin), 2) << "it was killed";
+  EXPECT_EQ(::kill(pid, 0), -1);
+}
+
+TEST(Worker, EndsWithoutItsParentEvenWhereTheCameraBlocksIt) {
+  LinkBench bench;
+  ASSERT_TRUE(bench.camera().inject({"busy_for_ever", 1}));
+  Spoken spoken(bench.folder());
+  ASSERT_TRUE(spoken.ask(open_line(bench)).contains("ok"));
+  ASSERT_TRUE(
+      spoken.worker->send(Json{{"do", "take"}, {"file", bench.raw(1).string()}, {"deadline_s", 5}}.dump()));
+  const auto begin = steady_clock::now();
+  spoken.worker->end(begin + seconds(20));
+  EXPECT_GT(seconds_since(begin), 2) << "it did not hang";
+  EXPECT_LT(seconds_since(begin), 5) << "it was killed";
+}
+
+TEST(WorkerProcess, TellsACrashFromAHang) {
+  auto sleeper = WorkerProcess::start("/bin/cat", {});
+  ASSERT_TRUE(sleeper) << sleeper.error().message();
+  const auto hung = (*sleeper)->read_line(steady_clock::now() + milliseconds(50));
+  ASSERT_FALSE(hung);
+  EXPECT_EQ(hung.error().what, "the camera hangs");
+  ASSERT_TRUE((*sleeper)->send("echoed"));
+  EXPECT_EQ(*(*sleeper)->read_line(steady_clock::now() + seconds(5)), "echoed");
+  ::kill((*sleeper)->pid(), SIGSEGV);
+  const auto crashed = (*sleeper)->read_line(steady_clock::now() + seconds(5));
+  ASSERT_FALSE(crashed);
+  EXPECT_THAT(crashed.error().why, testing::HasSubstr("signal 11"));
+  EXPECT_FALSE((*sleeper)->send("more"));
+}
+
+}  // namespace
+}  // namespace weft::capture

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/rig.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+namespace weft::capture {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+fs::path rig_file(const std::string& text) {
+  const fs::path file = fs::path(testing::TempDir()) / "rig_test.toml";
+  std::ofstream(file) << text;
+  return file;
+}
+
+TEST(RigFile, NeedsNothingButAFile) {
+  const auto rig = read_rig(rig_file(""));
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_EQ(rig->leds, 10);
+  EXPECT_EQ(rig->board.port, "/dev/weft-led");
+  EXPECT_EQ(rig->daemon.host, "127.0.0.1");
+  EXPECT_EQ(rig->daemon.state, fs::path(testing::TempDir()) / "rig.state");
+}
+
+TEST(RigFile, TakesPathsRelativeToItself) {
+  const auto rig =
+      read_rig(rig_file("name = \"two\"\n"
+                        "[camera]\nprofile = \"other.toml\"\n"
+                        "[scan]\ncalibration = \"cal\"\nsessions = \"/scans\"\nexposure_us = 20000\n"));
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_EQ(rig->scan.calibration, fs::path(testing::TempDir()) / "cal");
+  EXPECT_EQ(rig->camera.profile, (fs::path(testing::TempDir()) / "other.toml").string());
+  EXPECT_EQ(rig->scan.sessions, "/scans");
+  EXPECT_TRUE(rig->scan.copy.empty());
+  EXPECT_EQ(rig->scan.exposure_us, 20000);
+}
+
+TEST(RigFile, NamesTheKeyThatIsWrong) {
+  const struct {
+    const char* text;
+    const char* key;
+  } cases[] = {
+      {"lamps = 3", "lamps"},
+      {"leds = 11", "leds"},
+      {"leds = 2.5", "leds"},
+      {"name = \"a/b\"", "name"},
+      {"board = 3", "board"},
+      {"[board]\nport = \"\"", "[board]: port"},
+      {"[camera]\nport = \"com3\"", "[camera]: port"},
+      {"[scan]\nexposure_us = 0", "[scan]: exposure_us"},
+      {"[scan]\nsession_name = \"../x\"", "[scan]: session_name"},
+      {"[daemon]\nport = 70000", "[daemon]: port"},
+      {"[daemon", "line 1"},
+  };
+  for (const auto& each : cases) {
+    const auto rig = read_rig(rig_file(each.text));
+    ASSERT_FALSE(rig) << each.text;
+    EXPECT_EQ(rig.error().kind, ErrorKind::kBadData) << each.text;
+    EXPECT_THAT(rig.error().where, HasSubstr(each.key)) << each.text;
+  }
+  EXPECT_EQ(read_rig("/no/such/rig.toml").error().kind, ErrorKind::kNoInput);
+}
+
+}  // namespace
+}  // namespace weft::capture

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/light_evidence.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "tests/capture/scan/simulated_rig.h"
+
+namespace weft::capture {
+namespace {
+
+using test::Lighting;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr int kRepeat = -1;
+using Story = std::function<Lighting(int led)>;  // 0: dark, kRepeat: LED 1 again
+
+/// A session under a story of what really lit each shot; the first verdict that speaks, with its shot.
+struct Told {
+  Verdict verdict;
+  int at = -1;
+  std::vector<std::string> warnings;
+};
+
+Told told(const simulator::Scene& scene, const Story& story, bool with_model = true) {
+  const test::SimulatedCloth cloth(scene);
+  Result<LightModel> model = LightModel::make(cloth.calibration(), 0);
+  EXPECT_TRUE(model) << model.error().message();
+  const PatchGrid grid = model->grid;
+  LightEvidence evidence(grid, with_model ? std::optional(std::move(*model)) : std::nullopt);
+  const ExposureSettings exposure = {0.8 * cloth.scene_exposure_us(), 100, 8};
+  Told told;
+  for (const PlannedShot& shot : plan_shots({{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}}, exposure, 0)) {
+    const Lighting lighting = story(shot.role == ShotRole::kRepeat ? kRepeat : shot.led);
+    std::vector<double> light = evidence.glance(
+        cloth.photograph(lighting, exposure.exposure_us, static_cast<std::uint32_t>(shot.index)));
+    told.verdict = evidence.judge(shot, light);
+    told.warnings.insert(told.warnings.end(), told.verdict.warnings.begin(), told.verdict.warnings.end());
+    told.at = shot.index;
+    if (told.verdict.finding != Finding::kAgrees) return told;
+    evidence.accept(shot, std::move(light));
+  }
+  return told;
+}
+
+Lighting as_planned(int led) {
+  if (led == 0) return {};
+  return {{{led == kRepeat ? 1 : led, 1.0}}, 0};
+}
+
+simulator::Scene woven() {
+  simulator::Scene scene = test::small_scene();
+  scene.geometry.kind = simulator::GeometryKind::kPlain;
+  scene.geometry.warp_pitch_mm = scene.geometry.weft_pitch_mm = 12;
+  return scene;
+}
+
+TEST(LightEvidence, AgreesWithASessionAsPlanned) {
+  for (const auto& scene : {test::small_scene(), woven()}) {
+    const Told t = told(scene, as_planned);
+    EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << t.verdict.sentence;
+    EXPECT_EQ(t.at, 11);
+    EXPECT_TRUE(t.warnings.empty()) << t.warnings.front();
+    EXPECT_NEAR(*t.verdict.level, 1, 0.005) << "of the repeat";
+  }
+}
+
+TEST(LightEvidence, NamesTwoSwappedLeds) {
+  for (const auto& scene : {test::small_scene(), woven()}) {
+    const Told t = told(scene, [](int led) { return as_planned(led == 3 ? 4 : led == 4 ? 3 : led); });
+    EXPECT_EQ(t.verdict.finding, Finding::kOther);
+    EXPECT_THAT(t.verdict.sentence, HasSubstr("LED 4 lights where LED 3 should and the other way round"));
+    EXPECT_THAT(t.verdict.accused, ElementsAre(3, 4));
+    EXPECT_FALSE(t.verdict.may_pass());
+    EXPECT_LE(t.at, 6);
+  }
+}
+
+TEST(LightEvidence, NamesALedThatLightsInThePlaceOfAnother) {
+  const Told t = told(woven(), [](int led) { return as_planned(led == 6 ? 9 : led); });
+  EXPECT_THAT(t.verdict.sentence, HasSubstr("LED 9 lights where LED 6 should: are their wires swapped?"));
+  EXPECT_THAT(t.verdict.accused, ElementsAre(6));
+}
+
+TEST(LightEvidence, NamesADarkLedAndADimOne) {
+  Told t = told(woven(), [](int led) { return led == 5 ? Lighting() : as_planned(led); });
+  EXPECT_EQ(t.verdict.sentence, "LED 5 is dark");
+  EXPECT_EQ(t.at, 5);
+  EXPECT_TRUE(t.verdict.may_pass());
+  t = told(woven(), [](int led) { return led == 5 ? Lighting{{{5, 0.25}}, 0} : as_planned(led); });
+  EXPECT_EQ(t.verdict.finding, Finding::kDim) << t.verdict.sentence;
+  t = told(woven(), [](int led) { return led == 1 ? Lighting() : as_planned(led); });
+  EXPECT_EQ(t.verdict.sentence, "LED 1 is dark") << "the first one, too";
+}
+
+TEST(LightEvidence, NamesALedThatStaysLit) {
+  const Told t = told(woven(), [](int led) {
+    Lighting lighting = as_planned(led);
+    if (led > 2 || led == kRepeat) lighting.leds[2] = 1;
+    return lighting;
+  });
+  EXPECT_EQ(t.verdict.sentence, "LED 2 stays lit");
+}
+
+TEST(LightEvidence, TellsALampInTheRoomFromTheFirstShotOn) {
+  const Told t = told(woven(), [](int led) {
+    Lighting lighting = as_planned(led);
+    lighting.room = 0.1;
+    return lighting;
+  });
+  EXPECT_EQ(t.verdict.finding, Finding::kRoomLight);
+  EXPECT_EQ(t.at, 0) << "by the dark shot";
+}
+
+TEST(LightEvidence, TellsALampThatIsSwitchedOnMeanwhileAtTheRepeatAtLatest) {
+  const Told t = told(woven(), [](int led) {
+    Lighting lighting = as_planned(led);
+    if (led > 6 || led == kRepeat) lighting.room = 0.5;
+    return lighting;
+  });
+  EXPECT_NE(t.verdict.finding, Finding::kAgrees);
+}
+
+TEST(LightEvidence, SpeaksOfDriftFromOnePercentOn) {
+  const auto fading = [](double to) {
+    return [to](int led) { return led == kRepeat ? Lighting{{{1, to}}, 0} : as_planned(led); };
+  };
+  const Told still = told(woven(), fading(0.995));
+  EXPECT_TRUE(still.warnings.empty());
+  const Told fades = told(woven(), fading(0.97));
+  EXPECT_EQ(fades.verdict.finding, Finding::kAgrees);
+  ASSERT_EQ(fades.warnings.size(), 1u);
+  EXPECT_THAT(fades.warnings.front(), HasSubstr("percent less light at the end"));
+}
+
+TEST(LightEvidence, WithoutACalibrationStillTellsDarknessAndAChangedRepeat) {
+  Told t = told(
+      woven(), [](int led) { return led == 5 ? Lighting() : as_planned(led); }, false);
+  EXPECT_EQ(t.verdict.sentence, "LED 5 is dark");
+  t = told(
+      woven(), [](int led) { return as_planned(led == kRepeat ? 7 : led); }, false);
+  EXPECT_EQ(t.verdict.finding, Finding::kChanged) << t.verdict.sentence;
+}
+
+TEST(PatchGrid, LiesInsideTheFrameOnWholeFilterCells) {
+  for (const Size size : {Size{22, 22}, Size{96, 64}, Size{641, 479}, Size{4928, 3264}}) {
+    const PatchGrid grid = PatchGrid::over(size);
+    for (int i = 0; i < grid.count(); ++i) {
+      const Rect patch = grid.patch(i);
+      ASSERT_TRUE(patch.x0 >= 0 && patch.y0 >= 0 && patch.x1 <= size.width && patch.y1 <= size.height)
+          << size.width << " x " << size.height << ", patch " << i;
+      ASSERT_EQ((patch.x0 | patch.y0 | grid.side) & 1, 0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::capture

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/meter.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "capture/scan/light_fit.h"
+#include "capture/scan/plan.h"
+#include "tests/capture/scan/simulated_rig.h"
+
+namespace weft::capture {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::vector<double> thirds_of_stops() {
+  std::vector<double> times;
+  for (int i = -36; i <= 15; ++i) times.push_back(std::round(1e6 * std::exp2(i / 3.0)));
+  return times;
+}
+
+/// Test shots of a simulated cloth, and what they came to.
+struct TestTable {
+  explicit TestTable(simulator::Scene scene) : cloth(std::move(scene)) {
+    for (int led = 1; led <= cloth.leds(); ++led) input.leds.push_back(led);
+    input.shutter_times_us = thirds_of_stops();
+    input.start_us = 8000;
+  }
+
+  void expect_flat_cloth() {
+    const Result<LightModel> model = LightModel::make(cloth.calibration(), 0);
+    ASSERT_TRUE(model) << model.error().message();
+    for (const auto& led : model->leds) {
+      input.expected.push_back(0);
+      for (const Vec3& s : led) input.expected.back() = std::max(input.expected.back(), s.z);
+    }
+  }
+
+  Brightness shot(int led, double exposure_us) {
+    ++shots;
+    return brightness_of(
+        cloth.photograph({{{led, gain[static_cast<std::size_t>(led - 1)]}}, 0}, exposure_us, static_cast<std::uint32_t>(shots)));
+  }
+
+  Metering metered() {
+    const Result<Metering> done =
+        meter(input, [&](int led, double us) -> Result<Brightness> { return shot(led, us); });
+    EXPECT_TRUE(done) << done.error().message();
+    return done ? *done : Metering();
+  }
+
+  test::SimulatedCloth cloth;
+  MeterInput input;
+  std::vector<double> gain = std::vector<double>(10, 1);
+  int shots = 0;
+};
+
+double brightest(TestTable& rig, double exposure_us) {
+  double most = 0;
+  for (const int led : rig.input.leds) most = std::max(most, rig.shot(led, exposure_us).bright);
+  return most;
+}
+
+TEST(Meter, BringsTheBrightestLedToFourFifthsWithinAThirdOfAStop) {
+  TestTable rig(test::small_scene());
+  const Metering metering = rig.metered();
+  const double bright = brightest(rig, metering.exposure_us);
+  EXPECT_LE(bright, 0.83);
+  EXPECT_GE(bright, 0.8 / std::exp2(1.0 / 3) * 0.97);
+  EXPECT_THAT(metering.warnings, IsEmpty());
+}
+
+TEST(Meter, FindsTheSameFromAStartFarOffOnEitherSide) {
+  TestTable rig(test::small_scene());
+  const double exposure_us = rig.metered().exposure_us;
+  for (const double start_us : {250.0, 1e6}) {
+    rig.input.start_us = start_us;
+    EXPECT_EQ(rig.metered().exposure_us, exposure_us) << "from " << start_us << " us";
+  }
+}
+
+TEST(Meter, NeedsTwoTestShotsWhereTheLightsAreKnown) {
+  TestTable rig(test::small_scene());
+  rig.expect_flat_cloth();
+  rig.metered();
+  EXPECT_LE(rig.shots, 3);
+}
+
+TEST(Meter, TriesEachLedWhereTheLightsAreNotAsExpected) {
+  TestTable rig(test::small_scene());
+  rig.expect_flat_cloth();
+  const double before_us = rig.metered().exposure_us;
+  rig.gain = {1, 1, 1, 1, 0.7, 0.7, 0.7, 0.7, 0.7, 0.7};
+  rig.gain[2] = 2;
+  rig.shots = 0;
+  const double after_us = rig.metered().exposure_us;
+  EXPECT_GE(rig.shots, 10);
+  EXPECT_NEAR(before_us / after_us, 2, 0.6) << "LED 3 gives twice the light";
+}
+
+TEST(Meter, KeepsEveryLedOfAGlossyClothFromClippingAndNamesABracket) {
+  simulator::Scene scene = test::small_scene();
+  scene.geometry = {};
+  scene.material.reflectance = simulator::Ggx{.alpha = 0.15};
+  scene.effects.reflectance = true;
+  scene.camera.pose.tilt_deg = 20;
+  TestTable rig(scene);
+  const Metering metering = rig.metered();
+  for (const int led : rig.input.leds) {
+    EXPECT_LE(rig.shot(led, metering.exposure_us).clipped, 1e-5) << "LED " << led;
+  }
+}
+
+TEST(Meter, SuggestsABracketWhereHighlightsHoldTheExposure) {
+  MeterInput input = {{1}, {}, thirds_of_stops(), 8000};
+  const Result<Metering> metering = meter(input, [](int, double us) -> Result<Brightness> {
+    return Brightness{0.1 * us / 8000, std::min(0.9 * us / 8000, 1.0), 0.02 * us / 8000,
+                      us > 8800 ? 1e-3 : 0};
+  });
+  ASSERT_TRUE(metering) << metering.error().message();
+  EXPECT_NEAR(metering->exposure_us, 7813, 1);
+  ASSERT_EQ(metering->warnings.size(), 1u);
+  EXPECT_THAT(metering->warnings.front(), HasSubstr("--bracket 8"));
+}
+
+TEST(Meter, SaysThatAClothIsTooDarkOrTooBright) {
+  MeterInput input = {{3}, {}, thirds_of_stops(), 8000};
+  const auto dark = meter(input, [](int, double) -> Result<Brightness> {
+    return Brightness{0.001, 0.002, 0, 0};
+  });
+  ASSERT_FALSE(dark);
+  EXPECT_EQ(dark.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(dark.error().message(), HasSubstr("too dark: LED 3"));
+  const auto full = meter(input, [](int, double) -> Result<Brightness> { return Brightness{1, 1, 1, 1}; });
+  ASSERT_FALSE(full);
+  EXPECT_THAT(full.error().message(), HasSubstr("too bright: LED 3"));
+}
+
+TEST(Meter, PassesOnTheErrorOfATestShot) {
+  MeterInput input = {{1}, {}, thirds_of_stops(), 8000};
+  const auto failed = meter(input, [](int, double) -> Result<Brightness> {
+    return Error{ErrorKind::kNoDevice, "camera is gone", "", "", ""};
+  });
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().kind, ErrorKind::kNoDevice);
+}
+
+}  // namespace
+}  // namespace weft::capture

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/plan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace weft::capture {
+namespace {
+
+using testing::ElementsAre;
+
+std::vector<std::string> stems(const std::vector<PlannedShot>& plan) {
+  std::vector<std::string> names;
+  for (const PlannedShot& shot : plan) names.push_back(file_stem(shot));
+  return names;
+}
+
+TEST(Plan, BeginsInTheDarkAndRepeatsTheFirstLed) {
+  const auto plan = plan_shots({{1, 2, 3}, true, {}}, {20000, 100, 8}, 0);
+  EXPECT_THAT(stems(plan), ElementsAre("00_led00", "01_led01", "02_led02", "03_led03", "04_led01"));
+  EXPECT_EQ(plan.front().role, ShotRole::kDark);
+  EXPECT_EQ(plan.back().role, ShotRole::kRepeat);
+  for (const PlannedShot& shot : plan) EXPECT_EQ(shot.exposure, (ExposureSettings{20000, 100, 8}));
+}
+
+TEST(Plan, TakesBracketsLastAndAtTheirOwnTime) {
+  const ShotList list = {{4, 2}, false, 4};
+  const auto plan = plan_shots(list, {20000, 100, 8}, 80000);
+  EXPECT_THAT(stems(plan), ElementsAre("00_led00", "01_led04", "02_led02", "03_led04", "04_led02"));
+  EXPECT_EQ(plan[4].role, ShotRole::kBracket);
+  EXPECT_EQ(plan[4].exposure.exposure_us, 80000);
+  EXPECT_EQ(list.count(), 5);
+}
+
+TEST(Plan, FindsWhatASessionLacksInOrder) {
+  const auto plan = plan_shots({{1, 2, 3}, true, {}}, {20000, 100, 8}, 0);
+  Session session;
+  for (const int index : {0, 2, 4}) session.shots.emplace_back().index = index;
+  EXPECT_THAT(stems(missing_shots(plan, session)), ElementsAre("01_led01", "03_led03"));
+}
+
+TEST(Plan, TakesTheNearestShutterTimeByRatio) {
+  EXPECT_EQ(nearest_time_us({1000, 2000, 4000}, 2700), 2000);
+  EXPECT_EQ(nearest_time_us({1000, 2000, 4000}, 2900), 4000);
+  EXPECT_EQ(nearest_time_us({}, 2900), 2900);
+}
+
+}  // namespace
+}  // namespace weft::capture

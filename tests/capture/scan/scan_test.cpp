@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "capture/scan/scan.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "core/files.h"
+#include "tests/capture/scan/scan_bench.h"
+
+namespace weft::capture {
+namespace {
+
+namespace fs = std::filesystem;
+using test::ScanBench;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST(Scan, MakesASessionOfAllLedsThatIsComplete) {
+  ScanBench bench;
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_THAT(outcome->warnings, IsEmpty());
+  EXPECT_EQ(outcome->frames_resumed, 0);
+  EXPECT_EQ(outcome->frames_retaken, 0);
+  EXPECT_EQ(bench.objection(), "");
+  const Result<Session> session = read_session(bench.request.session);
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_EQ(session->lit().size(), 10u);
+  ASSERT_NE(session->dark(), nullptr);
+  EXPECT_EQ(session->shots.size(), 12u);
+  EXPECT_FALSE(bench.rig.is_lit());
+  const Result<Calibration> calibration = read_calibration(session->calibration_folder());
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  EXPECT_EQ(calibration->id, session->calibration_id);
+}
+
+TEST(Scan, MetersTheClothAndRecordsHow) {
+  ScanBench bench;
+  bench.request.exposure.exposure_us = 0;
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  const Json& exposure = outcome->session.document["exposure"];
+  EXPECT_EQ(exposure["from"], "meter");
+  EXPECT_EQ(exposure["meter"]["test_shots"].size(), 2u);
+  EXPECT_EQ(outcome->session.shots[1].exposure_us, exposure["exposure_us"]);
+  const double bright = bench.kept[1].histogram_rgb[1].clipped;
+  EXPECT_EQ(bright, 0);
+  EXPECT_EQ(bench.rig.takes(), 14) << "two test shots and the frames";
+}
+
+TEST(Scan, TellsOfEveryFrameWithItsHistogram) {
+  ScanBench bench;
+  ASSERT_TRUE(bench.scan());
+  ASSERT_EQ(bench.kept.size(), 12u);
+  for (std::size_t i = 0; i < 12; ++i) {
+    EXPECT_EQ(bench.kept[i].shot.index, static_cast<int>(i));
+    std::uint64_t sites = 0;
+    for (const RawHistogram& histogram : bench.kept[i].histogram_rgb) {
+      for (const std::uint32_t n : histogram.bins) sites += n;
+    }
+    EXPECT_EQ(sites, 96u * 64u);
+  }
+  EXPECT_EQ(bench.statuses.back().phase, ScanPhase::kComplete);
+  EXPECT_EQ(bench.statuses.back().frames, 12);
+  EXPECT_EQ(bench.statuses.back().frames_planned, 12);
+}
+
+TEST(Scan, TakesBracketsAndSaysThatTheirRatioIsNotMeasured) {
+  ScanBench bench;
+  bench.request.bracket = 4;
+  bench.request.leds = {1, 2, 3, 4, 5};
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_EQ(outcome->session.shots.size(), 12u);
+  EXPECT_NEAR(outcome->session.shots[8].exposure_us, 4 * outcome->session.shots[1].exposure_us, 5);
+  ASSERT_EQ(outcome->warnings.size(), 1u);
+  EXPECT_THAT(outcome->warnings.front(), HasSubstr("no measured ratio"));
+}
+
+TEST(Scan, RefusesAFinishedSessionBeforeItTouchesADevice) {
+  ScanBench bench;
+  ASSERT_TRUE(bench.scan());
+  const int takes = bench.rig.takes();
+  const Result<ScanOutcome> again = bench.scan();
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().kind, ErrorKind::kCannotCreate);
+  EXPECT_EQ(bench.rig.takes(), takes);
+}
+
+TEST(Scan, RefusesWhatTheCalibrationIsNotOfBeforeTheFirstShot) {
+  const auto refusal = [](const std::function<void(ScanBench&)>& change) {
+    ScanBench bench;
+    change(bench);
+    const Result<ScanOutcome> outcome = bench.scan();
+    EXPECT_FALSE(outcome);
+    EXPECT_EQ(bench.rig.takes(), 0);
+    EXPECT_FALSE(is_there(bench.request.session)) << "nothing was begun";
+    if (outcome) return std::string();
+    EXPECT_EQ(outcome.error().kind, ErrorKind::kBadData);
+    return outcome.error().why;
+  };
+  EXPECT_THAT(refusal([](ScanBench& b) { b.request.rig = "another rig"; }), HasSubstr("another rig"));
+  EXPECT_THAT(refusal([](ScanBench& b) { b.request.exposure.f_number = 11; }), HasSubstr("f/11"));
+  EXPECT_THAT(refusal([](ScanBench& b) { b.rig.facts.serial = "4242"; }), HasSubstr("4242"));
+  EXPECT_THAT(refusal([](ScanBench& b) { b.rig.facts.model = "Canon EOS 5D"; }), HasSubstr("EOS 5D"));
+}
+
+TEST(Scan, RefusesLedsThatAreNotThere) {
+  ScanBench bench;
+  bench.request.leds = {1, 2, 11};
+  EXPECT_EQ(bench.scan().error().kind, ErrorKind::kUsage);
+  bench.request.leds = {1, 2, 2};
+  EXPECT_EQ(bench.scan().error().kind, ErrorKind::kUsage);
+}
+
+TEST(Scan, MakesASecondCopyAndOnlyWarnsWhereItCannot) {
+  ScanBench bench;
+  bench.request.copy = bench.folder / "other disk";
+  ASSERT_TRUE(bench.scan());
+  EXPECT_TRUE(is_there(bench.request.copy / "cloth.weft" / "session.json"));
+
+  bench.request.session = bench.folder / "next.weft";
+  fs::create_directories(bench.request.copy / "next.weft");
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  ASSERT_EQ(outcome->warnings.size(), 1u);
+  EXPECT_THAT(outcome->warnings.front(), HasSubstr("there is no second copy"));
+  EXPECT_EQ(bench.objection(), "");
+}
+
+TEST(Scan, IsStoppedAfterTheShotOnItsWayAndGoesOnWhereItWas) {
+  ScanBench bench;
+  std::stop_source stop;
+  bench.control.cancel = stop.get_token();
+  bench.rig.on_take = [&](int take) {
+    if (take == 5) stop.request_stop();
+  };
+  const Result<ScanOutcome> stopped = bench.scan();
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().kind, ErrorKind::kInterrupted);
+  EXPECT_EQ(bench.kept.size(), 5u);
+  EXPECT_FALSE(bench.rig.is_lit());
+  EXPECT_EQ(bench.statuses.back().phase, ScanPhase::kCancelled);
+
+  bench.control.cancel = {};
+  const Result<ScanOutcome> resumed = bench.scan();
+  ASSERT_TRUE(resumed) << resumed.error().message();
+  EXPECT_EQ(resumed->frames_resumed, 5);
+  EXPECT_EQ(bench.rig.takes(), 12);
+  EXPECT_EQ(bench.objection(), "");
+}
+
+TEST(Scan, ResumesAMeteredSessionWithItsExposure) {
+  ScanBench bench;
+  bench.request.exposure.exposure_us = 0;
+  std::stop_source stop;
+  bench.control.cancel = stop.get_token();
+  bench.rig.on_take = [&](int take) {
+    if (take == 6) stop.request_stop();
+  };
+  ASSERT_FALSE(bench.scan());
+  bench.control.cancel = {};
+  ASSERT_TRUE(bench.scan());
+  EXPECT_EQ(bench.rig.takes(), 14) << "no test shot is taken twice";
+  EXPECT_EQ(bench.objection(), "");
+}
+
+TEST(Scan, IsPausedWithAllLedsOffBetweenTwoShots) {
+  ScanBench bench;
+  std::atomic<bool> pause = false;
+  bench.control.pause = &pause;
+  bench.rig.on_take = [&](int take) {
+    if (take == 3) pause = true;
+  };
+  int takes_while_paused = 0;
+  bool was_lit = true;
+  bench.on_status = [&](const ScanStatus& status) {
+    if (status.phase != ScanPhase::kPaused) return;
+    takes_while_paused = bench.rig.takes();
+    was_lit = bench.rig.is_lit();
+    pause = false;
+  };
+  ASSERT_TRUE(bench.scan());
+  EXPECT_EQ(takes_while_paused, 3);
+  EXPECT_FALSE(was_lit);
+  EXPECT_EQ(bench.objection(), "");
+}
+
+TEST(Scan, WithoutACalibrationSaysThatFramesAreNotHeldAgainstTheLeds) {
+  ScanBench bench;
+  bench.request.calibration.clear();
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  ASSERT_EQ(outcome->warnings.size(), 1u);
+  EXPECT_THAT(outcome->warnings.front(), HasSubstr("no calibration"));
+}
+
+}  // namespace
+}  // namespace weft::capture

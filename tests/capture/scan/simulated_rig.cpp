@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/capture/scan/simulated_rig.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+
+#include "core/files.h"
+#include "simulator/camera/dng_writer.h"
+#include "simulator/sampling/random.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+using capture::CameraFacts;
+using capture::ExposureSettings;
+using capture::Photograph;
+
+double now_s() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+template <typename T>
+T unwrapped(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().message());
+  return std::move(*result);
+}
+
+Error device_error(ErrorKind kind, const char* what) {
+  return {kind, what, "simulated device", "as injected", "none"};
+}
+
+}  // namespace
+
+SimulatedCloth::SimulatedCloth(simulator::Scene scene)
+    : scene_(std::move(scene)),
+      rig_(unwrapped(simulator::rig_of(scene_))),
+      rendering_(
+          unwrapped(simulator::render_readings(scene_, {0, 0, scene_.camera.width, scene_.camera.height}))),
+      calibration_(simulator::exact_calibration(scene_, rig_)) {}
+
+RawFrame SimulatedCloth::photograph(const Lighting& lighting, double exposure_us, std::uint32_t take) const {
+  const simulator::Sensor& sensor = rig_.sensor;
+  const Size size = {scene_.camera.width, scene_.camera.height};
+  RawFrame frame = {Image<std::uint16_t>(size), {}, {}, static_cast<float>(sensor.white), {}};
+  for (auto& row : frame.black) row.fill(static_cast<float>(sensor.black));
+  frame.shot = {sensor.make, sensor.model,      calibration_.subject.camera_serial,
+                exposure_us, scene_.camera.iso, scene_.camera.f_number};
+  double unit = 0;  // reading of a white surface under LED 1
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) unit += rendering_.readings(x, y, 1) / rendering_.albedo(x, y, 1);
+  }
+  unit /= static_cast<double>(size.pixels());
+  const double seconds = exposure_us * 1e-6 * scene_.camera.iso / 100;
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      const int c = frame.cfa.channel_at(x, y);
+      const double white_balance = scene_.lights.white_balance[static_cast<std::size_t>(c)];
+      double reading = lighting.room * unit * white_balance * rendering_.albedo(x, y, c);
+      for (const auto& [led, share] : lighting.leds)
+        reading += share * rendering_.readings(x, y, 3 * (led - 1) + c);
+      double signal = reading * seconds;
+      if (scene_.effects.noise) {
+        const auto bits = simulator::philox(
+            {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), take, 0}, {20261121, 6});
+        signal = simulator::noisy(sensor, signal, bits);
+      }
+      frame.counts(x, y) = simulator::count_of(sensor, signal);
+    }
+  }
+  return frame;
+}
+
+simulator::Scene small_scene() {
+  simulator::Scene scene;
+  scene.fabric = "plain weave";
+  scene.camera.width = 96;
+  scene.camera.height = 64;
+  scene.camera.mm_per_pixel = 200.0 / 96;
+  scene.material.albedo = {0.5, 0.4, 0.3};
+  scene.effects.near_light = true;
+  scene.effects.noise = true;
+  return scene;
+}
+
+SimulatedRig::SimulatedRig(const SimulatedCloth& cloth) : cloth_(cloth) {
+  facts.model = cloth.calibration().subject.camera_model;
+  facts.serial = cloth.calibration().subject.camera_serial;
+  facts.port = "simulated";
+  facts.clock_uncertainty_s = 0.01;
+}
+
+Lighting SimulatedRig::lighting() const {
+  Lighting lighting;
+  for (const int led : lit_) {
+    const auto other = wires.find(led);
+    const int lights = other == wires.end() ? led : other->second;
+    lighting.leds[lights] = gain.contains(lights) ? gain.at(lights) : 1;
+  }
+  if (stays_lit != 0 && takes_ >= stays_lit_from) lighting.leds[stays_lit] = 1;
+  if (takes_ >= room_from) lighting.room = room;
+  return lighting;
+}
+
+Result<void> SimulatedRig::Lamps::light(std::span<const int> leds, double) {
+  if (rig_.lamps_absent_ > 0) return device_error(ErrorKind::kNoDevice, "board is gone");
+  const auto fault = rig_.lamp_faults.find(++rig_.lamp_calls_);
+  if (fault != rig_.lamp_faults.end()) {
+    rig_.lit_.clear();
+    if (fault->second == ErrorKind::kNoDevice) rig_.lamps_absent_ = rig_.absent;
+    return device_error(fault->second, "board fails");
+  }
+  rig_.lit_.assign(leds.begin(), leds.end());
+  return {};
+}
+
+Result<void> SimulatedRig::Lamps::recover() {
+  rig_.lit_.clear();
+  if (rig_.lamps_absent_ > 0 && --rig_.lamps_absent_ > 0)
+    return device_error(ErrorKind::kNoDevice, "board is gone");
+  return {};
+}
+
+Result<CameraFacts> SimulatedRig::Camera::connect() {
+  return recover();
+}
+
+Result<CameraFacts> SimulatedRig::Camera::recover() {
+  if (rig_.camera_absent_ > 0 && --rig_.camera_absent_ > 0) {
+    return device_error(ErrorKind::kNoDevice, "camera is gone");
+  }
+  return rig_.facts;
+}
+
+Result<CameraFacts> SimulatedRig::Camera::set(const ExposureSettings& exposure) {
+  if (rig_.camera_absent_ > 0) return device_error(ErrorKind::kNoDevice, "camera is gone");
+  rig_.facts.exposure = exposure;
+  return rig_.facts;
+}
+
+/// Thirds of a stop from 1/4000 s to 30 s.
+Result<std::vector<double>> SimulatedRig::Camera::shutter_times_us() {
+  std::vector<double> times;
+  for (int i = -36; i <= 15; ++i) times.push_back(std::round(1e6 * std::exp2(i / 3.0)));
+  return times;
+}
+
+Result<Photograph> SimulatedRig::Camera::written(const fs::path& file, Fault fault) {
+  Photograph photograph;
+  photograph.file = file;
+  photograph.file += ".dng";
+  photograph.ending = "dng";
+  photograph.image_number = ++rig_.image_number_;
+  photograph.triggered_s = now_s();
+  photograph.taken_s = photograph.triggered_s;
+  photograph.exposure = rig_.facts.exposure;
+  if (fault == Fault::kOtherExposure) photograph.exposure.exposure_us *= 2;
+  const Lighting lighting = fault == Fault::kLedWentOut ? Lighting() : rig_.lighting();
+  const RawFrame frame = rig_.cloth_.photograph(lighting, rig_.facts.exposure.exposure_us,
+                                                static_cast<std::uint32_t>(rig_.takes_));
+  if (Result<void> done = simulator::write_dng(photograph.file, frame); !done) return done.error();
+  photograph.bytes = fs::file_size(photograph.file);
+  if (fault == Fault::kTruncated || fault == Fault::kFullDisk) {
+    fs::resize_file(photograph.file, photograph.bytes / 2);
+    photograph.bytes /= 2;
+  }
+  photograph.sha256 = unwrapped(sha256_of_file(photograph.file));
+  if (fault == Fault::kDamaged) {
+    std::string bytes = unwrapped(read_text(photograph.file));
+    bytes.back() = static_cast<char>(bytes.back() ^ 1);
+    if (Result<void> done = write_file(photograph.file, bytes); !done) return done.error();
+  }
+  return photograph;
+}
+
+Result<Photograph> SimulatedRig::Camera::take(const fs::path& file, const std::function<void()>& exposed) {
+  ++rig_.takes_;
+  rig_.on_take(rig_.takes_);
+  if (rig_.camera_absent_ > 0) return device_error(ErrorKind::kNoDevice, "camera is gone");
+  const auto found = rig_.camera_faults.find(rig_.takes_);
+  const Fault fault = found == rig_.camera_faults.end() ? Fault::kNone : found->second;
+  switch (fault) {
+    case Fault::kNoAnswer:
+      return device_error(ErrorKind::kTryAgain, "camera does not answer");
+    case Fault::kNonsense:
+      return device_error(ErrorKind::kProtocol, "camera talks nonsense");
+    case Fault::kUnplugged:
+      rig_.camera_absent_ = rig_.absent;
+      return device_error(ErrorKind::kNoDevice, "camera is gone");
+    case Fault::kBattery:
+      return device_error(ErrorKind::kBadData, "battery is empty");
+    default:
+      break;
+  }
+  if (fault == Fault::kSecondShutter) ++rig_.image_number_;
+  Result<Photograph> photograph = written(file, fault);
+  exposed();
+  if (!photograph) return photograph;
+  if (fault == Fault::kFullDisk) return device_error(ErrorKind::kInputOutput, "disk is full");
+  if (fault == Fault::kLost || fault == Fault::kLate) {
+    if (fault == Fault::kLate) {
+      late_ = *photograph;
+      late_bytes_ = unwrapped(read_text(photograph->file));
+    }
+    fs::remove(photograph->file);
+    return device_error(ErrorKind::kTryAgain, "no photograph came");
+  }
+  if (late_) {  // the file of the shot before, under this one's name
+    if (Result<void> done = write_file(photograph->file, late_bytes_); !done) return done.error();
+    late_->file = photograph->file;
+    late_->triggered_s = photograph->triggered_s;
+    photograph = *std::exchange(late_, std::nullopt);
+  }
+  return photograph;
+}
+
+}  // namespace weft::test

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/devices.h"
+#include "core/calibration.h"
+#include "core/raw_frame.h"
+#include "simulator/scene/rig.h"
+#include "simulator/simulate.h"
+
+namespace weft::test {
+
+/// What lights a photograph: how much of each LED's light and how much of the room's reaches it.
+struct Lighting {
+  std::map<int, double> leds;  ///< LED from 1: 1 is all of it
+  double room = 0;             ///< 1: as bright as LED 1 on average
+};
+
+/// A cloth under the LEDs of a scene, rendered once without noise; every photograph is a sum of that with the
+/// noise of its own take.
+class SimulatedCloth {
+ public:
+  explicit SimulatedCloth(simulator::Scene scene);
+  RawFrame photograph(const Lighting& lighting, double exposure_us, std::uint32_t take) const;
+
+  int leds() const { return static_cast<int>(calibration_.lights ? light_count(*calibration_.lights) : 0); }
+  const Calibration& calibration() const { return calibration_; }
+  double scene_exposure_us() const { return rig_.exposure_us; }
+
+ private:
+  simulator::Scene scene_;
+  simulator::Rig rig_;
+  simulator::Rendering rendering_;
+  Calibration calibration_;
+};
+
+/// A plain weave of 96 x 64 photosites, 200 mm wide, under ten LEDs.
+simulator::Scene small_scene();
+
+/// Both devices of a rig over a SimulatedCloth, in one process and without waiting: what links, wires and
+/// worker processes do is tested with the real ones, while here a scan meets each error that devices.h
+/// allows, at each shot, a thousand times a minute.
+class SimulatedRig {
+ public:
+  explicit SimulatedRig(const SimulatedCloth& cloth);
+
+  enum class Fault {
+    kNone,
+    kNoAnswer,       ///< kTryAgain, and nothing was taken
+    kLost,           ///< kTryAgain after the shutter: the photograph counts and is never seen
+    kLate,           ///< the same, and the next shot delivers that photograph instead of its own
+    kNonsense,       ///< kProtocol
+    kUnplugged,      ///< kNoDevice, until recover() was asked for `absent` times
+    kBattery,        ///< kBadData
+    kFullDisk,       ///< kInputOutput, half a file written
+    kTruncated,      ///< half a file, with a digest to match
+    kDamaged,        ///< a byte of it changes after its digest was made
+    kLedWentOut,     ///< the exposure sees no LED
+    kSecondShutter,  ///< somebody takes a photograph in between
+    kOtherExposure,  ///< the file says another time
+  };
+  std::map<int, Fault> camera_faults;    ///< by take, from 1
+  std::map<int, ErrorKind> lamp_faults;  ///< by call of light(), from 1
+  int absent = 2;                        ///< calls of recover() until an unplugged device is back
+
+  std::map<int, int> wires;                            ///< LED that lights in the place of the one asked for
+  std::map<int, double> gain;                          ///< of a LED; 0: dead
+  int stays_lit = 0;                                   ///< LED that is always lit
+  int stays_lit_from = 0;                              ///< from this take on
+  double room = 0;                                     ///< light of the room
+  int room_from = 0;                                   ///< from this take on
+  std::function<void(int take)> on_take = [](int) {};  ///< called before each exposure
+
+  capture::Lamps& lamps() { return lamps_; }
+  capture::Camera& camera() { return camera_; }
+  int takes() const { return takes_; }
+  bool is_lit() const { return !lit_.empty(); }
+  capture::CameraFacts facts;
+
+ private:
+  class Lamps : public capture::Lamps {
+   public:
+    explicit Lamps(SimulatedRig& rig) : rig_(rig) {}
+    int leds() const override { return rig_.cloth_.leds(); }
+    Result<void> light(std::span<const int> leds, double most_s) override;
+    Result<void> recover() override;
+
+   private:
+    SimulatedRig& rig_;
+  };
+  class Camera : public capture::Camera {
+   public:
+    explicit Camera(SimulatedRig& rig) : rig_(rig) {}
+    Result<capture::CameraFacts> connect() override;
+    Result<capture::CameraFacts> set(const capture::ExposureSettings& exposure) override;
+    Result<std::vector<double>> shutter_times_us() override;
+    Result<capture::Photograph> take(const std::filesystem::path& file,
+                                     const std::function<void()>& exposed) override;
+    Result<capture::CameraFacts> recover() override;
+
+   private:
+    Result<capture::Photograph> written(const std::filesystem::path& file, SimulatedRig::Fault fault);
+    SimulatedRig& rig_;
+    std::optional<capture::Photograph> late_;
+    std::string late_bytes_;
+  };
+  Lighting lighting() const;
+
+  const SimulatedCloth& cloth_;
+  Lamps lamps_{*this};
+  Camera camera_{*this};
+  std::vector<int> lit_;
+  int takes_ = 0, lamp_calls_ = 0, camera_absent_ = 0, lamps_absent_ = 0;
+  std::uint32_t image_number_ = 4711;
+};
+
+}  // namespace weft::test

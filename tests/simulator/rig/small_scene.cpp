@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/simulator/rig/small_scene.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <string>
+
+namespace weft::simulator {
+
+namespace fs = std::filesystem;
+
+Scene small_scene(int width) {
+  Scene scene;
+  scene.camera.width = width;
+  scene.camera.height = 96;
+  scene.camera.body = Body::kD5100;
+  scene.geometry.kind = GeometryKind::kSatin;
+  scene.material.albedo = {0.45, 0.3, 0.2};
+  scene.lights.rings = {{3, 45, 10, 500}};
+  scene.effects.near_light = true;
+  scene.effects.noise = true;
+  return scene;
+}
+
+fs::path fresh_folder() {
+  const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+  const fs::path folder = fs::path(testing::TempDir()) / ("weft_rig_" + std::to_string(getpid())) /
+                          test.test_suite_name() / test.name();
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  return folder;
+}
+
+}  // namespace weft::simulator
