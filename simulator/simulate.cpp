@@ -18,6 +18,7 @@
 #include "core/session.h"
 #include "simulator/build_passes.h"
 #include "simulator/camera/dng_writer.h"
+#include "simulator/folder_aside.h"
 #include "simulator/map_files.h"
 #include "simulator/plan.h"
 
@@ -43,38 +44,6 @@ class Stopwatch {
  private:
   double* seconds_;
   steady_clock::time_point start_;
-};
-
-/// A folder under construction, removed unless it was published.
-class FolderAside {
- public:
-  static Result<FolderAside> make(const fs::path& target) {
-    FolderAside aside;
-    aside.path_ = target;
-    aside.path_ += ".partial";
-    std::error_code failed;
-    if (fs::create_directory(aside.path_, failed)) return aside;
-    const fs::path path = std::exchange(aside.path_, fs::path());
-    if (failed) return cannot_write(path, failed.value());
-    return Error{ErrorKind::kCannotCreate, "another simulation seems to write there", path.string(),
-                 "the folder exists", "wait for it, or remove the folder if that simulation was killed"};
-  }
-  FolderAside(FolderAside&& other) noexcept : path_(std::exchange(other.path_, fs::path())) {}
-  FolderAside& operator=(FolderAside&&) = delete;
-  ~FolderAside() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  const fs::path& path() const { return path_; }
-  Result<void> publish(const fs::path& target) {
-    Result<void> published = publish_folder(path_, target);
-    if (published) path_.clear();
-    return published;
-  }
-
- private:
-  FolderAside() = default;
-  fs::path path_;
 };
 
 void copy_counts(const Tile& tile, int y0, View<std::uint16_t> counts) {

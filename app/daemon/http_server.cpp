@@ -222,6 +222,7 @@ class HttpServer::Parser : public httplib::Server {
 
   bool send_next(Follower& follower, httplib::DataSink& sink) const {
     constexpr auto kLook = std::chrono::milliseconds(200);  // how late a client that left is noticed
+    if (!sink.is_writable()) return false;
     std::string text = std::exchange(follower.greeting, "");
     const auto events = events_.wait_after(follower.seen, text.empty() ? kLook : kLook * 0);
     if (events_.closed()) {

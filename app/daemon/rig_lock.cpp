@@ -3,7 +3,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
 
 #include <cerrno>
 #include <system_error>
@@ -22,6 +21,19 @@ std::string first_line(const std::filesystem::path& file) {
   return text ? text->substr(0, text->find('\n')) : "";
 }
 
+/// What a locked byte of the lock file says. Unlike flock() such a lock can be asked about without being
+/// taken: who looks whether there is an owner must not keep one from starting.
+enum class Says : off_t { kOwned, kAddressHolds };
+
+struct flock byte_of(Says says) {
+  struct flock lock = {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  lock.l_start = static_cast<off_t>(says);
+  lock.l_len = 1;
+  return lock;
+}
+
 }  // namespace
 
 std::filesystem::path state_folder(const capture::Rig& rig) {
@@ -34,8 +46,9 @@ Result<RigLock> RigLock::take(const capture::Rig& rig) {
   if (Result<void> made = make_writable_folder(folder); !made) return std::move(made).error();
   Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
   if (!file) return cannot_write(path, errno);
-  if (flock(file.number(), LOCK_EX | LOCK_NB) != 0) {
-    if (errno != EWOULDBLOCK) return cannot_write(path, errno);
+  struct flock owned = byte_of(Says::kOwned);
+  if (fcntl(file.number(), F_OFD_SETLK, &owned) != 0) {
+    if (errno != EAGAIN && errno != EACCES) return cannot_write(path, errno);
     const std::string pid = first_line(path);
     return Error{
         ErrorKind::kTryAgain, "the rig is in use", rig.name,
@@ -46,8 +59,6 @@ Result<RigLock> RigLock::take(const capture::Rig& rig) {
   if (ftruncate(file.number(), 0) != 0 || pwrite(file.number(), pid.data(), pid.size(), 0) < 0) {
     return cannot_write(path, errno);
   }
-  std::error_code ignored;
-  std::filesystem::remove(folder / kAddress, ignored);  // of an owner that was killed
   return RigLock(std::move(file), folder);
 }
 
@@ -57,13 +68,17 @@ RigLock::~RigLock() {
 }
 
 Result<void> RigLock::publish_address(const std::string& address) {
-  return write_file(folder_ / kAddress, address + "\n");
+  if (Result<void> written = write_file(folder_ / kAddress, address + "\n"); !written) return written;
+  struct flock holds = byte_of(Says::kAddressHolds);
+  if (fcntl(file_.number(), F_OFD_SETLK, &holds) != 0) return cannot_write(folder_ / kLock, errno);
+  return {};
 }
 
 std::optional<std::string> address_of_owner(const capture::Rig& rig) {
   const std::filesystem::path folder = state_folder(rig);
   const Descriptor file(open((folder / kLock).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
-  if (!file || flock(file.number(), LOCK_SH | LOCK_NB) == 0) return std::nullopt;
+  struct flock holds = byte_of(Says::kAddressHolds);
+  if (!file || fcntl(file.number(), F_OFD_GETLK, &holds) != 0 || holds.l_type == F_UNLCK) return std::nullopt;
   const std::string address = first_line(folder / kAddress);
   return address.empty() ? std::nullopt : std::optional(address);
 }

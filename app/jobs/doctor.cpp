@@ -69,15 +69,16 @@ Finding fault(std::string part, std::string says, std::string remedy) {
   return {Verdict::kFault, std::move(part), std::move(says), std::move(remedy)};
 }
 
+/// A known thief keeps the device from us; another program may only be looking.
 void report_holders(const std::vector<Holder>& holders, const std::string& part, const fs::path& file,
                     std::vector<Finding>& found) {
   for (const Holder& holder : holders) {
     const auto* const thief =
         std::find_if(kThieves.begin(), kThieves.end(), [&](const Thief& t) { return t.name == holder.name; });
     const bool known = thief != kThieves.end();
-    found.push_back(fault(part,
-                          fmt::format("{} (process {}) holds {}", holder.name, holder.pid, file.string()),
-                          known ? std::string(thief->remedy) : fmt::format("kill {}", holder.pid)));
+    found.push_back({known ? Verdict::kFault : Verdict::kWarning, part,
+                     fmt::format("{} (process {}) holds {}", holder.name, holder.pid, file.string()),
+                     known ? std::string(thief->remedy) : fmt::format("kill {}", holder.pid)});
   }
 }
 
@@ -115,7 +116,8 @@ void examine_board_port(const capture::Rig& rig, const SystemPlaces& places, std
   }
   report_holders(holders_of(port, places), "board", port, found);
   report_thieves("board", places, found);
-  if (!has_fault(found, before)) found.push_back({Verdict::kFine, "board", port.string() + " is free", ""});
+  if (!has_fault(found, before))
+    found.push_back({Verdict::kFine, "board", port.string() + " can be opened", ""});
 }
 
 struct UsbCamera {
@@ -161,8 +163,8 @@ void examine_usb(const SystemPlaces& places, std::vector<Finding>& found) {
                        "use a port and cable of USB 2 or better"});
     }
     if (!has_fault(found, before))
-      found.push_back(
-          {Verdict::kFine, "camera", fmt::format("{} at {} is free", camera.name, camera.node.string()), ""});
+      found.push_back({Verdict::kFine, "camera",
+                       fmt::format("{} at {} can be opened", camera.name, camera.node.string()), ""});
   }
   report_thieves("camera", places, found);
 }

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <optional>
+#include <string>
+#include <vector>
 
 namespace weft::app {
 
-/// Goes on in a child of its own session. In the caller's process it returns, once the child has called
-/// detach() or ended, with an exit code: 0, or the child's. In the child it returns nothing.
-/// Call it while there is one thread.
-std::optional<int> into_background();
+/// Runs this program again in a session of its own, with these arguments and `--ready FD`, and returns once
+/// it has called detach() or ended, with an exit code: 0, or its own. It is no plain fork: libraries that
+/// started threads before main() would wait for them at the end.
+int run_in_background(std::vector<std::string> arguments);
 
-/// In the child: lets the caller go; from now on all three standard streams are the null device. Elsewhere it
-/// does nothing and returns false.
-bool detach();
+/// In that program: lets the one that started it go; from now on all three standard streams are the null
+/// device. `ready` below 0: it is not in the background, and nothing happens.
+void detach(int ready);
 
 }  // namespace weft::app

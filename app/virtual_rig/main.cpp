@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 #include <CLI/CLI.hpp>
@@ -7,8 +8,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/cli/exit_code.h"
@@ -28,6 +29,7 @@ struct Arguments {
   std::string inject;
   double megapixels = 0;
   bool background = false, keep = false;
+  int ready = -1;
   std::vector<std::string> command;
   simulator::VirtualRigOptions rig;
 };
@@ -67,6 +69,7 @@ void define(CLI::App& app, Arguments& a) {
   app.add_flag("--keep", a.keep, "leave the folder as it is at the end: sessions and exposures.jsonl");
   app.add_flag("--no-wait", a.background,
                "return as soon as the rig is ready; it lives on until --inject end");
+  app.add_option("--ready", a.ready)->group("");  // run_in_background()
   app.add_option("--inject", a.inject, "send one command to the rig that lives in --folder, and end");
   std::string footer = "Commands for --inject, or a line each on the socket FOLDER/control:\n";
   for (const std::string& line : simulator::virtual_rig_commands()) footer += "  " + line + '\n';
@@ -120,10 +123,16 @@ int run(Arguments& a) {
     a.folder = *folder;
   }
   a.rig.folder = a.folder;
-  const Result<int> ended = run_virtual_rig(a.rig, a.command);
+  const Result<int> ended = run_virtual_rig(a.rig, a.command, a.ready);
   std::error_code ignored;
   if (is_temporary && !a.keep) fs::remove_all(a.folder, ignored);
   return ended ? *ended : complain(ended.error());
+}
+
+std::vector<std::string> without(int argc, char** argv, std::string_view option) {
+  std::vector<std::string> arguments(argv + 1, argv + argc);
+  std::erase(arguments, option);
+  return arguments;
 }
 
 int main_of(int argc, char** argv) {
@@ -140,9 +149,12 @@ int main_of(int argc, char** argv) {
   }
   std::signal(SIGPIPE, SIG_IGN);
   if (!arguments.inject.empty()) return inject(arguments);
-  if (arguments.background) {
-    if (const std::optional<int> code = into_background()) return *code;
+  if (arguments.ready >= 0) ::fcntl(arguments.ready, F_SETFD, FD_CLOEXEC);
+  if (arguments.background && !arguments.command.empty()) {
+    return complain({ErrorKind::kUsage, "a command in the background", "--no-wait",
+                     "nobody would get its exit code", "leave out --no-wait or the command"});
   }
+  if (arguments.background) return run_in_background(without(argc, argv, "--no-wait"));
   return run(arguments);
 }
 

@@ -19,9 +19,8 @@
 
 #include "app/cli/exit_code.h"
 #include "app/virtual_rig/background.h"
+#include "app/virtual_rig/spawn.h"
 #include "core/files.h"
-
-extern char** environ;
 
 namespace weft::app {
 namespace {
@@ -79,13 +78,6 @@ std::vector<std::string> environment_of(const VirtualRig& rig) {
     if (!is_replaced) lines.emplace_back(line);
   }
   return lines;
-}
-
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
 }
 
 /// A program that runs inside the rig's environment; it does not outlive this object.
@@ -184,14 +176,16 @@ Result<int> wait_for_end(const VirtualRig& rig, Child* child, const Signals& sig
 
 }  // namespace
 
-Result<int> run_virtual_rig(simulator::VirtualRigOptions options, const std::vector<std::string>& command) {
+Result<int> run_virtual_rig(simulator::VirtualRigOptions options, const std::vector<std::string>& command,
+                            int ready) {
   const Signals signals;
   const pid_t parent = ::getppid();
   Result<std::unique_ptr<VirtualRig>> rig = start_rig(options, signals);
   if (!rig) return rig.error();
   if (command.empty()) {
     say_ready(**rig, std::filesystem::absolute(options.folder).lexically_normal());
-    return wait_for_end(**rig, nullptr, signals, detach() ? kNoParent : parent);
+    detach(ready);
+    return wait_for_end(**rig, nullptr, signals, ready < 0 ? parent : kNoParent);
   }
   Result<Child> child = Child::start(**rig, command, signals.before());
   if (!child) return child.error();

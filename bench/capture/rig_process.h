@@ -18,8 +18,8 @@ namespace weft::bench {
 /// A program that runs beside this one, killed with this object if it still does.
 class ChildProcess {
  public:
-  /// Standard output and error go to `log`; empty: where this process's go. `environment` is NAME=value on
-  /// top of this process's.
+  /// Standard output and error go to `log`; empty: to this one's standard error. `environment` is NAME=value
+  /// on top of this process's.
   static Result<std::unique_ptr<ChildProcess>> start(const std::vector<std::string>& command,
                                                      const std::vector<std::string>& environment,
                                                      const std::filesystem::path& log);

@@ -24,7 +24,7 @@ struct CameraLinkOptions {
   std::string port;              ///< "ptpip:ADDRESS:PORT:PORT"; "usb:BUS,DEVICE" or empty: found on USB
   std::string serial;            ///< empty: whichever camera is there, and from then on that one
   std::filesystem::path worker;  ///< weft-camera; empty: beside the running program
-  std::filesystem::path state;   ///< folder for what libgphoto2 remembers; empty: one that goes with the link
+  std::filesystem::path state;   ///< folder for what libgphoto2 remembers and says; empty: one that goes
   Environment environment;       ///< for the worker, on top of this process's
 };
 

@@ -56,7 +56,6 @@ class Worker {
     } else {
       say("error", line_of(done.error()));
     }
-    if (landed_) camera_->forget(*std::exchange(landed_, std::nullopt));
   }
 
   Result<Json> perform(const Json& request) {
@@ -78,6 +77,7 @@ class Worker {
 
   Result<Json> open(JsonFields& fields) {
     camera_.reset();
+    prepared_.reset();
     const std::string name = fields.text("profile");
     const WantedCamera wanted{fields.text("port"), fields.text("serial")};
     const bool watched = fields.has("watch_clock");
@@ -131,8 +131,7 @@ class Worker {
     const std::string file = fields.text("file");
     const double deadline_s = fields.number("deadline_s");
     if (Result<void> ok = fields.status(); !ok) return bad_request(ok.error().why);
-    if (Result<void> right = check_body(*camera_, profile_); !right) return std::move(right).error();
-    if (Result<void> quiet = drain(); !quiet) return std::move(quiet).error();
+    if (Result<void> ready = prepare(); !ready) return std::move(ready).error();
 
     const double triggered_s = seconds_since_1970();
     const auto triggered = Steady::now();
@@ -142,11 +141,29 @@ class Worker {
     if (!name) return name.error();
     const Result<FetchedFile> fetched = camera_->fetch(*name);
     if (!fetched) return fetched.error();
-    landed_ = *name;
-    Result<Json> landed = land(file + ".arrived", fetched->bytes());
+    // While the disk is at work, what would hold up the next shot.
+    auto landing = std::async(std::launch::async, [&] { return land(file + ".arrived", fetched->bytes()); });
+    put_in_order(*name);
+    Result<Json> landed = landing.get();
     if (!landed) return landed;
     (*landed)["triggered_s"] = triggered_s;
     return landed;
+  }
+
+  void put_in_order(const CameraFileName& name) {
+    camera_->forget(name);
+    prepared_ = prepare_now();
+    prepared_at_ = Steady::now();
+  }
+
+  /// Nobody has turned anything, and nothing is left of the shot before.
+  Result<void> prepare() {
+    const auto before = std::exchange(prepared_, std::nullopt);
+    return before && seconds_since(prepared_at_) < kFreshS ? *before : prepare_now();
+  }
+  Result<void> prepare_now() {
+    Result<void> quiet = drain();
+    return quiet ? check_body(*camera_, profile_) : quiet;
   }
 
   /// Takes the events that are still there from the shot before, and drops what must not be taken for the
@@ -215,7 +232,8 @@ class Worker {
     }
   }
 
-  static constexpr int kPollMs = 20;
+  static constexpr int kPollMs = 10;
+  static constexpr double kFreshS = 1;
   static constexpr int kBareWaitMs = 200;
   static constexpr double kBareDeadlineS = 60;
 
@@ -224,7 +242,8 @@ class Worker {
   Json id_;
   CameraProfile profile_;
   std::unique_ptr<GphotoCamera> camera_;
-  std::optional<CameraFileName> landed_;  // to be forgotten once the parent has been told
+  std::optional<Result<void>> prepared_;  // how the next shot was prepared since
+  Steady::time_point prepared_at_;
 };
 
 }  // namespace

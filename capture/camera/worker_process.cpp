@@ -46,12 +46,16 @@ std::vector<std::string> merged(const Environment& environment) {
 
 /// Starts the program with one end of a socket as its input and output, in a process group of its own and
 /// with no signal blocked; errno.
-int spawn(const std::filesystem::path& program, const Environment& environment, int socket, pid_t& pid) {
+int spawn(const std::filesystem::path& program, const Environment& environment,
+          const std::filesystem::path& log, int socket, pid_t& pid) {
   posix_spawn_file_actions_t actions;
   posix_spawnattr_t attributes;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, socket, STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, socket, STDOUT_FILENO);
+  if (!log.empty())
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+                                     0644);
   posix_spawnattr_init(&attributes);
   sigset_t none;
   sigemptyset(&none);
@@ -80,13 +84,14 @@ std::filesystem::path weft_camera_program() {
 }
 
 Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::filesystem::path& program,
-                                                            const Environment& environment) {
+                                                            const Environment& environment,
+                                                            const std::filesystem::path& log) {
   // A socket, not two pipes: writing to a dead one can be told not to raise SIGPIPE.
   std::array<int, 2> sockets;
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
     return Error{ErrorKind::kTryAgain, "no socket for weft-camera", "", system_reason(errno), "try again"};
   pid_t pid = 0;
-  const int failed = spawn(program, environment, sockets[1], pid);
+  const int failed = spawn(program, environment, log, sockets[1], pid);
   ::close(sockets[1]);
   if (failed == 0) return std::unique_ptr<WorkerProcess>(new WorkerProcess(pid, sockets[0]));
   ::close(sockets[0]);

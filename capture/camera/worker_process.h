@@ -26,9 +26,11 @@ class WorkerProcess {
  public:
   using Deadline = std::chrono::steady_clock::time_point;
 
-  /// Starts `program` with these variables on top of this process's. kNoInput, kTryAgain.
+  /// Starts `program` with these variables on top of this process's; what it says on its standard error goes
+  /// to the file `log`, begun anew, or where this process's goes. kNoInput, kTryAgain.
   static Result<std::unique_ptr<WorkerProcess>> start(const std::filesystem::path& program,
-                                                      const Environment& environment);
+                                                      const Environment& environment,
+                                                      const std::filesystem::path& log = {});
   /// Kills it if it is still there.
   ~WorkerProcess();
   WorkerProcess(const WorkerProcess&) = delete;

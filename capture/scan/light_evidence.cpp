@@ -43,16 +43,17 @@ struct Ratio {
   double scatter = 0;  ///< median deviation from it, relative
 };
 
-Ratio ratio_of(const std::vector<double>& light, const std::vector<double>& before) {
+/// Nothing where one of the two is full everywhere.
+std::optional<Ratio> ratio_of(const std::vector<double>& light, const std::vector<double>& before) {
   const double least = 0.2 * quantile(before, 0.5);
   std::vector<double> ratios;
   for (std::size_t i = 0; i < light.size(); ++i) {
     if (std::isfinite(light[i]) && before[i] > least) ratios.push_back(light[i] / before[i]);
   }
-  if (ratios.empty()) return {0, 0};
+  if (ratios.empty()) return std::nullopt;
   const double median = median_of(ratios);
   for (double& ratio : ratios) ratio = std::abs(ratio / median - 1);
-  return {median, median_of(std::move(ratios))};
+  return Ratio{median, median_of(std::move(ratios))};
 }
 
 std::vector<Vec3> together(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double times) {
@@ -253,9 +254,10 @@ Verdict LightEvidence::judge_again(const PlannedShot& shot, const std::vector<do
   if (first == nullptr) return {};
   const double times = shot.exposure.exposure_us / first->shot.exposure.exposure_us;
   const std::vector<double> own = without_dark(light), before = without_dark(first->light);
-  const Ratio ratio = ratio_of(own, before);
+  const std::optional<Ratio> ratio = ratio_of(own, before);
+  if (!ratio) return {};
   Verdict verdict;
-  verdict.level = ratio.median / times;
+  verdict.level = ratio->median / times;
   const bool is_repeat = shot.role == ShotRole::kRepeat;
   const auto refuse = [&](Finding finding, std::string sentence) {
     verdict.finding = finding;
@@ -263,18 +265,17 @@ Verdict LightEvidence::judge_again(const PlannedShot& shot, const std::vector<do
     verdict.accused = {shot.index};
   };
   const double off = std::abs(*verdict.level - 1);
-  if (ratio.median == 0) return verdict;  // all of it is full
   if (*verdict.level < kDarkLevel) {
     refuse(Finding::kDark, fmt::format("LED {} is dark", shot.led));
   } else if (off > (is_repeat ? kRepeatLevel : kBracketLevel)) {
     refuse(Finding::kChanged, fmt::format("{} is {:.2f} times as bright as its first photograph lets expect",
                                           name_of(shot), *verdict.level));
-  } else if (is_repeat && ratio.scatter > kRepeatPattern) {
+  } else if (is_repeat && ratio->scatter > kRepeatPattern) {
     refuse(Finding::kChanged,
            fmt::format(
                "{} differs from its first photograph by {:.0f} percent from place to place: the cloth or "
                "the camera was moved, or another light is on",
-               name_of(shot), 100 * ratio.scatter));
+               name_of(shot), 100 * ratio->scatter));
   } else if (is_repeat && off > kDriftWarns) {
     verdict.warnings.push_back(fmt::format("LED {} gave {:.1f} percent {} light at the end than at first",
                                            shot.led, 100 * off, *verdict.level < 1 ? "less" : "more"));

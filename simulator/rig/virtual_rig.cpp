@@ -260,7 +260,8 @@ class RunningRig : public VirtualRig {
             {"light", json_of(faults())},
             {"leds", frames_.leds()},
             {"size", {frames_.size().width, frames_.size().height}},
-            {"port", camera_->port()}};
+            {"port", camera_->port()},
+            {"process", ::getpid()}};
   }
 
   Result<std::string> end() {

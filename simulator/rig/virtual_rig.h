@@ -24,8 +24,8 @@ struct VirtualRigOptions {
   double bootloader_s = 0.1;                    ///< the board is deaf for after a reset
   double clock_offset_s = 0;                    ///< of the camera's clock to this machine's
   bool usb = false;        ///< the camera hangs on USB, by the stand-in for libusb; else PTP/IP
-  double away_s = 2;               ///< how long what a fault takes away is away
-  double late_s = 8;               ///< how late a picture is that comes late
+  double away_s = 2;       ///< how long what a fault takes away is away
+  double late_s = 8;       ///< how late a picture is that comes late
   std::uint16_t port = 0;  ///< of PTP/IP; 0: a free one
   /// Noise follows from the LEDs that are lit and not from the camera's count of shots: the same shot taken
   /// again is the same picture.

@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "app/jobs/calibrate/check.h"
+#include "app/jobs/calibrate/check_result.h"
 #include "app/jobs/calibrate/history.h"
 #include "app/jobs/calibrate/patches.h"
-#include "app/jobs/calibrate/update.h"
-#include "app/jobs/calibrate/check_result.h"
 #include "app/jobs/calibrate/rig_evidence.h"
+#include "app/jobs/calibrate/update.h"
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
 #include "core/files.h"

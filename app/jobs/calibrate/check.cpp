@@ -9,12 +9,12 @@
 #include <map>
 
 #include "app/jobs/calibrate/check_result.h"
-#include "app/jobs/figures.h"
 #include "app/jobs/calibrate/movement_words.h"
 #include "app/jobs/calibrate/rig_evidence.h"
-#include "app/jobs/session_input.h"
 #include "app/jobs/calibrate/sheet_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
+#include "app/jobs/figures.h"
+#include "app/jobs/session_input.h"
 #include "core/files.h"
 
 namespace weft::app {

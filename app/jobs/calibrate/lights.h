@@ -27,9 +27,10 @@ struct CalibrateLightsOptions {
 };
 
 /// Measures the lights of a rig from sessions of a sheet of white paper in several poses, which its tags tell
-/// (app/jobs/calibrate/sheet_captures.h), and writes a calibration with lights.json and report/lights.html. Fluxes are
-/// absolute where sheet.toml gives the paper's reflectance. kPerPixel also writes the maps of each LED to
-/// report/ (ledNN_direction.exr: X, Y, Z; ledNN_intensity.exr: R, G, B; a pixel a cell), and so does kSeed.
+/// (app/jobs/calibrate/sheet_captures.h), and writes a calibration with lights.json and report/lights.html.
+/// Fluxes are absolute where sheet.toml gives the paper's reflectance. kPerPixel also writes the maps of each
+/// LED to report/ (ledNN_direction.exr: X, Y, Z; ledNN_intensity.exr: R, G, B; a pixel a cell), and so does
+/// kSeed.
 ///
 /// Stains and folds of the paper are found, named and left out. Nothing is written unless all went well.
 /// Errors beside those of reading: kUsage without `from` or with an option out of its range; kBadData for

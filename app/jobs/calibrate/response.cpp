@@ -9,9 +9,9 @@
 #include <cmath>
 #include <vector>
 
+#include "app/jobs/calibrate/response_measurement.h"
 #include "app/jobs/figures.h"
 #include "app/jobs/raw_picture.h"
-#include "app/jobs/calibrate/response_measurement.h"
 #include "calibration/color/chart.h"
 #include "calibration/response/neutral_scale.h"
 #include "capture/raw/decode.h"

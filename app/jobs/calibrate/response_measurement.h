@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/report.h"
 #include "app/jobs/calibrate/response_frames.h"
+#include "app/jobs/report.h"
 #include "calibration/response/photon_transfer.h"
 #include "calibration/response/superposition.h"
 #include "core/calibration.h"

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/job.h"
 #include "app/jobs/calibrate/sheet_files.h"
+#include "app/jobs/job.h"
 #include "calibration/lights/paper_model.h"
 #include "calibration/lights/sheet_blocks.h"
 #include "core/calibration.h"

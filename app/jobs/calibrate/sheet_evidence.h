@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/job.h"
 #include "app/jobs/photographs.h"
-#include "app/jobs/calibrate/sheet_files.h"
 #include "calibration/checks/flatness.h"
 #include "calibration/checks/movement.h"
 #include "core/calibration.h"

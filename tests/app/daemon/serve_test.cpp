@@ -145,7 +145,8 @@ TEST_F(Serve, OneThatWasKilledLeavesNothingInTheWay) {
   EXPECT_EQ(first.ended(), 128 + SIGKILL);
   EXPECT_EQ(address_of_owner(rig_), std::nullopt) << "an address without an owner is none";
   Daemon second(folder_ / "rig.toml");
-  EXPECT_TRUE(client());
+  const Result<RigClient> again = client();
+  EXPECT_TRUE(again) << again.error().message() << second.said();
 }
 
 TEST_F(Serve, TellsTheServiceManagerThatItIsReadyAliveAndEnding) {

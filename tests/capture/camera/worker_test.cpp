@@ -23,7 +23,7 @@ using std::chrono::steady_clock;
 class Spoken {
  public:
   explicit Spoken(const std::filesystem::path& home) {
-    auto started = WorkerProcess::start(weft_camera_program(), {{"HOME", home.string()}});
+    auto started = WorkerProcess::start(weft_camera_program(), {{"HOME", home.string()}}, home / "log");
     if (!started) throw std::runtime_error(started.error().message());
     worker = std::move(*started);
   }
@@ -88,6 +88,9 @@ TEST(Worker, EndsWithoutItsParentEvenWhereTheCameraBlocksIt) {
   ASSERT_TRUE(spoken.ask(open_line(bench)).contains("ok"));
   ASSERT_TRUE(
       spoken.worker->send(Json{{"do", "take"}, {"file", bench.raw(1).string()}, {"deadline_s", 5}}.dump()));
+  const auto patience = steady_clock::now() + seconds(10);
+  while (bench.camera().shots() == 0 && steady_clock::now() < patience) ::usleep(1000);
+  ASSERT_EQ(bench.camera().shots(), 1);
   const auto begin = steady_clock::now();
   spoken.worker->end(begin + seconds(20));
   EXPECT_GT(seconds_since(begin), 2) << "it did not hang";
@@ -95,7 +98,7 @@ TEST(Worker, EndsWithoutItsParentEvenWhereTheCameraBlocksIt) {
 }
 
 TEST(WorkerProcess, TellsACrashFromAHang) {
-  auto sleeper = WorkerProcess::start("/bin/cat", {});
+  auto sleeper = WorkerProcess::start("/bin/cat", {}, "/dev/null");
   ASSERT_TRUE(sleeper) << sleeper.error().message();
   const auto hung = (*sleeper)->read_line(steady_clock::now() + milliseconds(50));
   ASSERT_FALSE(hung);

@@ -37,6 +37,7 @@ struct Told {
   Finding finding = Finding::kAgrees;
   int at = 0;  ///< LED at which it was said; one more than there are: at the repeat
   std::string sentence;
+  bool warned = false;
   double least_level = 1e9, most_level = 0, misfit = 0;
 };
 
@@ -91,6 +92,7 @@ Told told(const SimulatedCloth& cloth, const LightModel& model, const Glances& g
       told.most_level = std::max(told.most_level, *verdict.level);
       if (verdict.misfit) told.misfit = std::max(told.misfit, *verdict.misfit);
     }
+    told.warned = told.warned || !verdict.warnings.empty();
     if (verdict.finding != Finding::kAgrees) {
       told.finding = verdict.finding;
       told.at = shot.index;
@@ -114,7 +116,7 @@ TEST(LightEvidenceTable, SpeaksWhereItShouldAndNowhereElse) {
       "dyes", "shadows", "interreflection", "tilted", "rig"};
   fmt::print("{:16} {:>6} {:>11} {:>6} | {:>9} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "scene", "false",
              "level", "misfit", "exchanged", "replaced", "dead", "40%", "stuck", "room 30%", "room 10%");
-  int false_alarms = 0;
+  int false_alarms = 0, false_warnings = 0;
   for (const std::string& name : scenes) {
     const SimulatedCloth cloth = cloth_of(name);
     const Result<LightModel> model = LightModel::make(cloth.calibration(), 0);
@@ -123,6 +125,7 @@ TEST(LightEvidenceTable, SpeaksWhereItShouldAndNowhereElse) {
     const int n = cloth.leds();
     const Told right = told(cloth, *model, glances, plain);
     false_alarms += right.finding != Finding::kAgrees;
+    false_warnings += right.warned;
     if (right.finding != Finding::kAgrees) fmt::print("  {}: {} at {}\n", name, right.sentence, right.at);
 
     int exchanged = 0, exchanges = 0, named = 0;
@@ -145,11 +148,12 @@ TEST(LightEvidenceTable, SpeaksWhereItShouldAndNowhereElse) {
       dead += told(cloth, *model, glances, [&](int led) {
                 return led == a ? Lighting() : plain(led);
               }).finding == Finding::kDark;
-      dim += told(cloth, *model, glances, [&](int led) {
-               Lighting l = plain(led);
-               if (led == a) l.leds[a] = 0.4;
-               return l;
-             }).finding != Finding::kAgrees;
+      const Told weak = told(cloth, *model, glances, [&](int led) {
+        Lighting l = plain(led);
+        if (led == a) l.leds[a] = 0.4;
+        return l;
+      });
+      dim += weak.warned || weak.finding != Finding::kAgrees;
       // From the shot after its own on.
       const Told s = told(cloth, *model, glances, [&](int led) {
         Lighting l = plain(led);
@@ -175,6 +179,7 @@ TEST(LightEvidenceTable, SpeaksWhereItShouldAndNowhereElse) {
         exchanged, exchanges, replaced, n, dead, n, dim, n, stuck_named, stuck, n, room3, n, room1, n);
     std::fflush(stdout);
   }
+  fmt::print("{} of {} scenes with a false warning\n", false_warnings, scenes.size());
   EXPECT_EQ(false_alarms, 0);
 }
 

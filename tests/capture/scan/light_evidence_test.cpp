@@ -94,6 +94,10 @@ TEST(LightEvidence, NamesADarkLedAndADimOne) {
   EXPECT_EQ(t.verdict.finding, Finding::kDim) << t.verdict.sentence;
   t = told(woven(), [](int led) { return led == 1 ? Lighting() : as_planned(led); });
   EXPECT_EQ(t.verdict.sentence, "LED 1 is dark") << "the first one, too";
+  auto scene = woven();
+  scene.effects.noise = false;
+  t = told(scene, [](int led) { return led == kRepeat ? Lighting() : as_planned(led); });
+  EXPECT_EQ(t.verdict.sentence, "LED 1 is dark") << "as its repeat";
 }
 
 TEST(LightEvidence, NamesALedThatStaysLit) {

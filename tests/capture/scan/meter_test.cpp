@@ -42,8 +42,8 @@ struct TestTable {
 
   Brightness shot(int led, double exposure_us) {
     ++shots;
-    return brightness_of(
-        cloth.photograph({{{led, gain[static_cast<std::size_t>(led - 1)]}}, 0}, exposure_us, static_cast<std::uint32_t>(shots)));
+    return brightness_of(cloth.photograph({{{led, gain[static_cast<std::size_t>(led - 1)]}}, 0}, exposure_us,
+                                          static_cast<std::uint32_t>(shots)));
   }
 
   Metering metered() {

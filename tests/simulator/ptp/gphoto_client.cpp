@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <thread>
 #include <utility>
 
 namespace weft::simulator {
@@ -75,7 +76,10 @@ int GphotoClient::init() {
 int GphotoClient::init_within(double deadline_s) {
   const auto start = Clock::now();
   int code = init();
-  while (code < 0 && seconds_since(start) < deadline_s) code = init();
+  while (code < 0 && seconds_since(start) < deadline_s) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    code = init();
+  }
   return code;
 }
 

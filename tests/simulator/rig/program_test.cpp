@@ -6,11 +6,12 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include "core/files.h"
+#include "core/json_document.h"
 #include "simulator/rig/control_socket.h"
 #include "tests/simulator/ptp/client_process.h"
 #include "tests/simulator/rig/small_scene.h"
@@ -34,13 +35,25 @@ class Program : public testing::Test {
   fs::path folder_;
 };
 
-bool is_gone_within(const fs::path& path, double most_s) {
+bool comes_true(double most_s, const std::function<bool()>& condition) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(most_s);
-  while (fs::exists(path)) {
+  while (!condition()) {
     if (std::chrono::steady_clock::now() > until) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   return true;
+}
+
+bool is_gone_within(const fs::path& path, double most_s) {
+  return comes_true(most_s, [&] { return !fs::exists(path); });
+}
+
+/// A process that has ended and waits to be reaped has no command line any more.
+bool has_ended_within(int process, double most_s) {
+  return comes_true(most_s, [&] {
+    std::ifstream command("/proc/" + std::to_string(process) + "/cmdline");
+    return command.peek() == std::ifstream::traits_type::eof();
+  });
 }
 
 TEST_F(Program, RunsACommandInsideTheRigAndEndsWithIt) {
@@ -61,13 +74,15 @@ TEST_F(Program, LivesInTheBackgroundUntilItIsToldToEnd) {
   ASSERT_EQ(ran.exit_code, 0) << ran.output;
   EXPECT_THAT(ran.output, AllOf(HasSubstr("READY"), HasSubstr("82 x 62 pixels")));
   EXPECT_EQ(run({"--folder", "rig", "--inject", "light stuck 3"}).output, "ok\n");
-  EXPECT_THAT(run({"--folder", "rig", "--inject", "status"}).output, HasSubstr("\"stuck\":[3]"));
+  const Json status = Json::parse(run({"--folder", "rig", "--inject", "status"}).output);
+  EXPECT_EQ(status.at("light").at("stuck"), Json({3}));
   const ProgramRun wrong = run({"--folder", "rig", "--inject", "light stuck 30"});
   EXPECT_EQ(wrong.exit_code, 64);
   EXPECT_THAT(wrong.output, HasSubstr("LEDs are 1 to 3"));
   EXPECT_EQ(run({scene(), "--folder", "rig"}).exit_code, 75) << "one rig a folder";
   EXPECT_EQ(run({"--folder", "rig", "--inject", "end"}).exit_code, 0);
   EXPECT_TRUE(is_gone_within(folder_ / "rig", 10));
+  EXPECT_TRUE(has_ended_within(status.at("process").get<int>(), 10));
 }
 
 TEST_F(Program, EndsWithItsParent) {
@@ -90,6 +105,7 @@ TEST_F(Program, ExplainsItselfAndWhatItRefuses) {
   EXPECT_EQ(run({"nothing.toml"}).exit_code, 66);
   EXPECT_EQ(run({"--folder", "nobody", "--inject", "status"}).exit_code, 69);
   EXPECT_EQ(run({scene(), "--megapixels", "0"}).exit_code, 64);
+  EXPECT_EQ(run({scene(), "--no-wait", "--", "true"}).exit_code, 64);
   EXPECT_EQ(run({scene(), "--folder", folder_.string()}).exit_code, 73);
   EXPECT_EQ(run({scene(), "--folder", "rig", "--", "no-such-program"}).exit_code, 66);
 }

@@ -44,7 +44,7 @@ TEST(RigFolder, TellsAHostWhereItsDevicesAre) {
   const Result<Calibration> calibration = read_calibration(folder / "calibration");
   ASSERT_TRUE(calibration) << calibration.error().message();
   EXPECT_EQ(calibration->subject.camera_serial, "6000042");
-  EXPECT_EQ(calibration->subject.camera_model, "NIKON D5100");
+  EXPECT_EQ(calibration->subject.camera_model, "D5100");
   EXPECT_EQ(light_count(*calibration->lights), 3u);
 }
 

@@ -30,7 +30,9 @@ class OpenedCamera {
     libusb_device** devices = nullptr;
     const ssize_t count = libusb_get_device_list(context_, &devices);
     EXPECT_EQ(count, 1);
-    if (count == 1) EXPECT_EQ(libusb_open(devices[0], &handle_), LIBUSB_SUCCESS);
+    if (count == 1) {
+      EXPECT_EQ(libusb_open(devices[0], &handle_), LIBUSB_SUCCESS);
+    }
     libusb_free_device_list(devices, 1);
   }
   ~OpenedCamera() {
