@@ -13,7 +13,7 @@ struct Answer {
 };
 
 static uint16_t bit_of(uint8_t led) {
-  return led == 0 ? 0 : (uint16_t)(1U << (led - 1));
+  return (uint16_t)(led == 0 ? 0U : 1U << (led - 1U));
 }
 
 static void say_hello(const struct WeftBoard* board, struct Answer* answer) {

@@ -66,7 +66,7 @@ void Avr::connect_wires() {
   for (int led = 0; led < 10; ++led) {
     Pin& pin = pins_[static_cast<std::size_t>(led)];
     pin = {this, led};
-    const auto port = static_cast<std::uint32_t>(led < 6 ? 'D' : 'B');
+    const std::uint32_t port = led < 6 ? std::uint32_t{'D'} : std::uint32_t{'B'};
     avr_irq_register_notify(avr_io_getirq(avr_, AVR_IOCTL_IOPORT_GETIRQ(port), led < 6 ? led + 2 : led - 6),
                             on_pin, &pin);
   }
