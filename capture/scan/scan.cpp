@@ -9,6 +9,7 @@
 #include <future>
 #include <map>
 #include <new>
+#include <utility>
 
 #include "capture/raw/decode.h"
 #include "capture/scan/frame_check.h"
