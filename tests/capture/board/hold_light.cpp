@@ -14,7 +14,7 @@ int main(int count, char** arguments) {
     std::fprintf(stderr, "%s\n", board.error().message().c_str());
     return 69;
   }
-  const int led = std::atoi(arguments[2]);
+  const int led = static_cast<int>(std::strtol(arguments[2], nullptr, 10));
   if (const auto lit = (*board)->light({&led, 1}, 40); !lit) {
     std::fprintf(stderr, "%s\n", lit.error().message().c_str());
     return 69;
