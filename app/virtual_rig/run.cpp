@@ -152,7 +152,7 @@ void say_ready(const VirtualRig& rig, const std::filesystem::path& folder) {
       "READY {0}\n"
       "  {1} LEDs, {2} x {3} pixels; light from {4}\n"
       "  rig file        {0}/rig.toml\n"
-      "  use it          env $(cat {0}/environment) weft scan --rig {0}/rig.toml\n"
+      "  use it          env $(cat {0}/environment) weft scan --fabric NAME\n"
       "  break it        weft-virtual-rig --folder {0} --inject \"board unplug\"\n"
       "  end it          Ctrl-C, or weft-virtual-rig --folder {0} --inject end\n",
       folder.string(), rig.frames().leds(), size.width, size.height, rig.frames().folder().string());

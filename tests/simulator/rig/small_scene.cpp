@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <string>
+#include <system_error>
 
 namespace weft::simulator {
 
@@ -24,9 +25,17 @@ Scene small_scene(int width) {
 }
 
 fs::path fresh_folder() {
+  // Of this process alone, and gone with it.
+  struct Own {
+    const fs::path path = fs::path(testing::TempDir()) / ("weft_rig_" + std::to_string(getpid()));
+    ~Own() {
+      std::error_code ignored;
+      fs::remove_all(path, ignored);
+    }
+  };
+  static const Own own;
   const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-  const fs::path folder = fs::path(testing::TempDir()) / ("weft_rig_" + std::to_string(getpid())) /
-                          test.test_suite_name() / test.name();
+  const fs::path folder = own.path / test.test_suite_name() / test.name();
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;
