@@ -6,12 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <poll.h>
-#include <sys/resource.h>
 #include <termios.h>
 #include <unistd.h>
 
 #include <array>
-#include <thread>
 
 #include "firmware/protocol/protocol.h"
 #include "tests/capture/board/desk.h"
@@ -64,15 +62,6 @@ class Terminal {
  private:
   int file_;
 };
-
-double own_cpu_s() {
-  rusage used = {};
-  getrusage(RUSAGE_SELF, &used);
-  const auto s = [](const timeval& time) {
-    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-  };
-  return s(used.ru_utime) + s(used.ru_stime);
-}
 
 TEST(VirtualBoard, AnswersOnItsTerminal) {
   Desk desk;
@@ -195,18 +184,6 @@ TEST(VirtualBoard, RemembersThroughAResetHowHotItsLedsAre) {
   ASSERT_EQ(reply[3], kWeftError | kWeftReplyBit) << "lit for the full time though it is warm";
   EXPECT_EQ(reply[4], kWeftResting);
   EXPECT_EQ(desk.pins().now(), 0);
-}
-
-TEST(VirtualBoard, TakesNextToNoTimeWhenItIsIdle) {
-  Desk desk;
-  const Terminal terminal(desk);
-  terminal.send(request(1, kWeftHello));
-  terminal.hear();
-  const double before_s = own_cpu_s();
-  std::this_thread::sleep_for(std::chrono::seconds(1));
-  const double share = own_cpu_s() - before_s;
-  RecordProperty("cpu_share", std::to_string(share));
-  EXPECT_LT(share, 0.02) << "of one processor";
 }
 
 TEST(VirtualBoard, RefusesAFileThatIsNoFirmware) {
