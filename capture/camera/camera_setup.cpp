@@ -33,7 +33,8 @@ Result<std::vector<CameraAddress>> candidates(const CameraProfile& profile, cons
     if (!known) others.push_back(address.model);
     return !known;
   });
-  std::ranges::stable_partition(*found, [&](const CameraAddress& a) { return a.port == wanted.port; });
+  std::stable_partition(found->begin(), found->end(),
+                        [&](const CameraAddress& address) { return address.port == wanted.port; });
   // Without a number, a port that was named means the camera that is there and no other.
   const bool named = wanted.port.size() > std::string_view("usb:").size();
   if (wanted.serial.empty() && named)

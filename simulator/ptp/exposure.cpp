@@ -62,8 +62,8 @@ void Body::half_exposed(const Exposure& exposure) {
 void Body::close_shutter(const Exposure& exposure) {
   std::unique_lock lock(mutex_);
   if (exposure.power_cycle != power_cycles_) return;
-  const bool lost =
-      faults_.take(Fault::kDropInExposure, exposure.shot) | faults_.take(Fault::kNoObject, exposure.shot);
+  const bool dropped = faults_.take(Fault::kDropInExposure, exposure.shot);
+  const bool lost = faults_.take(Fault::kNoObject, exposure.shot) || dropped;
   if (faults_.take(Fault::kBusyForEver, exposure.shot)) {
     stuck_ = true;
   } else if (!lost) {
