@@ -77,7 +77,8 @@ class Camera {
   virtual Result<CameraFacts> set(const ExposureSettings& exposure) = 0;
   /// Shutter times it can be set to, in us, rising.
   virtual Result<std::vector<double>> shutter_times_us() = 0;
-  /// Takes one photograph and writes it to `file` with its ending added. `exposed` is called once the shutter
+  /// Takes one photograph and writes it to `file` with its ending added: whole, of the exposure that was set
+  /// and of a time after it was asked for, or an error. `exposed` is called once the shutter
   /// has closed, while the picture is still on its way: light may change from then on.
   virtual Result<Photograph> take(const std::filesystem::path& file,
                                   const std::function<void()>& exposed) = 0;

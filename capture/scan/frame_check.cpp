@@ -3,17 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <utility>
 
 namespace weft::capture {
 namespace {
-
-constexpr double kAlike = 0.02;  // a third of a stop is 0.26
-
-bool differs(double said, double asked) {
-  return said > 0 && std::abs(said / asked - 1) > kAlike;
-}
 
 Error another(std::string why, const Photograph& photograph) {
   return {ErrorKind::kProtocol, "the camera delivered another photograph than was asked for",
@@ -23,49 +16,18 @@ Error another(std::string why, const Photograph& photograph) {
 
 }  // namespace
 
-void PhotographCheck::begin(double clock_uncertainty_s, std::optional<std::uint32_t> last) {
-  clock_uncertainty_s_ = clock_uncertainty_s;
-  if (last) last_ = last;
-}
-
-Result<void> PhotographCheck::check(const Photograph& photograph, const ExposureSettings& asked,
-                                    double now_s) {
-  const std::uint32_t failed = std::exchange(failed_, 0);
-  const bool is_same_run = std::exchange(is_same_run_, true);
-  const auto last = last_;
-  if (photograph.image_number) last_ = photograph.image_number;
-  if (photograph.image_number && last) {
-    const std::int64_t ahead = std::int64_t{*photograph.image_number} - *last;
-    if (ahead <= 0) {
-      last_ = last;
-      return another(
-          fmt::format("its number is {}, and {} was there before", *photograph.image_number, *last),
-          photograph);
-    }
-    if (is_same_run && ahead > 1 + std::int64_t{failed}) {
-      return another(fmt::format("its number is {} where {} was expected: somebody else released the shutter",
-                                 *photograph.image_number, *last + 1),
-                     photograph);
-    }
-  }
-  if (photograph.taken_s) {
-    const double early_s = photograph.triggered_s - *photograph.taken_s, late_s = *photograph.taken_s - now_s;
-    if (early_s > clock_uncertainty_s_ || late_s > clock_uncertainty_s_) {
-      return another(
-          fmt::format("it was taken {:.2f} s {}, and clocks agree to {:.2f} s", std::max(early_s, late_s),
-                      early_s > late_s ? "before it was asked for" : "after now", clock_uncertainty_s_),
-          photograph);
-    }
-  }
-  const ExposureSettings& said = photograph.exposure;
-  if (differs(said.exposure_us, asked.exposure_us) || differs(said.iso, asked.iso) ||
-      differs(said.f_number, asked.f_number)) {
-    return another(
-        fmt::format("it was taken at {:.6g} us, ISO {:.6g}, f/{:.3g}, not {:.6g} us, ISO {:.6g}, f/{:.3g}",
-                    said.exposure_us, said.iso, said.f_number, asked.exposure_us, asked.iso, asked.f_number),
-        photograph);
-  }
-  return {};
+Result<void> ImageCount::check(const Photograph& photograph) {
+  const std::int64_t failed = std::exchange(failed_, 0);
+  const bool is_same_connection = std::exchange(is_same_connection_, true);
+  if (!photograph.image_number) return {};
+  const std::int64_t number = *photograph.image_number;
+  if (last_ && number <= *last_ && (is_same_connection || !photograph.taken_s))
+    return another(fmt::format("its number is {}, and {} was there before", number, *last_), photograph);
+  const std::optional<std::uint32_t> last = std::exchange(last_, photograph.image_number);
+  if (!last || !is_same_connection || number <= 1 + std::int64_t{*last} + failed) return {};
+  return another(fmt::format("its number is {} where {} was expected: somebody else released the shutter",
+                             number, *last + 1),
+                 photograph);
 }
 
 Result<void> check_alike(const RawFrame& frame, const RawFrame& first, Size first_size,

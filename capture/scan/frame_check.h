@@ -11,20 +11,23 @@
 
 namespace weft::capture {
 
-/// Whether a photograph that a camera delivers is the one that was just asked for, by what its file says.
-class PhotographCheck {
+/// Whether photographs follow one another by the camera's own count. (Time, exposure and size are the
+/// camera link's to check.)
+class ImageCount {
  public:
-  /// `clock_uncertainty_s` as the camera's facts have it. `last` is the count of the last frame kept before.
-  void begin(double clock_uncertainty_s, std::optional<std::uint32_t> last);
+  /// After each connection: a body may have been used meanwhile, or have begun to count anew.
+  void connected() { is_same_connection_ = false; }
+  /// The count of the last frame that an earlier run has kept.
+  void follow(std::optional<std::uint32_t> last) { last_ = last; }
   /// A take that failed may have counted.
   void failed() { ++failed_; }
-  /// kProtocol where it is another one: of another time, count or exposure. `now_s` is since 1970.
-  Result<void> check(const Photograph& photograph, const ExposureSettings& asked, double now_s);
+  /// kProtocol where the count is not the next one. After a connection a lower count is believed if the
+  /// photograph's time was, and a higher one always is.
+  Result<void> check(const Photograph& photograph);
 
  private:
-  double clock_uncertainty_s_ = 1;
   std::optional<std::uint32_t> last_;
-  bool is_same_run_ = false;  ///< the last one was taken by this scan: counts follow without a gap
+  bool is_same_connection_ = false;
   std::uint32_t failed_ = 0;
 };
 

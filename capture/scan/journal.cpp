@@ -31,23 +31,6 @@ std::string iso_time(double since_1970_s) {
   return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(seconds), milliseconds);
 }
 
-/// Folders aside that a process left which is no more.
-void remove_abandoned(const fs::path& session) {
-  const std::string start = "." + session.filename().string() + ".", end = ".partial";
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(session.parent_path(), ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(start) || !name.ends_with(end) || name.size() <= start.size() + end.size())
-      continue;
-    pid_t owner = 0;
-    const char* const last = name.data() + name.size() - end.size();
-    const auto [stop, failed] = std::from_chars(name.data() + start.size(), last, owner);
-    if (failed == std::errc() && stop == last && owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) {
-      fs::remove_all(entry.path(), ignored);
-    }
-  }
-}
-
 Result<void> make_session(const ScanRequest& request, const std::string& calibration_id, const ShotList& list,
                           const AfterStep& after_step) {
   remove_abandoned(fs::absolute(request.session));
@@ -101,7 +84,30 @@ Result<void> check_same_scan(const Session& session, const ScanRequest& request,
   if (!session.document.contains("plan") || session.document["plan"] != to_json(list)) {
     return cannot_resume(session, "its LEDs, repeat or brackets are others");
   }
+  const std::vector<PlannedShot> plan = plan_shots(list, {}, 0);
+  for (const Shot& shot : session.shots) {
+    const bool is_planned = shot.index >= 0 && shot.index < static_cast<int>(plan.size()) &&
+                            plan[static_cast<std::size_t>(shot.index)].led == shot.led &&
+                            plan[static_cast<std::size_t>(shot.index)].role == shot.role;
+    if (is_planned) continue;
+    return Error{ErrorKind::kBadData, "session has a shot that its plan has not", session.folder.string(),
+                 fmt::format("{}: index {}, LED {}", shot.file, shot.index, shot.led),
+                 "scan under another name"};
+  }
   return {};
+}
+
+/// The session, if it can be gone on with.
+Result<Session> unfinished(const ScanRequest& request, const std::string& calibration_id,
+                           const ShotList& list) {
+  Result<Session> session = read_session(request.session);
+  if (!session) return session;
+  if (session->state == kComplete) {
+    return Error{ErrorKind::kCannotCreate, "session is finished", request.session.string(),
+                 "sessions are never overwritten", "scan under another name with -o"};
+  }
+  if (Result<void> ok = check_same_scan(*session, request, calibration_id, list); !ok) return ok.error();
+  return session;
 }
 
 /// Removes everything in a folder that `stays` does not say stays.
@@ -131,31 +137,27 @@ Result<Journal::Lock> Journal::Lock::of(const fs::path& folder) {
                "its folder is locked by another process", "wait for that scan, or choose another name"};
 }
 
-Result<void> Journal::check_name(const fs::path& session) {
-  if (!is_there(session)) return {};
-  const Result<Session> there = read_session(session);
-  if (!there) return there.error();
-  if (there->state != kComplete) return {};
-  return Error{ErrorKind::kCannotCreate, "session is finished", session.string(),
-               "sessions are never overwritten", "scan under another name with -o"};
+Result<int> Journal::check(const ScanRequest& request, const std::string& calibration_id,
+                           const ShotList& list) {
+  if (!is_there(request.session)) return list.count();
+  const Result<Session> session = unfinished(request, calibration_id, list);
+  if (!session) return session.error();
+  return list.count() - static_cast<int>(session->shots.size());
 }
 
 Result<Journal> Journal::open(const ScanRequest& request, const std::string& calibration_id,
                               const ShotList& list, AfterStep after_step) {
-  const bool was_there = is_there(request.session);
-  if (!was_there) {
+  if (!is_there(request.session)) {
     if (Result<void> made = make_session(request, calibration_id, list, after_step); !made)
       return made.error();
   }
   Result<Lock> lock = Lock::of(request.session);
   if (!lock) return lock.error();
   // Under the lock: another scan may have finished it meanwhile.
-  if (Result<void> ok = check_name(request.session); !ok) return ok.error();
-  Result<Session> session = read_session(request.session);
+  Result<Session> session = unfinished(request, calibration_id, list);
   if (!session) return session.error();
-  if (Result<void> ok = check_same_scan(*session, request, calibration_id, list); !ok) return ok.error();
 
-  Journal journal(std::move(*session), std::move(*lock), std::move(after_step), was_there);
+  Journal journal(std::move(*session), std::move(*lock), std::move(after_step));
   if (Result<void> made = make_writable_folder(journal.incoming_); !made) return made.error();
   if (Result<void> cleared = journal.clear_incoming(); !cleared) return cleared.error();
   if (Result<void> forgotten = journal.forget_damaged(); !forgotten) return forgotten.error();
@@ -170,8 +172,10 @@ Result<void> Journal::clear_incoming() const {
 Result<void> Journal::forget_damaged() {
   std::vector<int> damaged;
   for (const Shot& shot : session_.shots) {
-    const Result<std::string> digest = sha256_of_file(session_.path_of(shot));
-    if (!digest || *digest != shot.sha256) damaged.push_back(shot.index);
+    const fs::path file = session_.path_of(shot);
+    const Result<std::string> digest = is_there(file) ? sha256_of_file(file) : std::string();
+    if (!digest) return digest.error();
+    if (*digest != shot.sha256) damaged.push_back(shot.index);
   }
   return damaged.empty() ? Result<void>() : discard(damaged);
 }
@@ -255,17 +259,37 @@ Result<void> Journal::discard(const std::vector<int>& indices) {
   return {};
 }
 
+Session Journal::finished(const std::vector<std::string>& warnings) const {
+  Session session = session_;
+  session.state = kComplete;
+  if (!warnings.empty()) session.document["warnings"] = warnings;
+  return session;
+}
+
 Result<void> Journal::finish(const std::vector<std::string>& warnings) {
   std::error_code failed;
   fs::remove_all(incoming_, failed);
   if (failed) return cannot_write(incoming_, failed.value());
   after_step_("incoming removed");
-  Session session = session_;
-  session.state = kComplete;
-  if (!warnings.empty()) session.document["warnings"] = warnings;
-  Result<void> done = replace(std::move(session));
+  Result<void> done = replace(finished(warnings));
   after_step_("session complete");
   return done;
+}
+
+void remove_abandoned(const fs::path& folder) {
+  const std::string start = "." + folder.filename().string() + ".", end = ".partial";
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder.parent_path(), ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with(start) || !name.ends_with(end) || name.size() <= start.size() + end.size())
+      continue;
+    pid_t owner = 0;
+    const char* const last = name.data() + name.size() - end.size();
+    const auto [stop, failed] = std::from_chars(name.data() + start.size(), last, owner);
+    if (failed == std::errc() && stop == last && owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) {
+      fs::remove_all(entry.path(), ignored);
+    }
+  }
 }
 
 }  // namespace weft::capture

@@ -24,16 +24,18 @@ using AfterStep = std::function<void(const char* step)>;
 class Journal {
  public:
   /// Makes the session, or takes up one that is not finished: frames that are missing or whose bytes changed
-  /// are forgotten, so that they are taken again. Errors: kCannotCreate (finished; of another rig,
-  /// calibration, cloth or plan), kTryAgain (another scan writes it), kInputOutput, kBadData (not a session).
+  /// are forgotten, so that they are taken again. Errors: those of check(), kTryAgain (another scan writes
+  /// it), kInputOutput (a frame cannot be read: nothing is forgotten).
   static Result<Journal> open(
       const ScanRequest& request, const std::string& calibration_id, const ShotList& list,
       AfterStep after_step = [](const char*) {});
-  /// kCannotCreate where the session is finished: worth asking before a device is.
-  static Result<void> check_name(const std::filesystem::path& session);
+  /// How many frames the session lacks, all where it is not there: worth asking before a device is.
+  /// kCannotCreate where it is finished, or of another rig, calibration, cloth or plan; kBadData where it is
+  /// no session of a scan.
+  static Result<int> check(const ScanRequest& request, const std::string& calibration_id,
+                           const ShotList& list);
 
   const Session& session() const { return session_; }
-  bool was_there() const { return was_there_; }
   /// A file for the camera to write to, in a folder that lasts as long as the scan.
   std::filesystem::path incoming(const std::string& stem) const { return incoming_ / stem; }
   /// Removes what landed there and was not kept.
@@ -46,6 +48,8 @@ class Journal {
   Result<Shot> keep(const PlannedShot& planned, const Photograph& photograph, const Json& notes);
   /// Takes frames out again.
   Result<void> discard(const std::vector<int>& indices);
+  /// The session as finish() will leave it.
+  Session finished(const std::vector<std::string>& warnings) const;
   Result<void> finish(const std::vector<std::string>& warnings);
 
  private:
@@ -63,12 +67,11 @@ class Journal {
    private:
     int descriptor_;
   };
-  Journal(Session session, Lock lock, AfterStep after_step, bool was_there)
+  Journal(Session session, Lock lock, AfterStep after_step)
       : session_(std::move(session)),
         incoming_(session_.folder / "incoming"),
         lock_(std::move(lock)),
-        after_step_(std::move(after_step)),
-        was_there_(was_there) {}
+        after_step_(std::move(after_step)) {}
   Result<void> forget_damaged();
   Result<void> remove_unnamed() const;
   Result<void> replace(Session session);
@@ -77,7 +80,9 @@ class Journal {
   std::filesystem::path incoming_;
   Lock lock_;
   AfterStep after_step_;
-  bool was_there_;
 };
+
+/// Removes what processes that are no more left of a folder that they were making aside.
+void remove_abandoned(const std::filesystem::path& folder);
 
 }  // namespace weft::capture

@@ -16,7 +16,6 @@ constexpr double kDarkWarns = 0.004;         // that is only spoken of
 constexpr double kDarkLevel = 0.1;           // of the brightness that other LEDs let expect: did not light
 constexpr double kDimLevel = 0.35;           // gave too little
 constexpr double kDimWarns = 0.6;            // is only spoken of: glossy cloth may look so
-constexpr std::size_t kEnoughFrames = 5;     // four of one ring may be its mirror image as well
 constexpr double kSuspiciousMisfit = 0.002;  // below it the plan is believed without trying other stories
 constexpr std::size_t kStoryStep =
     5;  // patches from one that is looked at to the next: 48 columns have no factor 5
@@ -179,7 +178,7 @@ Verdict LightEvidence::judge_pattern(const PlannedShot& shot, const std::vector<
     if (index != shot.index) frames.push_back({seen.shot, without_dark(seen.light)});
   }
   frames.push_back({shot, without_dark(light)});
-  if (frames.size() < kEnoughFrames) return {};
+  if (frames.size() < kEnoughForPatterns) return {};
 
   const auto of_led = [&](int led) { return &model_->leds[static_cast<std::size_t>(led - 1)]; };
   std::vector<const std::vector<double>*> readings;

@@ -11,6 +11,9 @@
 
 namespace weft::capture {
 
+/// Lit frames from which on exchanged LEDs are looked for: four of one ring may be its mirror image as well.
+constexpr std::size_t kEnoughForPatterns = 5;
+
 // Is this the photograph of this LED? Patches of the frames of a session are held against the lights of its
 // calibration. The albedo of the cloth cancels between frames, its normals once there are four, and what then
 // is left of the readings tells which LEDs were lit: every likely mix-up is tried, and one that leaves far

@@ -7,6 +7,11 @@
 #include <cmath>
 
 namespace weft::capture {
+namespace {
+
+constexpr double kSameTime = 0.01;  // 1/60 s is listed as 16667 or 16700 us; a third of a stop is 0.26
+
+}  // namespace
 
 int ShotList::count() const {
   const int lit = static_cast<int>(leds.size());
@@ -52,6 +57,17 @@ double nearest_time_us(const std::vector<double>& times_us, double wanted_us) {
   const auto nearest = std::min_element(times_us.begin(), times_us.end(),
                                         [&](double a, double b) { return distance(a) < distance(b); });
   return nearest == times_us.end() ? wanted_us : *nearest;
+}
+
+Result<double> settable_time_us(const std::vector<double>& times_us, double wanted_us) {
+  const double nearest = nearest_time_us(times_us, wanted_us);
+  if (std::abs(nearest / wanted_us - 1) <= kSameTime) return nearest;
+  const auto above = std::upper_bound(times_us.begin(), times_us.end(), wanted_us);
+  const bool is_between = above != times_us.begin() && above != times_us.end();
+  return Error{ErrorKind::kUsage, "the camera has no such exposure", fmt::format("{:.6g} us", wanted_us),
+               is_between ? fmt::format("it has {:.6g} and {:.6g} us", *std::prev(above), *above)
+                          : fmt::format("it has {:.6g} to {:.6g} us", times_us.front(), times_us.back()),
+               "ask for one that it has, or for none: then the cloth is metered"};
 }
 
 std::string name_of(const PlannedShot& shot) {

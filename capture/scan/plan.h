@@ -43,6 +43,8 @@ std::vector<PlannedShot> missing_shots(const std::vector<PlannedShot>& plan, con
 
 /// The time of `times_us` (rising) that is nearest to `wanted_us` by ratio; `wanted_us` where there is none.
 double nearest_time_us(const std::vector<double>& times_us, double wanted_us);
+/// The same, if it is within 1 percent; else kUsage with the two times between which `wanted_us` lies.
+Result<double> settable_time_us(const std::vector<double>& times_us, double wanted_us);
 
 /// "LED 3", "the dark shot".
 std::string name_of(const PlannedShot& shot);

@@ -30,6 +30,7 @@ namespace fs = std::filesystem;
 constexpr double kMostClipped = 1e-5;  // of a channel of a metered frame
 constexpr int kTimesWrong = 2;         // a shot whose light is wrong ends the scan
 constexpr double kWhite = 0.8;         // albedo that the first test shot holds
+constexpr double kSixthOfAStop = 0.116;
 
 /// What became of a frame on its way into the session.
 struct Kept {
@@ -70,7 +71,6 @@ class Scan {
   }
 
   Result<void> check_request() {
-    if (Result<void> ok = Journal::check_name(request_.session); !ok) return ok;
     if (!request_.calibration.empty()) {
       Result<Calibration> calibration = read_calibration(request_.calibration);
       if (!calibration) return calibration.error();
@@ -80,23 +80,36 @@ class Scan {
     if (!list) return list.error();
     list_ = std::move(*list);
     report_.change([&](ScanStatus& status) { status.frames_planned = list_.count(); });
+    const Result<int> missing = Journal::check(request_, calibration_id(), list_);
+    if (!missing) return missing.error();
+    // What the frames will take is known well enough before the first one: 16 bits a photosite.
+    const std::int64_t pixels =
+        calibration_ && calibration_->camera ? calibration_->camera->size.pixels() : 0;
+    if (Result<void> room =
+            check_room(request_, *missing, list_.count(), static_cast<std::uint64_t>(2 * pixels));
+        !room)
+      return room;
+    return make_light_model();
+  }
+
+  Result<void> make_light_model() {
     if (!calibration_ || !calibration_->lights || !calibration_->camera) {
       warnings_.push_back(
           "there is no calibration of camera and lights: frames are not held against the LEDs");
       return {};
     }
+    if (list_.leds.size() < kEnoughForPatterns) {
+      warnings_.push_back(
+          fmt::format("with {} LEDs nothing tells that two of them are exchanged: that takes {} or more",
+                      list_.leds.size(), kEnoughForPatterns));
+    }
     Result<LightModel> model = LightModel::make(*calibration_, request_.cloth_height_mm);
     if (!model) return model.error();
     model_ = std::move(*model);
-    // What the frames will take is known well enough before the first one: 16 bits a photosite.
-    const auto bytes = static_cast<std::uint64_t>(2 * calibration_->camera->size.pixels());
-    return is_resuming() ? Result<void>() : check_room(request_, list_.count(), list_.count(), bytes);
+    return {};
   }
 
-  bool is_resuming() const {
-    std::error_code ignored;
-    return fs::exists(request_.session, ignored);
-  }
+  std::string calibration_id() const { return calibration_ ? calibration_->id : ""; }
 
   Result<void> connect() {
     Result<CameraFacts> facts = shooter_.connect();
@@ -111,7 +124,7 @@ class Scan {
   }
 
   Result<void> open_session() {
-    Result<Journal> journal = Journal::open(request_, calibration_ ? calibration_->id : "", list_);
+    Result<Journal> journal = Journal::open(request_, calibration_id(), list_);
     if (!journal) return journal.error();
     journal_.emplace(std::move(*journal));
     frames_resumed_ = static_cast<int>(journal_->session().shots.size());
@@ -126,7 +139,9 @@ class Scan {
     if (document.contains("exposure")) return take_up_exposure(document["exposure"]);
     Json record = {{"from", "request"}};
     if (exposure_.exposure_us > 0) {
-      exposure_.exposure_us = nearest_time_us(shutter_times_us_, exposure_.exposure_us);
+      const Result<double> settable = settable_time_us(shutter_times_us_, exposure_.exposure_us);
+      if (!settable) return settable.error();
+      exposure_.exposure_us = *settable;
     } else {
       Result<Metering> metering = metered();
       if (!metering) return metering.error();
@@ -166,7 +181,15 @@ class Scan {
   }
 
   void warn_of_bracket() {
-    if (!list_.bracket || !calibration_ || !calibration_->response ||
+    if (!list_.bracket) return;
+    const double ratio = bracket_us_ / exposure_.exposure_us;
+    if (std::abs(std::log(ratio / *list_.bracket)) > kSixthOfAStop) {
+      warnings_.push_back(
+          fmt::format("the brackets are {:.3g} times the exposure, not {:.3g}: the camera has "
+                      "no shutter time nearer to that",
+                      ratio, *list_.bracket));
+    }
+    if (!calibration_ || !calibration_->response ||
         calibration_->response->exposure_ratio(bracket_us_, exposure_.exposure_us)) {
       return;
     }
@@ -350,7 +373,9 @@ class Scan {
     Kept kept = {
         Error{ErrorKind::kBadData, verdict.sentence, fmt::format("{} ({})", name_of(shot), file_stem(shot)),
               "the photograph does not agree with the calibrated light",
-              "mend the light, then run the same command again"},
+              verdict.finding == Finding::kChanged
+                  ? "leave cloth, camera and light alone, and scan under another name with -o"
+                  : "mend the light, then run the same command again"},
         {}};
     const Result<void> out = journal_->discard(verdict.accused);
     if (!out) return {out.error(), {}};
@@ -372,15 +397,15 @@ class Scan {
                     name_of(shot), 100 * clipped));
   }
 
+  /// The second copy comes first: until it is there, the same scan again makes it.
   Result<void> finish() {
     report_.phase(ScanPhase::kFinishing);
     for (const std::string& warning : warnings_of_frames_) warnings_.push_back(warning);
-    if (Result<void> done = journal_->finish(warnings_); !done) return done;
-    if (request_.copy.empty()) return {};
-    if (Result<void> copied = copy_session(request_.session, request_.copy); !copied) {
-      warnings_.push_back("there is no second copy: " + copied.error().message());
+    if (!request_.copy.empty()) {
+      const Result<void> copied = copy_session(journal_->finished(warnings_), request_.copy);
+      if (!copied) warnings_.push_back("there is no second copy: " + copied.error().message());
     }
-    return {};
+    return journal_->finish(warnings_);
   }
 
   const ScanRequest& request_;

@@ -4,24 +4,28 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
+#include <string>
 #include <thread>
+#include <utility>
 
 namespace weft::capture {
 namespace {
 
 using std::chrono::steady_clock;
 
-constexpr double kLampMargin_s =
-    8;  // a LED goes out by itself this long after its exposure should have begun
+constexpr std::chrono::duration<double> kLampMargin(8);  // for the camera to open its shutter
 constexpr auto kPause = std::chrono::milliseconds(20);
 constexpr auto kBetweenSearches = std::chrono::milliseconds(500);
 
-double now_s() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 bool may_pass(ErrorKind kind) {
   return kind == ErrorKind::kTryAgain || kind == ErrorKind::kProtocol || kind == ErrorKind::kNoDevice;
+}
+
+Error light_went_out(int led, std::chrono::duration<double> after) {
+  return {ErrorKind::kTryAgain, "a light went out before the shutter closed", "LED " + std::to_string(led),
+          "the camera took over " + std::to_string(std::lround(after.count())) + " s for the shot",
+          "take the shot again; if it happens often look at the camera's settings"};
 }
 
 }  // namespace
@@ -67,20 +71,14 @@ Result<void> Shooter::wait_for(const std::function<Result<void>()>& find) {
   }
 }
 
-Result<CameraFacts> Shooter::recovered_camera() {
-  Result<CameraFacts> facts = camera_.recover();
-  if (facts) facts_ = *facts;
-  return facts;
-}
-
 Result<CameraFacts> Shooter::connect() {
   report_.phase(ScanPhase::kConnecting);
   bool is_first = true;
+  CameraFacts facts;
   Result<void> found = wait_for([&]() -> Result<void> {
-    Result<CameraFacts> facts = is_first ? camera_.connect() : camera_.recover();
-    is_first = false;
-    if (!facts) return facts.error();
-    facts_ = *facts;
+    Result<CameraFacts> says = std::exchange(is_first, false) ? camera_.connect() : camera_.recover();
+    if (!says) return says.error();
+    facts = std::move(*says);
     return {};
   });
   if (!found) return found.error();
@@ -89,8 +87,7 @@ Result<CameraFacts> Shooter::connect() {
     return lamps_.recover();
   });
   if (!found) return found.error();
-  follow({});
-  return facts_;
+  return facts;
 }
 
 Result<std::vector<double>> Shooter::shutter_times_us() {
@@ -121,12 +118,11 @@ Result<void> Shooter::recover(const Error& error) {
     if (!back) return back;
     lamps_failed_ = false;
   }
-  Result<void> back = wait_for([&]() -> Result<void> {
-    const Result<CameraFacts> facts = recovered_camera();
+  count_.connected();
+  return wait_for([&]() -> Result<void> {
+    const Result<CameraFacts> facts = camera_.recover();
     return facts ? Result<void>() : facts.error();
   });
-  if (back) follow({});
-  return back;
 }
 
 Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
@@ -142,11 +138,14 @@ Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
     if (status.phase != ScanPhase::kMetering) status.phase = ScanPhase::kExposing;
   });
   const std::array<int, 1> one = {led};
+  const std::chrono::duration<double> most_lit =
+      kLampMargin + std::chrono::duration<double>(exposure.exposure_us * 1e-6);
   const auto light = [&](std::span<const int> leds) {
-    Result<void> lit = lamps_.light(leds, exposure.exposure_us * 1e-6 + kLampMargin_s);
+    Result<void> lit = lamps_.light(leds, most_lit.count());
     if (!lit) lamps_failed_ = true;
     return lit;
   };
+  const auto goes_out = steady_clock::now() + most_lit;
   if (Result<void> lit = light(led == 0 ? std::span<const int>() : std::span<const int>(one)); !lit) {
     return lit.error();
   }
@@ -154,7 +153,9 @@ Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
   bool is_exposed = false;
   Result<Photograph> photograph = camera_.take(file, [&] {
     is_exposed = true;
+    const bool went_out = led != 0 && steady_clock::now() >= goes_out;
     off = light({});
+    if (off && went_out) off = light_went_out(led, most_lit);
     report_.change([](ScanStatus& status) {
       if (status.phase != ScanPhase::kMetering) status.phase = ScanPhase::kFetching;
     });
@@ -162,7 +163,7 @@ Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
   if (!is_exposed) off = light({});
   if (!photograph) return photograph;
   // Asked first: a photograph that is not used counts all the same.
-  if (Result<void> ours = check_.check(*photograph, exposure, now_s()); !ours) return ours.error();
+  if (Result<void> ours = count_.check(*photograph); !ours) return ours.error();
   if (!off) return off.error();
   return photograph;
 }
@@ -174,7 +175,7 @@ Result<Photograph> Shooter::take(int led, const ExposureSettings& exposure, cons
     if (is_cancelled()) return cancelled("scan");
     Result<Photograph> photograph = take_once(led, exposure, file);
     if (photograph) return photograph;
-    check_.failed();
+    count_.failed();
     if (!may_pass(photograph.error().kind) || i >= options_.tries_per_shot) {
       (void)lamps_off();
       return photograph;

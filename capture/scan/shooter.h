@@ -29,7 +29,7 @@ class Report {
 };
 
 /// Takes single photographs and gets over what devices do: LEDs are off whenever no shutter is open, every
-/// fault is followed by recover(), and what a camera delivers is checked to be what was asked for.
+/// fault is followed by recover(), and what a camera delivers is checked to be the next by its count.
 class Shooter {
  public:
   Shooter(Lamps& lamps, Camera& camera, const ScanControl& control, const ScanOptions& options,
@@ -39,9 +39,7 @@ class Shooter {
   /// Finds both devices, waits for one that is not there. kInterrupted, kNoDevice, kBadData.
   Result<CameraFacts> connect();
   /// The last count of shots that the session knows.
-  void follow(std::optional<std::uint32_t> image_number) {
-    check_.begin(facts_.clock_uncertainty_s, image_number);
-  }
+  void follow(std::optional<std::uint32_t> image_number) { count_.follow(image_number); }
   Result<std::vector<double>> shutter_times_us();
   /// One photograph under a LED (0: dark) to `file` with an ending. Tries again where that may help; in
   /// between `clear` removes what a failed take left. Waits while the scan is paused.
@@ -57,15 +55,13 @@ class Shooter {
   /// Whether devices answer again after `error`; else the error that ends the scan.
   Result<void> recover(const Error& error);
   Result<void> wait_for(const std::function<Result<void>()>& find);
-  Result<CameraFacts> recovered_camera();
 
   Lamps& lamps_;
   Camera& camera_;
   const ScanControl& control_;
   const ScanOptions& options_;
   Report& report_;
-  PhotographCheck check_;
-  CameraFacts facts_;
+  ImageCount count_;
   std::optional<ExposureSettings> set_;  ///< what the camera is set to
   bool lamps_failed_ = false;
   int retaken_ = 0;

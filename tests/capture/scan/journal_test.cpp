@@ -207,7 +207,7 @@ TEST(Journal, RemovesWhatNoSessionNames) {
 TEST(Journal, RefusesAFinishedSession) {
   const ScanRequest request = request_in(fresh_folder());
   ASSERT_TRUE(scanned(request));
-  const Result<void> again = Journal::check_name(request.session);
+  const Result<int> again = Journal::check(request, "0123", kList);
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().kind, ErrorKind::kCannotCreate);
   EXPECT_THAT(again.error().message(), HasSubstr("scan under another name"));
@@ -234,6 +234,29 @@ TEST(Journal, RefusesToGoOnWithAnotherRigCalibrationClothOrPlan) {
   EXPECT_THAT(refusal(Journal::open(request, "4567", kList)), HasSubstr("4567"));
   EXPECT_THAT(refusal(Journal::open(request, "0123", {{1, 2, 3}, true, {}})), HasSubstr("LEDs"));
   EXPECT_TRUE(opened(request)) << "as it was begun";
+}
+
+TEST(Journal, RefusesShotsThatItsPlanHasNot) {
+  for (const auto& [key, value] : {std::pair("index", 99), {"index", -1}, {"led", 2}}) {
+    const ScanRequest request = unfinished(fresh_folder());
+    Json document = Json::parse(bytes_of(request.session / "session.json"));
+    document["shots"][1][key] = value;
+    ASSERT_TRUE(write_file(request.session / "session.json", document.dump()));
+    const Result<Journal> journal = opened(request);
+    ASSERT_FALSE(journal) << key << " " << value;
+    EXPECT_EQ(journal.error().kind, ErrorKind::kBadData) << journal.error().message();
+  }
+}
+
+TEST(Journal, ForgetsNoFrameThatItOnlyCannotRead) {
+  const ScanRequest request = unfinished(fresh_folder());
+  const fs::path frame = request.session / "raw" / "01_led01.dng";
+  fs::remove(frame);
+  fs::create_directory(frame);  // opens, and every read of it fails, for root too
+  const Result<Journal> journal = opened(request);
+  ASSERT_FALSE(journal);
+  EXPECT_TRUE(is_there(frame));
+  EXPECT_EQ(read_session(request.session)->shots.size(), 4u);
 }
 
 TEST(Journal, IsWrittenByOneScanAtATime) {
@@ -286,10 +309,14 @@ TEST(SecondCopy, HoldsEveryFileOfTheSession) {
   const fs::path folder = fresh_folder();
   const ScanRequest request = request_in(folder);
   ASSERT_TRUE(scanned(request));
-  const Result<void> copied = copy_session(request.session, folder / "other disk");
+  Result<Session> session = read_session(request.session);
+  ASSERT_TRUE(session) << session.error().message();
+  const Result<void> copied = copy_session(*session, folder / "other disk");
   ASSERT_TRUE(copied) << copied.error().message();
   EXPECT_EQ(files_under(folder / "other disk" / "cloth.weft"), files_under(request.session));
-  const Result<void> again = copy_session(request.session, folder / "other disk");
+  EXPECT_TRUE(copy_session(*session, folder / "other disk")) << "it is there already";
+  session->shots[1].sha256 = session->shots[0].sha256;
+  const Result<void> again = copy_session(*session, folder / "other disk");
   ASSERT_FALSE(again) << "a copy is never overwritten";
   EXPECT_EQ(again.error().kind, ErrorKind::kCannotCreate);
 }

@@ -45,5 +45,15 @@ TEST(Plan, TakesTheNearestShutterTimeByRatio) {
   EXPECT_EQ(nearest_time_us({}, 2900), 2900);
 }
 
+TEST(Plan, DoesNotTakeAShutterTimeForAnother) {
+  const std::vector<double> times_us = {1000, 2000, 4000};
+  EXPECT_EQ(settable_time_us(times_us, 2010).value(), 2000);
+  const Result<double> between = settable_time_us(times_us, 2900);
+  ASSERT_FALSE(between);
+  EXPECT_EQ(between.error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(between.error().why, "it has 2000 and 4000 us");
+  EXPECT_EQ(settable_time_us(times_us, 1e8).error().why, "it has 1000 to 4000 us");
+}
+
 }  // namespace
 }  // namespace weft::capture

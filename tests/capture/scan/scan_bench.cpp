@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "capture/raw/decode.h"
+#include "capture/scan/plan.h"
 #include "core/files.h"
 
 namespace weft::test {
@@ -46,7 +47,8 @@ ScanBench::ScanBench() : folder(fresh_folder()), rig(cloth()) {
   request.fabric = "plain weave";
   request.rig = cloth().calibration().subject.rig;
   request.calibration = folder / "calibration";
-  request.exposure.exposure_us = 0.8 * cloth().scene_exposure_us();
+  request.exposure.exposure_us =
+      capture::nearest_time_us(rig.camera().shutter_times_us().value(), 0.8 * cloth().scene_exposure_us());
 }
 
 Result<capture::ScanOutcome> ScanBench::scan() {

@@ -49,10 +49,6 @@ TEST(ScanFaults, ATruncatedPhotographIsTakenAgain) {
 TEST(ScanFaults, APhotographThatChangesOnTheDiskIsTakenAgain) {
   expect_passes(Fault::kDamaged, 1);
 }
-TEST(ScanFaults, APhotographOfAnotherExposureIsTakenAgain) {
-  expect_passes(Fault::kOtherExposure, 1);
-}
-
 TEST(ScanFaults, APhotographThatComesOneShotLateIsNeverTakenForTheNextOne) {
   for (int take = 1; take < kShots; ++take) {
     ScanBench bench;

@@ -158,7 +158,6 @@ Result<Photograph> SimulatedRig::Camera::written(const fs::path& file, Fault fau
   photograph.triggered_s = now_s();
   photograph.taken_s = photograph.triggered_s;
   photograph.exposure = rig_.facts.exposure;
-  if (fault == Fault::kOtherExposure) photograph.exposure.exposure_us *= 2;
   const Lighting lighting = fault == Fault::kLedWentOut ? Lighting() : rig_.lighting();
   const RawFrame frame = rig_.cloth_.photograph(lighting, rig_.facts.exposure.exposure_us,
                                                 static_cast<std::uint32_t>(rig_.takes_));

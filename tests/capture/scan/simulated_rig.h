@@ -66,7 +66,6 @@ class SimulatedRig {
     kDamaged,        ///< a byte of it changes after its digest was made
     kLedWentOut,     ///< the exposure sees no LED
     kSecondShutter,  ///< somebody takes a photograph in between
-    kOtherExposure,  ///< the file says another time
   };
   std::map<int, Fault> camera_faults;    ///< by take, from 1
   std::map<int, ErrorKind> lamp_faults;  ///< by call of light(), from 1
