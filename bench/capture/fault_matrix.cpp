@@ -30,7 +30,7 @@ constexpr double kUsual_s = 5;  // moments are drawn from this
 
 /// What is done to a rig, and when.
 enum class When { kAtShot, kAtMoment };
-enum class What { kSay, kKillHost, kKillWorker, kKillRig };
+enum class What { kSay, kKillHost, kKillDaemon, kKillWorker, kKillRig };
 
 struct Fault {
   const char* name;
@@ -38,6 +38,7 @@ struct Fault {
   When when;
   const char* say;         ///< to the rig; {} is the shot
   const char* mends = "";  ///< said to the rig after two seconds
+  bool usb = false;        ///< the camera hangs on USB
 };
 
 // Faults of a shot choose the step themselves: before, in the exposure, in the transfer, after it.
@@ -61,6 +62,12 @@ constexpr std::array kFaults = {
     Fault{"frame comes twice", What::kSay, When::kAtShot, "camera duplicate_frame {}"},
     Fault{"camera off and on", What::kSay, When::kAtShot, "camera power_cycle {}"},
     Fault{"camera off", What::kSay, When::kAtShot, "camera power_off {}", "camera power_on"},
+    Fault{"USB cable pulled", What::kSay, When::kAtShot, "camera usb_unplug {}", "camera usb_replug", true},
+    Fault{"USB cable out and in", What::kSay, When::kAtMoment, "camera usb_replug", "", true},
+    Fault{"USB transfer times out", What::kSay, When::kAtShot, "camera usb_timeout {}", "", true},
+    Fault{"another program has the USB camera", What::kSay, When::kAtShot, "camera usb_claimed", "", true},
+    Fault{"USB session left open by a kill", What::kSay, When::kAtShot, "camera usb_stale_session", "", true},
+    Fault{"dial turned", What::kSay, When::kAtMoment, "camera dial_turned"},
     Fault{"battery falls", What::kSay, When::kAtMoment, "camera battery_low"},
     Fault{"exposure changed by hand", What::kSay, When::kAtMoment, "camera exposure_changed"},
     Fault{"raw switched off", What::kSay, When::kAtMoment, "camera raw_off"},
@@ -76,6 +83,7 @@ constexpr std::array kFaults = {
     Fault{"wires swapped", What::kSay, When::kAtMoment, "light swap 9 10"},
     Fault{"room light goes on", What::kSay, When::kAtMoment, "light ambient 0.2"},
     Fault{"weft is killed", What::kKillHost, When::kAtMoment, ""},
+    Fault{"weft serve is killed", What::kKillDaemon, When::kAtMoment, ""},
     Fault{"weft-camera is killed", What::kKillWorker, When::kAtMoment, ""},
     Fault{"power cut of camera and board", What::kKillRig, When::kAtMoment, ""},
 };
@@ -86,8 +94,12 @@ const Fault* fault_named(const std::string& name) {
   return found == kFaults.end() ? nullptr : found;
 }
 
-/// An undisturbed scan: what each of its frames shows.
+/// What each frame of an undisturbed scan shows.
 using Frames = std::map<std::pair<int, ShotRole>, RawFrame>;
+/// Of one whose exposure is given, and of a metered one.
+struct Truth {
+  Frames given, metered;
+};
 
 Result<Frames> frames_of(const Session& session) {
   Frames frames;
@@ -114,6 +126,7 @@ struct Run {
   const Fault* fault = nullptr;
   int shot = 1;
   double moment_s = 0;
+  bool metered = false;
 };
 
 std::vector<Run> runs_of(const FaultMatrixOptions& options) {
@@ -127,9 +140,11 @@ std::vector<Run> runs_of(const FaultMatrixOptions& options) {
   std::mt19937_64 random(options.seed);
   std::uniform_int_distribution<int> shot(1, kShots);
   std::uniform_real_distribution<double> moment(0.05, kUsual_s);
+  std::bernoulli_distribution metered(0.5);
   std::vector<Run> runs;
   for (int i = 0; i < options.runs && !faults.empty(); ++i)
-    runs.push_back({i, faults[static_cast<std::size_t>(i) % faults.size()], shot(random), moment(random)});
+    runs.push_back({i, faults[static_cast<std::size_t>(i) % faults.size()], shot(random), moment(random),
+                    metered(random)});
   return runs;
 }
 
@@ -138,32 +153,33 @@ class Bench {
  public:
   Bench(const FaultMatrixOptions& options, fs::path folder) : options_(options), folder_(std::move(folder)) {}
 
-  Result<void> start() {
-    auto rig = RigProcess::start({.programs = options_.programs,
-                                  .scene = options_.scene,
-                                  .folder = folder_,
-                                  .megapixels = options_.megapixels,
-                                  .same_noise = true});
-    if (!rig) return std::move(rig).error();
-    rig_ = std::move(*rig);
-    return {};
+  /// What scans without any fault show.
+  Result<Truth> truth() {
+    if (Result<void> ok = start(false); !ok) return std::move(ok).error();
+    Truth truth;
+    for (const bool metered : {false, true}) {
+      const Result<Session> session = undisturbed(metered);
+      if (!session) return session.error();
+      Result<Frames> frames = frames_of(*session);
+      if (!frames) return std::move(frames).error();
+      (metered ? truth.metered : truth.given) = std::move(*frames);
+    }
+    return truth;
   }
 
-  /// A scan without any fault.
-  Result<Session> undisturbed(const fs::path& session) {
-    auto weft = scan(session);
-    if (!weft) return std::move(weft).error();
-    const std::optional<int> code = (*weft)->wait(kScan_s);
-    if (code == 0) return read_session(session);
-    return Error{ErrorKind::kTryAgain, "an undisturbed scan fails", session.string(), (*weft)->said(),
-                 "mend that first"};
-  }
-
-  Result<void> run(const Run& run, const Frames& truth, FaultTally& tally) {
-    const fs::path session = folder_ / fmt::format("run{:04}.weft", run.number);
+  Result<void> run(Run run, const Truth& truths, FaultTally& tally) {
+    if (Result<void> ok = start(run.fault->usb); !ok) return ok;
+    const Frames& truth = run.metered ? truths.metered : truths.given;
+    const fs::path session = (*rig_)->folder() / "scans" / fmt::format("run{:04}.weft", run.number);
     ++tally.runs;
-    const Steady::time_point began = Steady::now();
-    const Result<std::optional<int>> code = disturbed(run, session);
+    Steady::time_point began = Steady::now();
+    Result<std::optional<int>> code = disturbed(run, session);
+    while (code && !has_befallen_) {  // the scan had ended before
+      fs::remove_all(session);
+      run.moment_s /= 2;
+      began = Steady::now();
+      code = disturbed(run, session);
+    }
     if (!code) return code.error();
     tally.most_s = std::max(tally.most_s, std::chrono::duration<double>(Steady::now() - began).count());
     const std::size_t wrong_before = tally.wrong.size();
@@ -182,10 +198,35 @@ class Bench {
   }
 
  private:
-  Result<std::unique_ptr<ChildProcess>> scan(const fs::path& session) const {
-    return rig_->weft(
-        {"scan", "-o", session.string(), "--fabric", "matrix", "--exposure", "20000", "--no-preview"},
-        "scan.log");
+  /// The rig with its camera on USB or on the network; the other one rests.
+  Result<void> start(bool usb) {
+    rig_ = &rigs_[usb ? 1 : 0];
+    if (*rig_) return {};
+    auto rig = RigProcess::start({.programs = options_.programs,
+                                  .scene = options_.scene,
+                                  .folder = folder_ / (usb ? "usb" : "network"),
+                                  .megapixels = options_.megapixels,
+                                  .usb = usb,
+                                  .same_noise = true});
+    if (!rig) return std::move(rig).error();
+    *rig_ = std::move(*rig);
+    return {};
+  }
+
+  Result<Session> undisturbed(bool metered) {
+    const fs::path session = (*rig_)->folder() / "scans" / fmt::format("truth{:d}.weft", metered);
+    auto weft = scan(session, metered);
+    if (!weft) return std::move(weft).error();
+    const std::optional<int> code = (*weft)->wait(kScan_s);
+    if (code == 0) return read_session(session);
+    return Error{ErrorKind::kTryAgain, "an undisturbed scan fails", session.string(), (*weft)->said(),
+                 "mend that first"};
+  }
+
+  Result<std::unique_ptr<ChildProcess>> scan(const fs::path& session, bool metered) const {
+    std::vector<std::string> command = {"scan", "-o", session.string(), "--fabric", "matrix", "--no-preview"};
+    if (!metered) command.insert(command.end(), {"--exposure", "20000"});
+    return (*rig_)->weft(std::move(command), "scan.log");
   }
 
   static void sleep_s(double seconds) { std::this_thread::sleep_for(std::chrono::duration<double>(seconds)); }
@@ -194,39 +235,61 @@ class Bench {
   Result<std::optional<int>> disturbed(const Run& run, const fs::path& session) {
     const Fault& fault = *run.fault;
     if (fault.when == When::kAtShot) {
-      if (auto said = rig_->say(fmt::format(fmt::runtime(fault.say), run.shot)); !said)
+      if (auto said = (*rig_)->say(fmt::format(fmt::runtime(fault.say), run.shot)); !said)
         return std::move(said).error();
     }
-    auto weft = scan(session);
+    if (fault.what == What::kKillDaemon) {
+      if (Result<void> ok = serve(); !ok) return ok.error();
+    }
+    auto weft = scan(session, run.metered);
     if (!weft) return std::move(weft).error();
-    if (fault.when == When::kAtMoment && !(*weft)->wait(run.moment_s)) {
+    has_befallen_ = fault.when == When::kAtShot || !(*weft)->wait(run.moment_s);
+    if (fault.when == When::kAtMoment && has_befallen_) {
       if (Result<void> ok = befall(fault, **weft); !ok) return ok.error();
     }
     if (*fault.mends != '\0' && !(*weft)->wait(2)) {
-      if (auto said = rig_->say(fault.mends); !said) return std::move(said).error();
+      if (auto said = (*rig_)->say(fault.mends); !said) return std::move(said).error();
     }
     const std::optional<int> code = (*weft)->wait(kScan_s);
     if (!code) (*weft)->signal(SIGKILL);
     (*weft)->wait(kScan_s);
     said_ = (*weft)->said();
+    daemon_.reset();
     return code;
+  }
+
+  /// A daemon for the rig, which scans from here on.
+  Result<void> serve() {
+    auto daemon = (*rig_)->weft({"serve"}, "serve.log");
+    if (!daemon) return std::move(daemon).error();
+    daemon_ = std::move(*daemon);
+    const Steady::time_point deadline = Steady::now() + std::chrono::seconds(10);
+    while (daemon_->said().find("http://") == std::string::npos) {
+      if (daemon_->wait(0.02) || Steady::now() > deadline)
+        return Error{ErrorKind::kTryAgain, "weft serve does not start", folder_.string(), daemon_->said(),
+                     "mend that first"};
+    }
+    return {};
   }
 
   Result<void> befall(const Fault& fault, const ChildProcess& weft) {
     switch (fault.what) {
       case What::kSay:
-        if (auto said = rig_->say(fault.say); !said) return std::move(said).error();
+        if (auto said = (*rig_)->say(fault.say); !said) return std::move(said).error();
         return {};
       case What::kKillHost:
         weft.signal(SIGKILL);
+        return {};
+      case What::kKillDaemon:
+        daemon_->signal(SIGKILL);
         return {};
       case What::kKillWorker:
         if (const std::optional<pid_t> worker = child_of(weft.pid(), "weft-camera")) ::kill(*worker, SIGKILL);
         return {};
       case What::kKillRig:
-        ::kill(rig_->pid(), SIGKILL);
-        rig_.reset();
-        return start();
+        ::kill((*rig_)->pid(), SIGKILL);
+        rig_->reset();
+        return start(fault.usb);
     }
     return {};
   }
@@ -234,7 +297,7 @@ class Bench {
   Result<void> make_well() {
     for (const char* line :
          {"board replug", "board hear", "light normal", "camera power_on", "camera well"}) {
-      if (auto said = rig_->say(line); !said && said.error().kind != ErrorKind::kUsage)
+      if (auto said = (*rig_)->say(line); !said && said.error().kind != ErrorKind::kUsage)
         return std::move(said).error();
     }
     return {};
@@ -251,7 +314,7 @@ class Bench {
 
   /// Whether the same command finishes the scan.
   Result<bool> resume(const Run& run, const fs::path& session, FaultTally& tally) {
-    auto weft = scan(session);
+    auto weft = scan(session, run.metered);
     if (!weft) return std::move(weft).error();
     const std::optional<int> code = (*weft)->wait(kScan_s);
     if (code != 0) tally.wrong.push_back(fmt::format("run {}: not resumed: {}", run.number, (*weft)->said()));
@@ -309,15 +372,19 @@ class Bench {
       fs::create_directories(options_.keep, ignored);
       fs::copy(session, options_.keep / fmt::format("run{:04}.weft", run.number), fs::copy_options::recursive,
                ignored);
-      fs::copy(folder_ / "scan.log", options_.keep / fmt::format("run{:04}.log", run.number), ignored);
+      fs::copy((*rig_)->folder() / "scan.log", options_.keep / fmt::format("run{:04}.log", run.number),
+               ignored);
     }
     fs::remove_all(session, ignored);
   }
 
   const FaultMatrixOptions& options_;
   fs::path folder_;
-  std::unique_ptr<RigProcess> rig_;
+  std::array<std::unique_ptr<RigProcess>, 2> rigs_;  ///< made when first needed
+  std::unique_ptr<RigProcess>* rig_ = nullptr;       ///< the one that a run is at
+  std::unique_ptr<ChildProcess> daemon_;
   std::string said_;
+  bool has_befallen_ = false;
 };
 
 }  // namespace
@@ -332,10 +399,7 @@ Result<std::vector<FaultTally>> fault_matrix(const FaultMatrixOptions& options) 
   const ScratchFolder scratch;
   const std::vector<Run> runs = runs_of(options);
   Bench first(options, scratch.path() / "rig0");
-  if (Result<void> ok = first.start(); !ok) return std::move(ok).error();
-  const Result<Session> undisturbed = first.undisturbed(scratch.path() / "truth.weft");
-  if (!undisturbed) return undisturbed.error();
-  const Result<Frames> truth = frames_of(*undisturbed);
+  const Result<Truth> truth = first.truth();
   if (!truth) return truth.error();
 
   std::mutex mutex;
@@ -369,12 +433,7 @@ Result<std::vector<FaultTally>> fault_matrix(const FaultMatrixOptions& options) 
   for (int r = 1; r < options.rigs; ++r) {
     threads.emplace_back([&, r] {
       Bench bench(options, scratch.path() / fmt::format("rig{}", r));
-      if (Result<void> ok = bench.start(); ok) {
-        work(bench);
-      } else {
-        const std::lock_guard lock(mutex);
-        failure = ok.error();
-      }
+      work(bench);
     });
   }
   work(first);

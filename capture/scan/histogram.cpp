@@ -92,7 +92,6 @@ Brightness brightness_of(const RawFrame& frame) {
       };
       raise(brightness.bright, 1e-3);
       raise(brightness.brightest, 1e-5);
-      raise(brightness.median, 0.5);
       std::uint64_t full = 0, all = 0;
       for (std::size_t count = 0; count < kLevels; ++count) {
         all += tally[count];
