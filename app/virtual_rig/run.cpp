@@ -176,8 +176,8 @@ Result<int> wait_for_end(const VirtualRig& rig, Child* child, const Signals& sig
 
 }  // namespace
 
-Result<int> run_virtual_rig(simulator::VirtualRigOptions options, const std::vector<std::string>& command,
-                            int ready) {
+Result<int> run_virtual_rig(const simulator::VirtualRigOptions& options,
+                            const std::vector<std::string>& command, int ready) {
   const Signals signals;
   const pid_t parent = ::getppid();
   Result<std::unique_ptr<VirtualRig>> rig = start_rig(options, signals);

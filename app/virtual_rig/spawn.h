@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-extern char** environ;
-
 namespace weft::app {
 
 /// As exec() and its like take them; `texts` stay theirs.

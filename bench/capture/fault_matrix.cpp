@@ -2,11 +2,11 @@
 #include "bench/capture/fault_matrix.h"
 
 #include <fmt/format.h>
-#include <signal.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <csignal>
 #include <map>
 #include <mutex>
 #include <random>

@@ -178,7 +178,8 @@ void Body::befall(Fault fault) {
       properties_.turn(kImageQuality, 4);
       properties_.turn_dial(true);
       cable_in_ = port_open_ = true;
-      return set_power(true);
+      set_power(true);
+      break;
     case Fault::kExposureChanged:
       properties_.change_exposure();
       return tell_changes({kShutterSpeed, kExposureTime});

@@ -37,6 +37,23 @@ TEST(Schemas, Session1) {
   EXPECT_EQ(session->shots[0].sha256, "93ae1d12b3e6656802b0dd674caa63041dafc2c5baa13ade4a50f1c4eaaac7e7");
 }
 
+TEST(Schemas, Session1_1OfAScan) {
+  const ScratchFolder folder;
+  std::filesystem::copy_file(kSchemas / "weft.session-1.1.json", folder / "session.json");
+  const Result<Session> session = read_session(folder / "");
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_EQ(session->state, "complete");
+  EXPECT_EQ(session->document["plan"],
+            Json::parse(R"({"leds": [1, 4, 7], "repeat": true, "bracket": 0.25})"));
+  EXPECT_EQ(session->document["exposure"]["from"], "meter");
+  EXPECT_EQ(session->document["exposure"]["bracket_us"], session->shots.back().exposure_us);
+  EXPECT_EQ(session->document["metadata"]["weight"], "180 g/m2");
+  ASSERT_EQ(session->shots.size(), 8U);
+  EXPECT_EQ(session->lit().size(), 3U);
+  EXPECT_EQ(session->shots[2].document["image_number"], 6);
+  EXPECT_NEAR(session->shots[2].document["level"].get<double>(), 0.9881240742034876, 1e-9);
+}
+
 TEST(Schemas, Calibration1WithCameraResponseAndNearLights) {
   const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1");
   ASSERT_TRUE(calibration) << calibration.error().message();

@@ -2,8 +2,8 @@
 // Each fault of a camera costs one photograph and under 10 s, and none is kept that is not its own.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 
+#include <csignal>
 #include <filesystem>
 #include <random>
 #include <thread>

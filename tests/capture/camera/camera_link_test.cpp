@@ -4,10 +4,10 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 
 #include "tests/capture/camera/link_bench.h"
 
@@ -22,7 +22,7 @@ TEST(CameraLink, KnowsTheCameraOnceItIsConnected) {
   options.serial = "6004711";
   options.battery = 0.62;
   LinkBench bench(options);
-  bench.options().serial = "6004711";
+  bench.options().serial = "0006004711";
   const auto facts = bench.link().connect();
   ASSERT_TRUE(facts) << facts.error().message();
   EXPECT_EQ(facts->model, "D5100");

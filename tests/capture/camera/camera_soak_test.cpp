@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Long runs: nothing grows, nothing is lost.
 #include <gtest/gtest.h>
-#include <signal.h>
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <random>

@@ -2,8 +2,8 @@
 // The same link through libgphoto2's usb1 driver, with no cable: libusb-1.0 is stood in for.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
 
+#include <csignal>
 #include <string>
 
 #include "tests/capture/camera/link_bench.h"

@@ -152,6 +152,15 @@ TEST_F(UsbCamera, IsGoneWhenItsCableIsPulled) {
   EXPECT_EQ(studio.number_of(client->shoot().file.bytes), 3u);
 }
 
+TEST_F(UsbCamera, IsThereAgainWhenAllIsWell) {
+  Studio studio(on_usb());
+  studio.inject("usb_unplug", 1);
+  EXPECT_FALSE(connected(only_address())->shoot().whole());
+  ASSERT_TRUE(detected().empty());
+  studio.inject("well");
+  EXPECT_EQ(detected().size(), 1u);
+}
+
 class UsbLoss : public UsbCamera, public testing::WithParamInterface<const char*> {};
 
 TEST_P(UsbLoss, IsAnErrorAndTheCameraIsBackUnderANewAddress) {
