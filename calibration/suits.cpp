@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace weft::calibration {
 namespace {
 
@@ -14,24 +17,44 @@ Error differs(const Session& session, std::string why) {
 
 }  // namespace
 
+bool same_setting(double a, double b) {
+  return std::abs(a - b) <= 0.02 * std::max(a, b);
+}
+
+std::optional<std::string> difference(const CalibrationSubject& subject, const ShotMetadata& frame) {
+  const auto differ = [](const std::string& a, const std::string& b) {
+    return !a.empty() && !b.empty() && a != b;
+  };
+  if (differ(frame.model, subject.camera_model)) {
+    return fmt::format("the calibration is of a {}, the frame of a {}", subject.camera_model, frame.model);
+  }
+  if (differ(frame.serial, subject.camera_serial)) {
+    return fmt::format("the calibration is of the body with serial number {}, the frame of {}",
+                       subject.camera_serial, frame.serial);
+  }
+  if (frame.f_number > 0 && subject.f_number > 0 && !same_setting(frame.f_number, subject.f_number)) {
+    return fmt::format("the calibration holds at f/{:.3g}, the frame was taken at f/{:.3g}", subject.f_number,
+                       frame.f_number);
+  }
+  return {};
+}
+
 Result<void> suits(const Calibration& calibration, const Session& session, const ShotMetadata& frame) {
   const CalibrationSubject& subject = calibration.subject;
   if (subject.rig != session.rig) {
     return differs(session,
                    fmt::format("it is of rig \"{}\", the session of \"{}\"", subject.rig, session.rig));
   }
-  if (!frame.model.empty() && frame.model != subject.camera_model) {
-    return differs(session,
-                   fmt::format("it is of a {}, the frames of a {}", subject.camera_model, frame.model));
-  }
-  if (!frame.serial.empty() && !subject.camera_serial.empty() && frame.serial != subject.camera_serial) {
-    return differs(session, fmt::format("it is of the body with serial number {}, the frames of {}",
-                                        subject.camera_serial, frame.serial));
-  }
+  if (const auto why = difference(subject, frame)) return differs(session, *why);
   for (const Shot& shot : session.shots) {
-    if (shot.f_number != subject.f_number) {
-      return differs(session, fmt::format("it holds at f/{}, {} was taken at f/{}", subject.f_number,
+    if (!same_setting(shot.f_number, subject.f_number)) {
+      return differs(session, fmt::format("it holds at f/{:.3g}, {} was taken at f/{:.3g}", subject.f_number,
                                           shot.file, shot.f_number));
+    }
+    const auto iso = calibration.response ? calibration.response->iso : std::nullopt;
+    if (iso && !same_setting(shot.iso, *iso)) {
+      return differs(session, fmt::format("its response was measured at ISO {:g}, {} was taken at ISO {:g}",
+                                          *iso, shot.file, shot.iso));
     }
     if (calibration.lights && shot.led > static_cast<int>(light_count(*calibration.lights))) {
       return differs(session, fmt::format("it measures {} LEDs, {} lit LED {}",

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "core/calibration.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
@@ -8,9 +11,17 @@
 
 namespace weft::calibration {
 
-/// Whether a calibration speaks of the rig, the body and the aperture that a session was taken with, and
-/// measures every LED that the session lit. `frame` is what one of its raw files says of itself; fields it
-/// leaves empty are not compared. Fails with kBadData and names the first thing that differs.
+/// Whether two f-numbers, or two ISO values, are one setting: people, lenses and files round them by a
+/// percent or so; a third of a stop is 12 percent of an f-number and 26 of an ISO value.
+bool same_setting(double a, double b);
+
+/// How the body or the aperture of a frame differs from what a calibration holds for ("the calibration is of
+/// a ..., the frame of a ..."); nothing where it does not. What either of them does not say is not compared.
+std::optional<std::string> difference(const CalibrationSubject& subject, const ShotMetadata& frame);
+
+/// Whether a calibration speaks of the rig, the body, the aperture and the ISO that a session was taken with,
+/// and measures every LED that the session lit. `frame` is what one of its raw files says of itself; fields
+/// it leaves empty are not compared. Fails with kBadData and names the first thing that differs.
 Result<void> suits(const Calibration& calibration, const Session& session, const ShotMetadata& frame);
 
 }  // namespace weft::calibration

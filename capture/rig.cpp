@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "capture/rig.h"
 
+#include "core/calibration.h"
 #include "core/toml/toml_keys.h"
 
 namespace weft::capture {
@@ -92,6 +93,12 @@ Result<Rig> read_rig(const fs::path& file) {
     if (!read) return read.error();
   }
   return rig;
+}
+
+std::string camera_serial(const Rig& rig) {
+  if (!rig.camera.serial.empty() || rig.scan.calibration.empty()) return rig.camera.serial;
+  const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
+  return calibration ? calibration->subject.camera_serial : "";
 }
 
 }  // namespace weft::capture

@@ -22,7 +22,7 @@ struct Rig {
   struct Camera {
     std::string profile = "nikon-d5100";  ///< built in, or a path to a profile
     std::string port;                     ///< "ptpip:127.0.0.1:15740:15740"; empty: found on USB
-    std::string serial;                   ///< empty: any, and then the calibration's
+    std::string serial;                   ///< empty: the calibration's (camera_serial())
   } camera;
 
   struct Scan {
@@ -46,5 +46,9 @@ struct Rig {
 
 /// Reads and checks the file. kNoInput, kBadData with the key and what is allowed there.
 Result<Rig> read_rig(const std::filesystem::path& file);
+
+/// The serial number of the rig's camera: the rig file's, else that of the body its calibration is of. Empty:
+/// neither names one, and any camera will do.
+std::string camera_serial(const Rig& rig);
 
 }  // namespace weft::capture

@@ -220,7 +220,7 @@ Result<Calibration> write_calibration(const fs::path& folder, Calibration calibr
 Result<Calibration> derive_calibration(const fs::path& from, Calibration change, const fs::path& folder,
                                        std::span<const NamedFile> report) {
   if (is_there(folder)) return there_is_one(folder);
-  PartialFolder partial(fs::absolute(folder).lexically_normal());
+  PartialFolder partial(folder);
   if (Result<void> made = make_writable_folder(partial.path() / "report"); !made)
     return std::move(made).error();
   Digests digests;

@@ -353,7 +353,7 @@ Result<CameraPart> camera_part_from_json(const Json& json, const std::string& wh
 }
 
 Json json_of(const Response& r) {
-  const char* version = r.black_counts ? "1.2" : r.exposure_ratios.empty() ? "1" : "1.1";
+  const char* version = r.iso ? "1.3" : r.black_counts ? "1.2" : r.exposure_ratios.empty() ? "1" : "1.1";
   Json json = {{"schema", std::string("weft.response/") + version},
                {"electrons_per_count", r.electrons_per_count},
                {"read_noise_counts", r.read_noise_counts},
@@ -363,6 +363,7 @@ Json json_of(const Response& r) {
         {{"exposure_us", e.exposure_us}, {"to_exposure_us", e.to_exposure_us}, {"ratio", e.ratio}});
   }
   if (r.black_counts) json["black_counts"] = *r.black_counts;
+  if (r.iso) json["iso"] = *r.iso;
   return json;
 }
 
@@ -384,6 +385,8 @@ Result<Response> response_from_json(const Json& json, const std::string& where) 
   if (r.electrons_per_count <= 0) fields.reject("electrons_per_count", "must be above 0");
   if (r.read_noise_counts < 0) fields.reject("read_noise_counts", "must not be negative");
   r.black_counts = fields.optional_number("black_counts");
+  r.iso = fields.optional_number("iso");
+  if (r.iso && *r.iso <= 0) fields.reject("iso", "must be above 0");
   const bool has_ratios = fields.has("exposure_ratios");
   const Json& ratios = has_ratios ? fields.list("exposure_ratios") : linearity;
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();

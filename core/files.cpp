@@ -73,6 +73,11 @@ fs::path parent_of(const fs::path& path) {
 
 }  // namespace
 
+fs::path absolute_folder(const fs::path& folder) {
+  const fs::path path = fs::absolute(folder).lexically_normal();
+  return path.has_filename() ? path : path.parent_path();
+}
+
 bool is_there(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
@@ -173,8 +178,8 @@ Result<void> publish_folder(const fs::path& folder, const fs::path& target) {
   return sync_path(parent_of(target));
 }
 
-PartialFolder::PartialFolder(fs::path target)
-    : target_(std::move(target)),
+PartialFolder::PartialFolder(const fs::path& target)
+    : target_(absolute_folder(target)),
       path_(parent_of(target_) / fmt::format(".{}.{}.partial", target_.filename().string(), ::getpid())) {
   for (fs::path p = path_.parent_path(); !p.empty() && !is_there(p); p = p.parent_path()) made_.push_back(p);
 }

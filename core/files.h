@@ -11,6 +11,9 @@
 
 namespace weft {
 
+/// The absolute path of a folder whose last part is its name, whatever way it was written: "a/b/", "a/./b".
+std::filesystem::path absolute_folder(const std::filesystem::path& folder);
+
 /// Whether there is something at `path` that this user can see; a folder that may not be entered shows
 /// nothing.
 bool is_there(const std::filesystem::path& path);
@@ -37,7 +40,7 @@ Result<void> make_writable_folder(const std::filesystem::path& folder);
 class PartialFolder {
  public:
   /// Its path is beside `target`, hidden, and of this process alone; nothing is made yet.
-  explicit PartialFolder(std::filesystem::path target);
+  explicit PartialFolder(const std::filesystem::path& target);
   ~PartialFolder();
   PartialFolder(const PartialFolder&) = delete;
   PartialFolder& operator=(const PartialFolder&) = delete;

@@ -14,7 +14,7 @@ class FolderAside {
  public:
   static Result<FolderAside> make(const std::filesystem::path& target) {
     FolderAside aside;
-    aside.path_ = target;
+    aside.path_ = absolute_folder(target);
     aside.path_ += ".partial";
     std::error_code failed;
     if (std::filesystem::create_directory(aside.path_, failed)) return aside;

@@ -64,6 +64,7 @@ CLI::App* add_color(CLI::App& calibrate, CalibrateColorOptions& a, std::vector<d
   CLI::App* verb =
       add_step(calibrate, "color", "From the camera's channels to linear Rec.709, by a 24-patch chart",
                "Photograph or session of the chart, or a folder of them", a);
+  add_rig(*verb, a.rig);
   verb->add_option(
           "--corners", corners,
           "Outer corners of patches 1, 6, 24, 19 in pixels: x,y,x,y,x,y,x,y; default: found by itself")
@@ -97,9 +98,9 @@ CLI::App* add_lights(CLI::App& calibrate, CalibrateLightsOptions& a, std::string
 
 // What a scan is looked at for: both kinds of check, and update.
 void add_evidence(CLI::App& verb, std::filesystem::path& from, std::filesystem::path& sheet,
-                  std::optional<double>& paper_delta) {
+                  const char* about_sheet, std::optional<double>& paper_delta) {
   verb.add_option("--from", from, "The calibration in question; default each session's own");
-  verb.add_option("--sheet", sheet, "sheet.toml of the sheet in the pictures; default beside them");
+  verb.add_option("--sheet", sheet, about_sheet);
   verb.add_option(
           "--paper-delta", paper_delta,
           "The paper reflects 1 - delta (1 - cosine) of Lambert's law; default as the lights' report has it")
@@ -113,12 +114,17 @@ CLI::App* add_check(CLI::App& calibrate, CalibrateCheckOptions& a, CheckRigOptio
   CLI::Option* input = verb->add_option("input", a.input, "Session of a sheet, or a folder of sessions");
   verb->add_option("--session", rig.session, "Any scan that shows tags, white patches or the sheet")
       ->excludes(input);
-  add_evidence(*verb, a.from, a.sheet, a.paper_delta);
+  add_evidence(*verb, a.from, a.sheet,
+               "sheet.toml of the sheet in the pictures; default that beside them, with --session no sheet",
+               a.paper_delta);
   verb->add_option("-o,--output", a.output, "Folder for result and report; default nothing is written");
   verb->add_option("--square-px", a.square_px, "Side of the squares that are compared, pixels")
       ->check(CLI::Range(8, 512))
       ->capture_default_str();
   verb->add_option("--flat-limit", a.limits.flat_rms_deg, "Of flat sheets, rms degrees")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--tilted-limit", a.limits.tilted_rms_deg, "Of tilted sheets, rms degrees")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb->add_option("--gain-limit", a.limits.slope_gain, "Of the slope gain, off 1")
@@ -149,7 +155,8 @@ CLI::App* add_update(CLI::App& calibrate, CalibrateUpdateOptions& a) {
   CLI::App* verb = calibrate.add_subcommand("update", "Fit again what moved, the rest held by its prior");
   verb->add_option("session", a.session, "A scan after the move that shows tags, white patches or the sheet")
       ->required();
-  add_evidence(*verb, a.from, a.sheet, a.paper_delta);
+  add_evidence(*verb, a.from, a.sheet, "sheet.toml of the sheet in the pictures; default no sheet",
+               a.paper_delta);
   verb->add_option("-o,--output", a.output, "Folder of the new calibration, which must not exist")
       ->required();
   return verb;

@@ -4,11 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_devices.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/daemon/rig_lock.h"
 #include "capture/rig.h"
 
 namespace weft::app {
@@ -29,11 +31,15 @@ const char* word_of(Finding::Verdict verdict) {
   return "";
 }
 
+bool is_fault(const Finding& finding) {
+  return finding.verdict == Finding::Verdict::kFault;
+}
+
 void append(std::vector<Finding>& all, std::vector<Finding> more) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-std::vector<Finding> examine(const capture::Rig& rig) {
+std::vector<Finding> examine_rig(const capture::Rig& rig) {
   std::vector<Finding> found = examine_ports(rig);
   const Opened open = {.board = [&]() -> Result<std::string> {
                          const auto board = open_board(rig);
@@ -46,9 +52,38 @@ std::vector<Finding> examine(const capture::Rig& rig) {
                          return (*camera)->connect();
                        }};
   // What holds a device says more than that it cannot be opened.
-  const bool taken = std::any_of(found.begin(), found.end(),
-                                 [](const Finding& f) { return f.verdict == Finding::Verdict::kFault; });
+  const bool taken = std::any_of(found.begin(), found.end(), is_fault);
   if (!taken) append(found, examine_devices(rig, open));
+  return found;
+}
+
+/// What the process that owns the rig says of it; its devices are its own.
+Result<Finding> ask_owner(const capture::Rig& rig, const std::string& address) {
+  const Result<RigClient> client = connect_to_owner(rig, address);
+  if (!client) return client.error();
+  const Result<Json> status = client->get("/api/v1/rig");
+  if (!status) return status.error();
+  std::string says = fmt::format("weft (process {}) owns the rig and is {}", status->at("lock")["pid"].dump(),
+                                 status->at("state").get<std::string>());
+  if (status->at("state") != "idle" && status->at("session").is_string()) {
+    says += fmt::format(": {}, {} of {} frames", status->at("session").get<std::string>(),
+                        status->at("frames").get<int>(), status->at("frames_planned").get<int>());
+  }
+  const std::string why = status->at("why").get<std::string>();
+  if (status->at("state") != "idle" && !why.empty()) says += ": " + why;
+  return Finding{Finding::Verdict::kFine, "daemon", says + "; board and camera are left alone", ""};
+}
+
+std::vector<Finding> examine(const capture::Rig& rig) {
+  std::vector<Finding> found;
+  if (const std::optional<std::string> owner = address_of_owner(rig)) {
+    const Result<Finding> said = ask_owner(rig, *owner);
+    found.push_back(said ? *said : fault_of("daemon", said.error()));
+  } else if (const Result<RigLock> lock = RigLock::take(rig); !lock) {
+    found.push_back(fault_of("rig", lock.error()));
+  } else {
+    found = examine_rig(rig);
+  }
   append(found, examine_folders(rig, kFrameBytes));
   return found;
 }
@@ -68,9 +103,8 @@ Result<int> run_doctor(const DoctorArguments& arguments, const CommonArguments& 
     if (!f.remedy.empty()) print(fmt::format("{:21} -> {}", "", f.remedy));
   }
   if (common.json) print_json({{"rig", rig->name}, {"findings", rows}});
-  const bool faulty = std::any_of(found.begin(), found.end(),
-                                  [](const Finding& f) { return f.verdict == Finding::Verdict::kFault; });
-  return faulty ? kNoDeviceError : kDone;
+  const auto first = std::find_if(found.begin(), found.end(), is_fault);
+  return first == found.end() ? kDone : exit_code_of(first->kind);
 }
 
 }  // namespace weft::app

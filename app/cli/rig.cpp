@@ -12,6 +12,8 @@
 #include "app/cli/rig_devices.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/daemon/rig_lock.h"
+#include "app/daemon/scan_body.h"
 #include "bench/report.h"
 #include "capture/scan/scan.h"
 
@@ -94,13 +96,10 @@ Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& argu
   Result<RigDevices> devices = open_devices(rig);
   if (!devices) return std::move(devices).error();
   const bench::ScratchFolder scratch;
-  capture::ScanRequest request;
+  capture::ScanRequest request = request_of_rig(rig);
   request.session = scratch.path() / "test.weft";
   request.fabric = "test";
-  request.cloth_height_mm = rig.scan.cloth_height_mm;
-  request.rig = rig.name;
-  request.calibration = rig.scan.calibration;
-  request.exposure = {rig.scan.exposure_us.value_or(0), rig.scan.iso, rig.scan.f_number};
+  request.copy.clear();
   request.leds = arguments.leds;
   Json rows = Json::array();
   const auto show = [&](const capture::KeptFrame& frame) {
@@ -133,6 +132,8 @@ Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& argu
 Result<int> run_rig(const RigArguments& arguments, const CommonArguments& common) {
   const Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
   if (!rig) return rig.error();
+  const Result<RigLock> lock = RigLock::take(*rig);
+  if (!lock) return lock.error();
   switch (arguments.task) {
     case RigTask::kStatus:
       return show_status(*rig, common);

@@ -35,7 +35,8 @@ CLI::App* add_scan(CLI::App& app, ScanArguments& a) {
       "scan", "Photograph a cloth under each LED; run again, it finishes a scan that was cut short");
   add_rig_file(*verb, a.rig);
   verb->add_option("-o,--output", a.output,
-                   "Session folder, NAME.weft, new or unfinished; default by the rig file's session_name");
+                   "Session folder, NAME.weft, new or unfinished; default the one that the same command left "
+                   "unfinished in the last hour, else a new one by the rig file's session_name");
   verb->add_option("--fabric", a.fabric, "Name of the cloth");
   add_leds(*verb, a.leds);
   verb->add_option("--exposure", a.exposure_us, "Shutter time, us; default metered for this cloth")
@@ -50,7 +51,7 @@ CLI::App* add_scan(CLI::App& app, ScanArguments& a) {
   verb->add_option("--metadata", a.metadata, "KEY=VALUE to keep with the session: id, weight, side, notes");
   verb->add_flag("!--no-repeat", a.repeat, "Do not light the first LED once more at the end, to see drift");
   verb->add_flag("!--no-preview", a.preview, "Do not solve a quick preview at the end");
-  verb->add_flag("--dry-run", a.dry_run, "Only say which session would be made");
+  verb->add_flag("--dry-run", a.dry_run, "Only say which session would be made or gone on with");
   return verb;
 }
 

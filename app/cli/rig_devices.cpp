@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "app/daemon/http_guard.h"
+
 namespace weft::app {
 
 Result<std::unique_ptr<capture::LedBoard>> open_board(const capture::Rig& rig) {
@@ -14,7 +16,7 @@ Result<std::unique_ptr<capture::LedBoard>> open_board(const capture::Rig& rig) {
 Result<std::unique_ptr<capture::CameraLink>> open_camera(const capture::Rig& rig) {
   return capture::CameraLink::make({.profile = rig.camera.profile,
                                     .port = rig.camera.port,
-                                    .serial = rig.camera.serial,
+                                    .serial = capture::camera_serial(rig),
                                     .worker = {},
                                     .state = rig.daemon.state / "camera",
                                     .environment = {}});
@@ -26,6 +28,13 @@ Result<RigDevices> open_devices(const capture::Rig& rig) {
   auto camera = open_camera(rig);
   if (!camera) return std::move(camera).error();
   return RigDevices{std::move(*board), std::move(*camera)};
+}
+
+Result<RigClient> connect_to_owner(const capture::Rig& rig, const std::string& address) {
+  const Result<std::string> token =
+      rig.daemon.token.empty() ? Result<std::string>(std::string()) : read_token(rig.daemon.token);
+  if (!token) return token.error();
+  return RigClient::connect(address, *token);
 }
 
 std::string words_of(const capture::BoardFacts& facts) {

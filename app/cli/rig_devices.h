@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include "app/daemon/client.h"
 #include "app/daemon/rig_keeper.h"
 #include "capture/board/led_board.h"
 #include "capture/camera/camera_link.h"
@@ -16,6 +17,9 @@ namespace weft::app {
 Result<std::unique_ptr<capture::LedBoard>> open_board(const capture::Rig& rig);
 Result<std::unique_ptr<capture::CameraLink>> open_camera(const capture::Rig& rig);
 Result<RigDevices> open_devices(const capture::Rig& rig);
+
+/// The daemon that owns this rig, at the address of address_of_owner(), by the rig file's token.
+Result<RigClient> connect_to_owner(const capture::Rig& rig, const std::string& address);
 
 /// "firmware 1.0, 10 LEDs, began by power".
 std::string words_of(const capture::BoardFacts& facts);

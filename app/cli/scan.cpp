@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -11,14 +12,14 @@
 #include "app/cli/rig_devices.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
-#include "app/daemon/client.h"
 #include "app/daemon/error_json.h"
-#include "app/daemon/http_guard.h"
 #include "app/daemon/rig_lock.h"
 #include "app/daemon/rig_server.h"
-#include "app/daemon/session_name.h"
+#include "app/daemon/session_choice.h"
 #include "app/jobs/solve.h"
 #include "capture/rig.h"
+#include "core/calibration.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -31,10 +32,6 @@ struct Scanner {
   RigClient client;
 };
 
-Result<std::string> token_of(const capture::Rig& rig) {
-  return rig.daemon.token.empty() ? Result<std::string>(std::string()) : read_token(rig.daemon.token);
-}
-
 /// A daemon keeps its sessions in one folder.
 Result<void> check_folder(const capture::Rig& rig, const fs::path& output) {
   std::error_code ignored;
@@ -46,18 +43,14 @@ Result<void> check_folder(const capture::Rig& rig, const fs::path& output) {
                "they are in " + rig.scan.sessions.string(), "give a name in that folder, or stop weft serve"};
 }
 
-Result<Scanner> find_scanner(capture::Rig rig, const fs::path& output) {
-  const Result<std::string> token = token_of(rig);
-  if (!token) return token.error();
-  if (const std::optional<std::string> address = address_of_owner(rig)) {
-    if (Result<void> ok = check_folder(rig, output); !ok) return std::move(ok).error();
-    Result<RigClient> client = RigClient::connect(*address, *token);
+Result<Scanner> find_scanner(capture::Rig rig, const std::optional<std::string>& owner) {
+  if (owner) {
+    Result<RigClient> client = connect_to_owner(rig, *owner);
     if (!client) return std::move(client).error();
     return Scanner{nullptr, std::move(*client)};
   }
   rig.daemon.host = "127.0.0.1";
   rig.daemon.port = 0;
-  if (!output.empty()) rig.scan.sessions = fs::absolute(output).parent_path();
   auto server = RigServer::start(
       rig, open_devices,
       [](const auto& request, auto& lamps, auto& camera, const auto& events, const auto& control) {
@@ -147,74 +140,100 @@ Result<Json> follow(const RigClient& client, const CommonArguments& common) {
   return last;
 }
 
-Result<SolveReport> solve_preview(const fs::path& session, const CommonArguments& common) {
-  ProgressLine line(common.quiet);
-  SolveOptions options;
-  options.method = "preview";
-  return solve_session({session, {}, {}}, options, {common.threads, stop_on_signal(), line.callback()});
+/// What is worth knowing of the session where the command named none.
+void say_choice(const Json& choice, const capture::Rig& rig) {
+  const std::string name = choice["session"].get<std::string>();
+  if (choice["resumed"] == true) {
+    note(fmt::format("goes on with {}: {} of {} frames are there; -o NEW_NAME begins another", name,
+                     choice["frames"].get<int>(), choice["frames_planned"].get<int>()));
+  }
+  if (!choice.contains("unfinished")) return;
+  const std::string other = choice["unfinished"].get<std::string>();
+  note(fmt::format("{} of the same cloth is not finished; -o {} finishes it", other,
+                   (rig.scan.sessions / (other + ".weft")).string()));
 }
 
-Result<int> name_only(const capture::Rig& rig, const ScanArguments& arguments,
-                      const CommonArguments& common) {
-  fs::path session = arguments.output;
-  if (session.empty()) {
-    const Result<std::string> name = next_session_name(rig.scan.session_name, arguments.fabric, rig.name,
-                                                       rig.scan.sessions, std::chrono::system_clock::now());
-    if (!name) return name.error();
-    session = rig.scan.sessions / (*name + ".weft");
-  }
+Result<int> name_only(const capture::Rig& rig, const Json& body, const CommonArguments& common) {
+  const Result<SessionChoice> choice = choose_session(body, rig, std::chrono::system_clock::now());
+  if (!choice) return choice.error();
+  Json document = to_json(*choice);
+  if (!body.contains("session")) say_choice(document, rig);
+  document["session"] = choice->request.session.string();
   if (common.json) {
-    print_json({{"session", session.string()}});
+    print_json(document);
   } else {
-    print(session.string());
+    print(choice->request.session.string());
   }
   return kDone;
 }
 
+/// The sheet of a quick solve; empty where there is none, and then a remark or a warning says why.
+fs::path solve_preview(const fs::path& session, const CommonArguments& common, Json& warnings) {
+  const Result<Calibration> calibration = read_calibration(session / "calibration");
+  const bool suffices = calibration && calibration->camera && calibration->lights && calibration->response;
+  if (!is_there(session / "calibration") || (calibration && !suffices)) {
+    if (!common.quiet) note("no preview: it needs a calibration of camera, response and lights");
+    return {};
+  }
+  ProgressLine line(common.quiet);
+  SolveOptions options;
+  options.method = "preview";
+  const Result<SolveReport> solved =
+      solve_session({session, {}, {}}, options, {common.threads, stop_on_signal(), line.callback()});
+  if (solved) return solved->folder / "sheet.png";
+  warnings.push_back("there is no preview: " + solved.error().message());
+  return {};
+}
+
 }  // namespace
 
-Result<int> run_scan(const ScanArguments& arguments, const CommonArguments& common) {
-  const Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
-  if (!rig) return rig.error();
-  if (arguments.dry_run) return name_only(*rig, arguments, common);
+Result<int> run_scan(const ScanArguments& said, const CommonArguments& common) {
+  ScanArguments arguments = said;
+  // "NAME.weft/", as a shell completes it.
+  if (!arguments.output.has_filename()) arguments.output = arguments.output.parent_path();
+  Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
+  if (!rig) return std::move(rig).error();
   const Result<Json> body = body_of(arguments);
   if (!body) return body.error();
-  fs::path sessions = rig->scan.sessions;
+  const std::optional<std::string> owner = address_of_owner(*rig);
+  if (owner) {
+    if (Result<void> ok = check_folder(*rig, arguments.output); !ok) return std::move(ok).error();
+  } else if (!arguments.output.empty()) {
+    rig->scan.sessions = fs::absolute(arguments.output).parent_path();
+  }
+  if (arguments.dry_run) return name_only(*rig, *body, common);
   Json status;
   {
-    const Result<Scanner> scanner = find_scanner(*rig, arguments.output);
+    const Result<Scanner> scanner = find_scanner(*rig, owner);
     if (!scanner) return scanner.error();
-    if (scanner->own && !arguments.output.empty()) sessions = fs::absolute(arguments.output).parent_path();
-    if (const Result<Json> begun = scanner->client.post("/api/v1/scan", *body); !begun) return begun.error();
+    const Result<Json> begun = scanner->client.post("/api/v1/scan", *body);
+    if (!begun) return begun.error();
+    if (arguments.output.empty()) say_choice(*begun, *rig);
     Result<Json> ended = follow(scanner->client, common);
     if (!ended) return std::move(ended).error();
     status = std::move(*ended);
   }
   if (!status["error"].is_null())
     return error_of_document(Json{{"error", status["error"]}}.dump(), rig->name);
-  const fs::path session = sessions / (status["session"].get<std::string>() + ".weft");
+  const fs::path session = rig->scan.sessions / (status["session"].get<std::string>() + ".weft");
   if (status["phase"] == "cancelled") {
     return Error{ErrorKind::kInterrupted, "the scan was stopped", session.string(),
                  fmt::format("{} of {} frames are kept", status["frames"].get<int>(),
                              status["frames_planned"].get<int>()),
                  "run the same command again to finish it"};
   }
-  fs::path sheet;
-  if (arguments.preview) {
-    const Result<SolveReport> solved = solve_preview(session, common);
-    if (!solved) return solved.error();
-    sheet = solved->folder / "sheet.png";
-  }
+  Json warnings = status["warnings"];
+  const fs::path sheet = arguments.preview ? solve_preview(session, common, warnings) : fs::path();
   if (common.json) {
     print_json({{"session", session.string()},
                 {"frames", status["frames"]},
                 {"exposure_us", status["exposure_us"]},
-                {"warnings", status["warnings"]},
+                {"warnings", warnings},
                 {"preview", sheet.string()}});
     return kDone;
   }
   print(session.string());
-  for (const Json& warning : status["warnings"]) print("  " + warning.get<std::string>());
+  for (const Json& warning : warnings) print("  " + warning.get<std::string>());
   if (!sheet.empty()) print("  look at " + sheet.string());
   return kDone;
 }

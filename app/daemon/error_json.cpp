@@ -1,50 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/daemon/error_json.h"
 
-#include <algorithm>
-#include <array>
+#include <new>
+#include <optional>
+
+#include "core/error_kind.h"
 
 namespace weft::app {
-namespace {
-
-struct KindRow {
-  ErrorKind kind;
-  const char* name;
-  int status;
-};
-
-constexpr std::array<KindRow, 10> kKinds = {{{ErrorKind::kUsage, "usage", 400},
-                                             {ErrorKind::kBadData, "bad_data", 422},
-                                             {ErrorKind::kNoInput, "no_input", 404},
-                                             {ErrorKind::kNoDevice, "no_device", 503},
-                                             {ErrorKind::kInternal, "internal", 500},
-                                             {ErrorKind::kCannotCreate, "cannot_create", 409},
-                                             {ErrorKind::kInputOutput, "input_output", 500},
-                                             {ErrorKind::kTryAgain, "try_again", 409},
-                                             {ErrorKind::kProtocol, "protocol", 502},
-                                             {ErrorKind::kInterrupted, "interrupted", 503}}};
-
-const KindRow& row_of(ErrorKind kind) {
-  return *std::ranges::find(kKinds, kind, &KindRow::kind);
-}
-
-}  // namespace
-
-const char* kind_name(ErrorKind kind) {
-  return row_of(kind).name;
-}
 
 int http_status_of(ErrorKind kind) {
-  return row_of(kind).status;
+  switch (kind) {
+    case ErrorKind::kUsage:
+      return 400;
+    case ErrorKind::kNoInput:
+      return 404;
+    case ErrorKind::kCannotCreate:
+    case ErrorKind::kTryAgain:
+      return 409;
+    case ErrorKind::kBadData:
+      return 422;
+    case ErrorKind::kInternal:
+    case ErrorKind::kInputOutput:
+      return 500;
+    case ErrorKind::kProtocol:
+      return 502;
+    case ErrorKind::kNoDevice:
+    case ErrorKind::kInterrupted:
+      return 503;
+  }
+  return 500;
 }
 
 Json error_document(const Error& error) {
   return {{"error",
-           {{"kind", kind_name(error.kind)},
+           {{"kind", name_of(error.kind)},
             {"what", error.what},
             {"where", error.where},
             {"why", error.why},
             {"remedy", error.remedy}}}};
+}
+
+Error error_of_exception(const std::exception& thrown, const std::string& where) {
+  if (dynamic_cast<const std::bad_alloc*>(&thrown) != nullptr) {
+    return {ErrorKind::kTryAgain, "not enough memory", where, "the system refused some",
+            "close other programs and run the same command again"};
+  }
+  return {ErrorKind::kInternal, "a bug in weft", where, thrown.what(),
+          "run the same command again, and report it with what you did"};
 }
 
 Error error_of_document(const std::string& text, const std::string& where) {
@@ -53,10 +55,9 @@ Error error_of_document(const std::string& text, const std::string& where) {
                          "check that the address is that of weft serve"};
   if (!document.is_object() || !document.contains("error") || !document["error"].is_object()) return unknown;
   JsonFields fields(document["error"], where);
-  const std::string kind = fields.text("kind");
-  const auto row = std::ranges::find_if(kKinds, [&](const KindRow& each) { return kind == each.name; });
-  if (row == kKinds.end()) return unknown;
-  return {row->kind, fields.text_or("what", ""), fields.text_or("where", ""), fields.text_or("why", ""),
+  const std::optional<ErrorKind> kind = error_kind_of(fields.text("kind"));
+  if (!kind) return unknown;
+  return {*kind, fields.text_or("what", ""), fields.text_or("where", ""), fields.text_or("why", ""),
           fields.text_or("remedy", "")};
 }
 

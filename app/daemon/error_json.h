@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <exception>
 #include <string>
 
 #include "core/json_document.h"
@@ -8,14 +9,15 @@
 
 namespace weft::app {
 
-/// "bad_data": what the HTTP interface calls this kind.
-const char* kind_name(ErrorKind kind);
-
 /// The status an error is answered with where nothing fits better.
 int http_status_of(ErrorKind kind);
 
 /// {"error": {"kind", "what", "where", "why", "remedy"}}
 Json error_document(const Error& error);
+
+/// Of an exception of the standard library, which is no reason for a daemon to end: kTryAgain where memory
+/// ran out, else kInternal.
+Error error_of_exception(const std::exception& thrown, const std::string& where);
 
 /// What error_document() made; anything else is kProtocol of `where`.
 Error error_of_document(const std::string& text, const std::string& where);

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <functional>
 #include <span>
 #include <utility>
 #include <vector>
 
+#include "app/daemon/error_json.h"
 #include "app/jobs/raw_picture.h"
 #include "capture/raw/decode.h"
 #include "capture/scan/histogram.h"
@@ -131,6 +133,7 @@ Result<Json> FramePictures::histogram(const FrameFile& frame) {
 }
 
 std::optional<Json> FramePictures::ready_histogram(const FrameFile& frame) const {
+  if (!is_digest(frame.sha256)) return std::nullopt;
   const Result<std::string> text = read_text(path_of(frame, ".json"), kMostBytes);
   Json document = text ? Json::parse(*text, nullptr, false) : Json();
   return document.is_object() ? std::optional(std::move(document)) : std::nullopt;
@@ -165,7 +168,7 @@ Result<void> FramePictures::make(const FrameFile& frame) {
   return made;
 }
 
-Result<void> FramePictures::make_files(const FrameFile& frame) {
+Result<void> FramePictures::make_files(const FrameFile& frame) try {
   const Result<RawFrame> raw = capture::decode_raw(frame.file);
   if (!raw) return raw.error();
   Image<float> picture = reduced(half_size_picture(*raw, Response{}));
@@ -177,6 +180,8 @@ Result<void> FramePictures::make_files(const FrameFile& frame) {
   if (Result<void> ok = write_image(path_of(frame, ".png"), planes, {"R", "G", "B"}, options); !ok) return ok;
   // The last of the two: where it is, both are.
   return write_file(path_of(frame, ".json"), to_json(capture::histogram_rgb(*raw)).dump());
+} catch (const std::exception& thrown) {
+  return error_of_exception(thrown, frame.file.string());
 }
 
 void FramePictures::run() {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/daemon/rig_keeper.h"
 
+#include <chrono>
+#include <exception>
 #include <utility>
 
 #include "app/daemon/error_json.h"
@@ -9,6 +11,8 @@
 
 namespace weft::app {
 namespace {
+
+constexpr auto kBetweenSearches = std::chrono::milliseconds(500);
 
 std::string name_of_session(const capture::ScanRequest& request) {
   return request.session.stem().string();
@@ -79,8 +83,9 @@ Result<void> RigKeeper::begin(capture::ScanRequest request) {
   request_ = request;
   tell_status_locked();
   // The last one's thread has done its last deed once running_ is false: joining it here takes no time.
-  scan_ = std::jthread(
-      [this, request = std::move(request)](const std::stop_token& cancel) { run(request, cancel); });
+  scan_ = std::jthread([this, request = std::move(request)](const std::stop_token& cancel) {
+    on_end(scan_with_devices(request, cancel));
+  });
   return {};
 }
 
@@ -120,18 +125,36 @@ bool RigKeeper::stop(std::chrono::milliseconds most) {
   return ended_.wait_for(lock, most, [&] { return !running_; });
 }
 
-void RigKeeper::run(const capture::ScanRequest& request, const std::stop_token& cancel) {
-  on_end(scan_with_devices(request, cancel));
+Result<RigDevices> RigKeeper::open_devices(const std::stop_token& cancel) {
+  const auto patience = std::chrono::duration<double>(capture::ScanOptions().device_patience_s);
+  const auto until = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    Result<RigDevices> devices = open_(rig_);
+    if (devices || devices.error().kind != ErrorKind::kNoDevice || std::chrono::steady_clock::now() >= until)
+      return devices;
+    std::unique_lock lock(mutex_);
+    if (std::string why = devices.error().message(); why != status_.why) {
+      status_.why = std::move(why);
+      tell_status_locked();
+    }
+    ended_.wait_for(lock, cancel, kBetweenSearches, [] { return false; });
+    if (cancel.stop_requested()) {
+      return Error{ErrorKind::kInterrupted, "scan was stopped", rig_.name, "on request",
+                   "run the same command again to go on"};
+    }
+  }
 }
 
 Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanRequest& request,
-                                                          const std::stop_token& cancel) {
-  Result<RigDevices> devices = open_(rig_);
+                                                          const std::stop_token& cancel) try {
+  Result<RigDevices> devices = open_devices(cancel);
   if (!devices) return std::move(devices).error();
   WatchedCamera camera(*devices->camera, [this](const capture::CameraFacts& facts) { on_facts(facts); });
   const capture::ScanEvents events = {[this](const capture::ScanStatus& status) { on_status(status); },
                                       [&](const capture::KeptFrame& frame) { on_kept(request, frame); }};
   return run_(request, *devices->lamps, camera, events, {cancel, &pause_});
+} catch (const std::exception& thrown) {
+  return error_of_exception(thrown, name_of_session(request));
 }
 
 void RigKeeper::on_status(const capture::ScanStatus& status) {

@@ -37,8 +37,9 @@ using RunScan =
 ///   idle, failed --begin--> connecting --> scanning <--> paused
 ///   connecting, scanning, paused --> idle (finished, cancelled) or failed (error says why)
 ///
-/// One scan at a time, on a thread of its own; its devices are open while it runs and closed in idle and
-/// failed, so that other programs can use them. Safe from any thread.
+/// One scan at a time, on a thread of its own. A device that is not there (kNoDevice) is asked for every half
+/// second in connecting, for as long as a scan waits for one that goes; its devices are open while it runs
+/// and closed in idle and failed, so that other programs can use them. Safe from any thread.
 class RigKeeper {
  public:
   RigKeeper(capture::Rig rig, OpenDevices open, RunScan run, EventLog& events, FramePictures& pictures);
@@ -64,7 +65,7 @@ class RigKeeper {
  private:
   enum class State { kIdle, kConnecting, kScanning, kPaused, kFailed };
   static const char* name_of(State state);
-  void run(const capture::ScanRequest& request, const std::stop_token& cancel);
+  Result<RigDevices> open_devices(const std::stop_token& cancel);
   Result<capture::ScanOutcome> scan_with_devices(const capture::ScanRequest& request,
                                                  const std::stop_token& cancel);
   void on_status(const capture::ScanStatus& status);
@@ -81,7 +82,7 @@ class RigKeeper {
   FramePictures& pictures_;
 
   mutable std::mutex mutex_;
-  std::condition_variable ended_;
+  std::condition_variable_any ended_;  ///< or asked to end
   State state_ = State::kIdle;
   bool running_ = false;
   bool stopping_ = false;

@@ -8,6 +8,7 @@
 
 #include "app/daemon/error_json.h"
 #include "app/daemon/scan_body.h"
+#include "app/daemon/session_choice.h"
 #include "app/daemon/session_name.h"
 #include "core/files.h"
 
@@ -28,50 +29,16 @@ Result<Reply> whole_status(const RigParts& parts) {
   return json_reply(status);
 }
 
-/// The request that a body asks for: over the rig's own, or over what a session was begun with.
-Result<ScanWish> wish_of(const RigParts& parts, const Json& body) {
-  const capture::Rig& rig = parts.rig;
-  const Result<std::string> name = session_in_body(body);
-  if (!name) return name.error();
-  if (name->empty()) return read_scan_body(body, rig.leds, request_of_rig(rig));
-  const Result<std::filesystem::path> folder = session_folder(rig.scan.sessions, *name);
-  if (!folder) return folder.error();
-  if (!is_there(*folder)) return read_scan_body(body, rig.leds, request_of_rig(rig));
-  const Result<Session> session = parts.sessions.find(*name);
-  if (!session) return session.error();
-  if (session->state == "complete" || session->rig != rig.name) {
-    return Error{
-        ErrorKind::kCannotCreate, "there is a session of this name", *name,
-        session->rig == rig.name ? "it is finished, and none is overwritten" : "it is of rig " + session->rig,
-        "take another name"};
-  }
-  return read_scan_body(body, rig.leds, request_of_session(*session, rig));
-}
-
 Result<Reply> start_scan(const RigParts& parts, const Call& call) {
   const Result<Json> body = parse_body(call.body);
   if (!body) return body.error();
-  Result<ScanWish> wish = wish_of(parts, *body);
-  if (!wish) return std::move(wish).error();
-  const capture::Rig& rig = parts.rig;
-  if (wish->request.fabric.empty()) {
-    return Error{ErrorKind::kUsage, "the scan has no fabric", "fabric", "",
-                 "name the cloth, as in {\"fabric\": \"satin\"}"};
-  }
-  if (wish->session.empty()) {
-    Result<std::string> name = next_session_name(rig.scan.session_name, wish->request.fabric, rig.name,
-                                                 rig.scan.sessions, std::chrono::system_clock::now());
-    if (!name) return std::move(name).error();
-    wish->session = std::move(*name);
-  }
-  if (Result<void> made = make_writable_folder(rig.scan.sessions); !made) return std::move(made).error();
-  const Result<std::filesystem::path> folder = session_folder(rig.scan.sessions, wish->session);
-  if (!folder) return folder.error();
-  wish->request.session = *folder;
-  const bool resumed = is_there(*folder);
-  if (Result<void> begun = parts.keeper.begin(std::move(wish->request)); !begun)
+  Result<SessionChoice> choice = choose_session(*body, parts.rig, std::chrono::system_clock::now());
+  if (!choice) return std::move(choice).error();
+  if (Result<void> made = make_writable_folder(parts.rig.scan.sessions); !made)
+    return std::move(made).error();
+  if (Result<void> begun = parts.keeper.begin(std::move(choice->request)); !begun)
     return std::move(begun).error();
-  return json_reply({{"session", wish->session}, {"resumed", resumed}}, kAccepted);
+  return json_reply(to_json(*choice), kAccepted);
 }
 
 /// A step whose success is told by the status it leads to.

@@ -68,9 +68,6 @@ const std::string& RigServer::address() const {
 const std::string& RigServer::token() const {
   return state_->token;
 }
-Json RigServer::status() const {
-  return state_->keeper.status();
-}
 
 std::vector<std::string> RigServer::calls() const {
   std::vector<std::string> calls;

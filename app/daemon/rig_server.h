@@ -8,7 +8,6 @@
 #include "app/daemon/http_server.h"
 #include "app/daemon/rig_keeper.h"
 #include "capture/rig.h"
-#include "core/json_document.h"
 #include "core/result.h"
 
 namespace weft::app {
@@ -28,7 +27,6 @@ class RigServer {
   int port() const;
   const std::string& address() const;  ///< "http://127.0.0.1:8470"
   const std::string& token() const;    ///< that clients must send; empty: none
-  Json status() const;
   /// Every "METHOD path" there is.
   std::vector<std::string> calls() const;
 

@@ -4,16 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <chrono>
-#include <ctime>
 #include <functional>
 #include <utility>
 
 #include "app/daemon/error_json.h"
 #include "app/daemon/session_name.h"
 #include "core/files.h"
+#include "core/text.h"
 
 namespace weft::app {
 namespace {
@@ -70,16 +69,6 @@ const char* name_of(ShotRole role) {
   return "lit";
 }
 
-std::string iso_time(std::filesystem::file_time_type time) {
-  const auto system =
-      std::chrono::time_point_cast<std::chrono::seconds>(std::chrono::file_clock::to_sys(time));
-  const std::time_t seconds = std::chrono::system_clock::to_time_t(system);
-  std::tm parts = {};
-  gmtime_r(&seconds, &parts);
-  std::array<char, 32> text = {};
-  return {text.data(), std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts)};
-}
-
 SessionCatalog::SessionCatalog(std::filesystem::path sessions, std::string rig, FramePictures& pictures)
     : sessions_(std::move(sessions)), rig_(std::move(rig)), pictures_(pictures) {}
 
@@ -108,7 +97,9 @@ Json SessionCatalog::list() {
 Json SessionCatalog::summary_of(const std::string& name, const std::filesystem::path& folder) const {
   std::error_code ignored;
   Json summary = {{"name", name}, {"state", "unreadable"}, {"resumable", false}, {"frames", 0}};
-  summary["written"] = iso_time(std::filesystem::last_write_time(folder / "session.json", ignored));
+  const auto written =
+      std::chrono::file_clock::to_sys(std::filesystem::last_write_time(folder / "session.json", ignored));
+  summary["written"] = iso_time(std::chrono::duration<double>(written.time_since_epoch()).count());
   const Result<Session> session = read_session(folder);
   if (!session) {
     summary["error"] = error_document(session.error())["error"];

@@ -53,7 +53,4 @@ class SessionCatalog {
 /// "lit", as in session.json.
 const char* name_of(ShotRole role);
 
-/// "2026-11-21T14:25:01Z"
-std::string iso_time(std::filesystem::file_time_type time);
-
 }  // namespace weft::app

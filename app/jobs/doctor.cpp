@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "core/calibration.h"
+#include "core/camera_names.h"
 #include "core/files.h"
 
 namespace weft::app {
@@ -65,8 +66,8 @@ void for_each_process(const SystemPlaces& places, const Visit& visit) {
   }
 }
 
-Finding fault(std::string part, std::string says, std::string remedy) {
-  return {Verdict::kFault, std::move(part), std::move(says), std::move(remedy)};
+Finding fault(std::string part, std::string says, std::string remedy, ErrorKind kind = ErrorKind::kNoDevice) {
+  return {Verdict::kFault, std::move(part), std::move(says), std::move(remedy), kind};
 }
 
 /// A known thief keeps the device from us; another program may only be looking.
@@ -84,7 +85,8 @@ void report_holders(const std::vector<Holder>& holders, const std::string& part,
 
 /// Programs that hold nothing now and will take the device at the next replug.
 void report_thieves(std::string_view part, const SystemPlaces& places, std::vector<Finding>& found) {
-  if (is_there(places.udev / "70-weft.rules")) return;
+  const auto has_rules = [](const fs::path& folder) { return is_there(folder / "70-weft.rules"); };
+  if (std::any_of(places.udev.begin(), places.udev.end(), has_rules)) return;
   for_each_process(places, [&](int pid, const fs::path& folder) {
     const std::string name = first_line(folder / "comm");
     for (const Thief& thief : kThieves) {
@@ -172,7 +174,7 @@ void examine_usb(const SystemPlaces& places, std::vector<Finding>& found) {
 void examine_room(const std::string& part, const fs::path& folder, std::uint64_t frame_bytes,
                   std::vector<Finding>& found) {
   if (Result<void> ok = make_writable_folder(folder); !ok) {
-    found.push_back(fault(part, ok.error().message(), ok.error().remedy));
+    found.push_back(fault_of(part, ok.error()));
     return;
   }
   const double free = static_cast<double>(free_disk_bytes(folder));
@@ -180,7 +182,8 @@ void examine_room(const std::string& part, const fs::path& folder, std::uint64_t
   const std::string room = fmt::format("{} has {:.0f} MB free, room for {:.0f} sessions", folder.string(),
                                        free / kMegabyte, session > 0 ? std::floor(free / session) : 0);
   if (free < session) {
-    found.push_back(fault(part, room, "free some, or name another disk in the rig file"));
+    found.push_back(
+        fault(part, room, "free some, or name another disk in the rig file", ErrorKind::kInputOutput));
   } else if (free < 20 * session) {
     found.push_back({Verdict::kWarning, part, room, "free some before the night"});
   } else {
@@ -197,21 +200,21 @@ void examine_calibration(const capture::Rig& rig, std::vector<Finding>& found) {
   }
   const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
   if (!calibration) {
-    found.push_back(fault("calibration", calibration.error().message(), calibration.error().remedy));
+    found.push_back(fault_of("calibration", calibration.error()));
     return;
   }
   const std::size_t before = found.size();
   const CalibrationSubject& subject = calibration->subject;
   const auto wrong = [&](const std::string& says) {
-    found.push_back(
-        fault("calibration", says, "name the calibration of this rig under [scan], or calibrate again"));
+    found.push_back(fault("calibration", says,
+                          "name the calibration of this rig under [scan], or calibrate again",
+                          ErrorKind::kBadData));
   };
   if (subject.rig != rig.name)
     wrong(fmt::format("it is of the rig {}, this one is {}", subject.rig, rig.name));
   if (subject.f_number > 0 && std::abs(subject.f_number / rig.scan.f_number - 1) > 0.01)
     wrong(fmt::format("it was measured at f/{:g}, scans are at f/{:g}", subject.f_number, rig.scan.f_number));
-  if (!rig.camera.serial.empty() && !subject.camera_serial.empty() &&
-      rig.camera.serial != subject.camera_serial)
+  if (!same_serial(rig.camera.serial, subject.camera_serial))
     wrong(fmt::format("it is of camera {}, this one is {}", subject.camera_serial, rig.camera.serial));
   if (!calibration->lights) wrong("it has no lights");
   if (!has_fault(found, before)) {
@@ -231,6 +234,10 @@ void examine_clock(std::vector<Finding>& found) {
 }
 
 }  // namespace
+
+Finding fault_of(std::string part, const Error& error) {
+  return fault(std::move(part), error.message(), error.remedy, error.kind);
+}
 
 std::vector<Holder> holders_of(const fs::path& file, const SystemPlaces& places) {
   std::vector<Holder> holders;
@@ -269,11 +276,11 @@ std::vector<Finding> examine_devices(const capture::Rig& rig, const Opened& open
   if (const Result<std::string> greeting = open.board(); greeting) {
     found.push_back({Verdict::kFine, "board", *greeting, ""});
   } else {
-    found.push_back(fault("board", greeting.error().message(), greeting.error().remedy));
+    found.push_back(fault_of("board", greeting.error()));
   }
   const Result<capture::CameraFacts> facts = open.camera();
   if (!facts) {
-    found.push_back(fault("camera", facts.error().message(), facts.error().remedy));
+    found.push_back(fault_of("camera", facts.error()));
     return found;
   }
   found.push_back({Verdict::kFine, "camera",
@@ -283,7 +290,7 @@ std::vector<Finding> examine_devices(const capture::Rig& rig, const Opened& open
   if (facts->battery < kLowBattery)
     found.push_back(
         {Verdict::kWarning, "camera", "its battery will not last", "charge it, or use mains power"});
-  if (rig.camera.serial.empty())
+  if (capture::camera_serial(rig).empty())
     found.push_back({Verdict::kWarning, "camera", "the rig file takes any camera",
                      fmt::format("write serial = \"{}\" under [camera]", facts->serial)});
   if (std::abs(facts->clock_offset_s) > 60 + facts->clock_uncertainty_s)

@@ -20,14 +20,20 @@ struct Finding {
   std::string part;    ///< "board", "camera", "disk"
   std::string says;    ///< one sentence
   std::string remedy;  ///< the command that mends it, or what to do; empty where all is well
+  ErrorKind kind = ErrorKind::kNoDevice;  ///< of a fault
 };
+
+/// A fault that an error is.
+Finding fault_of(std::string part, const Error& error);
 
 /// Where the system tells about itself; tests bring their own.
 struct SystemPlaces {
   std::filesystem::path proc = "/proc";
   std::filesystem::path sys = "/sys";
   std::filesystem::path dev = "/dev";
-  std::filesystem::path udev = "/etc/udev/rules.d";
+  std::vector<std::filesystem::path> udev = {"/etc/udev/rules.d", "/run/udev/rules.d",
+                                             "/usr/local/lib/udev/rules.d", "/usr/lib/udev/rules.d",
+                                             "/lib/udev/rules.d"};
 };
 
 /// A process that holds a file open, or that is known to take devices away.

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <charconv>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -188,7 +189,8 @@ std::optional<pid_t> child_of(pid_t parent, const std::string& name) {
     const std::string stat = text_of(entry.path() / "stat");
     const std::size_t open = stat.find('('), close = stat.rfind(')');
     if (open == std::string::npos || close == std::string::npos || stat.size() < close + 4) continue;
-    if (stat.substr(open + 1, close - open - 1) == name && std::strtol(stat.c_str() + close + 4, nullptr, 10) == parent)
+    if (stat.substr(open + 1, close - open - 1) == name &&
+        std::strtol(stat.c_str() + close + 4, nullptr, 10) == parent)
       return pid;
   }
   return std::nullopt;

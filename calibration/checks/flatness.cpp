@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "calibration/checks/light_at.h"
+#include "calibration/lights/paper_model.h"
 #include "calibration/lights/sheet.h"
 
 namespace weft::calibration {
@@ -25,7 +26,7 @@ Vec3 slope(Vec3 normal) {
 /// Nothing with fewer than three LEDs, or lights in one plane.
 std::optional<Solved> solved(const NearLights& lights, Size frame, const SheetSquare& square, Vec3 point_mm,
                              Vec3 normal, double delta) {
-  const auto [u, v] = gain_place(frame, square.x_px, square.y_px);
+  const auto [u, v] = frame_place(frame, square.x_px, square.y_px);
   Solved out;
   for (int c = 0; c < 3; ++c) {
     const auto channel = static_cast<std::size_t>(c);
@@ -87,6 +88,7 @@ SheetCheck check_sheet(const CameraModel& camera, const NearLights& lights, cons
   }
   check.squares = static_cast<int>(normals.size());
   check.tilt_deg = angle_deg(expected, {0, 0, 1});
+  check.normal_sigma_deg = evidence.normal_sigma_deg;
   if (normals.empty()) return check;
   const auto n = static_cast<double>(normals.size());
   check.rms_deg = std::sqrt(check.rms_deg / n);

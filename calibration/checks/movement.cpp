@@ -11,6 +11,7 @@
 
 #include "calibration/checks/light_at.h"
 #include "calibration/checks/rig_state.h"
+#include "calibration/lights/paper_model.h"
 
 namespace weft::calibration {
 namespace {
@@ -300,7 +301,7 @@ MovementCost cost_of(const CameraModel& camera_before, const NearLights& before,
       const Vec3 believed = point_on_plane(camera_before, x, y, 0),
                  real = point_on_plane(camera_after, x, y, 0);
       for (const Vec3 normal : kNormals) {
-        const auto solved = solved_normal(before, believed, after, real, normal, gain_place(frame, x, y));
+        const auto solved = solved_normal(before, believed, after, real, normal, frame_place(frame, x, y));
         if (!solved) continue;
         const double off = angle_deg(*solved, normal);
         cost.mean_deg += off;

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "calibration/checks/light_at.h"
+#include "calibration/lights/paper_model.h"
 
 namespace weft::calibration {
 namespace {
@@ -163,7 +164,7 @@ double RigModel::log_reading(const NearLights& lights, const RigState& state, co
   if (!light) return kNaN;
   const double cosine = dot(moved.rotation * place.normal, light->direction);
   if (!(cosine > 0)) return kNaN;
-  const auto [u, v] = gain_place(camera_.size, place.x_px, place.y_px);
+  const auto [u, v] = frame_place(camera_.size, place.x_px, place.y_px);
   double log_flux = 0;
   for (int c = 0; c < 3; ++c) {
     const auto channel = static_cast<std::size_t>(c);

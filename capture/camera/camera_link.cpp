@@ -63,8 +63,6 @@ Result<fs::path> folder_of_its_own() {
 Result<std::unique_ptr<CameraLink>> CameraLink::make(CameraLinkOptions options) {
   Result<CameraProfile> profile = read_camera_profile(options.profile);
   if (!profile) return std::move(profile).error();
-  // As a body may write its number, or a person copy it.
-  options.serial.erase(0, options.serial.find_first_not_of('0'));
   if (options.worker.empty()) options.worker = weft_camera_program();
   const bool own_state = options.state.empty();
   if (own_state) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "capture/camera/camera_values.h"
+#include "core/camera_names.h"
 
 namespace weft::capture {
 namespace {
@@ -120,7 +121,7 @@ Result<std::unique_ptr<GphotoCamera>> open_camera(const CameraProfile& profile, 
     }
     const Result<std::string> serial = serial_of(**camera, profile);
     if (!serial) return serial.error();
-    if (!wanted.serial.empty() && *serial != wanted.serial) {
+    if (!same_serial(*serial, wanted.serial)) {
       others.push_back(*serial);
       continue;
     }

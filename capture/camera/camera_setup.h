@@ -17,7 +17,7 @@ namespace weft::capture {
 /// Which camera a rig means.
 struct WantedCamera {
   std::string port;    ///< empty or "usb:...": the one of that serial number wherever it is plugged in
-  std::string serial;  ///< without leading zeros; empty: any
+  std::string serial;  ///< empty: any
 };
 
 /// Finds the camera and opens it. Errors: kNoDevice, kTryAgain, and kBadData for another model or number.

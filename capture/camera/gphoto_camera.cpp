@@ -94,7 +94,7 @@ int set_text(CameraWidget* widget, const std::string& value) {
   CameraWidgetType type = GP_WIDGET_TEXT;
   gp_widget_get_type(widget, &type);
   if (type == GP_WIDGET_TOGGLE || type == GP_WIDGET_DATE) {
-    const int number = std::atoi(value.c_str());
+    const int number = static_cast<int>(std::strtol(value.c_str(), nullptr, 10));
     return gp_widget_set_value(widget, &number);
   }
   if (type == GP_WIDGET_RANGE) {

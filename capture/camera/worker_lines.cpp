@@ -1,48 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "capture/camera/worker_lines.h"
 
-#include <array>
 #include <string>
-#include <utility>
+
+#include "core/error_kind.h"
 
 namespace weft::capture {
-namespace {
-
-constexpr std::array<std::pair<ErrorKind, const char*>, 10> kKinds = {{
-    {ErrorKind::kUsage, "usage"},
-    {ErrorKind::kBadData, "bad_data"},
-    {ErrorKind::kNoInput, "no_input"},
-    {ErrorKind::kNoDevice, "no_device"},
-    {ErrorKind::kInternal, "internal"},
-    {ErrorKind::kCannotCreate, "cannot_create"},
-    {ErrorKind::kInputOutput, "input_output"},
-    {ErrorKind::kTryAgain, "try_again"},
-    {ErrorKind::kProtocol, "protocol"},
-    {ErrorKind::kInterrupted, "interrupted"},
-}};
-
-}  // namespace
 
 Json line_of(const Error& error) {
-  Json line;
-  for (const auto& [kind, name] : kKinds) {
-    if (kind == error.kind) line["kind"] = name;
-  }
-  line["what"] = error.what;
-  line["where"] = error.where;
-  line["why"] = error.why;
-  line["remedy"] = error.remedy;
-  return line;
+  return {{"kind", name_of(error.kind)},
+          {"what", error.what},
+          {"where", error.where},
+          {"why", error.why},
+          {"remedy", error.remedy}};
 }
 
 Error error_of_line(const Json& line) {
   JsonFields fields(line, "weft-camera");
-  Error error{ErrorKind::kProtocol, fields.text("what"), fields.text("where"), fields.text("why"),
-              fields.text("remedy")};
-  const std::string name = fields.text("kind");
-  for (const auto& [kind, known] : kKinds) {
-    if (name == known) error.kind = kind;
-  }
+  Error error{error_kind_of(fields.text("kind")).value_or(ErrorKind::kProtocol), fields.text("what"),
+              fields.text("where"), fields.text("why"), fields.text("remedy")};
   if (Result<void> ok = fields.status(); !ok) error.why = ok.error().message();
   return error;
 }

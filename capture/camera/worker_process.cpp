@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <signal.h>
 #include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -13,6 +12,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <system_error>
 #include <utility>
@@ -117,7 +117,7 @@ bool WorkerProcess::wait_readable(Deadline deadline) const {
   pollfd readable = {socket_, POLLIN, 0};
   for (;;) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Steady::now()).count();
-    const int ready = ::poll(&readable, 1, static_cast<int>(std::clamp<long>(left, 0, 3600 * 1000)));
+    const int ready = ::poll(&readable, 1, static_cast<int>(std::clamp(left, 0L, 3'600'000L)));
     if (ready > 0) return true;
     if (ready == 0 && Steady::now() >= deadline) return false;
     if (ready < 0 && errno != EINTR) return false;

@@ -79,13 +79,18 @@ double finite_positive(float value) {
   return std::isfinite(value) && value > 0 ? double{value} : 0;
 }
 
+// LibRaw keeps f/5.6 as a float, 5.599999904632568.
+double to_hundredths(double value) {
+  return std::round(100 * value) / 100;
+}
+
 ShotMetadata shot_of(const libraw_data_t& data) {
   return {.make = text_of(data.idata.make),
           .model = text_of(data.idata.model),
           .serial = text_of(data.shootinginfo.BodySerial),
           .exposure_us = 1e6 * finite_positive(data.other.shutter),
           .iso = finite_positive(data.other.iso_speed),
-          .f_number = finite_positive(data.other.aperture)};
+          .f_number = to_hundredths(finite_positive(data.other.aperture))};
 }
 
 /// The filter cell by LibRaw, at its visible area's (0, 0). Eight rows of two columns are the period of its

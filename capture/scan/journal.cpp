@@ -2,7 +2,6 @@
 #include "capture/scan/journal.h"
 
 #include <fcntl.h>
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -11,10 +10,10 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
-#include <cmath>
 #include <csignal>
 
 #include "core/files.h"
+#include "core/text.h"
 
 namespace weft::capture {
 namespace {
@@ -23,13 +22,6 @@ namespace fs = std::filesystem;
 
 constexpr const char* kCapturing = "capturing";
 constexpr const char* kComplete = "complete";
-
-/// ISO 8601 in UTC with milliseconds.
-std::string iso_time(double since_1970_s) {
-  const auto seconds = static_cast<std::time_t>(std::floor(since_1970_s));
-  const int milliseconds = static_cast<int>(1000 * (since_1970_s - std::floor(since_1970_s)));
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(seconds), milliseconds);
-}
 
 Result<void> make_session(const ScanRequest& request, const std::string& calibration_id, const ShotList& list,
                           const AfterStep& after_step) {

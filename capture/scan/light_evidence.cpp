@@ -72,8 +72,10 @@ std::vector<double> LightEvidence::glance(const RawFrame& frame) const {
 }
 
 void LightEvidence::accept(const PlannedShot& shot, std::vector<double> light) {
-  if (shot.role == ShotRole::kDark) dark_ = std::move(light);
-  if (shot.role == ShotRole::kLit) lit_[shot.index] = {shot, std::move(light)};
+  if (shot.role == ShotRole::kDark)
+    dark_ = std::move(light);
+  else if (shot.role == ShotRole::kLit)
+    lit_[shot.index] = {shot, std::move(light)};
 }
 
 void LightEvidence::forget(int index) {

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "core/camera_names.h"
 #include "core/files.h"
 
 namespace weft::capture {
@@ -86,7 +87,7 @@ Result<void> check_calibration(const ScanRequest& request, const CameraFacts& ca
       !are_one_model(camera.model, subject.camera_model)) {
     return unsuited(fmt::format("it is of a {}, the camera is a {}", subject.camera_model, camera.model));
   }
-  if (!camera.serial.empty() && !subject.camera_serial.empty() && camera.serial != subject.camera_serial) {
+  if (!same_serial(camera.serial, subject.camera_serial)) {
     return unsuited(fmt::format("it is of the body with serial number {}, this one has {}",
                                 subject.camera_serial, camera.serial));
   }

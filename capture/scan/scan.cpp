@@ -21,6 +21,7 @@
 #include "capture/scan/request_check.h"
 #include "capture/scan/second_copy.h"
 #include "capture/scan/shooter.h"
+#include "core/camera_names.h"
 
 namespace weft::capture {
 namespace {
@@ -132,11 +133,13 @@ class Scan {
     return {};
   }
 
-  /// The session's exposure, else the one asked for, else a metered one.
+  /// The exposure of the session's frames, else the one asked for, else a metered one. What was metered
+  /// before any frame was kept may have been metered in the wrong light.
   Result<void> choose_exposure() {
     exposure_ = request_.exposure;
-    const Json& document = journal_->session().document;
-    if (document.contains("exposure")) return take_up_exposure(document["exposure"]);
+    const Session& session = journal_->session();
+    if (session.document.contains("exposure") && !session.shots.empty())
+      return take_up_exposure(session.document["exposure"]);
     Json record = {{"from", "request"}};
     if (exposure_.exposure_us > 0) {
       const Result<double> settable = settable_time_us(shutter_times_us_, exposure_.exposure_us);
@@ -275,10 +278,9 @@ class Scan {
   Result<void> check_body(const ShotMetadata& shot, const std::string& where) const {
     if (!calibration_) return {};
     const CalibrationSubject& subject = calibration_->subject;
-    const auto differs = [](const std::string& a, const std::string& b) {
-      return !a.empty() && !b.empty() && a != b;
-    };
-    if (!differs(shot.model, subject.camera_model) && !differs(shot.serial, subject.camera_serial)) return {};
+    const bool is_same_model =
+        shot.model.empty() || subject.camera_model.empty() || shot.model == subject.camera_model;
+    if (is_same_model && same_serial(shot.serial, subject.camera_serial)) return {};
     return Error{ErrorKind::kBadData, "calibration is not of this camera", where,
                  fmt::format("it is of a {} with serial number {}, the frame of a {} with {}",
                              subject.camera_model, subject.camera_serial, shot.model, shot.serial),

@@ -7,6 +7,8 @@
 
 #include <fstream>
 
+#include "core/calibration.h"
+
 namespace weft::app {
 namespace {
 
@@ -25,7 +27,7 @@ class Machine {
  public:
   explicit Machine(const std::string& name) : root_(fs::path(testing::TempDir()) / ("doctor_" + name)) {
     fs::remove_all(root_);
-    for (const char* part : {"proc", "sys/bus/usb/devices", "dev/bus/usb/001", "udev"})
+    for (const char* part : {"proc", "sys/bus/usb/devices", "dev/bus/usb/001"})
       fs::create_directories(root_ / part);
     write("dev/ttyACM0", "");
     rig_.board.port = (root_ / "dev/ttyACM0").string();
@@ -55,7 +57,8 @@ class Machine {
   }
   void use_usb() { rig_.camera.port.clear(); }
   std::vector<Finding> examine() const {
-    return examine_ports(rig_, {root_ / "proc", root_ / "sys", root_ / "dev", root_ / "udev"});
+    return examine_ports(rig_,
+                         {root_ / "proc", root_ / "sys", root_ / "dev", {root_ / "etc", root_ / "lib"}});
   }
   const fs::path& root() const { return root_; }
   capture::Rig& rig() { return rig_; }
@@ -98,7 +101,7 @@ TEST(Doctor, WarnsOfAModemManagerThatWaitsUnlessOurRulesKeepItOff) {
   const Machine machine("waits");
   machine.runs(421, "ModemManager");
   EXPECT_THAT(machine.examine(), Contains(Field("verdict", &Finding::verdict, Verdict::kWarning)));
-  machine.write("udev/70-weft.rules", "");
+  machine.write("lib/70-weft.rules", "");
   EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)));
 }
 
@@ -133,7 +136,8 @@ TEST(Doctor, PassesOnWhatAPersonMustDoToTheCamera) {
        []() -> Result<capture::CameraFacts> {
          return Error{ErrorKind::kBadData, "the dial is not on M", "camera", "it is on A", "turn it to M"};
        }});
-  EXPECT_THAT(found, Contains(faults("camera", "the dial is not on M", "turn it to M")));
+  EXPECT_THAT(found, Contains(AllOf(faults("camera", "the dial is not on M", "turn it to M"),
+                                    Field("kind", &Finding::kind, ErrorKind::kBadData))));
 }
 
 TEST(Doctor, WarnsOfALowBatteryAndAClockThatIsOff) {
@@ -163,6 +167,25 @@ TEST(Doctor, RefusesTheCalibrationOfAnotherApertureOrNone) {
   machine.rig().scan.sessions = machine.root() / "scans";
   machine.rig().scan.calibration = machine.root() / "nowhere";
   EXPECT_THAT(examine_folders(machine.rig(), 1), Contains(faults("calibration", "", "")));
+}
+
+TEST(Doctor, KnowsACameraByItsNumberHoweverManyZerosItBeginsWith) {
+  Machine machine("serial");
+  capture::Rig& rig = machine.rig();
+  rig.scan.sessions = machine.root() / "scans";
+  rig.scan.calibration = machine.root() / "calibration";
+  Calibration calibration;
+  calibration.subject.rig = rig.name;
+  calibration.subject.camera_serial = "0006004711";
+  calibration.subject.f_number = rig.scan.f_number;
+  ASSERT_TRUE(write_calibration(rig.scan.calibration, calibration));
+  EXPECT_EQ(capture::camera_serial(rig), "0006004711");
+  const auto other_camera = Field("says", &Finding::says, HasSubstr("it is of camera 0006004711"));
+  rig.camera.serial = "6004711";
+  EXPECT_THAT(examine_folders(rig, 1), Not(Contains(other_camera)));
+  EXPECT_EQ(capture::camera_serial(rig), "6004711");
+  rig.camera.serial = "6004712";
+  EXPECT_THAT(examine_folders(rig, 1), Contains(other_camera));
 }
 
 }  // namespace

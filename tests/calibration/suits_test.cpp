@@ -59,13 +59,14 @@ TEST(Suits, NotTheCalibrationOfAnotherRig) {
 TEST(Suits, NotThatOfAnotherCameraModel) {
   Match match;
   match.frame.model = "NIKON D90";
-  EXPECT_EQ(match.verdict(), "it is of a NIKON D5100, the frames of a NIKON D90");
+  EXPECT_EQ(match.verdict(), "the calibration is of a NIKON D5100, the frame of a NIKON D90");
 }
 
 TEST(Suits, NotThatOfAnotherBodyOfTheSameModel) {
   Match match;
   match.frame.serial = "6099999";
-  EXPECT_EQ(match.verdict(), "it is of the body with serial number 6012345, the frames of 6099999");
+  EXPECT_EQ(match.verdict(),
+            "the calibration is of the body with serial number 6012345, the frame of 6099999");
 }
 
 TEST(Suits, WhereFramesDoNotSayWhatTookThem) {
@@ -83,6 +84,26 @@ TEST(Suits, NotAtAnotherApertureOfAnyShot) {
     match.session.shots[shot].f_number = 5.6;
     EXPECT_EQ(match.verdict(), "it holds at f/8, raw/0" + std::to_string(shot) + ".nef was taken at f/5.6");
   }
+}
+
+TEST(Suits, HoweverItsApertureWasRounded) {
+  for (const double f_number : {1.4, 2.8, 5.6, 6.3}) {
+    Match match;
+    for (Shot& shot : match.session.shots) shot.f_number = f_number;
+    match.calibration.subject.f_number = double{static_cast<float>(f_number)};
+    match.frame.f_number = f_number + 0.01;
+    EXPECT_EQ(match.verdict(), "suits") << "f/" << f_number;
+  }
+  EXPECT_FALSE(same_setting(5.6, 6.3)) << "a third of a stop";
+}
+
+TEST(Suits, NotAtAnotherIsoThanItsResponseWasMeasuredAt) {
+  Match match;
+  for (Shot& shot : match.session.shots) shot.iso = 100;
+  match.calibration.response->iso = 400;
+  EXPECT_EQ(match.verdict(), "its response was measured at ISO 400, raw/00.nef was taken at ISO 100");
+  match.calibration.response->iso = 100;
+  EXPECT_EQ(match.verdict(), "suits");
 }
 
 TEST(Suits, NotWithALedItDoesNotMeasure) {

@@ -148,6 +148,7 @@ TEST(Calibration, ReturnsColorFiducialsBlackAndTheCameraCovariance) {
   Calibration written = full_calibration();
   written.subject.measured = "2026-01-31T12:00:00Z";
   written.response->black_counts = 600.25;
+  written.response->iso = 400;
   written.camera_covariance = ParameterCovariance{{"fx", "fy"}, {0.04, 0.01, 0.01, 0.09}};
   written.fiducials = {{"DICT_APRILTAG_36h11", 3, {{{1, 2, 0}, {3, 2, 0}, {3, 0.1, 0}, {1, 0.1, 0}}}}};
   written.color = ColorTransform{{{{1.5, -0.4, -0.1}, {-0.2, 1.3, -0.1}, {0, -1.0 / 3, 4.0 / 3}}},

@@ -145,6 +145,17 @@ TEST(PublishFolder, ReportsANameThatIsTooLong) {
   EXPECT_THAT(said, HasSubstr("File name too long"));
 }
 
+TEST(PartialFolder, TakesANameWithASlashAtItsEnd) {
+  const ScratchFolder folder;
+  EXPECT_EQ(absolute_folder(folder / "a/./b/"), folder / "a/b");
+  PartialFolder partial(folder / "new/");
+  ASSERT_TRUE(make_writable_folder(partial.path()));
+  EXPECT_FALSE(is_there(folder / "new"));
+  const Result<void> published = partial.publish();
+  ASSERT_TRUE(published) << published.error().message();
+  EXPECT_TRUE(is_there(folder / "new"));
+}
+
 TEST(MakeWritableFolder, MakesParentsAndAcceptsAFolderThatIsThere) {
   const ScratchFolder folder;
   for (int i = 0; i < 2; ++i) EXPECT_TRUE(make_writable_folder(folder / "a/b/c"));

@@ -35,6 +35,7 @@ simulator::Scene rig_scene() {
   scene.camera.width = 640;
   scene.camera.height = 420;
   scene.camera.mm_per_pixel = 0.3;
+  scene.camera.f_number = 5.6;
   scene.camera.pose = {.tilt_deg = 0.5, .azimuth_deg = 35};
   scene.camera.lens = {.k1 = -0.1, .k2 = 0.05, .offset_x_px = 5, .offset_y_px = 3};
   scene.camera.blur = {.defocus_px = 0.8, .spread_px = 0.6};
@@ -250,6 +251,28 @@ TEST_F(CalibrateCamera, KeepsTheOtherPartsAndSaysThatTheLightsAreOfAnotherFrame)
   const auto again = calibrate_camera(with_old, {});
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().kind, ErrorKind::kCannotCreate);
+}
+
+TEST_F(CalibrateCamera, LeavesOutWhatIsNotTrueOfItsOwnTable) {
+  photograph_boards(8);
+  // A second photograph of the table, whose tag lies elsewhere, and old patches.
+  simulator::Scene moved = photograph_scene(0);
+  moved.targets[0].centre_mm.y -= 5;
+  photograph("table02.dng", moved);
+  const Result<simulator::Rig> rig = simulator::rig_of(rig_scene());
+  ASSERT_TRUE(rig);
+  Calibration before = simulator::exact_calibration(rig_scene(), *rig);
+  before.patches = {{{{10, 10}, {30, 10}, {30, 30}}, {0.88, 0.88, 0.88}}};
+  ASSERT_TRUE(write_calibration(work_ / "old", before));
+  CalibrateCameraOptions with_old = options();
+  with_old.from = work_ / "old";
+  const auto outcome = calibrate_camera(with_old, {});
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_THAT(outcome->calibration.fiducials, testing::IsEmpty());
+  EXPECT_THAT(outcome->warnings, testing::Contains(HasSubstr("tag 5")));
+  EXPECT_THAT(outcome->calibration.patches, testing::IsEmpty());
+  EXPECT_THAT(outcome->warnings, testing::Contains(HasSubstr("weft calibrate patches")));
+  EXPECT_TRUE(outcome->calibration.lights);
 }
 
 }  // namespace

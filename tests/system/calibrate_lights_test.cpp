@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "app/jobs/calibrate/sheet_captures.h"
 #include "app/jobs/calibrate/sheet_files.h"
 #include "core/calibration.h"
 #include "core/files.h"
@@ -201,6 +202,38 @@ TEST_F(CalibrateLights, AsTheSeedDoesSaysWhatItCannotDo) {
   const NearLights tape = *read_rig_file(options_.input / "rig.toml");
   EXPECT_EQ(std::get<NearLights>(*read_calibration(options_.output)->lights).leds[3].position_mm,
             tape.leds[3].position_mm);
+}
+
+TEST_F(CalibrateLights, LeavesOutPatchesThatTheOldLightsMeasured) {
+  Calibration patched = *read_calibration(options_.from);
+  patched.patches = {{{{10, 10}, {30, 10}, {30, 30}}, {0.5, 0.5, 0.5}}};
+  ASSERT_TRUE(write_calibration(work_ / "patched", patched));
+  options_.from = work_ / "patched";
+  options_.method = LightsMethod::kSeed;
+  const CalibrateOutcome outcome = done();
+  EXPECT_TRUE(any_has(outcome.warnings, "weft calibrate patches"));
+  EXPECT_TRUE(outcome.calibration.patches.empty());
+  options_.input = "nothing";
+  const auto again = calibrate_lights(options_, {});
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().kind, ErrorKind::kCannotCreate) << "the output is looked at first";
+}
+
+TEST(MergedBlocks, ReachAllEdgesOfTheFrame) {
+  const Size size = {4928, 3264};
+  SheetCaptures all;
+  SheetCapture& capture = all.captures.emplace_back();
+  calibration::BlockGrid& grid = capture.leds.emplace_back(size, all.block_px);
+  for (calibration::BlockMean& block : grid.blocks) block.reading = 1;
+  all.columns = grid.columns;
+  all.rows = grid.rows;
+  const auto blocks = static_cast<std::size_t>(grid.columns) * static_cast<std::size_t>(grid.rows);
+  capture.is_paper.assign(blocks, 1);
+  const auto readings = merged_blocks(all, {std::vector<char>(blocks)}, {size, 26, 17});
+  ASSERT_EQ(readings.size(), 26U * 17U);
+  EXPECT_LT(readings.front().x_px, 100);
+  EXPECT_GT(readings.back().x_px, 4928 - 100) << "of 4928 pixels";
+  EXPECT_GT(readings.back().y_px, 3264 - 100) << "of 3264 pixels";
 }
 
 TEST_F(CalibrateLights, FromOneFlatSheetIsWeakAndSaysSo) {

@@ -102,6 +102,7 @@ TEST(CalibrateResponse, MeasuresASensorFromItsFrames) {
   EXPECT_NEAR(response.electrons_per_count, truth.electrons_per_count, 0.03 * truth.electrons_per_count);
   EXPECT_NEAR(response.read_noise_counts, truth.read_noise_counts, 0.05 * truth.read_noise_counts);
   EXPECT_FALSE(response.black_counts) << "the file's is right";
+  EXPECT_EQ(response.iso, 100);
   EXPECT_NEAR(outcome->report.numbers["black_counts"].get<double>(), 600, 0.1);
   for (const auto& [a, b] : response.linearity) {
     EXPECT_LT(calibration::departure_from_line({a - 0.017, b - 0.0085}), 0.001);
@@ -120,6 +121,21 @@ TEST(CalibrateResponse, MeasuresASensorFromItsFrames) {
   const std::string page = bytes_of(work / "new" / "report" / "response.html");
   EXPECT_THAT(page, HasSubstr("Photon transfer"));
   EXPECT_THAT(page, HasSubstr("<svg"));
+}
+
+TEST(CalibrateResponse, KeepsPhotositesThatAreHotOnlyInLongExposures) {
+  const Workspace work;
+  Frames frames;
+  frames.add_all(work / "response");
+  frames.add(work / "response", "dark", 0, 0, kExposures_us[0], 3);
+  frames.change = [](RawFrame& frame) { frame.counts(60, 20) = 4000; };
+  frames.add(work / "response", "dark", 0, 0, kExposures_us[5], 3);
+  const auto outcome = calibrate(work);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_EQ(outcome->report.numbers["hot"], 3);
+  const auto hot = read_image(work / "new" / "hot.png");
+  ASSERT_TRUE(hot) << hot.error().message();
+  EXPECT_EQ(hot->planes(60, 20), 1.0F);
 }
 
 TEST(CalibrateResponse, FindsTheBlackLevelOfABodyThatClipsIt) {
@@ -185,9 +201,23 @@ TEST(CalibrateResponse, ChecksLinearityOnAGreyScale) {
   ASSERT_TRUE(with) << with.error().message();
   EXPECT_LT(with->report.numbers["scale"]["rms_percent"].get<double>(), 1);
   EXPECT_NEAR(with->report.numbers["scale"]["v_of_white"][1].get<double>(), 0.8, 0.01);
+  // The white patch of another photograph is full.
+  fs::remove_all(work / "new");
+  const RawFrame brighter = frames.sensor.frame(kSize, 901, 40000, [&](int x, int y, int) {
+    const int patch = (x - 6) / 20;
+    const bool inside = x >= 6 && patch < 9 && (x - 6) % 20 < 18 && y >= 50 && y < 68;
+    return inside ? 1.2 * scale[static_cast<std::size_t>(patch)].reflectance : 0.7;
+  });
+  ASSERT_TRUE(simulator::write_dng(work / "response" / "scale" / "brighter.dng", brighter));
+  const auto both = calibrate(work);
+  ASSERT_TRUE(both) << both.error().message();
+  EXPECT_LT(both->report.numbers["scale"]["rms_percent"].get<double>(), 1);
+  EXPECT_NEAR(both->report.numbers["scale"]["v_of_white"][1].get<double>(), 1, 0.01);
   fs::remove_all(work / "new");
   ASSERT_TRUE(write_file(work / "response" / "scale" / "scale.toml", "reflectance = [1, 2]\n"));
-  EXPECT_THAT(refusal(work), HasSubstr("reflectance means nothing"));
+  fs::remove_all(work / "response" / "dark");
+  fs::remove_all(work / "response" / "led01");
+  EXPECT_THAT(refusal(work), HasSubstr("reflectance means nothing")) << "before any frame is looked at";
 }
 
 TEST(CalibrateResponse, CountsFramesThatAreFull) {
@@ -227,7 +257,31 @@ TEST(CalibrateResponse, RefusesFramesOfAnotherBodyIsoOrAperture) {
   before.subject = {"rig B", "virtual camera", "another", 8, "absolute"};
   before.response = Response();
   ASSERT_TRUE(write_calibration(work / "old", before));
-  EXPECT_THAT(refusal(work, work / "old"), HasSubstr("serial number virtual, the calibration of another"));
+  EXPECT_THAT(refusal(work, work / "old"), HasSubstr("serial number another, the frame of virtual"));
+  before.subject.camera_serial.clear();
+  before.camera = overhead_camera({kSize.width + 16, kSize.height}, 600, 0.1);
+  ASSERT_TRUE(write_calibration(work / "larger", before));
+  EXPECT_THAT(refusal(work, work / "larger"),
+              HasSubstr("192 x 128 pixels, the calibration's camera 208 x 128"));
+}
+
+TEST(CalibrateResponse, LooksAtItsOutputBeforeItsFrames) {
+  const Workspace work;
+  fs::create_directories(work / "new");
+  const auto outcome = calibrate(work);
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().kind, ErrorKind::kCannotCreate);
+}
+
+TEST(CalibrateResponse, TakesAnOutputWithASlashAtItsEnd) {
+  const Workspace work;
+  Frames().add_all(work / "response");
+  CalibrateResponseOptions options;
+  options.input = work / "response/";
+  options.output = work / "new/";
+  const auto outcome = calibrate_response(options, {});
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_TRUE(is_there(work / "new" / "hot.png"));
 }
 
 TEST(CalibrateResponse, RefusesALedThatDidNotLight) {

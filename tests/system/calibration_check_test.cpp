@@ -13,6 +13,7 @@
 #include "app/jobs/calibrate/update.h"
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
+#include "calibration/camera/pose.h"
 #include "core/files.h"
 #include "simulator/captures.h"
 #include "simulator/captures_layout.h"
@@ -142,6 +143,51 @@ TEST_F(CalibrationCheck, RefusesTapeMeasuredLights) {
   EXPECT_THAT(outcome->report.summary, HasSubstr("Refused"));
 }
 
+TEST_F(CalibrationCheck, RefusesSlopesThatPointAside) {
+  Calibration turned = *read_calibration(root_ / "rig" / "first");
+  const Mat3 turn = calibration::rotation_of({0, 0, radians(3)});
+  for (NearLight& led : std::get<NearLights>(*turned.lights).leds) {
+    led.position_mm = turn * led.position_mm;
+    led.aim = turn * led.aim;
+  }
+  ASSERT_TRUE(write_calibration(root_ / "turned", turned));
+  const auto outcome =
+      calibrate_check({.input = root_ / "check" / "plane.weft", .from = root_ / "turned"}, {});
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  ASSERT_EQ(outcome->report.verdicts.size(), 1U) << outcome->report.verdicts.back().text;
+  EXPECT_EQ(outcome->report.verdicts[0].name, "SLOPES_OFF");
+}
+
+TEST_F(CalibrationCheck, ReadsTheKnownPlaneOfASingleSession) {
+  const fs::path file = root_ / "check" / "check.toml";
+  const CalibrateCheckOptions options = {.input = root_ / "check" / "plane.weft",
+                                         .from = root_ / "rig" / "first"};
+  ASSERT_TRUE(write_file(file, "[[plane]]\nsession = \"plane.weft\"\ntilt_deg = 25\nazimuth_deg = 210\n"));
+  const auto outcome = calibrate_check(options, {});
+  ASSERT_TRUE(write_file(file, "[[plane]]\nsession = \"plane.weft\"\ntilt = 25\n"));
+  const auto unknown = calibrate_check(options, {});
+  fs::remove(file);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_NEAR(outcome->report.numbers["sheets"][0]["tilt_deg"].get<double>(), 25, 1e-6);
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().message(), HasSubstr("tilt"));
+}
+
+TEST_F(CalibrationCheck, RefusesSessionsOfDifferentCalibrations) {
+  const fs::path mixed = root_ / "mixed";
+  fs::create_directories(mixed);
+  fs::copy(root_ / "check" / "plane.weft", mixed / "a.weft", fs::copy_options::recursive);
+  fs::copy(root_ / "check" / "plane.weft", mixed / "b.weft", fs::copy_options::recursive);
+  fs::remove_all(mixed / "b.weft" / "calibration");
+  fs::copy(root_ / "rig" / "first", mixed / "b.weft" / "calibration", fs::copy_options::recursive);
+  Session session = *read_session(mixed / "b.weft");
+  session.calibration_id = read_calibration(root_ / "rig" / "first")->id;
+  ASSERT_TRUE(write_session(session));
+  const auto outcome = calibrate_check({.input = mixed, .sheet = root_ / "check" / "sheet.toml"}, {});
+  ASSERT_FALSE(outcome);
+  EXPECT_THAT(outcome.error().message(), HasSubstr("different calibrations"));
+}
+
 TEST_F(CalibrationCheck, NamesWhatItCannotCheckWith) {
   const auto empty = calibrate_check({.input = root_ / "rig"}, {});
   ASSERT_FALSE(empty);
@@ -154,6 +200,9 @@ TEST_F(CalibrationCheck, NamesWhatItCannotCheckWith) {
   const auto squares = calibrate_check({.input = root_ / "check", .square_px = 7}, {});
   ASSERT_FALSE(squares);
   EXPECT_EQ(squares.error().kind, ErrorKind::kUsage);
+  const auto there = calibrate_check_rig({.session = root_ / "nothing", .output = root_ / "rig"}, {});
+  ASSERT_FALSE(there);
+  EXPECT_EQ(there.error().kind, ErrorKind::kCannotCreate) << "the output is looked at first";
 }
 
 TEST_F(CalibrationCheck, FindsNothingOnARigThatStoodStill) {
@@ -242,6 +291,17 @@ TEST_F(CalibrationCheck, ADimmedLedIsFoundInTheLightOfThePatches) {
   EXPECT_EQ(check->report.verdicts[0].name, "LED_FADED");
   EXPECT_EQ(check->report.numbers["changes"][0]["led"], 4);
   EXPECT_NEAR(check->report.numbers["changes"][0]["factor"].get<double>(), 0.95, 0.005);
+  const auto update = calibrate_update(
+      {.session = root_ / "dim.weft", .from = root_ / "rig" / "first", .output = root_ / "dim"}, {});
+  EXPECT_TRUE(update) << update.error().message();
+
+  // By tags alone nothing is said of LEDs.
+  Calibration no_patch = *read_calibration(root_ / "rig" / "first");
+  no_patch.patches.clear();
+  ASSERT_TRUE(write_calibration(root_ / "no patch", no_patch));
+  const auto blind = calibrate_check_rig({.session = root_ / "dim.weft", .from = root_ / "no patch"}, {});
+  ASSERT_TRUE(blind) << blind.error().message();
+  EXPECT_THAT(blind->report.summary, HasSubstr("LEDs were not checked"));
 }
 
 TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
@@ -253,6 +313,7 @@ TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
   ASSERT_TRUE(calibration);
   CalibrationReport good, bad;
   good.part = bad.part = "check";
+  good.numbers = {{"readings", 40}};
   bad.numbers = {{"cost_mean_deg", 0.4}, {"cost_worst_deg", 0.9}, {"changes", Json::array()}};
   bad.verdicts = {{"TABLE_MOVED", "The table has moved", "update"}};
   ASSERT_TRUE(write_check_result(rig / "a", "session", *calibration, good, "2026-03-02T08:00:00Z"));
@@ -276,6 +337,39 @@ TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
   EXPECT_EQ(history->affected[0].predicted_mean_deg, 0.4);
   ASSERT_EQ(history->warnings.size(), 1U);
   EXPECT_THAT(history->warnings[0], HasSubstr("s3.weft"));
+}
+
+TEST_F(CalibrationCheck, TagsAloneDoNotClearLedsAndSheetsPredictNoError) {
+  const fs::path rig = root_ / "blind rig", sessions = root_ / "later sessions";
+  fs::create_directories(sessions / "s.weft");
+  fs::create_directories(rig);
+  fs::copy(root_ / "rig" / "first", rig / "first");
+  const auto calibration = read_calibration(rig / "first");
+  ASSERT_TRUE(calibration);
+  CalibrationReport tags, faded, sheets;
+  tags.part = faded.part = sheets.part = "check";
+  tags.numbers = {{"corners", 16}, {"readings", 0}};
+  faded.numbers = {{"cost_mean_deg", 0.4}, {"changes", {{{"change", "LED_FADED"}, {"led", 4}}}}};
+  faded.verdicts = sheets.verdicts = {{"LED_FADED", "LED 4 has faded", "update"}};
+  ASSERT_TRUE(write_check_result(rig / "tags", "session", *calibration, tags, "2026-03-03T08:00:00Z"));
+  ASSERT_TRUE(write_check_result(rig / "faded", "session", *calibration, faded, "2026-03-04T08:00:00Z"));
+  Session session = *read_session(root_ / "cloth.weft");
+  session.folder = sessions / "s.weft";
+  session.document = {};
+  session.calibration_id = calibration->id;
+  for (Shot& shot : session.shots) shot.time = "2026-03-02T12:00:00Z";
+  ASSERT_TRUE(write_session(session));
+  const auto history = calibrate_history({rig, sessions, {}}, {});
+  ASSERT_TRUE(history) << history.error().message();
+  ASSERT_EQ(history->affected.size(), 1U) << "tags do not tell whether the LED had faded already";
+  EXPECT_EQ(history->affected[0].predicted_mean_deg, 0.4);
+
+  fs::remove_all(rig / "faded");
+  ASSERT_TRUE(write_check_result(rig / "sheets", "sheets", *calibration, sheets, "2026-03-04T08:00:00Z"));
+  const auto by_sheets = calibrate_history({rig, sessions, {}}, {});
+  ASSERT_TRUE(by_sheets) << by_sheets.error().message();
+  ASSERT_EQ(by_sheets->affected.size(), 1U);
+  EXPECT_FALSE(by_sheets->affected[0].predicted_mean_deg);
 }
 
 TEST(CalibrationHistory, ReadsDatesAndRefusesWhatIsNone) {

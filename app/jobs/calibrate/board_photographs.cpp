@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "app/jobs/linear_image.h"
+#include "calibration/suits.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
 #include "core/files.h"
@@ -76,11 +77,9 @@ void keep_one_camera(const std::optional<CalibrationSubject>& subject, BoardPhot
   // A size that the subject's photographs have counts before one of a photograph of another camera.
   const auto fits_subject = [&](const Setting& s) {
     if (!subject) return true;
-    const auto agrees = [](const std::string& said, const std::string& known) {
-      return said.empty() || known.empty() || said == known;
-    };
-    return agrees(std::get<0>(s), subject->camera_model) && agrees(std::get<1>(s), subject->camera_serial) &&
-           (std::get<2>(s) == 0 || subject->f_number == 0 || std::get<2>(s) == subject->f_number);
+    ShotMetadata shot;
+    std::tie(shot.model, shot.serial, shot.f_number, std::ignore, std::ignore) = s;
+    return !calibration::difference(*subject, shot);
   };
   const auto most = std::max_element(votes.begin(), votes.end(), [&](const auto& a, const auto& b) {
     return std::pair(fits_subject(a.first), a.second) < std::pair(fits_subject(b.first), b.second);

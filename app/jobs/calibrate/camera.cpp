@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <utility>
 
 #include "app/jobs/calibrate/camera_report.h"
+#include "app/jobs/calibrate/patches.h"
 #include "calibration/camera/lens.h"
 #include "core/files.h"
 
@@ -19,6 +22,8 @@ using calibration::BoardView;
 using calibration::LensFit;
 using calibration::TagSighting;
 
+constexpr double kMostScatter_px = 1;  // of a tag's corner over the photographs of the table
+
 Result<void> check_options(const CalibrateCameraOptions& options) {
   const auto refused = [](const char* name, const char* rule) {
     return Error{ErrorKind::kUsage, "option is out of its range", name, rule, "give a value in that range"};
@@ -29,11 +34,7 @@ Result<void> check_options(const CalibrateCameraOptions& options) {
     return refused("least_boards", "it is 3 to 1000");
   if (!(options.most_focal_percent >= 0.001 && options.most_focal_percent <= 10))
     return refused("most_focal_percent", "it is 0.001 to 10");
-  if (is_there(options.output)) {
-    return Error{ErrorKind::kCannotCreate, "the new calibration is there already", options.output.string(),
-                 "a calibration is never changed in place", "name another folder"};
-  }
-  return {};
+  return check_new(options.output);
 }
 
 // The views to fit, the first of them on the table.
@@ -62,15 +63,27 @@ Error with_names(Error error, const BoardPhotographs& all) {
   return error;
 }
 
-// Where each tag lies that photographs of the table show: the mean over them, on the table.
-std::vector<Fiducial> fiducials_of(const BoardPhotographs& all, const CameraModel& camera) {
+// Where each tag lies that the photographs of the table show: the mean over them, on the table. One that was
+// moved between them is none.
+std::vector<Fiducial> fiducials_of(const BoardPhotographs& all, const CameraModel& camera,
+                                   std::vector<std::string>& warnings) {
   std::map<std::pair<std::string, int>, std::vector<TagSighting>> seen;
   for (const BoardPhotograph& p : all.photographs) {
-    if (p.size != camera.size) continue;
+    if (!p.left_out.empty()) continue;
     for (const TagSighting& tag : p.tags) seen[{tag.dictionary, tag.id}].push_back(tag);
   }
   std::vector<Fiducial> fiducials;
   for (const auto& [name, sightings] : seen) {
+    const std::array<calibration::PixelPoint, 4>& first = sightings.front().corners_px;
+    const bool was_moved = std::any_of(sightings.begin(), sightings.end(), [&](const TagSighting& tag) {
+      return std::hypot(tag.corners_px[0].x - first[0].x, tag.corners_px[0].y - first[0].y) > kMostScatter_px;
+    });
+    if (was_moved) {
+      warnings.push_back(
+          fmt::format("tag {} of {} was left out: it moved between the photographs of the table", name.second,
+                      name.first));
+      continue;
+    }
     Fiducial fiducial = {name.first, name.second, {}};
     for (std::size_t k = 0; k < 4; ++k) {
       for (const TagSighting& tag : sightings) {
@@ -88,12 +101,10 @@ CalibrationSubject subject_of(const CalibrateCameraOptions& options, const std::
                               const ShotMetadata& camera) {
   CalibrationSubject subject = from ? from->subject : CalibrationSubject();
   subject.measured.clear();
-  if (!options.rig.empty()) subject.rig = options.rig;
-  if (subject.rig.empty())
-    subject.rig = fs::absolute(options.input).lexically_normal().parent_path().filename().string();
-  if (!camera.model.empty()) subject.camera_model = camera.model;
-  if (!camera.serial.empty()) subject.camera_serial = camera.serial;
-  if (camera.f_number > 0) subject.f_number = camera.f_number;
+  if (subject.rig.empty() || !options.rig.empty()) subject.rig = rig_name(options.rig, options.input);
+  if (subject.camera_model.empty()) subject.camera_model = camera.model;
+  if (subject.camera_serial.empty()) subject.camera_serial = camera.serial;
+  if (subject.f_number == 0) subject.f_number = camera.f_number;
   return subject;
 }
 
@@ -139,10 +150,15 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
   change.subject = subject_of(options, from, all->camera);
   change.camera = fit->camera;
   change.camera_covariance = fit->covariance;
-  change.fiducials = fiducials_of(*all, fit->camera);
+  change.fiducials = fiducials_of(*all, fit->camera, outcome.warnings);
+  if (from && !from->patches.empty()) {
+    change.lights = from->lights;
+    change.light_covariance = from->light_covariance;
+    outcome.warnings.push_back(patches_left_out("camera"));
+  }
   const CameraFacts facts = {*all, *viewed, views, *fit, change.fiducials, from, change.subject.rig};
   outcome.report = camera_report(facts);
-  outcome.warnings = left_out(facts);
+  for (std::string& warning : left_out(facts)) outcome.warnings.push_back(std::move(warning));
   Result<Calibration> written =
       derive_calibration(options.from, std::move(change), options.output, report_files(outcome.report));
   if (!written) return std::move(written).error();

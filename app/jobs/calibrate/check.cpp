@@ -2,13 +2,13 @@
 #include "app/jobs/calibrate/check.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "app/jobs/calibrate/check_result.h"
+#include "app/jobs/calibrate/history.h"
 #include "app/jobs/calibrate/movement_words.h"
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/calibrate/sheet_evidence.h"
@@ -16,12 +16,15 @@
 #include "app/jobs/figures.h"
 #include "app/jobs/session_input.h"
 #include "core/files.h"
+#include "core/toml/toml_keys.h"
 
 namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
 using calibration::SheetCheck;
+
+constexpr const char* kPage = "docs/calibration.md";
 
 struct CheckedSheet {
   std::string name;
@@ -54,33 +57,24 @@ Result<std::vector<fs::path>> sessions_in(const fs::path& input) {
 /// Normals of sheets on wedges, by session, of check.toml.
 Result<std::map<std::string, Vec3>> known_planes(const fs::path& input) {
   std::map<std::string, Vec3> planes;
-  const fs::path file = input / "check.toml";
+  const fs::path file = in_or_beside(input, "check.toml");
   if (!is_there(file)) return planes;
-  const Result<std::string> text = read_text(file);
-  if (!text) return text.error();
-  const auto refused = [&](std::string why) {
-    return Error{ErrorKind::kBadData, "the description of planes cannot be used", file.string(),
-                 std::move(why), "give each [[plane]] a session, tilt_deg from 0 to 60 and azimuth_deg"};
-  };
-  try {
-    const toml::table table = toml::parse(*text);
-    const toml::array* list = table["plane"].as_array();
-    if (list == nullptr) return refused("there is no [[plane]]");
-    for (const toml::node& entry : *list) {
-      const toml::table* plane = entry.as_table();
-      if (plane == nullptr) return refused("a plane is no table");
-      const auto session = (*plane)["session"].value<std::string>();
-      const auto tilt_deg = (*plane)["tilt_deg"].value<double>();
-      const auto azimuth_deg = (*plane)["azimuth_deg"].value<double>();
-      if (!session || !tilt_deg || !azimuth_deg || !(*tilt_deg >= 0 && *tilt_deg <= 60) ||
-          !std::isfinite(*azimuth_deg))
-        return refused("a plane lacks a key or has one out of range");
-      if (!is_there(input / *session)) return refused(*session + " is not there");
-      const double t = radians(*tilt_deg), a = radians(*azimuth_deg);
-      planes[*session] = {std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)};
-    }
-  } catch (const toml::parse_error& e) {
-    return refused(fmt::format("line {}: {}", e.source().begin.line, e.description()));
+  const Result<toml::table> table = read_toml(file);
+  if (!table) return table.error();
+  TomlKeys keys(*table, file.string(), kPage);
+  keys.know({"plane"});
+  const std::vector<const toml::table*> list = keys.tables("plane");
+  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    TomlKeys plane(*list[i], fmt::format("{}: plane {}", file.string(), i + 1), kPage);
+    plane.know({"session", "tilt_deg", "azimuth_deg"});
+    const std::string session = plane.text_or("session", "");
+    const double t = radians(plane.number("tilt_deg", 0, 60)),
+                 a = radians(plane.number("azimuth_deg", -360, 360));
+    if (session.empty() || !is_there(file.parent_path() / session))
+      plane.reject("session", "it must name a session beside this file");
+    if (Result<void> ok = plane.status(); !ok) return std::move(ok).error();
+    planes[session] = {std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)};
   }
   return planes;
 }
@@ -99,6 +93,11 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
                                    std::string& taken_at) {
   Result<SessionPlan> plan = plan_session({session, options.from, {}});
   if (!plan) return plan.error();
+  if (!calibration.id.empty() && plan->calibration.id != calibration.id) {
+    return Error{ErrorKind::kBadData, "the sessions were taken with different calibrations", session.string(),
+                 fmt::format("it has {:.12}, those before have {:.12}", plan->calibration.id, calibration.id),
+                 "name the calibration to check with --from, or check each session alone"};
+  }
   plan->calibration.patches.clear();  // the sheet may cover them: drift is what the repeat shot says
   const Result<Photographs> photographs = load_session(*plan, context);
   if (!photographs) return photographs.error();
@@ -121,7 +120,8 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
   checked.rows = evidence->rows;
   checked.drift = drift_in(photographs->conditions);
   checked.warnings = photographs->warnings;
-  if (!plan->lit.empty()) taken_at = plan->lit.front().time;
+  if (const std::string& time = plan->lit.front().time; seconds_of(time) > seconds_of(taken_at))
+    taken_at = time;
   return checked;
 }
 
@@ -141,6 +141,15 @@ std::vector<Verdict> verdicts_of(const CheckedSheet& sheet, const calibration::C
            fmt::format("{}: slopes come out {:.4f} ± {:.4f} times as steep as they are, and 1 ± {} is "
                        "allowed",
                        sheet.name, *check.slope_gain, check.slope_gain_sigma, limits.slope_gain),
+           kRemedy});
+    }
+    const double most_rms_deg = std::hypot(limits.tilted_rms_deg, check.normal_sigma_deg);
+    if (check.rms_deg > most_rms_deg || check.pattern_rms_deg > limits.tilted_rms_deg) {
+      verdicts.push_back(
+          {"SLOPES_OFF",
+           fmt::format("{}: normals of a tilted sheet are {:.3f} degrees rms off ({:.3f} about their mean), "
+                       "and {:.3f} ({}) are allowed",
+                       sheet.name, check.rms_deg, check.pattern_rms_deg, most_rms_deg, limits.tilted_rms_deg),
            kRemedy});
     }
   } else if (check.rms_deg > limits.flat_rms_deg) {
@@ -173,8 +182,10 @@ CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const C
   section.paragraphs = {fmt::format(
       "Each sheet was solved in squares of {} pixels, at the point that its tags give. A flat sheet may be "
       "{} "
-      "degrees rms from flat, slopes 1 ± {} times as steep as they are, LEDs may drift by {} percent.",
-      options.square_px, options.limits.flat_rms_deg, options.limits.slope_gain, 100 * options.limits.drift)};
+      "degrees rms from flat, a tilted one {} off, slopes 1 ± {} times as steep as they are, LEDs may drift "
+      "by {} percent.",
+      options.square_px, options.limits.flat_rms_deg, options.limits.tilted_rms_deg,
+      options.limits.slope_gain, 100 * options.limits.drift)};
   section.table->header = {"sheet",          "tilt, degrees", "squares",    "rms, degrees",
                            "about the mean", "worst",         "slope gain", "drift, percent"};
   bool has_tilted = false;
@@ -263,8 +274,11 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
         "worst",
         rig.cost.mean_deg, rig.cost.worst_deg);
   } else {
-    report.summary = report.verdicts.empty() ? "Nothing has moved since the rig was calibrated"
-                                             : "The rig is not as it was calibrated, and nothing says why";
+    report.summary =
+        !report.verdicts.empty() ? "The rig is not as it was calibrated, and nothing says why"
+        : movement.readings == 0 ? "Camera and table are as they were calibrated; LEDs were not checked"
+        : movement.corners == 0  ? "LEDs are as they were calibrated; camera against table was not checked"
+                                 : "Nothing has moved since the rig was calibrated";
   }
   report.sections.push_back(std::move(section));
   return report;
@@ -286,10 +300,10 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
   Result<calibration::RigEvidence> evidence = rig_evidence(calibration, *photographs);
   if (!evidence) return std::move(evidence).error();
   if (!options.sheet.empty()) {
-    constexpr int kSquare_px = 128;
     const Result<TaggedSheet> sheet = read_sheet_file(options.sheet);
     if (!sheet) return sheet.error();
-    const int side = std::clamp(plan->size.width / 10 & ~1, 16, kSquare_px);
+    // Every reading is weighed against every other one: about 10 squares by 7, whatever the frame.
+    const int side = std::max(std::max(plan->size.width, plan->size.height) / 10 & ~1, 16);
     const auto seen =
         sheet_evidence(calibration, *photographs, *sheet, side, options.session.string(), context);
     if (!seen) return seen.error();
@@ -318,13 +332,11 @@ Result<CalibrateOutcome> calibrate_check(const CalibrateCheckOptions& options, c
     return usage("square_px", "it is even, 8 to 512");
   if (options.paper_delta && !(*options.paper_delta >= -0.5 && *options.paper_delta <= 1))
     return usage("paper_delta", "it is -0.5 to 1");
-  if (!options.output.empty() && is_there(options.output)) {
-    return Error{ErrorKind::kCannotCreate, "there is a result already", options.output.string(),
-                 "results are never overwritten", "choose another name with -o"};
-  }
+  if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
   const Result<std::vector<fs::path>> sessions = sessions_in(options.input);
   if (!sessions) return sessions.error();
-  const Result<TaggedSheet> sheet = read_sheet_file(sheet_file_of(options.sheet, options.input));
+  const Result<TaggedSheet> sheet =
+      read_sheet_file(options.sheet.empty() ? in_or_beside(options.input, "sheet.toml") : options.sheet);
   if (!sheet) return sheet.error();
   const auto planes = known_planes(options.input);
   if (!planes) return planes.error();
@@ -355,6 +367,7 @@ Result<RigCheck> look_at_rig(const CheckRigOptions& options, const JobContext& c
 }
 
 Result<CalibrateOutcome> calibrate_check_rig(const CheckRigOptions& options, const JobContext& context) {
+  if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
   Result<Look> seen = look(options, context);
   if (!seen) return std::move(seen).error();
   CalibrateOutcome outcome;

@@ -31,9 +31,10 @@ struct CalibrateCheckOptions {
   calibration::CheckLimits limits = {};
 };
 
-/// The report's verdicts are empty where the calibration is accepted. Beside sheets a folder may have
-/// check.toml with the angle of a wedge, [[plane]] session, tilt_deg, azimuth_deg; else a sheet's angle is
-/// what its tags say. Errors: as plan_session() and sheet_evidence(); kNoInput where there is no session.
+/// The report's verdicts are empty where the calibration is accepted. In the folder of the sessions
+/// there may be check.toml with the angle of a wedge, [[plane]] session, tilt_deg, azimuth_deg; else a
+/// sheet's angle is what its tags say. Errors: as plan_session() and sheet_evidence(); kNoInput where there
+/// is no session.
 Result<CalibrateOutcome> calibrate_check(const CalibrateCheckOptions& options, const JobContext& context);
 
 /// On what a scan shows beside its cloth: did the rig move since it was calibrated?

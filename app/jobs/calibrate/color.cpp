@@ -9,6 +9,7 @@
 
 #include "app/jobs/calibrate/chart_pictures.h"
 #include "app/jobs/calibrate/color_report.h"
+#include "calibration/suits.h"
 
 namespace weft::app {
 namespace {
@@ -260,28 +261,6 @@ class ChartReader {
   std::vector<std::string>& warnings_;
 };
 
-Result<void> check_body(const ChartPicture& picture, const Calibration* from) {
-  if (from == nullptr) return {};
-  const CalibrationSubject& s = from->subject;
-  const ShotMetadata& shot = picture.camera;
-  const auto refuse = [&](std::string why) {
-    return bad_chart(picture, "frame does not belong to this calibration", std::move(why),
-                     "photograph the chart with the rig's own camera and aperture");
-  };
-  if (!shot.model.empty() && shot.model != s.camera_model) {
-    return refuse(fmt::format("it is of a {}, the calibration of a {}", shot.model, s.camera_model));
-  }
-  if (!shot.serial.empty() && !s.camera_serial.empty() && shot.serial != s.camera_serial) {
-    return refuse(fmt::format("it is of the body with serial number {}, the calibration of {}", shot.serial,
-                              s.camera_serial));
-  }
-  if (shot.f_number > 0 && std::abs(shot.f_number - s.f_number) > 1e-3 * shot.f_number) {
-    return refuse(fmt::format("it was taken at f/{:.3g}, the calibration holds at f/{:.3g}", shot.f_number,
-                              s.f_number));
-  }
-  return {};
-}
-
 // The mean of several pictures, patch by patch, over those that are good in each.
 FlatChart mean_of_charts(const std::vector<FlatChart>& charts) {
   FlatChart mean = charts.front();
@@ -328,15 +307,10 @@ void note_scale(ColorMeasurement& color, const Calibration* from) {
                             "check the reflectance of the white sheet that the lights were calibrated with"});
 }
 
-std::string rig_name(const CalibrateColorOptions& options) {
-  if (!options.rig.empty()) return options.rig;
-  const fs::path folder = fs::absolute(options.input).lexically_normal();
-  return (folder.has_filename() ? folder : folder.parent_path()).filename().string();
-}
-
 }  // namespace
 
 Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, const JobContext& context) {
+  if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
   std::optional<Calibration> from;
   if (!options.from.empty()) {
     Result<Calibration> read = read_calibration(options.from);
@@ -359,7 +333,10 @@ Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, c
     if (context.stop.stop_requested()) return interrupted();
     const Result<ChartPicture> picture = read_chart_picture(file, before, options.from, context);
     if (!picture) return picture.error();
-    if (Result<void> ok = check_body(*picture, before); !ok) return std::move(ok).error();
+    if (const auto why = from ? calibration::difference(from->subject, picture->camera) : std::nullopt) {
+      return bad_chart(*picture, "frame does not belong to this calibration", *why,
+                       "photograph the chart with the rig's own camera and aperture");
+    }
     Result<FlatChart> chart = reader.read(*picture);
     if (!chart) return std::move(chart).error();
     if (picture->is_albedo) {
@@ -388,9 +365,9 @@ Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, c
   note_scale(color, before);
 
   Calibration change;
-  change.subject =
-      from ? from->subject
-           : CalibrationSubject{rig_name(options), camera.model, camera.serial, camera.f_number, "relative"};
+  change.subject = from ? from->subject
+                        : CalibrationSubject{rig_name(options.rig, options.input), camera.model,
+                                             camera.serial, camera.f_number, "relative"};
   change.subject.measured.clear();
   change.color = color.transform;
   outcome.report = report_of(color, change.subject.rig);

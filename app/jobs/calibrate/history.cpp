@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "app/jobs/calibrate/check_result.h"
+#include "app/jobs/calibrate/movement_words.h"
 #include "app/jobs/figures.h"
 #include "calibration/camera/pose.h"
 #include "core/files.h"
@@ -19,6 +20,7 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+using calibration::ChangeKind;
 
 constexpr double kDay_s = 86400;
 
@@ -33,8 +35,10 @@ struct DatedCheck {
   std::string name;
   std::string date, of, calibration;
   bool passed = false;
-  double mean_deg = 0, worst_deg = 0;
-  std::string found;  ///< what it said, in a few words
+  std::optional<double> mean_deg, worst_deg;  ///< cost of what a session shows
+  bool read_leds = false;                     ///< and did not look at tags alone
+  bool only_bodies_moved = false;             ///< camera or table, no LED
+  std::string found;                          ///< what it said, in a few words
 };
 
 struct Records {
@@ -97,12 +101,17 @@ Result<DatedCheck> read_check(const fs::path& folder) {
   check.time_s = *time_s;
   check.passed = (*result)["passed"].get<bool>();
   JsonFields costs(numbers, "numbers");
-  check.mean_deg = costs.optional_number("cost_mean_deg").value_or(0);
-  check.worst_deg = costs.optional_number("cost_worst_deg").value_or(0);
+  check.mean_deg = costs.optional_number("cost_mean_deg");
+  check.worst_deg = costs.optional_number("cost_worst_deg");
+  check.read_leds = check.of == "sheets" || costs.optional_number("readings").value_or(0) > 0;
   if (numbers.contains("changes") && numbers["changes"].is_array()) {
+    check.only_bodies_moved = !numbers["changes"].empty();
     for (const Json& change : numbers["changes"]) {
       JsonFields one(change, "change");
-      check.found += fmt::format("{}{}", check.found.empty() ? "" : ", ", one.text("change"));
+      const std::string name = one.text("change");
+      check.found += fmt::format("{}{}", check.found.empty() ? "" : ", ", name);
+      check.only_bodies_moved = check.only_bodies_moved &&
+                                (name == name_of(ChangeKind::kCamera) || name == name_of(ChangeKind::kTable));
       if (const auto led = one.optional_number("led")) check.found += fmt::format(" {:.0f}", *led);
     }
   }
@@ -138,8 +147,8 @@ double camera_tilt_deg(const CameraModel& camera) {
   return angle_deg({r[2][0], r[2][1], r[2][2]}, {0, 0, -1});
 }
 
-std::string number(double value, int digits) {
-  return fmt::format("{:.{}f}", value, digits);
+std::string number(std::optional<double> value, int digits) {
+  return value ? fmt::format("{:.{}f}", *value, digits) : "";
 }
 
 /// A value of each LED over time, against that of the first calibration with lights.
@@ -252,15 +261,15 @@ ReportSection checks_section(const std::vector<DatedCheck>& all, Json& numbers) 
   return section;
 }
 
-/// The time when a check's calibration was last known to hold before it.
+/// The time when what a check found was last known not to be so: tags alone tell nothing of LEDs.
 double held_until(const Records& records, const DatedCheck& failed) {
   double time_s = -std::numeric_limits<double>::infinity();
   for (const DatedCalibration& each : records.calibrations) {
     if (each.calibration.id == failed.calibration) time_s = std::max(time_s, each.time_s);
   }
   for (const DatedCheck& check : records.checks) {
-    if (check.passed && check.calibration == failed.calibration && check.time_s <= failed.time_s)
-      time_s = std::max(time_s, check.time_s);
+    if (!check.passed || check.calibration != failed.calibration || check.time_s > failed.time_s) continue;
+    if (check.read_leds || failed.only_bodies_moved) time_s = std::max(time_s, check.time_s);
   }
   return time_s;
 }
@@ -298,16 +307,16 @@ ReportSection affected_section(const std::vector<AffectedSession>& all, Json& nu
       "move. The "
       "error is that of a session taken after the move; one taken before it has none. Solve them again with "
       "the "
-      "updated calibration and compare."};
+      "updated calibration and compare. A check on sheets predicts no error of a session."};
   section.table->header = {"session", "taken", "predicted mean error, degrees", "at worst"};
   numbers["affected"] = Json::array();
   for (const AffectedSession& each : all) {
     section.table->rows.push_back({each.folder.string(), each.time, number(each.predicted_mean_deg, 2),
                                    number(each.predicted_worst_deg, 2)});
-    numbers["affected"].push_back({{"session", each.folder.string()},
-                                   {"time", each.time},
-                                   {"predicted_mean_deg", each.predicted_mean_deg},
-                                   {"predicted_worst_deg", each.predicted_worst_deg}});
+    Json json = {{"session", each.folder.string()}, {"time", each.time}};
+    if (each.predicted_mean_deg) json["predicted_mean_deg"] = *each.predicted_mean_deg;
+    if (each.predicted_worst_deg) json["predicted_worst_deg"] = *each.predicted_worst_deg;
+    numbers["affected"].push_back(std::move(json));
   }
   return section;
 }

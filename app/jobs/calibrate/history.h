@@ -22,9 +22,9 @@ struct CalibrateHistoryOptions {
 /// A session that was taken with a calibration that did not hold any more, or may not have.
 struct AffectedSession {
   std::filesystem::path folder;
-  std::string time;               ///< of its first shot
-  double predicted_mean_deg = 0;  ///< error of its normals, as the check that found the move predicts it
-  double predicted_worst_deg = 0;
+  std::string time;  ///< of its first shot
+  /// Error of its normals, as the check that found the move predicts it; a check on sheets predicts none.
+  std::optional<double> predicted_mean_deg, predicted_worst_deg;
 };
 
 struct CalibrationHistory {
@@ -35,9 +35,9 @@ struct CalibrationHistory {
 
 /// Everything that is known of a rig over time: positions and flux of its LEDs and pose of its camera, from
 /// the calibrations in their order of `measured`, and the results of checks. Affected are sessions that were
-/// taken with the calibration that a check found moved, after the last check of it that passed (or since it
-/// was measured) and up to the one that did not: the rig moved somewhere between them. Errors: kNoInput where
-/// there is no calibration in the folder.
+/// taken with the calibration that a check found moved, after the last check of it that passed and saw
+/// LEDs, where those have changed (or since it was measured) and up to the one that did not: the rig moved
+/// somewhere between them. Errors: kNoInput where there is no calibration in the folder.
 Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
                                              const JobContext& context);
 

@@ -10,6 +10,7 @@
 #include <numeric>
 
 #include "app/jobs/calibrate/lights_report.h"
+#include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/sheet_captures.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
@@ -94,6 +95,7 @@ Result<void> LightsJob::prepare() {
     return bad(ErrorKind::kUsage, "option out of range", "flatness",
                fmt::format("{} degrees is not 0 to 2", options_.flatness_deg), "say how flat the sheet lies");
   }
+  if (Result<void> ok = check_new(options_.output); !ok) return ok;
   Result<Calibration> from = read_calibration(options_.from);
   if (!from) return std::move(from).error();
   calibration_ = std::move(*from);
@@ -145,9 +147,7 @@ Result<void> LightsJob::read() {
 }
 
 void LightsJob::take_readings() {
-  const int side =
-      std::max(1, static_cast<int>(std::lround(static_cast<double>(captures_.columns) / kCellsAcross)));
-  evidence_.readings = merged_blocks(captures_, left_out_, side);
+  evidence_.readings = merged_blocks(captures_, left_out_, cells());
 }
 
 calibration::CellGrid LightsJob::cells() const {
@@ -357,7 +357,7 @@ Result<std::vector<NamedFile>> LightsJob::maps() const {
   std::vector<NamedFile> files;
   if (all == nullptr) return files;
   const calibration::CellGrid& grid = evidence_.per_pixel ? evidence_.per_pixel->grid : evidence_.seed->grid;
-  const PartialFolder aside(options_.output.string() + "-maps");
+  const PartialFolder aside(options_.output);
   if (Result<void> made = make_writable_folder(aside.path()); !made) return std::move(made).error();
   for (std::size_t k = 0; k < all->size(); ++k) {
     Image<float> planes({grid.columns, grid.rows}, 6);
@@ -391,7 +391,6 @@ Result<CalibrateOutcome> LightsJob::write() {
   change.subject = calibration_.subject;
   change.subject.measured.clear();
   change.subject.albedo_scale = sheet_.sheet.reflectance_rgb ? "absolute" : "relative";
-  change.patches = calibration_.patches;
   if (evidence_.seed) {
     change.lights = lights_of(*evidence_.seed, evidence_.start);
   } else if (evidence_.per_pixel) {
@@ -401,6 +400,7 @@ Result<CalibrateOutcome> LightsJob::write() {
     change.light_covariance = evidence_.fit->covariance;
   }
   CalibrateOutcome outcome;
+  if (!calibration_.patches.empty()) warnings_.push_back(patches_left_out("lights"));
   outcome.warnings = warnings_;
   outcome.report = lights_report(evidence_, warnings_);
   std::vector<NamedFile> files = report_files(outcome.report);

@@ -2,7 +2,6 @@
 #include "app/jobs/calibrate/patches.h"
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,12 +10,15 @@
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/session_input.h"
 #include "calibration/checks/light_at.h"
+#include "calibration/lights/paper_model.h"
 #include "core/files.h"
+#include "core/toml/toml_keys.h"
 
 namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr const char* kPage = "docs/calibration.md";
 constexpr double kMostSpread = 0.1;
 
 Error bad_patches(const std::string& where, std::string why) {
@@ -25,31 +27,30 @@ Error bad_patches(const std::string& where, std::string why) {
 }
 
 Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame) {
-  const Result<std::string> text = read_text(file);
-  if (!text) return text.error();
+  const Result<toml::table> table = read_toml(file);
+  if (!table) return table.error();
+  TomlKeys keys(*table, file.string(), kPage);
+  keys.know({"patch"});
+  const std::vector<const toml::table*> list = keys.tables("patch");
+  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
   std::vector<WhitePatch> patches;
-  try {
-    const toml::table table = toml::parse(*text);
-    const toml::array* list = table["patch"].as_array();
-    if (list == nullptr || list->empty()) return bad_patches(file.string(), "there is no [[patch]]");
-    for (const toml::node& entry : *list) {
-      WhitePatch& patch = patches.emplace_back();
-      const auto where = fmt::format("{}: patch {}", file.string(), patches.size());
-      const toml::array* corners = entry.is_table() ? (*entry.as_table())["polygon_px"].as_array() : nullptr;
-      if (corners == nullptr) return bad_patches(where, "it has no polygon_px");
-      for (const toml::node& corner : *corners) {
-        const toml::array* xy = corner.as_array();
-        if (xy == nullptr || xy->size() != 2) return bad_patches(where, "a corner is not [x, y]");
-        const auto x = (*xy)[0].value<double>(), y = (*xy)[1].value<double>();
-        if (!x || !y || !(*x >= 0 && *x < frame.width && *y >= 0 && *y < frame.height))
-          return bad_patches(where, "a corner lies outside the frame");
-        patch.polygon_px.push_back({*x, *y});
-      }
-      if (patch.polygon_px.size() < 3) return bad_patches(where, "it has fewer than three corners");
+  for (const toml::table* entry : list) {
+    WhitePatch& patch = patches.emplace_back();
+    const auto where = fmt::format("{}: patch {}", file.string(), patches.size());
+    TomlKeys patch_keys(*entry, where, kPage);
+    patch_keys.know({"polygon_px"});
+    if (Result<void> ok = patch_keys.status(); !ok) return std::move(ok).error();
+    const toml::array* corners = entry->get_as<toml::array>("polygon_px");
+    if (corners == nullptr) return bad_patches(where, "it has no polygon_px");
+    for (const toml::node& corner : *corners) {
+      const toml::array* xy = corner.as_array();
+      if (xy == nullptr || xy->size() != 2) return bad_patches(where, "a corner is not [x, y]");
+      const auto x = (*xy)[0].value<double>(), y = (*xy)[1].value<double>();
+      if (!x || !y || !(*x >= 0 && *x < frame.width && *y >= 0 && *y < frame.height))
+        return bad_patches(where, "a corner lies outside the frame");
+      patch.polygon_px.push_back({*x, *y});
     }
-  } catch (const toml::parse_error& e) {
-    return bad_patches(fmt::format("{}: line {}", file.string(), e.source().begin.line),
-                       std::string(e.description()));
+    if (patch.polygon_px.size() < 3) return bad_patches(where, "it has fewer than three corners");
   }
   return patches;
 }
@@ -64,7 +65,7 @@ struct Reflectance {
 Reflectance reflectance_of(const calibration::LitPlace& place, const NearLights& lights, Size frame,
                            double delta) {
   Reflectance out;
-  const auto [u, v] = calibration::gain_place(frame, place.x_px, place.y_px);
+  const auto [u, v] = calibration::frame_place(frame, place.x_px, place.y_px);
   for (std::size_t k = 0; k < std::min(lights.leds.size(), place.reading_rgb.size()); ++k) {
     const auto light = calibration::light_at(lights.leds[k], place.point_mm);
     const double cosine = light ? dot(light->direction, place.normal) : 0;
@@ -89,16 +90,21 @@ Reflectance reflectance_of(const calibration::LitPlace& place, const NearLights&
 
 }  // namespace
 
+std::string patches_left_out(const std::string& part) {
+  return fmt::format(
+      "the white patches were left out, as they were measured by the {} of before: measure them "
+      "again with weft calibrate patches",
+      part);
+}
+
 Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& options,
                                            const JobContext& context) {
-  if (is_there(options.output)) {
-    return Error{ErrorKind::kCannotCreate, "the new calibration is there already", options.output.string(),
-                 "a calibration is never changed in place", "name another folder"};
-  }
+  if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
   Result<SessionPlan> plan = plan_session({options.session, options.from, {}});
   if (!plan) return std::move(plan).error();
-  const fs::path file =
-      options.patches.empty() ? options.session.parent_path() / "patches.toml" : options.patches;
+  const fs::path file = options.patches.empty()
+                            ? absolute_folder(options.session).parent_path() / "patches.toml"
+                            : options.patches;
   Result<std::vector<WhitePatch>> patches = read_patches(file, plan->size);
   if (!patches) return std::move(patches).error();
   if (!std::holds_alternative<NearLights>(*plan->calibration.lights)) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include "app/jobs/calibrate/outcome.h"
 #include "app/jobs/job.h"
@@ -26,5 +27,8 @@ struct CalibratePatchesOptions {
 /// one whose reflectance differs from LED to LED by more than 10 percent: it is not white, flat and in the
 /// light. Then nothing is written.
 Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& options, const JobContext& context);
+
+/// What is said where a new `part` ("camera", "lights") is measured, by which old patches mean nothing.
+std::string patches_left_out(const std::string& part);
 
 }  // namespace weft::app

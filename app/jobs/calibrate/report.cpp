@@ -79,13 +79,20 @@ std::vector<NamedFile> report_files(const CalibrationReport& report) {
           {report.part + ".json", document_of(report).dump(2) + "\n"}};
 }
 
+std::string rig_name(const std::string& named, const fs::path& input) {
+  return named.empty() ? absolute_folder(input).parent_path().filename().string() : named;
+}
+
+Result<void> check_new(const fs::path& folder) {
+  if (folder.empty() || !is_there(folder)) return {};
+  return Error{ErrorKind::kCannotCreate, "there is something already", folder.string(),
+               "what was measured is never overwritten", "name a new folder with -o"};
+}
+
 Result<void> write_report(const CalibrationReport& report, const fs::path& folder,
                           std::span<const NamedFile> more) {
-  if (is_there(folder)) {
-    return Error{ErrorKind::kCannotCreate, "there is a result already", folder.string(),
-                 "results are never overwritten", "choose another name with -o"};
-  }
-  PartialFolder partial(fs::absolute(folder).lexically_normal());
+  if (Result<void> ok = check_new(folder); !ok) return ok;
+  PartialFolder partial(folder);
   if (Result<void> ok = make_writable_folder(partial.path()); !ok) return ok;
   std::vector<NamedFile> files = report_files(report);
   files.insert(files.end(), more.begin(), more.end());

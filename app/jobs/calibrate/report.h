@@ -47,6 +47,12 @@ struct CalibrationReport {
 /// summary, verdicts, numbers).
 std::vector<NamedFile> report_files(const CalibrationReport& report);
 
+/// The name of a rig: `named`, else that of the folder that holds `input`.
+std::string rig_name(const std::string& named, const std::filesystem::path& input);
+
+/// Whether `folder` may be made: kCannotCreate where it is there, as what was measured is never overwritten.
+Result<void> check_new(const std::filesystem::path& folder);
+
 /// Makes `folder` with report_files() and `more`. It is made aside: after an error there is nothing. Errors:
 /// kCannotCreate, kInputOutput.
 Result<void> write_report(const CalibrationReport& report, const std::filesystem::path& folder,

@@ -83,10 +83,11 @@ Result<ScaleSettings> read_scale_settings(const fs::path& file) {
   return settings;
 }
 
-// Mean linear v of each patch over all frames.
+// Mean linear v of each patch over all frames; 0 where it is full in one of them.
 Result<std::vector<std::array<double, 3>>> read_scale(const ResponseFrames& frames, const Response& response,
                                                       const ScaleSettings& settings) {
   std::vector<std::array<double, 3>> mean(settings.reflectances.size());
+  std::vector<bool> is_full(mean.size());
   calibration::ChartCorners corners = *settings.corners_px;
   for (auto& corner : corners) {
     for (double& v : corner) v = (v - 0.5) / 2;  // pictures are of half size
@@ -98,31 +99,26 @@ Result<std::vector<std::array<double, 3>>> read_scale(const ResponseFrames& fram
                                                    static_cast<int>(mean.size()), 1);
     if (!patches) return patches.error();
     for (std::size_t i = 0; i < mean.size(); ++i) {
-      const bool is_full = (*patches)[i].full_share > 0;
-      for (std::size_t c = 0; c < 3; ++c) {
-        mean[i][c] += is_full ? 0 : (*patches)[i].mean[c] / static_cast<double>(frames.scale.size());
-      }
+      is_full[i] = is_full[i] || (*patches)[i].full_share > 0;
+      for (std::size_t c = 0; c < 3; ++c)
+        mean[i][c] += (*patches)[i].mean[c] / static_cast<double>(frames.scale.size());
     }
+  }
+  for (std::size_t i = 0; i < mean.size(); ++i) {
+    if (is_full[i]) mean[i] = {};
   }
   return mean;
 }
 
-Result<std::optional<ScaleReading>> check_scale(const fs::path& folder, const ResponseFrames& frames,
-                                                const Response& response,
-                                                std::vector<std::string>& warnings) {
-  if (frames.scale.empty()) return std::optional<ScaleReading>();
-  const Result<ScaleSettings> settings = read_scale_settings(folder / "scale.toml");
-  if (!settings) return settings.error();
-  if (!settings->corners_px) {
-    warnings.push_back(fmt::format("{} was not read: its scale.toml has no corners_px", folder.string()));
-    return std::optional<ScaleReading>();
-  }
+Result<std::optional<ScaleReading>> check_scale(const ScaleSettings& settings, const ResponseFrames& frames,
+                                                const Response& response) {
+  if (frames.scale.empty() || !settings.corners_px) return std::optional<ScaleReading>();
   Response straight = response;
   straight.linearity = {};
   ScaleReading reading;
-  reading.reflectances = settings->reflectances;
+  reading.reflectances = settings.reflectances;
   const auto check = [&](const Response& used, calibration::ScaleCheck& out) -> Result<void> {
-    const auto v = read_scale(frames, used, *settings);
+    const auto v = read_scale(frames, used, settings);
     if (!v) return v.error();
     Result<calibration::ScaleCheck> checked = calibration::check_scale(reading.reflectances, *v);
     if (!checked) return std::move(checked).error();
@@ -355,12 +351,6 @@ CalibrationReport report_of(const ResponseFrames& frames, const ResponseMeasurem
   return report;
 }
 
-std::string rig_name(const CalibrateResponseOptions& options) {
-  if (!options.rig.empty()) return options.rig;
-  const fs::path folder = fs::absolute(options.input).lexically_normal();
-  return (folder.has_filename() ? folder : folder.parent_path()).filename().string();
-}
-
 Result<void> write_hot_picture(const fs::path& file, View<const std::uint8_t> bad) {
   Image<float> picture(bad.size());
   for (int y = 0; y < bad.height(); ++y) {
@@ -374,31 +364,38 @@ Result<void> write_hot_picture(const fs::path& file, View<const std::uint8_t> ba
 
 Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& options,
                                             const JobContext& context) {
+  if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
+  const Result<ScaleSettings> settings = read_scale_settings(options.input / "scale" / "scale.toml");
+  if (!settings) return settings.error();
   std::optional<Calibration> from;
   if (!options.from.empty()) {
     Result<Calibration> read = read_calibration(options.from);
     if (!read) return std::move(read).error();
     from = std::move(*read);
   }
-  const Result<ResponseFrames> frames =
-      read_response_frames(options.input, from ? &from->subject : nullptr, context);
+  const Result<ResponseFrames> frames = read_response_frames(options.input, from ? &*from : nullptr, context);
   if (!frames) return frames.error();
   const Result<ResponseMeasurement> measured = measure_response(*frames);
   if (!measured) return measured.error();
   CalibrateOutcome outcome;
   outcome.warnings = frames->warnings;
-  const auto scale = check_scale(options.input / "scale", *frames, measured->response, outcome.warnings);
+  if (!frames->scale.empty() && !settings->corners_px) {
+    outcome.warnings.push_back(
+        fmt::format("{} was not read: its scale.toml has no corners_px", (options.input / "scale").string()));
+  }
+  const auto scale = check_scale(*settings, *frames, measured->response);
   if (!scale) return scale.error();
 
   Calibration change;
   change.subject = from ? from->subject
-                        : CalibrationSubject{rig_name(options), frames->camera.model, frames->camera.serial,
-                                             frames->camera.f_number, "relative"};
+                        : CalibrationSubject{rig_name(options.rig, options.input), frames->camera.model,
+                                             frames->camera.serial, frames->camera.f_number, "relative"};
   change.subject.measured.clear();
   change.response = measured->response;
+  if (frames->camera.iso > 0) change.response->iso = frames->camera.iso;
   outcome.report = report_of(*frames, *measured, *scale, from ? &*from : nullptr, change.subject.rig);
 
-  fs::path beside = fs::absolute(options.output).lexically_normal();
+  fs::path beside = absolute_folder(options.output);
   beside += ".hot";
   const PartialFolder aside(beside);
   if (!frames->bad.empty()) {

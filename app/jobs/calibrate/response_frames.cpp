@@ -9,6 +9,7 @@
 #include <set>
 
 #include "app/jobs/linear_image.h"
+#include "calibration/suits.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
 #include "core/photosites.h"
@@ -58,13 +59,20 @@ Error of_another(const fs::path& file, std::string why) {
 // What all frames must share.
 class Body {
  public:
-  explicit Body(const CalibrationSubject* subject) : subject_(subject) {}
+  explicit Body(const Calibration* from) : from_(from) {}
 
   Result<void> check(const fs::path& file, const capture::RawInfo& info) {
     if (!first_) {
       first_ = info;
       first_file_ = file;
-      return subject_ != nullptr ? check_subject(file, info.shot) : Result<void>();
+      if (from_ == nullptr) return {};
+      if (auto why = calibration::difference(from_->subject, info.shot)) return of_another(file, *why);
+      if (from_->camera && from_->camera->size != info.size) {
+        return of_another(
+            file, fmt::format("it has {} x {} pixels, the calibration's camera {} x {}", info.size.width,
+                              info.size.height, from_->camera->size.width, from_->camera->size.height));
+      }
+      return {};
     }
     const ShotMetadata &a = first_->shot, &b = info.shot;
     const auto differs = [&](const char* what, const auto& mine, const auto& others) -> Result<void> {
@@ -86,23 +94,7 @@ class Body {
   const std::optional<capture::RawInfo>& first() const { return first_; }
 
  private:
-  Result<void> check_subject(const fs::path& file, const ShotMetadata& shot) const {
-    if (!shot.model.empty() && shot.model != subject_->camera_model) {
-      return of_another(
-          file, fmt::format("it is of a {}, the calibration of a {}", shot.model, subject_->camera_model));
-    }
-    if (!shot.serial.empty() && !subject_->camera_serial.empty() && shot.serial != subject_->camera_serial) {
-      return of_another(file, fmt::format("it is of the body with serial number {}, the calibration of {}",
-                                          shot.serial, subject_->camera_serial));
-    }
-    if (shot.f_number > 0 && std::abs(shot.f_number - subject_->f_number) > 1e-3 * shot.f_number) {
-      return of_another(file, fmt::format("it was taken at f/{:.3g}, the calibration holds at f/{:.3g}",
-                                          shot.f_number, subject_->f_number));
-    }
-    return {};
-  }
-
-  const CalibrationSubject* subject_;
+  const Calibration* from_;
   std::optional<capture::RawInfo> first_;
   fs::path first_file_;
 };
@@ -118,6 +110,12 @@ void mark(View<std::uint8_t> bad, const std::vector<Photosite>& photosites) {
   for (const Photosite& p : photosites) bad(p.x, p.y) = 255;
 }
 
+std::ptrdiff_t marked(View<const std::uint8_t> bad) {
+  std::ptrdiff_t count = 0;
+  for (int y = 0; y < bad.height(); ++y) count += std::count(bad.row(y), bad.row(y) + bad.width(), 255);
+  return count;
+}
+
 class Reader {
  public:
   Reader(ResponseFrames& out, const JobContext& context) : out_(out), context_(context) {
@@ -127,10 +125,10 @@ class Reader {
   }
 
   Result<void> read_dark(std::vector<ExposureFrames>& exposures) {
-    std::vector<Photosite> hot;
-    bool is_first = true;
+    out_.bad = Image<std::uint8_t>(out_.size);
     for (ExposureFrames& exposure : exposures) {
       std::optional<RawFrame> before;
+      std::vector<Photosite> hot;  // in every frame: one alone shows cosmic rays, too
       for (const fs::path& file : exposure.files) {
         Result<RawFrame> frame = read(file);
         if (!frame) return std::move(frame).error();
@@ -139,13 +137,11 @@ class Reader {
         mark(bad.plane(), found);
         join(exposure.light, calibration::block_light(*frame, bad.plane()));
         pair_up(before, std::move(*frame), bad.plane());
-        hot = is_first ? std::move(found) : common(hot, found);
-        is_first = false;
+        hot = file == exposure.files.front() ? std::move(found) : common(hot, found);
       }
+      mark(out_.bad.plane(), hot);
     }
-    out_.bad = Image<std::uint8_t>(out_.size);
-    out_.hot = static_cast<int>(hot.size());
-    mark(out_.bad.plane(), hot);
+    out_.hot = static_cast<int>(marked(out_.bad.plane()));
     return {};
   }
 
@@ -268,7 +264,7 @@ const std::vector<ExposureFrames>* ResponseFrames::of(const std::vector<int>& le
   return found == by_leds.end() ? nullptr : &found->second;
 }
 
-Result<ResponseFrames> read_response_frames(const fs::path& folder, const CalibrationSubject* subject,
+Result<ResponseFrames> read_response_frames(const fs::path& folder, const Calibration* from,
                                             const JobContext& context) {
   std::error_code failed;
   if (!fs::is_directory(folder, failed)) {
@@ -276,7 +272,7 @@ Result<ResponseFrames> read_response_frames(const fs::path& folder, const Calibr
                  "name the folder with dark/, led01/, led02/ and led01+led02/"};
   }
   ResponseFrames out;
-  Body body(subject);
+  Body body(from);
   for (const fs::path& entry : sorted_entries(folder)) {
     const std::string name = entry.filename().string();
     if (!fs::is_directory(entry, failed)) continue;

@@ -424,15 +424,18 @@ std::vector<calibration::PaperReading> single_blocks(const SheetCaptures& captur
 
 std::vector<calibration::PaperReading> merged_blocks(const SheetCaptures& captures,
                                                      const std::vector<std::vector<char>>& left_out,
-                                                     int side) {
+                                                     const calibration::CellGrid& cells) {
   std::vector<calibration::PaperReading> readings;
   for (std::size_t j = 0; j < captures.captures.size(); ++j) {
     const SheetCapture& capture = captures.captures[j];
-    for (int row = 0; row + side <= captures.rows; row += side) {
-      for (int column = 0; column + side <= captures.columns; column += side) {
+    for (int row = 0; row < cells.rows; ++row) {
+      const int top = row * captures.rows / cells.rows, bottom = (row + 1) * captures.rows / cells.rows;
+      for (int column = 0; column < cells.columns; ++column) {
+        const int left = column * captures.columns / cells.columns,
+                  right = (column + 1) * captures.columns / cells.columns;
         std::vector<std::array<int, 2>> places;
-        for (int y = row; y < row + side; ++y) {
-          for (int x = column; x < column + side; ++x) {
+        for (int y = top; y < bottom; ++y) {
+          for (int x = left; x < right; ++x) {
             const auto block = static_cast<std::size_t>(y) * static_cast<std::size_t>(captures.columns) +
                                static_cast<std::size_t>(x);
             if (capture.is_paper[block] && !left_out[j][block]) places.push_back({x, y});
@@ -443,7 +446,7 @@ std::vector<calibration::PaperReading> merged_blocks(const SheetCaptures& captur
           const calibration::MergedBlock merged = merge(capture.leds[k], places);
           const double least =
               std::min({merged.reading_rgb[0], merged.reading_rgb[1], merged.reading_rgb[2]});
-          if (2 * merged.blocks < side * side || !(least > 0)) continue;
+          if (2 * merged.blocks < (right - left) * (bottom - top) || !(least > 0)) continue;
           readings.push_back({j, k, merged.x_px, merged.y_px, merged.reading_rgb, merged.relative_sigma});
         }
       }

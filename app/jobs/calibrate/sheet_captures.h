@@ -7,6 +7,7 @@
 
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/job.h"
+#include "calibration/lights/light_map.h"
 #include "calibration/lights/paper_model.h"
 #include "calibration/lights/sheet_blocks.h"
 #include "core/calibration.h"
@@ -51,9 +52,9 @@ Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, c
 /// Single blocks, those of one place side by side for all LEDs of a capture:
 std::vector<calibration::PaperReading> single_blocks(const SheetCaptures& captures,
                                                      const std::vector<std::vector<char>>& left_out);
-/// `side` x `side` blocks as one, where at least half of them are paper.
+/// The blocks of each cell as one, where at least half of them are paper; no more cells a side than blocks:
 std::vector<calibration::PaperReading> merged_blocks(const SheetCaptures& captures,
                                                      const std::vector<std::vector<char>>& left_out,
-                                                     int side);
+                                                     const calibration::CellGrid& cells);
 
 }  // namespace weft::app

@@ -105,10 +105,9 @@ std::vector<calibration::LitPlace> places_of(const SheetEvidence& sheet, const C
   return places;
 }
 
-fs::path sheet_file_of(const fs::path& named, const fs::path& folder) {
-  if (!named.empty()) return named;
-  if (is_there(folder / "sheet.toml")) return folder / "sheet.toml";
-  return fs::absolute(folder / "").lexically_normal().parent_path().parent_path() / "sheet.toml";
+fs::path in_or_beside(const fs::path& folder, const char* name) {
+  if (is_there(folder / name)) return folder / name;
+  return absolute_folder(folder).parent_path() / name;
 }
 
 }  // namespace weft::app

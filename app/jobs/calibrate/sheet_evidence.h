@@ -28,7 +28,7 @@ Result<calibration::SheetEvidence> sheet_evidence(const Calibration& calibration
 std::vector<calibration::LitPlace> places_of(const calibration::SheetEvidence& sheet,
                                              const CameraModel& camera);
 
-/// sheet.toml: `named` where it is not empty, else that of the folder, else that beside the folder.
-std::filesystem::path sheet_file_of(const std::filesystem::path& named, const std::filesystem::path& folder);
+/// The file of this name in a folder, else that beside the folder.
+std::filesystem::path in_or_beside(const std::filesystem::path& folder, const char* name);
 
 }  // namespace weft::app

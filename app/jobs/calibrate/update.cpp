@@ -45,17 +45,11 @@ std::optional<ParameterCovariance> merged(const std::optional<ParameterCovarianc
   return out;
 }
 
-/// The first change that something else explains as well and that would be put right in another way.
+/// The first change that something else explains as well: each would be put right in another way.
 const RigChange* ambiguous(const Movement& movement) {
-  for (const RigChange& change : movement.changes) {
-    const bool body = moves_body(change.kind);
-    const bool both =
-        std::any_of(change.alternatives.begin(), change.alternatives.end(), [&](const RigChange& other) {
-          return moves_body(other.kind) != body || (body && other.kind != change.kind);
-        });
-    if (both) return &change;
-  }
-  return nullptr;
+  const auto found = std::find_if(movement.changes.begin(), movement.changes.end(),
+                                  [](const RigChange& change) { return !change.alternatives.empty(); });
+  return found == movement.changes.end() ? nullptr : &*found;
 }
 
 Error refused(const CalibrateUpdateOptions& options, std::string what, std::string why, std::string remedy) {
@@ -118,10 +112,7 @@ CalibrationReport report_of(const RigCheck& rig, const fs::path& session) {
 }  // namespace
 
 Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options, const JobContext& context) {
-  if (is_there(options.output)) {
-    return Error{ErrorKind::kCannotCreate, "the new calibration is there already", options.output.string(),
-                 "a calibration is never changed in place", "name another folder"};
-  }
+  if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
   const Result<RigCheck> rig = look_at_rig(
       {options.session, options.from, options.sheet, {}, options.paper_delta, options.movement}, context);
   if (!rig) return rig.error();

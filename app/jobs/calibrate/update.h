@@ -28,7 +28,7 @@ struct CalibrateUpdateOptions {
 /// --calibration` solves them again with this one.
 ///
 /// Errors: as look_at_rig(); kBadData where nothing has moved, and so there is nothing to update, or where
-/// what moved cannot be told from something else that calls for another update; then nothing is written.
+/// what moved cannot be told from something else; then nothing is written.
 Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options, const JobContext& context);
 
 }  // namespace weft::app

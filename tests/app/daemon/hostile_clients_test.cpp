@@ -137,7 +137,9 @@ std::string malformed(std::mt19937& random, int port) {
 TEST_F(HostileClients, AThousandMalformedRequestsLeaveItAnswering) {
   HttpLimits limits;
   limits.door.request_deadline_s = 1;
-  scripted_.devices = Error{ErrorKind::kNoDevice, "no LED board", "", "", "plug it in"};  // what few become
+  scripted_.devices = []() -> Result<void> {  // what few become
+    return Error{ErrorKind::kTryAgain, "the LED board does not answer", "", "", "plug it in"};
+  };
   start(limits);
   std::mt19937 random(20261121);
   int answered = 0, taken = 0;
@@ -205,6 +207,20 @@ TEST_F(HostileClients, AFrameThatIsALinkOutOfItsSessionIsNotServed) {
   std::filesystem::create_symlink(b.path_of(b.shots[0]), a.path_of(a.shots[0]));
   EXPECT_EQ(ask(port_, "GET", "/api/v1/sessions/a/frames/0/thumbnail").status, 404);
   EXPECT_EQ(ask(port_, "GET", "/api/v1/sessions/b/frames/0/thumbnail").status, 200);
+}
+
+TEST_F(HostileClients, ADigestThatIsAPathLeadsNowhere) {
+  start();
+  scripted_.leave_unfinished("a");
+  Session session = read_session(scripted_.session("a")).value();
+  session.shots[0].sha256 = "../secret";
+  ASSERT_TRUE(write_session(session));
+  std::ofstream(scripted_.rig.daemon.state / "secret.json") << R"({"word": "classified"})";
+  std::filesystem::create_directories(scripted_.rig.daemon.state / "pictures");
+  const Answer answer = ask(port_, "GET", "/api/v1/sessions/a");
+  ASSERT_EQ(answer.status, 200) << answer.body;
+  EXPECT_EQ(answer.json()["frames"][0]["histogram"], Json()) << answer.body;
+  EXPECT_EQ(ask(port_, "GET", "/api/v1/sessions/a/frames/0/histogram").status, 422);
 }
 
 TEST_F(HostileClients, ForeignPagesAreTurnedAway) {

@@ -6,10 +6,14 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <chrono>
 #include <fstream>
+#include <new>
+#include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "app/daemon/rig_lock.h"
 #include "core/files.h"
@@ -147,13 +151,81 @@ TEST(RigServer, SaysWhyAScanFailedAndLetsItBeResumed) {
   EXPECT_EQ(wait_for_state(port, "idle")["frames"], 4);
 }
 
-TEST(RigServer, SaysThatADeviceIsNotThere) {
-  ScriptedRig scripted("nodevice");
-  scripted.devices =
-      Error{ErrorKind::kNoDevice, "no LED board", "/dev/weft-led", "nothing there", "plug it in"};
+TEST(RigServer, SaysThatADeviceDoesNotAnswer) {
+  ScriptedRig scripted("silent");
+  scripted.devices = []() -> Result<void> {
+    return Error{ErrorKind::kTryAgain, "no answer", "/dev/weft-led", "no greeting", "flash it"};
+  };
   const auto server = scripted.started();
   ASSERT_EQ(ask(server->port(), "POST", kScan, R"({"fabric": "satin"})").status, 202);
   EXPECT_EQ(wait_for_state(server->port(), "failed")["error"]["where"], "/dev/weft-led");
+}
+
+TEST(RigServer, WaitsForADeviceThatIsNotThereYet) {
+  ScriptedRig scripted("nodevice");
+  std::atomic<bool> plugged = false;
+  scripted.devices = [&]() -> Result<void> {
+    if (plugged) return {};
+    return Error{ErrorKind::kNoDevice, "no LED board", "/dev/weft-led", "nothing there", "plug it in"};
+  };
+  const auto server = scripted.started();
+  const int port = server->port();
+  const auto wait_for_why = [&] {
+    const auto deadline = std::chrono::steady_clock::now() + seconds(5);
+    Json status;
+    do {
+      status = wait_for_state(port, "connecting");
+    } while (status["why"] == "" && std::chrono::steady_clock::now() < deadline);
+    EXPECT_THAT(status["why"].get<std::string>(), HasSubstr("no LED board: /dev/weft-led"));
+  };
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  wait_for_why();
+  ASSERT_EQ(ask(port, "POST", "/api/v1/scan/cancel", "").status, 202);
+  EXPECT_EQ(wait_for_state(port, "idle")["phase"], "cancelled");
+
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  wait_for_why();
+  plugged = true;
+  const Json complete = wait_for_state(port, "idle");
+  EXPECT_EQ(complete["phase"], "complete");
+  EXPECT_EQ(complete["why"], "");
+}
+
+TEST(RigServer, OutlivesAnExceptionOfItsScan) {
+  ScriptedRig scripted("throws");
+  int calls = 0;
+  scripted.before = [&](int) -> Result<void> {
+    if (++calls == 1) throw std::bad_alloc();
+    if (calls == 2) throw std::runtime_error("a bug");
+    return {};
+  };
+  const auto server = scripted.started();
+  const int port = server->port();
+  for (const auto& [kind, why] :
+       {std::pair("try_again", "not enough memory"), std::pair("internal", "a bug")}) {
+    ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+    const Json failed = wait_for_state(port, "failed");
+    EXPECT_EQ(failed["error"]["kind"], kind);
+    EXPECT_THAT(failed["why"].get<std::string>(), HasSubstr(why));
+  }
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  EXPECT_EQ(wait_for_state(port, "idle")["phase"], "complete");
+}
+
+TEST(RigServer, TakesUpTheSessionThatTheSameRequestBegan) {
+  ScriptedRig scripted("takesup");
+  scripted.rig.scan.session_name = "{fabric}_{count}";
+  scripted.leave_unfinished("linen_001");
+  const auto server = scripted.started();
+  const int port = server->port();
+  const Answer resumed = ask(port, "POST", kScan, R"({"fabric": "linen"})");
+  EXPECT_EQ(resumed.status, 202);
+  EXPECT_EQ(resumed.json(),
+            (Json{{"session", "linen_001"}, {"resumed", true}, {"frames", 1}, {"frames_planned", 4}}));
+  EXPECT_EQ(wait_for_state(port, "idle")["frames"], 4);
+  const Answer begun = ask(port, "POST", kScan, R"({"fabric": "linen"})");
+  EXPECT_EQ(begun.json(), (Json{{"session", "linen_002"}, {"resumed", false}}));
+  wait_for_state(port, "idle");
 }
 
 TEST(RigServer, FindsUnfinishedSessionsWhenItStarts) {

@@ -66,7 +66,6 @@ Session read_or_make(const capture::ScanRequest& request) {
   session.fabric = request.fabric;
   session.cloth_height_mm = request.cloth_height_mm;
   session.rig = request.rig;
-  session.calibration_id = "none";
   session.state = "capturing";
   session.document = {{"schema", "weft.session/1.1"},
                       {"metadata", request.metadata},
@@ -113,7 +112,7 @@ ScriptedRig::~ScriptedRig() {
 
 Result<std::unique_ptr<RigServer>> ScriptedRig::start(const HttpLimits& limits) {
   const OpenDevices open = [this](const capture::Rig&) -> Result<RigDevices> {
-    if (!devices) return devices.error();
+    if (Result<void> there = devices(); !there) return std::move(there).error();
     return RigDevices{std::make_unique<NoLamps>(), std::make_unique<NoCamera>()};
   };
   const RunScan run = [this](const capture::ScanRequest& request, capture::Lamps&, capture::Camera& camera,

@@ -23,7 +23,7 @@ class ScriptedRig {
   capture::Rig rig;  ///< any free port of 127.0.0.1
 
   // The script, set before a scan begins.
-  Result<void> devices = {};                                                               ///< opening them
+  std::function<Result<void>()> devices = []() -> Result<void> { return {}; };             ///< opening them
   std::function<Result<void>(int frame)> before = [](int) -> Result<void> { return {}; };  ///< each shot
   int frames = 4;  ///< the dark one and a LED each
 

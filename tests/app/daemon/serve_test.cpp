@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -81,6 +82,23 @@ class Daemon {
   pid_t pid_ = 0;
 };
 
+struct Ran {
+  int exit_code = -1;
+  std::string said;
+};
+
+/// weft with these words, to its end.
+Ran run(const std::string& words) {
+  Ran ran;
+  FILE* const out = popen((std::string(WEFT_PROGRAM) + " " + words + " 2>&1").c_str(), "re");
+  if (out == nullptr) return ran;
+  std::array<char, 512> line = {};
+  while (fgets(line.data(), static_cast<int>(line.size()), out) != nullptr) ran.said += line.data();
+  const int status = pclose(out);
+  if (WIFEXITED(status)) ran.exit_code = WEXITSTATUS(status);
+  return ran;
+}
+
 class Serve : public testing::Test {
  protected:
   void SetUp() override {
@@ -119,15 +137,18 @@ TEST_F(Serve, AnswersUntilItIsToldToEnd) {
   EXPECT_FALSE(fs::exists(rig_.daemon.state / "address"));
 }
 
-TEST_F(Serve, SaysThatTheBoardIsNotThereAndGoesOn) {
+TEST_F(Serve, SaysThatTheBoardIsNotThereAndWaitsForIt) {
   Daemon daemon(folder_ / "rig.toml");
   const Result<RigClient> client = this->client();
   ASSERT_TRUE(client) << client.error().message() << daemon.said();
   ASSERT_TRUE(client->post("/api/v1/scan", {{"fabric", "satin"}, {"session", "a"}}));
   Json status;
-  ASSERT_TRUE(comes_true([&] { return (status = client->get("/api/v1/rig").value())["state"] == "failed"; }))
+  ASSERT_TRUE(comes_true([&] { return (status = client->get("/api/v1/rig").value())["why"] != ""; }))
       << status.dump();
-  EXPECT_EQ(status["error"]["kind"], "no_device") << status.dump();
+  EXPECT_EQ(status["state"], "connecting") << status.dump();
+  EXPECT_THAT(status["why"].get<std::string>(), testing::HasSubstr("/dev/no-board"));
+  ASSERT_TRUE(client->post("/api/v1/scan/cancel"));
+  EXPECT_TRUE(comes_true([&] { return client->get("/api/v1/rig").value()["state"] == "idle"; }));
 }
 
 TEST_F(Serve, ASecondOneOfTheRigEndsAtOnce) {
@@ -147,6 +168,27 @@ TEST_F(Serve, OneThatWasKilledLeavesNothingInTheWay) {
   Daemon second(folder_ / "rig.toml");
   const Result<RigClient> again = client();
   EXPECT_TRUE(again) << again.error().message() << second.said();
+}
+
+TEST_F(Serve, TheDevicesOfItsRigAreLeftToIt) {
+  Daemon daemon(folder_ / "rig.toml");
+  ASSERT_TRUE(client());
+  const Ran lights = run("rig lights --rig " + rig_.file.string());
+  EXPECT_EQ(lights.exit_code, 75) << lights.said;
+  EXPECT_THAT(lights.said, testing::HasSubstr("the rig is in use"));
+  const Ran doctor = run("doctor --rig " + rig_.file.string());
+  EXPECT_EQ(doctor.exit_code, 0) << doctor.said;
+  EXPECT_THAT(doctor.said, testing::HasSubstr("owns the rig and is idle"));
+}
+
+TEST_F(Serve, AScanTakesTheNameThatAShellCompletes) {
+  const std::string session = (folder_ / "satin.weft").string();
+  for (const char* ending : {"", "/", "//"}) {
+    const Ran ran =
+        run("scan --dry-run --fabric satin --rig " + rig_.file.string() + " -o " + session + ending);
+    EXPECT_EQ(ran.exit_code, 0) << ran.said;
+    EXPECT_EQ(ran.said, session + "\n");
+  }
 }
 
 TEST_F(Serve, TellsTheServiceManagerThatItIsReadyAliveAndEnding) {

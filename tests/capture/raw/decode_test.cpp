@@ -124,6 +124,16 @@ TEST(DecodeRaw, ReturnsWhatTheFileSaysOfTheShot) {
   EXPECT_EQ(frame->shot.f_number, 8);
 }
 
+TEST(DecodeRaw, ReturnsTheApertureThatTheLensShows) {
+  RawFrame truth = sample_frame({24, 26});
+  for (const double f_number : {1.4, 2.8, 5.6, 6.3}) {
+    truth.shot.f_number = f_number;
+    const auto frame = decode_raw(written(truth, "aperture.dng"));
+    ASSERT_TRUE(frame.has_value()) << frame.error().message();
+    EXPECT_EQ(frame->shot.f_number, f_number) << "off by " << frame->shot.f_number - f_number;
+  }
+}
+
 TEST(DecodeRaw, LeavesOutWhatTheFileDoesNotSay) {
   RawFrame truth = sample_frame({24, 26});
   truth.shot = {"Lumitex", "Virtual D5100", "", 0, 0, 0};

@@ -118,8 +118,7 @@ TEST(Meter, KeepsEveryLedOfAGlossyClothFromClippingAndNamesABracket) {
 TEST(Meter, SuggestsABracketWhereHighlightsHoldTheExposure) {
   MeterInput input = {{1}, {}, thirds_of_stops(), 8000};
   const Result<Metering> metering = meter(input, [](int, double us) -> Result<Brightness> {
-    return Brightness{0.1 * us / 8000, std::min(0.9 * us / 8000, 1.0), 0.02 * us / 8000,
-                      us > 8800 ? 1e-3 : 0};
+    return Brightness{0.1 * us / 8000, std::min(0.9 * us / 8000, 1.0), us > 8800 ? 1e-3 : 0};
   });
   ASSERT_TRUE(metering) << metering.error().message();
   EXPECT_NEAR(metering->exposure_us, 7813, 1);
@@ -130,12 +129,12 @@ TEST(Meter, SuggestsABracketWhereHighlightsHoldTheExposure) {
 TEST(Meter, SaysThatAClothIsTooDarkOrTooBright) {
   MeterInput input = {{3}, {}, thirds_of_stops(), 8000};
   const auto dark = meter(input, [](int, double) -> Result<Brightness> {
-    return Brightness{0.001, 0.002, 0, 0};
+    return Brightness{0.001, 0.002, 0};
   });
   ASSERT_FALSE(dark);
   EXPECT_EQ(dark.error().kind, ErrorKind::kBadData);
   EXPECT_THAT(dark.error().message(), HasSubstr("too dark: LED 3"));
-  const auto full = meter(input, [](int, double) -> Result<Brightness> { return Brightness{1, 1, 1, 1}; });
+  const auto full = meter(input, [](int, double) -> Result<Brightness> { return Brightness{1, 1, 1}; });
   ASSERT_FALSE(full);
   EXPECT_THAT(full.error().message(), HasSubstr("too bright: LED 3"));
 }

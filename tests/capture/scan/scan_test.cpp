@@ -167,6 +167,25 @@ TEST(Scan, ResumesAMeteredSessionWithItsExposure) {
   EXPECT_EQ(bench.objection(), "");
 }
 
+TEST(Scan, MetersAgainWhereNoFrameWasKept) {
+  double undisturbed_us = 0;
+  {
+    ScanBench bench;
+    bench.request.exposure.exposure_us = 0;
+    const Result<ScanOutcome> outcome = bench.scan();
+    ASSERT_TRUE(outcome) << outcome.error().message();
+    undisturbed_us = outcome->session.shots.front().exposure_us;
+  }
+  ScanBench bench;
+  bench.request.exposure.exposure_us = 0;
+  bench.rig.room = 1;
+  ASSERT_FALSE(bench.scan()) << "a lamp lit the meter's shots and the dark one";
+  bench.rig.room = 0;
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_EQ(outcome->session.shots.front().exposure_us, undisturbed_us);
+}
+
 TEST(Scan, IsPausedWithAllLedsOffBetweenTwoShots) {
   ScanBench bench;
   std::atomic<bool> pause = false;

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "capture/rig.h"
+#include "capture/scan/scan.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// The session that a scan makes or goes on with.
+struct SessionChoice {
+  std::string name;
+  capture::ScanRequest request;  ///< with its folder
+  bool resumed = false;          ///< it is there, unfinished
+  int frames = 0;                ///< that it has
+  int frames_planned = 0;        ///< where it is resumed
+  std::string unfinished = {};   ///< another one of the same cloth, which its name would finish; empty: none
+};
+
+/// {"session", "resumed"}, "frames" and "frames_planned" where it is resumed, "unfinished" where there is
+/// one.
+Json to_json(const SessionChoice& choice);
+
+/// What the body of POST /api/v1/scan asks for: the session it names, new or unfinished. Where it names none:
+/// the newest unfinished one of this rig, fabric and calibration, begun as the body says as far as it says
+/// it, that was written at most an hour before `now`; else a new one by the rig's template. Errors: those of
+/// read_scan_body(), kUsage (no fabric), kCannotCreate (the session is finished, or another rig's), kNoInput
+/// and kBadData (its session.json). Nothing is made.
+Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig,
+                                     std::chrono::system_clock::time_point now);
+
+}  // namespace weft::app

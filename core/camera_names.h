@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <string_view>
+
+namespace weft {
+
+/// Whether two serial numbers of cameras are one: leading zeros do not count, since a body says its number
+/// over USB with them and writes it into its files without, or the other way round. An empty one matches all.
+inline bool same_serial(std::string_view a, std::string_view b) {
+  const auto number = [](std::string_view text) {
+    return text.substr(std::min(text.find_first_not_of('0'), text.size()));
+  };
+  return a.empty() || b.empty() || number(a) == number(b);
+}
+
+}  // namespace weft

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "core/result.h"
+
+namespace weft {
+
+/// "bad_data": what processes and HTTP clients call this kind.
+const char* name_of(ErrorKind kind);
+/// The kind of this name, if there is one.
+std::optional<ErrorKind> error_kind_of(std::string_view name);
+
+}  // namespace weft
