@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/camera_names.h"
+
 namespace weft::calibration {
 namespace {
 
@@ -22,13 +24,10 @@ bool same_setting(double a, double b) {
 }
 
 std::optional<std::string> difference(const CalibrationSubject& subject, const ShotMetadata& frame) {
-  const auto differ = [](const std::string& a, const std::string& b) {
-    return !a.empty() && !b.empty() && a != b;
-  };
-  if (differ(frame.model, subject.camera_model)) {
+  if (!frame.model.empty() && !subject.camera_model.empty() && frame.model != subject.camera_model) {
     return fmt::format("the calibration is of a {}, the frame of a {}", subject.camera_model, frame.model);
   }
-  if (differ(frame.serial, subject.camera_serial)) {
+  if (!same_serial(frame.serial, subject.camera_serial)) {
     return fmt::format("the calibration is of the body with serial number {}, the frame of {}",
                        subject.camera_serial, frame.serial);
   }

@@ -287,6 +287,8 @@ class Bench {
         if (const std::optional<pid_t> worker = child_of(weft.pid(), "weft-camera")) ::kill(*worker, SIGKILL);
         return {};
       case What::kKillRig:
+        // Its terminal's number may be given to another rig's board at once: no link may lead there.
+        fs::remove((*rig_)->folder() / "board");
         ::kill((*rig_)->pid(), SIGKILL);
         rig_->reset();
         return start(fault.usb);

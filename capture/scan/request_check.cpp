@@ -83,6 +83,11 @@ Result<void> check_calibration(const ScanRequest& request, const CameraFacts& ca
     return unsuited(
         fmt::format("it holds at f/{:g}, f/{:g} is asked for", subject.f_number, request.exposure.f_number));
   }
+  const double iso = calibration.response ? calibration.response->iso.value_or(0) : 0;
+  if (iso > 0 && std::abs(iso - request.exposure.iso) > 0.02 * iso) {
+    return unsuited(fmt::format("its response was measured at ISO {:g}, ISO {:g} is asked for", iso,
+                                request.exposure.iso));
+  }
   if (!camera.model.empty() && !subject.camera_model.empty() &&
       !are_one_model(camera.model, subject.camera_model)) {
     return unsuited(fmt::format("it is of a {}, the camera is a {}", subject.camera_model, camera.model));

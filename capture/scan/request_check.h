@@ -17,7 +17,7 @@ namespace weft::capture {
 Result<ShotList> checked_shots(const ScanRequest& request, int leds_of_board,
                                const std::optional<Calibration>& calibration);
 
-/// Whether rig, camera and aperture are those that the calibration is of.
+/// Whether rig, camera, aperture and ISO are those that the calibration is of.
 Result<void> check_calibration(const ScanRequest& request, const CameraFacts& camera,
                                const Calibration& calibration);
 

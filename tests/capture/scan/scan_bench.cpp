@@ -41,7 +41,9 @@ double mean_difference(const RawFrame& a, const RawFrame& b) {
 }  // namespace
 
 ScanBench::ScanBench() : folder(fresh_folder()), rig(cloth()) {
-  const Result<Calibration> written = write_calibration(folder / "calibration", cloth().calibration());
+  Calibration calibration = cloth().calibration();
+  if (calibration.response) calibration.response->iso = request.exposure.iso;
+  const Result<Calibration> written = write_calibration(folder / "calibration", calibration);
   EXPECT_TRUE(written) << written.error().message();
   request.session = folder / "cloth.weft";
   request.fabric = "plain weave";

@@ -103,6 +103,7 @@ TEST(Scan, RefusesWhatTheCalibrationIsNotOfBeforeTheFirstShot) {
   };
   EXPECT_THAT(refusal([](ScanBench& b) { b.request.rig = "another rig"; }), HasSubstr("another rig"));
   EXPECT_THAT(refusal([](ScanBench& b) { b.request.exposure.f_number = 11; }), HasSubstr("f/11"));
+  EXPECT_THAT(refusal([](ScanBench& b) { b.request.exposure.iso = 400; }), HasSubstr("ISO 400"));
   EXPECT_THAT(refusal([](ScanBench& b) { b.rig.facts.serial = "4242"; }), HasSubstr("4242"));
   EXPECT_THAT(refusal([](ScanBench& b) { b.rig.facts.model = "Canon EOS 5D"; }), HasSubstr("EOS 5D"));
 }
