@@ -5,7 +5,6 @@
 
 #include <array>
 #include <chrono>
-#include <numeric>
 #include <thread>
 
 #include "app/cli/exit_code.h"
@@ -22,11 +21,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<int> chosen_leds(const RigArguments& arguments, int leds) {
-  if (!arguments.leds.empty()) return arguments.leds;
-  std::vector<int> all(static_cast<std::size_t>(leds));
-  std::iota(all.begin(), all.end(), 1);
-  return all;
+std::vector<int> chosen_leds(const capture::Rig& rig, const RigArguments& arguments) {
+  return arguments.leds.empty() ? request_of_rig(rig).leds : arguments.leds;
 }
 
 Result<int> show_status(const capture::Rig& rig, const CommonArguments& common) {
@@ -69,14 +65,14 @@ Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments
   if (!board) return board.error();
   const std::stop_token stop = stop_on_signal();
   const double most_s = arguments.seconds + 1;
-  for (const int led : chosen_leds(arguments, (*board)->leds())) {
+  for (const int led : chosen_leds(rig, arguments)) {
     if (stop.stop_requested()) return interrupted();
     if (Result<void> ok = (*board)->light(std::array{led}, most_s); !ok) return std::move(ok).error();
     if (!common.json) print(fmt::format("LED {}", led));
     std::this_thread::sleep_for(std::chrono::duration<double>(arguments.seconds));
   }
   if (Result<void> ok = (*board)->light({}, 0); !ok) return std::move(ok).error();
-  if (common.json) print_json({{"leds", chosen_leds(arguments, (*board)->leds())}});
+  if (common.json) print_json({{"leds", chosen_leds(rig, arguments)}});
   return kDone;
 }
 
@@ -100,7 +96,7 @@ Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& argu
   request.session = scratch.path() / "test.weft";
   request.fabric = "test";
   request.copy.clear();
-  request.leds = arguments.leds;
+  request.leds = chosen_leds(rig, arguments);
   Json rows = Json::array();
   const auto show = [&](const capture::KeptFrame& frame) {
     const auto& rgb = frame.histogram_rgb;

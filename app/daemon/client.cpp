@@ -27,7 +27,7 @@ void prepare(httplib::Client& client, const std::string& token, int silence_s) {
 
 Error no_answer(const std::string& where, httplib::Error error) {
   return {ErrorKind::kTryAgain, "the daemon does not answer", where, httplib::to_string(error),
-          "start it with 'weft serve RIG.toml'"};
+          "start it with 'weft serve --rig RIG.toml'"};
 }
 
 Result<Json> document_of(const httplib::Result& result, const std::string& where) {
@@ -127,7 +127,7 @@ Result<void> RigClient::follow(const std::function<bool(const Event&)>& take,
   if (status != 0 && status != 200) return error_of_document(refusal, where);
   return Error{ErrorKind::kTryAgain, "the daemon ended", where,
                result ? "its stream of events ended" : httplib::to_string(result.error()),
-               "start it again with 'weft serve RIG.toml'; an unfinished scan can be resumed"};
+               "start it again with 'weft serve --rig RIG.toml'; an unfinished scan can be resumed"};
 }
 
 }  // namespace weft::app

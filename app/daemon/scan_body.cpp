@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -138,6 +139,8 @@ capture::ScanRequest request_of_rig(const capture::Rig& rig) {
   request.cloth_height_mm = rig.scan.cloth_height_mm;
   request.exposure = {rig.scan.exposure_us.value_or(0), rig.scan.iso, rig.scan.f_number};
   request.copy = rig.scan.copy;
+  request.leds.resize(static_cast<std::size_t>(rig.leds));
+  std::iota(request.leds.begin(), request.leds.end(), 1);
   return request;
 }
 

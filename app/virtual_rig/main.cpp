@@ -113,7 +113,7 @@ int run(Arguments& a) {
   if (!scene) return complain(scene.error());
   if (a.megapixels > 0) simulator::resize(scene->camera, a.megapixels);
   a.rig.scene = std::move(*scene);
-  a.rig.preloads = {WEFT_TERMINAL_SHIM};
+  a.rig.preloads = {WEFT_TERMINAL_SHIM, WEFT_DISK_SHIM};
   if (a.rig.usb) a.rig.preloads.emplace_back(WEFT_USB_SHIM);
   a.rig.keep_log = a.keep;
   const bool is_temporary = a.folder.empty();

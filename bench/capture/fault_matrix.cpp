@@ -24,9 +24,10 @@ namespace {
 namespace fs = std::filesystem;
 using Steady = std::chrono::steady_clock;
 
-constexpr int kShots = 12;      // ten LEDs, the first once more, the dark one
-constexpr double kScan_s = 90;  // a scan that takes longer hangs
-constexpr double kUsual_s = 5;  // moments are drawn from this
+constexpr int kLeds = 10;
+constexpr int kShots = kLeds + 2;  // the first once more, the dark one
+constexpr double kScan_s = 90;     // a scan that takes longer hangs
+constexpr double kUsual_s = 5;     // moments are drawn from this
 
 /// What is done to a rig, and when.
 enum class When { kAtShot, kAtMoment };
@@ -36,35 +37,50 @@ struct Fault {
   const char* name;
   What what;
   When when;
-  const char* say;         ///< to the rig; {} is the shot
+  const char* say;         ///< to the rig; {shot}, {led}, {other} and {share} are drawn
   const char* mends = "";  ///< said to the rig after two seconds
   bool usb = false;        ///< the camera hangs on USB
 };
 
-// Faults of a shot choose the step themselves: before, in the exposure, in the transfer, after it.
+// Faults of a shot choose the step themselves: before, in the exposure, in the transfer. What comes at a
+// moment comes at any step, and while a frame is checked and kept.
 constexpr std::array kFaults = {
-    Fault{"camera link breaks in the exposure", What::kSay, When::kAtShot, "camera drop_in_exposure {}"},
-    Fault{"camera link breaks before the picture", What::kSay, When::kAtShot, "camera drop_before_object {}"},
-    Fault{"camera link breaks in the transfer", What::kSay, When::kAtShot, "camera drop_in_data {}"},
-    Fault{"an old shot comes after a reconnect", What::kSay, When::kAtShot, "camera old_shot {}"},
-    Fault{"camera does not answer", What::kSay, When::kAtShot, "camera no_answer {}"},
-    Fault{"transfer stalls", What::kSay, When::kAtShot, "camera data_stalls {}"},
-    Fault{"transfer ends early", What::kSay, When::kAtShot, "camera data_ends_early {}"},
-    Fault{"camera busy for a second", What::kSay, When::kAtShot, "camera capture_busy {}"},
-    Fault{"camera busy for ever", What::kSay, When::kAtShot, "camera busy_for_ever {}"},
-    Fault{"picture is never announced", What::kSay, When::kAtShot, "camera no_object {}"},
-    Fault{"picture's size is a lie", What::kSay, When::kAtShot, "camera object_size_lie {}"},
-    Fault{"file is cut short", What::kSay, When::kAtShot, "camera short_data {}"},
-    Fault{"capture is never complete", What::kSay, When::kAtShot, "camera no_capture_complete {}"},
-    Fault{"noise of events", What::kSay, When::kAtShot, "camera property_noise {}"},
-    Fault{"event of an unknown property", What::kSay, When::kAtShot, "camera unsupported_property {}"},
-    Fault{"file comes late", What::kSay, When::kAtShot, "camera file_late {}"},
-    Fault{"frame comes twice", What::kSay, When::kAtShot, "camera duplicate_frame {}"},
-    Fault{"camera off and on", What::kSay, When::kAtShot, "camera power_cycle {}"},
-    Fault{"camera off", What::kSay, When::kAtShot, "camera power_off {}", "camera power_on"},
-    Fault{"USB cable pulled", What::kSay, When::kAtShot, "camera usb_unplug {}", "camera usb_replug", true},
+    Fault{"camera link breaks in the exposure", What::kSay, When::kAtShot, "camera drop_in_exposure {shot}"},
+    Fault{"camera link breaks before the picture", What::kSay, When::kAtShot,
+          "camera drop_before_object {shot}"},
+    Fault{"camera link breaks in the transfer", What::kSay, When::kAtShot, "camera drop_in_data {shot}"},
+    Fault{"an old shot comes after a reconnect", What::kSay, When::kAtShot, "camera old_shot {shot}"},
+    Fault{"camera does not answer", What::kSay, When::kAtShot, "camera no_answer {shot}"},
+    Fault{"transfer stalls", What::kSay, When::kAtShot, "camera data_stalls {shot}"},
+    Fault{"transfer ends early", What::kSay, When::kAtShot, "camera data_ends_early {shot}"},
+    Fault{"camera busy for a second", What::kSay, When::kAtShot, "camera capture_busy {shot}"},
+    Fault{"camera busy for ever", What::kSay, When::kAtShot, "camera busy_for_ever {shot}"},
+    Fault{"picture is never announced", What::kSay, When::kAtShot, "camera no_object {shot}"},
+    Fault{"picture's size is a lie", What::kSay, When::kAtShot, "camera object_size_lie {shot}"},
+    Fault{"file is cut short", What::kSay, When::kAtShot, "camera short_data {shot}"},
+    Fault{"capture is never complete", What::kSay, When::kAtShot, "camera no_capture_complete {shot}"},
+    Fault{"noise of events", What::kSay, When::kAtShot, "camera property_noise {shot}"},
+    Fault{"event of an unknown property", What::kSay, When::kAtShot, "camera unsupported_property {shot}"},
+    Fault{"file comes late", What::kSay, When::kAtShot, "camera file_late {shot}"},
+    Fault{"frame comes twice", What::kSay, When::kAtShot, "camera duplicate_frame {shot}"},
+    Fault{"camera off and on", What::kSay, When::kAtShot, "camera power_cycle {shot}"},
+    Fault{"camera off in the exposure", What::kSay, When::kAtShot, "camera power_off {shot}",
+          "camera power_on"},
+    Fault{"camera off in the transfer", What::kSay, When::kAtShot, "camera power_off_in_data {shot}",
+          "camera power_on"},
+    Fault{"camera off between exposures", What::kSay, When::kAtMoment, "camera power_off_now",
+          "camera power_on"},
+    Fault{"camera turns the host away", What::kSay, When::kAtShot, "camera init_fail"},
+    Fault{"camera opens no session", What::kSay, When::kAtShot, "camera open_session_silent"},
+    Fault{"camera's port is closed for a while", What::kSay, When::kAtShot, "camera refused"},
+    Fault{"USB cable pulled in the exposure", What::kSay, When::kAtShot, "camera usb_unplug {shot}",
+          "camera usb_replug", true},
+    Fault{"USB cable pulled in the transfer", What::kSay, When::kAtShot, "camera usb_unplug_in_data {shot}",
+          "camera usb_replug", true},
+    Fault{"USB cable pulled between exposures", What::kSay, When::kAtMoment, "camera usb_unplug_now",
+          "camera usb_replug", true},
     Fault{"USB cable out and in", What::kSay, When::kAtMoment, "camera usb_replug", "", true},
-    Fault{"USB transfer times out", What::kSay, When::kAtShot, "camera usb_timeout {}", "", true},
+    Fault{"USB transfer times out", What::kSay, When::kAtShot, "camera usb_timeout {shot}", "", true},
     Fault{"another program has the USB camera", What::kSay, When::kAtShot, "camera usb_claimed", "", true},
     Fault{"USB session left open by a kill", What::kSay, When::kAtShot, "camera usb_stale_session", "", true},
     Fault{"dial turned", What::kSay, When::kAtMoment, "camera dial_turned"},
@@ -78,10 +94,11 @@ constexpr std::array kFaults = {
     Fault{"board hears nothing for a while", What::kSay, When::kAtMoment, "board deaf", "board hear"},
     Fault{"board is slow", What::kSay, When::kAtMoment, "board slow", "board hear"},
     Fault{"wrong baud rate for a while", What::kSay, When::kAtMoment, "board wrong_baud", "board hear"},
-    Fault{"LED dies", What::kSay, When::kAtMoment, "light dead 5"},
-    Fault{"LED stays lit", What::kSay, When::kAtMoment, "light stuck 4"},
-    Fault{"wires swapped", What::kSay, When::kAtMoment, "light swap 9 10"},
-    Fault{"room light goes on", What::kSay, When::kAtMoment, "light ambient 0.2"},
+    Fault{"LED dies", What::kSay, When::kAtMoment, "light dead {led}"},
+    Fault{"LED stays lit", What::kSay, When::kAtMoment, "light stuck {led}"},
+    Fault{"wires swapped", What::kSay, When::kAtMoment, "light swap {led} {other}"},
+    Fault{"room light goes on", What::kSay, When::kAtMoment, "light ambient {share:.2f}"},
+    Fault{"disk is full", What::kSay, When::kAtMoment, "disk full"},
     Fault{"weft is killed", What::kKillHost, When::kAtMoment, ""},
     Fault{"weft serve is killed", What::kKillDaemon, When::kAtMoment, ""},
     Fault{"weft-camera is killed", What::kKillWorker, When::kAtMoment, ""},
@@ -94,19 +111,52 @@ const Fault* fault_named(const std::string& name) {
   return found == kFaults.end() ? nullptr : found;
 }
 
-/// What each frame of an undisturbed scan shows.
-using Frames = std::map<std::pair<int, ShotRole>, RawFrame>;
+/// What each frame of an undisturbed scan shows, and what its session says but for times and numbers.
+struct Frames {
+  std::map<std::pair<int, ShotRole>, RawFrame> shown;
+  std::string record;
+};
 /// Of one whose exposure is given, and of a metered one.
 struct Truth {
   Frames given, metered;
 };
 
+/// What two scans of one cloth have in common: everything but times, counts of shots, what follows from them,
+/// and what was remarked on the way.
+Result<std::string> record_of(const Session& session) {
+  Json record = {{"rig", session.rig},
+                 {"fabric", session.fabric},
+                 {"cloth_height_mm", session.cloth_height_mm},
+                 {"state", session.state},
+                 {"plan", session.document.value("plan", Json())},
+                 {"exposure", session.document.value("exposure", Json())},
+                 {"shots", Json::array()},
+                 {"calibration", Json::object()}};
+  for (const Shot& shot : session.shots) {
+    record["shots"].push_back({shot.index, shot.led, static_cast<int>(shot.role), shot.file, shot.exposure_us,
+                               shot.iso, shot.f_number});
+  }
+  std::error_code failed;
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(session.calibration_folder(), failed)) {
+    if (!entry.is_regular_file()) continue;
+    const Result<std::string> digest = sha256_of_file(entry.path());
+    if (!digest) return digest.error();
+    files[fs::relative(entry.path(), session.folder).string()] = *digest;
+  }
+  for (const auto& [file, digest] : files) record["calibration"][file] = digest;
+  return record.dump();
+}
+
 Result<Frames> frames_of(const Session& session) {
   Frames frames;
+  Result<std::string> record = record_of(session);
+  if (!record) return std::move(record).error();
+  frames.record = std::move(*record);
   for (const Shot& shot : session.shots) {
     Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
     if (!frame) return std::move(frame).error();
-    frames.insert_or_assign({shot.led, shot.role}, std::move(*frame));
+    frames.shown.insert_or_assign({shot.led, shot.role}, std::move(*frame));
   }
   return frames;
 }
@@ -127,6 +177,13 @@ struct Run {
   int shot = 1;
   double moment_s = 0;
   bool metered = false;
+  int led = 1, other_led = 2;
+  double share = 0.2;
+
+  std::string line() const {
+    return fmt::format(fmt::runtime(fault->say), fmt::arg("shot", shot), fmt::arg("led", led),
+                       fmt::arg("other", other_led), fmt::arg("share", share));
+  }
 };
 
 std::vector<Run> runs_of(const FaultMatrixOptions& options) {
@@ -141,10 +198,20 @@ std::vector<Run> runs_of(const FaultMatrixOptions& options) {
   std::uniform_int_distribution<int> shot(1, kShots);
   std::uniform_real_distribution<double> moment(0.05, kUsual_s);
   std::bernoulli_distribution metered(0.5);
+  std::uniform_int_distribution<int> led(1, kLeds), further(1, kLeds - 1);
+  std::uniform_real_distribution<double> share(0.2, 1);
   std::vector<Run> runs;
-  for (int i = 0; i < options.runs && !faults.empty(); ++i)
-    runs.push_back({i, faults[static_cast<std::size_t>(i) % faults.size()], shot(random), moment(random),
-                    metered(random)});
+  for (int i = 0; i < options.runs && !faults.empty(); ++i) {
+    Run& run = runs.emplace_back();
+    run.number = i;
+    run.fault = faults[static_cast<std::size_t>(i) % faults.size()];
+    run.shot = shot(random);
+    run.moment_s = moment(random);
+    run.metered = metered(random);
+    run.led = led(random);
+    run.other_led = 1 + (run.led - 1 + further(random)) % kLeds;
+    run.share = share(random);
+  }
   return runs;
 }
 
@@ -235,8 +302,7 @@ class Bench {
   Result<std::optional<int>> disturbed(const Run& run, const fs::path& session) {
     const Fault& fault = *run.fault;
     if (fault.when == When::kAtShot) {
-      if (auto said = (*rig_)->say(fmt::format(fmt::runtime(fault.say), run.shot)); !said)
-        return std::move(said).error();
+      if (auto said = (*rig_)->say(run.line()); !said) return std::move(said).error();
     }
     if (fault.what == What::kKillDaemon) {
       if (Result<void> ok = serve(); !ok) return ok.error();
@@ -245,7 +311,7 @@ class Bench {
     if (!weft) return std::move(weft).error();
     has_befallen_ = fault.when == When::kAtShot || !(*weft)->wait(run.moment_s);
     if (fault.when == When::kAtMoment && has_befallen_) {
-      if (Result<void> ok = befall(fault, **weft); !ok) return ok.error();
+      if (Result<void> ok = befall(run, **weft); !ok) return ok.error();
     }
     if (*fault.mends != '\0' && !(*weft)->wait(2)) {
       if (auto said = (*rig_)->say(fault.mends); !said) return std::move(said).error();
@@ -272,10 +338,10 @@ class Bench {
     return {};
   }
 
-  Result<void> befall(const Fault& fault, const ChildProcess& weft) {
-    switch (fault.what) {
+  Result<void> befall(const Run& run, const ChildProcess& weft) {
+    switch (run.fault->what) {
       case What::kSay:
-        if (auto said = (*rig_)->say(fault.say); !said) return std::move(said).error();
+        if (auto said = (*rig_)->say(run.line()); !said) return std::move(said).error();
         return {};
       case What::kKillHost:
         weft.signal(SIGKILL);
@@ -291,14 +357,14 @@ class Bench {
         fs::remove((*rig_)->folder() / "board");
         ::kill((*rig_)->pid(), SIGKILL);
         rig_->reset();
-        return start(fault.usb);
+        return start(run.fault->usb);
     }
     return {};
   }
 
   Result<void> make_well() {
     for (const char* line :
-         {"board replug", "board hear", "light normal", "camera power_on", "camera well"}) {
+         {"board replug", "board hear", "light normal", "disk room", "camera power_on", "camera well"}) {
       if (auto said = (*rig_)->say(line); !said && said.error().kind != ErrorKind::kUsage)
         return std::move(said).error();
     }
@@ -311,7 +377,7 @@ class Bench {
     if (code == 0 || killed || has_sentence) return;
     ++tally.silent;
     tally.wrong.push_back(fmt::format("run {}: {}: {}", run.number,
-                                      code ? fmt::format("ended with {}", *code) : "did not end", said_));
+                                      code ? fmt::format("ended with {shot}", *code) : "did not end", said_));
   }
 
   /// Whether the same command finishes the scan.
@@ -319,7 +385,8 @@ class Bench {
     auto weft = scan(session, run.metered);
     if (!weft) return std::move(weft).error();
     const std::optional<int> code = (*weft)->wait(kScan_s);
-    if (code != 0) tally.wrong.push_back(fmt::format("run {}: not resumed: {}", run.number, (*weft)->said()));
+    if (code != 0)
+      tally.wrong.push_back(fmt::format("run {}: not resumed: {}", run.number, (*weft)->said()));
     return code == 0;
   }
 
@@ -327,10 +394,12 @@ class Bench {
   static bool judge_session(const Run& run, const fs::path& folder, const Frames& truth, FaultTally& tally) {
     const Result<Session> session = read_session(folder);
     if (!session) {
-      tally.lost += static_cast<int>(truth.size());
+      tally.lost += static_cast<int>(truth.shown.size());
       tally.wrong.push_back(fmt::format("run {}: {}", run.number, session.error().message()));
       return false;
     }
+    const Result<std::string> record = record_of(*session);
+    tally.differing += record && *record == truth.record ? 0 : 1;
     const int before = tally.lost + tally.mislabelled + tally.half_written;
     std::set<fs::path> named;
     std::set<std::pair<int, ShotRole>> seen;
@@ -339,15 +408,14 @@ class Bench {
       seen.insert({shot.led, shot.role});
       judge_frame(run, *session, shot, truth, tally);
     }
-    for (const auto& [what, frame] : truth) tally.lost += seen.contains(what) ? 0 : 1;
+    for (const auto& [what, frame] : truth.shown) tally.lost += seen.contains(what) ? 0 : 1;
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder / "raw", ignored))
       tally.half_written += named.contains(entry.path()) ? 0 : 1;
-    if (tally.lost + tally.mislabelled + tally.half_written == before && session->state == "complete")
-      return true;
+    if (tally.lost + tally.mislabelled + tally.half_written == before && tally.differing == 0) return true;
     tally.wrong.push_back(fmt::format("run {} (shot {}, {:.2f} s): state {}, {} of {} frames", run.number,
                                       run.shot, run.moment_s, session->state, session->shots.size(),
-                                      truth.size()));
+                                      truth.shown.size()));
     return false;
   }
 
@@ -361,8 +429,8 @@ class Bench {
       tally.wrong.push_back(fmt::format("run {}: {} is not whole", run.number, shot.file));
       return;
     }
-    const auto expected = truth.find({shot.led, shot.role});
-    if (expected != truth.end() && same_counts(*frame, expected->second)) return;
+    const auto expected = truth.shown.find({shot.led, shot.role});
+    if (expected != truth.shown.end() && same_counts(*frame, expected->second)) return;
     ++tally.mislabelled;
     tally.wrong.push_back(fmt::format("run {} (shot {}, {:.2f} s): {} is not what LED {} shows", run.number,
                                       run.shot, run.moment_s, shot.file, shot.led));
@@ -423,7 +491,8 @@ Result<std::vector<FaultTally>> fault_matrix(const FaultMatrixOptions& options) 
       sum.fault = runs[i].fault->name;
       for (int FaultTally::*const count :
            {&FaultTally::runs, &FaultTally::complete, &FaultTally::resumed, &FaultTally::lost,
-            &FaultTally::mislabelled, &FaultTally::half_written, &FaultTally::silent}) {
+            &FaultTally::mislabelled, &FaultTally::half_written, &FaultTally::differing,
+            &FaultTally::silent}) {
         sum.*count += tally.*count;
       }
       sum.most_s = std::max(sum.most_s, tally.most_s);
@@ -458,6 +527,7 @@ Rows rows_of(const std::vector<FaultTally>& tallies) {
                     {"lost", t.lost},
                     {"mislabelled", t.mislabelled},
                     {"half_written", t.half_written},
+                    {"differing", t.differing},
                     {"silent", t.silent},
                     {"most_s", t.most_s}});
   }

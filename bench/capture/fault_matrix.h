@@ -36,6 +36,7 @@ struct FaultTally {
   int lost = 0;          ///< frames that are not there in the end
   int mislabelled = 0;   ///< frames that show another light than their name says
   int half_written = 0;  ///< files that are not what session.json says, or that it does not name
+  int differing = 0;     ///< sessions whose record or calibration is not that of an undisturbed scan
   int silent = 0;        ///< ended without a sentence that says what to do, or not at all
   double most_s = 0;     ///< of a scan
   std::vector<std::string> wrong;  ///< what was wrong, a sentence a run

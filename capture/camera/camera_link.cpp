@@ -76,7 +76,10 @@ Result<std::unique_ptr<CameraLink>> CameraLink::make(CameraLinkOptions options) 
 }
 
 CameraLink::CameraLink(CameraLinkOptions options, CameraProfile profile, bool own_state)
-    : options_(std::move(options)), profile_(std::move(profile)), own_state_(own_state) {}
+    : options_(std::move(options)),
+      profile_(std::move(profile)),
+      own_state_(own_state),
+      clock_memory_(options_.state / "clock.json") {}
 
 CameraLink::~CameraLink() {
   end_worker();
@@ -88,9 +91,25 @@ Result<CameraFacts> CameraLink::connect() {
   end_worker();
   facts_ = {};
   last_image_number_.reset();
-  clock_.reset();
   wanted_.reset();
+  const auto known = clock_memory_.recall(seconds_since_1970());
+  clock_ = known ? std::optional(known->clock) : std::nullopt;
+  is_clock_remembered_ = known.has_value();
+  Result<CameraFacts> facts = open(options_.serial, !known);
+  if (!facts) clock_.reset();
+  if (!facts || !known) return facts;
+  const bool is_as_known =
+      facts_.serial == known->serial && clock_ && clock_->offset_s == known->clock.offset_s;
+  if (is_as_known) return facts;
+  forget_clock();
+  end_worker();
   return open(options_.serial, true);
+}
+
+void CameraLink::forget_clock() {
+  clock_memory_.forget();
+  clock_.reset();
+  is_clock_remembered_ = false;
 }
 
 Result<CameraFacts> CameraLink::recover() {
@@ -147,6 +166,8 @@ Result<Photograph> CameraLink::take(const fs::path& file, const std::function<vo
   if (!photograph) {
     std::error_code ignored;
     fs::remove(aside, ignored);
+    // It may be the clock that is wrong.
+    if (is_clock_remembered_ && photograph.error().kind == ErrorKind::kProtocol) forget_clock();
     // What is still to come from the camera is unknown.
     ready_ = photograph.error().kind == ErrorKind::kBadData;
     return photograph;
@@ -191,7 +212,9 @@ Result<CameraFacts> CameraLink::open(const std::string& serial, bool watch_clock
   if (watch_clock) asked["watch_clock"] = true;
   const Result<Json> opened = request(std::move(asked), kOpenS);
   if (!opened) return opened.error();
-  return note_opened(*opened);
+  Result<CameraFacts> facts = note_opened(*opened);
+  if (facts && watch_clock && clock_) clock_memory_.keep({facts_.serial, *clock_}, seconds_since_1970());
+  return facts;
 }
 
 Result<CameraFacts> CameraLink::note_opened(const Json& opened) {

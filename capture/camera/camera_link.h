@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "capture/camera/camera_profile.h"
+#include "capture/camera/clock_memory.h"
 #include "capture/camera/photograph_evidence.h"
 #include "capture/camera/worker_process.h"
 #include "capture/devices.h"
@@ -35,6 +36,9 @@ struct CameraLinkOptions {
 /// one that was asked for: raw, its count after the last one's, its time between trigger and now by the
 /// camera's clock, its exposure as set. Else it is removed: kProtocol ("an older photograph arrived") or
 /// kBadData. After kTryAgain, kProtocol and kNoDevice the camera takes nothing until recover().
+///
+/// connect() watches the camera's clock turn, or glances at it where it was watched within the last hour and
+/// has not been set since.
 class CameraLink : public Camera {
  public:
   static Result<std::unique_ptr<CameraLink>> make(CameraLinkOptions options);
@@ -58,6 +62,7 @@ class CameraLink : public Camera {
   Result<CameraFacts> open(const std::string& serial, bool watch_clock);
   Result<CameraFacts> note_opened(const Json& opened);
   void note_clock(const Json& clock);
+  void forget_clock();
   Result<void> start_worker();
   void end_worker();
   Result<Json> request(
@@ -72,7 +77,9 @@ class CameraLink : public Camera {
   int id_ = 0;
   bool ready_ = false;
   CameraFacts facts_;
+  ClockMemory clock_memory_;
   std::optional<CameraClock> clock_;
+  bool is_clock_remembered_ = false;
   std::optional<std::uint32_t> last_image_number_;
   std::optional<ExposureSettings> wanted_;  // set again after a reconnect
 };

@@ -19,6 +19,7 @@ constexpr double kDimWarns = 0.6;            // is only spoken of: glossy cloth 
 constexpr double kSuspiciousMisfit = 0.002;  // below it the plan is believed without trying other stories
 constexpr std::size_t kStoryStep =
     5;  // patches from one that is looked at to the next: 48 columns have no factor 5
+constexpr double kReadableEnough = 0.5;  // of a frame's patches, to be held against the others
 constexpr double kFarBetter = 0.6;       // of the plan's misfit, at most, for another story to be believed
 constexpr double kBetterBy = 0.002;      // and by this at least
 constexpr double kDriftWarns = 0.01;     // of a repeat's brightness
@@ -34,6 +35,12 @@ double quantile(std::vector<double> values, double share) {
       values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
+}
+
+/// The share of patches without a full photosite.
+double readable_share(const std::vector<double>& light) {
+  const auto readable = std::ranges::count_if(light, [](double v) { return std::isfinite(v); });
+  return static_cast<double>(readable) / static_cast<double>(light.size());
 }
 
 /// What a frame has over another, and how unevenly.
@@ -175,9 +182,18 @@ Verdict LightEvidence::judge_lit(const PlannedShot& shot, const std::vector<doub
 }
 
 Verdict LightEvidence::judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const {
+  if (const double readable = readable_share(light); readable < kReadableEnough) {
+    Verdict verdict;
+    verdict.warnings.push_back(
+        fmt::format("LED {}: {:.0f} percent of the frame have full photosites, so that nothing tells whether "
+                    "it was the right LED: scan with a shorter --exposure",
+                    shot.led, 100 * (1 - readable)));
+    return verdict;
+  }
   std::vector<Seen> frames;
   for (const auto& [index, seen] : lit_) {
-    if (index != shot.index) frames.push_back({seen.shot, without_dark(seen.light)});
+    if (index != shot.index && readable_share(seen.light) >= kReadableEnough)
+      frames.push_back({seen.shot, without_dark(seen.light)});
   }
   frames.push_back({shot, without_dark(light)});
   if (frames.size() < kEnoughForPatterns) return {};

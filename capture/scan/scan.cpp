@@ -32,6 +32,7 @@ constexpr double kMostClipped = 1e-5;  // of a channel of a metered frame
 constexpr int kTimesWrong = 2;         // a shot whose light is wrong ends the scan
 constexpr double kWhite = 0.8;         // albedo that the first test shot holds
 constexpr double kSixthOfAStop = 0.116;
+constexpr std::int64_t kUsualPixels = 16'500'000;  // of a camera that no calibration tells of
 
 /// What became of a frame on its way into the session.
 struct Kept {
@@ -85,7 +86,7 @@ class Scan {
     if (!missing) return missing.error();
     // What the frames will take is known well enough before the first one: 16 bits a photosite.
     const std::int64_t pixels =
-        calibration_ && calibration_->camera ? calibration_->camera->size.pixels() : 0;
+        calibration_ && calibration_->camera ? calibration_->camera->size.pixels() : kUsualPixels;
     if (Result<void> room =
             check_room(request_, *missing, list_.count(), static_cast<std::uint64_t>(2 * pixels));
         !room)
@@ -247,7 +248,10 @@ class Scan {
       }
       Result<RawFrame> frame = decode_raw(journal_->session().path_of(shot));
       if (!frame) return frame.error();
-      if (Result<void> ok = check_frame(*frame, shot.file); !ok) return ok;
+      if (Result<void> ok =
+              first_ ? check_alike(*frame, *first_, first_size_, shot.file) : accept_first(*frame, shot.file);
+          !ok)
+        return ok;
       evidence_->accept(plan_[static_cast<std::size_t>(shot.index)], evidence_->glance(*frame));
     }
     shooter_.follow(last);
@@ -255,23 +259,21 @@ class Scan {
   }
 
   /// The first frame says what all are like.
-  Result<void> check_frame(RawFrame& frame, const std::string& where) {
-    if (!first_) {
-      first_size_ = frame.counts.size();
-      first_ = RawFrame{{}, frame.cfa, frame.black, frame.white, frame.shot};
-      if (model_ && model_->grid.frame != first_size_) {
-        return Error{ErrorKind::kBadData, "calibration is not of this camera", where,
-                     fmt::format("its camera has {} x {} pixels, the frame {} x {}", model_->grid.frame.width,
-                                 model_->grid.frame.height, first_size_.width, first_size_.height),
-                     "name the calibration of this camera"};
-      }
-      if (Result<void> ok = check_body(frame.shot, where); !ok) return ok;
-      const PatchGrid grid = model_ ? model_->grid : PatchGrid::over(first_size_);
-      evidence_.emplace(grid, std::move(model_));
-      model_.reset();
-      return {};
+  Result<void> accept_first(const RawFrame& frame, const std::string& where) {
+    const Size size = frame.counts.size();
+    if (model_ && model_->grid.frame != size) {
+      return Error{ErrorKind::kBadData, "calibration is not of this camera", where,
+                   fmt::format("its camera has {} x {} pixels, the frame {} x {}", model_->grid.frame.width,
+                               model_->grid.frame.height, size.width, size.height),
+                   "name the calibration of this camera"};
     }
-    return check_alike(frame, *first_, first_size_, where);
+    if (Result<void> ok = check_body(frame.shot, where); !ok) return ok;
+    const PatchGrid grid = model_ ? model_->grid : PatchGrid::over(size);
+    evidence_.emplace(grid, std::move(model_));
+    model_.reset();
+    first_size_ = size;
+    first_ = RawFrame{{}, frame.cfa, frame.black, frame.white, frame.shot};
+    return {};
   }
 
   /// As the solver will ask: by the names that files have.
@@ -343,11 +345,15 @@ class Scan {
     const std::string where = fmt::format("{} ({})", name_of(shot), file_stem(shot));
     Result<RawFrame> frame = decode_raw(photograph.file);
     if (!frame) return {frame.error(), {shot.index}};
-    if (Result<void> alike = check_frame(*frame, where); !alike) return {alike.error(), {shot.index}};
+    if (!first_) {
+      if (Result<void> suits = accept_first(*frame, where); !suits) return {suits.error(), {}};
+    } else if (Result<void> alike = check_alike(*frame, *first_, first_size_, where); !alike) {
+      return {alike.error(), {shot.index}};
+    }
 
     std::vector<double> light = evidence_->glance(*frame);
     const Verdict verdict = evidence_->judge(shot, light);
-    if (verdict.finding != Finding::kAgrees) return refused(shot, verdict);
+    if (verdict.finding != Finding::kAgrees) return refused(verdict);
 
     KeptFrame kept = {{}, histogram_rgb(*frame), verdict.warnings};
     warn_of_clipping(shot, kept);
@@ -371,14 +377,13 @@ class Scan {
   }
 
   /// Takes what is accused out of the session, so that it is taken again, now or by the next scan.
-  Kept refused(const PlannedShot& shot, const Verdict& verdict) {
-    Kept kept = {
-        Error{ErrorKind::kBadData, verdict.sentence, fmt::format("{} ({})", name_of(shot), file_stem(shot)),
-              "the photograph does not agree with the calibrated light",
-              verdict.finding == Finding::kChanged
-                  ? "leave cloth, camera and light alone, and scan under another name with -o"
-                  : "mend the light, then run the same command again"},
-        {}};
+  Kept refused(const Verdict& verdict) {
+    Kept kept = {Error{ErrorKind::kBadData, verdict.sentence, names_of(verdict.accused),
+                       "the photograph does not agree with the calibrated light",
+                       verdict.finding == Finding::kChanged
+                           ? "leave cloth, camera and light alone, and scan under another name with -o"
+                           : "mend the light, then run the same command again"},
+                 {}};
     const Result<void> out = journal_->discard(verdict.accused);
     if (!out) return {out.error(), {}};
     for (const int index : verdict.accused) evidence_->forget(index);
@@ -386,6 +391,14 @@ class Scan {
         [&](ScanStatus& status) { status.frames = static_cast<int>(journal_->session().shots.size()); });
     if (verdict.may_pass()) kept.take_again = verdict.accused;
     return kept;
+  }
+
+  std::string names_of(const std::vector<int>& shots) const {
+    std::string names;
+    for (const int index : shots) {
+      names += (names.empty() ? "" : ", ") + file_stem(plan_[static_cast<std::size_t>(index)]);
+    }
+    return names;
   }
 
   void warn_of_clipping(const PlannedShot& shot, KeptFrame& kept) const {

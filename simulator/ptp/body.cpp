@@ -35,11 +35,15 @@ Answer with_array(const std::vector<std::uint32_t>& values) {
   return with_data(ByteWriter().put_array(values).take());
 }
 
+constexpr double kHalfSent_s = 0.02;  // half of a picture is on its way by then
+
 Delivery delivery_of(Fault in_transfer) {
   switch (in_transfer) {
     case Fault::kDropInData:
       return Delivery::kHalfThenHangUp;
     case Fault::kDataStalls:
+    case Fault::kPowerOffInData:
+    case Fault::kUsbUnplugInData:
       return Delivery::kHalfThenNothing;
     case Fault::kDataEndsEarly:
       return Delivery::kHalfAsWhole;
@@ -208,8 +212,11 @@ Answer Body::object(std::uint32_t handle, std::uint64_t offset, std::uint64_t mo
   const BytesView part = all.subspan(offset, std::min<std::uint64_t>(most, all.size() - offset));
   Answer answer = {.parameters = {static_cast<std::uint32_t>(part.size())},
                    .data = Payload{picture.bytes, part}};
-  if (const auto fault = std::exchange(picture.in_transfer, std::nullopt))
+  if (const auto fault = std::exchange(picture.in_transfer, std::nullopt)) {
     answer.delivery = delivery_of(*fault);
+    if (fault == Fault::kPowerOffInData) after(kHalfSent_s, [this] { set_power(false); });
+    if (fault == Fault::kUsbUnplugInData) after(kHalfSent_s, [this] { unplug(); });
+  }
   const bool in_memory = picture.facts.storage == kMemory;
   if (in_memory) objects_.erase(found);  // what has been fetched makes room
   return answer;

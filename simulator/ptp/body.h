@@ -86,6 +86,7 @@ class Body {
   void befall(Fault fault);
   void tell_changes(std::initializer_list<PropertyCode> codes);
   void break_link();
+  void unplug();
   void set_power(bool on);
   void update_presence();
   void after(double seconds, std::function<void()> action);

@@ -48,10 +48,7 @@ void Body::half_exposed(const Exposure& exposure) {
   const std::lock_guard lock(mutex_);
   if (faults_.take(Fault::kOldShot, exposure.shot)) break_link();
   if (faults_.waits(Fault::kDropInExposure, exposure.shot)) break_link();
-  if (faults_.take(Fault::kUsbUnplug, exposure.shot)) {
-    cable_in_ = session_open_ = false;
-    update_presence();
-  }
+  if (faults_.take(Fault::kUsbUnplug, exposure.shot)) unplug();
   if (faults_.take(Fault::kPowerOff, exposure.shot)) set_power(false);
   if (faults_.take(Fault::kPowerCycle, exposure.shot)) {
     set_power(false);
@@ -101,8 +98,9 @@ void Body::keep(const Exposure& exposure, Bytes file) {
   const std::shared_ptr<const Bytes> before = std::exchange(last_file_, nullptr);
   if (befalls(Fault::kDuplicateFrame) && before) picture.bytes = before;
   if (faults_.waits(Fault::kDuplicateFrame, exposure.shot + 1)) last_file_ = picture.bytes;
-  for (const Fault fault : {Fault::kDropBeforeObject, Fault::kDropInData, Fault::kDataStalls,
-                            Fault::kDataEndsEarly, Fault::kUsbTimeout})
+  for (const Fault fault :
+       {Fault::kDropBeforeObject, Fault::kDropInData, Fault::kDataStalls, Fault::kDataEndsEarly,
+        Fault::kUsbTimeout, Fault::kPowerOffInData, Fault::kUsbUnplugInData})
     if (befalls(fault)) picture.in_transfer = fault;
 
   const std::size_t said_bytes = picture.bytes->size() * (befalls(Fault::kObjectSizeLie) ? 2 : 1);
@@ -163,6 +161,10 @@ void Body::befall(Fault fault) {
       break;
     case Fault::kPowerOn:
       return set_power(true);
+    case Fault::kPowerOffNow:
+      return set_power(false);
+    case Fault::kUsbUnplugNow:
+      return unplug();
     case Fault::kBatteryLow:
       properties_.turn(kBatteryLevel, 5);
       return tell_changes({kBatteryLevel});
@@ -210,6 +212,11 @@ void Body::break_link() {
     cable_in_ = true;
     update_presence();
   });
+}
+
+void Body::unplug() {
+  cable_in_ = session_open_ = false;
+  update_presence();
 }
 
 void Body::set_power(bool on) {

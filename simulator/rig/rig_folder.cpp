@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLock = "lock";
 // What a rig makes and takes away again.
-constexpr std::array kMade = {"rig.toml", "calibration", "environment", "home",
-                              "board",    "modem",       "control",     "camera.sock"};
+constexpr std::array kMade = {"rig.toml", "calibration", "environment", "home",   "board",
+                              "modem",    "control",     "camera.sock", kFullDisk};
 
 /// A basic string of TOML.
 std::string quoted(const std::string& text) {

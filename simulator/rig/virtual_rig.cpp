@@ -127,9 +127,11 @@ class RunningRig : public VirtualRig {
     const auto done = [&]() -> Result<void> {
       if (kind == "light") return change_light({words.begin() + 1, words.end()});
       if (kind == "board" && words.size() == 2) return inject_board(line, words[1]);
+      if (kind == "disk" && words.size() == 2) return fill_disk(line, words[1]);
       if (kind == "camera" && (words.size() == 2 || words.size() == 3)) return inject_camera(line, words);
-      return refusal(line, "a line is board NAME, camera NAME [SHOT], light ..., status or end",
-                     "see weft-virtual-rig --help");
+      return refusal(
+          line, "a line is board NAME, camera NAME [SHOT], disk full, disk room, light ..., status or end",
+          "see weft-virtual-rig --help");
     }();
     if (!done) return done.error();
     return std::string("ok");
@@ -168,7 +170,7 @@ class RunningRig : public VirtualRig {
     for (const fs::path& library : options_.preloads) {
       preload += (preload.empty() ? "" : ":") + library.string();
     }
-    environment_ = {"HOME=" + in_folder("home").string(),
+    environment_ = {"HOME=" + in_folder("home").string(), "WEFT_FULL_DISK=" + in_folder(kFullDisk).string(),
                     "WEFT_TERMINAL_MODEM=" + in_folder("modem").string(),
                     "WEFT_RIG=" + in_folder("rig.toml").string()};
     if (!preload.empty()) environment_.push_back("LD_PRELOAD=" + preload);
@@ -249,19 +251,25 @@ class RunningRig : public VirtualRig {
     return camera_->inject({words[1], *shot});
   }
 
+  /// What is loaded into a host looks for the file (simulator/disk).
+  Result<void> fill_disk(const std::string& line, const std::string& state) const {
+    if (state == "full") return write_file(in_folder(kFullDisk), "");
+    if (state != "room") return refusal(line, "a disk is full or has room", "say disk full or disk room");
+    std::error_code failed;
+    fs::remove(in_folder(kFullDisk), failed);
+    return failed ? cannot_write(in_folder(kFullDisk), failed.value()) : Result<void>();
+  }
+
   Json status() const {
     std::vector<int> lit;
     const std::uint16_t mask = pins_.now();
     for (int led = 1; led <= kOutputs; ++led) {
       if ((mask >> (led - 1) & 1) != 0) lit.push_back(led);
     }
-    return {{"shots", camera_->shots()},
-            {"pins", lit},
-            {"light", json_of(faults())},
-            {"leds", frames_.leds()},
-            {"size", {frames_.size().width, frames_.size().height}},
-            {"port", camera_->port()},
-            {"process", ::getpid()}};
+    return {{"shots", camera_->shots()},  {"pins", lit},
+            {"light", json_of(faults())}, {"disk_full", is_there(in_folder(kFullDisk))},
+            {"leds", frames_.leds()},     {"size", {frames_.size().width, frames_.size().height}},
+            {"port", camera_->port()},    {"process", ::getpid()}};
   }
 
   Result<std::string> end() {
@@ -300,8 +308,9 @@ Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& o
 }
 
 std::vector<std::string> virtual_rig_commands() {
-  std::vector<std::string> lines = {"status               shots, pins that are on, faults, as JSON",
-                                    "end                  ends the rig"};
+  std::vector<std::string> lines = {
+      "status               shots, pins that are on, faults, as JSON", "end                  ends the rig",
+      "disk full            no file of a host of this rig takes any more", "disk room            ends that"};
   for (const BoardCommand& one : kBoardCommands)
     lines.push_back(fmt::format("board {:<14} {}", one.name, one.does));
   for (std::string& line : light_fault_words()) lines.push_back(std::move(line));

@@ -53,8 +53,8 @@ class VirtualRig {
 
   virtual const LightFrames& frames() const = 0;
   virtual const std::vector<std::string>& environment() const = 0;  ///< "NAME=value"
-  /// What the control socket does with a line: "camera NAME [SHOT]", "board NAME", "light ...", "status",
-  /// "end". The answer is "ok", the status as JSON, or an error.
+  /// What the control socket does with a line: "camera NAME [SHOT]", "board NAME", "light ...", "disk full",
+  /// "disk room", "status", "end". The answer is "ok", the status as JSON, or an error.
   virtual Result<std::string> command(const std::string& line) = 0;
   /// Readable once somebody has said "end".
   virtual int end_descriptor() const = 0;

@@ -30,6 +30,7 @@ inline void expect_no_run_goes_wrong(int runs, int rigs, const std::vector<std::
     EXPECT_EQ(tally.lost, 0) << tally.fault << wrong;
     EXPECT_EQ(tally.mislabelled, 0) << tally.fault << wrong;
     EXPECT_EQ(tally.half_written, 0) << tally.fault << wrong;
+    EXPECT_EQ(tally.differing, 0) << tally.fault << wrong;
     EXPECT_EQ(tally.silent, 0) << tally.fault << wrong;
     EXPECT_EQ(tally.complete + tally.resumed, tally.runs) << tally.fault << wrong;
   }

@@ -41,6 +41,62 @@ TEST(CameraLink, ReadsTheCamerasClockToAFewHundredths) {
   EXPECT_NEAR(facts->clock_offset_s, -3723.4, facts->clock_uncertainty_s + 0.005);
 }
 
+TEST(CameraLink, TakesARememberedClockThatAGlanceAgreesWith) {
+  VirtualCameraOptions options;
+  options.serial = "6004711";
+  LinkBench bench(options);
+  ASSERT_TRUE(bench.link().connect());
+  bench.drop_link();
+  const ClockMemory memory(bench.options().state / "clock.json");
+  const auto watched = memory.recall(seconds_since_1970());
+  ASSERT_TRUE(watched) << "the clock that was watched is not kept";
+  EXPECT_EQ(watched->serial, "6004711");
+
+  // Off by what a glance cannot see.
+  const CameraClock nudged = {watched->clock.offset_s + 0.11, watched->clock.uncertainty_s};
+  memory.keep({watched->serial, nudged}, seconds_since_1970());
+  const auto before = bench.link().connect();
+  ASSERT_TRUE(before) << before.error().message();
+  bench.drop_link();
+  memory.keep(*watched, seconds_since_1970());
+  const auto after = bench.link().connect();
+  ASSERT_TRUE(after) << after.error().message();
+  EXPECT_NEAR(before->clock_offset_s - after->clock_offset_s, 0.11, 1e-6);
+}
+
+TEST(CameraLink, WatchesTheClockAgainWhereItWasSetOrIsAnotherCameras) {
+  VirtualCameraOptions options;
+  options.serial = "6004711";
+  options.clock_offset_s = 60;
+  for (const RememberedClock& wrong :
+       {RememberedClock{"6004711", {57, 0.01}}, RememberedClock{"6004712", {60.1, 0.01}}}) {
+    LinkBench bench(options);
+    std::filesystem::create_directories(bench.options().state);
+    ClockMemory(bench.options().state / "clock.json").keep(wrong, seconds_since_1970());
+    const auto facts = bench.link().connect();
+    ASSERT_TRUE(facts) << facts.error().message();
+    EXPECT_LT(facts->clock_uncertainty_s, 0.2) << wrong.serial;
+    EXPECT_NEAR(facts->clock_offset_s, 60, facts->clock_uncertainty_s + 0.005) << wrong.serial;
+  }
+}
+
+TEST(ClockMemory, GrowsUnsureAndForgetsAfterAnHour) {
+  const std::filesystem::path file = std::filesystem::path(testing::TempDir()) / "weft_clock_memory.json";
+  const ClockMemory memory(file);
+  memory.keep({"7", {-12.5, 0.02}}, 1000);
+  const auto later = memory.recall(2000);
+  ASSERT_TRUE(later);
+  EXPECT_EQ(later->clock.offset_s, -12.5);
+  EXPECT_NEAR(later->clock.uncertainty_s, 0.12, 1e-12) << "0.02 s and a drift of 1e-4 over 1000 s";
+  EXPECT_FALSE(memory.recall(999)) << "this machine's clock was set back";
+  EXPECT_FALSE(memory.recall(4601)) << "over an hour ago";
+  ASSERT_TRUE(write_file(file, "{\"schema\": \"weft.camera_clock/1.0\", \"serial\": 7}"));
+  EXPECT_FALSE(memory.recall(2000)) << "not a clock";
+  memory.keep({"7", {0, 0}}, 1000);
+  memory.forget();
+  EXPECT_FALSE(memory.recall(1000));
+}
+
 TEST(CameraLink, SetsAnExposureAndReadsItBack) {
   LinkBench bench;
   ASSERT_TRUE(bench.link().connect());

@@ -33,6 +33,10 @@ inline Result<std::vector<std::uint8_t>> small_dng(const simulator::CameraExposu
   return simulator::dng_bytes(frame, tags);
 }
 
+inline double seconds_since_1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 inline double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }

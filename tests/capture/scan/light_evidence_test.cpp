@@ -25,13 +25,14 @@ struct Told {
   std::vector<std::string> warnings;
 };
 
-Told told(const simulator::Scene& scene, const Story& story, bool with_model = true) {
+Told told(const simulator::Scene& scene, const Story& story, bool with_model = true,
+          double brightness = 0.8) {
   const test::SimulatedCloth cloth(scene);
   Result<LightModel> model = LightModel::make(cloth.calibration(), 0);
   EXPECT_TRUE(model) << model.error().message();
   const PatchGrid grid = model->grid;
   LightEvidence evidence(grid, with_model ? std::optional(std::move(*model)) : std::nullopt);
-  const ExposureSettings exposure = {0.8 * cloth.scene_exposure_us(), 100, 8};
+  const ExposureSettings exposure = {brightness * cloth.scene_exposure_us(), 100, 8};
   Told told;
   for (const PlannedShot& shot : plan_shots({{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}}, exposure, 0)) {
     const Lighting lighting = story(shot.role == ShotRole::kRepeat ? kRepeat : shot.led);
@@ -66,6 +67,14 @@ TEST(LightEvidence, AgreesWithASessionAsPlanned) {
     EXPECT_TRUE(t.warnings.empty()) << t.warnings.front();
     EXPECT_NEAR(*t.verdict.level, 1, 0.005) << "of the repeat";
   }
+}
+
+TEST(LightEvidence, BlamesNoLightWhereFramesAreFull) {
+  for (const double times : {1.5, 2.0, 3.0, 5.0, 10.0}) {
+    const Told t = told(woven(), as_planned, true, 0.8 * times);
+    EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << times << " times: " << t.verdict.sentence;
+  }
+  EXPECT_THAT(told(woven(), as_planned, true, 8).warnings, testing::Contains(HasSubstr("full photosites")));
 }
 
 TEST(LightEvidence, NamesTwoSwappedLeds) {

@@ -108,6 +108,26 @@ TEST(Scan, RefusesWhatTheCalibrationIsNotOfBeforeTheFirstShot) {
   EXPECT_THAT(refusal([](ScanBench& b) { b.rig.facts.model = "Canon EOS 5D"; }), HasSubstr("EOS 5D"));
 }
 
+TEST(Scan, RefusesACalibrationOfAnotherPictureSizeAtTheFirstFrame) {
+  ScanBench bench;
+  Result<Calibration> calibration = read_calibration(bench.request.calibration);
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  CameraModel& camera = *calibration->camera;
+  camera.size = {camera.size.width / 2, camera.size.height / 2};
+  const fs::path other = bench.folder / "other calibration";
+  const Result<Calibration> written = write_calibration(other, std::move(*calibration));
+  ASSERT_TRUE(written) << written.error().message();
+  bench.request.calibration = other;
+  for (const char* when : {"at first", "when it is run again"}) {
+    const Result<ScanOutcome> outcome = bench.scan();
+    ASSERT_FALSE(outcome);
+    EXPECT_EQ(outcome.error().what, "calibration is not of this camera") << when;
+    EXPECT_THAT(outcome.error().why, HasSubstr("48 x 32 pixels, the frame 96 x 64")) << when;
+    EXPECT_THAT(bench.kept, IsEmpty());
+  }
+  EXPECT_EQ(bench.rig.takes(), 4) << "two a scan: the second is on its way while the first is looked at";
+}
+
 TEST(Scan, RefusesLedsThatAreNotThere) {
   ScanBench bench;
   bench.request.leds = {1, 2, 11};

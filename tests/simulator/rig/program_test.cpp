@@ -22,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class Program : public testing::Test {
  protected:
@@ -63,6 +64,18 @@ TEST_F(Program, RunsACommandInsideTheRigAndEndsWithIt) {
   EXPECT_EQ(ran.exit_code, 7) << ran.output;
   EXPECT_THAT(ran.output, HasSubstr("libweft_terminal"));
   EXPECT_FALSE(fs::exists(folder_ / "rig"));
+}
+
+TEST_F(Program, FillsTheDiskOfItsHosts) {
+  const std::string inject = std::string(WEFT_VIRTUAL_RIG) + " --folder rig --inject ";
+  const ProgramRun ran =
+      run({scene(), "--folder", "rig", "--", "/bin/sh", "-c",
+           inject + "'disk full'; echo half | tee a; test -s a && echo 'a is written'; cp scene.toml copy; " +
+               inject + "'disk room'; echo whole | tee b; test -s b"});
+  EXPECT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(ran.output,
+              AllOf(HasSubstr("a: No space left"), HasSubstr("cp: "), Not(HasSubstr("a is written"))));
+  EXPECT_EQ(run({"--folder", "nobody", "--inject", "disk half"}).exit_code, 69);
 }
 
 TEST_F(Program, SaysThatACommandWasKilled) {
