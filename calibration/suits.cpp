@@ -23,6 +23,12 @@ bool same_setting(double a, double b) {
   return std::abs(a - b) <= 0.02 * std::max(a, b);
 }
 
+std::optional<std::string> focal_difference(double frame_mm, double other_mm) {
+  if (!(frame_mm > 0 && other_mm > 0) || same_setting(frame_mm, other_mm)) return {};
+  return fmt::format("focal length {:.3g} mm, not {:.3g}: turn the zoom back or calibrate again", frame_mm,
+                     other_mm);
+}
+
 std::optional<std::string> difference(const CalibrationSubject& subject, const ShotMetadata& frame) {
   if (!frame.model.empty() && !subject.camera_model.empty() && frame.model != subject.camera_model) {
     return fmt::format("the calibration is of a {}, the frame of a {}", subject.camera_model, frame.model);
@@ -35,7 +41,7 @@ std::optional<std::string> difference(const CalibrationSubject& subject, const S
     return fmt::format("the calibration holds at f/{:.3g}, the frame was taken at f/{:.3g}", subject.f_number,
                        frame.f_number);
   }
-  return {};
+  return focal_difference(frame.focal_mm, subject.focal_length_mm);
 }
 
 Result<void> suits(const Calibration& calibration, const Session& session, const ShotMetadata& frame) {

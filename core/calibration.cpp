@@ -4,6 +4,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -102,12 +103,16 @@ Result<void> copy_other_parts(const fs::path& from, const fs::path& folder, Dige
   return {};
 }
 
-// Writes the reports of this step, and keeps those of earlier ones.
+// Writes the reports of this step, and keeps those of earlier ones, but for maps of LEDs where it is the
+// report of lights that they went with that is written anew.
 Result<void> write_reports(const fs::path& from, const fs::path& folder, std::span<const NamedFile> reports) {
   std::error_code none;
+  const bool lights_are_new = std::any_of(reports.begin(), reports.end(),
+                                          [](const NamedFile& file) { return file.name == kLightsFile; });
   for (fs::directory_iterator entry(from / "report", none), end; !from.empty() && !none && entry != end;
        entry.increment(none)) {
     if (!entry->is_regular_file(none)) continue;
+    if (lights_are_new && entry->path().filename().string().starts_with("led")) continue;
     fs::copy_file(entry->path(), folder / entry->path().filename(), none);
     if (none) return cannot_write(folder / entry->path().filename(), none.value());
   }
@@ -119,13 +124,15 @@ Result<void> write_reports(const fs::path& from, const fs::path& folder, std::sp
 
 Result<void> write_subject(const fs::path& folder, const CalibrationSubject& subject,
                            const Digests& digests) {
-  Json document = {{"schema", subject.measured.empty() ? "weft.calibration/1" : "weft.calibration/1.1"},
+  const char* minor = subject.focal_length_mm > 0 ? ".2" : subject.measured.empty() ? "" : ".1";
+  Json document = {{"schema", fmt::format("{}/1{}", kSchema, minor)},
                    {"rig", subject.rig},
                    {"camera_model", subject.camera_model},
                    {"camera_serial", subject.camera_serial},
                    {"f_number", subject.f_number},
                    {"albedo_scale", subject.albedo_scale}};
   if (!subject.measured.empty()) document["measured"] = subject.measured;
+  if (subject.focal_length_mm > 0) document["focal_length_mm"] = subject.focal_length_mm;
   document["parts"] = digests;
   return write_json(folder / "calibration.json", document);
 }
@@ -159,6 +166,10 @@ Result<Calibration> read_calibration(const fs::path& folder) {
   subject.f_number = fields.number("f_number");
   subject.albedo_scale = fields.text("albedo_scale");
   subject.measured = fields.text_or("measured", "");
+  if (const auto focal_mm = fields.optional_number("focal_length_mm")) {
+    subject.focal_length_mm = *focal_mm;
+    if (!(*focal_mm > 0)) fields.reject("focal_length_mm", "must be above 0");
+  }
   const Json& parts = fields.object("parts");
   std::map<std::string, std::string> digests;
   for (const auto& [name, digest] : parts.items()) {

@@ -48,7 +48,8 @@ struct CalibrationSubject {
   double f_number = 0;
   /// "absolute" where a patch of measured reflectance fixed the scale, else "relative".
   std::string albedo_scale = "relative";
-  std::string measured = {};  ///< when, ISO 8601; empty where nobody said
+  std::string measured = {};   ///< when, ISO 8601; empty where nobody said
+  double focal_length_mm = 0;  ///< that the lens was set to; 0 where nobody said
 };
 
 /// A square tag that stays on the table beside the cloth.
@@ -110,9 +111,9 @@ struct NamedFile {
 };
 
 /// A new calibration, which must not be there yet: the parts and the subject of `change`; every other part of
-/// the calibration `from` (empty: there is none) byte by byte, its reports too; and in report/ these files.
-/// It is made aside: after an error there is nothing. `change.subject.measured` is the time now unless it is
-/// given.
+/// the calibration `from` (empty: there is none) byte by byte, its reports too (but for maps of LEDs where
+/// these files are of new lights); and in report/ these files. It is made aside: after an error there is
+/// nothing. `change.subject.measured` is the time now unless it is given.
 Result<Calibration> derive_calibration(const std::filesystem::path& from, Calibration change,
                                        const std::filesystem::path& folder,
                                        std::span<const NamedFile> report);

@@ -33,6 +33,7 @@ struct ShotMetadata {
   double exposure_us = 0;
   double iso = 0;
   double f_number = 0;
+  double focal_mm = 0;  ///< of the lens, as it is set: not its equivalent on another format
 };
 
 /// A mosaic of sensor counts on the active area (margins removed, filter phase kept, upright).

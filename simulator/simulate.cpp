@@ -83,7 +83,8 @@ RawFrame frame_head(const Plan& plan, double exposure_us) {
   }
   frame.white = static_cast<float>(sensor.white);
   const CameraSettings& camera = plan.scene.camera;
-  frame.shot = {sensor.make, sensor.model, "virtual", exposure_us, camera.iso, camera.f_number};
+  frame.shot = {sensor.make, sensor.model,    "virtual",      exposure_us,
+                camera.iso,  camera.f_number, kFocalLength_mm};
   return frame;
 }
 

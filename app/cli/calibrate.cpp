@@ -85,10 +85,9 @@ void print_outcome(const CalibrateOutcome& outcome, const CommonArguments& commo
     print(fmt::format(
         "  look at {}",
         ((is_there(reports) ? reports : outcome.folder) / (outcome.report.part + ".html")).string()));
-    return;
   }
   for (const ReportSection& section : outcome.report.sections) {
-    if (!section.table) continue;
+    if (!section.is_answer || !section.table) continue;
     print("\n" + section.title);
     print_table(*section.table);
   }
@@ -108,6 +107,9 @@ Result<int> run_calibrate(const CalibrateArguments& arguments, const CommonArgum
     note(fmt::format("{}.{}", verdict.text, verdict.remedy.empty() ? "" : " To do: " + verdict.remedy + "."));
   }
   for (const std::string& warning : outcome->warnings) note(warning);
+  const bool is_check = std::holds_alternative<CalibrateCheckOptions>(arguments) ||
+                        std::holds_alternative<CheckRigOptions>(arguments);
+  if (is_check && !outcome->report.verdicts.empty()) return kBadDataError;  // its answer is no
   const bool warned = !outcome->report.verdicts.empty() || !outcome->warnings.empty();
   return common.strict && warned ? kDoneWithWarnings : kDone;
 }

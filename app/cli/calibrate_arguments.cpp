@@ -110,7 +110,8 @@ void add_evidence(CLI::App& verb, std::filesystem::path& from, std::filesystem::
 CLI::App* add_check(CLI::App& calibrate, CalibrateCheckOptions& a, CheckRigOptions& rig) {
   CLI::App* verb = calibrate.add_subcommand(
       "check",
-      "Accept or refuse a calibration on sheets it was not fitted to; with --session, see what moved");
+      "Accept or refuse a calibration on sheets it was not fitted to; with --session, see what moved. Exit "
+      "code 65 where it does not hold");
   CLI::Option* input = verb->add_option("input", a.input, "Session of a sheet, or a folder of sessions");
   verb->add_option("--session", rig.session, "Any scan that shows tags, white patches or the sheet")
       ->excludes(input);

@@ -188,13 +188,18 @@ Result<void> check_focal(const CameraModel& camera, const ParameterCovariance& c
                   100 * share, 100 * options.most_focal_sigma));
 }
 
+Error too_few(std::size_t usable, std::size_t needed, const std::string& left_out) {
+  return {ErrorKind::kBadData, "too few photographs of the board", "photographs of the board",
+          fmt::format("{} can be used, and {} are needed{}", usable, needed, left_out),
+          "take 15 in different places of the frame, tilted by 20 to 40 degrees to different sides"};
+}
+
+std::size_t needed(const LensOptions& options) {
+  return std::max<std::size_t>(options.least_boards, 3);
+}
+
 Result<void> check_views(std::span<const BoardView> views, const LensOptions& options) {
-  if (views.size() < options.least_boards || views.size() < 3) {
-    return Error{ErrorKind::kBadData, "too few photographs of the board", "photographs of the board",
-                 fmt::format("{} can be used, and {} are needed", views.size(),
-                             std::max<std::size_t>(options.least_boards, 3)),
-                 "take 15 in different places of the frame, tilted by 20 to 40 degrees to different sides"};
-  }
+  if (views.size() < needed(options)) return too_few(views.size(), needed(options), "");
   for (const BoardView& view : views) {
     if (view.corners.size() >= 8) continue;
     return Error{ErrorKind::kBadData, "a board shows too few corners", view.name,
@@ -278,8 +283,15 @@ Result<LensFit> fit_lens(std::span<const BoardView> views, Size size, const Lens
       }
       if (std::find(used.begin(), used.end(), false) != used.end()) {
         const auto left = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
-        if (left >= options.least_boards) continue;
-        used.assign(views.size(), true);
+        if (left >= needed(options)) continue;
+        std::string misfits;
+        for (std::size_t i = 0; i < views.size(); ++i) {
+          if (!used[i])
+            misfits +=
+                fmt::format("; {}: its corners miss by {:.2f} pixels, the median is {:.2f} (bent or moved?)",
+                            views[i].name, rms[i], median(rms));
+        }
+        return too_few(left, needed(options), misfits);
       }
     }
     // More terms only add to what is not known.

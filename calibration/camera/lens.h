@@ -67,9 +67,9 @@ struct LensFit {
 /// The rig frame follows from the board on the table: origin at its centre, x along its rows, z = 0 at
 /// thickness_mm below what is printed.
 ///
-/// kBadData, with names of views: fewer than least_boards, a board on the table that does not fit, or boards
-/// that do not tell focal length from distance because all are parallel: the predicted sigma of the focal
-/// length is the judge.
+/// kBadData, with names of views: fewer than least_boards that fit each other, a board on the table that does
+/// not fit, or boards that do not tell focal length from distance because all are parallel: the predicted
+/// sigma of the focal length is the judge.
 Result<LensFit> fit_lens(std::span<const BoardView> views, Size size, const LensOptions& options);
 
 /// The camera with one parameter of its covariance changed.

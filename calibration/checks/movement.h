@@ -96,6 +96,8 @@ struct Movement {
 /// From this chi_square_after on, what is seen contradicts the calibration in a way that no change explains:
 /// a patch is covered, a tag was laid elsewhere.
 inline constexpr double kUnexplainedFrom = 5;
+/// From this one on it is explained worse than usual: a rig that stood still is below 1.5.
+inline constexpr double kDoubtfulFrom = 2;
 
 /// Errors: kBadData where there is no evidence: neither a tag of `calibration.fiducials` nor a reading; or
 /// where the calibration has no camera or no near lights.

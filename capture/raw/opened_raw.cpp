@@ -90,7 +90,8 @@ ShotMetadata shot_of(const libraw_data_t& data) {
           .serial = text_of(data.shootinginfo.BodySerial),
           .exposure_us = 1e6 * finite_positive(data.other.shutter),
           .iso = finite_positive(data.other.iso_speed),
-          .f_number = to_hundredths(finite_positive(data.other.aperture))};
+          .f_number = to_hundredths(finite_positive(data.other.aperture)),
+          .focal_mm = to_hundredths(finite_positive(data.other.focal_len))};
 }
 
 /// The filter cell by LibRaw, at its visible area's (0, 0). Eight rows of two columns are the period of its

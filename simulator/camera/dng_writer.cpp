@@ -65,6 +65,7 @@ enum Tag : std::uint16_t {
   kIsoSpeed = 34855,
   kExifVersion = 36864,
   kDateTimeOriginal = 36867,
+  kFocalLength = 37386,
   kImageNumber = 37393,  // of TIFF/EP (ISO 12234-2), where readers look for it among the EXIF tags
   kSubSecTimeOriginal = 37521,
   kDngVersion = 50706,
@@ -184,6 +185,7 @@ Directory exif_directory(const ShotMetadata& shot, const DngTags& tags) {
   if (shot.iso > 0) exif.push_back(shorts(kIsoSpeed, {static_cast<std::uint16_t>(std::lround(shot.iso))}));
   exif.push_back({kExifVersion, Type::kUndefined, 4, "0230"});
   if (!tags.date_time_original.empty()) exif.push_back(ascii(kDateTimeOriginal, tags.date_time_original));
+  if (shot.focal_mm > 0) exif.push_back(rational(kFocalLength, shot.focal_mm));
   if (tags.image_number) exif.push_back(longs(kImageNumber, {*tags.image_number}));
   if (tags.milliseconds) {
     exif.push_back(ascii(kSubSecTimeOriginal, fmt::format("{:03}", *tags.milliseconds)));
@@ -282,7 +284,7 @@ std::string fault_of(const RawFrame& frame, Size size, const DngTags& tags) {
         return fmt::format("its black level {} is not between 0 and its white level {}", black, frame.white);
 
   const auto is_printable = [](char c) { return c >= ' ' && c <= '~'; };
-  const auto& [make, model, serial, exposure_us, iso, f_number] = frame.shot;
+  const auto& [make, model, serial, exposure_us, iso, f_number, focal_mm] = frame.shot;
   if (make.empty() || model.empty()) return "it does not name the make and model of its camera";
   for (const std::string& text : {make + ' ' + model, serial})
     if (text.size() > kLongestText || !std::all_of(text.begin(), text.end(), is_printable))
@@ -292,6 +294,8 @@ std::string fault_of(const RawFrame& frame, Size size, const DngTags& tags) {
   if (!(iso >= 0 && iso <= 65535)) return fmt::format("its ISO {} is not between 0 and 65535", iso);
   if (!(f_number >= 0 && f_number <= 1000))
     return fmt::format("its f-number {} is not between 0 and 1000", f_number);
+  if (!(focal_mm >= 0 && focal_mm <= 10000))
+    return fmt::format("its focal length of {} mm is not between 0 and 10 m", focal_mm);
   const auto& date = tags.date_time_original;
   if (!date.empty() && (date.size() != kDateLength || !std::all_of(date.begin(), date.end(), is_printable)))
     return fmt::format("its date \"{}\" is not as EXIF has it", date);

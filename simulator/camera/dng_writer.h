@@ -34,8 +34,9 @@ struct DngTags {
 /// same bytes. Numbers that are no whole numbers are stored as the simplest ratio within 1e-9 of them.
 ///
 /// The frame: sides of 1 to 65 535 pixels (LibRaw reads from 22), under 4 GiB in all, a Bayer cell, a whole
-/// white level of 1 to 65 535 counts, 0 <= black < white, an exposure of 1 ns to 1000 s, make and model of
-/// together up to 63 ASCII characters, a serial number of as many. What is zero or empty is left out.
+/// white level of 1 to 65 535 counts, 0 <= black < white, an exposure of 1 ns to 1000 s, a focal length up to
+/// 10 m, make and model of together up to 63 ASCII characters, a serial number of as many. What is zero or
+/// empty is left out.
 ///
 /// The file is written aside and renamed (core/files.h). Errors: kUsage where the frame breaks a rule above;
 /// kCannotCreate and kInputOutput with the system's reason.

@@ -165,7 +165,8 @@ RawFrame frame_head(const LightFrames& frames, const CameraExposure& exposure, c
     }
   }
   frame.white = static_cast<float>(sensor.white);
-  frame.shot = {sensor.make, sensor.model, serial, exposure.exposure_us, exposure.iso, exposure.f_number};
+  frame.shot = {sensor.make,  sensor.model,      serial,         exposure.exposure_us,
+                exposure.iso, exposure.f_number, kFocalLength_mm};
   return frame;
 }
 

@@ -193,6 +193,7 @@ Calibration exact_calibration(const Scene& scene, const Rig& rig) {
   calibration.subject.camera_model = name_of_model(rig.sensor);
   calibration.subject.camera_serial = "virtual";
   calibration.subject.f_number = scene.camera.f_number;
+  calibration.subject.focal_length_mm = kFocalLength_mm;
   calibration.subject.albedo_scale = "absolute";
   calibration.camera = rig.camera;
   calibration.response = response_of(rig.sensor);

@@ -14,6 +14,9 @@
 
 namespace weft::simulator {
 
+/// What files say of the lens. The geometry is that of CameraSettings, which knows no size of a photosite.
+inline constexpr double kFocalLength_mm = 50;
+
 /// The virtual rig that a scene describes, in numbers.
 struct Rig {
   NearLights leds;

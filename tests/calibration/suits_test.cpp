@@ -97,6 +97,20 @@ TEST(Suits, HoweverItsApertureWasRounded) {
   EXPECT_FALSE(same_setting(5.6, 6.3)) << "a third of a stop";
 }
 
+TEST(Suits, NotAtAnotherFocalLengthWhereBothSayTheirs) {
+  Match match;
+  match.calibration.subject.focal_length_mm = 35;
+  EXPECT_EQ(match.verdict(), "suits") << "the frame does not say";
+  for (const double same_mm : {34.4, 35.0, 35.6}) {
+    match.frame.focal_mm = same_mm;
+    EXPECT_EQ(match.verdict(), "suits") << same_mm << " mm";
+  }
+  match.frame.focal_mm = 40;
+  EXPECT_EQ(match.verdict(), "focal length 40 mm, not 35: turn the zoom back or calibrate again");
+  match.calibration.subject.focal_length_mm = 0;
+  EXPECT_EQ(match.verdict(), "suits") << "the calibration does not say";
+}
+
 TEST(Suits, NotAtAnotherIsoThanItsResponseWasMeasuredAt) {
   Match match;
   for (Shot& shot : match.session.shots) shot.iso = 100;

@@ -166,6 +166,22 @@ TEST(Calibration, ReturnsColorFiducialsBlackAndTheCameraCovariance) {
   EXPECT_EQ(read.camera_covariance->matrix, written.camera_covariance->matrix);
 }
 
+TEST(Calibration, SaysTheFocalLengthInItsNewestSchemaAndElseKeepsToTheOldest) {
+  const ScratchFolder folder;
+  Calibration written = full_calibration();
+  must_write(folder / "old", written);
+  EXPECT_EQ(json_of(folder / "old/calibration.json")["schema"], "weft.calibration/1");
+  EXPECT_EQ(must_read(folder / "old").subject.focal_length_mm, 0);
+  written.subject.focal_length_mm = 35.5;
+  must_write(folder / "c", written);
+  Json document = json_of(folder / "c/calibration.json");
+  EXPECT_EQ(document["schema"], "weft.calibration/1.2");
+  EXPECT_EQ(must_read(folder / "c").subject.focal_length_mm, 35.5);
+  document["focal_length_mm"] = -35;
+  put_bytes(folder / "c/calibration.json", document.dump());
+  EXPECT_THAT(why_refused(folder / "c"), HasSubstr("focal_length_mm"));
+}
+
 TEST(Calibration, RefusesColorsThatDoNotKeepWhite) {
   const ScratchFolder folder;
   Calibration calibration = full_calibration();
@@ -197,6 +213,21 @@ TEST(DerivedCalibration, ReplacesItsPartsAndCopiesTheOthersByteByByte) {
   ASSERT_TRUE(next) << next.error().message();
   EXPECT_EQ(bytes_of(folder / "c/report/response.html"), page.bytes) << "of the earlier step";
   EXPECT_EQ(bytes_of(folder / "c/report/lights.html"), other.bytes);
+}
+
+TEST(DerivedCalibration, KeepsMapsOfLedsUntilTheLightsAreNew) {
+  const ScratchFolder folder;
+  must_write(folder / "a", full_calibration());
+  Calibration change;
+  change.subject = full_calibration().subject;
+  const std::vector<NamedFile> maps = {{"lights.json", "{}"}, {"led01_direction.exr", "a map"}},
+                               response = {{"response.json", "{}"}}, lights = {{"lights.json", "{ }"}};
+  ASSERT_TRUE(derive_calibration(folder / "a", change, folder / "b", maps));
+  ASSERT_TRUE(derive_calibration(folder / "b", change, folder / "c", response));
+  ASSERT_TRUE(derive_calibration(folder / "c", change, folder / "d", lights));
+  EXPECT_EQ(bytes_of(folder / "c/report/led01_direction.exr"), maps[1].bytes);
+  EXPECT_FALSE(fs::exists(folder / "d/report/led01_direction.exr")) << "it is not of these lights";
+  EXPECT_TRUE(fs::exists(folder / "d/report/response.json"));
 }
 
 TEST(DerivedCalibration, LeavesNothingWhereItFails) {

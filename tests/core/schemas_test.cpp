@@ -100,6 +100,16 @@ TEST(Schemas, Calibration1WithCameraResponseAndNearLights) {
   EXPECT_TRUE(lights.log_gain_rgb[0].empty());
 }
 
+TEST(Schemas, Calibration12) {
+  const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1.2");
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  EXPECT_EQ(calibration->subject.measured, "2026-01-31T12:00:00Z");
+  EXPECT_EQ(calibration->subject.focal_length_mm, 35);
+  const Result<Calibration> before = read_calibration(kSchemas / "weft.calibration-1");
+  ASSERT_TRUE(before) << before.error().message();
+  EXPECT_EQ(before->subject.focal_length_mm, 0) << "nobody said";
+}
+
 TEST(Schemas, Calibration1WithResponse11AndLights11) {
   const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1.1");
   ASSERT_TRUE(calibration) << calibration.error().message();

@@ -20,7 +20,7 @@ RawFrame VirtualSensor::frame(Size size, int take, double exposure_us,
   frame.counts = Image<std::uint16_t>(size);
   for (auto& row : frame.black) row.fill(static_cast<float>(sensor.black));
   frame.white = static_cast<float>(sensor.white);
-  frame.shot = {sensor.make, sensor.model, "virtual", exposure_us, 100, 8};
+  frame.shot = {sensor.make, sensor.model, "virtual", exposure_us, 100, 8, 35};
   const simulator::NonLinearity bend = *simulator::NonLinearity::of(linearity);
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {

@@ -13,7 +13,9 @@
 #include "app/jobs/solve.h"
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
+#include "capture/raw/decode.h"
 #include "core/image_io/image_io.h"
+#include "simulator/camera/dng_writer.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
 #include "tests/system/workspace.h"
@@ -183,7 +185,7 @@ TEST_F(CalibrateCamera, NamesTwoBlurredPhotographsOfFifteenAndMakesARulerTrueWit
   EXPECT_LT(most_mm, 0.05);
 }
 
-TEST_F(CalibrateCamera, NamesPhotographsOfAnotherCameraSizeAndApertureAndFilesThatAreNone) {
+TEST_F(CalibrateCamera, NamesPhotographsOfAnotherCameraSizeApertureAndFocalLengthAndFilesThatAreNone) {
   photograph_boards(7);
   simulator::Scene other_body = photograph_scene(2), other_size = photograph_scene(3),
                    other_aperture = photograph_scene(4);
@@ -193,6 +195,10 @@ TEST_F(CalibrateCamera, NamesPhotographsOfAnotherCameraSizeAndApertureAndFilesTh
   photograph("other_body.dng", other_body);
   photograph("other_size.dng", other_size);
   photograph("other_aperture.dng", other_aperture);
+  Result<RawFrame> zoomed = capture::decode_raw(input_ / "board12.dng");
+  ASSERT_TRUE(zoomed) << zoomed.error().message();
+  zoomed->shot.focal_mm = 55;
+  ASSERT_TRUE(simulator::write_dng(input_ / "zoomed.dng", *zoomed));
   photograph("empty.dng", rig_scene());
   const std::string whole = bytes_of(input_ / "board12.dng");
   put_bytes(input_ / "half.dng", whole.substr(0, whole.size() / 2));
@@ -202,11 +208,30 @@ TEST_F(CalibrateCamera, NamesPhotographsOfAnotherCameraSizeAndApertureAndFilesTh
   for (const auto& [name, why] : {std::pair{"other_body.dng", "was taken with"},
                                   {"other_size.dng", "600 x 420"},
                                   {"other_aperture.dng", "f/11"},
+                                  {"zoomed.dng", "focal length 55 mm, not 50: turn the zoom back"},
                                   {"empty.dng", "no board found"},
                                   {"half.dng", "half.dng"},
                                   {"words.dng", "words.dng"}}) {
     EXPECT_THAT(outcome->warnings, testing::Contains(AllOf(HasSubstr(name), HasSubstr(why))));
   }
+  EXPECT_EQ(outcome->calibration.subject.focal_length_mm, 50);
+}
+
+TEST_F(CalibrateCamera, RefusesPhotographsOfAnotherSizeThanTheCalibratedCameras) {
+  photograph_boards(6);
+  simulator::Scene before = rig_scene();
+  before.camera.width = 600;
+  const Result<simulator::Rig> rig = simulator::rig_of(before);
+  ASSERT_TRUE(rig);
+  ASSERT_TRUE(write_calibration(work_ / "old", simulator::exact_calibration(before, *rig)));
+  CalibrateCameraOptions with_old = options();
+  with_old.from = work_ / "old";
+  expect_refused(with_old, "table01.dng: it has 640 x 420 pixels, the calibrated camera 600 x 420");
+  // Those that have it are used, though fewer.
+  simulator::Scene right = photograph_scene(0);
+  right.camera.width = 600;
+  photograph("table02.dng", right);
+  expect_refused(with_old, "1 can be used", "board11.dng: it has 640 x 420");
 }
 
 TEST_F(CalibrateCamera, RefusesWhatCannotBeUsedAndWritesNothing) {

@@ -11,6 +11,7 @@
 #include <functional>
 #include <vector>
 
+#include "app/jobs/calibrate/check.h"
 #include "app/jobs/calibrate/sheet_captures.h"
 #include "app/jobs/calibrate/sheet_files.h"
 #include "core/calibration.h"
@@ -19,6 +20,7 @@
 #include "core/session.h"
 #include "simulator/simulate.h"
 #include "tests/support/paper_oracle.h"
+#include "tests/system/program.h"
 
 namespace weft::app {
 namespace {
@@ -149,8 +151,12 @@ class CalibrateLights : public testing::Test {
     EXPECT_FALSE(fs::exists(options_.output)) << "nothing may be written";
     return outcome ? std::string() : outcome.error().message();
   }
-  static bool any_has(const std::vector<std::string>& all, const std::string& part) {
-    return std::any_of(all.begin(), all.end(), [&](const std::string& s) { return s.find(part) != s.npos; });
+  /// The verdict that says this; one without a name where none does.
+  static Verdict verdict_of(const CalibrateOutcome& outcome, const std::string& part) {
+    const std::vector<Verdict>& all = outcome.report.verdicts;
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const Verdict& v) { return v.text.find(part) != v.text.npos; });
+    return found == all.end() ? Verdict() : *found;
   }
 
   fs::path work_;
@@ -195,7 +201,7 @@ TEST_F(CalibrateLights, ByThePixelWritesMapsOfEveryLed) {
 TEST_F(CalibrateLights, AsTheSeedDoesSaysWhatItCannotDo) {
   options_.method = LightsMethod::kSeed;
   const CalibrateOutcome outcome = done();
-  EXPECT_TRUE(any_has(outcome.warnings, "finds no directions"));
+  EXPECT_EQ(verdict_of(outcome, "finds no directions").name, "NO_DIRECTIONS");
   const Json& steps = outcome.report.numbers["seed"];
   ASSERT_EQ(steps.size(), 6u);
   EXPECT_LT(steps[5]["paper_residual_deg"].get<double>(), steps[0]["paper_residual_deg"].get<double>());
@@ -211,7 +217,7 @@ TEST_F(CalibrateLights, LeavesOutPatchesThatTheOldLightsMeasured) {
   options_.from = work_ / "patched";
   options_.method = LightsMethod::kSeed;
   const CalibrateOutcome outcome = done();
-  EXPECT_TRUE(any_has(outcome.warnings, "weft calibrate patches"));
+  EXPECT_THAT(outcome.warnings, testing::Contains(HasSubstr("weft calibrate patches")));
   EXPECT_TRUE(outcome.calibration.patches.empty());
   options_.input = "nothing";
   const auto again = calibrate_lights(options_, {});
@@ -239,15 +245,67 @@ TEST(MergedBlocks, ReachAllEdgesOfTheFrame) {
 TEST_F(CalibrateLights, FromOneFlatSheetIsWeakAndSaysSo) {
   for (int i = 2; i <= 5; ++i) fs::remove_all(options_.input / fmt::format("sheet{}.weft", i));
   const CalibrateOutcome outcome = done();
-  EXPECT_TRUE(any_has(outcome.warnings, "weakly known, from 1 pose"));
+  EXPECT_THAT(verdict_of(outcome, "weakly known, from 1 pose").remedy, HasSubstr("tilted"));
   EXPECT_GT(outcome.report.numbers["worst_position_sigma_mm"].get<double>(), 4);
+}
+
+TEST_F(CalibrateLights, AreNotAcceptedOnASessionThatTheyWereFittedTo) {
+  // One whose journal has no digests counts by its files.
+  Session first = *read_session(options_.input / "sheet1.weft");
+  for (Shot& shot : first.shots) shot.sha256.clear();
+  ASSERT_TRUE(write_session(first));
+  done();
+  render({0, 0, 180}, work_ / "turned.weft", 50);
+  const auto verdicts = [&](const fs::path& session) {
+    const auto checked = calibrate_check(
+        {.input = session, .from = options_.output, .sheet = options_.input / "sheet.toml"}, {});
+    EXPECT_TRUE(checked) << checked.error().message();
+    std::vector<std::string> names;
+    if (!checked) return names;
+    for (const Verdict& verdict : checked->report.verdicts) names.push_back(verdict.name);
+    return names;
+  };
+  for (const char* fitted : {"sheet1.weft", "sheet3.weft"})
+    EXPECT_THAT(verdicts(options_.input / fitted), testing::ElementsAre("FITTED_TO_IT")) << fitted;
+  EXPECT_THAT(verdicts(work_ / "turned.weft"), testing::IsEmpty());
+}
+
+TEST_F(CalibrateLights, SayWhereTheGateIsLaxAndHowToMakeItStrict) {
+  const CalibrateOutcome lax = done();
+  const double chi_square = lax.report.numbers["chi_square"].get<double>();
+  ASSERT_LT(chi_square, 0.5) << "the simulated sheet is flatter than 0.05 degrees";
+  ASSERT_THAT(lax.warnings, testing::Contains(HasSubstr("--flatness below 0.05")));
+  EXPECT_THAT(lax.report.sections[0].paragraphs[1],
+              HasSubstr(fmt::format("by a factor of {:.1f}", 1 / chi_square)));
+  EXPECT_EQ(verdict_of(lax, "lax").name, "") << "it is a remark";
+  options_.output = work_ / "strict";
+  options_.flatness_deg = 0.01;
+  const CalibrateOutcome strict = done();
+  EXPECT_GT(strict.report.numbers["chi_square"].get<double>(), 1.2 * chi_square);
+}
+
+TEST_F(CalibrateLights, AsTheSeedDoesPrintsItsStepsAndSaysEverythingOnce) {
+  const test::Outcome run =
+      test::run_weft({"calibrate", "lights", options_.input.string(), "--from", options_.from.string(),
+                      "--method", "seed", "-o", options_.output.string(), "--quiet"});
+  EXPECT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_THAT(run.output, HasSubstr("directions not updated by this step"));
+  const std::size_t once = run.error.find("finds no directions");
+  ASSERT_NE(once, run.error.npos) << run.error;
+  EXPECT_EQ(run.error.find("finds no directions", once + 1), run.error.npos) << run.error;
 }
 
 TEST_F(CalibrateLights, NamesTwoCapturesOfOnePose) {
   const fs::path twin = options_.input / "sheet5.weft";
   fs::remove_all(twin);
   render(kFive[3], twin, 77);
-  EXPECT_TRUE(any_has(done().warnings, "sheet4.weft and sheet5.weft show the sheet in one pose"));
+  const CalibrateOutcome outcome = done();
+  EXPECT_THAT(verdict_of(outcome, "sheet4.weft and sheet5.weft show the sheet in one pose").remedy,
+              HasSubstr("turn the sheet"));
+  for (const Verdict& verdict : outcome.report.verdicts) {
+    EXPECT_FALSE(verdict.remedy.empty()) << verdict.text;
+    EXPECT_THAT(outcome.warnings, Not(testing::Contains(HasSubstr(verdict.text)))) << "said twice";
+  }
 }
 
 TEST_F(CalibrateLights, LeavesOutAStainAndNamesItsPlace) {
@@ -260,10 +318,26 @@ TEST_F(CalibrateLights, LeavesOutAStainAndNamesItsPlace) {
     });
   }
   const CalibrateOutcome outcome = done();
-  EXPECT_TRUE(any_has(outcome.warnings, "stain")) << testing::PrintToString(outcome.warnings);
+  EXPECT_EQ(verdict_of(outcome, "stain").name, "PAPER_FAULT");
   const Json& fault = outcome.report.numbers["faults"][0];
   EXPECT_NEAR(fault["u_mm"].get<double>(), 20, 2);
   EXPECT_NEAR(fault["v_mm"].get<double>(), -15, 2);
+  EXPECT_LT(test::position_error_mm(std::get<NearLights>(*outcome.calibration.lights), exact_lights()), 0.5);
+}
+
+TEST_F(CalibrateLights, LeavesOutAFoldAndTellsItFromAStain) {
+  // A strip of the flat sheet that leans by 3 degrees.
+  replace(1, [](simulator::Scene& scene) {
+    simulator::TargetSettings& fold = scene.targets.emplace_back(scene.targets.back());
+    fold.pattern = simulator::PaperSettings{12, 50};
+    fold.tilt_deg = 3;
+    fold.centre_mm = on_sheet(kFive[0], -30, 10, 0.35);
+  });
+  const CalibrateOutcome outcome = done();
+  EXPECT_EQ(verdict_of(outcome, "fold").name, "PAPER_FAULT");
+  const Json& fault = outcome.report.numbers["faults"][0];
+  EXPECT_NEAR(fault["u_mm"].get<double>(), -30, 2);
+  EXPECT_NEAR(fault["v_mm"].get<double>(), 10, 3);
   EXPECT_LT(test::position_error_mm(std::get<NearLights>(*outcome.calibration.lights), exact_lights()), 0.5);
 }
 

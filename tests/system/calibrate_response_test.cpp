@@ -231,15 +231,16 @@ TEST(CalibrateResponse, CountsFramesThatAreFull) {
   EXPECT_THAT(outcome->report.verdicts.back().text, HasSubstr("2 frames were full"));
 }
 
-TEST(CalibrateResponse, RefusesFramesOfAnotherBodyIsoOrAperture) {
+TEST(CalibrateResponse, RefusesFramesOfAnotherBodyIsoApertureOrFocalLength) {
   struct Case {
     std::function<void(RawFrame&)> change;
     const char* word;
   };
-  const std::array<Case, 4> cases = {
+  const std::array<Case, 5> cases = {
       {{[](RawFrame& f) { f.shot.serial = "6012345"; }, "serial number is 6012345"},
        {[](RawFrame& f) { f.shot.iso = 400; }, "ISO is 400"},
        {[](RawFrame& f) { f.shot.f_number = 5.6; }, "aperture is f/5.6"},
+       {[](RawFrame& f) { f.shot.focal_mm = 1.1 * f.shot.focal_mm; }, "focal length 38.5 mm, not 35"},
        {[](RawFrame& f) { f.shot.model = "other"; }, "camera is"}}};
   for (const Case& c : cases) {
     const Workspace work;

@@ -18,6 +18,7 @@
 #include "simulator/captures.h"
 #include "simulator/captures_layout.h"
 #include "simulator/scene/rig.h"
+#include "tests/system/program.h"
 
 // A rig that is checked, moves, is found out and updated: 600 x 400 pixels over 200 mm of table.
 
@@ -99,6 +100,7 @@ class CalibrationCheck : public testing::Test {
         patch.polygon_px.push_back({p.x, p.y});
       }
     }
+    rig.camera_covariance = ParameterCovariance{{"camera_from_rig_translation_mm.z"}, {0.01}};
     rig.subject.measured = "2026-03-01T08:00:00Z";
     const auto written = write_calibration(root_ / "rig" / "first", rig);
     ASSERT_TRUE(written) << written.error().message();
@@ -134,6 +136,51 @@ TEST_F(CalibrationCheck, AcceptsWhatIsRight) {
     }
   }
   EXPECT_TRUE(is_there(result / "check.html"));
+  EXPECT_THAT(outcome->report.summary, testing::StartsWith("Accepted: 3 sheets"));
+  EXPECT_TRUE(outcome->report.numbers["not_checked"].empty())
+      << outcome->report.numbers["not_checked"].dump();
+}
+
+TEST_F(CalibrationCheck, SaysWhatItDidNotCheck) {
+  const fs::path once = root_ / "once.weft";
+  fs::copy(root_ / "check" / "other.weft", once, fs::copy_options::recursive);
+  Session session = *read_session(once);
+  std::erase_if(session.shots, [](const Shot& shot) { return shot.role == ShotRole::kRepeat; });
+  ASSERT_TRUE(write_session(session));
+  const auto flat = calibrate_check(
+      {.input = once, .from = root_ / "rig" / "first", .sheet = root_ / "check" / "sheet.toml"}, {});
+  ASSERT_TRUE(flat) << flat.error().message();
+  EXPECT_THAT(flat->report.summary,
+              testing::StartsWith("Accepted, with slopes and drift not checked: 1 sheet, flat ones within"));
+  const auto tilted =
+      calibrate_check({.input = root_ / "check" / "plane.weft", .from = root_ / "rig" / "first"}, {});
+  ASSERT_TRUE(tilted) << tilted.error().message();
+  EXPECT_THAT(tilted->report.summary, testing::StartsWith("Accepted, with flatness not checked: 1 sheet"));
+  EXPECT_THAT(tilted->report.summary, testing::Not(HasSubstr("rms"))) << "no sheet was flat";
+}
+
+TEST_F(CalibrationCheck, PrintsItsTableAndEndsWithTheCodeOfBadDataWhereItRefuses) {
+  const auto check = [&](const fs::path& calibration, const std::string& output) {
+    return test::run_weft({"calibrate", "check", (root_ / "check").string(), "--from", calibration.string(),
+                           "-o", (root_ / output).string(), "--quiet"});
+  };
+  const test::Outcome good = check(root_ / "rig" / "first", "good check");
+  EXPECT_EQ(good.exit_code, 0) << good.error;
+  EXPECT_THAT(good.output,
+              testing::AllOf(HasSubstr("Accepted"), HasSubstr("slope gain"), HasSubstr("turned.weft")));
+  const test::Outcome bad = check(root_ / "start", "bad check");
+  EXPECT_EQ(bad.exit_code, 65) << bad.error;
+  EXPECT_THAT(bad.output, testing::AllOf(HasSubstr("Refused"), HasSubstr("slope gain")));
+  EXPECT_TRUE(is_there(root_ / "bad check" / "check.html")) << "the report says why";
+  // Of a rig that moved, too.
+  simulate(with_table_lower(), "lower.weft");
+  const std::string first = (root_ / "rig" / "first").string();
+  const auto session = [&](const char* name) {
+    return test::run_weft(
+        {"calibrate", "check", "--session", (root_ / name).string(), "--from", first, "--quiet"});
+  };
+  EXPECT_EQ(session("cloth.weft").exit_code, 0);
+  EXPECT_EQ(session("lower.weft").exit_code, 65);
 }
 
 TEST_F(CalibrationCheck, RefusesTapeMeasuredLights) {
@@ -218,6 +265,64 @@ TEST_F(CalibrationCheck, FindsNothingOnARigThatStoodStill) {
   EXPECT_FALSE(is_there(root_ / "needless"));
 }
 
+TEST_F(CalibrationCheck, SaysWhereWhatIsSeenIsExplainedWorseThanUsual) {
+  CheckRigOptions options = {.session = root_ / "cloth.weft", .from = root_ / "rig" / "first"};
+  const auto usual = calibrate_check_rig(options, {});
+  ASSERT_TRUE(usual) << usual.error().message();
+  EXPECT_THAT(usual->warnings, testing::IsEmpty());
+  // The same pictures, held against noise that is taken for less than it is, and told without changes.
+  options.movement.most_changes = 0;
+  const double chi_square = usual->report.numbers["chi_square_after"].get<double>();
+  const double share = std::sqrt(chi_square / 3);
+  options.movement.corner_sigma_px *= share;
+  options.movement.flicker *= share;
+  options.movement.reading_sigma *= share;
+  options.movement.tilt_sigma_deg *= share;
+  const auto worse = calibrate_check_rig(options, {});
+  ASSERT_TRUE(worse) << worse.error().message();
+  EXPECT_NEAR(worse->report.numbers["chi_square_after"].get<double>(), 3, 0.9);
+  EXPECT_TRUE(worse->report.verdicts.empty()) << worse->report.verdicts.front().text;
+  ASSERT_EQ(worse->warnings.size(), 1U);
+  EXPECT_THAT(worse->warnings[0], HasSubstr("explained worse than usual"));
+}
+
+TEST_F(CalibrationCheck, WhatIsKnownOfLedsGoesWithThemWhereTheyAreExchanged) {
+  Calibration known = *read_calibration(root_ / "rig" / "first");
+  const std::vector<double> variances = {1e-6, 4e-6, 9e-6};
+  known.light_covariance =
+      ParameterCovariance{{"led02.log_flux", "led05.log_flux", "led07.log_flux"}, std::vector<double>(9)};
+  for (std::size_t i = 0; i < 3; ++i) known.light_covariance->matrix[4 * i] = variances[i];
+  known.light_covariance->matrix[1] = known.light_covariance->matrix[3] = 5e-7;
+  known.camera_covariance = ParameterCovariance{{"fx"}, {0.04}};
+  ASSERT_TRUE(write_calibration(root_ / "known", known));
+  Scene scene = rig_scene();
+  const NearLights lights = simulator::rig_of(scene)->leds;
+  scene.camera.exposure_us = simulator::rig_of(scene)->exposure_us;
+  scene.lights.rings.clear();
+  for (const NearLight& led : lights.leds)
+    scene.lights.leds.push_back({led.position_mm, led.aim, led.mu, led.flux_rgb});
+  std::swap(scene.lights.leds[1], scene.lights.leds[4]);
+  simulate(scene, "swapped.weft");
+  const auto update = calibrate_update(
+      {.session = root_ / "swapped.weft", .from = root_ / "known", .output = root_ / "exchanged"}, {});
+  ASSERT_TRUE(update) << update.error().message();
+  const Calibration& now = update->calibration;
+  EXPECT_LT(length(std::get<NearLights>(*now.lights).leds[1].position_mm - lights.leds[4].position_mm), 1e-6);
+  const auto variance = [&](const std::string& a, const std::string& b) {
+    const ParameterCovariance& c = *now.light_covariance;
+    const auto at = [&](const std::string& name) {
+      return static_cast<std::size_t>(std::find(c.parameters.begin(), c.parameters.end(), name) -
+                                      c.parameters.begin());
+    };
+    return c.matrix.at(at(a) * c.parameters.size() + at(b));
+  };
+  EXPECT_EQ(variance("led05.log_flux", "led05.log_flux"), variances[0]);
+  EXPECT_EQ(variance("led02.log_flux", "led02.log_flux"), variances[1]);
+  EXPECT_EQ(variance("led07.log_flux", "led07.log_flux"), variances[2]);
+  EXPECT_EQ(variance("led02.log_flux", "led05.log_flux"), 5e-7);
+  EXPECT_TRUE(now.camera_covariance) << "the camera did not move";
+}
+
 TEST_F(CalibrationCheck, ATableThatSankIsFoundUpdatedAndInTheHistory) {
   simulate(with_table_lower(), "sunk.weft");
   const fs::path first = root_ / "rig" / "first", second = root_ / "rig" / "second";
@@ -230,6 +335,8 @@ TEST_F(CalibrationCheck, ATableThatSankIsFoundUpdatedAndInTheHistory) {
   const auto update = calibrate_update({.session = root_ / "sunk.weft", .from = first, .output = second}, {});
   ASSERT_TRUE(update) << update.error().message();
   EXPECT_NE(update->calibration.id, read_calibration(first)->id);
+  EXPECT_FALSE(update->calibration.camera_covariance) << "its pose is known as the movement is";
+  EXPECT_THAT(update->warnings, testing::Contains(HasSubstr("covariance of the camera was left out")));
   const auto again = look_at_rig({.session = root_ / "sunk.weft", .from = second}, {});
   ASSERT_TRUE(again) << again.error().message();
   EXPECT_TRUE(again->movement.changes.empty());
@@ -318,8 +425,11 @@ TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
   bad.verdicts = {{"TABLE_MOVED", "The table has moved", "update"}};
   ASSERT_TRUE(write_check_result(rig / "a", "session", *calibration, good, "2026-03-02T08:00:00Z"));
   ASSERT_TRUE(write_check_result(rig / "b", "session", *calibration, bad, "2026-03-04T08:00:00+01:00"));
-  const char* kTimes[] = {"2026-03-01T12:00:00Z", "2026-03-03T12:00:00Z", "2026-03-04T07:30:00Z", ""};
-  for (std::size_t i = 0; i < 4; ++i) {
+  // The move was put right afterwards.
+  ASSERT_TRUE(write_check_result(rig / "c", "session", *calibration, good, "2026-03-05T08:00:00Z"));
+  const char* kTimes[] = {"2026-03-01T12:00:00Z", "2026-03-03T12:00:00Z", "2026-03-04T07:30:00Z", "",
+                          "2026-03-06T12:00:00Z"};
+  for (std::size_t i = 0; i < 5; ++i) {
     const fs::path folder = sessions / ("s" + std::to_string(i) + ".weft");
     fs::create_directories(folder);
     Session session = *read_session(root_ / "cloth.weft");
@@ -332,11 +442,23 @@ TEST_F(CalibrationCheck, NamesTheSessionsBetweenTheLastGoodCheckAndTheMove) {
   }
   const auto history = calibrate_history({rig, sessions, {}}, {});
   ASSERT_TRUE(history) << history.error().message();
-  ASSERT_EQ(history->affected.size(), 1U);
-  EXPECT_EQ(history->affected[0].folder.filename(), "s1.weft");
-  EXPECT_EQ(history->affected[0].predicted_mean_deg, 0.4);
+  ASSERT_EQ(history->affected.size(), 2U);
+  for (const std::size_t i : {0U, 1U}) {
+    EXPECT_EQ(history->affected[i].folder.filename(), i == 0 ? "s1.weft" : "s2.weft");
+    EXPECT_EQ(history->affected[i].predicted_mean_deg, 0.4);
+    EXPECT_EQ(history->affected[i].after_move, i == 1) << "the check was at 07:00 UTC";
+  }
   ASSERT_EQ(history->warnings.size(), 1U);
   EXPECT_THAT(history->warnings[0], HasSubstr("s3.weft"));
+  EXPECT_THAT(history->report.summary,
+              HasSubstr("2 of 5 sessions affected by a move, 1 without a time cannot be told"));
+}
+
+TEST_F(CalibrationCheck, RefusesAHistoryOfSessionsThatAreNotThere) {
+  const auto history = calibrate_history({root_ / "rig", root_ / "nowhere", {}}, {});
+  ASSERT_FALSE(history) << history->report.summary;
+  EXPECT_EQ(history.error().kind, ErrorKind::kNoInput);
+  EXPECT_THAT(history.error().message(), HasSubstr("nowhere"));
 }
 
 TEST_F(CalibrationCheck, TagsAloneDoNotClearLedsAndSheetsPredictNoError) {

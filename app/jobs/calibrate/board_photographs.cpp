@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <tuple>
+#include <optional>
+#include <utility>
 
 #include "app/jobs/linear_image.h"
 #include "calibration/suits.h"
@@ -55,10 +55,14 @@ void read_header(const fs::path& file, BoardPhotograph& photograph) {
   photograph.shot = info->shot;
 }
 
-using Setting = std::tuple<std::string, std::string, double, int, int>;
+bool is_same_camera(const ShotMetadata& a, const ShotMetadata& b) {
+  return a.model == b.model && a.serial == b.serial && a.f_number == b.f_number;
+}
 
-Setting setting_of(const BoardPhotograph& p) {
-  return {p.shot.model, p.shot.serial, p.shot.f_number, p.size.width, p.size.height};
+// Whether two photographs were taken with one setting.
+bool are_alike(const BoardPhotograph& a, const BoardPhotograph& b) {
+  return is_same_camera(a.shot, b.shot) && !calibration::focal_difference(a.shot.focal_mm, b.shot.focal_mm) &&
+         a.size == b.size;
 }
 
 std::string words(const ShotMetadata& shot) {
@@ -67,39 +71,47 @@ std::string words(const ShotMetadata& shot) {
                      shot.f_number > 0 ? fmt::format(", f/{:g}", shot.f_number) : "");
 }
 
-// Leaves out what is of another camera, size or aperture than most, or than the subject.
-void keep_one_camera(const std::optional<CalibrationSubject>& subject, BoardPhotographs& all) {
-  std::map<Setting, int> votes;
-  for (const BoardPhotograph& p : all.photographs) {
-    if (p.left_out.empty()) ++votes[setting_of(p)];
-  }
-  if (votes.empty()) return;
-  // A size that the subject's photographs have counts before one of a photograph of another camera.
-  const auto fits_subject = [&](const Setting& s) {
-    if (!subject) return true;
-    ShotMetadata shot;
-    std::tie(shot.model, shot.serial, shot.f_number, std::ignore, std::ignore) = s;
-    return !calibration::difference(*subject, shot);
+// Leaves out what is of another camera, size, aperture or focal length than most, or than was asked for.
+void keep_one_camera(const BoardFolderOptions& asked, BoardPhotographs& all) {
+  // What was asked for counts before any number of others.
+  const auto fits = [&](const BoardPhotograph& p) {
+    return !(asked.subject && calibration::difference(*asked.subject, p.shot)) &&
+           (!asked.size || p.size == *asked.size);
   };
-  const auto most = std::max_element(votes.begin(), votes.end(), [&](const auto& a, const auto& b) {
-    return std::pair(fits_subject(a.first), a.second) < std::pair(fits_subject(b.first), b.second);
-  });
-  ShotMetadata wanted;
-  if (fits_subject(most->first)) {
-    std::tie(wanted.model, wanted.serial, wanted.f_number, all.size.width, all.size.height) = most->first;
-  } else {
-    wanted.model = subject->camera_model, wanted.serial = subject->camera_serial,
-    wanted.f_number = subject->f_number;
+  const BoardPhotograph* most = nullptr;
+  std::pair<bool, std::ptrdiff_t> most_votes;
+  for (const BoardPhotograph& p : all.photographs) {
+    if (!p.left_out.empty()) continue;
+    const auto votes = std::count_if(all.photographs.begin(), all.photographs.end(), [&](const auto& other) {
+      return other.left_out.empty() && are_alike(p, other);
+    });
+    if (most != nullptr && std::pair(fits(p), votes) <= most_votes) continue;
+    most = &p;
+    most_votes = {fits(p), votes};
   }
-  all.camera = wanted;
+  if (most == nullptr) return;
+  const bool some_fit = most_votes.first;
+  BoardPhotograph wanted = *most;
+  if (asked.size) wanted.size = *asked.size;
+  if (!some_fit && asked.subject) {
+    wanted.shot.model = asked.subject->camera_model;
+    wanted.shot.serial = asked.subject->camera_serial;
+    wanted.shot.f_number = asked.subject->f_number;
+    wanted.shot.focal_mm = asked.subject->focal_length_mm;
+  }
+  all.camera = wanted.shot;
+  all.size = wanted.size;
   for (BoardPhotograph& p : all.photographs) {
-    if (!p.left_out.empty() || (fits_subject(most->first) && setting_of(p) == most->first)) continue;
-    p.left_out =
-        p.shot.model == wanted.model && p.shot.serial == wanted.serial && p.shot.f_number == wanted.f_number
-            ? fmt::format("it has {} x {} pixels, the others {} x {}", p.size.width, p.size.height,
-                          all.size.width, all.size.height)
-            : fmt::format("it was taken with {}, and this calibration is for {}", words(p.shot),
-                          words(wanted));
+    if (!p.left_out.empty() || (some_fit && are_alike(p, wanted))) continue;
+    if (!is_same_camera(p.shot, wanted.shot)) {
+      p.left_out = fmt::format("it was taken with {}, and this calibration is for {}", words(p.shot),
+                               words(wanted.shot));
+    } else if (const auto why = calibration::focal_difference(p.shot.focal_mm, wanted.shot.focal_mm)) {
+      p.left_out = *why;
+    } else {
+      p.left_out = fmt::format("it has {} x {} pixels, the {} {} x {}", p.size.width, p.size.height,
+                               asked.size ? "calibrated camera" : "others", all.size.width, all.size.height);
+    }
   }
 }
 
@@ -167,7 +179,7 @@ Result<BoardPhotographs> read_board_photographs(const BoardFolderOptions& option
     read_header(file, photograph);
     all.photographs.push_back(std::move(photograph));
   }
-  keep_one_camera(options.subject, all);
+  keep_one_camera(options, all);
   const Result<void> read = for_each_frame(files->size(), context, [&](std::size_t i) -> Result<void> {
     if (!all.photographs[i].left_out.empty()) return {};
     return look_at((*files)[i], options, all.photographs[i]);

@@ -48,7 +48,7 @@ struct BoardPhotograph {
 
 struct BoardPhotographs {
   std::vector<BoardPhotograph> photographs;  ///< by name
-  ShotMetadata camera;                       ///< what those that are used agree in: model, serial, f_number
+  ShotMetadata camera;  ///< what those that are used agree in: model, serial, f_number, focal_mm
   Size size;
 };
 
@@ -59,13 +59,14 @@ struct BoardFolderOptions {
   calibration::BoardLimits limits = {};
   /// The camera they must be of; without one that of most photographs.
   std::optional<CalibrationSubject> subject = {};
+  std::optional<Size> size = {};  ///< of its frames; without it that of most photographs
 };
 
 /// Looks at every photograph of a folder (all files but hidden ones and .toml, .json, .txt, .md), several at
 /// once: memory holds one a thread, 8 bytes a photosite of a raw one and 17 a pixel of a developed one.
-/// Photographs that cannot be read, are of another camera, size or aperture, or show no board that can be
-/// used are left out and say why; so is one that is 1.7 times as blurred as the median. kNoInput for a folder
-/// that is not there or holds none; kBadData where none is of `subject`.
+/// Photographs that cannot be read, are of another camera, size, aperture or focal length, or show no board
+/// that can be used are left out and say why; so is one that is 1.7 times as blurred as the median. kNoInput
+/// for a folder that is not there or holds none; all are left out where none is of `subject` and `size`.
 Result<BoardPhotographs> read_board_photographs(const BoardFolderOptions& options, const JobContext& context);
 
 }  // namespace weft::app

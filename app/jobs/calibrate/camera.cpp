@@ -105,6 +105,7 @@ CalibrationSubject subject_of(const CalibrateCameraOptions& options, const std::
   if (subject.camera_model.empty()) subject.camera_model = camera.model;
   if (subject.camera_serial.empty()) subject.camera_serial = camera.serial;
   if (subject.f_number == 0) subject.f_number = camera.f_number;
+  if (subject.focal_length_mm == 0) subject.focal_length_mm = camera.focal_mm;
   return subject;
 }
 
@@ -128,6 +129,7 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
   BoardFolderOptions folder = {options.input, board->board, options.tag_dictionary};
   folder.limits.most_edge_px = options.most_blur_px;
   if (from) folder.subject = from->subject;
+  if (from && from->camera) folder.size = from->camera->size;
   const Result<BoardPhotographs> all = read_board_photographs(folder, context);
   if (!all) return all.error();
   const Result<std::vector<std::size_t>> viewed = views_of(*all, options.input);

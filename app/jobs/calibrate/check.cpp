@@ -2,6 +2,7 @@
 #include "app/jobs/calibrate/check.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,7 @@
 #include "app/jobs/calibrate/history.h"
 #include "app/jobs/calibrate/movement_words.h"
 #include "app/jobs/calibrate/rig_evidence.h"
+#include "app/jobs/calibrate/sheet_captures.h"
 #include "app/jobs/calibrate/sheet_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/figures.h"
@@ -31,6 +33,7 @@ struct CheckedSheet {
   SheetCheck check;
   int columns = 0, rows = 0;
   std::optional<double> drift;  ///< of the LED that changed most, relative
+  bool was_fitted = false;      ///< lights were fitted to this session
   std::vector<std::string> warnings;
 };
 
@@ -113,8 +116,13 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
   if (plane != planes.end()) evidence->known_normal = plane->second;
   const fs::path folder = options.from.empty() ? session / "calibration" : options.from;
   evidence->paper_delta = options.paper_delta.value_or(reported_delta(folder));
+  const Result<std::vector<std::string>> shots = lit_sha256(plan->session);
+  if (!shots) return shots.error();
+  const std::set<std::string> fitted = fitted_sha256(folder);
   CheckedSheet checked;
   checked.name = session.filename().string();
+  checked.was_fitted = std::any_of(shots->begin(), shots->end(),
+                                   [&](const std::string& sha256) { return fitted.contains(sha256); });
   checked.check = check_sheet(*calibration.camera, std::get<NearLights>(*calibration.lights), *evidence);
   checked.columns = evidence->columns;
   checked.rows = evidence->rows;
@@ -130,9 +138,18 @@ std::vector<Verdict> verdicts_of(const CheckedSheet& sheet, const calibration::C
   constexpr const char* kRemedy = "calibrate the lights again, and camera and response before them";
   std::vector<Verdict> verdicts;
   const SheetCheck& check = sheet.check;
+  if (sheet.was_fitted) {
+    verdicts.push_back(
+        {"FITTED_TO_IT",
+         fmt::format("{} is one that the lights were fitted to: it comes out flat whatever they are",
+                     sheet.name),
+         "scan another sheet, or turn this one"});
+  }
   if (check.squares == 0) {
-    return {{"NO_NORMALS", fmt::format("{}: fewer than three LEDs light any square of the sheet", sheet.name),
-             "see whether the LEDs light and the frames are neither dark nor saturated"}};
+    verdicts.push_back({"NO_NORMALS",
+                        fmt::format("{}: fewer than three LEDs light any square of the sheet", sheet.name),
+                        "see whether the LEDs light and the frames are neither dark nor saturated"});
+    return verdicts;
   }
   if (check.slope_gain) {
     if (std::abs(*check.slope_gain - 1) > limits.slope_gain) {
@@ -186,14 +203,18 @@ CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const C
       "by {} percent.",
       options.square_px, options.limits.flat_rms_deg, options.limits.tilted_rms_deg,
       options.limits.slope_gain, 100 * options.limits.drift)};
+  section.is_answer = true;
   section.table->header = {"sheet",          "tilt, degrees", "squares",    "rms, degrees",
                            "about the mean", "worst",         "slope gain", "drift, percent"};
-  bool has_tilted = false;
-  double worst_flat = 0;
+  std::optional<double> worst_flat, worst_gain, worst_drift;
+  const auto keep_worst = [](std::optional<double>& worst, double value) {
+    worst = std::max(worst.value_or(0), value);
+  };
   for (const CheckedSheet& sheet : sheets) {
     const SheetCheck& c = sheet.check;
-    has_tilted = has_tilted || c.slope_gain.has_value();
-    if (!c.slope_gain) worst_flat = std::max(worst_flat, c.rms_deg);
+    if (c.slope_gain) keep_worst(worst_gain, std::abs(*c.slope_gain - 1));
+    if (!c.slope_gain && c.squares > 0) keep_worst(worst_flat, c.rms_deg);
+    if (sheet.drift) keep_worst(worst_drift, *sheet.drift);
     section.table->rows.push_back(
         {sheet.name, number(c.tilt_deg, 2), std::to_string(c.squares), number(c.rms_deg, 3),
          number(c.pattern_rms_deg, 3), number(c.worst_deg, 3),
@@ -216,12 +237,45 @@ CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const C
     report.numbers["sheets"].push_back(std::move(json));
     for (Verdict& verdict : verdicts_of(sheet, options.limits)) report.verdicts.push_back(std::move(verdict));
   }
-  if (!has_tilted)
-    section.paragraphs.push_back("No sheet was tilted: how steep slopes come out was not checked.");
+  std::vector<std::string> not_checked;
+  std::string found = fmt::format("{} sheet{}", sheets.size(), sheets.size() == 1 ? "" : "s");
+  if (worst_flat) {
+    found += fmt::format(", flat ones within {:.3f} degrees rms", *worst_flat);
+  } else {
+    not_checked.emplace_back("flatness");
+    section.paragraphs.emplace_back(
+        "No sheet lay flat: whether a level surface comes out level was not checked.");
+  }
+  if (worst_gain) {
+    found += fmt::format(", slopes within {:.2f} percent", 100 * *worst_gain);
+  } else {
+    not_checked.emplace_back("slopes");
+    section.paragraphs.emplace_back("No sheet was tilted: how steep slopes come out was not checked.");
+  }
+  if (worst_drift) {
+    found += fmt::format(", LEDs steady to {:.2f} percent", 100 * *worst_drift);
+  } else {
+    not_checked.emplace_back("drift");
+    section.paragraphs.emplace_back("No LED was lit once more: whether LEDs drift was not checked.");
+  }
+  report.numbers["not_checked"] = not_checked;
   report.sections.push_back(std::move(section));
-  report.summary = fmt::format("{}: {} sheets, the flat ones within {:.3f} degrees rms",
-                               report.verdicts.empty() ? "Accepted" : "Refused", sheets.size(), worst_flat);
+  report.summary = fmt::format(
+      "{}{}: {}", report.verdicts.empty() ? "Accepted" : "Refused",
+      not_checked.empty() ? "" : fmt::format(", with {} not checked", fmt::join(not_checked, " and ")),
+      found);
   return report;
+}
+
+/// What to say where nothing contradicts the calibration and yet not all is well; else empty.
+std::string doubt_of(const calibration::Movement& movement) {
+  if (movement.chi_square_after < calibration::kDoubtfulFrom ||
+      movement.chi_square_after > calibration::kUnexplainedFrom)
+    return "";
+  return fmt::format(
+      "What is seen is explained worse than usual: chi-square is {:.1f} for each observation, and about 1 "
+      "where all is well; look whether a patch is dirty, a tag lies loose or a lamp is on",
+      movement.chi_square_after);
 }
 
 CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
@@ -259,6 +313,7 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
     section.paragraphs.push_back(report.verdicts.back().text + ".");
     report.numbers["changes"].push_back(json_of(change));
   }
+  if (const std::string doubt = doubt_of(movement); !doubt.empty()) section.paragraphs.push_back(doubt + ".");
   if (movement.chi_square_after > calibration::kUnexplainedFrom) {
     report.verdicts.push_back(
         {"UNEXPLAINED",
@@ -374,6 +429,8 @@ Result<CalibrateOutcome> calibrate_check_rig(const CheckRigOptions& options, con
   outcome.report = rig_report(seen->rig, options.session.string());
   outcome.calibration = std::move(seen->rig.calibration);
   outcome.warnings = std::move(seen->warnings);
+  if (std::string doubt = doubt_of(seen->rig.movement); !doubt.empty())
+    outcome.warnings.push_back(std::move(doubt));
   outcome.folder = options.output;
   const Result<void> written =
       write_check_result(options.output, "session", outcome.calibration, outcome.report, seen->taken_at);

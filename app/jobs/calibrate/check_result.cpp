@@ -10,8 +10,18 @@
 #include "core/files.h"
 
 namespace weft::app {
+namespace {
 
 namespace fs = std::filesystem;
+
+/// The numbers of the report of a calibration's lights; empty where there is none.
+Json lights_numbers(const fs::path& calibration) {
+  const Result<Json> report = read_json(calibration / "report" / "lights.json", "weft.calibration-report", 1);
+  if (!report || !report->contains("numbers") || !(*report)["numbers"].is_object()) return Json::object();
+  return (*report)["numbers"];
+}
+
+}  // namespace
 
 Result<void> write_check_result(const fs::path& folder, const std::string& of, const Calibration& calibration,
                                 const CalibrationReport& report, const std::string& checked_at) {
@@ -29,10 +39,21 @@ Result<void> write_check_result(const fs::path& folder, const std::string& of, c
 }
 
 double reported_delta(const fs::path& calibration) {
-  const Result<Json> report = read_json(calibration / "report" / "lights.json", "weft.calibration-report", 1);
-  if (!report || !report->contains("numbers") || !(*report)["numbers"].contains("delta")) return 0;
-  const Json& delta = (*report)["numbers"]["delta"];
-  return delta.is_number() ? delta.get<double>() : 0;
+  const Json numbers = lights_numbers(calibration);
+  return numbers.contains("delta") && numbers["delta"].is_number() ? numbers["delta"].get<double>() : 0;
+}
+
+std::set<std::string> fitted_sha256(const fs::path& calibration) {
+  std::set<std::string> digests;
+  const Json numbers = lights_numbers(calibration);
+  if (!numbers.contains("fitted")) return digests;
+  for (const Json& session : numbers["fitted"]) {
+    if (!session.is_object() || !session.contains("lit_sha256")) continue;
+    for (const Json& digest : session["lit_sha256"]) {
+      if (digest.is_string()) digests.insert(digest.get<std::string>());
+    }
+  }
+  return digests;
 }
 
 }  // namespace weft::app

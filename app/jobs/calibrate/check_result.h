@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 
 #include "app/jobs/calibrate/report.h"
@@ -23,5 +24,8 @@ Result<void> write_check_result(const std::filesystem::path& folder, const std::
 
 /// What `calibrate lights` found the paper to be, if its report is in a calibration's folder; else 0.
 double reported_delta(const std::filesystem::path& calibration);
+
+/// SHA-256 of the lit frames that `calibrate lights` fitted, by the same report; none where it is not there.
+std::set<std::string> fitted_sha256(const std::filesystem::path& calibration);
 
 }  // namespace weft::app

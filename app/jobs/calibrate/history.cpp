@@ -48,8 +48,8 @@ struct Records {
 };
 
 /// Folders below `root` that hold a file of this name, in order of their paths; those inside sessions are
-/// copies and left out.
-std::vector<fs::path> folders_with(const fs::path& root, const char* name) {
+/// copies and left out. kNoInput where `root` cannot be read.
+Result<std::vector<fs::path>> folders_with(const fs::path& root, const char* name) {
   std::vector<fs::path> found;
   std::error_code failed;
   fs::recursive_directory_iterator walk(root, fs::directory_options::skip_permission_denied, failed), end;
@@ -59,13 +59,16 @@ std::vector<fs::path> folders_with(const fs::path& root, const char* name) {
     if (is_there(walk->path() / name)) found.push_back(walk->path());
     if (is_there(walk->path() / "session.json")) walk.disable_recursion_pending();
   }
+  if (failed) return cannot_read(root, failed.value());
   if (is_there(root / name)) found.push_back(root);
   std::sort(found.begin(), found.end());
   return found;
 }
 
-void read_calibrations(const fs::path& root, Records& records) {
-  for (const fs::path& folder : folders_with(root, "calibration.json")) {
+Result<void> read_calibrations(const fs::path& root, Records& records) {
+  const Result<std::vector<fs::path>> folders = folders_with(root, "calibration.json");
+  if (!folders) return folders.error();
+  for (const fs::path& folder : *folders) {
     Result<Calibration> calibration = read_calibration(folder);
     if (!calibration) {
       records.warnings.push_back(calibration.error().message());
@@ -81,6 +84,7 @@ void read_calibrations(const fs::path& root, Records& records) {
   }
   std::stable_sort(records.calibrations.begin(), records.calibrations.end(),
                    [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+  return {};
 }
 
 Result<DatedCheck> read_check(const fs::path& folder) {
@@ -118,8 +122,10 @@ Result<DatedCheck> read_check(const fs::path& folder) {
   return check;
 }
 
-void read_checks(const fs::path& root, Records& records) {
-  for (const fs::path& folder : folders_with(root, kCheckResultFile)) {
+Result<void> read_checks(const fs::path& root, Records& records) {
+  const Result<std::vector<fs::path>> folders = folders_with(root, kCheckResultFile);
+  if (!folders) return folders.error();
+  for (const fs::path& folder : *folders) {
     Result<DatedCheck> check = read_check(folder);
     if (!check) {
       records.warnings.push_back(check.error().message());
@@ -130,6 +136,7 @@ void read_checks(const fs::path& root, Records& records) {
   }
   std::stable_sort(records.checks.begin(), records.checks.end(),
                    [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+  return {};
 }
 
 const NearLights* near_lights(const Calibration& calibration) {
@@ -191,6 +198,7 @@ std::string plot_of_camera(const std::vector<DatedCalibration>& all) {
 
 ReportSection calibrations_section(const std::vector<DatedCalibration>& all, Json& numbers) {
   ReportSection section = {"Calibrations", {}, ReportTable{}, {}};
+  section.is_answer = true;
   section.table->header = {"measured",
                            "folder",
                            "id",
@@ -247,6 +255,7 @@ ReportSection calibrations_section(const std::vector<DatedCalibration>& all, Jso
 
 ReportSection checks_section(const std::vector<DatedCheck>& all, Json& numbers) {
   ReportSection section = {"Checks", {}, ReportTable{}, {}};
+  section.is_answer = true;
   section.table->header = {"date", "folder", "of", "calibration", "passed", "found", "cost, degrees"};
   for (const DatedCheck& check : all) {
     section.table->rows.push_back({check.date, check.name, check.of, check.calibration.substr(0, 12),
@@ -261,59 +270,86 @@ ReportSection checks_section(const std::vector<DatedCheck>& all, Json& numbers) 
   return section;
 }
 
-/// The time when what a check found was last known not to be so: tags alone tell nothing of LEDs.
+/// Whether a check that passed knows that what another one found was not so then: tags alone tell nothing of
+/// LEDs.
+bool clears(const DatedCheck& passed, const DatedCheck& failed) {
+  return passed.passed && passed.calibration == failed.calibration &&
+         (passed.read_leds || failed.only_bodies_moved);
+}
+
+/// The time when what a check found was last known not to be so.
 double held_until(const Records& records, const DatedCheck& failed) {
   double time_s = -std::numeric_limits<double>::infinity();
   for (const DatedCalibration& each : records.calibrations) {
     if (each.calibration.id == failed.calibration) time_s = std::max(time_s, each.time_s);
   }
   for (const DatedCheck& check : records.checks) {
-    if (!check.passed || check.calibration != failed.calibration || check.time_s > failed.time_s) continue;
-    if (check.read_leds || failed.only_bodies_moved) time_s = std::max(time_s, check.time_s);
+    if (clears(check, failed) && check.time_s <= failed.time_s) time_s = std::max(time_s, check.time_s);
   }
   return time_s;
 }
 
-std::vector<AffectedSession> affected_in(const fs::path& folder, const Records& records,
-                                         std::vector<std::string>& warnings) {
-  std::vector<AffectedSession> affected;
-  for (const fs::path& path : folders_with(folder, "session.json")) {
+/// Whether what a check found had been put right by a time after it.
+bool put_right_by(const Records& records, const DatedCheck& failed, double time_s) {
+  return std::any_of(records.checks.begin(), records.checks.end(), [&](const DatedCheck& check) {
+    return clears(check, failed) && check.time_s > failed.time_s && check.time_s < time_s;
+  });
+}
+
+/// The check that speaks against a calibration at a time: the last one before that found it moved, else the
+/// first one after; null where none does.
+const DatedCheck* check_against(const Records& records, const std::string& calibration, double time_s) {
+  const DatedCheck* against = nullptr;
+  for (const DatedCheck& check : records.checks) {
+    if (check.passed || check.calibration != calibration) continue;
+    if (check.time_s < time_s) {
+      if (!put_right_by(records, check, time_s)) against = &check;
+    } else if (against == nullptr && time_s > held_until(records, check)) {
+      return &check;
+    }
+  }
+  return against;
+}
+
+Result<void> find_affected(const fs::path& folder, const Records& records, CalibrationHistory& history) {
+  const Result<std::vector<fs::path>> folders = folders_with(folder, "session.json");
+  if (!folders) return folders.error();
+  for (const fs::path& path : *folders) {
     const Result<Session> session = read_session(path);
     if (!session) {
-      warnings.push_back(session.error().message());
+      history.warnings.push_back(session.error().message());
       continue;
     }
+    ++history.sessions;
     const std::string time = session->shots.empty() ? "" : session->shots.front().time;
     const auto time_s = seconds_of(time);
     if (!time_s) {
-      warnings.push_back(fmt::format(
+      ++history.without_time;
+      history.warnings.push_back(fmt::format(
           "{} says no time at which it was taken: whether a move affects it is not known", path.string()));
       continue;
     }
-    for (const DatedCheck& check : records.checks) {
-      if (check.passed || check.calibration != session->calibration_id) continue;
-      if (!(*time_s > held_until(records, check) && *time_s <= check.time_s)) continue;
-      affected.push_back({path, time, check.mean_deg, check.worst_deg});
-      break;
-    }
+    if (const DatedCheck* check = check_against(records, session->calibration_id, *time_s))
+      history.affected.push_back({path, time, check->mean_deg, check->worst_deg, check->time_s < *time_s});
   }
-  return affected;
+  return {};
 }
 
 ReportSection affected_section(const std::vector<AffectedSession>& all, Json& numbers) {
   ReportSection section = {"Affected sessions", {}, ReportTable{}, {}};
   section.paragraphs = {
-      "These were taken after the last check that their calibration passed and up to the one that found the "
-      "move. The "
-      "error is that of a session taken after the move; one taken before it has none. Solve them again with "
-      "the "
-      "updated calibration and compare. A check on sheets predicts no error of a session."};
-  section.table->header = {"session", "taken", "predicted mean error, degrees", "at worst"};
+      "These were taken after the last check that their calibration passed. Those up to the check that found "
+      "the move are perhaps from before it, and then have no error; those after that check are not. The "
+      "error "
+      "is that of a session taken after the move. Solve them again with the updated calibration and compare. "
+      "A check on sheets predicts no error of a session."};
+  section.is_answer = true;
+  section.table->header = {"session", "taken", "after the move", "predicted mean error, degrees", "at worst"};
   numbers["affected"] = Json::array();
   for (const AffectedSession& each : all) {
-    section.table->rows.push_back({each.folder.string(), each.time, number(each.predicted_mean_deg, 2),
-                                   number(each.predicted_worst_deg, 2)});
-    Json json = {{"session", each.folder.string()}, {"time", each.time}};
+    section.table->rows.push_back({each.folder.string(), each.time, each.after_move ? "yes" : "perhaps",
+                                   number(each.predicted_mean_deg, 2), number(each.predicted_worst_deg, 2)});
+    Json json = {{"session", each.folder.string()}, {"time", each.time}, {"after_move", each.after_move}};
     if (each.predicted_mean_deg) json["predicted_mean_deg"] = *each.predicted_mean_deg;
     if (each.predicted_worst_deg) json["predicted_worst_deg"] = *each.predicted_worst_deg;
     numbers["affected"].push_back(std::move(json));
@@ -348,7 +384,7 @@ std::optional<double> seconds_of(const std::string& iso_8601) {
 Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
                                              const JobContext& context) {
   Records records;
-  read_calibrations(options.rig, records);
+  if (Result<void> ok = read_calibrations(options.rig, records); !ok) return std::move(ok).error();
   if (records.calibrations.empty()) {
     return Error{
         ErrorKind::kNoInput, "there is no calibration", options.rig.string(),
@@ -356,7 +392,7 @@ Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& opti
         "name the folder that holds the rig's calibrations"};
   }
   if (context.stop.stop_requested()) return interrupted();
-  read_checks(options.rig, records);
+  if (Result<void> ok = read_checks(options.rig, records); !ok) return std::move(ok).error();
   CalibrationHistory history;
   history.warnings = std::move(records.warnings);
   CalibrationReport& report = history.report;
@@ -364,12 +400,19 @@ Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& opti
   report.title = fmt::format("History of {}", records.calibrations.back().calibration.subject.rig);
   report.sections.push_back(calibrations_section(records.calibrations, report.numbers));
   if (!records.checks.empty()) report.sections.push_back(checks_section(records.checks, report.numbers));
+  report.summary =
+      fmt::format("{} calibrations and {} checks", records.calibrations.size(), records.checks.size());
   if (!options.sessions.empty()) {
-    history.affected = affected_in(options.sessions, records, history.warnings);
+    if (Result<void> ok = find_affected(options.sessions, records, history); !ok)
+      return std::move(ok).error();
     report.sections.push_back(affected_section(history.affected, report.numbers));
+    report.summary +=
+        fmt::format(", {} of {} sessions affected by a move", history.affected.size(), history.sessions);
+    if (history.without_time > 0)
+      report.summary += fmt::format(", {} without a time cannot be told", history.without_time);
+    report.numbers["sessions"] = history.sessions;
+    report.numbers["sessions_without_time"] = history.without_time;
   }
-  report.summary = fmt::format("{} calibrations and {} checks, {} sessions affected by a move",
-                               records.calibrations.size(), records.checks.size(), history.affected.size());
   if (options.output.empty()) return history;
   if (Result<void> ok = write_report(report, options.output); !ok) return std::move(ok).error();
   return history;

@@ -25,11 +25,14 @@ struct AffectedSession {
   std::string time;  ///< of its first shot
   /// Error of its normals, as the check that found the move predicts it; a check on sheets predicts none.
   std::optional<double> predicted_mean_deg, predicted_worst_deg;
+  bool after_move = false;  ///< taken after that check; else the move may have come after it
 };
 
 struct CalibrationHistory {
   CalibrationReport report;  ///< table and plots of what was measured, and what checks said
   std::vector<AffectedSession> affected;
+  int sessions = 0;                   ///< that were looked at
+  int without_time = 0;               ///< of these: nobody can tell whether a move affects them
   std::vector<std::string> warnings;  ///< folders that could not be read, and sessions without a time
 };
 
@@ -37,7 +40,8 @@ struct CalibrationHistory {
 /// the calibrations in their order of `measured`, and the results of checks. Affected are sessions that were
 /// taken with the calibration that a check found moved, after the last check of it that passed and saw
 /// LEDs, where those have changed (or since it was measured) and up to the one that did not: the rig moved
-/// somewhere between them. Errors: kNoInput where there is no calibration in the folder.
+/// somewhere between them; and those taken with it later still, until a check passes again. Errors: kNoInput
+/// where a folder cannot be read or there is no calibration in `rig`.
 Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
                                              const JobContext& context);
 

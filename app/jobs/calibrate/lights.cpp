@@ -77,7 +77,7 @@ class LightsJob {
   SheetCaptures captures_;
   std::vector<std::vector<char>> left_out_;
   LightsEvidence evidence_;
-  std::vector<std::string> warnings_;
+  std::vector<Verdict> verdicts_;
 };
 
 Result<void> LightsJob::prepare() {
@@ -125,7 +125,7 @@ Result<void> LightsJob::read() {
   Result<SheetCaptures> captures = read_sheet_captures({options_.input, calibration_, sheet_}, context_);
   if (!captures) return std::move(captures).error();
   captures_ = std::move(*captures);
-  warnings_ = captures_.warnings;
+  verdicts_ = captures_.warnings;
   const auto blocks = static_cast<std::size_t>(captures_.columns) * static_cast<std::size_t>(captures_.rows);
   left_out_.assign(captures_.captures.size(), std::vector<char>(blocks));
 
@@ -140,8 +140,10 @@ Result<void> LightsJob::read() {
   for (const SheetCapture& capture : captures_.captures) {
     start.sheets.push_back(capture.pose);
     evidence_.captures.push_back(capture.name);
+    evidence_.fitted.push_back({capture.name, capture.lit_sha256});
   }
   evidence_.rig = calibration_.subject.rig;
+  evidence_.flatness_deg = options_.flatness_deg;
   take_readings();
   return {};
 }
@@ -201,11 +203,13 @@ Result<void> LightsJob::leave_out_faults(bool& any) {
   for (const calibration::PaperFault& fault : evidence_.faults) {
     std::vector<std::string> where;
     for (const std::size_t sheet : fault.sheets) where.push_back(evidence_.captures[sheet]);
-    warnings_.push_back(
-        fmt::format("the paper has a {} of {:.0f} mm^2 at u = {:.0f} mm, v = {:.0f} mm from its centre "
-                    "({:.1f} percent, in {}); it was left out",
-                    fault.is_fold ? "fold" : "stain", fault.area_mm2, fault.u_mm, fault.v_mm,
-                    100 * fault.departure, fmt::join(where, ", ")));
+    verdicts_.push_back(
+        {"PAPER_FAULT",
+         fmt::format("the paper has a {} of {:.0f} mm^2 at u = {:.0f} mm, v = {:.0f} mm from its centre "
+                     "({:.1f} percent, in {}); it was left out",
+                     fault.is_fold ? "fold" : "stain", fault.area_mm2, fault.u_mm, fault.v_mm,
+                     100 * fault.departure, fmt::join(where, ", ")),
+         "take a clean sheet that lies flat the next time"});
     faulty += fault.spots.size();
     for (const std::size_t i : fault.spots) {
       const auto column = static_cast<int>(spots[i].x_px / captures_.block_px),
@@ -250,7 +254,9 @@ Result<void> LightsJob::judge() {
           "see that nothing moves between them, that the sheet is flat and rig.toml right, and photograph it "
           "again, or take the result as it is with --accept-misfit");
     }
-    warnings_.push_back("the photographs of the sheet contradict each other, which was accepted: " + why);
+    verdicts_.push_back({"MISFIT",
+                         "the photographs of the sheet contradict each other, which was accepted: " + why,
+                         "trust these lights only as far as weft calibrate check does"});
   }
   std::vector<Pose> poses;
   for (const calibration::SheetPose& sheet : fit.scene.sheets) {
@@ -258,11 +264,11 @@ Result<void> LightsJob::judge() {
     if (std::none_of(poses.begin(), poses.end(), same)) poses.push_back(sheet.rig_from_sheet);
   }
   if (poses.size() < kGoodPoses || fit.is_weak()) {
-    warnings_.push_back(
-        fmt::format("the lights are weakly known, from {} {} of the sheet: positions to {:.1f} mm at worst; "
-                    "photograph it flat and "
-                    "tilted by 20 degrees to all four sides",
-                    poses.size(), poses.size() == 1 ? "pose" : "poses", fit.worst_position_sigma_mm()));
+    verdicts_.push_back(
+        {"WEAK",
+         fmt::format("the lights are weakly known, from {} {} of the sheet: positions to {:.1f} mm at worst",
+                     poses.size(), poses.size() == 1 ? "pose" : "poses", fit.worst_position_sigma_mm()),
+         "photograph it flat and tilted by 20 degrees to all four sides"});
   }
   return {};
 }
@@ -315,10 +321,13 @@ Result<void> LightsJob::run_per_pixel() {
     return error;
   }
   for (const std::size_t led : solved->parted()) {
-    warnings_.push_back(fmt::format(
-        "the light of LED {} is not that of a point: its directions part from the model's by up to {:.2f} "
-        "degrees; look whether something reflects or shades it",
-        led + 1, *std::max_element(solved->apart_deg[led].begin(), solved->apart_deg[led].end())));
+    verdicts_.push_back(
+        {"NOT_A_POINT",
+         fmt::format("the light of LED {} is not that of a point: its directions part from the model's by up "
+                     "to {:.2f} degrees",
+                     led + 1,
+                     *std::max_element(solved->apart_deg[led].begin(), solved->apart_deg[led].end())),
+         "look whether something reflects or shades it"});
   }
   evidence_.per_pixel = std::move(*solved);
   return {};
@@ -342,11 +351,13 @@ Result<void> LightsJob::run_seed() {
   auto seed = iterate_seed(evidence_.start, readings, cells());
   if (!seed) return std::move(seed).error();
   evidence_.seed = std::move(*seed);
-  warnings_.push_back(
-      fmt::format("the seed's iteration on {} finds no directions: the paper solves flatter by every step "
-                  "whether they are right or "
-                  "not; use it to compare",
-                  evidence_.captures[flattest]));
+  evidence_.fitted = {evidence_.fitted[flattest]};
+  verdicts_.push_back(
+      {"NO_DIRECTIONS",
+       fmt::format("the seed's iteration on {} finds no directions: the paper solves flatter by every step "
+                   "whether they are right or not",
+                   evidence_.captures[flattest]),
+       "use it to compare"});
   return {};
 }
 
@@ -400,9 +411,9 @@ Result<CalibrateOutcome> LightsJob::write() {
     change.light_covariance = evidence_.fit->covariance;
   }
   CalibrateOutcome outcome;
-  if (!calibration_.patches.empty()) warnings_.push_back(patches_left_out("lights"));
-  outcome.warnings = warnings_;
-  outcome.report = lights_report(evidence_, warnings_);
+  if (!calibration_.patches.empty()) outcome.warnings.push_back(patches_left_out("lights"));
+  if (std::string lax = lax_gate(evidence_); !lax.empty()) outcome.warnings.push_back(std::move(lax));
+  outcome.report = lights_report(evidence_, std::move(verdicts_));
   std::vector<NamedFile> files = report_files(outcome.report);
   Result<std::vector<NamedFile>> pictures = maps();
   if (!pictures) return std::move(pictures).error();

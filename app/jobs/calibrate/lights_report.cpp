@@ -67,7 +67,7 @@ ReportSection led_section(const LightsEvidence& e) {
                           fmt::format("{:.3f}", led.flux_rgb[2] / led.flux_rgb[1]),
                           fmt::format("{:.2f}", 100 * rms_of_led(e, k))});
   }
-  return {
+  ReportSection section = {
       "LEDs",
       {fmt::format("Chi-square is {:.3f} for each of {:.0f} degrees of freedom, after {} iterations; from "
                    "{:.1f} on the photographs "
@@ -78,6 +78,9 @@ ReportSection led_section(const LightsEvidence& e) {
            : "No LED needs a gain of its own: the model of its light is enough."},
       table,
       {}};
+  if (const std::string lax = lax_gate(e); !lax.empty())
+    section.paragraphs.insert(section.paragraphs.begin() + 1, lax + ".");
+  return section;
 }
 
 ReportSection sheet_section(const LightsEvidence& e) {
@@ -184,6 +187,7 @@ ReportSection seed_section(const LightsEvidence& e) {
                                         "paper residual deg", ""},
                                        {}},
                            {}};
+  section.is_answer = true;
   section.paragraphs.push_back(
       "One flat sheet gives one reading for two unknowns, intensity and direction: that the paper residual "
       "falls says nothing of the directions. "
@@ -200,6 +204,8 @@ ReportSection seed_section(const LightsEvidence& e) {
 
 Json numbers_of(const LightsEvidence& e) {
   Json numbers = Json::object();
+  for (const FittedSession& session : e.fitted)
+    numbers["fitted"].push_back({{"session", session.name}, {"lit_sha256", session.lit_sha256}});
   if (e.fit) {
     const LightFit& fit = *e.fit;
     numbers["chi_square"] = fit.chi_square;
@@ -255,7 +261,18 @@ Json numbers_of(const LightsEvidence& e) {
 
 }  // namespace
 
-CalibrationReport lights_report(const LightsEvidence& e, const std::vector<std::string>& warnings) {
+std::string lax_gate(const LightsEvidence& e) {
+  if (!e.fit || e.fit->chi_square >= kLaxBelow) return "";
+  std::string text = fmt::format(
+      "Chi-square of {:.2f} says that light and paper agree better than was allowed for: the gate "
+      "at {:.1f} is lax by a factor of {:.1f}",
+      e.fit->chi_square, calibration::kMisfitFrom, 1 / e.fit->chi_square);
+  if (e.flatness_deg > 0)
+    text += fmt::format(", and --flatness below {:g} makes it as strict as it should be", e.flatness_deg);
+  return text;
+}
+
+CalibrationReport lights_report(const LightsEvidence& e, std::vector<Verdict> verdicts) {
   CalibrationReport report;
   report.part = "lights";
   report.title = fmt::format("Lights of {}", e.rig);
@@ -273,7 +290,7 @@ CalibrationReport lights_report(const LightsEvidence& e, const std::vector<std::
         fmt::format("{} LEDs by the seed's iteration on one flat sheet: directions are those of the tape.",
                     e.start.lights.leds.size());
   }
-  for (const std::string& warning : warnings) report.verdicts.push_back({"LIGHTS", warning, ""});
+  report.verdicts = std::move(verdicts);
   if (e.fit) {
     report.sections.push_back(led_section(e));
     report.sections.push_back(sheet_section(e));

@@ -15,7 +15,7 @@ struct CalibrateOutcome {
   std::filesystem::path folder;  ///< of the new calibration, or of the check's result; empty: nothing written
   Calibration calibration;       ///< as it is in `folder`
   CalibrationReport report;
-  std::vector<std::string> warnings;  ///< a sentence each: photographs left out, weak spots
+  std::vector<std::string> warnings;  ///< a sentence each, beside the report's verdicts
 };
 
 }  // namespace weft::app

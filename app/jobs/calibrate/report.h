@@ -32,6 +32,7 @@ struct ReportSection {
   std::vector<std::string> paragraphs = {};
   std::optional<ReportTable> table = {};
   std::vector<ReportPicture> pictures = {};
+  bool is_answer = false;  ///< its table is what was asked for: on the terminal, too
 };
 
 struct CalibrationReport {

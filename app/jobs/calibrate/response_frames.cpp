@@ -53,7 +53,7 @@ std::optional<std::vector<int>> leds_of(const std::string& name) {
 
 Error of_another(const fs::path& file, std::string why) {
   return {ErrorKind::kBadData, "frame does not belong to this calibration", file.string(), std::move(why),
-          "use frames of one body, ISO and aperture, as the rig scans with"};
+          "use frames of one body, ISO, aperture and focal length, as the rig scans with"};
 }
 
 // What all frames must share.
@@ -88,6 +88,7 @@ class Body {
           differs("height", info.size.height, first_->size.height)}) {
       if (!ok) return ok;
     }
+    if (const auto why = calibration::focal_difference(b.focal_mm, a.focal_mm)) return of_another(file, *why);
     if (info.cfa != first_->cfa) return of_another(file, "its colour filters are laid out differently");
     return {};
   }

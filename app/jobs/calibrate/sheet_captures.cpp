@@ -77,11 +77,14 @@ class SessionReader {
   SessionReader(const SheetCapturesOptions& options, const JobContext& context, fs::path folder)
       : options_(options), context_(context), folder_(std::move(folder)) {}
 
-  Result<SheetCapture> read(int block_px, std::vector<std::string>& warnings) {
+  Result<SheetCapture> read(int block_px, std::vector<Verdict>& warnings) {
     block_px_ = block_px;
     if (Result<void> ok = look(); !ok) return std::move(ok).error();
     SheetCapture capture;
     capture.name = folder_.filename().string();
+    Result<std::vector<std::string>> digests = lit_sha256(session_);
+    if (!digests) return std::move(digests).error();
+    capture.lit_sha256 = std::move(*digests);
     capture.leds.resize(light_count(*options_.calibration.lights));
     Result<Image<std::uint8_t>> grey = raw_ ? read_mosaics(capture.leds) : read_developed(capture.leds);
     if (!grey) return std::move(grey).error();
@@ -99,7 +102,7 @@ class SessionReader {
   Result<Image<std::uint8_t>> read_developed(std::vector<BlockGrid>& leds);
   Result<void> find_pose(const Image<std::uint8_t>& grey, SheetCapture& capture) const;
   void mark_paper(SheetCapture& capture) const;
-  Result<void> check_light(const SheetCapture& capture, std::vector<std::string>& warnings) const;
+  Result<void> check_light(const SheetCapture& capture, std::vector<Verdict>& warnings) const;
 
   Size size() const { return options_.calibration.camera->size; }
   double seconds(const Shot& shot) const { return shot.exposure_us * 1e-6 * shot.iso / 100; }
@@ -259,8 +262,7 @@ void SessionReader::mark_paper(SheetCapture& capture) const {
 }
 
 // LEDs that gave no light, and paper that is full.
-Result<void> SessionReader::check_light(const SheetCapture& capture,
-                                        std::vector<std::string>& warnings) const {
+Result<void> SessionReader::check_light(const SheetCapture& capture, std::vector<Verdict>& warnings) const {
   std::vector<double> level(capture.leds.size());
   std::vector<double> full(capture.leds.size());
   double brightest = 0;
@@ -299,9 +301,11 @@ Result<void> SessionReader::check_light(const SheetCapture& capture,
                          "look at the LED and its wire, and scan the sheet again");
     }
     if (full[k] > kWarnFullShare) {
-      warnings.push_back(fmt::format(
-          "{}: under LED {} {:.0f} percent of the paper are at white and not used; a shorter exposure helps",
-          capture.name, k + 1, 100 * full[k]));
+      warnings.push_back(
+          {"PAPER_FULL",
+           fmt::format("{}: under LED {} {:.0f} percent of the paper are at white and not used", capture.name,
+                       k + 1, 100 * full[k]),
+           "expose shorter, all poses alike"});
     }
   }
   return {};
@@ -328,15 +332,20 @@ void warn_of_poses(SheetCaptures& all, std::size_t leds) {
     for (std::size_t j = 0; j < i; ++j) {
       if (same_pose(all.captures[j].pose.rig_from_sheet, capture.pose.rig_from_sheet))
         all.warnings.push_back(
-            fmt::format("{} and {} show the sheet in one pose, which says no more than one of them",
-                        all.captures[j].name, capture.name));
+            {"SAME_POSE",
+             fmt::format("{} and {} show the sheet in one pose, which says no more than one of them",
+                         all.captures[j].name, capture.name),
+             "turn the sheet, or tilt it to a side that is not there yet, and scan it in place of one of "
+             "them"});
     }
     std::vector<std::size_t> unlit;
     for (std::size_t k = 0; k < leds; ++k) {
       if (capture.leds[k].columns == 0) unlit.push_back(k + 1);
     }
     if (!unlit.empty())
-      all.warnings.push_back(fmt::format("{} did not light LED {}", capture.name, fmt::join(unlit, ", ")));
+      all.warnings.push_back({"LED_UNLIT",
+                              fmt::format("{} did not light LED {}", capture.name, fmt::join(unlit, ", ")),
+                              "scan the sheet with all LEDs"});
   }
 }
 
@@ -390,6 +399,17 @@ Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, c
   }
   warn_of_poses(all, leds);
   return all;
+}
+
+Result<std::vector<std::string>> lit_sha256(const Session& session) {
+  std::vector<std::string> digests;
+  for (const Shot* shot : session.lit()) {
+    Result<std::string> digest =
+        shot->sha256.empty() ? sha256_of_file(session.path_of(*shot)) : Result<std::string>(shot->sha256);
+    if (!digest) return std::move(digest).error();
+    digests.push_back(std::move(*digest));
+  }
+  return digests;
 }
 
 std::vector<calibration::PaperReading> single_blocks(const SheetCaptures& captures,

@@ -7,11 +7,13 @@
 
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/job.h"
+#include "app/jobs/report.h"
 #include "calibration/lights/light_map.h"
 #include "calibration/lights/paper_model.h"
 #include "calibration/lights/sheet_blocks.h"
 #include "core/calibration.h"
 #include "core/result.h"
+#include "core/session.h"
 
 // Sessions of a sheet of white paper, as averages of blocks.
 
@@ -23,13 +25,14 @@ struct SheetCapture {
   calibration::SheetPose pose;               ///< from its tags
   std::vector<calibration::BlockGrid> leds;  ///< of each LED of the rig; no columns where it was not lit
   std::vector<char> is_paper;                ///< by block of a grid: shows nothing but paper
+  std::vector<std::string> lit_sha256;       ///< of its lit frames, by LED
 };
 
 struct SheetCaptures {
   int block_px = 16;
   int columns = 0, rows = 0;  ///< of blocks
   std::vector<SheetCapture> captures;
-  std::vector<std::string> warnings;
+  std::vector<Verdict> warnings;
 };
 
 struct SheetCapturesOptions {
@@ -44,9 +47,12 @@ struct SheetCapturesOptions {
 ///
 /// kNoInput for a folder without sessions. kBadData, naming the file: of another rig, camera, aperture or
 /// size; exposures that differ between sessions without a measured ratio; a LED that did not light; paper
-/// full over more than half of it; a sheet whose tags are not found. Warnings: two captures of one pose, full
-/// blocks, LEDs that some session did not light.
+/// full over more than half of it; a sheet whose tags are not found. Warnings: SAME_POSE, PAPER_FULL where
+/// blocks are, LED_UNLIT where a session leaves one out.
 Result<SheetCaptures> read_sheet_captures(const SheetCapturesOptions& options, const JobContext& context);
+
+/// SHA-256 of the lit frames of a session, by LED: as its journal has them, else of the files.
+Result<std::vector<std::string>> lit_sha256(const Session& session);
 
 /// What a fit takes of captures. `left_out[capture]` marks blocks that are not to be used, by block.
 /// Single blocks, those of one place side by side for all LEDs of a capture:

@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <numeric>
 
 #include "app/jobs/calibrate/check.h"
 #include "app/jobs/calibrate/movement_words.h"
@@ -45,6 +47,25 @@ std::optional<ParameterCovariance> merged(const std::optional<ParameterCovarianc
   return out;
 }
 
+/// The covariance under the names that LEDs have once they are exchanged: what is known of a LED stays with
+/// it.
+std::optional<ParameterCovariance> renamed(std::optional<ParameterCovariance> covariance,
+                                           const std::vector<RigChange>& changes) {
+  if (!covariance) return covariance;
+  for (std::string& name : covariance->parameters) {
+    int led = 0;
+    if (!name.starts_with("led")) continue;
+    const auto [rest, failed] = std::from_chars(name.data() + 3, name.data() + name.size(), led);
+    if (failed != std::errc()) continue;
+    for (const RigChange& change : changes) {
+      if (change.kind != ChangeKind::kLedsSwapped) continue;
+      led = led == change.led ? change.other_led : led == change.other_led ? change.led : led;
+    }
+    name = fmt::format("led{:02}{}", led, std::string_view(rest));
+  }
+  return covariance;
+}
+
 /// The first change that something else explains as well: each would be put right in another way.
 const RigChange* ambiguous(const Movement& movement) {
   const auto found = std::find_if(movement.changes.begin(), movement.changes.end(),
@@ -69,12 +90,11 @@ Calibration change_of(const RigCheck& rig) {
   change.subject.measured.clear();
   if (body) {
     change.camera = rig.movement.camera;
-    change.camera_covariance = before.camera_covariance;
     change.fiducials = before.fiducials;
   }
   if (lights || (body && !before.patches.empty())) {
     change.lights = rig.movement.lights;
-    change.light_covariance = merged(before.light_covariance, rig.movement.covariance);
+    change.light_covariance = renamed(merged(before.light_covariance, rig.movement.covariance), changes);
     for (const WhitePatch& patch : before.patches) {
       change.patches.push_back(
           relocated(patch, *before.camera, rig.movement.camera, tag_height_mm(before.fiducials)));
@@ -135,8 +155,13 @@ Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options,
   CalibrateOutcome outcome;
   outcome.report = report_of(*rig, options.session);
   const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
+  Calibration change = change_of(*rig);
+  if (change.camera && rig->calibration.camera_covariance)
+    outcome.warnings.emplace_back(
+        "the covariance of the camera was left out, for it says nothing of the move: weft calibrate camera "
+        "measures it again");
   Result<Calibration> written =
-      derive_calibration(from, change_of(*rig), options.output, report_files(outcome.report));
+      derive_calibration(from, std::move(change), options.output, report_files(outcome.report));
   if (!written) return std::move(written).error();
   outcome.folder = options.output;
   outcome.calibration = std::move(*written);

@@ -23,7 +23,8 @@ struct CalibrateUpdateOptions {
 
 /// Fits again what has moved (calibration/checks/movement.h), the rest held by what the calibration knows of
 /// it, and writes a new calibration: camera.json where camera and table moved to each other, lights.json
-/// where LEDs moved to the table or changed, every other part as it was, and report/update.html. The rig
+/// where LEDs moved to the table or changed, every other part as it was, and report/update.html. What was
+/// known of a LED goes with it where LEDs were exchanged; the new camera.json has no covariance. The rig
 /// frame stays with the table. Sessions keep the calibration that they were taken with; `weft solve
 /// --calibration` solves them again with this one.
 ///

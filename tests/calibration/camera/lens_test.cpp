@@ -105,6 +105,19 @@ TEST(FitLens, LeavesOutABentBoardByName) {
   EXPECT_NEAR(fit->camera.fx / rig.camera.fx, 1, 1e-3);
 }
 
+TEST(FitLens, OfFiveBoardsRefusesThatOneIsBentAndNamesIt) {
+  const BoardRig rig;
+  std::vector<BoardView> views = views_of(rig, 0.1, 1);
+  views.resize(5);
+  ASSERT_TRUE(fit_lens(views, rig.camera.size, {}));
+  for (auto& corner : views[3].corners) corner.px.x += 3e-4 * corner.u_mm * corner.u_mm;
+  const auto fit = fit_lens(views, rig.camera.size, {});
+  ASSERT_FALSE(fit) << "board3 used: " << fit->boards[3].used << ", rms " << fit->boards[3].rms_px;
+  EXPECT_THAT(fit.error().message(),
+              testing::AllOf(HasSubstr("too few"), HasSubstr("4 can be used"), HasSubstr("board3: "),
+                             testing::Not(HasSubstr("board2"))));
+}
+
 TEST(FitLens, RefusesTooFewBoards) {
   const BoardRig rig;
   std::vector<BoardView> views = views_of(rig, 0.1, 1);

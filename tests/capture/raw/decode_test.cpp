@@ -134,6 +134,16 @@ TEST(DecodeRaw, ReturnsTheApertureThatTheLensShows) {
   }
 }
 
+TEST(DecodeRaw, ReturnsTheFocalLengthThatTheLensShows) {
+  RawFrame truth = sample_frame({24, 26});
+  for (const double focal_mm : {18.0, 35.5, 105.2}) {
+    truth.shot.focal_mm = focal_mm;
+    const auto frame = decode_raw(written(truth, "zoom.dng"));
+    ASSERT_TRUE(frame.has_value()) << frame.error().message();
+    EXPECT_EQ(frame->shot.focal_mm, focal_mm) << "off by " << frame->shot.focal_mm - focal_mm;
+  }
+}
+
 TEST(DecodeRaw, LeavesOutWhatTheFileDoesNotSay) {
   RawFrame truth = sample_frame({24, 26});
   truth.shot = {"Lumitex", "Virtual D5100", "", 0, 0, 0};
@@ -143,6 +153,7 @@ TEST(DecodeRaw, LeavesOutWhatTheFileDoesNotSay) {
   EXPECT_EQ(frame->shot.exposure_us, 0);
   EXPECT_EQ(frame->shot.iso, 0);
   EXPECT_EQ(frame->shot.f_number, 0);
+  EXPECT_EQ(frame->shot.focal_mm, 0);
 }
 
 TEST(DecodeRaw, KeepsTextPrintable) {

@@ -131,7 +131,8 @@ TEST(Dng, StoresOneBlackLevelOrFourAndTheWhiteLevel) {
 }
 
 TEST(Dng, StoresWhatCameraTookTheShotAndHow) {
-  const RawFrame frame = sample_frame({24, 24});
+  RawFrame frame = sample_frame({24, 24});
+  frame.shot.focal_mm = 35;
   const ShotMetadata shot = decoded(frame).shot;
   EXPECT_EQ(shot.make, "Lumitex");
   EXPECT_EQ(shot.model, "Virtual D5100");
@@ -139,6 +140,7 @@ TEST(Dng, StoresWhatCameraTookTheShotAndHow) {
   EXPECT_NEAR(shot.exposure_us, 1e6 / 60, 1e-6 * 1e6 / 60);
   EXPECT_EQ(shot.iso, 100);
   EXPECT_EQ(shot.f_number, 8);
+  EXPECT_EQ(shot.focal_mm, 35);
 
   RawFrame silent = sample_frame({24, 24});
   silent.shot = {"Lumitex", "Virtual D5100", "", 0, 0, 0};
@@ -147,6 +149,7 @@ TEST(Dng, StoresWhatCameraTookTheShotAndHow) {
   EXPECT_EQ(nothing.exposure_us, 0);
   EXPECT_EQ(nothing.iso, 0);
   EXPECT_EQ(nothing.f_number, 0);
+  EXPECT_EQ(nothing.focal_mm, 0);
 }
 
 TEST(Dng, HasTheSameBytesInMemory) {
@@ -276,6 +279,7 @@ TEST(Dng, RefusesAFrameThatNoReaderWouldUnderstand) {
       {"exposure of nan us", [](RawFrame& f, DngTags&) { f.shot.exposure_us = double{kNan}; }},
       {"ISO 65536 ", [](RawFrame& f, DngTags&) { f.shot.iso = 65536; }},
       {"f-number nan ", [](RawFrame& f, DngTags&) { f.shot.f_number = double{kNan}; }},
+      {"focal length of 10001 mm", [](RawFrame& f, DngTags&) { f.shot.focal_mm = 10001; }},
       {"date \"today\"", [](RawFrame&, DngTags& t) { t.date_time_original = "today"; }},
       {"colour matrix or neutral", [](RawFrame&, DngTags& t) { t.as_shot_neutral[1] = double{kNan}; }},
       {"colour matrix or neutral", [](RawFrame&, DngTags& t) { t.camera_from_xyz[8] = 1e9; }},
