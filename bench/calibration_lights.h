@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
+
+#include "bench/plot_svg.h"
 #include "bench/report.h"
 #include "core/result.h"
 
@@ -19,14 +22,19 @@ struct CalibrationLightsBenchOptions {
 ///
 /// - "five poses", the paper Lambertian or not: positions, directions, iterations, chi-square, delta; and
 ///   in how many seeds the gate fires where delta is held at 0.
-/// - "N poses": normals at a slope of 20 degrees over the frame, as the covariance predicts them and as they
-/// are.
 /// - "method": what lights by the tape alone, by the seed, by the pixel and by ours make of a slope of 20
-/// degrees at
-///   the centre and in the corners, and the gain of slopes.
+///   degrees at the centre, in the corners and over the frame, the gain of slopes, and the minutes they take:
+///   two a pose at the rig (an estimate), and the fit.
+/// - "N poses": normals at a slope of 20 degrees over the frame, as the covariance predicts them and as they
+///   are, and the minutes. Both of the paper that is not Lambertian.
 /// - "time": `weft calibrate lights` on five sessions of ten LEDs: seconds, as ratio to decoding the same
-/// files,
-///   and the peak of memory.
+///   files, and the peak of memory.
 Result<Rows> calibration_lights_table(const CalibrationLightsBenchOptions& options);
+
+/// The error of normals in these rows against the minutes: predicted and true from one pose to nine, and the
+/// other methods.
+Plot calibration_poses_plot(const Rows& rows);
+/// Writes it to `folder`/pictures/calibration_poses.svg.
+Result<void> write_calibration_docs(const std::filesystem::path& folder, const Rows& rows);
 
 }  // namespace weft::bench

@@ -44,7 +44,10 @@ constexpr Case kCases[] = {
     {"two LEDs exchanged", Mishap::kSwap, ChangeKind::kLedsSwapped, false},
     {"a LED at 97 percent", Mishap::kDim, ChangeKind::kLedFaded, false},
     {"nothing moved", Mishap::kNone, std::nullopt, true},
+    {"table 2 mm lower", Mishap::kTable, ChangeKind::kTable, true},
+    {"camera tilted by 0.3 degrees", Mishap::kCamera, ChangeKind::kCamera, true},
     {"a LED shifted by 5 mm", Mishap::kLed, ChangeKind::kLedMoved, true},
+    {"two LEDs exchanged", Mishap::kSwap, ChangeKind::kLedsSwapped, true},
     {"a LED at 97 percent", Mishap::kDim, ChangeKind::kLedFaded, true},
 };
 

@@ -3,6 +3,7 @@
 #include "app/cli/verbs.h"
 #include "bench/calibration_camera.h"
 #include "bench/calibration_color.h"
+#include "bench/calibration_degenerate.h"
 #include "bench/calibration_end_to_end.h"
 #include "bench/calibration_lights.h"
 #include "bench/calibration_moved.h"
@@ -20,8 +21,23 @@ Options seeded(const BenchCalibrationArguments& a, int threads) {
   return options;
 }
 
+// For the docs, photographs are not timed: the picture has none of it.
+Result<bench::Rows> measure_lights(const BenchCalibrationArguments& a, int threads) {
+  auto options = seeded<bench::CalibrationLightsBenchOptions>(a, threads);
+  if (!a.docs.empty()) options.megapixels = 0;
+  Result<bench::Rows> rows = calibration_lights_table(options);
+  if (!rows || a.docs.empty()) return rows;
+  if (Result<void> written = bench::write_calibration_docs(a.docs, *rows); !written)
+    return std::move(written).error();
+  return rows;
+}
+
 Result<bench::Rows> measure(const BenchCalibrationArguments& a, int threads) {
   using namespace bench;
+  if (!a.docs.empty() && a.part != "lights") {
+    return Error{ErrorKind::kUsage, "part has no pictures", "--docs", "only the part lights makes one",
+                 "give --part lights, or leave --docs out"};
+  }
   if (a.part == "camera") return calibration_camera_table(seeded<CalibrationCameraBenchOptions>(a, threads));
   if (a.part == "response")
     return calibration_response_table(seeded<CalibrationResponseBenchOptions>(a, threads));
@@ -30,8 +46,10 @@ Result<bench::Rows> measure(const BenchCalibrationArguments& a, int threads) {
     options.threads = threads;
     return calibration_color_table(options);
   }
-  if (a.part == "lights") return calibration_lights_table(seeded<CalibrationLightsBenchOptions>(a, threads));
+  if (a.part == "lights") return measure_lights(a, threads);
   if (a.part == "moved") return calibration_moved_table(seeded<CalibrationMovedBenchOptions>(a, threads));
+  if (a.part == "degenerate")
+    return calibration_degenerate_table(seeded<CalibrationDegenerateBenchOptions>(a, threads));
   CalibrationEndToEndBenchOptions options;
   options.threads = threads;
   return calibration_end_to_end_table(options);
