@@ -266,12 +266,13 @@ CLI::App* add_rectify(CLI::App& app, RectifyOptions& a) {
 
 CLI::App* add_bench_calibration(CLI::App& bench, BenchCalibrationArguments& a) {
   CLI::App* verb = bench.add_subcommand("calibration", "What calibrating a simulated rig recovers");
-  verb->add_option("--part", a.part, "camera, response, color, lights, moved, end-to-end")
-      ->check(CLI::IsMember({"camera", "response", "color", "lights", "moved", "end-to-end"}))
+  verb->add_option("--part", a.part, "camera, response, color, lights, degenerate, moved, end-to-end")
+      ->check(CLI::IsMember({"camera", "response", "color", "lights", "degenerate", "moved", "end-to-end"}))
       ->capture_default_str();
   verb->add_option("--seeds", a.seeds, "Rigs or noises to average over; 0 is as many as docs/calibration.md")
       ->check(CLI::Range(0, 10000))
       ->capture_default_str();
+  verb->add_option("--docs", a.docs, "With --part lights: folder for pictures/calibration_poses.svg");
   return verb;
 }
 
@@ -280,18 +281,19 @@ CLI::App* add_bench_capture(CLI::App& bench, BenchCaptureArguments& a) {
   verb->add_option(
           "--part", a.part,
           "board, camera, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that "
-          "it starts")
-      ->check(CLI::IsMember({"board", "camera", "scans", "faults"}))
+          "it starts; http: a daemon among hostile clients")
+      ->check(CLI::IsMember({"board", "camera", "scans", "faults", "http"}))
       ->capture_default_str();
   verb->add_option("--rig", a.rig, "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
-  verb->add_option("--runs", a.runs, "Commands, shots, scans or runs; 0 is as many as docs/reliability.md")
+  verb->add_option("--runs", a.runs,
+                   "Commands, shots, scans, runs or requests; 0 is as many as docs/reliability.md")
       ->check(CLI::Range(0, 1000000));
   verb->add_option("--scene", a.scene, "Scene of the fault matrix")->capture_default_str();
   verb->add_option("--megapixels", a.megapixels, "Size of its frames, millions of pixels")
       ->check(CLI::Range(0.05, 200.0))
       ->capture_default_str();
   verb->add_option("--rigs", a.rigs, "Rigs side by side")->check(CLI::Range(1, 64))->capture_default_str();
-  verb->add_option("--seed", a.seed, "Of shots and moments")->capture_default_str();
+  verb->add_option("--seed", a.seed, "Of shots and moments, or of malformed requests")->capture_default_str();
   verb->add_option("--fault", a.faults, "These faults alone, by their names in the table");
   verb->add_option("--keep", a.keep, "Folder for the sessions and logs of runs that went wrong");
   return verb;

@@ -104,13 +104,14 @@ struct BenchRegistrationArguments {};
 
 struct BenchCalibrationArguments {
   std::string part = "camera";
-  int seeds = 0;  ///< 0: as many as the part is quoted for
+  int seeds = 0;               ///< 0: as many as the part is quoted for
+  std::filesystem::path docs;  ///< folder with calibration.md; empty: no picture
 };
 
 struct BenchCaptureArguments {
-  std::string part = "scans";  ///< board, camera, scans: of a running rig; faults: of rigs that it starts
+  std::string part = "scans";  ///< board, camera, scans: of a running rig; faults, http: of what it starts
   std::filesystem::path rig;
-  int runs = 0;  ///< commands, shots, scans or runs; 0: as many as docs/reliability.md
+  int runs = 0;  ///< commands, shots, scans, runs or requests; 0: as many as docs/reliability.md
   std::filesystem::path scene = "testdata/scenes/satin.toml";
   double megapixels = 0.2;
   int rigs = 16;

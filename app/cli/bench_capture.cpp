@@ -9,6 +9,7 @@
 #include "bench/capture/board.h"
 #include "bench/capture/camera.h"
 #include "bench/capture/fault_matrix.h"
+#include "bench/capture/http.h"
 #include "bench/capture/scans.h"
 
 namespace weft::app {
@@ -58,6 +59,9 @@ Result<bench::Rows> measure_rig(const BenchCaptureArguments& a, ProgressLine& li
 Result<int> run_bench_capture(const BenchCaptureArguments& arguments, const CommonArguments& common) {
   const auto measured = [&] {
     ProgressLine line(common.quiet);
+    if (arguments.part == "http")
+      return bench::capture_http_table(
+          {.requests = arguments.runs > 0 ? arguments.runs : 200, .seed = arguments.seed});
     return arguments.part == "faults" ? measure_matrix(arguments, line) : measure_rig(arguments, line);
   };
   return print_rows(measured(), common);

@@ -39,22 +39,17 @@ void append(std::vector<Finding>& all, std::vector<Finding> more) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-std::vector<Finding> examine_rig(const capture::Rig& rig) {
-  std::vector<Finding> found = examine_ports(rig);
-  const Opened open = {.board = [&]() -> Result<std::string> {
-                         const auto board = open_board(rig);
-                         if (!board) return board.error();
-                         return words_of((*board)->facts());
-                       },
-                       .camera = [&]() -> Result<capture::CameraFacts> {
-                         auto camera = open_camera(rig);
-                         if (!camera) return std::move(camera).error();
-                         return (*camera)->connect();
-                       }};
-  // What holds a device says more than that it cannot be opened.
-  const bool taken = std::any_of(found.begin(), found.end(), is_fault);
-  if (!taken) append(found, examine_devices(rig, open));
-  return found;
+std::vector<Finding> examine_devices(const capture::Rig& rig) {
+  return examine_rig(rig, {.board = [&]() -> Result<std::string> {
+                             const auto board = open_board(rig);
+                             if (!board) return board.error();
+                             return words_of((*board)->facts());
+                           },
+                           .camera = [&]() -> Result<capture::CameraFacts> {
+                             auto camera = open_camera(rig);
+                             if (!camera) return std::move(camera).error();
+                             return (*camera)->connect();
+                           }});
 }
 
 /// What the process that owns the rig says of it; its devices are its own.
@@ -82,7 +77,7 @@ std::vector<Finding> examine(const capture::Rig& rig) {
   } else if (const Result<RigLock> lock = RigLock::take(rig); !lock) {
     found.push_back(fault_of("rig", lock.error()));
   } else {
-    found = examine_rig(rig);
+    found = examine_devices(rig);
   }
   append(found, examine_folders(rig, kFrameBytes));
   return found;

@@ -5,6 +5,7 @@
 #include <array>
 #include <exception>
 #include <functional>
+#include <map>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,15 +31,22 @@ bool is_digest(const std::string& text) {
   return text.size() == 64 && text.find_first_not_of("0123456789abcdef") == std::string::npos;
 }
 
-/// Removes the oldest files of a folder beyond the newest `most` frames, two files each.
+/// Removes all but the newest `most` frames of a folder.
 void prune(const std::filesystem::path& folder, std::size_t most) {
   std::error_code error;
-  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> files;
+  std::map<std::string, std::filesystem::file_time_type> written;  // by digest
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    files.emplace_back(entry.last_write_time(error), entry.path());
+    auto& newest = written[entry.path().stem().string()];
+    newest = std::max(newest, entry.last_write_time(error));
   }
-  std::ranges::sort(files, std::greater{});
-  for (std::size_t i = 2 * most; i < files.size(); ++i) std::filesystem::remove(files[i].second, error);
+  std::vector<std::pair<std::filesystem::file_time_type, std::string>> frames;
+  for (const auto& [digest, time] : written) frames.emplace_back(time, digest);
+  std::ranges::sort(frames, std::greater{});
+  for (std::size_t i = most; i < frames.size(); ++i) {
+    // First the one that says that both are there.
+    for (const char* ending : {".json", ".png"})
+      std::filesystem::remove(folder / (frames[i].second + ending), error);
+  }
 }
 
 Image<float> reduced(Image<float> picture) {
@@ -82,19 +90,20 @@ void balance_to_grey(Image<float>& picture) {
   }
 }
 
-Json to_json(const std::array<capture::RawHistogram, 3>& histograms) {
+}  // namespace
+
+Json to_json(const HistogramRgb& histogram) {
   constexpr std::array<const char*, 3> kChannels = {"red", "green", "blue"};
   Json json = Json::object();
   for (std::size_t c = 0; c < 3; ++c) {
-    json[kChannels[c]] = {{"bins", histograms[c].bins}, {"clipped", histograms[c].clipped}};
+    json[kChannels[c]] = {{"bins", histogram[c].bins}, {"clipped", histogram[c].clipped}};
   }
   return json;
 }
 
-}  // namespace
-
-FramePictures::FramePictures(std::filesystem::path folder, std::size_t most) : folder_(std::move(folder)) {
-  prune(folder_, most);
+FramePictures::FramePictures(std::filesystem::path folder, std::size_t most)
+    : folder_(std::move(folder)), most_(most) {
+  prune(folder_, most_);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -162,6 +171,10 @@ Result<void> FramePictures::make(const FrameFile& frame) {
   making_ = true;
   lock.unlock();
   Result<void> made = make_files(frame);
+  if (made && ++made_ > most_ / 10) {
+    prune(folder_, most_);
+    made_ = 0;
+  }
   lock.lock();
   making_ = false;
   changed_.notify_all();
@@ -178,8 +191,9 @@ Result<void> FramePictures::make_files(const FrameFile& frame) try {
   WriteOptions options;
   options.type = SampleType::kUint8;
   if (Result<void> ok = write_image(path_of(frame, ".png"), planes, {"R", "G", "B"}, options); !ok) return ok;
+  const HistogramRgb histogram = frame.histogram ? *frame.histogram : capture::histogram_rgb(*raw);
   // The last of the two: where it is, both are.
-  return write_file(path_of(frame, ".json"), to_json(capture::histogram_rgb(*raw)).dump());
+  return write_file(path_of(frame, ".json"), to_json(histogram).dump());
 } catch (const std::exception& thrown) {
   return error_of_exception(thrown, frame.file.string());
 }

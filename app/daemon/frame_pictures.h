@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <condition_variable>
+#include <cstddef>
 #include <deque>
 #include <filesystem>
 #include <mutex>
@@ -9,15 +11,21 @@
 #include <string>
 #include <thread>
 
+#include "capture/scan/scan.h"
 #include "core/json_document.h"
 #include "core/result.h"
 
 namespace weft::app {
 
+using HistogramRgb = std::array<capture::RawHistogram, 3>;
+/// {"red", "green", "blue": {"bins": [64 counts from black to white], "clipped": share}}.
+Json to_json(const HistogramRgb& histogram);
+
 /// A raw frame on disk and the digest that names it.
 struct FrameFile {
   std::filesystem::path file;
   std::string sha256;
+  std::optional<HistogramRgb> histogram = {};  ///< where it has been counted already
 };
 
 /// What of frames is shown to people: a thumbnail and the histogram, kept in a folder under the frame's
@@ -25,7 +33,7 @@ struct FrameFile {
 /// folder may be emptied at any time. Safe from any thread; one frame is decoded at a time.
 class FramePictures {
  public:
-  /// Removes all but the newest `most` from the folder.
+  /// Keeps the newest `most` frames in the folder, and at times a tenth more.
   explicit FramePictures(std::filesystem::path folder, std::size_t most = 2000);
   ~FramePictures();
 
@@ -35,7 +43,7 @@ class FramePictures {
   /// average, sRGB-encoded. Made now if it is not there. Errors: those of decode_raw(), kTryAgain where too
   /// many wait for theirs, kInterrupted.
   Result<std::string> thumbnail(const FrameFile& frame);
-  /// {"red", "green", "blue": {"bins": [64 counts from black to white], "clipped": share}}. The same errors.
+  /// As to_json() above. The same errors.
   Result<Json> histogram(const FrameFile& frame);
   /// The histogram, if it is there already.
   std::optional<Json> ready_histogram(const FrameFile& frame) const;
@@ -49,6 +57,8 @@ class FramePictures {
   void run();
 
   std::filesystem::path folder_;
+  std::size_t most_;
+  std::size_t made_ = 0;  ///< since the folder was pruned
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<FrameFile> wanted_;

@@ -174,7 +174,7 @@ void RigKeeper::on_status(const capture::ScanStatus& status) {
 }
 
 void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::KeptFrame& frame) {
-  pictures_.prepare({request.session / frame.shot.file, frame.shot.sha256});
+  pictures_.prepare({request.session / frame.shot.file, frame.shot.sha256, frame.histogram_rgb});
   const std::string name = name_of_session(request);
   const auto& rgb = frame.histogram_rgb;
   events_.add("frame", {{"session", name},
@@ -184,7 +184,8 @@ void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::Kept
                         {"clipped_rgb", {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped}},
                         {"warnings", frame.warnings},
                         {"thumbnail", "/api/v1/sessions/" + name + "/frames/" +
-                                          std::to_string(frame.shot.index) + "/thumbnail"}});
+                                          std::to_string(frame.shot.index) + "/thumbnail"},
+                        {"histogram", to_json(rgb)}});
 }
 
 void RigKeeper::on_facts(const capture::CameraFacts& facts) {

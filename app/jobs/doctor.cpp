@@ -26,6 +26,7 @@ using Verdict = Finding::Verdict;
 constexpr double kLowBattery = 0.2;
 constexpr double kMegabyte = 1e6;
 constexpr int kSessionFrames = 12;
+constexpr std::string_view kVirtualRig = "weft-virtual-ri";  // as /proc/PID/comm has it
 
 /// Programs that take devices of a rig away, and what keeps them off.
 struct Thief {
@@ -70,10 +71,12 @@ Finding fault(std::string part, std::string says, std::string remedy, ErrorKind 
   return {Verdict::kFault, std::move(part), std::move(says), std::move(remedy), kind};
 }
 
-/// A known thief keeps the device from us; another program may only be looking.
+/// A known thief keeps the device from us; another program may only be looking. A virtual rig is the other
+/// end of its board's terminal.
 void report_holders(const std::vector<Holder>& holders, const std::string& part, const fs::path& file,
                     std::vector<Finding>& found) {
   for (const Holder& holder : holders) {
+    if (holder.name == kVirtualRig) continue;
     const auto* const thief =
         std::find_if(kThieves.begin(), kThieves.end(), [&](const Thief& t) { return t.name == holder.name; });
     const bool known = thief != kThieves.end();
@@ -83,15 +86,17 @@ void report_holders(const std::vector<Holder>& holders, const std::string& part,
   }
 }
 
-/// Programs that hold nothing now and will take the device at the next replug.
-void report_thieves(std::string_view part, const SystemPlaces& places, std::vector<Finding>& found) {
+/// Programs that take such devices and run. A device that `seems_taken` is theirs, though the system does not
+/// show it; any other they take at its next replug, unless our rules keep them off.
+void report_thieves(std::string_view part, bool seems_taken, const SystemPlaces& places,
+                    std::vector<Finding>& found) {
   const auto has_rules = [](const fs::path& folder) { return is_there(folder / "70-weft.rules"); };
-  if (std::any_of(places.udev.begin(), places.udev.end(), has_rules)) return;
+  if (!seems_taken && std::any_of(places.udev.begin(), places.udev.end(), has_rules)) return;
   for_each_process(places, [&](int pid, const fs::path& folder) {
     const std::string name = first_line(folder / "comm");
     for (const Thief& thief : kThieves) {
       if (thief.takes != part || thief.name != name) continue;
-      found.push_back({Verdict::kWarning, std::string(part),
+      found.push_back({seems_taken ? Verdict::kFault : Verdict::kWarning, std::string(part),
                        fmt::format("{} (process {}) runs and {}", name, pid, thief.does),
                        std::string(thief.remedy)});
     }
@@ -104,7 +109,6 @@ bool has_fault(const std::vector<Finding>& found, std::size_t from) {
 }
 
 void examine_board_port(const capture::Rig& rig, const SystemPlaces& places, std::vector<Finding>& found) {
-  const std::size_t before = found.size();
   std::error_code failed;
   const fs::path port = fs::weakly_canonical(rig.board.port, failed);
   if (failed || !is_there(port)) {
@@ -117,9 +121,19 @@ void examine_board_port(const capture::Rig& rig, const SystemPlaces& places, std
                           "sudo usermod -aG dialout $USER, then log in again"));
   }
   report_holders(holders_of(port, places), "board", port, found);
-  report_thieves("board", places, found);
-  if (!has_fault(found, before))
-    found.push_back({Verdict::kFine, "board", port.string() + " can be opened", ""});
+}
+
+void examine_board(const capture::Rig& rig, const Opened& open, const SystemPlaces& places,
+                   std::vector<Finding>& found) {
+  const std::size_t before = found.size();
+  examine_board_port(rig, places, found);
+  if (has_fault(found, before)) return report_thieves("board", false, places, found);
+  const Result<std::string> greeting = open.board();
+  const bool seems_taken = !greeting && (greeting.error().kind == ErrorKind::kTryAgain ||  // silent
+                                         greeting.error().kind == ErrorKind::kNoDevice);   // busy
+  report_thieves("board", seems_taken, places, found);
+  found.push_back(greeting ? Finding{Verdict::kFine, "board", *greeting, ""}
+                           : fault_of("board", greeting.error()));
 }
 
 struct UsbCamera {
@@ -146,14 +160,9 @@ std::vector<UsbCamera> usb_cameras(const SystemPlaces& places) {
   return cameras;
 }
 
+/// Cameras that the kernel shows. None is no fault: what drives the camera knows better what is there.
 void examine_usb(const SystemPlaces& places, std::vector<Finding>& found) {
-  const std::vector<UsbCamera> cameras = usb_cameras(places);
-  if (cameras.empty()) {
-    found.push_back(fault("camera", "no camera is plugged in",
-                          "switch it on, and use its own cable without a hub; lsusb lists what is there"));
-  }
-  for (const UsbCamera& camera : cameras) {
-    const std::size_t before = found.size();
+  for (const UsbCamera& camera : usb_cameras(places)) {
     if (::access(camera.node.c_str(), R_OK | W_OK) != 0) {
       found.push_back(fault("camera", fmt::format("this user may not use {}", camera.node.string()),
                             "sudo usermod -aG plugdev $USER, then log in again"));
@@ -164,11 +173,34 @@ void examine_usb(const SystemPlaces& places, std::vector<Finding>& found) {
                        fmt::format("{} runs at {} Mbit/s", camera.name, camera.megabits),
                        "use a port and cable of USB 2 or better"});
     }
-    if (!has_fault(found, before))
-      found.push_back({Verdict::kFine, "camera",
-                       fmt::format("{} at {} can be opened", camera.name, camera.node.string()), ""});
   }
-  report_thieves("camera", places, found);
+  report_thieves("camera", false, places, found);
+}
+
+void examine_camera(const capture::Rig& rig, const Opened& open, const SystemPlaces& places,
+                    std::vector<Finding>& found) {
+  const std::size_t before = found.size();
+  if (!rig.camera.port.starts_with("ptpip:")) examine_usb(places, found);
+  if (has_fault(found, before)) return;
+  const Result<capture::CameraFacts> facts = open.camera();
+  if (!facts) {
+    found.push_back(fault_of("camera", facts.error()));
+    return;
+  }
+  found.push_back({Verdict::kFine, "camera",
+                   fmt::format("{} {} at {}, battery {:.0f} %", facts->model, facts->serial, facts->port,
+                               100 * facts->battery),
+                   ""});
+  if (facts->battery < kLowBattery)
+    found.push_back(
+        {Verdict::kWarning, "camera", "its battery will not last", "charge it, or use mains power"});
+  if (capture::camera_serial(rig).empty())
+    found.push_back({Verdict::kWarning, "camera", "the rig file takes any camera",
+                     fmt::format("write serial = \"{}\" under [camera]", facts->serial)});
+  if (std::abs(facts->clock_offset_s) > 60 + facts->clock_uncertainty_s)
+    found.push_back({Verdict::kWarning, "camera",
+                     fmt::format("its clock is off by {:.0f} s", facts->clock_offset_s),
+                     "set date and time in the camera's menu"});
 }
 
 void examine_room(const std::string& part, const fs::path& folder, std::uint64_t frame_bytes,
@@ -255,10 +287,10 @@ std::vector<Holder> holders_of(const fs::path& file, const SystemPlaces& places)
   return holders;
 }
 
-std::vector<Finding> examine_ports(const capture::Rig& rig, const SystemPlaces& places) {
+std::vector<Finding> examine_rig(const capture::Rig& rig, const Opened& open, const SystemPlaces& places) {
   std::vector<Finding> found;
-  examine_board_port(rig, places, found);
-  if (!rig.camera.port.starts_with("ptpip:")) examine_usb(places, found);
+  examine_board(rig, open, places, found);
+  examine_camera(rig, open, places, found);
   return found;
 }
 
@@ -268,35 +300,6 @@ std::vector<Finding> examine_folders(const capture::Rig& rig, std::uint64_t fram
   examine_room("disk", rig.scan.sessions, frame_bytes, found);
   if (!rig.scan.copy.empty()) examine_room("second disk", rig.scan.copy, frame_bytes, found);
   examine_clock(found);
-  return found;
-}
-
-std::vector<Finding> examine_devices(const capture::Rig& rig, const Opened& open) {
-  std::vector<Finding> found;
-  if (const Result<std::string> greeting = open.board(); greeting) {
-    found.push_back({Verdict::kFine, "board", *greeting, ""});
-  } else {
-    found.push_back(fault_of("board", greeting.error()));
-  }
-  const Result<capture::CameraFacts> facts = open.camera();
-  if (!facts) {
-    found.push_back(fault_of("camera", facts.error()));
-    return found;
-  }
-  found.push_back({Verdict::kFine, "camera",
-                   fmt::format("{} {} at {}, battery {:.0f} %", facts->model, facts->serial, facts->port,
-                               100 * facts->battery),
-                   ""});
-  if (facts->battery < kLowBattery)
-    found.push_back(
-        {Verdict::kWarning, "camera", "its battery will not last", "charge it, or use mains power"});
-  if (capture::camera_serial(rig).empty())
-    found.push_back({Verdict::kWarning, "camera", "the rig file takes any camera",
-                     fmt::format("write serial = \"{}\" under [camera]", facts->serial)});
-  if (std::abs(facts->clock_offset_s) > 60 + facts->clock_uncertainty_s)
-    found.push_back({Verdict::kWarning, "camera",
-                     fmt::format("its clock is off by {:.0f} s", facts->clock_offset_s),
-                     "set date and time in the camera's menu"});
   return found;
 }
 

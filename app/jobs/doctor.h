@@ -47,19 +47,20 @@ struct Holder {
 /// The processes that hold `file` open, by what this user may see of them.
 std::vector<Holder> holders_of(const std::filesystem::path& file, const SystemPlaces& places);
 
-/// Without touching the devices: who holds the board's port or the camera, and who would take them
-/// (ModemManager and brltty of boards, gvfs of cameras); permissions; the camera's USB speed.
-std::vector<Finding> examine_ports(const capture::Rig& rig, const SystemPlaces& places = {});
-
-/// Room for sessions of `frame_bytes` a frame, whether the folders can be written, the calibration, the
-/// machine's clock.
-std::vector<Finding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes);
-
 /// What the devices say of themselves when they are opened.
 struct Opened {
   std::function<Result<std::string>()> board;  ///< its greeting in words
   std::function<Result<capture::CameraFacts>()> camera;
 };
-std::vector<Finding> examine_devices(const capture::Rig& rig, const Opened& open);
+/// Board and camera: permissions, who holds them (ModemManager and brltty take boards, gvfs takes cameras),
+/// who is known to take them and runs, the camera's USB speed; then what each says when it is opened, unless
+/// its port has a fault already, which says more. A user may not see what root's processes hold: where the
+/// board does not answer and a program runs that takes boards, that is a fault too.
+std::vector<Finding> examine_rig(const capture::Rig& rig, const Opened& open,
+                                 const SystemPlaces& places = {});
+
+/// Room for sessions of `frame_bytes` a frame, whether the folders can be written, the calibration, the
+/// machine's clock.
+std::vector<Finding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes);
 
 }  // namespace weft::app

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -62,6 +63,7 @@ int run_in_background(std::vector<std::string> arguments) {
 
 void detach(int ready) {
   if (ready < 0) return;
+  ::prctl(PR_SET_NAME, "weft-virtual-rig");  // the kernel calls what was run as /proc/self/exe "exe"
   std::fflush(nullptr);
   const int null = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) ::dup2(null, stream);

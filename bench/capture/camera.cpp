@@ -81,6 +81,13 @@ Result<void> add_ours(const CaptureCameraBenchOptions& options, const fs::path& 
 
 }  // namespace
 
+Result<std::vector<double>> bare_shots_s(const CaptureCameraBenchOptions& options) {
+  const ScratchFolder scratch;
+  std::vector<double> seconds;
+  if (Result<void> ok = add_bare(options, scratch.path(), seconds); !ok) return std::move(ok).error();
+  return seconds;
+}
+
 Result<Rows> capture_camera_table(const CaptureCameraBenchOptions& options) {
   const ScratchFolder scratch;
   const fs::path folder = options.folder.empty() ? scratch.path() : options.folder;

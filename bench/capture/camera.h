@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "bench/report.h"
 #include "core/result.h"
@@ -17,6 +18,9 @@ struct CaptureCameraBenchOptions {
   int rounds = 3;
   std::filesystem::path folder = {};  ///< on the disk that photographs go to; empty: a temporary one
 };
+
+/// Seconds of each turn of a bare loop of trigger, wait_for_event and file_get, `shots` of them.
+Result<std::vector<double>> bare_shots_s(const CaptureCameraBenchOptions& options);
 
 /// What a photograph through CameraLink costs, in its file, synced, summed up and proved to be the one asked
 /// for, against a bare loop of trigger, wait_for_event and file_get through the same libgphoto2 and camera.

@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 
 #include "app/jobs/job.h"
+#include "bench/capture/camera.h"
 #include "bench/capture/rig_process.h"
 #include "capture/raw/decode.h"
 #include "capture/scan/scan.h"
@@ -18,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kRows = 10;
+constexpr int kRows = 10, kTurns = 12;
 
 /// What frames show, whatever their times and numbers.
 using Digests = std::map<std::string, std::string>;
@@ -43,7 +45,18 @@ struct OneScan {
   double seconds = 0;
   std::size_t frames = 0;
   Digests digests;
+  ProcessSize camera;  ///< weft-camera at its end
 };
+
+/// Seconds of a turn of the bare loop, in the mean.
+Result<double> bare_s(const ScansOptions& options) {
+  const Result<std::vector<double>> turns = bare_shots_s({.port = options.rig.camera.port,
+                                                          .profile = options.rig.camera.profile,
+                                                          .exposure_us = options.exposure_us,
+                                                          .shots = kTurns});
+  if (!turns) return turns.error();
+  return std::accumulate(turns->begin(), turns->end(), 0.0) / kTurns;
+}
 
 Result<OneScan> scan_once(const ScansOptions& options, const fs::path& folder) {
   app::Stopwatch watch;
@@ -61,6 +74,8 @@ Result<OneScan> scan_once(const ScansOptions& options, const fs::path& folder) {
   OneScan one;
   one.seconds = watch.lap();
   one.frames = outcome->session.shots.size();
+  if (const auto worker = child_of(::getpid(), "weft-camera"))
+    one.camera = size_of(*worker).value_or(ProcessSize{});
   Result<Digests> digests = digests_of(outcome->session);
   if (!digests) return std::move(digests).error();
   one.digests = std::move(*digests);
@@ -71,6 +86,8 @@ Result<OneScan> scan_once(const ScansOptions& options, const fs::path& folder) {
 
 Result<Rows> capture_scans_table(const ScansOptions& options) {
   const ScratchFolder scratch;
+  const Result<double> bare = bare_s(options);
+  if (!bare) return bare.error();
   Rows rows;
   Digests first;
   std::vector<double> seconds;
@@ -90,14 +107,17 @@ Result<Rows> capture_scans_table(const ScansOptions& options) {
     std::vector<double> sorted = seconds;
     std::sort(sorted.begin(), sorted.end());
     const ProcessSize size = size_of(::getpid()).value_or(ProcessSize{});
-    rows.push_back({{"scans", i},
-                    {"frames", one->frames},
-                    {"least_s", sorted.front()},
-                    {"median_s", sorted[sorted.size() / 2]},
-                    {"median_s_per_frame", sorted[sorted.size() / 2] / static_cast<double>(one->frames)},
-                    {"resident_mb", static_cast<double>(size.resident_bytes) / 1e6},
-                    {"descriptors", size.descriptors},
-                    {"frames_that_differ", differ}});
+    rows.push_back(
+        {{"scans", i},
+         {"frames", one->frames},
+         {"least_s", sorted.front()},
+         {"median_s", sorted[sorted.size() / 2]},
+         {"over_bare_loop", sorted[sorted.size() / 2] / (*bare * static_cast<double>(one->frames))},
+         {"resident_mb", static_cast<double>(size.resident_bytes) / 1e6},
+         {"descriptors", size.descriptors},
+         {"camera_resident_mb", static_cast<double>(one->camera.resident_bytes) / 1e6},
+         {"camera_descriptors", one->camera.descriptors},
+         {"frames_that_differ", differ}});
   }
   return rows;
 }

@@ -23,8 +23,9 @@ struct ScansOptions {
 
 /// Scans the same cloth again and again, each time with the devices opened anew, looks whether every frame
 /// shows what it showed in the first scan (so the rig's noise must depend on the light alone), and removes
-/// the session. Rows, at about ten points along the way: scans, seconds a scan and a frame (least, median),
-/// memory and open descriptors of this process, frames that differ.
+/// the session. Rows, at about ten points along the way: scans, seconds a scan (least, median) and the median
+/// over as many turns of a bare loop as a scan has frames, measured before; memory and open descriptors of
+/// this process and of weft-camera; frames that differ.
 Result<Rows> capture_scans_table(const ScansOptions& options);
 
 }  // namespace weft::bench

@@ -32,6 +32,7 @@ class Machine {
     write("dev/ttyACM0", "");
     rig_.board.port = (root_ / "dev/ttyACM0").string();
     rig_.camera.port = "ptpip:127.0.0.1:1:1";
+    rig_.camera.serial = "6000001";
   }
   ~Machine() { fs::remove_all(root_); }
   void write(const fs::path& file, const std::string& text) const {
@@ -57,11 +58,15 @@ class Machine {
   }
   void use_usb() { rig_.camera.port.clear(); }
   std::vector<Finding> examine() const {
-    return examine_ports(rig_,
-                         {root_ / "proc", root_ / "sys", root_ / "dev", {root_ / "etc", root_ / "lib"}});
+    return examine_rig(rig_, {[&] { return board; }, [&] { return camera; }},
+                       {root_ / "proc", root_ / "sys", root_ / "dev", {root_ / "etc", root_ / "lib"}});
   }
   const fs::path& root() const { return root_; }
   capture::Rig& rig() { return rig_; }
+
+  // What the devices say when they are opened.
+  Result<std::string> board = std::string("weft lights 1.0");
+  Result<capture::CameraFacts> camera = capture::CameraFacts();
 
  private:
   fs::path root_;
@@ -105,6 +110,39 @@ TEST(Doctor, WarnsOfAModemManagerThatWaitsUnlessOurRulesKeepItOff) {
   EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)));
 }
 
+TEST(Doctor, BlamesAThiefWhoseHoldIsNotShownForABoardThatDoesNotAnswer) {
+  Machine machine("hidden");
+  machine.write("lib/70-weft.rules", "");
+  machine.board = Error{ErrorKind::kTryAgain, "the LED board does not answer", "", "", "flash it"};
+  EXPECT_THAT(machine.examine(), Contains(faults("board", "does not answer", "flash it")));
+  machine.runs(421, "ModemManager");
+  EXPECT_EQ(machine.examine()[0].says,
+            "ModemManager (process 421) runs and sends modem commands to every new serial port");
+  EXPECT_THAT(machine.examine(),
+              Contains(faults("board", "ModemManager", "systemctl disable --now ModemManager")));
+  machine.runs(99, "brltty");
+  machine.board = Error{ErrorKind::kNoDevice, "the LED board is held by another program", "", "", "end it"};
+  EXPECT_THAT(machine.examine(), Contains(faults("board", "brltty (process 99)", "apt-get remove brltty")));
+  machine.board = Error{ErrorKind::kBadData, "the firmware is too old", "", "", "flash it"};
+  EXPECT_THAT(machine.examine(), Not(Contains(Field("says", &Finding::says, HasSubstr("brltty")))));
+}
+
+TEST(Doctor, FindsNothingWrongWithTheOtherEndOfAVirtualBoard) {
+  const Machine machine("virtual");
+  machine.runs(7, "weft-virtual-ri", "dev/ttyACM0");
+  EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)));
+}
+
+TEST(Doctor, OpensTheOneDeviceWhoseOtherHasAFault) {
+  Machine machine("other");
+  machine.board = std::string("greets");
+  machine.runs(99, "brltty", "dev/ttyACM0");
+  machine.camera->model = "D5100";
+  const std::vector<Finding> found = machine.examine();
+  EXPECT_THAT(found, Contains(Field("says", &Finding::says, HasSubstr("D5100"))));
+  EXPECT_THAT(found, Not(Contains(Field("says", &Finding::says, "greets")))) << "what holds it says more";
+}
+
 TEST(Doctor, SaysThatAPortIsNotThere) {
   Machine machine("absent");
   machine.rig().board.port = (machine.root() / "dev/ttyUSB3").string();
@@ -119,10 +157,17 @@ TEST(Doctor, NamesTheDesktopThatClaimsTheCamera) {
               Contains(faults("camera", "gvfsd-gphoto2 (process 77)", "gio mount -s gphoto2")));
 }
 
-TEST(Doctor, SaysThatNoCameraIsPluggedInOrASlowOne) {
+TEST(Doctor, BelievesWhatDrivesTheCameraOfWhetherOneIsThere) {
   Machine machine("usb");
   machine.use_usb();
-  EXPECT_THAT(machine.examine(), Contains(faults("camera", "no camera", "switch it on")));
+  EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)))
+      << "the kernel shows none, and yet it answers";
+  machine.camera = Error{ErrorKind::kNoDevice, "no D5100 on USB", "", "there is no camera", "switch it on"};
+  EXPECT_THAT(machine.examine(), Contains(faults("camera", "no D5100 on USB", "switch it on")));
+}
+
+TEST(Doctor, WarnsOfASlowCable) {
+  Machine machine("slow");
   machine.plug_camera("12");
   EXPECT_THAT(machine.examine(), Contains(AllOf(Field(&Finding::verdict, Verdict::kWarning),
                                                 Field(&Finding::says, HasSubstr("12 Mbit/s")))));
@@ -130,25 +175,16 @@ TEST(Doctor, SaysThatNoCameraIsPluggedInOrASlowOne) {
 
 TEST(Doctor, PassesOnWhatAPersonMustDoToTheCamera) {
   Machine machine("dial");
-  const auto found = examine_devices(
-      machine.rig(),
-      {[]() -> Result<std::string> { return std::string("weft lights 1.0"); },
-       []() -> Result<capture::CameraFacts> {
-         return Error{ErrorKind::kBadData, "the dial is not on M", "camera", "it is on A", "turn it to M"};
-       }});
-  EXPECT_THAT(found, Contains(AllOf(faults("camera", "the dial is not on M", "turn it to M"),
-                                    Field("kind", &Finding::kind, ErrorKind::kBadData))));
+  machine.camera = Error{ErrorKind::kBadData, "the dial is not on M", "camera", "it is on A", "turn it to M"};
+  EXPECT_THAT(machine.examine(), Contains(AllOf(faults("camera", "the dial is not on M", "turn it to M"),
+                                                Field("kind", &Finding::kind, ErrorKind::kBadData))));
 }
 
 TEST(Doctor, WarnsOfALowBatteryAndAClockThatIsOff) {
   Machine machine("battery");
-  machine.rig().camera.serial = "6000001";
-  capture::CameraFacts facts;
-  facts.battery = 0.1;
-  facts.clock_offset_s = -3600;
-  const auto found =
-      examine_devices(machine.rig(), {[]() -> Result<std::string> { return std::string("weft lights 1.0"); },
-                                      [&]() -> Result<capture::CameraFacts> { return facts; }});
+  machine.camera->battery = 0.1;
+  machine.camera->clock_offset_s = -3600;
+  const std::vector<Finding> found = machine.examine();
   EXPECT_THAT(found, Contains(Field(&Finding::says, HasSubstr("battery will not last"))));
   EXPECT_THAT(found, Contains(Field(&Finding::says, HasSubstr("off by -3600 s"))));
 }
@@ -179,6 +215,7 @@ TEST(Doctor, KnowsACameraByItsNumberHoweverManyZerosItBeginsWith) {
   calibration.subject.camera_serial = "0006004711";
   calibration.subject.f_number = rig.scan.f_number;
   ASSERT_TRUE(write_calibration(rig.scan.calibration, calibration));
+  rig.camera.serial.clear();
   EXPECT_EQ(capture::camera_serial(rig), "0006004711");
   const auto other_camera = Field("says", &Finding::says, HasSubstr("it is of camera 0006004711"));
   rig.camera.serial = "6004711";

@@ -29,14 +29,14 @@ RawClient::RawClient(int port) : socket_(socket(AF_INET, SOCK_STREAM | SOCK_CLOE
   address.sin_family = AF_INET;
   address.sin_port = htons(static_cast<std::uint16_t>(port));
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (connect(socket_.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
+  if (connect(socket_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
     socket_ = Descriptor();
   }
 }
 
 bool RawClient::say(std::string_view bytes) {
   while (!bytes.empty()) {
-    const ssize_t sent = send(socket_.number(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
+    const ssize_t sent = send(socket_.get(), bytes.data(), bytes.size(), MSG_NOSIGNAL);
     if (sent <= 0) return false;
     bytes.remove_prefix(static_cast<std::size_t>(sent));
   }
@@ -44,16 +44,16 @@ bool RawClient::say(std::string_view bytes) {
 }
 
 void RawClient::end_of_words() {
-  shutdown(socket_.number(), SHUT_WR);
+  shutdown(socket_.get(), SHUT_WR);
 }
 
 std::string RawClient::hear(std::chrono::milliseconds most, std::string_view end) {
   const Clock::time_point deadline = Clock::now() + most;
   std::string heard;
   std::array<char, 4096> block = {};
-  pollfd readable = {socket_.number(), POLLIN, 0};
+  pollfd readable = {socket_.get(), POLLIN, 0};
   while (heard.find(end) == std::string::npos && poll(&readable, 1, milliseconds_until(deadline)) > 0) {
-    const ssize_t bytes = recv(socket_.number(), block.data(), block.size(), 0);
+    const ssize_t bytes = recv(socket_.get(), block.data(), block.size(), 0);
     if (bytes <= 0) break;
     heard.append(block.data(), static_cast<std::size_t>(bytes));
   }
@@ -63,9 +63,9 @@ std::string RawClient::hear(std::chrono::milliseconds most, std::string_view end
 bool RawClient::closed_within(std::chrono::milliseconds most) {
   const Clock::time_point deadline = Clock::now() + most;
   std::array<char, 4096> block = {};
-  pollfd readable = {socket_.number(), POLLIN, 0};
+  pollfd readable = {socket_.get(), POLLIN, 0};
   while (poll(&readable, 1, milliseconds_until(deadline)) > 0) {
-    if (recv(socket_.number(), block.data(), block.size(), 0) <= 0) return true;
+    if (recv(socket_.get(), block.data(), block.size(), 0) <= 0) return true;
   }
   return false;
 }

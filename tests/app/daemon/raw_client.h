@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/daemon/descriptor.h"
+#include "core/descriptor.h"
 #include "core/json_document.h"
 
 namespace weft::app {

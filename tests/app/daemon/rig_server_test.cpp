@@ -2,10 +2,13 @@
 // The rig's states and sessions over HTTP, by a scan that does what the test says.
 #include "app/daemon/rig_server.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <fstream>
@@ -71,25 +74,60 @@ TEST(RigServer, ScansAClothAndShowsItsFrames) {
   EXPECT_EQ(read_session(scripted.session("first"))->document["metadata"]["id"], "7");
 }
 
-TEST(RigServer, HasAThumbnailWithinASecondOfEachFrame) {
+/// The `frame` event of this index, from a stream of events.
+Json frame_event(RawClient& follower, int index) {
+  const std::string number = fmt::format("\"index\":{},", index);
+  std::string heard = follower.hear(seconds(5), number);
+  if (const std::string rest = heard.substr(std::min(heard.find(number), heard.size()));
+      rest.find('\n') == std::string::npos) {
+    heard += follower.hear(seconds(5), "\n\n");
+  }
+  const std::size_t at = heard.find(number), data = heard.rfind("data: ", at);
+  if (at == heard.npos || data == heard.npos) return {};
+  return Json::parse(heard.substr(data + 6, heard.find('\n', at) - data - 6), nullptr, false);
+}
+
+TEST(RigServer, HasThumbnailAndHistogramWithinASecondOfEachFrame) {
   ScriptedRig scripted("thumbs");
-  Gate gate;
+  std::array<Gate, 4> gates;
   scripted.before = [&](int frame) -> Result<void> {
-    if (frame == 1) gate.pass();
+    gates.at(static_cast<std::size_t>(frame)).pass();
     return {};
   };
   const auto server = scripted.started();
-  ASSERT_EQ(ask(server->port(), "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
-  wait_for_state(server->port(), "scanning");
+  const int port = server->port();
+  RawClient follower(port);
+  follower.say(request_text(port, "GET", "/api/v1/events"));
+  follower.hear(seconds(5), "\n\n");
+  EXPECT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
   const fs::path pictures = scripted.rig.daemon.state / "pictures";
-  const auto began = std::chrono::steady_clock::now();
-  while (!fs::exists(pictures) || fs::is_empty(pictures)) {
-    ASSERT_LT(std::chrono::steady_clock::now() - began, seconds(1))
-        << "nobody asked for it, and it is not there";
-    std::this_thread::sleep_for(milliseconds(5));
+  for (int i = 0; i < 4; ++i) {
+    gates.at(static_cast<std::size_t>(i)).open();
+    const Json kept = frame_event(follower, i);
+    const auto began = std::chrono::steady_clock::now();
+    const Result<Session> session = read_session(scripted.session("a"));
+    const std::string digest = session && session->shots.size() > static_cast<std::size_t>(i)
+                                   ? session->shots[static_cast<std::size_t>(i)].sha256
+                                   : "";
+    const auto is_made = [&] {
+      return fs::exists(pictures / (digest + ".png")) && fs::exists(pictures / (digest + ".json"));
+    };
+    while (!is_made() && std::chrono::steady_clock::now() - began < seconds(1))
+      std::this_thread::sleep_for(milliseconds(5));
+    EXPECT_TRUE(is_made()) << "nobody asked for those of frame " << i << ", and they are not there";
+
+    const std::string frame = "/api/v1/sessions/a/frames/" + std::to_string(i);
+    EXPECT_EQ(kept.value("thumbnail", ""), frame + "/thumbnail") << kept;
+    EXPECT_THAT(ask(port, "GET", frame + "/thumbnail").body, StartsWith("\x89PNG")) << i;
+    EXPECT_EQ(kept.value("histogram", Json()), ask(port, "GET", frame + "/histogram").json()) << i;
+    int photosites = 0;
+    for (const Json& count : kept.value("/histogram/green/bins"_json_pointer, Json::array()))
+      photosites += count.get<int>();
+    EXPECT_EQ(photosites, 640 * 480 / 2) << i;
+    const Json clipped = kept.value("clipped_rgb", Json::array({-1, -1, -1}));
+    EXPECT_EQ(clipped[1], kept.value("/histogram/green/clipped"_json_pointer, Json())) << i;
   }
-  gate.open();
-  wait_for_state(server->port(), "idle");
+  wait_for_state(port, "idle");
 }
 
 TEST(RigServer, PausesResumesAndCancels) {
@@ -281,9 +319,9 @@ TEST(RigServer, TellsItsEventsToWhoFollows) {
   follower.say(request_text(port, "GET", "/api/v1/events"));
   EXPECT_THAT(follower.hear(seconds(5), "\n\n"), HasSubstr("event: status")) << "first of all how things are";
   ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
-  const std::string frames = follower.hear(seconds(5), "\"index\":1");
+  const std::string frames = follower.hear(seconds(5), "/api/v1/sessions/a/frames/1/thumbnail");
   EXPECT_THAT(frames, HasSubstr("event: frame"));
-  EXPECT_THAT(frames, HasSubstr("/api/v1/sessions/a/frames/1/thumbnail"));
+  EXPECT_THAT(frames, HasSubstr("\"index\":1,"));
   EXPECT_THAT(follower.hear(seconds(5), "heartbeat"), HasSubstr("event: heartbeat"));
   gate.open();
   const std::string rest = follower.hear(seconds(5), "\"phase\":\"complete\"");

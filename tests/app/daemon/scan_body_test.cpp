@@ -47,6 +47,9 @@ TEST(ScanBody, LeavesWhatItDoesNotNameAsItWas) {
   EXPECT_EQ(wish->request.cloth_height_mm, 2);
   EXPECT_EQ(wish->request.copy, "backup");
   EXPECT_TRUE(read(R"({"copy": false})", request_of_rig(rig))->request.copy.empty());
+  EXPECT_EQ(wish->request.leds.size(), 10u);
+  rig.leds = 3;
+  EXPECT_THAT(read("{}", request_of_rig(rig))->request.leds, ElementsAre(1, 2, 3)) << "those of the rig file";
 }
 
 TEST(ScanBody, GoesOnAsItsSessionWasBegun) {

@@ -20,9 +20,9 @@
 #include <vector>
 
 #include "app/daemon/client.h"
-#include "app/daemon/descriptor.h"
 #include "app/daemon/rig_lock.h"
 #include "capture/rig.h"
+#include "core/descriptor.h"
 #include "tests/app/daemon/raw_client.h"
 
 namespace weft::app {
@@ -197,9 +197,9 @@ TEST_F(Serve, TellsTheServiceManagerThatItIsReadyAliveAndEnding) {
   sockaddr_un address = {};
   address.sun_family = AF_UNIX;
   path.copy(address.sun_path, sizeof address.sun_path - 1);
-  ASSERT_EQ(bind(manager.number(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  ASSERT_EQ(bind(manager.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
   const timeval patience = {std::chrono::seconds(kPatience).count(), 0};
-  setsockopt(manager.number(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  setsockopt(manager.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   setenv("NOTIFY_SOCKET", path.c_str(), 1);
   setenv("WATCHDOG_USEC", "200000", 1);
   Daemon daemon(folder_ / "rig.toml");
@@ -207,7 +207,7 @@ TEST_F(Serve, TellsTheServiceManagerThatItIsReadyAliveAndEnding) {
   unsetenv("WATCHDOG_USEC");
   const auto next = [&] {
     std::array<char, 256> text = {};
-    const ssize_t bytes = recv(manager.number(), text.data(), text.size(), 0);
+    const ssize_t bytes = recv(manager.get(), text.data(), text.size(), 0);
     return std::string(text.data(), bytes > 0 ? static_cast<std::size_t>(bytes) : 0);
   };
   EXPECT_THAT(next(), testing::StartsWith("READY=1\n")) << daemon.said();

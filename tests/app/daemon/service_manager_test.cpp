@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "app/daemon/descriptor.h"
+#include "core/descriptor.h"
 
 namespace weft::app {
 namespace {
@@ -25,13 +25,13 @@ class Listener {
     name.copy(address.sun_path, sizeof address.sun_path - 1);
     if (name[0] == '@') address.sun_path[0] = '\0';
     const auto bytes = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + name.size());
-    EXPECT_EQ(bind(socket_.number(), reinterpret_cast<const sockaddr*>(&address), bytes), 0) << name;
+    EXPECT_EQ(bind(socket_.get(), reinterpret_cast<const sockaddr*>(&address), bytes), 0) << name;
     setenv("NOTIFY_SOCKET", name.c_str(), 1);
   }
   ~Listener() { unsetenv("NOTIFY_SOCKET"); }
   std::string heard() const {
     std::array<char, 256> text = {};
-    const ssize_t bytes = recv(socket_.number(), text.data(), text.size(), 0);
+    const ssize_t bytes = recv(socket_.get(), text.data(), text.size(), 0);
     return bytes > 0 ? std::string(text.data(), static_cast<std::size_t>(bytes)) : "";
   }
 

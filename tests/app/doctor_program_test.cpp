@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// weft doctor of virtual rigs that nothing is wrong with.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/json_document.h"
+#include "tests/simulator/ptp/client_process.h"
+#include "tests/simulator/rig/small_scene.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using simulator::ProgramRun;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class DoctorProgram : public testing::Test {
+ protected:
+  DoctorProgram() : folder_(simulator::fresh_folder()) {
+    std::ofstream(folder_ / "scene.toml") << to_toml(simulator::small_scene());
+  }
+  ~DoctorProgram() override { rig({"--folder", "rig", "--inject", "end"}); }
+
+  ProgramRun rig(std::vector<std::string> arguments) const {
+    arguments.insert(arguments.begin(), WEFT_VIRTUAL_RIG);
+    return simulator::run_program(arguments, {"XDG_CACHE_HOME=" + (folder_ / "cache").string()},
+                                  folder_.string(), 60);
+  }
+  /// weft doctor as a person asks it of the rig in the background.
+  ProgramRun doctor() const {
+    return simulator::run_program(
+        {"/bin/sh", "-c", std::string("exec env $(cat rig/environment) ") + WEFT_PROGRAM + " doctor"}, {},
+        folder_.string(), 60);
+  }
+
+  const fs::path folder_;
+};
+
+TEST_F(DoctorProgram, GreetsTheDevicesOfARigInTheBackground) {
+  ASSERT_EQ(rig({"scene.toml", "--folder", "rig", "--no-wait"}).exit_code, 0);
+  const ProgramRun ran = doctor();
+  EXPECT_EQ(ran.exit_code, 0) << ran.output;
+  EXPECT_THAT(ran.output,
+              AllOf(HasSubstr("firmware "), HasSubstr("D5100 6000001"), Not(HasSubstr(" holds "))));
+}
+
+TEST_F(DoctorProgram, FindsTheCameraOfARigOnUsbAndTellsWhenItIsGone) {
+  ASSERT_EQ(rig({"scene.toml", "--folder", "rig", "--no-wait", "--usb"}).exit_code, 0);
+  const ProgramRun there = doctor();
+  EXPECT_EQ(there.exit_code, 0) << there.output;
+  EXPECT_THAT(there.output, AllOf(HasSubstr("D5100 6000001 at usb:"), Not(HasSubstr("fault"))));
+  ASSERT_EQ(rig({"--folder", "rig", "--inject", "camera usb_unplug_now"}).exit_code, 0);
+  const ProgramRun gone = doctor();
+  EXPECT_EQ(gone.exit_code, 69) << gone.output;
+  EXPECT_THAT(gone.output, AllOf(HasSubstr("fault    camera       no D5100 on USB"), HasSubstr("firmware ")));
+}
+
+}  // namespace
+}  // namespace weft::app
