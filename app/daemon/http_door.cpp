@@ -58,9 +58,8 @@ Error cannot_listen(const std::string& where, int error_number) {
 Result<Descriptor> listen_on(const addrinfo& address, const std::string& where) {
   Descriptor socket(::socket(address.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   const int yes = 1;
-  setsockopt(socket.number(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);  // not SO_REUSEPORT: one listener
-  if (bind(socket.number(), address.ai_addr, address.ai_addrlen) != 0 ||
-      listen(socket.number(), kBacklog) != 0) {
+  setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);  // not SO_REUSEPORT: one listener
+  if (bind(socket.get(), address.ai_addr, address.ai_addrlen) != 0 || listen(socket.get(), kBacklog) != 0) {
     return cannot_listen(where, errno);
   }
   return socket;
@@ -101,7 +100,7 @@ Result<std::unique_ptr<HttpDoor>> HttpDoor::open(const std::string& host, int po
   }
   Result<Descriptor> listening = listen_on(*addresses, where);
   if (!listening) return std::move(listening).error();
-  const int bound = port_of(listening->number());
+  const int bound = port_of(listening->get());
   return std::unique_ptr<HttpDoor>(new HttpDoor(std::move(*listening), bound, limits));
 }
 
@@ -122,7 +121,7 @@ HttpDoor::~HttpDoor() {
 
 void HttpDoor::close() {
   closing_ = true;
-  eventfd_write(wake_.number(), 1);
+  eventfd_write(wake_.get(), 1);
   if (thread_.joinable()) thread_.join();
 }
 
@@ -131,8 +130,8 @@ void HttpDoor::run() {
   std::vector<pollfd> watched;
   while (!closing_) {
     const bool room = in_service_ < limits_.in_service;
-    watched = {{wake_.number(), POLLIN, 0}, {room ? listening_.number() : -1, POLLIN, 0}};
-    for (const Waiting& client : waiting_) watched.push_back({client.socket.number(), POLLIN, 0});
+    watched = {{wake_.get(), POLLIN, 0}, {room ? listening_.get() : -1, POLLIN, 0}};
+    for (const Waiting& client : waiting_) watched.push_back({client.socket.get(), POLLIN, 0});
     const bool idle = waiting_.empty() && room;
     if (poll(watched.data(), watched.size(), idle ? -1 : kTickMs) < 0) continue;
     std::size_t at = 2;
@@ -147,7 +146,7 @@ void HttpDoor::run() {
 
 void HttpDoor::accept_all() {
   for (int taken = 0; taken < kBacklog; ++taken) {
-    Descriptor socket(accept4(listening_.number(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    Descriptor socket(accept4(listening_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     const bool out_of_descriptors = !socket && (errno == EMFILE || errno == ENFILE);
     if (!socket && !out_of_descriptors) return;
     if (waiting_.size() >= limits_.waiting || (out_of_descriptors && !waiting_.empty())) {
@@ -163,7 +162,7 @@ void HttpDoor::accept_all() {
 
 void HttpDoor::receive(Waiting& client) {
   std::array<char, 16384> block = {};
-  const ssize_t bytes = recv(client.socket.number(), block.data(), block.size(), 0);
+  const ssize_t bytes = recv(client.socket.get(), block.data(), block.size(), 0);
   if (bytes < 0 && (errno == EAGAIN || errno == EINTR)) return;
   if (bytes <= 0) {
     client.gone = true;
@@ -182,8 +181,8 @@ void HttpDoor::receive(Waiting& client) {
 
 void HttpDoor::refuse(Waiting& client, int status, std::string_view why) {
   const std::string answer = refusal(status, why);
-  if (send(client.socket.number(), answer.data(), answer.size(), MSG_NOSIGNAL) < 0) client.gone = true;
-  shutdown(client.socket.number(), SHUT_WR);
+  if (send(client.socket.get(), answer.data(), answer.size(), MSG_NOSIGNAL) < 0) client.gone = true;
+  shutdown(client.socket.get(), SHUT_WR);
   client.answered = true;
   client.received = {};
   client.deadline = Clock::now() + kFarewell;

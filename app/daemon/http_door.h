@@ -9,8 +9,8 @@
 #include <string>
 #include <thread>
 
-#include "app/daemon/descriptor.h"
 #include "app/daemon/request_frame.h"
+#include "core/descriptor.h"
 #include "core/result.h"
 
 namespace weft::app {
@@ -45,7 +45,7 @@ class HttpDoor {
   void begin(Enter enter);
 
   int port() const { return port_; }
-  int socket() const { return listening_.number(); }
+  int socket() const { return listening_.get(); }
   void left() { --in_service_; }
   /// Ends all that wait; no request enters any more once this returns.
   void close();

@@ -28,7 +28,7 @@ class RequestStream : public httplib::Stream {
 
   bool is_readable() const override { return at_ < request_.bytes.size(); }
   bool is_writable() const override {
-    pollfd socket = {request_.socket.number(), POLLRDHUP, 0};
+    pollfd socket = {request_.socket.get(), POLLRDHUP, 0};
     return poll(&socket, 1, 0) == 0;
   }
   ssize_t read(char* bytes, std::size_t most) override {
@@ -54,7 +54,7 @@ class RequestStream : public httplib::Stream {
   }
   void get_remote_ip_and_port(std::string&, int&) const override {}
   void get_local_ip_and_port(std::string&, int&) const override {}
-  socket_t socket() const override { return request_.socket.number(); }
+  socket_t socket() const override { return request_.socket.get(); }
 
  private:
   WholeRequest request_;

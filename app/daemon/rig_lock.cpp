@@ -47,7 +47,7 @@ Result<RigLock> RigLock::take(const capture::Rig& rig) {
   Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0644));
   if (!file) return cannot_write(path, errno);
   struct flock owned = byte_of(Says::kOwned);
-  if (fcntl(file.number(), F_OFD_SETLK, &owned) != 0) {
+  if (fcntl(file.get(), F_OFD_SETLK, &owned) != 0) {
     if (errno != EAGAIN && errno != EACCES) return cannot_write(path, errno);
     const std::string pid = first_line(path);
     return Error{
@@ -56,7 +56,7 @@ Result<RigLock> RigLock::take(const capture::Rig& rig) {
         "use that daemon, or end it first"};
   }
   const std::string pid = fmt::format("{}\n", getpid());
-  if (ftruncate(file.number(), 0) != 0 || pwrite(file.number(), pid.data(), pid.size(), 0) < 0) {
+  if (ftruncate(file.get(), 0) != 0 || pwrite(file.get(), pid.data(), pid.size(), 0) < 0) {
     return cannot_write(path, errno);
   }
   return RigLock(std::move(file), folder);
@@ -70,7 +70,7 @@ RigLock::~RigLock() {
 Result<void> RigLock::publish_address(const std::string& address) {
   if (Result<void> written = write_file(folder_ / kAddress, address + "\n"); !written) return written;
   struct flock holds = byte_of(Says::kAddressHolds);
-  if (fcntl(file_.number(), F_OFD_SETLK, &holds) != 0) return cannot_write(folder_ / kLock, errno);
+  if (fcntl(file_.get(), F_OFD_SETLK, &holds) != 0) return cannot_write(folder_ / kLock, errno);
   return {};
 }
 
@@ -78,7 +78,7 @@ std::optional<std::string> address_of_owner(const capture::Rig& rig) {
   const std::filesystem::path folder = state_folder(rig);
   const Descriptor file(open((folder / kLock).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW));
   struct flock holds = byte_of(Says::kAddressHolds);
-  if (!file || fcntl(file.number(), F_OFD_GETLK, &holds) != 0 || holds.l_type == F_UNLCK) return std::nullopt;
+  if (!file || fcntl(file.get(), F_OFD_GETLK, &holds) != 0 || holds.l_type == F_UNLCK) return std::nullopt;
   const std::string address = first_line(folder / kAddress);
   return address.empty() ? std::nullopt : std::optional(address);
 }

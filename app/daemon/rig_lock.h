@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "app/daemon/descriptor.h"
 #include "capture/rig.h"
+#include "core/descriptor.h"
 #include "core/result.h"
 
 namespace weft::app {

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "app/daemon/descriptor.h"
+#include "core/descriptor.h"
 
 namespace weft::app {
 
@@ -23,7 +23,7 @@ void tell_service_manager(std::string_view message) {
   if (path[0] == '@') address.sun_path[0] = '\0';  // Linux's abstract names
   const auto bytes = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + path.size());
   const Descriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
-  sendto(socket.number(), message.data(), message.size(), MSG_NOSIGNAL,
+  sendto(socket.get(), message.data(), message.size(), MSG_NOSIGNAL,
          reinterpret_cast<const sockaddr*>(&address), bytes);
 }
 

@@ -68,16 +68,14 @@ bool is_exposed_as(const Session& session, const capture::ExposureSettings& aske
          std::abs(std::log2(asked.exposure_us / of_session.exposure_us)) < kSameExposure;
 }
 
-/// Whether the body asks for nothing else than what the session was begun with. LEDs that it does not name
-/// are all of the rig.
+/// Whether the body asks for nothing else than what the session was begun with.
 bool is_asked_for(const Session& session, const Json& body, const capture::Rig& rig) {
   const capture::ScanRequest begun = request_of_session(session, rig);
   const Result<ScanWish> asked = read_scan_body(body, rig.leds, begun);
-  if (!asked) return false;
-  const std::vector<int> leds = body.contains("leds") ? asked->request.leds : request_of_rig(rig).leds;
-  return asked->request.cloth_height_mm == begun.cloth_height_mm && leds == begun.leds &&
-         asked->request.repeat == begun.repeat && asked->request.bracket == begun.bracket &&
-         asked->request.metadata == begun.metadata && is_exposed_as(session, asked->request.exposure);
+  return asked && asked->request.cloth_height_mm == begun.cloth_height_mm &&
+         asked->request.leds == begun.leds && asked->request.repeat == begun.repeat &&
+         asked->request.bracket == begun.bracket && asked->request.metadata == begun.metadata &&
+         is_exposed_as(session, asked->request.exposure);
 }
 
 Result<SessionChoice> resumed(std::string name, const Session& session, const Json& body,

@@ -122,14 +122,16 @@ struct Truth {
 };
 
 /// What two scans of one cloth have in common: everything but times, counts of shots, what follows from them,
-/// and what was remarked on the way.
+/// and what was seen on the way, as by the meter.
 Result<std::string> record_of(const Session& session) {
+  Json exposure = session.document.value("exposure", Json::object());
+  exposure.erase("meter");
   Json record = {{"rig", session.rig},
                  {"fabric", session.fabric},
                  {"cloth_height_mm", session.cloth_height_mm},
                  {"state", session.state},
                  {"plan", session.document.value("plan", Json())},
-                 {"exposure", session.document.value("exposure", Json())},
+                 {"exposure", std::move(exposure)},
                  {"shots", Json::array()},
                  {"calibration", Json::object()}};
   for (const Shot& shot : session.shots) {
@@ -377,7 +379,7 @@ class Bench {
     if (code == 0 || killed || has_sentence) return;
     ++tally.silent;
     tally.wrong.push_back(fmt::format("run {}: {}: {}", run.number,
-                                      code ? fmt::format("ended with {shot}", *code) : "did not end", said_));
+                                      code ? fmt::format("ended with {}", *code) : "did not end", said_));
   }
 
   /// Whether the same command finishes the scan.
@@ -385,8 +387,7 @@ class Bench {
     auto weft = scan(session, run.metered);
     if (!weft) return std::move(weft).error();
     const std::optional<int> code = (*weft)->wait(kScan_s);
-    if (code != 0)
-      tally.wrong.push_back(fmt::format("run {}: not resumed: {}", run.number, (*weft)->said()));
+    if (code != 0) tally.wrong.push_back(fmt::format("run {}: not resumed: {}", run.number, (*weft)->said()));
     return code == 0;
   }
 

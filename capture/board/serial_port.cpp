@@ -64,13 +64,12 @@ Error cannot_open(const std::string& name, int error_number) {
 }
 
 /// Opens the device and locks it, without its serial settings being touched.
-Result<int> lock_device(const std::string& name) {
-  const int device = ::open(name.c_str(), O_RDONLY | O_NOCTTY | O_NONBLOCK | O_CLOEXEC);
-  if (device < 0) return cannot_open(name, errno);
-  if (flock(device, LOCK_EX | LOCK_NB) == 0) return device;
+Result<Descriptor> lock_device(const std::string& name) {
+  Descriptor device(name, O_RDONLY | O_NOCTTY | O_NONBLOCK);
+  if (!device) return cannot_open(name, errno);
+  if (flock(device.get(), LOCK_EX | LOCK_NB) == 0) return device;
   struct stat facts {};
-  const bool known = fstat(device, &facts) == 0;
-  ::close(device);
+  const bool known = fstat(device.get(), &facts) == 0;
   return busy(name, known ? holder_of(facts) : std::string());
 }
 
@@ -88,14 +87,9 @@ void SerialPort::FreePort::operator()(sp_port* port) const {
 Result<std::unique_ptr<SerialPort>> SerialPort::open(const std::string& name) {
   auto lock = lock_device(name);
   if (!lock) return std::move(lock).error();
-  std::unique_ptr<SerialPort> port(new SerialPort(name, *lock));
+  std::unique_ptr<SerialPort> port(new SerialPort(name, std::move(*lock)));
   if (auto ready = port->set_up(); !ready) return std::move(ready).error();
   return port;
-}
-
-SerialPort::~SerialPort() {
-  port_.reset();
-  ::close(lock_);
 }
 
 Result<void> SerialPort::set_up() {

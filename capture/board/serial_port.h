@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "core/descriptor.h"
 #include "core/result.h"
 
 struct sp_port;
@@ -20,7 +21,6 @@ namespace weft::capture {
 class SerialPort {
  public:
   static Result<std::unique_ptr<SerialPort>> open(const std::string& name);
-  ~SerialPort();
   SerialPort(const SerialPort&) = delete;
   SerialPort& operator=(const SerialPort&) = delete;
 
@@ -38,12 +38,12 @@ class SerialPort {
   struct FreePort {
     void operator()(sp_port* port) const;
   };
-  SerialPort(std::string name, int lock) : name_(std::move(name)), lock_(lock) {}
+  SerialPort(std::string name, Descriptor lock) : name_(std::move(name)), lock_(std::move(lock)) {}
   Result<void> set_up();
   Error gone() const;
 
   std::string name_;
-  int lock_;
+  Descriptor lock_;
   std::unique_ptr<sp_port, FreePort> port_;
 };
 

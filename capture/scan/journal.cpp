@@ -102,6 +102,16 @@ Result<Session> unfinished(const ScanRequest& request, const std::string& calibr
   return session;
 }
 
+/// The folder, locked for as long as the descriptor lives.
+Result<Descriptor> locked(const fs::path& folder) {
+  Descriptor lock(folder, O_RDONLY | O_DIRECTORY);
+  if (!lock) return cannot_write(folder, errno);
+  if (::flock(lock.get(), LOCK_EX | LOCK_NB) == 0) return lock;
+  if (errno != EWOULDBLOCK) return cannot_write(folder, errno);
+  return Error{ErrorKind::kTryAgain, "another scan writes this session", folder.string(),
+               "its folder is locked by another process", "wait for that scan, or choose another name"};
+}
+
 /// Removes everything in a folder that `stays` does not say stays.
 template <typename Stays>
 Result<void> remove_from(const fs::path& folder, const Stays& stays) {
@@ -115,19 +125,6 @@ Result<void> remove_from(const fs::path& folder, const Stays& stays) {
 }
 
 }  // namespace
-
-Journal::Lock::~Lock() {
-  if (descriptor_ >= 0) ::close(descriptor_);
-}
-
-Result<Journal::Lock> Journal::Lock::of(const fs::path& folder) {
-  Lock lock(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (lock.descriptor_ < 0) return cannot_write(folder, errno);
-  if (::flock(lock.descriptor_, LOCK_EX | LOCK_NB) == 0) return lock;
-  if (errno != EWOULDBLOCK) return cannot_write(folder, errno);
-  return Error{ErrorKind::kTryAgain, "another scan writes this session", folder.string(),
-               "its folder is locked by another process", "wait for that scan, or choose another name"};
-}
 
 Result<int> Journal::check(const ScanRequest& request, const std::string& calibration_id,
                            const ShotList& list) {
@@ -143,7 +140,7 @@ Result<Journal> Journal::open(const ScanRequest& request, const std::string& cal
     if (Result<void> made = make_session(request, calibration_id, list, after_step); !made)
       return made.error();
   }
-  Result<Lock> lock = Lock::of(request.session);
+  Result<Descriptor> lock = locked(request.session);
   if (!lock) return lock.error();
   // Under the lock: another scan may have finished it meanwhile.
   Result<Session> session = unfinished(request, calibration_id, list);

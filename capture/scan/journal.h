@@ -10,6 +10,7 @@
 #include "capture/devices.h"
 #include "capture/scan/plan.h"
 #include "capture/scan/scan.h"
+#include "core/descriptor.h"
 #include "core/result.h"
 #include "core/session.h"
 
@@ -53,21 +54,7 @@ class Journal {
   Result<void> finish(const std::vector<std::string>& warnings);
 
  private:
-  class Lock {
-   public:
-    explicit Lock(int descriptor) : descriptor_(descriptor) {}
-    Lock(Lock&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-    Lock& operator=(Lock&& other) noexcept {
-      std::swap(descriptor_, other.descriptor_);
-      return *this;
-    }
-    ~Lock();
-    static Result<Lock> of(const std::filesystem::path& folder);
-
-   private:
-    int descriptor_;
-  };
-  Journal(Session session, Lock lock, AfterStep after_step)
+  Journal(Session session, Descriptor lock, AfterStep after_step)
       : session_(std::move(session)),
         incoming_(session_.folder / "incoming"),
         lock_(std::move(lock)),
@@ -78,7 +65,7 @@ class Journal {
 
   Session session_;
   std::filesystem::path incoming_;
-  Lock lock_;
+  Descriptor lock_;
   AfterStep after_step_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "capture/scan/plan.h"
 
@@ -15,7 +16,8 @@ constexpr int kMostTries = 8;           // of one LED until its test shot is nei
 constexpr double kReadableFrom = 0.05;  // 99.9 percent of a test shot below less than this: too dark to tell
 constexpr double kReadableTo = 0.97;
 constexpr double kStepDown = 0.125, kMostStepUp = 32;
-constexpr double kAgree = 0.1;  // of two LEDs' brightness with what the lights let expect
+constexpr double kDarkestCloth = 100;  // of the light where it is known: no cloth has less than 1 percent
+constexpr double kAgree = 0.1;         // of two LEDs' brightness with what the lights let expect
 constexpr double kMostClipped = 1e-5;
 constexpr double kPoorRange = 0.5;  // 99.9 percent below less than this share of white
 constexpr double kLongestBracket = 100;
@@ -42,7 +44,11 @@ Json to_json(const Rate& rate) {
 class Meter {
  public:
   Meter(const MeterInput& input, const TestShot& shoot)
-      : input_(input), shoot_(shoot), exposure_us_(settable(input.start_us)) {}
+      : input_(input),
+        shoot_(shoot),
+        longest_us_(input.expected.empty() ? std::numeric_limits<double>::infinity()
+                                           : kDarkestCloth * input.start_us),
+        exposure_us_(settable(input.start_us)) {}
 
   Result<Metering> run() {
     if (Result<void> tried = try_leds(); !tried) return tried.error();
@@ -109,7 +115,7 @@ class Meter {
       if (!is_full && seen.bright >= kReadableFrom) return Rate{led, exposure_us_, seen};
       const double step =
           is_full ? kStepDown : std::min(kMostStepUp, 0.5 * kMeteredTo / std::max(seen.brightest, 1e-4));
-      const double next_us = settable(step * exposure_us_);
+      const double next_us = settable(std::min(step * exposure_us_, longest_us_));
       if (next_us == exposure_us_) break;
       exposure_us_ = next_us;
     }
@@ -135,6 +141,7 @@ class Meter {
 
   const MeterInput& input_;
   const TestShot& shoot_;
+  double longest_us_;  ///< a LED that is dead must not cost half a minute a test shot
   double exposure_us_;
   std::vector<Rate> rates_;
 };

@@ -38,10 +38,6 @@ void acknowledge_at_once(int fd) {
 
 }  // namespace
 
-Descriptor::~Descriptor() {
-  if (fd_ >= 0) close(fd_);
-}
-
 bool read_all(int fd, std::span<std::uint8_t> bytes) {
   bool begun = false;
   while (!bytes.empty()) {

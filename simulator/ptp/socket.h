@@ -8,28 +8,11 @@
 #include <mutex>
 #include <span>
 #include <thread>
-#include <utility>
 
+#include "core/descriptor.h"
 #include "simulator/ptp/bytes.h"
 
 namespace weft::simulator::ptp {
-
-/// Owns a descriptor.
-class Descriptor {
- public:
-  Descriptor() = default;
-  explicit Descriptor(int fd) : fd_(fd) {}
-  Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  Descriptor& operator=(Descriptor&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
-  ~Descriptor();
-  int get() const { return fd_; }
-
- private:
-  int fd_ = -1;
-};
 
 /// Fills the bytes from a stream; false if it ends, or rests for 5 s in the middle. Waits for the first byte
 /// as long as it takes: whoever wants that to end shuts the socket down.

@@ -18,6 +18,7 @@
 #include <system_error>
 #include <thread>
 
+#include "core/descriptor.h"
 #include "core/files.h"
 #include "core/raw_frame.h"
 #include "simulator/build_passes.h"
@@ -34,21 +35,6 @@ constexpr int kVersion = 1;
 constexpr int kBandRows = 256;
 constexpr std::chrono::milliseconds kLockPoll(20);
 constexpr const char* kPlanes = "light.f32";
-
-class Descriptor {
- public:
-  Descriptor(const fs::path& file, int flags) : fd_(::open(file.c_str(), flags | O_CLOEXEC, 0644)) {}
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-  explicit operator bool() const { return fd_ >= 0; }
-
- private:
-  int fd_;
-};
 
 Error for_the_cache(Error error) {
   error.remedy = "free disk space, or name another folder in XDG_CACHE_HOME";

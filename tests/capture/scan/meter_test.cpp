@@ -139,6 +139,25 @@ TEST(Meter, SaysThatAClothIsTooDarkOrTooBright) {
   EXPECT_THAT(full.error().message(), HasSubstr("too bright: LED 3"));
 }
 
+TEST(Meter, GivesUpSoonOnALedThatIsDeadWhereTheLightsAreKnown) {
+  for (const std::size_t dead : {0u, 4u}) {
+    TestTable table(test::small_scene());
+    table.expect_flat_cloth();
+    table.gain[dead] = 0;
+    table.input.expected[dead] = 10;  // the first to be tried
+    double longest_us = 0;
+    const Result<Metering> done = meter(table.input, [&](int led, double us) -> Result<Brightness> {
+      longest_us = std::max(longest_us, us);
+      return table.shot(led, us);
+    });
+    ASSERT_FALSE(done);
+    EXPECT_EQ(done.error().what, "cloth is too dark");
+    EXPECT_THAT(done.error().remedy, HasSubstr("check that the LED lights"));
+    EXPECT_LE(longest_us, 101 * table.input.start_us) << "microseconds of the longest test shot";
+    EXPECT_LE(table.shots, 4);
+  }
+}
+
 TEST(Meter, PassesOnTheErrorOfATestShot) {
   MeterInput input = {{1}, {}, thirds_of_stops(), 8000};
   const auto failed = meter(input, [](int, double) -> Result<Brightness> {
