@@ -3,10 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "core/camera_names.h"
+#include "core/same_camera.h"
 
 namespace weft::calibration {
 namespace {
@@ -18,10 +15,6 @@ Error differs(const Session& session, std::string why) {
 }
 
 }  // namespace
-
-bool same_setting(double a, double b) {
-  return std::abs(a - b) <= 0.02 * std::max(a, b);
-}
 
 std::optional<std::string> focal_difference(double frame_mm, double other_mm) {
   if (!(frame_mm > 0 && other_mm > 0) || same_setting(frame_mm, other_mm)) return {};

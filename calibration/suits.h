@@ -11,10 +11,6 @@
 
 namespace weft::calibration {
 
-/// Whether two f-numbers, or two ISO values, are one setting: people, lenses and files round them by a
-/// percent or so; a third of a stop is 12 percent of an f-number and 26 of an ISO value.
-bool same_setting(double a, double b);
-
 /// How the focal length of a frame differs from another ("focal length 40 mm, not 35: ..."); nothing where it
 /// does not, or where one of them is 0: not known.
 std::optional<std::string> focal_difference(double frame_mm, double other_mm);

@@ -14,8 +14,8 @@
 #include <optional>
 
 #include "core/calibration.h"
-#include "core/camera_names.h"
 #include "core/files.h"
+#include "core/same_camera.h"
 
 namespace weft::app {
 namespace {

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "capture/camera/camera_values.h"
-#include "core/camera_names.h"
+#include "core/same_camera.h"
 
 namespace weft::capture {
 namespace {

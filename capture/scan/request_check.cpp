@@ -5,12 +5,11 @@
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <numeric>
 #include <sstream>
 
-#include "core/camera_names.h"
 #include "core/files.h"
+#include "core/same_camera.h"
 
 namespace weft::capture {
 namespace {
@@ -79,12 +78,12 @@ Result<void> check_calibration(const ScanRequest& request, const CameraFacts& ca
   if (subject.rig != request.rig) {
     return unsuited(fmt::format("it is of rig \"{}\", this is \"{}\"", subject.rig, request.rig));
   }
-  if (std::abs(subject.f_number - request.exposure.f_number) > 0.01 * subject.f_number) {
+  if (!same_setting(subject.f_number, request.exposure.f_number)) {
     return unsuited(
         fmt::format("it holds at f/{:g}, f/{:g} is asked for", subject.f_number, request.exposure.f_number));
   }
   const double iso = calibration.response ? calibration.response->iso.value_or(0) : 0;
-  if (iso > 0 && std::abs(iso - request.exposure.iso) > 0.02 * iso) {
+  if (iso > 0 && !same_setting(iso, request.exposure.iso)) {
     return unsuited(fmt::format("its response was measured at ISO {:g}, ISO {:g} is asked for", iso,
                                 request.exposure.iso));
   }

@@ -21,7 +21,7 @@
 #include "capture/scan/request_check.h"
 #include "capture/scan/second_copy.h"
 #include "capture/scan/shooter.h"
-#include "core/camera_names.h"
+#include "core/same_camera.h"
 
 namespace weft::capture {
 namespace {
@@ -282,6 +282,13 @@ class Scan {
     const CalibrationSubject& subject = calibration_->subject;
     const bool is_same_model =
         shot.model.empty() || subject.camera_model.empty() || shot.model == subject.camera_model;
+    if (shot.focal_mm > 0 && subject.focal_length_mm > 0 &&
+        !same_setting(shot.focal_mm, subject.focal_length_mm)) {
+      return Error{
+          ErrorKind::kBadData, "the lens is not set as it was calibrated", where,
+          fmt::format("its focal length is {:.3g} mm, not {:.3g}", shot.focal_mm, subject.focal_length_mm),
+          "turn the zoom back, or calibrate again"};
+    }
     if (is_same_model && same_serial(shot.serial, subject.camera_serial)) return {};
     return Error{ErrorKind::kBadData, "calibration is not of this camera", where,
                  fmt::format("it is of a {} with serial number {}, the frame of a {} with {}",

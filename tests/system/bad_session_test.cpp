@@ -69,7 +69,7 @@ TEST_F(BadSession, ARawOfAnotherSizeIsRefused) {
 TEST_F(BadSession, ARawShortOfOneByteIsTruncated) {
   fs::resize_file(raw_, fs::file_size(raw_) - 1);
   expect_solve_refused(65,
-                       {"raw frame is truncated", "03_led04.dng", "missing of 3648", "copy the file again"});
+                       {"raw frame is truncated", "03_led04.dng", "missing of 3664", "copy the file again"});
 }
 
 TEST_F(BadSession, ARawWithAnotherFilterCellIsRefused) {

@@ -128,6 +128,22 @@ TEST(Scan, RefusesACalibrationOfAnotherPictureSizeAtTheFirstFrame) {
   EXPECT_EQ(bench.rig.takes(), 4) << "two a scan: the second is on its way while the first is looked at";
 }
 
+TEST(Scan, RefusesAZoomThatWasTurnedSinceTheCalibration) {
+  ScanBench bench;
+  Result<Calibration> calibration = read_calibration(bench.request.calibration);
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  calibration->subject.focal_length_mm = 35;
+  const fs::path other = bench.folder / "other calibration";
+  const Result<Calibration> written = write_calibration(other, std::move(*calibration));
+  ASSERT_TRUE(written) << written.error().message();
+  bench.request.calibration = other;
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_FALSE(outcome);
+  EXPECT_EQ(outcome.error().what, "the lens is not set as it was calibrated");
+  EXPECT_THAT(outcome.error().why, HasSubstr("50 mm, not 35"));
+  EXPECT_THAT(bench.kept, IsEmpty());
+}
+
 TEST(Scan, RefusesLedsThatAreNotThere) {
   ScanBench bench;
   bench.request.leds = {1, 2, 11};

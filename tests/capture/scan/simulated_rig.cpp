@@ -48,8 +48,8 @@ RawFrame SimulatedCloth::photograph(const Lighting& lighting, double exposure_us
   const Size size = {scene_.camera.width, scene_.camera.height};
   RawFrame frame = {Image<std::uint16_t>(size), {}, {}, static_cast<float>(sensor.white), {}};
   for (auto& row : frame.black) row.fill(static_cast<float>(sensor.black));
-  frame.shot = {sensor.make, sensor.model,      calibration_.subject.camera_serial,
-                exposure_us, scene_.camera.iso, scene_.camera.f_number};
+  frame.shot = {sensor.make,       sensor.model,           calibration_.subject.camera_serial, exposure_us,
+                scene_.camera.iso, scene_.camera.f_number, simulator::kFocalLength_mm};
   double unit = 0;  // reading of a white surface under LED 1
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) unit += rendering_.readings(x, y, 1) / rendering_.albedo(x, y, 1);

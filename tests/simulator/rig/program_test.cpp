@@ -22,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::Not;
 
 class Program : public testing::Test {
  protected:
@@ -68,14 +67,11 @@ TEST_F(Program, RunsACommandInsideTheRigAndEndsWithIt) {
 
 TEST_F(Program, FillsTheDiskOfItsHosts) {
   const std::string inject = std::string(WEFT_VIRTUAL_RIG) + " --folder rig --inject ";
-  const ProgramRun ran =
-      run({scene(), "--folder", "rig", "--", "/bin/sh", "-c",
-           inject + "'disk full'; echo half | tee a; test -s a && echo 'a is written'; cp scene.toml copy; " +
-               inject + "'disk room'; echo whole | tee b; test -s b"});
+  const ProgramRun ran = run({scene(), "--folder", "rig", "--", "/bin/sh", "-c",
+                              inject + "'disk full' && ! cp scene.toml a && " + inject +
+                                  "'disk room' && cp scene.toml b && cmp scene.toml b"});
   EXPECT_EQ(ran.exit_code, 0) << ran.output;
-  EXPECT_THAT(ran.output,
-              AllOf(HasSubstr("a: No space left"), HasSubstr("cp: "), Not(HasSubstr("a is written"))));
-  EXPECT_EQ(run({"--folder", "nobody", "--inject", "disk half"}).exit_code, 69);
+  EXPECT_THAT(ran.output, HasSubstr("No space left"));
 }
 
 TEST_F(Program, SaysThatACommandWasKilled) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 
 namespace weft {
@@ -13,6 +14,12 @@ inline bool same_serial(std::string_view a, std::string_view b) {
     return text.substr(std::min(text.find_first_not_of('0'), text.size()));
   };
   return a.empty() || b.empty() || number(a) == number(b);
+}
+
+/// Whether two f-numbers, ISO values or focal lengths are one setting: people, lenses and files round them by
+/// a percent or so; a third of a stop is 12 percent of an f-number and 26 of an ISO value.
+inline bool same_setting(double a, double b) {
+  return std::abs(a - b) <= 0.02 * std::max(a, b);
 }
 
 }  // namespace weft
