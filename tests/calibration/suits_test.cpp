@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/suits.h"
+#include "core/same_camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
