@@ -94,10 +94,10 @@ Result<CameraFacts> CameraLink::connect() {
   wanted_.reset();
   const auto known = clock_memory_.recall(seconds_since_1970());
   clock_ = known ? std::optional(known->clock) : std::nullopt;
-  is_clock_remembered_ = known.has_value();
   Result<CameraFacts> facts = open(options_.serial, !known);
+  is_clock_remembered_ = facts && known;
   if (!facts) clock_.reset();
-  if (!facts || !known) return facts;
+  if (!is_clock_remembered_) return facts;
   const bool is_as_known =
       facts_.serial == known->serial && clock_ && clock_->offset_s == known->clock.offset_s;
   if (is_as_known) return facts;

@@ -19,7 +19,7 @@ constexpr double kDimWarns = 0.6;            // is only spoken of: glossy cloth 
 constexpr double kSuspiciousMisfit = 0.002;  // below it the plan is believed without trying other stories
 constexpr std::size_t kStoryStep =
     5;  // patches from one that is looked at to the next: 48 columns have no factor 5
-constexpr double kReadableEnough = 0.5;  // of a frame's patches, to be held against the others
+constexpr double kMostFull = 0.5;        // of a frame's patches, for it to be held against the others
 constexpr double kFarBetter = 0.6;       // of the plan's misfit, at most, for another story to be believed
 constexpr double kBetterBy = 0.002;      // and by this at least
 constexpr double kDriftWarns = 0.01;     // of a repeat's brightness
@@ -37,10 +37,16 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// The share of patches without a full photosite.
-double readable_share(const std::vector<double>& light) {
-  const auto readable = std::ranges::count_if(light, [](double v) { return std::isfinite(v); });
-  return static_cast<double>(readable) / static_cast<double>(light.size());
+/// The share of patches that hold a full photosite.
+double full_share(const std::vector<double>& light) {
+  const auto full = std::ranges::count_if(light, [](double v) { return std::isnan(v); });
+  return static_cast<double>(full) / static_cast<double>(light.size());
+}
+
+/// Whether enough of a frame can be read for its light to tell something: what is left of one that is full is
+/// where the light is weak.
+bool is_readable(const std::vector<double>& light) {
+  return full_share(light) <= kMostFull;
 }
 
 /// What a frame has over another, and how unevenly.
@@ -139,13 +145,17 @@ double LightEvidence::level_of(const PlannedShot& shot, const std::vector<double
   const auto of_flat_cloth = [&](int led, std::size_t i) {
     return model_->leds[static_cast<std::size_t>(led - 1)][i].z;
   };
+  std::vector<const Seen*> readable;
+  for (const auto& [index, seen] : lit_) {
+    if (is_readable(seen.light)) readable.push_back(&seen);
+  }
   std::vector<double> levels;
   for (std::size_t i = 0; i < light.size(); ++i) {
     std::vector<double> albedo;
-    for (const auto& [index, seen] : lit_) {
-      const double z = of_flat_cloth(seen.shot.led, i);
-      if (std::isfinite(seen.light[i]) && z > 0) {
-        albedo.push_back((seen.light[i] - (dark_ ? (*dark_)[i] : 0)) / z);
+    for (const Seen* seen : readable) {
+      const double z = of_flat_cloth(seen->shot.led, i);
+      if (std::isfinite(seen->light[i]) && z > 0) {
+        albedo.push_back((seen->light[i] - (dark_ ? (*dark_)[i] : 0)) / z);
       }
     }
     const double expected = median_of(std::move(albedo)) * of_flat_cloth(shot.led, i);
@@ -164,6 +174,14 @@ Verdict LightEvidence::judge_lit(const PlannedShot& shot, const std::vector<doub
     return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
   }
   if (!model_ || lit_.empty()) return {};
+  if (!is_readable(light)) {
+    Verdict verdict;
+    verdict.warnings.push_back(
+        fmt::format("LED {}: {:.0f} percent of the frame have full photosites, so that nothing tells whether "
+                    "it was the right LED: scan with a shorter --exposure",
+                    shot.led, 100 * full_share(light)));
+    return verdict;
+  }
   const double level = level_of(shot, own);
   if (level < kDarkLevel) return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
   if (level < kDimLevel) {
@@ -182,17 +200,9 @@ Verdict LightEvidence::judge_lit(const PlannedShot& shot, const std::vector<doub
 }
 
 Verdict LightEvidence::judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const {
-  if (const double readable = readable_share(light); readable < kReadableEnough) {
-    Verdict verdict;
-    verdict.warnings.push_back(
-        fmt::format("LED {}: {:.0f} percent of the frame have full photosites, so that nothing tells whether "
-                    "it was the right LED: scan with a shorter --exposure",
-                    shot.led, 100 * (1 - readable)));
-    return verdict;
-  }
   std::vector<Seen> frames;
   for (const auto& [index, seen] : lit_) {
-    if (index != shot.index && readable_share(seen.light) >= kReadableEnough)
+    if (index != shot.index && is_readable(seen.light))
       frames.push_back({seen.shot, without_dark(seen.light)});
   }
   frames.push_back({shot, without_dark(light)});

@@ -16,8 +16,8 @@ constexpr int kMostTries = 8;           // of one LED until its test shot is nei
 constexpr double kReadableFrom = 0.05;  // 99.9 percent of a test shot below less than this: too dark to tell
 constexpr double kReadableTo = 0.97;
 constexpr double kStepDown = 0.125, kMostStepUp = 32;
-constexpr double kDarkestCloth = 100;  // of the light where it is known: no cloth has less than 1 percent
-constexpr double kAgree = 0.1;         // of two LEDs' brightness with what the lights let expect
+constexpr double kMostOverStart = 100;  // where the light is known: no cloth reflects less than 1 percent
+constexpr double kAgree = 0.1;          // of two LEDs' brightness with what the lights let expect
 constexpr double kMostClipped = 1e-5;
 constexpr double kPoorRange = 0.5;  // 99.9 percent below less than this share of white
 constexpr double kLongestBracket = 100;
@@ -47,7 +47,7 @@ class Meter {
       : input_(input),
         shoot_(shoot),
         longest_us_(input.expected.empty() ? std::numeric_limits<double>::infinity()
-                                           : kDarkestCloth * input.start_us),
+                                           : kMostOverStart * input.start_us),
         exposure_us_(settable(input.start_us)) {}
 
   Result<Metering> run() {

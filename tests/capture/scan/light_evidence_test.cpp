@@ -70,9 +70,13 @@ TEST(LightEvidence, AgreesWithASessionAsPlanned) {
 }
 
 TEST(LightEvidence, BlamesNoLightWhereFramesAreFull) {
-  for (const double times : {1.5, 2.0, 3.0, 5.0, 10.0}) {
-    const Told t = told(woven(), as_planned, true, 0.8 * times);
-    EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << times << " times: " << t.verdict.sentence;
+  simulator::Scene satin = woven();
+  satin.geometry.kind = simulator::GeometryKind::kSatin;
+  for (const auto& scene : {woven(), satin}) {
+    for (double brightness = 1; brightness < 16; brightness *= 1.25) {
+      const Told t = told(scene, as_planned, true, brightness);
+      EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << brightness << " times: " << t.verdict.sentence;
+    }
   }
   EXPECT_THAT(told(woven(), as_planned, true, 8).warnings, testing::Contains(HasSubstr("full photosites")));
 }
