@@ -100,7 +100,13 @@ std::vector<std::string> faults_of(const Row& row, const std::set<std::string>& 
     if (!tests.contains(name)) fault("no test " + name);
   }
   if (row.cells[kWhere].empty() || row.cells[kWhat].empty()) fault("says not what it is about");
-  if (row.cells[kCarriedBy].empty() && row.cells[kRemark].empty()) fault("neither carried nor explained");
+  const std::string& remark = row.cells[kRemark];
+  if (row.cells[kCarriedBy].empty()) {
+    if (!remark.starts_with("Later: ") && !remark.starts_with("Out: "))
+      fault("neither carried nor explained");
+  } else if (row.cells[kTestedBy].empty()) {
+    fault("carried, and shown by no test");
+  }
   return found;
 }
 
@@ -169,16 +175,20 @@ TEST(Seeds, ARowThatNamesNothingThereIsFound) {
     return faults_of({7, {"eq. 1", "what", last[0], last[1], last[2]}}, files, tests);
   };
   EXPECT_THAT(faults({"`core/image.h`, `solver/`", "`Suite.Name`", ""}), testing::IsEmpty());
-  EXPECT_THAT(faults({"", "", "later: colour"}), testing::IsEmpty());
-  EXPECT_THAT(faults({"`core/imag.h`", "", ""}),
+  EXPECT_THAT(faults({"", "", "Later: colour"}), testing::IsEmpty());
+  EXPECT_THAT(faults({"", "", "Out: no cloth"}), testing::IsEmpty());
+  EXPECT_THAT(faults({"`core/imag.h`", "`Suite.Name`", ""}),
               testing::ElementsAre("docs/seeds.md:7: no file core/imag.h"));
-  EXPECT_THAT(faults({"`material/`", "", ""}), testing::SizeIs(1));
-  EXPECT_THAT(faults({"", "", "see `core/none.h`"}), testing::SizeIs(1));
+  EXPECT_THAT(faults({"`material/`", "`Suite.Name`", ""}), testing::SizeIs(1));
+  EXPECT_THAT(faults({"", "", "Out: see `core/none.h`"}), testing::SizeIs(1));
   EXPECT_THAT(faults({"`core/image.h`", "`Suite.Other`", ""}),
               testing::ElementsAre("docs/seeds.md:7: no test Suite.Other"));
-  EXPECT_THAT(faults({"", "`Suite.Name`", ""}), testing::SizeIs(1));
+  EXPECT_THAT(faults({"", "`Suite.Name`", "a remark that says neither"}),
+              testing::ElementsAre("docs/seeds.md:7: neither carried nor explained"));
+  EXPECT_THAT(faults({"`core/image.h`", "", "a remark"}),
+              testing::ElementsAre("docs/seeds.md:7: carried, and shown by no test"));
   EXPECT_THAT(faults_of({7, {"eq. 1", "what", "", "why"}}, files, tests), testing::SizeIs(1));
-  EXPECT_THAT(faults_of({7, {"", "what", "", "", "why"}}, files, tests), testing::SizeIs(1));
+  EXPECT_THAT(faults_of({7, {"", "what", "", "", "Out: why"}}, files, tests), testing::SizeIs(1));
 }
 
 TEST(Seeds, TestsOfEveryKindAreFoundAndNamesInStringsAreNot) {

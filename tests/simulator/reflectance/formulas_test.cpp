@@ -183,6 +183,13 @@ TEST(Fresnel, ApproximationsOfTheOtherDocumentsLieNearSchlick) {
   EXPECT_NEAR(seed_004, 0.042, 1e-3);
 }
 
+TEST(Fresnel, BalancedDiffuseIsLambertLessWhatTheLobeReflects) {
+  // Seed 000 eq. 15 at l.h = 1/2, where Schlick's F is 0.04 + 0.96 / 32 = 0.07.
+  const Rgb f0 = {0.04, 0.04, 0.04}, albedo = {0.9, 0.5, 0.2};
+  const Rgb f = lobe_over_diffuse(0, f0, Beneath::kBalanced, albedo, {0.3, 0.8, 0.5});
+  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(f[c], 0.93 * albedo[c] / kPi, 1e-15) << "channel " << c;
+}
+
 TEST(Fresnel, CoupledDiffuseReflectsAllWithoutASurfaceAndAsPrintedThreeQuarters) {
   const auto reflected = [](const auto& f) {
     return integral_over_hemisphere(400, [&](Vec3 l) { return f(l) * l.z; });
