@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// The pages: their links lead somewhere, and their index has all of them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "tests/repository/source_tree.h"
+
+namespace weft::repository {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kIndex = "docs/README.md";
+
+/// A relative link of a page, split at its '#'.
+struct Link {
+  std::size_t line = 0;
+  std::string path;     ///< from the root of the repository; the page itself where the link names no file
+  std::string heading;  ///< as an anchor; empty: none
+};
+
+/// The name by which a heading is linked to: lower case, spaces as hyphens, without punctuation.
+std::string anchor_of(std::string_view heading) {
+  std::string anchor;
+  for (const char letter : heading) {
+    const auto byte = static_cast<unsigned char>(letter);
+    if (letter == ' ') {
+      anchor += '-';
+    } else if (std::isalnum(byte) || letter == '-' || letter == '_' || byte >= 0x80) {
+      anchor += static_cast<char>(std::tolower(byte));
+    }
+  }
+  return anchor;
+}
+
+/// The lines of a page with their numbers, without blocks of code.
+std::vector<std::pair<std::size_t, std::string_view>> prose_of(std::string_view text) {
+  std::vector<std::pair<std::size_t, std::string_view>> prose;
+  bool code = false;
+  const auto lines = lines_of(text);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t indent = std::min(lines[i].find_first_not_of(' '), lines[i].size());
+    if (lines[i].substr(indent).starts_with("```")) {
+      code = !code;
+    } else if (!code) {
+      prose.emplace_back(i + 1, lines[i]);
+    }
+  }
+  return prose;
+}
+
+/// Anchors of all headings of a page; the second of one name ends in "-1", the third in "-2".
+std::set<std::string> anchors_in(std::string_view text) {
+  std::set<std::string> anchors;
+  std::map<std::string, int> so_far;
+  for (const auto& [number, line] : prose_of(text)) {
+    const std::size_t level = line.find_first_not_of('#');
+    if (level == 0 || level == line.npos || line[level] != ' ') continue;
+    const std::string anchor = anchor_of(line.substr(level + 1));
+    const int before = so_far[anchor]++;
+    anchors.insert(before == 0 ? anchor : anchor + "-" + std::to_string(before));
+  }
+  return anchors;
+}
+
+std::vector<Link> links_in(const TextFile& page) {
+  static const std::regex link(R"(\]\(([^)\s]+)\))");
+  std::vector<Link> found;
+  for (const auto& [number, line] : prose_of(page.text)) {
+    const std::string text(line);
+    for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
+      const std::string target = (*it)[1];
+      if (target.find("://") != target.npos) continue;
+      const std::size_t hash = std::min(target.find('#'), target.size());
+      const fs::path to = fs::path(page.path).parent_path() / target.substr(0, hash);
+      found.push_back({number, hash == 0 ? page.path : to.lexically_normal().generic_string(),
+                       hash == target.size() ? "" : target.substr(hash + 1)});
+    }
+  }
+  return found;
+}
+
+std::vector<TextFile> pages() {
+  std::vector<TextFile> found = text_files();
+  std::erase_if(found, [](const TextFile& file) { return !file.path.ends_with(".md"); });
+  return found;
+}
+
+TEST(Docs, EveryLinkLeadsToAFileAndAHeading) {
+  std::map<std::string, std::set<std::string>> headings;
+  for (const TextFile& page : pages()) headings[page.path] = anchors_in(page.text);
+  std::size_t followed = 0;
+  for (const TextFile& page : pages()) {
+    for (const Link& link : links_in(page)) {
+      ++followed;
+      EXPECT_TRUE(fs::exists(fs::path(WEFT_SOURCE_DIR) / link.path))
+          << place(page.path, link.line) << ": no " << link.path;
+      if (link.heading.empty()) continue;
+      EXPECT_TRUE(headings[link.path].contains(link.heading))
+          << place(page.path, link.line) << ": no heading " << link.heading << " in " << link.path;
+    }
+  }
+  EXPECT_GT(followed, 100U);
+}
+
+TEST(Docs, TheIndexHasEveryPage) {
+  std::set<std::string> indexed = {kIndex};
+  for (const TextFile& page : pages()) {
+    if (page.path != kIndex) continue;
+    for (const Link& link : links_in(page)) indexed.insert(link.path);
+  }
+  for (const TextFile& page : pages()) {
+    if (!page.path.starts_with("docs/")) continue;
+    EXPECT_TRUE(indexed.contains(page.path)) << kIndex << " leaves out " << page.path;
+  }
+}
+
+TEST(Docs, LinksAreReadRelativeToTheirPageAndNotInCode) {
+  const std::vector<Link> links =
+      links_in({"docs/a.md",
+                "[x](b.md#of-c) ![y](../z.png)\n```\n[no](code.md)\n```\n[here](#d) "
+                "[out](https://example.org/e)\n"});
+  ASSERT_EQ(links.size(), 3U);
+  EXPECT_EQ(links[0].path, "docs/b.md");
+  EXPECT_EQ(links[0].heading, "of-c");
+  EXPECT_EQ(links[1].path, "z.png");
+  EXPECT_EQ(links[1].heading, "");
+  EXPECT_EQ(links[2].path, "docs/a.md");
+  EXPECT_EQ(links[2].heading, "d");
+  EXPECT_EQ(links[2].line, 5U);
+}
+
+TEST(Docs, HeadingsHaveTheAnchorsThatAReaderLinksTo) {
+  EXPECT_THAT(
+      anchors_in("# `effects = \"auto\"`\n## A name that stays: udev\n## Numbers\n```\n# code\n```\n"
+                 "## Numbers\n#no heading\n"),
+      testing::UnorderedElementsAre("effects--auto", "a-name-that-stays-udev", "numbers", "numbers-1"));
+}
+
+}  // namespace
+}  // namespace weft::repository
