@@ -26,6 +26,7 @@ enum Tag : std::uint16_t {
   kBitsPerSample = 258,
   kCompression = 259,
   kPhotometricInterpretation = 262,
+  kFillOrder = 266,
   kStripOffsets = 273,
   kSamplesPerPixel = 277,
   kStripByteCounts = 279,
@@ -155,19 +156,22 @@ class LayoutReader {
   }
 
   Result<void> check_uncompressed(const std::vector<Segment>& strips, bool tiled) {
-    if (const double bits = number(kBitsPerSample, 1); bits != 16)
-      return refusal(fmt::format("its uncompressed counts have {} bits, not 16", bits));
+    const double bits = number(kBitsPerSample, 1);
+    if (!(bits >= 8 && bits <= 16 && bits == std::floor(bits)))
+      return refusal(fmt::format("its uncompressed counts have {} bits, not 8 to 16", bits));
+    if (number(kFillOrder, 1) != 1) return refusal("the bits of its bytes are in reverse order");
     if (tiled) return refusal("its counts are uncompressed tiles", "convert to DNG with strips");
     std::uint64_t end = layout_.data_at;
     for (const Segment& strip : strips) {
       if (strip.at != end) return refusal("its strips do not follow one another");
       end += strip.bytes;
     }
-    const std::uint64_t expected = 2 * static_cast<std::uint64_t>(layout_.stored.pixels());
+    const auto [width, height] = layout_.stored;
+    const std::uint64_t row_bytes = (static_cast<std::uint64_t>(width) * static_cast<unsigned>(bits) + 7) / 8;
+    const std::uint64_t expected = row_bytes * static_cast<unsigned>(height);
     if (end - layout_.data_at != expected)
-      return refusal(fmt::format("its {} x {} counts of 16 bits take {} bytes, it holds {}",
-                                 layout_.stored.width, layout_.stored.height, expected,
-                                 end - layout_.data_at));
+      return refusal(fmt::format("its {} x {} counts of {} bits take {} bytes, it holds {}", width, height,
+                                 bits, expected, end - layout_.data_at));
     return {};
   }
 

@@ -25,8 +25,10 @@ struct DngLayout {
 /// Reads the layout. Refuses, with kBadData and `where`, what LibRaw 0.20 decodes wrongly without an error:
 /// data that are not what compression, bits or size say, strips and tiles it does not follow, a mosaic that
 /// is not Bayer, counts that are no integers, and levels that are missing, impossible or not the same in
-/// every cell. Taken are one mosaic, uncompressed in 16-bit strips that follow one another, or as lossless
-/// JPEG in one strip or in two and more tiles. (Adobe, Digital Negative Specification 1.4, 2012.)
+/// every cell. Taken are one mosaic, uncompressed in strips that follow one another, or as lossless JPEG in
+/// one strip or in two and more tiles. Uncompressed counts have 8 to 16 bits: 16 in the file's byte order,
+/// fewer packed from the highest bit on, each row from a new byte. A linearization table is applied. (Adobe,
+/// Digital Negative Specification 1.4, 2012; TIFF revision 6.0, 1992.)
 Result<DngLayout> read_dng_layout(const Tiff& tiff, std::uint64_t file_bytes, const std::string& where);
 
 }  // namespace weft::capture

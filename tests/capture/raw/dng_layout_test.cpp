@@ -164,9 +164,82 @@ TEST(DngLayout, RefusesDataThatAreNotWhatCompressionAndBitsSay) {
   expect_refusal(with(259, 7), "no lossless JPEG of 40 x 30 counts");
   expect_refusal(with(259, 8), "compression 8 is not read");
   expect_refusal(with(259, 34892), "compression 34892 is not read");
-  expect_refusal(with(258, 14), "14 bits, not 16");
-  expect_refusal(with(258, 12), "12 bits, not 16");
-  expect_refusal(with(258, 8), "8 bits, not 16");
+  expect_refusal(with(258, 14), "40 x 30 counts of 14 bits take 2100 bytes, it holds 2400");
+  expect_refusal(with(258, 7), "7 bits, not 8 to 16");
+  expect_refusal(with(258, 32), "32 bits, not 8 to 16");
+}
+
+/// Counts over the whole range of so many bits.
+RawFrame frame_of_bits(Size size, int bits) {
+  RawFrame frame = sample_frame(size);
+  const int most = (1 << bits) - 1;
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      frame.counts(x, y) = static_cast<std::uint16_t>((7919 * x + 104729 * y) & most);
+  frame.counts(size.width - 1, size.height - 1) = static_cast<std::uint16_t>(most);
+  frame.black = {{{16, 16}, {16, 16}}};
+  frame.white = static_cast<float>(most);
+  return frame;
+}
+
+class PackedCounts : public testing::TestWithParam<int> {};
+
+TEST_P(PackedCounts, AreEachReadAtOddAndEvenWidthsInBothByteOrders) {
+  for (const Size size :
+       {Size{22, 22}, Size{23, 29}, Size{25, 22}, Size{27, 23}, Size{64, 24}, Size{101, 53}}) {
+    const RawFrame truth = frame_of_bits(size, GetParam());
+    DngBytes dng(truth);
+    dng.pack(GetParam());
+    expect_same_counts(dng, truth);
+    expect_same_counts(dng.make_big_endian(), truth);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Bits, PackedCounts, testing::Range(8, 16));
+
+TEST(DngLayout, TakesCountsOf16BitsInBothByteOrders) {
+  const RawFrame truth = frame_of_bits({23, 29}, 16);
+  expect_same_counts(DngBytes(truth), truth);
+  expect_same_counts(DngBytes(truth).make_big_endian(), truth);
+}
+
+TEST(DngLayout, TakesPackedCountsInOneStripARow) {
+  const RawFrame truth = frame_of_bits({23, 22}, 10);
+  DngBytes dng(truth);
+  const std::uint32_t strip_at = dng.pack(10).get(273), row_bytes = 29;
+  const auto arrays_at = static_cast<std::uint32_t>(dng.bytes.size());
+  for (const std::uint32_t step : {row_bytes, 0u})
+    for (std::uint32_t y = 0; y < 22; ++y) dng.append(step == 0 ? row_bytes : strip_at + y * step, 4);
+  dng.retag(273, 273, 4, 22).point(273, arrays_at).retag(279, 279, 4, 22).point(279, arrays_at + 88);
+  expect_same_counts(dng.set(278, {1}), truth);
+}
+
+TEST(DngLayout, LooksPackedCountsUpInTheirLinearizationTable) {
+  RawFrame truth = frame_of_bits({23, 22}, 8);
+  DngBytes dng(truth);
+  const auto table_at = static_cast<std::uint32_t>(dng.pack(8).bytes.size());
+  for (std::uint32_t i = 0; i < 256; ++i) dng.append(i * i / 4, 2);
+  dng.retag(284, 50712, 3, 256).point(50712, table_at).set(50717, {255 * 255 / 4});
+  for (int y = 0; y < 22; ++y)
+    for (int x = 0; x < 23; ++x) {
+      const int count = truth.counts(x, y);
+      truth.counts(x, y) = static_cast<std::uint16_t>(count * count / 4);
+    }
+  expect_same_counts(dng, truth);
+}
+
+TEST(DngLayout, RefusesPackedCountsThatAreNotPackedAsItSays) {
+  const RawFrame frame = frame_of_bits({23, 22}, 12);
+  DngBytes dng(frame);
+  dng.pack(12);
+  const DngBytes reversed = DngBytes(dng).retag(284, 266, 3, 1).set(266, {2}, 2);
+  expect_refusal(reversed, "reverse order");
+  // Rows that do not begin a new byte, or all begin a new word.
+  for (const std::uint32_t strip_bytes : {23u * 22 * 12 / 8, 36u * 22}) {
+    dng.bytes.resize(dng.get(273) + strip_bytes);
+    expect_refusal(dng.set(279, {strip_bytes}),
+                   "23 x 22 counts of 12 bits take 770 bytes, it holds " + std::to_string(strip_bytes));
+  }
 }
 
 TEST(DngLayout, RefusesALosslessJpegOfAnotherSizeOrNoLosslessJpeg) {
