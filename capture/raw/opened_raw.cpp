@@ -213,11 +213,6 @@ Result<OpenedRaw> open_raw(const fs::path& file) {
     return open_error(code, where);
   if (data.idata.raw_count != 1)
     return distrust(fmt::format("it holds {} frames", data.idata.raw_count), where);
-  if (const int flip = data.sizes.flip; flip != 0)
-    return Error{ErrorKind::kBadData, "raw frame is rotated", where,
-                 fmt::format("LibRaw reports flip {}, but the rig's camera does not turn", flip),
-                 "turn off automatic rotation in the camera"};
-
   if (raw.dng.has_value() != (data.idata.dng_version != 0))
     return distrust("LibRaw and its own tags do not agree whether it is a DNG", where);
   auto described = raw.dng ? describe_dng(raw, where) : describe_vendor_raw(raw, where);

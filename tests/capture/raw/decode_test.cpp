@@ -265,9 +265,14 @@ TEST(DecodeRaw, CountsTheMissingBytesOfATruncatedFile) {
   }
 }
 
-TEST(DecodeRaw, RefusesARotatedFrame) {
-  for (const std::uint32_t orientation : {3u, 6u, 8u})
-    expect_bad_data(DngBytes().set(274, {orientation}, 2).save("rotated.dng"), "rotated");
+TEST(DecodeRaw, ReturnsTheSameCountsWhicheverWayTheBodyFeltItWasHeld) {
+  const RawFrame truth = sample_frame({41, 30});
+  for (std::uint32_t orientation = 1; orientation <= 9; ++orientation) {
+    const auto frame = decode_raw(DngBytes(truth).set(274, {orientation}, 2).save("turned.dng"));
+    ASSERT_TRUE(frame.has_value()) << frame.error().message();
+    EXPECT_EQ(differing_counts(*frame, truth), 0) << "orientation " << orientation;
+    EXPECT_EQ(frame->cfa, truth.cfa) << "orientation " << orientation;
+  }
 }
 
 TEST(DecodeRaw, RefusesWhatIsNotABayerMosaic) {
