@@ -14,6 +14,9 @@
 namespace weft::capture {
 namespace {
 
+/// What a decoder may ask for beyond its last code, in bytes: bits are read some words ahead.
+constexpr std::uint64_t kReadAhead = 16;
+
 std::string words(const Size& size) {
   return fmt::format("{} x {} pixels", size.width, size.height);
 }
@@ -81,6 +84,23 @@ Result<void> set_levels(RawFrame& frame, const OpenedRaw& raw, const std::string
   return {};
 }
 
+/// Unpacks the counts, all of which must be there.
+Result<void> unpack(OpenedRaw& raw, const std::string& where) {
+  raw.file->missing_bytes = 0;
+  const int code = raw.libraw->unpack();
+  if (code == LIBRAW_UNSUFFICIENT_MEMORY) return out_of_memory(where);
+  const bool failed = code != LIBRAW_SUCCESS || raw.libraw->error_count() != 0;
+  if (raw.file->missing_bytes > (failed ? 0 : kReadAhead))
+    return Error{ErrorKind::kBadData, "raw frame is truncated", where, "the file ends before its data do",
+                 "copy the file again"};
+  if (failed)
+    return Error{ErrorKind::kBadData, "raw frame cannot be decoded", where,
+                 fmt::format("its data are damaged, or packed in a way that LibRaw {} does not read",
+                             LibRaw::version()),
+                 "copy the file again, or convert it to DNG"};
+  return {};
+}
+
 }  // namespace
 
 Result<RawFrame> decode_raw(const std::filesystem::path& file, const DecodeExpectation& expected) {
@@ -94,8 +114,7 @@ Result<RawFrame> decode_raw(const std::filesystem::path& file, const DecodeExpec
     return std::move(same).error();
 
   LibRaw& libraw = *raw->libraw;
-  if (const int code = libraw.unpack(); code != LIBRAW_SUCCESS) return unpack_error(code, where);
-  if (libraw.error_count() != 0) return unpack_error(LIBRAW_DATA_ERROR, where);
+  if (auto done = unpack(*raw, where); !done) return std::move(done).error();
   const libraw_rawdata_t& unpacked = libraw.imgdata.rawdata;
   const Rect& active = raw->active;
   if (unpacked.raw_image == nullptr || active.x1 > unpacked.sizes.raw_width ||

@@ -112,7 +112,7 @@ std::optional<CfaPattern> libraw_cell(LibRaw& libraw) {
 }
 
 Error open_error(int code, const std::string& where) {
-  if (code == LIBRAW_UNSUFFICIENT_MEMORY) return unpack_error(code, where);
+  if (code == LIBRAW_UNSUFFICIENT_MEMORY) return out_of_memory(where);
   return {ErrorKind::kBadData, "not a raw frame", where,
           fmt::format("LibRaw says: {}", libraw_strerror(code)), kUseRaw};
 }
@@ -167,15 +167,22 @@ Result<void> describe_vendor_raw(OpenedRaw& raw, const std::string& where) {
 
 }  // namespace
 
-Error unpack_error(int code, const std::string& where) {
-  if (code == LIBRAW_UNSUFFICIENT_MEMORY)
-    return {ErrorKind::kTryAgain, "raw frame cannot be decoded", where, "there is not enough memory",
-            "close other programs and run it again"};
-  if (code == LIBRAW_IO_ERROR)
-    return {ErrorKind::kBadData, "raw frame is truncated", where, "the file ends before its data do",
-            "copy the file again"};
-  return {ErrorKind::kBadData, "raw frame cannot be decoded", where,
-          fmt::format("LibRaw says: {}", libraw_strerror(code)), "copy the file again"};
+int CountedFile::read(void* to, std::size_t size, std::size_t count) {
+  const auto wanted = static_cast<std::streamsize>(size * count);
+  const std::streamsize got = f->sgetn(static_cast<char*>(to), wanted);
+  missing_bytes += static_cast<std::uint64_t>(wanted - got);
+  return size == 0 ? 0 : static_cast<int>(static_cast<std::size_t>(got) / size);
+}
+
+int CountedFile::get_char() {
+  const int byte = LibRaw_file_datastream::get_char();
+  missing_bytes += byte < 0;
+  return byte;
+}
+
+Error out_of_memory(const std::string& where) {
+  return {ErrorKind::kTryAgain, "raw frame cannot be decoded", where, "there is not enough memory",
+          "close other programs and run it again"};
 }
 
 Error distrust(std::string why, const std::string& where) {
@@ -206,10 +213,11 @@ Result<OpenedRaw> open_raw(const fs::path& file) {
       raw.dng = *layout;
     }
   }
+  raw.file = std::make_unique<CountedFile>(file.c_str());
   raw.libraw = std::make_unique<LibRaw>(LIBRAW_OPIONS_NO_MEMERR_CALLBACK | LIBRAW_OPIONS_NO_DATAERR_CALLBACK);
   libraw_data_t& data = raw.libraw->imgdata;
   data.params.max_raw_memory_mb = kMostDecodedMegabytes;
-  if (const int code = raw.libraw->open_file(file.c_str()); code != LIBRAW_SUCCESS)
+  if (const int code = raw.libraw->open_datastream(raw.file.get()); code != LIBRAW_SUCCESS)
     return open_error(code, where);
   if (data.idata.raw_count != 1)
     return distrust(fmt::format("it holds {} frames", data.idata.raw_count), where);

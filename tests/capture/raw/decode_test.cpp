@@ -11,9 +11,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <iterator>
 #include <random>
 #include <string>
 #include <thread>
@@ -263,6 +265,70 @@ TEST(DecodeRaw, CountsTheMissingBytesOfATruncatedFile) {
                     std::to_string(missing) + " bytes are missing of " + std::to_string(whole.bytes.size()));
     EXPECT_FALSE(read_raw_info(file).has_value()) << "the same can be told without decoding";
   }
+}
+
+/// A Panasonic's raw file: its blocks of 16 kB are of zeros, which is the code of counts that are all zero.
+DngBytes rw2() {
+  RawFrame frame = sample_frame({280, 200});
+  frame.shot.make = "Panasonic";
+  frame.shot.model = "DMC-GF1";
+  DngBytes file(frame);
+  file.bytes[2] = 0x55;
+  file.retag(254, 1, 7, 4).set(1, {0x30313330}).retag(256, 2, 3, 1).retag(257, 3, 3, 1).retag(273, 280, 4, 1);
+  file.remove(50706).remove(258).remove(259);
+  file.bytes.resize(file.get(280));
+  file.bytes.resize(file.bytes.size() + 4 * 0x4000);  // 14 counts in 16 bytes
+  return file;
+}
+
+/// A Nikon's raw file of 12 bits, packed.
+DngBytes packed_nef() {
+  RawFrame frame = sample_frame({640, 480});
+  frame.shot.make = "NIKON CORPORATION";
+  frame.shot.model = "NIKON D5100";
+  return DngBytes(frame).pack(12).remove(50706).remove(50714).remove(50717);
+}
+
+TEST(DecodeRaw, RefusesVendorsFilesThatEndWhereLibRawDoesNotLook) {
+  for (const DngBytes& whole : {rw2(), packed_nef()}) {
+    const auto frame = decode_raw(whole.save("whole.raw"));
+    ASSERT_TRUE(frame.has_value()) << frame.error().message();
+    for (const std::size_t missing : {std::size_t{24}, std::size_t{900}, whole.bytes.size() / 2}) {
+      DngBytes cut = whole;
+      cut.bytes.resize(whole.bytes.size() - missing);
+      expect_bad_data(cut.save("cut.raw"), "raw frame is truncated");
+    }
+  }
+}
+
+TEST(DecodeRaw, DoesNotCallAWholeFileTruncatedWhoseDataAreDamaged) {
+  DngBytes file = rw2();
+  std::fill(file.bytes.begin() + file.get(280), file.bytes.end(), std::uint8_t{0x7f});
+  expect_bad_data(file.save("damaged.rw2"), "its data are damaged");
+}
+
+TEST(DecodeRaw, ReadsEveryCountOfADngThatACameraWrote) {
+  const char* shared = std::getenv("WEFT_SHARED_DATA");
+  if (shared == nullptr) GTEST_SKIP() << "WEFT_SHARED_DATA is not set";
+  const auto file = std::filesystem::path(shared) / "raws" / "colorchart.dng";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is not there";
+  const auto frame = decode_raw(file);
+  ASSERT_TRUE(frame.has_value()) << frame.error().message();
+  ASSERT_EQ(frame->counts.size(), (Size{1734, 1156}));
+
+  std::ifstream in(file, std::ios::binary);
+  const std::vector<char> bytes{std::istreambuf_iterator<char>(in), {}};
+  // 14 bits a count from byte 1536 on, 1888 counts a row; the active area begins at row 26, column 152.
+  const auto bit = [&bytes](std::size_t at) { return bytes[at / 8] >> (7 - at % 8) & 1; };
+  std::int64_t differing = 0;
+  for (int y = 0; y < 1156; ++y)
+    for (int x = 0; x < 1734; ++x) {
+      const std::size_t at = 8 * 1536 + 14 * static_cast<std::size_t>((y + 26) * 1888 + x + 152);
+      int count = 0;
+      for (std::size_t i = 0; i < 14; ++i) count = 2 * count + bit(at + i);
+      differing += count != frame->counts(x, y);
+    }
+  EXPECT_EQ(differing, 0);
 }
 
 TEST(DecodeRaw, ReturnsTheSameCountsWhicheverWayTheBodyFeltItWasHeld) {
