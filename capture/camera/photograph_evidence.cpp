@@ -24,6 +24,10 @@ Result<void> check_kind(const PhotographFacts& facts) {
     return Error{ErrorKind::kProtocol, "what arrived is no photograph", "", "its header cannot be read",
                  "take it again"};
   }
+  if (is_unread_raw_ending(facts.ending)) {
+    return Error{ErrorKind::kBadData, "this kind of raw is not read yet", "",
+                 "a " + facts.ending + " arrived", "use a body that writes DNG, NEF, CR2, ARW or PEF"};
+  }
   return Error{ErrorKind::kBadData, "the camera sends no raw photographs", "",
                "a " + facts.ending + " arrived", "set its image quality to raw alone"};
 }

@@ -164,6 +164,35 @@ std::uint64_t data_end(const Tiff& tiff) {
   return static_cast<std::uint64_t>(std::min(end, 1e15));
 }
 
+/// How files that are no TIFF begin, by the readers of LibRaw 0.20.
+struct Beginning {
+  std::string_view ending;
+  std::size_t at;
+  std::string_view bytes;
+};
+constexpr Beginning kJpeg = {"jpg", 0, "\xff\xd8\xff"};
+constexpr std::array<Beginning, 9> kUnreadRaws = {{{"cr3", 4, "ftypcrx "},
+                                                   {"rw2", 0, {"IIU\0", 4}},
+                                                   {"orf", 0, "IIRO"},
+                                                   {"orf", 0, "IIRS"},
+                                                   {"orf", 0, "MMOR"},
+                                                   {"raf", 0, "FUJIFILM"},
+                                                   {"crw", 6, "HEAPCCDR"},
+                                                   {"mrw", 0, {"\0MRM", 4}},
+                                                   {"x3f", 0, "FOVb"}}};
+
+bool begins(const ReadAt& read_at, const Beginning& as) {
+  std::array<std::uint8_t, 8> bytes;
+  return read_at(as.at, std::span(bytes).first(as.bytes.size())) &&
+         std::memcmp(bytes.data(), as.bytes.data(), as.bytes.size()) == 0;
+}
+
+std::string ending_of_no_tiff(const ReadAt& read_at) {
+  if (begins(read_at, kJpeg)) return std::string(kJpeg.ending);
+  const auto raw = std::ranges::find_if(kUnreadRaws, [&](const auto& as) { return begins(read_at, as); });
+  return raw == kUnreadRaws.end() ? "" : std::string(raw->ending);
+}
+
 double at_least_0(std::optional<double> value) {
   return std::max(0.0, value.value_or(0));
 }
@@ -174,12 +203,15 @@ bool is_raw_ending(const std::string& ending) {
   return ending == "dng" || ending == "nef" || ending == "cr2" || ending == "arw" || ending == "pef";
 }
 
+bool is_unread_raw_ending(const std::string& ending) {
+  return std::ranges::any_of(kUnreadRaws, [&](const auto& raw) { return raw.ending == ending; });
+}
+
 PhotographFacts photograph_facts(const ReadAt& read_at) {
   PhotographFacts facts;
   const std::optional<Tiff> main = Tiff::read(read_at);
   if (!main) {
-    std::array<std::uint8_t, 3> mark;
-    if (read_at(0, mark) && mark == std::array<std::uint8_t, 3>{0xff, 0xd8, 0xff}) facts.ending = "jpg";
+    facts.ending = ending_of_no_tiff(read_at);
     return facts;
   }
   facts.ending = tiff_ending(read_at, *main);

@@ -13,8 +13,9 @@ namespace weft::capture {
 
 /// What a photograph says of itself, in its own header. What it does not say is empty or 0.
 struct PhotographFacts {
-  std::string
-      ending;  ///< by its content: "dng", "nef", "cr2", "arw", "pef", "tif", "jpg"; empty: none of these
+  /// By its content: "dng", "nef", "cr2", "arw", "pef"; "cr3", "rw2", "orf", "raf", "crw", "mrw", "x3f", raws
+  /// of which nothing else is read; "tif", "jpg"; empty: none of these.
+  std::string ending;
   std::uint64_t data_end = 0;  ///< the file's least size in bytes, by where its image data lie
   /// EXIF ImageNumber (TIFF/EP 0x9211), or the shutter count of a Nikon's maker note (0x00A7).
   std::optional<std::uint32_t> image_number;
@@ -26,8 +27,11 @@ struct PhotographFacts {
   double f_number = 0;
 };
 
-/// Whether this ending is a raw file's.
+/// Whether this ending is that of a raw file whose header is read.
 bool is_raw_ending(const std::string& ending);
+
+/// Whether this ending is that of a raw file whose header is not read.
+bool is_unread_raw_ending(const std::string& ending);
 
 /// Reads the header of any file; nothing in it is believed that does not make sense.
 PhotographFacts photograph_facts(const ReadAt& read_at);

@@ -117,6 +117,31 @@ TEST(PhotographFacts, OfANefHoldTheShutterCountOfTheMakerNote) {
   }
 }
 
+TEST(PhotographFacts, OfARawThatIsNoTiffAreItsKind) {
+  const auto ending_of = [](std::string begins) {
+    begins.resize(64);
+    return facts_of({begins.begin(), begins.end()}).ending;
+  };
+  EXPECT_EQ(ending_of({"\0\0\0\x18"
+                       "ftypcrx \0\0\0\x01"
+                       "crx isom",
+                       24}),
+            "cr3");
+  EXPECT_EQ(ending_of({"IIU\0\x18\0\0\0", 8}), "rw2");
+  EXPECT_EQ(ending_of({"IIRO\x08\0\0\0", 8}), "orf");
+  EXPECT_EQ(ending_of({"IIRS\x08\0\0\0", 8}), "orf");
+  EXPECT_EQ(ending_of({"MMOR\0\0\0\x08", 8}), "orf");
+  EXPECT_EQ(ending_of("FUJIFILMCCD-RAW 0201FF389501"), "raf");
+  EXPECT_EQ(ending_of({"II\x1a\0\0\0HEAPCCDR", 14}), "crw");
+  EXPECT_EQ(ending_of({"\0MRM\0\0\x10\0", 8}), "mrw");
+  EXPECT_EQ(ending_of({"FOVb\0\0\x02\0", 8}), "x3f");
+  EXPECT_EQ(ending_of({"\0\0\0\x18"
+                       "ftypmp42",
+                       12}),
+            "")
+      << "a film is no photograph";
+}
+
 TEST(PhotographFacts, AreEmptyWhereThereAreNone) {
   EXPECT_EQ(facts_of({}).ending, "");
   EXPECT_EQ(facts_of({0xff, 0xd8, 0xff, 0xe0, 0, 0}).ending, "jpg");
@@ -239,6 +264,18 @@ TEST(PhotographEvidence, TellsAJpegFromWhatIsNoPhotograph) {
   EXPECT_EQ(check_photograph(facts, asked()).error().kind, ErrorKind::kBadData);
   facts.ending = "";
   EXPECT_EQ(check_photograph(facts, asked()).error().kind, ErrorKind::kProtocol);
+}
+
+TEST(PhotographEvidence, SaysWhichKindOfRawIsNotReadYet) {
+  for (const char* ending : {"cr3", "rw2", "orf", "raf", "crw", "mrw", "x3f"}) {
+    PhotographFacts facts;
+    facts.ending = ending;
+    const auto checked = check_photograph(facts, asked());
+    ASSERT_FALSE(checked) << ending;
+    EXPECT_EQ(checked.error().kind, ErrorKind::kBadData) << "taking it again would not help";
+    EXPECT_EQ(checked.error().what, "this kind of raw is not read yet");
+    EXPECT_EQ(checked.error().why, std::string("a ") + ending + " arrived");
+  }
 }
 
 }  // namespace
