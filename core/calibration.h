@@ -82,7 +82,7 @@ struct ColorTransform {
 
 /// Everything measured about a rig, immutable, named by its content.
 struct Calibration {
-  std::string id;  ///< SHA-256 of the sorted (name, SHA-256) list of its parts
+  std::string id;  ///< SHA-256 of the sorted (name, SHA-256) list of calibration.json and its parts
   CalibrationSubject subject;
   std::optional<CameraModel> camera;
   std::optional<ParameterCovariance> camera_covariance;  ///< of camera.json

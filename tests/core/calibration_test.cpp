@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <set>
 
 #include "core/files.h"
@@ -304,6 +305,29 @@ TEST(CalibrationId, IsTheDigestOfTheSortedListOfParts) {
     list += std::string(name) + ' ' + sha256_of(bytes_of(folder / "c" / name)) + '\n';
   }
   EXPECT_EQ(id, sha256_of(list));
+}
+
+TEST(CalibrationId, IsWhatTheScriptOfTheDocumentationSays) {
+  const ScratchFolder folder;
+  put_bytes(folder / "hot.png", "not looked at");
+  Calibration calibration = full_calibration();
+  calibration.color = ColorTransform();  // sorts after calibration.json and before hot.png
+  calibration.hot_picture = folder / "hot.png";
+  const std::string id = must_write(folder / "c", calibration);
+  fs::create_directory(folder / "c" / "report");
+  put_bytes(folder / "c" / "report" / "lights.json", "{}");
+
+  const std::string page = bytes_of(fs::path(WEFT_SOURCE_DIR) / "docs" / "formats.md");
+  const std::string fence = "```sh\n";
+  const std::size_t begin = page.find(fence) + fence.size();
+  const std::string script = page.substr(begin, page.find("```", begin) - begin);
+  ASSERT_THAT(script, HasSubstr("sha256sum"));
+  put_bytes(folder / "id.sh", script);
+  const std::string said = (folder / "said").string();
+  const std::string command =
+      "cd '" + (folder / "c").string() + "' && sh '" + (folder / "id.sh").string() + "' > '" + said + "'";
+  ASSERT_EQ(std::system(command.c_str()), 0) << command;
+  EXPECT_EQ(bytes_of(said), id + "  -\n");
 }
 
 TEST(CalibrationId, ChangesWithAnyByteOrThePartIsRefused) {
