@@ -10,7 +10,7 @@
 #include "core/image.h"
 #include "core/image_io/image_io.h"
 #include "core/result.h"
-#include "simulator/passes.h"
+#include "simulator/effects/passes.h"
 
 namespace weft::simulator {
 

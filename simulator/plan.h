@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "simulator/passes.h"
+#include "simulator/effects/passes.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
 

@@ -12,7 +12,7 @@
 #include "core/image.h"
 #include "core/result.h"
 #include "core/tiles.h"
-#include "simulator/passes.h"
+#include "simulator/effects/passes.h"
 #include "simulator/scene/scene.h"
 
 namespace weft::simulator {

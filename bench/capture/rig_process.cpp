@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "core/files.h"
-#include "simulator/rig/control_socket.h"
+#include "virtual_rig/control_socket.h"
 
 namespace weft::bench {
 namespace {

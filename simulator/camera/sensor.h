@@ -5,8 +5,8 @@
 #include <string>
 
 #include "core/calibration.h"
+#include "simulator/camera/settings.h"
 #include "simulator/sampling/random.h"
-#include "simulator/scene/scene.h"
 
 namespace weft::simulator {
 

@@ -90,4 +90,44 @@ struct BloomSettings {
   bool operator==(const BloomSettings&) const = default;
 };
 
+/// The made-up camera bodies, by how they store no light.
+enum class Body {
+  kOffset,  ///< black at 600 counts, so that noise below it survives; white at 15520
+  kD5100,   ///< black subtracted and clipped at 0, as a Nikon D5100 does; white at 15846
+};
+
+struct CameraSettings {
+  int width = 2464;  ///< photosites, even: whole filter cells
+  int height = 1632;
+  double mm_per_pixel = 0.08;  ///< on the table, z = 0
+  double distance_mm = 600;    ///< from the table to the projection centre
+  Body body = Body::kOffset;
+  int bits = 14;                       ///< 12, 14 or 16; black and white scale with it
+  double full_well_electrons = 40000;  ///< electrons of a photosite at white, at ISO 100
+  double read_noise_electrons = 3;     ///< standard deviation
+  double iso = 100;
+  double f_number = 8;  ///< recorded; the flux of the LEDs is what arrives through it
+  std::optional<double> exposure_us;
+  /// Without exposure_us: the albedo that, at the table's centre and facing a LED, gives 0.90 of full scale
+  /// in the brightest channel of the brightest LED.
+  double albedo_at_full = 0.99;
+
+  PoseSettings pose;                                          ///< no effect but geometry: always there
+  LensSettings lens = {.k1 = -0.06, .k2 = 0.02};              ///< distortion
+  RetakeSettings retakes;                                     ///< no effect but more shots
+  MovementSettings movement = {0.02, 0.005};                  ///< movement
+  VignetteSettings vignette = {4, 0.05};                      ///< vignetting
+  BlurSettings blur = {.defocus_px = 0.5, .spread_px = 0.4};  ///< defocus
+  BloomSettings bloom = {.share = 0.5};                       ///< bloom
+  std::array<double, 2> linearity = {0.01, -0.005};           ///< nonlinearity: Response::linearity
+  DefectSettings defects = {.dark_electrons_per_s = 5,        ///< dark_current, uneven_response
+                            .response_percent = 0.4,
+                            .column_counts = 0.3,
+                            .photosite_counts = 0.3,
+                            .hot_per_million = 20,
+                            .dead_per_million = 2};
+
+  bool operator==(const CameraSettings&) const = default;
+};
+
 }  // namespace weft::simulator

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "simulator/passes.h"
+#include "simulator/effects/passes.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
 

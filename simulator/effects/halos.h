@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/result.h"
-#include "simulator/passes.h"
+#include "simulator/effects/passes.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
 

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "simulator/passes.h"
+#include "simulator/effects/passes.h"
 #include "simulator/transport/bounces.h"
 #include "simulator/transport/height_mesh.h"
 

@@ -7,9 +7,9 @@
 
 #include "core/image.h"
 #include "core/result.h"
+#include "simulator/base/rgb.h"
 #include "simulator/geometry/picture_grid.h"
 #include "simulator/geometry/settings.h"
-#include "simulator/rgb.h"
 
 namespace weft::simulator {
 

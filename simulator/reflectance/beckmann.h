@@ -2,9 +2,9 @@
 #pragma once
 
 #include "core/vec.h"
+#include "simulator/base/rgb.h"
 #include "simulator/reflectance/directions.h"
 #include "simulator/reflectance/fresnel.h"
-#include "simulator/rgb.h"
 
 namespace weft::simulator {
 

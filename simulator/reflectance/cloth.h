@@ -2,8 +2,8 @@
 #pragma once
 
 #include "core/vec.h"
+#include "simulator/base/rgb.h"
 #include "simulator/reflectance/directions.h"
-#include "simulator/rgb.h"
 
 namespace weft::simulator {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/vec.h"
-#include "simulator/rgb.h"
+#include "simulator/base/rgb.h"
 
 // What the surface of a fibre reflects, and what that leaves for the colour beneath.
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/vec.h"
-#include "simulator/rgb.h"
+#include "simulator/base/rgb.h"
 
 namespace weft::simulator {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "core/result.h"
+#include "simulator/base/rgb.h"
 #include "simulator/reflectance/reflectance.h"
-#include "simulator/rgb.h"
 
 namespace weft::simulator {
 

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "core/vec.h"
+#include "simulator/base/rgb.h"
 #include "simulator/reflectance/anisotropic_ggx.h"
 #include "simulator/reflectance/beckmann.h"
 #include "simulator/reflectance/blinn_phong.h"
@@ -14,7 +15,6 @@
 #include "simulator/reflectance/lambert.h"
 #include "simulator/reflectance/multiple_scattering.h"
 #include "simulator/reflectance/oren_nayar.h"
-#include "simulator/rgb.h"
 
 // How a surface reflects: f(l, v) in 1/sr by channel, 1 / pi included, the cosine n.l not. What a light of a
 // given strength gives is pi f (n.l) strength, which for Lambert is albedo strength (n.l). Directions as in

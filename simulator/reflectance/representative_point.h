@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/vec.h"
-#include "simulator/rgb.h"
+#include "simulator/base/rgb.h"
 
 // GGX under a light that is a ball instead of a point. docs/reflectance.md has the error of each way.
 

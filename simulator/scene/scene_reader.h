@@ -20,7 +20,7 @@
 #include "core/image.h"
 #include "core/result.h"
 #include "core/vec.h"
-#include "simulator/rgb.h"
+#include "simulator/base/rgb.h"
 #include "simulator/scene/scene.h"
 #include "simulator/spectra/spectrum.h"
 #include "simulator/targets/range.h"

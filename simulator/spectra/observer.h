@@ -4,7 +4,7 @@
 #include <array>
 
 #include "core/result.h"
-#include "simulator/rgb.h"
+#include "simulator/base/rgb.h"
 #include "simulator/spectra/spectrum.h"
 
 // What three channels make of a reflectance. The camera under a LED and the standard observer under daylight

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
-#include "simulator/rgb.h"
+#include "simulator/base/rgb.h"
 #include "simulator/targets/settings.h"
 
 // What is printed: upright rectangles of one ink each. Boards, charts, scales and markers are all such, so

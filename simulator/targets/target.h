@@ -8,7 +8,7 @@
 
 #include "core/result.h"
 #include "core/vec.h"
-#include "simulator/rgb.h"
+#include "simulator/base/rgb.h"
 #include "simulator/spectra/spectrum.h"
 #include "simulator/targets/pattern.h"
 #include "simulator/targets/settings.h"

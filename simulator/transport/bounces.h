@@ -8,7 +8,7 @@
 #include "core/image.h"
 #include "core/result.h"
 #include "core/vec.h"
-#include "simulator/rgb.h"
+#include "simulator/base/rgb.h"
 #include "simulator/transport/height_mesh.h"
 #include "simulator/transport/rays.h"
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/json_document.h"
-#include "tests/simulator/ptp/client_process.h"
-#include "tests/simulator/rig/small_scene.h"
+#include "tests/virtual_rig/ptp/client_process.h"
+#include "tests/virtual_rig/small_scene.h"
 
 namespace weft::app {
 namespace {

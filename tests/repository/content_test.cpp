@@ -58,7 +58,7 @@ std::vector<std::string> missing_content(std::string_view path, std::string_view
   if (!is_source(path)) return {};
   std::vector<std::string> found;
   const auto lines = lines_of(text);
-  const bool may_be_gpl = path.starts_with("simulator/board/");  // links simavr
+  const bool may_be_gpl = path.starts_with("virtual_rig/board/");  // links simavr
   if (lines.empty() || (lines[0] != kLicenceLine && !(may_be_gpl && lines[0] == kGplLine)))
     found.push_back(place(path, 1) + ": no SPDX line");
   // A kernel's -inl.h is read again for every SIMD target.

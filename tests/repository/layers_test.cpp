@@ -161,7 +161,7 @@ TEST(Layers, AllowWhatTheTableAllows) {
                          {"solver/normals/seed.cpp", "solver/solve.h"},
                          {"material/mips.cpp", "core/image_io/image_io.h"},
                          {"simulator/camera.cpp", "core/lights.h"},
-                         {"simulator/board.cpp", "firmware/protocol/protocol.h"},
+                         {"virtual_rig/board.cpp", "firmware/protocol/protocol.h"},
                          {"app/cli/main.cpp", "simulator/scene/scene.h"},
                          {"bench/solve.cpp", "solver/solve.h"},
                          {"tests/system/demo_test.cpp", "app/cli/options.h"},

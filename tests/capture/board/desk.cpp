@@ -14,8 +14,8 @@
 #include <thread>
 #include <utility>
 
-#include "simulator/terminal/modem_lines.h"
-#include "simulator/terminal/port_name.h"
+#include "virtual_rig/terminal/modem_lines.h"
+#include "virtual_rig/terminal/port_name.h"
 
 namespace weft::test {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "capture/board/led_board.h"
-#include "simulator/board/virtual_board.h"
+#include "virtual_rig/board/virtual_board.h"
 
 namespace weft::test {
 

@@ -15,8 +15,8 @@
 #include "capture/camera/camera_link.h"
 #include "core/files.h"
 #include "simulator/camera/dng_writer.h"
-#include "simulator/ptp/virtual_camera.h"
 #include "tests/capture/raw/dng_bytes.h"
+#include "virtual_rig/ptp/virtual_camera.h"
 
 namespace weft::capture {
 

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "virtual_rig/light/exposure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "core/tiles.h"
+#include "simulator/camera/defects.h"
+#include "simulator/camera/dng_writer.h"
+#include "simulator/camera/saturation.h"
+#include "simulator/camera/sensor.h"
+#include "simulator/effects/random_key.h"
+#include "simulator/sampling/random.h"
+
+namespace weft::simulator {
+namespace {
+
+constexpr double kThroughout = 1 - 1e-9;  // a sum of several pieces may fall short by rounding
+
+struct WeightedPlane {
+  View<const float> plane;
+  double weight;
+};
+
+/// The planes that shine, by what a sample of them adds to the signal.
+std::vector<WeightedPlane> lit_planes(const LightFrames& frames, const GatheredLight& light) {
+  const double gain = light.aperture_gain * light.iso / 100;
+  std::vector<WeightedPlane> planes;
+  for (int led = 1; led <= frames.leds(); ++led) {
+    const double seconds = light.leds_s[static_cast<std::size_t>(led - 1)];
+    if (seconds > 0) planes.push_back({frames.led(led), seconds * gain});
+  }
+  if (light.ambient_s > 0) planes.push_back({frames.ambient(), light.ambient_s * gain});
+  return planes;
+}
+
+/// Where in 0 to `length` a picture that moved by `by` is read: at its border the last filter cell goes on.
+int moved_from(int at, int by, int length) {
+  const int from = at - by;
+  if (from < 0) return from & 1;
+  return from < length ? from : length - 2 + (from & 1);
+}
+
+Sensor sensor_at(const LightFrames& frames, double iso) {
+  CameraSettings camera = frames.scene().camera;
+  camera.iso = iso;
+  return sensor_of(camera);
+}
+
+/// One exposure's way from light to counts, rows of a tile at a time.
+class ReadOut {
+ public:
+  ReadOut(const LightFrames& frames, const GatheredLight& light)
+      : frames_(frames),
+        light_(light),
+        planes_(lit_planes(frames, light)),
+        sensor_(sensor_at(frames, light.iso)),
+        effects_(frames.scene().effects),
+        key_(random_key(frames.scene())) {
+    if (effects_.bloom) bloom_ = bloom_kernel(frames.scene().camera.bloom);
+    if (effects_.nonlinearity) {
+      bend_ = *NonLinearity::of(frames.scene().camera.linearity);  // plan_of() has proved it
+    }
+    for (int x = 0; x < frames.size().width; ++x) {
+      column_.push_back(static_cast<std::size_t>(moved_from(x, light.move_x, frames.size().width)));
+    }
+  }
+
+  /// The signal of a row, or of one beyond the frame, where nothing is.
+  void fill_signal(int y, int x0, std::span<double> signal) const {
+    std::fill(signal.begin(), signal.end(), 0.0);
+    const Size size = frames_.size();
+    if (y < 0 || y >= size.height) return;
+    const int from_y = moved_from(y, light_.move_y, size.height);
+    const std::size_t* column = &column_[static_cast<std::size_t>(x0)];
+    for (const WeightedPlane& lit : planes_) {
+      const float* row = lit.plane.row(from_y);
+      for (std::size_t i = 0; i < signal.size(); ++i) {
+        signal[i] += lit.weight * static_cast<double>(row[column[i]]);
+      }
+    }
+  }
+
+  void read(Rect tile, View<std::uint16_t> counts) const {
+    const Rect rect = grown_in_rows_by_bloom(tile);
+    const auto width = static_cast<std::size_t>(tile.width());
+    std::vector<double> samples(static_cast<std::size_t>(rect.pixels()));
+    std::vector<Photosite> photosites(frames_.has_photosites() ? width : 0);
+    for (int y = rect.y0; y < rect.y1; ++y) {
+      const std::span row = row_of(samples, rect, y);
+      fill_signal(y, tile.x0, row);
+      if (photosites.empty() || y < 0 || y >= frames_.size().height) continue;
+      fill_photosites(y, tile.x0, photosites);
+      expose(photosites, light_.dark_s, sensor_.electrons_at_white, row);
+    }
+    if (effects_.bloom) {
+      std::vector<double> kept(static_cast<std::size_t>(tile.pixels()));
+      bloom(bloom_, 1, samples, tile, kept);
+      samples = std::move(kept);
+    }
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      const std::span row = row_of(samples, tile, y);
+      if (effects_.noise) add_noise(y, tile.x0, row);
+      if (bend_) {
+        for (double& sample : row) sample = bend_->distorted(sample);
+      }
+      if (effects_.uneven_response) {
+        fill_photosites(y, tile.x0, photosites);
+        add_black_pattern(photosites, sensor_.white - sensor_.black, row);
+      }
+      std::transform(row.begin(), row.end(), counts.row(y) + tile.x0,
+                     [&](double sample) { return count_of(sensor_, sample); });
+    }
+  }
+
+ private:
+  Rect grown_in_rows_by_bloom(Rect r) const {
+    return {r.x0, r.y0 - bloom_.radius(), r.x1, r.y1 + bloom_.radius()};
+  }
+
+  static std::span<double> row_of(std::vector<double>& samples, Rect rect, int y) {
+    const auto width = static_cast<std::size_t>(rect.width());
+    return std::span(samples).subspan(static_cast<std::size_t>(y - rect.y0) * width, width);
+  }
+
+  void fill_photosites(int y, int x0, std::span<Photosite> photosites) const {
+    const float* response = frames_.response().row(y) + x0;
+    const float* dark_per_s = frames_.dark_per_s().row(y) + x0;
+    const float* offset_counts = frames_.offset_counts().row(y) + x0;
+    for (std::size_t i = 0; i < photosites.size(); ++i) {
+      photosites[i] = {static_cast<double>(response[i]), static_cast<double>(dark_per_s[i]),
+                       static_cast<double>(offset_counts[i])};
+    }
+  }
+
+  void add_noise(int y, int x0, std::span<double> row) const {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const auto x = static_cast<std::uint32_t>(x0) + static_cast<std::uint32_t>(i);
+      row[i] = noisy(sensor_, row[i], philox({x, static_cast<std::uint32_t>(y), light_.noise_key, 0}, key_));
+    }
+  }
+
+  const LightFrames& frames_;
+  const GatheredLight& light_;
+  std::vector<WeightedPlane> planes_;
+  Sensor sensor_;
+  EffectSettings effects_;
+  std::array<std::uint32_t, 2> key_;
+  BloomKernel bloom_;
+  std::optional<NonLinearity> bend_;
+  std::vector<std::size_t> column_;  ///< of the planes, by column of the picture
+};
+
+RawFrame frame_head(const LightFrames& frames, const CameraExposure& exposure, const std::string& serial) {
+  RawFrame frame;
+  const Sensor& sensor = frames.rig().sensor;
+  const DefectSettings defects = defects_of(frames.scene());
+  for (std::size_t y = 0; y < 2; ++y) {
+    for (std::size_t x = 0; x < 2; ++x) {
+      frame.black[y][x] = static_cast<float>(sensor.black + defects.cell_counts[y][x]);
+    }
+  }
+  frame.white = static_cast<float>(sensor.white);
+  frame.shot = {sensor.make,  sensor.model,      serial,         exposure.exposure_us,
+                exposure.iso, exposure.f_number, kFocalLength_mm};
+  return frame;
+}
+
+}  // namespace
+
+std::vector<double> lit_shares(const LitLog& pins, RigClock::time_point from, RigClock::time_point to,
+                               int leds) {
+  const double open_s = std::chrono::duration<double>(to - from).count();
+  std::vector<double> shares = pins.lit_seconds(from, to, leds);
+  for (double& share : shares) {
+    share = open_s > 0 ? share / open_s : 0;
+    if (share > kThroughout) share = 1;
+  }
+  return shares;
+}
+
+GatheredLight gathered_light(const LightFrames& frames, const std::vector<double>& pin_shares,
+                             const LightFaults& faults, const CameraExposure& exposure) {
+  const Scene& scene = frames.scene();
+  // Another time than the scene's gathers what its shutter makes of it, as in simulate_photograph().
+  const bool is_nominal = exposure.exposure_us == frames.rig().exposure_us;
+  const double exposure_s =
+      exposure.exposure_us * 1e-6 * (is_nominal ? 1 : 1 + scene.camera.retakes.shutter_error);
+  GatheredLight light;
+  light.leds_s = with_faults(faults, pin_shares);
+  for (std::size_t k = 0; k < light.leds_s.size(); ++k) {
+    light.leds_s[k] *= exposure_s;
+    if (faults.flicker == 0) continue;
+    const auto led = static_cast<std::uint32_t>(k);
+    const NormalPair normal =
+        normal_pair(philox({exposure.image_number, led, kFlickerStream, 1}, random_key(scene)));
+    light.leds_s[k] *= std::max(1 + faults.flicker * normal.first, 0.0);
+  }
+  light.ambient_s = exposure_s * ((scene.effects.ambient ? scene.lights.ambient : 0) + faults.ambient);
+  light.dark_s = exposure_s;
+  light.iso = exposure.iso;
+  const double stops = exposure.f_number > 0 ? scene.camera.f_number / exposure.f_number : 1;
+  light.aperture_gain = stops * stops;
+  light.noise_key = exposure.image_number;
+  light.move_x = faults.move_x;
+  light.move_y = faults.move_y;
+  return light;
+}
+
+Image<std::uint16_t> read_out(const LightFrames& frames, const GatheredLight& light, int threads) {
+  const ReadOut sensor(frames, light);
+  Image<std::uint16_t> counts(frames.size());
+  const Rect whole = {0, 0, frames.size().width, frames.size().height};
+  // Nothing stops it: an exposure is under a second.
+  const Result<void> done = for_each_tile(whole, {.threads = threads}, {},
+                                          [&](Rect tile, int) { sensor.read(tile, counts.plane()); });
+  static_cast<void>(done);
+  return counts;
+}
+
+Image<double> signal_of(const LightFrames& frames, const GatheredLight& light) {
+  const ReadOut sensor(frames, light);
+  Image<double> signal(frames.size());
+  for (int y = 0; y < signal.height(); ++y) {
+    sensor.fill_signal(y, 0, {signal.plane().row(y), static_cast<std::size_t>(signal.width())});
+  }
+  return signal;
+}
+
+Result<std::vector<std::uint8_t>> develop(const LightFrames& frames, const GatheredLight& light,
+                                          const CameraExposure& exposure, const std::string& serial,
+                                          int threads) {
+  RawFrame frame = frame_head(frames, exposure, serial);
+  frame.counts = read_out(frames, light, threads);
+  DngTags tags;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Rgb& balance = frames.scene().lights.white_balance;
+    tags.as_shot_neutral[c] = balance[c] / balance[1];
+  }
+  tags.date_time_original = exposure.date_time;
+  tags.milliseconds = exposure.milliseconds;
+  tags.image_number = exposure.image_number;
+  return dng_bytes(frame, tags);
+}
+
+}  // namespace weft::simulator

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/result.h"
+#include "virtual_rig/board/lit_log.h"
+#include "virtual_rig/light/light_faults.h"
+#include "virtual_rig/light/light_frames.h"
+#include "virtual_rig/ptp/virtual_camera.h"
+
+namespace weft::simulator {
+
+/// What a sensor is exposed to, and what it draws its noise by.
+struct GatheredLight {
+  std::vector<double> leds_s;  ///< seconds of each LED's full light
+  double ambient_s = 0;        ///< of LightFrames::ambient()
+  double dark_s = 0;           ///< seconds in which charge gathers by warmth
+  double iso = 100;
+  double aperture_gain = 1;     ///< light of this aperture over that of the scene's
+  std::uint32_t noise_key = 0;  ///< the same light under the same key gives the same counts
+  int move_x = 0;               ///< LightFaults
+  int move_y = 0;
+};
+
+/// Share of the time between the two that each LED's pin was on for. A pin that was on throughout counts 1
+/// exactly, however long that was: shutters of a virtual camera are never late.
+std::vector<double> lit_shares(const LitLog& pins, RigClock::time_point from, RigClock::time_point to,
+                               int leds);
+
+/// What an exposure gathers that opens while pins are on for these shares of it.
+GatheredLight gathered_light(const LightFrames& frames, const std::vector<double>& pin_shares,
+                             const LightFaults& faults, const CameraExposure& exposure);
+
+/// What the photosites read: sum of light, charge, bloom, noise, non-linearity and converter as the scene
+/// names them, by the same arithmetic and with the same random numbers as a simulated session's take
+/// `noise_key`. `threads`: 0 for all the machine has; changes no byte. Beyond the frame nothing blooms.
+Image<std::uint16_t> read_out(const LightFrames& frames, const GatheredLight& light, int threads = 0);
+
+/// The signal that read_out() starts from, 1 at full scale: without noise and before anything clips.
+Image<double> signal_of(const LightFrames& frames, const GatheredLight& light);
+
+/// The exposure as DNG.
+Result<std::vector<std::uint8_t>> develop(const LightFrames& frames, const GatheredLight& light,
+                                          const CameraExposure& exposure, const std::string& serial,
+                                          int threads = 0);
+
+}  // namespace weft::simulator

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "virtual_rig/program/run.h"
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/signalfd.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <future>
+#include <optional>
+#include <string_view>
+
+#include "app/cli/exit_code.h"
+#include "core/files.h"
+#include "virtual_rig/program/background.h"
+#include "virtual_rig/program/spawn.h"
+
+namespace weft::app {
+namespace {
+
+using simulator::VirtualRig;
+using std::chrono::steady_clock;
+
+constexpr int kPoll_ms = 100;
+constexpr std::chrono::seconds kGrace(10);
+constexpr pid_t kNoParent = 0;
+
+/// SIGINT, SIGTERM and SIGCHLD as a descriptor: no thread is interrupted by them.
+class Signals {
+ public:
+  Signals() {
+    sigemptyset(&set_);
+    for (const int signal : {SIGINT, SIGTERM, SIGCHLD}) sigaddset(&set_, signal);
+    ::pthread_sigmask(SIG_BLOCK, &set_, &before_);
+    fd_ = ::signalfd(-1, &set_, SFD_CLOEXEC | SFD_NONBLOCK);
+  }
+  ~Signals() {
+    ::close(fd_);
+    ::pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+  Signals(const Signals&) = delete;
+  Signals& operator=(const Signals&) = delete;
+
+  int descriptor() const { return fd_; }
+  const sigset_t& before() const { return before_; }
+  /// The next one that has come, if any; a child's end is none.
+  std::optional<int> take() const {
+    signalfd_siginfo info = {};
+    while (::read(fd_, &info, sizeof info) == static_cast<ssize_t>(sizeof info)) {
+      if (info.ssi_signo != SIGCHLD) return static_cast<int>(info.ssi_signo);
+    }
+    return {};
+  }
+
+ private:
+  sigset_t set_ = {}, before_ = {};
+  int fd_ = -1;
+};
+
+/// This process's environment with the rig's in front.
+std::vector<std::string> environment_of(const VirtualRig& rig) {
+  std::vector<std::string> lines = rig.environment();
+  const std::size_t own = lines.size();
+  for (char** inherited = environ; *inherited != nullptr; ++inherited) {
+    const std::string_view line = *inherited;
+    bool is_replaced = false;
+    for (std::size_t i = 0; i < own; ++i) {
+      const std::string_view name = std::string_view(lines[i]).substr(0, lines[i].find('=') + 1);
+      is_replaced = is_replaced || line.starts_with(name);
+    }
+    if (!is_replaced) lines.emplace_back(line);
+  }
+  return lines;
+}
+
+/// A program that runs inside the rig's environment; it does not outlive this object.
+class Child {
+ public:
+  static Result<Child> start(const VirtualRig& rig, std::vector<std::string> command, const sigset_t& mask) {
+    std::vector<std::string> environment = environment_of(rig);
+    posix_spawnattr_t settings;
+    ::posix_spawnattr_init(&settings);
+    sigset_t defaults;
+    sigemptyset(&defaults);
+    sigaddset(&defaults, SIGPIPE);
+    ::posix_spawnattr_setsigdefault(&settings, &defaults);
+    ::posix_spawnattr_setsigmask(&settings, &mask);
+    ::posix_spawnattr_setflags(&settings, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
+    pid_t id = -1;
+    const int failed = ::posix_spawnp(&id, command[0].c_str(), nullptr, &settings,
+                                      pointers_to(command).data(), pointers_to(environment).data());
+    ::posix_spawnattr_destroy(&settings);
+    if (failed == 0) return Child(id);
+    return Error{ErrorKind::kNoInput, "cannot run", command[0], system_reason(failed),
+                 "name a program and its arguments after --"};
+  }
+  Child(Child&& other) noexcept : id_(std::exchange(other.id_, -1)) {}
+  Child& operator=(Child&&) = delete;
+  ~Child() { end(); }
+
+  /// Its exit code, once it has ended.
+  std::optional<int> ended() {
+    int status = 0;
+    if (id_ < 0 || ::waitpid(id_, &status, WNOHANG) != id_) return {};
+    id_ = -1;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  }
+
+  void end() {
+    if (id_ < 0) return;
+    ::kill(id_, SIGTERM);
+    const auto until = steady_clock::now() + kGrace;
+    while (!ended() && steady_clock::now() < until) ::usleep(10000);
+    if (id_ < 0) return;
+    ::kill(id_, SIGKILL);
+    ::waitpid(id_, nullptr, 0);
+  }
+
+ private:
+  explicit Child(pid_t id) : id_(id) {}
+  pid_t id_;
+};
+
+/// VirtualRig::start() that a signal ends.
+Result<std::unique_ptr<VirtualRig>> start_rig(simulator::VirtualRigOptions options, const Signals& signals) {
+  std::stop_source stop;
+  options.render.stop = stop.get_token();
+  options.render.progress = [last = -1](int done, int rows) mutable {
+    const int tenth = 10 * done / rows;
+    if (std::exchange(last, tenth) != tenth) fmt::print(stderr, "rendering light: {} %\n", 10 * tenth);
+  };
+  auto starting = std::async(std::launch::async, [&options] { return VirtualRig::start(options); });
+  while (starting.wait_for(std::chrono::milliseconds(kPoll_ms)) != std::future_status::ready) {
+    if (signals.take()) stop.request_stop();
+  }
+  return starting.get();
+}
+
+void say_ready(const VirtualRig& rig, const std::filesystem::path& folder) {
+  for (const std::string& left_out : rig.frames().left_out()) {
+    fmt::print(stderr, "left out: {}\n", left_out);
+  }
+  const Size size = rig.frames().size();
+  fmt::print(
+      "READY {0}\n"
+      "  {1} LEDs, {2} x {3} pixels; light from {4}\n"
+      "  rig file        {0}/rig.toml\n"
+      "  use it          env $(cat {0}/environment) weft scan --fabric NAME\n"
+      "  break it        weft-virtual-rig --folder {0} --inject \"board unplug\"\n"
+      "  end it          Ctrl-C, or weft-virtual-rig --folder {0} --inject end\n",
+      folder.string(), rig.frames().leds(), size.width, size.height, rig.frames().folder().string());
+  std::fflush(stdout);
+}
+
+/// Until a signal (its number), "end" (nothing) or the end of the parent or child (nothing, or its code).
+Result<int> wait_for_end(const VirtualRig& rig, Child* child, const Signals& signals, pid_t parent) {
+  while (true) {
+    std::array<pollfd, 2> waiting = {pollfd{signals.descriptor(), POLLIN, 0},
+                                     pollfd{rig.end_descriptor(), POLLIN, 0}};
+    ::poll(waiting.data(), waiting.size(), kPoll_ms);
+    if (signals.take()) return child != nullptr ? kInterruptedError : kDone;
+    if (waiting[1].revents != 0) return kDone;
+    if (child != nullptr) {
+      if (const std::optional<int> code = child->ended()) return *code;
+    }
+    if (parent != kNoParent && ::getppid() != parent) return kDone;
+  }
+}
+
+}  // namespace
+
+Result<int> run_virtual_rig(const simulator::VirtualRigOptions& options,
+                            const std::vector<std::string>& command, int ready) {
+  const Signals signals;
+  const pid_t parent = ::getppid();
+  Result<std::unique_ptr<VirtualRig>> rig = start_rig(options, signals);
+  if (!rig) return rig.error();
+  if (command.empty()) {
+    say_ready(**rig, std::filesystem::absolute(options.folder).lexically_normal());
+    detach(ready);
+    return wait_for_end(**rig, nullptr, signals, ready < 0 ? parent : kNoParent);
+  }
+  Result<Child> child = Child::start(**rig, command, signals.before());
+  if (!child) return child.error();
+  return wait_for_end(**rig, &*child, signals, parent);
+}
+
+}  // namespace weft::app

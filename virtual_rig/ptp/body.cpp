@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "virtual_rig/ptp/body.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "virtual_rig/ptp/codes.h"
+
+namespace weft::simulator::ptp {
+namespace {
+
+constexpr std::uint32_t kAnyStore = 0xffffffff, kAtRoot = 0xffffffff;
+
+constexpr std::array kOperations = {kGetDeviceInfo,      kOpenSession,
+                                    kCloseSession,       kGetStorageIds,
+                                    kGetStorageInfo,     kGetNumObjects,
+                                    kGetObjectHandles,   kGetObjectInfo,
+                                    kGetObject,          kGetThumb,
+                                    kDeleteObject,       kInitiateCapture,
+                                    kGetDevicePropDesc,  kGetDevicePropValue,
+                                    kSetDevicePropValue, kGetPartialObject,
+                                    kCaptureRecInSdram,  kAfDrive,
+                                    kChangeCameraMode,   kDeleteSdramImage,
+                                    kGetEvent,           kDeviceReady,
+                                    kGetVendorPropCodes, kAfCaptureSdram,
+                                    kEndLiveView,        kInitiateCaptureRecInMedia};
+
+Answer with_data(Bytes bytes) {
+  return {.data = Payload::of(std::move(bytes))};
+}
+
+Answer with_array(const std::vector<std::uint32_t>& values) {
+  return with_data(ByteWriter().put_array(values).take());
+}
+
+constexpr double kHalfSent_s = 0.02;  // half of a picture is on its way by then
+
+Delivery delivery_of(Fault in_transfer) {
+  switch (in_transfer) {
+    case Fault::kDropInData:
+      return Delivery::kHalfThenHangUp;
+    case Fault::kDataStalls:
+    case Fault::kPowerOffInData:
+    case Fault::kUsbUnplugInData:
+      return Delivery::kHalfThenNothing;
+    case Fault::kDataEndsEarly:
+      return Delivery::kHalfAsWhole;
+    case Fault::kUsbTimeout:
+      return Delivery::kTimeOut;
+    default:
+      return Delivery::kWhole;
+  }
+}
+
+}  // namespace
+
+Body::Body(const VirtualCameraOptions& options, DevelopExposure develop)
+    : options_(options),
+      develop_(std::move(develop)),
+      properties_(options.battery, options.dial_manual, options.raw, options.clock_offset_s),
+      image_number_(options.shots_before) {
+  const auto folder = [this](std::uint32_t handle, std::uint32_t parent, const char* name) {
+    objects_[handle] = {.facts = {.storage = kStore, .format = kFolder, .parent = parent, .name = name}};
+  };
+  folder(kDcimFolder, 0, "DCIM");
+  folder(kPicturesFolder, kDcimFolder, "100D5100");
+}
+
+void Body::attach(Link* network, Link* usb) {
+  const std::lock_guard lock(mutex_);
+  network_ = network;
+  usb_ = usb;
+  update_presence();
+}
+
+Answer Body::transact(const Request& request, BytesView data) {
+  const std::lock_guard lock(mutex_);
+  if (!powered_) return {.delivery = Delivery::kHangUp};
+  return serve(request, data);
+}
+
+bool Body::admit_to_network() {
+  const std::lock_guard lock(mutex_);
+  ++connections_;
+  session_silent_ = faults_.take(Fault::kOpenSessionSilent, connections_);
+  return powered_ && !faults_.take(Fault::kInitFail, connections_);
+}
+
+bool Body::admit_to_usb() {
+  const std::lock_guard lock(mutex_);
+  if (RigClock::now() < claimed_until_) return false;
+  ++connections_;
+  stuck_ = false;
+  session_silent_ = faults_.take(Fault::kOpenSessionSilent, connections_);
+  if (faults_.take(Fault::kUsbStaleSession, connections_)) session_open_ = true;
+  if (!faults_.take(Fault::kUsbClaimed, connections_)) return true;
+  claimed_until_ = RigClock::now() + std::chrono::duration_cast<RigClock::duration>(
+                                         std::chrono::duration<double>(options_.away_s));
+  return false;
+}
+
+void Body::end_session() {
+  const std::lock_guard lock(mutex_);
+  session_open_ = stuck_ = false;
+}
+
+void Body::pull_cable() {
+  const std::lock_guard lock(mutex_);
+  break_link();
+}
+
+int Body::shots() const {
+  const std::lock_guard lock(mutex_);
+  return static_cast<int>(image_number_ - options_.shots_before);
+}
+
+Answer Body::serve(const Request& request, BytesView data) {
+  const auto [first, second, third, fourth, fifth] = request.parameters;
+  const std::uint16_t operation = request.operation;
+  if (std::ranges::find(kOperations, operation) == kOperations.end()) return {.code = kOperationNotSupported};
+  if (operation == kOpenSession) return open_session();
+  if (operation == kGetDeviceInfo)
+    return with_data(device_info(
+        {options_.serial,
+         {kOperations.begin(), kOperations.end()},
+         {kObjectAdded, kDevicePropChanged, kCaptureComplete, kObjectAddedInSdram, kCaptureCompleteInSdram},
+         properties_.codes(false)}));
+  if (!session_open_) return {.code = kSessionNotOpen};
+  switch (operation) {
+    case kCloseSession:
+      session_open_ = stuck_ = false;
+      return {};
+    case kGetStorageIds:
+      return with_array({kStore});
+    case kGetStorageInfo:
+      return first == kStore ? with_data(storage_info()) : Answer{.code = kInvalidStorage};
+    case kGetNumObjects:
+    case kGetObjectHandles:
+      return object_handles(request);
+    case kGetObjectInfo:
+      return object_info(first);
+    case kGetObject:
+      return object(first, 0, ~std::uint64_t{0});
+    case kGetPartialObject:
+      return object(first, second, third);
+    case kGetThumb:
+      return {.code = kNoThumbnail};
+    case kDeleteObject:
+    case kDeleteSdramImage:
+      return delete_object(first);
+    case kGetDevicePropDesc:
+    case kGetDevicePropValue:
+    case kSetDevicePropValue:
+      return property(request, data);
+    case kGetVendorPropCodes:
+      return with_data(ByteWriter().put_array(properties_.codes(true)).take());
+    case kGetEvent:
+      return events();
+    case kDeviceReady:
+      return ready();
+    case kInitiateCapture:
+      return capture(false);
+    case kInitiateCaptureRecInMedia:
+      return capture(second == 1);
+    case kCaptureRecInSdram:
+    case kAfCaptureSdram:
+      return capture(true);
+    default:  // autofocus, camera mode, live view: nothing to see of them
+      return {};
+  }
+}
+
+Answer Body::open_session() {
+  if (session_silent_) return {.delivery = Delivery::kNothing};
+  if (session_open_) return {.code = kSessionAlreadyOpen};
+  session_open_ = true;
+  return {};
+}
+
+Answer Body::object_handles(const Request& request) const {
+  const auto [store, format, parent, unused, unused_too] = request.parameters;
+  if (store != kStore && store != kAnyStore) return {.code = kInvalidStorage};
+  std::vector<std::uint32_t> handles;
+  for (const auto& [handle, picture] : objects_) {
+    const bool inside = parent == 0 || picture.facts.parent == (parent == kAtRoot ? 0 : parent);
+    if (picture.facts.storage == kStore && inside) handles.push_back(handle);
+  }
+  if (request.operation == kGetObjectHandles) return with_array(handles);
+  return {.parameters = {static_cast<std::uint32_t>(handles.size())}};
+}
+
+Answer Body::object_info(std::uint32_t handle) {
+  const auto found = objects_.find(handle);
+  if (found == objects_.end()) return {.code = kInvalidObject};
+  Picture& picture = found->second;
+  if (picture.in_transfer == Fault::kDropBeforeObject) {
+    picture.in_transfer.reset();
+    break_link();
+    return {.delivery = Delivery::kHangUp};
+  }
+  return with_data(ptp::object_info(picture.facts));
+}
+
+Answer Body::object(std::uint32_t handle, std::uint64_t offset, std::uint64_t most) {
+  const auto found = objects_.find(handle);
+  if (found == objects_.end() || !found->second.bytes) return {.code = kInvalidObject};
+  Picture& picture = found->second;
+  const BytesView all = *picture.bytes;
+  if (offset > all.size()) return {.code = kInvalidParameter};
+  const BytesView part = all.subspan(offset, std::min<std::uint64_t>(most, all.size() - offset));
+  Answer answer = {.parameters = {static_cast<std::uint32_t>(part.size())},
+                   .data = Payload{picture.bytes, part}};
+  if (const auto fault = std::exchange(picture.in_transfer, std::nullopt)) {
+    answer.delivery = delivery_of(*fault);
+    if (fault == Fault::kPowerOffInData) after(kHalfSent_s, [this] { set_power(false); });
+    if (fault == Fault::kUsbUnplugInData) after(kHalfSent_s, [this] { unplug(); });
+  }
+  const bool in_memory = picture.facts.storage == kMemory;
+  if (in_memory) objects_.erase(found);  // what has been fetched makes room
+  return answer;
+}
+
+Answer Body::delete_object(std::uint32_t handle) {
+  const auto found = objects_.find(handle);
+  if (found == objects_.end()) return {.code = kInvalidObject};
+  if (found->second.facts.format == kFolder) return {.code = kAccessDenied};
+  objects_.erase(found);
+  return {};
+}
+
+Answer Body::property(const Request& request, BytesView data) {
+  const auto code = static_cast<std::uint16_t>(request.parameters[0]);
+  if (request.operation == kSetDevicePropValue) {
+    const Response response = properties_.set(code, data);
+    if (response == kOk && code == kShutterSpeed) tell_changes({kExposureTime});
+    if (response == kOk && code == kExposureTime) tell_changes({kShutterSpeed});
+    return {.code = response};
+  }
+  std::optional<Bytes> bytes =
+      request.operation == kGetDevicePropDesc ? properties_.description(code) : properties_.value(code);
+  return bytes ? with_data(*std::move(bytes)) : Answer{.code = kPropertyNotSupported};
+}
+
+Answer Body::events() {
+  ByteWriter writer;
+  writer.put(static_cast<std::uint16_t>(notices_.size()));
+  for (const Notice& notice : notices_)
+    writer.put(static_cast<std::uint16_t>(notice.event)).put(notice.parameter);
+  notices_.clear();
+  return with_data(writer.take());
+}
+
+Answer Body::ready() {
+  if (std::exchange(undeveloped_, false)) return {.code = kGeneralError};
+  return {.code = busy() ? kDeviceBusy : kOk};
+}
+
+bool Body::busy() const {
+  return exposing_ || stuck_ || RigClock::now() < busy_until_;
+}
+
+Answer Body::capture(bool to_memory) {
+  if (busy()) return {.code = kDeviceBusy};
+  ++captures_;
+  if (faults_.take(Fault::kNoAnswer, captures_)) {
+    befall_before_next();
+    return {.delivery = Delivery::kNothing};
+  }
+  if (faults_.take(Fault::kCaptureBusy, captures_)) {
+    busy_until_ = RigClock::now() + std::chrono::seconds(2);
+    befall_before_next();
+    return {.code = kDeviceBusy};
+  }
+  const Exposure exposure = expose(to_memory);
+  const auto half = exposure.camera.opened + (exposure.camera.closed - exposure.camera.opened) / 2;
+  timeline_.at(half, [this, exposure] { half_exposed(exposure); });
+  timeline_.at(exposure.camera.closed, [this, exposure] { close_shutter(exposure); });
+  return {};
+}
+
+}  // namespace weft::simulator::ptp

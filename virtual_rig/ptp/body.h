@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <initializer_list>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "virtual_rig/ptp/dataset.h"
+#include "virtual_rig/ptp/faults.h"
+#include "virtual_rig/ptp/link.h"
+#include "virtual_rig/ptp/properties.h"
+#include "virtual_rig/ptp/timeline.h"
+#include "virtual_rig/ptp/virtual_camera.h"
+
+namespace weft::simulator::ptp {
+
+/// A D5100 behind its sockets: session, properties, pictures and exposures in real time. Links bring it
+/// operations; it does not know which. Safe from any thread.
+class Body {
+ public:
+  Body(const VirtualCameraOptions& options, DevelopExposure develop);
+
+  /// The ways to it, from now on; either may be missing.
+  void attach(Link* network, Link* usb);
+  /// No exposure goes on from now on, and none of what is still to befall does.
+  void stop() { timeline_.stop(); }
+
+  Answer transact(const Request& request, BytesView data);
+
+  /// A host has connected. False: it is turned away.
+  bool admit_to_network();
+  /// A host wants the interface. False: another program has it.
+  bool admit_to_usb();
+  /// The host went without closing its session, and the link tells so. (On USB a killed host's stays open.)
+  void end_session();
+  /// The cable is out, and in again after a while.
+  void pull_cable();
+
+  void inject(const FaultKind& kind, int shot);
+  int shots() const;
+
+ private:
+  struct Picture {
+    ObjectFacts facts;
+    std::shared_ptr<const Bytes> bytes = {};
+    std::optional<Fault> in_transfer = {};
+  };
+  struct Exposure {
+    int shot = 0;  ///< by the count that faults go by
+    bool to_memory = false;
+    int power_cycle = 0;
+    CameraExposure camera = {};
+    std::string date = {};
+  };
+  struct Notice {
+    Event event;
+    std::uint32_t parameter;
+  };
+
+  Answer serve(const Request& request, BytesView data);
+  Answer open_session();
+  Answer object_handles(const Request& request) const;
+  Answer object_info(std::uint32_t handle);
+  Answer object(std::uint32_t handle, std::uint64_t offset, std::uint64_t most);
+  Answer delete_object(std::uint32_t handle);
+  Answer property(const Request& request, BytesView data);
+  Answer events();
+  Answer ready();
+  Answer capture(bool to_memory);
+
+  bool busy() const;
+  Exposure expose(bool to_memory);
+  void half_exposed(const Exposure& exposure);
+  void close_shutter(const Exposure& exposure);
+  Result<Bytes> develop(const Exposure& exposure);
+  void keep(const Exposure& exposure, Bytes file);
+  std::uint32_t new_handle(bool to_memory) const;
+  void announce_later(const std::vector<Notice>& notices);
+
+  void befall_before_next();
+  void befall(Fault fault);
+  void tell_changes(std::initializer_list<PropertyCode> codes);
+  void break_link();
+  void unplug();
+  void set_power(bool on);
+  void update_presence();
+  void after(double seconds, std::function<void()> action);
+
+  const VirtualCameraOptions options_;
+  const DevelopExposure develop_;
+
+  mutable std::mutex mutex_;
+  Link* network_ = nullptr;
+  Link* usb_ = nullptr;
+  PropertyTable properties_;
+  FaultSchedule faults_;
+  std::map<std::uint32_t, Picture> objects_;
+  std::deque<Notice> notices_;
+  std::shared_ptr<const Bytes> last_file_;  ///< kept only where it is to come again
+  int captures_ = 0;
+  int connections_ = 0;
+  std::uint32_t image_number_;
+  int power_cycles_ = 0;
+  bool powered_ = true, cable_in_ = true, port_open_ = true;
+  bool session_open_ = false, session_silent_ = false;
+  bool exposing_ = false, stuck_ = false, undeveloped_ = false;
+  RigClock::time_point busy_until_ = {}, claimed_until_ = {};
+  Timeline timeline_;  // last: ends before what it uses
+};
+
+}  // namespace weft::simulator::ptp

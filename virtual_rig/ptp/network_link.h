@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+#include "core/result.h"
+#include "virtual_rig/ptp/body.h"
+#include "virtual_rig/ptp/link.h"
+#include "virtual_rig/ptp/socket.h"
+
+namespace weft::simulator::ptp {
+
+/// PTP/IP on 127.0.0.1: one host at a time, operations and events on a connection each.
+class NetworkLink : public Link {
+ public:
+  /// Keeps the port from now on, free or not free to connect to. 0: any. kTryAgain if another program has it.
+  static Result<std::unique_ptr<NetworkLink>> make(Body& body, std::uint16_t port);
+
+  std::uint16_t port() const { return port_; }
+
+  void hang_up() override { connections_.hang_up(); }
+  void set_present(bool present) override { acceptor_.set_open(present); }
+  void announce(Event event, std::uint32_t parameter) override;
+
+ private:
+  NetworkLink(Body& body, Descriptor bound, std::uint16_t port);
+  void serve(int fd);
+  void serve_host(int fd);
+  void serve_events(int fd);
+  bool take_seat();
+  void leave_seat();
+
+  Body& body_;
+  const Descriptor bound_;  ///< never listens: it keeps the port while the camera is off
+  const std::uint16_t port_;
+  std::mutex mutex_;
+  std::condition_variable left_;
+  bool taken_ = false;
+  int events_fd_ = -1;
+  Connections connections_;
+  Acceptor acceptor_;  // last: ends first
+};
+
+}  // namespace weft::simulator::ptp

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/result.h"
+#include "virtual_rig/board/lit_log.h"
+
+namespace weft::simulator {
+
+/// One exposure that the camera has just ended.
+struct CameraExposure {
+  RigClock::time_point opened, closed;  ///< of the shutter
+  double exposure_us = 0;
+  double iso = 0;
+  double f_number = 0;
+  std::uint32_t image_number = 0;  ///< the body's count of shots
+  std::string date_time;           ///< by its clock, "2026:01:31 23:59:58"
+  int milliseconds = 0;            ///< of that
+};
+
+/// Makes the file of an exposure: its bytes. Called on a thread of the camera's; what it takes is read-out.
+using DevelopExposure = std::function<Result<std::vector<std::uint8_t>>(const CameraExposure&)>;
+
+struct VirtualCameraOptions {
+  std::string serial = "6000001";
+  Size size = {};         ///< what it says its pictures are
+  double battery = 0.87;  ///< share left
+  bool dial_manual = true;
+  bool raw = true;                 ///< set to raw when it is switched on
+  double clock_offset_s = 0;       ///< of its clock to this machine's
+  std::uint32_t shots_before = 0;  ///< its image numbers follow these
+  std::uint16_t port = 0;          ///< PTP/IP on 127.0.0.1; 0: a free one
+  std::filesystem::path usb = {};  ///< a socket for the libusb stand-in; empty: no USB
+  double away_s = 2;               ///< how long what is pulled out or switched off by a fault is away
+  double late_s = 8;               ///< how late a picture is that comes late
+};
+
+/// What may befall a camera, from the next step of its kind on. `shot` counts from 1 from now on.
+struct CameraFault {
+  std::string name;  ///< "drop_in_exposure", ...: every row of the fault table; camera_faults() lists them
+  int shot = 1;      ///< befalls this one; for faults of a connection: this connection
+};
+/// Names and a sentence each.
+const std::vector<std::pair<std::string, std::string>>& camera_faults();
+
+/// A D5100 as libgphoto2 meets one: PTP (ISO 15740) over PTP/IP (CIPA DC-005) and, by the stand-in for
+/// libusb, over USB; one body, so that what one link does the other sees.
+class VirtualCamera {
+ public:
+  static Result<std::unique_ptr<VirtualCamera>> start(const VirtualCameraOptions& options,
+                                                      DevelopExposure develop);
+  virtual ~VirtualCamera() = default;
+  virtual std::uint16_t port() const = 0;
+  /// Exposures since it was made.
+  virtual int shots() const = 0;
+  /// kUsage for an unknown name and for a shot below 1.
+  virtual Result<void> inject(const CameraFault& fault) = 0;
+};
+
+}  // namespace weft::simulator

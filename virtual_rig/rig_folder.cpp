@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "virtual_rig/rig_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <iterator>
+#include <system_error>
+#include <utility>
+
+#include "core/files.h"
+#include "simulator/scene/rig.h"
+
+namespace weft::simulator {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLock = "lock";
+// What a rig makes and takes away again.
+constexpr std::array kMade = {"rig.toml", "calibration", "environment", "home",   "board",
+                              "modem",    "control",     "camera.sock", kFullDisk};
+
+/// A basic string of TOML.
+std::string quoted(const std::string& text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+std::string rig_toml(const LightFrames& frames, const RigFiles& files) {
+  const Scene& scene = frames.scene();
+  return fmt::format(R"(# A virtual rig: what a host is told of it. It ends with the program that made it.
+name = "virtual rig"
+leds = {}
+
+[board]
+port = {}
+
+[camera]
+profile = "nikon-d5100"
+port = {}
+serial = {}
+
+[scan]
+calibration = "calibration"
+iso = {}
+f_number = {}
+cloth_height_mm = {}
+sessions = "scans"
+
+[daemon]
+port = 0
+)",
+                     frames.leds(), quoted(files.board_port), quoted(files.camera_port),
+                     quoted(files.camera_serial), scene.camera.iso, scene.camera.f_number,
+                     scene.geometry.cloth_height_mm);
+}
+
+}  // namespace
+
+Result<RigFolder> RigFolder::take(const fs::path& folder, bool keep_log) {
+  if (Result<void> ok = make_writable_folder(folder); !ok) return ok.error();
+  std::error_code failed;
+  const bool is_new = fs::is_empty(folder, failed);
+  if (failed) return cannot_write(folder, failed.value());
+  if (!is_new && !is_there(folder / kLock)) {
+    return Error{ErrorKind::kCannotCreate, "folder is not a virtual rig's", folder.string(),
+                 "there is something in it", "name another folder, or one that is not there yet"};
+  }
+  const int lock = ::open((folder / kLock).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (lock < 0) return cannot_write(folder / kLock, errno);
+  if (::flock(lock, LOCK_EX | LOCK_NB) != 0) {
+    ::close(lock);
+    return Error{ErrorKind::kTryAgain, "another virtual rig lives there", folder.string(),
+                 "it holds the lock", "name another folder, or end that rig"};
+  }
+  RigFolder taken(fs::absolute(folder, failed).lexically_normal(), lock, keep_log);
+  taken.remove_made();  // what a rig that was killed has left
+  return taken;
+}
+
+RigFolder::RigFolder(RigFolder&& other) noexcept
+    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)), keep_log_(other.keep_log_) {}
+
+RigFolder::~RigFolder() {
+  if (lock_ < 0) return;
+  remove_made();
+  if (!keep_log_) remove(kExposureLog);
+  std::error_code ignored;
+  const auto entries = std::distance(fs::directory_iterator(path_, ignored), fs::directory_iterator());
+  if (entries == 1) {  // the lock: it marks a folder that holds sessions still as a rig's
+    remove(kLock);
+    fs::remove(path_, ignored);
+  }
+  ::close(lock_);
+}
+
+void RigFolder::remove(const char* name) const {
+  std::error_code ignored;
+  fs::remove_all(path_ / name, ignored);
+}
+
+void RigFolder::remove_made() const {
+  for (const char* name : kMade) remove(name);
+}
+
+Result<void> RigFolder::write(const LightFrames& frames, const RigFiles& files) const {
+  Calibration exact = exact_calibration(frames.scene(), frames.rig());
+  exact.subject.camera_serial = files.camera_serial;
+  const Result<Calibration> written = write_calibration(path_ / "calibration", std::move(exact));
+  if (!written) return written.error();
+  if (Result<void> ok = make_writable_folder(path_ / "home"); !ok) return ok;
+  std::string environment;
+  for (const std::string& line : files.environment) environment += line + '\n';
+  if (Result<void> ok = write_file(path_ / "environment", environment); !ok) return ok;
+  return write_file(path_ / "rig.toml", rig_toml(frames, files));
+}
+
+}  // namespace weft::simulator

@@ -1,0 +1,323 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "virtual_rig/virtual_rig.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <fstream>
+#include <mutex>
+#include <numeric>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <utility>
+
+#include "core/files.h"
+#include "virtual_rig/board/virtual_board.h"
+#include "virtual_rig/control_socket.h"
+#include "virtual_rig/light/exposure.h"
+#include "virtual_rig/light/light_faults.h"
+#include "virtual_rig/ptp/virtual_camera.h"
+#include "virtual_rig/rig_folder.h"
+#include "virtual_rig/terminal/port_name.h"
+
+namespace weft::simulator {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kOutputs = 10;  // of the board
+constexpr int kMostShots = 1000000;
+
+struct BoardCommand {
+  const char* name;
+  BoardFault fault;
+  const char* does;
+};
+constexpr std::array kBoardCommands = {
+    BoardCommand{"unplug", BoardFault::kUnplug, "its cable is pulled: no terminal, no light"},
+    BoardCommand{"replug", BoardFault::kReplug, "and put in again"},
+    BoardCommand{"reset", BoardFault::kReset, "its button is pressed"},
+    BoardCommand{"hang", BoardFault::kHang, "its firmware hangs until the watchdog ends that"},
+    BoardCommand{"garbage", BoardFault::kGarbage, "noise in both directions for 100 ms"},
+    BoardCommand{"deaf", BoardFault::kDeaf, "nothing reaches it, until hear"},
+    BoardCommand{"hear", BoardFault::kHear, "ends deaf, slow and wrong_baud"},
+    BoardCommand{"slow", BoardFault::kSlow, "each reply is 150 ms late, until hear"},
+    BoardCommand{"wrong_baud", BoardFault::kWrongBaud, "it hears garbled bytes, until hear"},
+};
+
+Error refusal(const std::string& line, std::string why, std::string remedy) {
+  return {ErrorKind::kUsage, "no such command", line, std::move(why), std::move(remedy)};
+}
+
+std::vector<std::string> words_of(const std::string& line) {
+  std::istringstream in(line);
+  std::vector<std::string> words;
+  for (std::string word; in >> word;) words.push_back(word);
+  return words;
+}
+
+std::optional<int> shot_of(const std::string& word) {
+  int shot = 0;
+  const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), shot);
+  if (wrong != std::errc() || end != word.data() + word.size() || shot < 1 || shot > kMostShots) return {};
+  return shot;
+}
+
+/// The count of the camera of a rig that lived in this folder before: bodies do not count anew.
+std::uint32_t last_image_number(const fs::path& log) {
+  std::ifstream in(log);
+  std::uint32_t last = 0;
+  for (std::string line; std::getline(in, line);) {
+    const Json exposure = Json::parse(line, nullptr, /*allow_exceptions=*/false);
+    if (exposure.is_object()) last = std::max(last, exposure.value("image_number", std::uint32_t{0}));
+  }
+  return last;
+}
+
+Result<void> check_leds(const LightFrames& frames) {
+  if (frames.leds() <= kOutputs) return {};
+  return Error{ErrorKind::kBadData, "too many LEDs for a board", "scene",
+               fmt::format("it has {} and the board {} outputs", frames.leds(), kOutputs),
+               "take some out of the scene's section [lights]"};
+}
+
+class RunningRig : public VirtualRig {
+ public:
+  RunningRig(const VirtualRigOptions& options, LightFrames frames, RigFolder folder)
+      : options_(options), frames_(std::move(frames)), folder_(std::move(folder)) {}
+
+  ~RunningRig() override {
+    control_.reset();  // nobody commands what goes
+    camera_.reset();
+    board_.reset();
+    for (const int fd : {end_, log_}) {
+      if (fd >= 0) ::close(fd);
+    }
+  }
+
+  Result<void> start() {
+    end_ = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (end_ < 0) return cannot_write(folder_.path(), errno);
+    log_ = ::open(in_folder(kExposureLog).c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+    if (log_ < 0) return cannot_write(in_folder(kExposureLog), errno);
+    using Step = Result<void> (RunningRig::*)();
+    for (const Step step : {&RunningRig::start_board, &RunningRig::start_camera, &RunningRig::write_files,
+                            &RunningRig::start_control}) {
+      if (Result<void> ok = (this->*step)(); !ok) return ok;
+    }
+    return {};
+  }
+
+  const LightFrames& frames() const override { return frames_; }
+  const std::vector<std::string>& environment() const override { return environment_; }
+  int end_descriptor() const override { return end_; }
+
+  Result<std::string> command(const std::string& line) override {
+    const std::vector<std::string> words = words_of(line);
+    if (words.empty()) return refusal(line, "the line is empty", "say status");
+    const std::string& kind = words[0];
+    if (kind == "status" && words.size() == 1) return status().dump();
+    if (kind == "end" && words.size() == 1) return end();
+    const auto done = [&]() -> Result<void> {
+      if (kind == "light") return change_light({words.begin() + 1, words.end()});
+      if (kind == "board" && words.size() == 2) return inject_board(line, words[1]);
+      if (kind == "disk" && words.size() == 2) return fill_disk(line, words[1]);
+      if (kind == "camera" && (words.size() == 2 || words.size() == 3)) return inject_camera(line, words);
+      return refusal(
+          line, "a line is board NAME, camera NAME [SHOT], disk full, disk room, light ..., status or end",
+          "see weft-virtual-rig --help");
+    }();
+    if (!done) return done.error();
+    return std::string("ok");
+  }
+
+ private:
+  fs::path in_folder(const char* name) const { return folder_.path() / name; }
+
+  Result<void> start_board() {
+    auto board = VirtualBoard::start(
+        {options_.firmware, in_folder("board"), in_folder("modem"), options_.bootloader_s}, pins_);
+    if (!board) return board.error();
+    board_ = std::move(*board);
+    return {};
+  }
+
+  Result<void> start_camera() {
+    VirtualCameraOptions camera;
+    camera.serial = options_.serial;
+    camera.size = frames_.size();
+    camera.clock_offset_s = options_.clock_offset_s;
+    camera.port = options_.port;
+    camera.shots_before = last_image_number(in_folder(kExposureLog));
+    camera.away_s = options_.away_s;
+    camera.late_s = options_.late_s;
+    if (options_.usb) camera.usb = in_folder("camera.sock");
+    auto started =
+        VirtualCamera::start(camera, [this](const CameraExposure& exposure) { return photograph(exposure); });
+    if (!started) return started.error();
+    camera_ = std::move(*started);
+    return {};
+  }
+
+  Result<void> write_files() {
+    std::string preload;
+    for (const fs::path& library : options_.preloads) {
+      preload += (preload.empty() ? "" : ":") + library.string();
+    }
+    environment_ = {"HOME=" + in_folder("home").string(), "WEFT_FULL_DISK=" + in_folder(kFullDisk).string(),
+                    "WEFT_TERMINAL_MODEM=" + in_folder("modem").string(),
+                    "WEFT_RIG=" + in_folder("rig.toml").string()};
+    if (!preload.empty()) environment_.push_back("LD_PRELOAD=" + preload);
+    if (options_.usb) environment_.push_back("WEFT_USB_CAMERAS=" + in_folder("camera.sock").string());
+    RigFiles files;
+    files.board_port = terminal_port_name(in_folder("board"));
+    if (!options_.usb) files.camera_port = fmt::format("ptpip:127.0.0.1:{0}:{0}", camera_->port());
+    files.camera_serial = options_.serial;
+    files.environment = environment_;
+    return folder_.write(frames_, files);
+  }
+
+  Result<void> start_control() {
+    auto control = ControlSocket::listen(in_folder("control"), [this](const std::string& line) {
+      const Result<std::string> answer = command(line);
+      return answer ? *answer : "error: " + answer.error().message();
+    });
+    if (!control) return control.error();
+    control_ = std::move(*control);
+    return {};
+  }
+
+  /// On the camera's thread.
+  Result<std::vector<std::uint8_t>> photograph(const CameraExposure& exposure) {
+    const std::vector<double> pins = lit_shares(pins_, exposure.opened, exposure.closed, frames_.leds());
+    GatheredLight light = gathered_light(frames_, pins, faults(), exposure);
+    if (options_.same_noise) light.noise_key = lit_mask(light);
+    if (Result<void> ok = log(exposure, pins, light); !ok) return ok.error();
+    return develop(frames_, light, exposure, options_.serial, options_.render.tiles.threads);
+  }
+
+  static std::uint32_t lit_mask(const GatheredLight& light) {
+    std::uint32_t mask = 0;
+    for (std::size_t k = 0; k < light.leds_s.size(); ++k) mask |= (light.leds_s[k] > 0 ? 1U : 0U) << k;
+    return mask;
+  }
+
+  /// One write a line, so that lines of a rig that was killed are whole.
+  Result<void> log(const CameraExposure& exposure, const std::vector<double>& pins,
+                   const GatheredLight& light) const {
+    const Json exposed = {{"image_number", exposure.image_number},
+                          {"date_time", exposure.date_time},
+                          {"milliseconds", exposure.milliseconds},
+                          {"exposure_us", exposure.exposure_us},
+                          {"iso", exposure.iso},
+                          {"f_number", exposure.f_number},
+                          {"pin_shares", pins},
+                          {"light_s", light.leds_s}};
+    const std::string line = exposed.dump() + '\n';
+    if (::write(log_, line.data(), line.size()) < 0) return cannot_write(in_folder(kExposureLog), errno);
+    return {};
+  }
+
+  LightFaults faults() const {
+    const std::lock_guard hold(mutex_);
+    return faults_;
+  }
+
+  Result<void> change_light(const std::vector<std::string>& words) {
+    const std::lock_guard hold(mutex_);
+    return change_faults(faults_, words, frames_.leds());
+  }
+
+  Result<void> inject_board(const std::string& line, const std::string& name) {
+    std::vector<std::string_view> names;
+    for (const BoardCommand& one : kBoardCommands) {
+      names.emplace_back(one.name);
+      if (name != one.name) continue;
+      board_->inject(one.fault);
+      return {};
+    }
+    return refusal(line, fmt::format("a board may {}", fmt::join(names, ", ")), "choose one of these");
+  }
+
+  Result<void> inject_camera(const std::string& line, const std::vector<std::string>& words) {
+    const std::optional<int> shot = words.size() == 3 ? shot_of(words[2]) : 1;
+    if (!shot) return refusal(line, "shots count from 1, the next one", "give a whole number");
+    return camera_->inject({words[1], *shot});
+  }
+
+  /// What is loaded into a host looks for the file (virtual_rig/disk).
+  Result<void> fill_disk(const std::string& line, const std::string& state) const {
+    if (state == "full") return write_file(in_folder(kFullDisk), "");
+    if (state != "room") return refusal(line, "a disk is full or has room", "say disk full or disk room");
+    std::error_code failed;
+    fs::remove(in_folder(kFullDisk), failed);
+    return failed ? cannot_write(in_folder(kFullDisk), failed.value()) : Result<void>();
+  }
+
+  Json status() const {
+    std::vector<int> lit;
+    const std::uint16_t mask = pins_.now();
+    for (int led = 1; led <= kOutputs; ++led) {
+      if ((mask >> (led - 1) & 1) != 0) lit.push_back(led);
+    }
+    return {{"shots", camera_->shots()},  {"pins", lit},
+            {"light", json_of(faults())}, {"disk_full", is_there(in_folder(kFullDisk))},
+            {"leds", frames_.leds()},     {"size", {frames_.size().width, frames_.size().height}},
+            {"port", camera_->port()},    {"process", ::getpid()}};
+  }
+
+  Result<std::string> end() {
+    const std::uint64_t one = 1;
+    while (::write(end_, &one, sizeof one) < 0 && errno == EINTR) {
+    }
+    return std::string("ok");
+  }
+
+  VirtualRigOptions options_;
+  LightFrames frames_;
+  RigFolder folder_;
+  LitLog pins_;
+  mutable std::mutex mutex_;  // of faults_
+  LightFaults faults_;
+  std::vector<std::string> environment_;
+  int end_ = -1, log_ = -1;
+  std::unique_ptr<VirtualBoard> board_;
+  std::unique_ptr<VirtualCamera> camera_;
+  std::unique_ptr<ControlSocket> control_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& options) {
+  Scene scene = options.scene;
+  scene.camera.body = Body::kD5100;
+  Result<RigFolder> folder = RigFolder::take(options.folder, options.keep_log);
+  if (!folder) return folder.error();
+  Result<LightFrames> frames = LightFrames::open(scene, options.cache, options.render);
+  if (!frames) return frames.error();
+  if (Result<void> ok = check_leds(*frames); !ok) return ok.error();
+  auto rig = std::make_unique<RunningRig>(options, std::move(*frames), std::move(*folder));
+  if (Result<void> ok = rig->start(); !ok) return ok.error();
+  return std::unique_ptr<VirtualRig>(std::move(rig));
+}
+
+std::vector<std::string> virtual_rig_commands() {
+  std::vector<std::string> lines = {
+      "status               shots, pins that are on, faults, as JSON", "end                  ends the rig",
+      "disk full            no file of a host of this rig takes any more", "disk room            ends that"};
+  for (const BoardCommand& one : kBoardCommands)
+    lines.push_back(fmt::format("board {:<14} {}", one.name, one.does));
+  for (std::string& line : light_fault_words()) lines.push_back(std::move(line));
+  for (const auto& [name, does] : camera_faults()) {
+    lines.push_back(fmt::format("camera {:<13} {}", name + " [SHOT]", does));
+  }
+  return lines;
+}
+
+}  // namespace weft::simulator
