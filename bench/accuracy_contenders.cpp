@@ -8,10 +8,10 @@
 #include <memory>
 #include <utility>
 
-#include "app/jobs/solve_bands.h"
-#include "app/jobs/solve_frame.h"
-#include "app/jobs/tile_reader.h"
 #include "core/tiles.h"
+#include "pipeline/bands.h"
+#include "pipeline/frame.h"
+#include "pipeline/tile_reader.h"
 #include "solver/kernels/demosaic.h"
 
 namespace weft::bench {
@@ -26,7 +26,7 @@ Result<void> solve_patch(const solver::Method& method, const std::vector<View<co
 // The reference level: maps of a whole frame, band by band.
 Result<void> solve_by_reference(const Patch& patch, const app::ReferenceOptions& options, int threads,
                                 SolvedMaps& maps) {
-  app::JobContext context;
+  JobContext context;
   context.threads = threads;
   const auto keep = [&](const app::MapBand& band) -> Result<void> {
     for (int y = 0; y < band.rows.height(); ++y) {

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/reference.h"
 #include "bench/accuracy_scenes.h"
 #include "bench/solved_maps.h"
 #include "core/result.h"
+#include "pipeline/reference.h"
 #include "solver/method.h"
 
 namespace weft::bench {

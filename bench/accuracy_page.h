@@ -5,9 +5,9 @@
 #include <string>
 
 #include "bench/accuracy.h"
-#include "bench/plot_svg.h"
 #include "bench/report.h"
 #include "core/result.h"
+#include "report/plot_svg.h"
 
 namespace weft::bench {
 

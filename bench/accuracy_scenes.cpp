@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "app/jobs/tile_reader.h"
 #include "core/parallel.h"
+#include "pipeline/tile_reader.h"
 #include "simulator/build_passes.h"
 #include "simulator/plan.h"
 #include "simulator/reflectance/presets.h"

@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/photographs.h"
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/result.h"
+#include "pipeline/photographs.h"
 #include "simulator/scene/scene.h"
 
 // The cloths that accuracy is measured on: three families of plain weave in six materials, under the ten

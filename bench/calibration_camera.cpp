@@ -189,7 +189,7 @@ Result<Rows> rendered_rows(const CalibrationCameraBenchOptions& options) {
   }
   const Result<simulator::Rig> rig = rig_of(scenes.front());
   if (!rig) return rig.error();
-  const app::JobContext context = {.threads = options.threads};
+  const JobContext context = {.threads = options.threads};
   app::CalibrateCameraOptions calibrate;
   calibrate.input = input;
   calibrate.output = scratch.path() / "calibration";
@@ -246,14 +246,13 @@ Result<Rows> time_rows(const CalibrationCameraBenchOptions& options) {
         !ok)
       return ok.error();
   }
-  const app::JobContext context = {.threads = options.threads};
+  const JobContext context = {.threads = options.threads};
   std::optional<Error> failure;
   const double decode_seconds = least_seconds(2, [&] {
-    const Result<void> decoded =
-        app::for_each_frame(files.size(), context, [&](std::size_t i) -> Result<void> {
-          const Result<RawFrame> frame = capture::decode_raw(files[i]);
-          return frame ? Result<void>() : Result<void>(frame.error());
-        });
+    const Result<void> decoded = for_each_frame(files.size(), context, [&](std::size_t i) -> Result<void> {
+      const Result<RawFrame> frame = capture::decode_raw(files[i]);
+      return frame ? Result<void>() : Result<void>(frame.error());
+    });
     if (!decoded) failure = decoded.error();
   });
   if (failure) return *failure;

@@ -11,6 +11,7 @@
 
 #include "app/jobs/calibrate/color.h"
 #include "calibration/color/color_fit.h"
+#include "core/color_transform.h"
 #include "core/files.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
@@ -127,9 +128,8 @@ Result<double> off_dyes(const Spectra& spectra, const ColorTransform& transform)
   if (!camera) return camera.error();
   double sum = 0;
   for (const Spectrum& dye : spectra.dyes) {
-    sum += calibration::ciede2000_of(
-        calibration::rec709_of_camera(transform, simulator::camera_reflectance(*camera, dye)),
-        simulator::rec709_albedo(dye));
+    sum += calibration::ciede2000_of(rec709_of_camera(transform, simulator::camera_reflectance(*camera, dye)),
+                                     simulator::rec709_albedo(dye));
   }
   return sum / static_cast<double>(std::max<std::size_t>(spectra.dyes.size(), 1));
 }
@@ -155,7 +155,7 @@ Result<Rows> calibration_color_table(const CalibrationColorBenchOptions& options
   if (const auto done = simulate_frame(scene, 1, photograph / "led01.dng", simulate); !done)
     return done.error();
 
-  app::JobContext context;
+  JobContext context;
   context.threads = options.threads;
   Rows rows;
   for (const auto& [name, input] : {std::pair{"session", session}, std::pair{"photograph", photograph}}) {

@@ -262,7 +262,7 @@ class Walkthrough {
   }
 
   Scene scene_;
-  app::JobContext context_;
+  JobContext context_;
   simulator::SimulateOptions simulate_;
   ScratchFolder scratch_;
   std::vector<std::pair<std::string, fs::path>> contenders_;

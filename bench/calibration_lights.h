@@ -3,9 +3,9 @@
 
 #include <filesystem>
 
-#include "bench/plot_svg.h"
 #include "bench/report.h"
 #include "core/result.h"
+#include "report/plot_svg.h"
 
 namespace weft::bench {
 

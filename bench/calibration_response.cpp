@@ -119,7 +119,7 @@ Result<void> measure(const char* name, simulator::Body body, const CalibrationRe
   Quantity bend = {"non-linearity, of full scale", departure, 0.01, 0.1};
   Quantity left = {"non-linearity left, of full scale", 0, 0.01, 0.1};
   Quantity ratio = {"light at 1.8 over light at 0.45", 4, 0.04, 0};
-  app::JobContext context;
+  JobContext context;
   context.threads = options.threads;
   for (int seed = 1; seed <= options.seeds; ++seed) {
     const ScratchFolder scratch;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/jobs/photographs.h"
+#include "pipeline/photographs.h"
 
 namespace weft::bench {
 

@@ -11,7 +11,7 @@
 #include "core/image_io/image_io.h"
 #include "core/parallel.h"
 #include "core/raw_frame.h"
-#include "material/preview.h"
+#include "report/preview.h"
 #include "simulator/build_passes.h"
 
 namespace weft::bench {

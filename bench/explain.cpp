@@ -5,10 +5,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/forecast.h"
-#include "app/jobs/solve_frame.h"
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "pipeline/forecast.h"
+#include "pipeline/frame.h"
 #include "solver/method.h"
 
 namespace weft::bench {
@@ -36,7 +36,7 @@ Result<double> true_deg(const Patch& patch, const solver::MethodName& level, int
     }
     return {};
   };
-  app::JobContext context;
+  JobContext context;
   context.threads = threads;
   const Result<app::FrameFacts> solved =
       app::solve_frame(half ? *halved : patch.photographs, level, app::kSolveTile, context, compare);

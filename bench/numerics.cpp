@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "bench/plain_formula.h"
-#include "solver/reference/pixel.h"
+#include "solver/in_double/pixel.h"
 #include "tests/support/hard_lights.h"
 #include "tests/support/quad_oracle.h"
 #include "tests/support/rig.h"

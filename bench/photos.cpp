@@ -222,7 +222,7 @@ Result<Rows> photos_table(const PhotosOptions& options) {
     const auto wants_this = [&](const solver::MethodName& name) { return name.keeps_clipped == keep; };
     if (std::none_of(methods->begin(), methods->end(), wants_this)) continue;
     plan->clipped = keep ? app::Clipped::kKeep : app::Clipped::kMark;
-    app::JobContext context;
+    JobContext context;
     context.threads = threads;
     const auto photographs = app::load_photos(*plan, context);
     if (!photographs) return photographs.error();

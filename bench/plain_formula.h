@@ -7,8 +7,8 @@
 #include <span>
 
 #include "core/vec.h"
+#include "solver/in_double/pixel.h"
 #include "solver/method.h"
-#include "solver/reference/pixel.h"
 
 namespace weft::bench {
 

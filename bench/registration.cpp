@@ -5,11 +5,11 @@
 #include <cmath>
 #include <utility>
 
-#include "app/jobs/registration.h"
 #include "app/jobs/session_input.h"
-#include "app/jobs/solve_bands.h"
 #include "core/image_io/image_io.h"
 #include "core/vec.h"
+#include "pipeline/bands.h"
+#include "pipeline/shifts.h"
 #include "simulator/camera/movement.h"
 #include "simulator/effects/random_key.h"
 #include "simulator/simulate.h"
@@ -37,7 +37,7 @@ simulator::Scene scene_of(Family family, double mm_per_pixel, bool moves) {
 }
 
 Result<app::Photographs> photograph(const simulator::Scene& scene, const std::filesystem::path& folder,
-                                    const app::JobContext& context) {
+                                    const JobContext& context) {
   const auto simulated = simulator::simulate_session(
       scene, folder, {.tiles = {.threads = context.threads}, .stop = {}, .progress = {}});
   if (!simulated) return simulated.error();
@@ -53,7 +53,7 @@ struct NormalError {
 };
 
 Result<NormalError> error_of(const app::Photographs& photographs, const Image<float>& truth,
-                             const app::JobContext& context) {
+                             const JobContext& context) {
   double sum = 0, square = 0, count = 0;
   const auto measure = [&](const app::MapBand& band) -> Result<void> {
     for (int y = band.rows.y0; y < band.rows.y1; ++y) {
@@ -75,7 +75,7 @@ Result<NormalError> error_of(const app::Photographs& photographs, const Image<fl
   return NormalError{sum / count, std::sqrt(square / count)};
 }
 
-Result<Json> row_of(const char* name, Family family, double mm_per_pixel, const app::JobContext& context) {
+Result<Json> row_of(const char* name, Family family, double mm_per_pixel, const JobContext& context) {
   const ScratchFolder scratch;
   const simulator::Scene scene = scene_of(family, mm_per_pixel, true);
   Result<app::Photographs> still =
@@ -132,7 +132,7 @@ Result<Json> row_of(const char* name, Family family, double mm_per_pixel, const 
 }  // namespace
 
 Result<Rows> registration(int threads) {
-  app::JobContext context;
+  JobContext context;
   context.threads = threads;
   Rows rows;
   for (const auto& [name, family] : {std::pair{"smooth", Family::kSmooth}, std::pair{"plain", Family::kPlain},

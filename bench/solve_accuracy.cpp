@@ -8,12 +8,12 @@
 
 #include "app/jobs/compare.h"
 #include "app/jobs/solve.h"
-#include "app/jobs/solve_bands.h"
 #include "bench/bound.h"
 #include "bench/rig.h"
 #include "bench/solved_maps.h"
 #include "core/image_io/image_io.h"
 #include "core/vec.h"
+#include "pipeline/bands.h"
 #include "simulator/sampling/random.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
@@ -117,7 +117,7 @@ Result<Json> file_row(Size size, int threads) {
   const auto simulated = simulator::simulate_session(
       scene, session, {.tiles = {.threads = threads}, .stop = {}, .progress = {}});
   if (!simulated) return simulated.error();
-  app::JobContext context;
+  JobContext context;
   context.threads = threads;
   const auto solved = app::solve_session({session, {}, {}}, {}, context);
   if (!solved) return solved.error();
@@ -240,7 +240,7 @@ Result<Truth> read_truth(const std::filesystem::path& session) {
 
 // Error and time of one order of work.
 Result<Json> order_row(const app::Photographs& photographs, const solver::Method& method, const Truth& truth,
-                       const app::JobContext& context) {
+                       const JobContext& context) {
   std::vector<float> angles;
   double albedo_error = 0, albedo_samples = 0;
   const auto measure = [&](const app::MapBand& band) -> Result<void> {
@@ -311,7 +311,7 @@ Result<Rows> solve_order(const AccuracyOptions& options) {
     if (!simulated) return simulated.error();
     const auto plan = app::plan_session({folder, {}, {}});
     if (!plan) return plan.error();
-    app::JobContext context;
+    JobContext context;
     context.threads = options.threads;
     const auto photographs = app::load_session(*plan, context);
     if (!photographs) return photographs.error();

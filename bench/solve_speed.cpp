@@ -5,11 +5,11 @@
 #include <cmath>
 #include <vector>
 
-#include "app/jobs/solve_bands.h"
 #include "bench/cloth_mosaics.h"
 #include "bench/rig.h"
 #include "bench/yardsticks.h"
 #include "core/parallel.h"
+#include "pipeline/bands.h"
 #include "solver/kernels/linear.h"
 #include "solver/method.h"
 #include "solver/normals/seed.h"

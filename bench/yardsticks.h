@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "app/jobs/photographs.h"
 #include "core/image.h"
 #include "core/light_field.h"
 #include "core/result.h"
+#include "pipeline/photographs.h"
 
 // What speed is measured against, in the same run.
 

@@ -101,7 +101,7 @@ std::unique_ptr<Method> sparse_method();
 std::unique_ptr<Method> huber_method();
 
 /// What a level solves: tiles as they come, tiles of a picture of half the size, or tiles of a whole frame
-/// several times, with what the frame says of the light over it (app/jobs/reference.h).
+/// several times, with what the frame says of the light over it (pipeline/reference.h).
 enum class Extent { kTiles, kHalfSize, kWholeFrame };
 
 /// Levels and methods by the name a person gives them.

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "app/jobs/job.h"
+#include "core/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
 

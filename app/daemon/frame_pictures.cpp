@@ -16,8 +16,8 @@
 #include "capture/scan/histogram.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
-#include "material/downsampler.h"
-#include "material/preview.h"
+#include "report/downsampler.h"
+#include "report/preview.h"
 
 namespace weft::app {
 namespace {

@@ -10,12 +10,12 @@
 #include <utility>
 
 #include "app/jobs/map_files.h"
-#include "app/jobs/reference.h"
-#include "app/jobs/registration.h"
-#include "app/jobs/samples.h"
-#include "app/jobs/solve_frame.h"
 #include "core/files.h"
 #include "core/lights.h"
+#include "pipeline/frame.h"
+#include "pipeline/reference.h"
+#include "pipeline/samples.h"
+#include "pipeline/shifts.h"
 
 namespace weft::app {
 namespace {

@@ -6,13 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/forecast.h"
-#include "app/jobs/job.h"
 #include "app/jobs/photo_input.h"
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
+#include "core/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
+#include "pipeline/forecast.h"
 
 // What each level of the solver would give and cost, measured on this cloth and this machine before it is
 // paid.
@@ -45,7 +45,7 @@ struct Ladder {
 /// A dearer level that is not this share better than a cheaper one has nothing to gain.
 inline constexpr double kWorthwhileGain = 0.05;
 
-/// Reads the photographs, forecasts errors (app/jobs/forecast.h) and times every level on a cut of up to
+/// Reads the photographs, forecasts errors (pipeline/forecast.h) and times every level on a cut of up to
 /// 512 x 256 pixels from the middle of the frame, on the threads of `context`: the lesser of two runs, or one
 /// where it takes long. The reference level runs on the cut as it would on the frame, if its gates are open
 /// with as many rounds as the cut needs; that the height's transform grows by a logarithm faster than the

@@ -10,7 +10,7 @@
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/vec.h"
-#include "material/preview.h"
+#include "report/preview.h"
 #include "solver/method.h"
 
 namespace weft::app {

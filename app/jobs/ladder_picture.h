@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/job.h"
 #include "app/jobs/session_input.h"
 #include "app/jobs/solve.h"
+#include "core/job.h"
 #include "core/result.h"
 
 namespace weft::app {

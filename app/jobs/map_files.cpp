@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/jobs/calibration_sigma.h"
+#include "pipeline/calibration_channels.h"
 
 namespace weft::app {
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/photographs.h"
-#include "app/jobs/solve_bands.h"
 #include "core/image.h"
 #include "core/image_io/image_io.h"
 #include "core/result.h"
+#include "pipeline/bands.h"
+#include "pipeline/photographs.h"
 #include "solver/uncertainty/calibration_sigma.h"
 
 namespace weft::app {

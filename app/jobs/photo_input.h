@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/job.h"
 #include "app/jobs/linear_image.h"
-#include "app/jobs/photographs.h"
+#include "core/job.h"
 #include "core/lights.h"
 #include "core/result.h"
+#include "pipeline/photographs.h"
 
 namespace weft::app {
 

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "app/jobs/compare.h"
-#include "app/jobs/solve_bands.h"
 #include "core/result.h"
-#include "material/downsampler.h"
-#include "material/drawing.h"
-#include "material/preview.h"
+#include "pipeline/bands.h"
+#include "report/downsampler.h"
+#include "report/drawing.h"
+#include "report/preview.h"
 
 namespace weft::app {
 

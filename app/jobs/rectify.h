@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "app/jobs/job.h"
+#include "core/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
 

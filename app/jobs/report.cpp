@@ -8,9 +8,9 @@
 #include <limits>
 #include <utility>
 
-#include "app/jobs/evidence.h"
 #include "app/jobs/report_page.h"
 #include "core/files.h"
+#include "pipeline/evidence.h"
 #include "solver/method.h"
 
 namespace weft::app {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/photographs.h"
-#include "app/jobs/solve_bands.h"
 #include "core/json_document.h"
 #include "core/result.h"
-#include "material/downsampler.h"
+#include "pipeline/bands.h"
+#include "pipeline/photographs.h"
+#include "report/downsampler.h"
 #include "solver/diagnosis/diagnosis.h"
 
 // The report of a solve: what went wrong, and where its error comes from. report.json (weft.solve-report/1,

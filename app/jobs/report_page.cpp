@@ -9,9 +9,9 @@
 #include <set>
 #include <string_view>
 
-#include "app/jobs/html.h"
 #include "core/text.h"
-#include "material/preview.h"
+#include "report/html.h"
+#include "report/preview.h"
 
 namespace weft::app {
 namespace {

@@ -3,10 +3,10 @@
 
 #include <vector>
 
-#include "app/jobs/photographs.h"
 #include "app/jobs/session_input.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
+#include "pipeline/photographs.h"
 
 // What a session says of its own exposures, and what is made of it before it is solved (docs/conditions.md).
 // Each step changes `photographs` and says so in its conditions and warnings.

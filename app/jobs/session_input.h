@@ -5,11 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/job.h"
-#include "app/jobs/photographs.h"
 #include "core/calibration.h"
+#include "core/job.h"
 #include "core/result.h"
 #include "core/session.h"
+#include "pipeline/photographs.h"
 
 namespace weft::app {
 

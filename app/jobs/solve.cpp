@@ -11,15 +11,15 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/albedo_color.h"
 #include "app/jobs/map_files.h"
 #include "app/jobs/pictures.h"
-#include "app/jobs/registration.h"
 #include "app/jobs/report.h"
-#include "app/jobs/solve_bands.h"
-#include "app/jobs/solve_frame.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
+#include "pipeline/albedo_color.h"
+#include "pipeline/bands.h"
+#include "pipeline/frame.h"
+#include "pipeline/shifts.h"
 
 namespace weft::app {
 namespace {

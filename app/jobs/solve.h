@@ -6,14 +6,14 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/job.h"
 #include "app/jobs/photo_input.h"
-#include "app/jobs/photographs.h"
 #include "app/jobs/session_input.h"
-#include "app/jobs/solve_bands.h"
+#include "core/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
 #include "core/tiles.h"
+#include "pipeline/bands.h"
+#include "pipeline/photographs.h"
 #include "solver/method.h"
 
 namespace weft::app {

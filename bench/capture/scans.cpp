@@ -8,12 +8,12 @@
 #include <map>
 #include <numeric>
 
-#include "app/jobs/job.h"
 #include "bench/capture/camera.h"
 #include "bench/capture/rig_process.h"
 #include "capture/raw/decode.h"
 #include "capture/scan/scan.h"
 #include "core/files.h"
+#include "core/job.h"
 
 namespace weft::bench {
 namespace {
@@ -59,7 +59,7 @@ Result<double> bare_s(const ScansOptions& options) {
 }
 
 Result<OneScan> scan_once(const ScansOptions& options, const fs::path& folder) {
-  app::Stopwatch watch;
+  Stopwatch watch;
   Result<app::RigDevices> devices = options.open(options.rig);
   if (!devices) return std::move(devices).error();
   capture::ScanRequest request;

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/color_transform.h"
+
 namespace weft::calibration {
 namespace {
 
@@ -216,22 +218,6 @@ Eigen::Vector4d with_one(const Xyy& c) {
   return {c[0], c[1], c[2], 1};
 }
 
-Xyy affine(const std::array<double, 12>& m, const Xyy& c) {
-  Xyy out = {};
-  for (std::size_t i = 0; i < 3; ++i) {
-    out[i] = m[4 * i] * c[0] + m[4 * i + 1] * c[1] + m[4 * i + 2] * c[2] + m[4 * i + 3];
-  }
-  return out;
-}
-
-Xyy cubic(const std::array<double, 12>& m, const Xyy& c) {
-  Xyy out = {};
-  for (std::size_t i = 0; i < 3; ++i) {
-    out[i] = m[4 * i] + c[i] * (m[4 * i + 1] + c[i] * (m[4 * i + 2] + c[i] * m[4 * i + 3]));
-  }
-  return out;
-}
-
 // Least squares of X A = Y (seed 004): by the normal equations, with a ridge that only tells in a case that
 // has no answer.
 Eigen::MatrixXd least_squares(const Eigen::MatrixXd& X, const Eigen::MatrixXd& Y) {
@@ -340,19 +326,11 @@ Result<ColorCurve> fit_color_curve(std::span<const ChartSample> samples, double 
   }
   ColorCurve curve;
   curve.before = fit_affine(from, to);
-  for (Xyy& c : from) c = affine(curve.before, c);
+  for (Xyy& c : from) c = affine_of(curve.before, c);
   curve.cubic = fit_cubic(from, to);
-  for (Xyy& c : from) c = cubic(curve.cubic, c);
+  for (Xyy& c : from) c = cubic_of(curve.cubic, c);
   curve.after = fit_affine(from, to);
   return curve;
-}
-
-Rgb rec709_of_camera(const ColorTransform& transform, const Rgb& camera) {
-  if (!transform.curve) return times(transform.rec709_from_camera, camera, 1);
-  const Xyy mapped = affine(
-      transform.curve->after,
-      cubic(transform.curve->cubic, affine(transform.curve->before, xyy_of_xyz(xyz_of_rec709(camera)))));
-  return rec709_of_xyz(xyz_of_xyy(mapped));
 }
 
 }  // namespace weft::calibration

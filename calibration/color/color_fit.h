@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "calibration/color/color_spaces.h"
 #include "core/calibration.h"
+#include "core/color_spaces.h"
 #include "core/result.h"
 
 namespace weft::calibration {
@@ -53,9 +53,6 @@ Result<std::vector<double>> light_of_each(std::span<const ChartSample> samples);
 /// Affine, cubic, affine in xyY (seed 004, "Calibrating Albedo"), fitted one after the other by linear least
 /// squares as there; the camera's colours count as Rec.709 before it. `scale` as of fit_color().
 Result<ColorCurve> fit_color_curve(std::span<const ChartSample> samples, double scale);
-
-/// What a transform makes of a camera colour: the curve where there is one, else the matrix. Below 0 stays.
-Rgb rec709_of_camera(const ColorTransform& transform, const Rgb& camera);
 
 /// CIEDE2000 of two linear colours.
 double ciede2000_of(const Rgb& first, const Rgb& second);

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "solver/reference/pixel.h"
+#include "solver/in_double/pixel.h"
 
 namespace weft::solver {
 namespace {

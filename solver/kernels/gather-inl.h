@@ -14,10 +14,10 @@
 
 #include "core/light_field.h"
 #include "core/solve_record.h"
+#include "solver/in_double/pixel.h"
 #include "solver/kernels/row_task.h"
 #include "solver/kernels/vector-inl.h"
 #include "solver/method.h"
-#include "solver/reference/pixel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft::solver {

@@ -15,7 +15,7 @@ struct LinearOptions {
 
 /// Least squares on equilibrated rows over one tile, in float32 vectors: light directions computed in
 /// registers, one factorisation for all right-hand sides. Its truth is solve_pixel
-/// (solver/reference/pixel.h), to which it also hands every pixel that float32 cannot answer for.
+/// (solver/in_double/pixel.h), to which it also hands every pixel that float32 cannot answer for.
 void solve_linear(const TileInput& input, const TileOutput& output, const LinearOptions& options);
 
 /// The same equations and nothing else, to show what everything else costs: RGB readings, near lights without

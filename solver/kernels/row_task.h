@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/light_field.h"
-#include "solver/reference/pixel.h"
+#include "solver/in_double/pixel.h"
 
 // What the row kernels are given: plain pointers, so that one definition serves every target.
 

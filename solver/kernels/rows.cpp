@@ -5,7 +5,7 @@
 #include <cmath>
 #include <optional>
 
-#include "solver/normals/pixelwise.h"
+#include "solver/in_double/pixelwise.h"
 
 namespace weft::solver {
 namespace {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/light_field.h"
+#include "solver/in_double/pixel.h"
 #include "solver/kernels/row_task.h"
 #include "solver/method.h"
-#include "solver/reference/pixel.h"
 
 namespace weft::solver {
 

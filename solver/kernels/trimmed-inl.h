@@ -10,9 +10,9 @@
 
 #include <hwy/highway.h>
 
+#include "solver/in_double/triples.h"
 #include "solver/kernels/estimate-inl.h"
 #include "solver/kernels/gather-inl.h"
-#include "solver/reference/triples.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft::solver {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "solver/in_double/pixelwise.h"
 #include "solver/method.h"
-#include "solver/normals/pixelwise.h"
 
 namespace weft::solver {
 namespace {

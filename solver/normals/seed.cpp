@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "solver/in_double/pixelwise.h"
 #include "solver/method.h"
-#include "solver/normals/pixelwise.h"
 
 namespace weft::solver {
 namespace {

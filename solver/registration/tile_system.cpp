@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "solver/reference/pixel.h"
+#include "solver/in_double/pixel.h"
 #include "solver/registration/smooth.h"
 
 namespace weft::solver {

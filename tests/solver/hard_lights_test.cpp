@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/reference/pixel.h"
+#include "solver/in_double/pixel.h"
 #include "tests/support/hard_lights.h"
 #include "tests/support/quad_oracle.h"
 #include "tests/support/rig.h"

@@ -8,7 +8,7 @@
 #include <tuple>
 
 #include "core/tiles.h"
-#include "solver/reference/pixel.h"
+#include "solver/in_double/pixel.h"
 #include "tests/support/hard_lights.h"
 #include "tests/support/quad_oracle.h"
 #include "tests/support/rig.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/reference/pixel.h"
+#include "solver/in_double/pixel.h"
 #include "tests/support/rig.h"
 
 namespace weft {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "solver/in_double/pixel.h"
 #include "solver/kernels/weighted.h"
-#include "solver/reference/pixel.h"
 #include "tests/support/rig.h"
 
 namespace weft {

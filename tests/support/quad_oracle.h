@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/vec.h"
-#include "solver/reference/pixel.h"
+#include "solver/in_double/pixel.h"
 
 namespace weft::test {
 

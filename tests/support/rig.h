@@ -10,8 +10,8 @@
 #include "core/image.h"
 #include "core/light_field.h"
 #include "core/lights.h"
+#include "solver/in_double/pixel.h"
 #include "solver/method.h"
-#include "solver/reference/pixel.h"
 
 namespace weft::test {
 

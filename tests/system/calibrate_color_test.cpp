@@ -11,6 +11,7 @@
 
 #include "app/jobs/solve.h"
 #include "calibration/color/color_fit.h"
+#include "core/color_transform.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "simulator/simulate.h"
@@ -54,8 +55,7 @@ struct Photograph {
         const bool inside = x >= kLeft && y >= kTop && i < 6 && j < 4 &&
                             x - kLeft - i * kPitch_px < kSide_px && y - kTop - j * kPitch_px < kSide_px;
         const int column = upside_down || mirrored ? 5 - i : i, row = upside_down ? 3 - j : j;
-        const calibration::Rgb seen =
-            inside ? chart[static_cast<std::size_t>(6 * row + column)] : calibration::Rgb{0.02, 0.02, 0.02};
+        const Rgb seen = inside ? chart[static_cast<std::size_t>(6 * row + column)] : Rgb{0.02, 0.02, 0.02};
         const double light = exposure * (1 + slope * (x / 340.0 - 0.5)) * (x < 115 ? shadow : 1.0);
         const Mat3 camera = {{{0.44, 0.13, 0.03}, {0.1, 0.8, 0.1}, {0.02, 0.12, 0.56}}};
         const Vec3 v = camera * Vec3{seen[0], seen[1], seen[2]};
@@ -278,13 +278,12 @@ TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   double worst = 0, off_before = 0, off_after = 0;
   bool below_nothing = false;
   const auto at = [](const LoadedImage& image, int x, int y) {
-    return calibration::Rgb{static_cast<double>(image.planes(x, y, 0)),
-                            static_cast<double>(image.planes(x, y, 1)),
-                            static_cast<double>(image.planes(x, y, 2))};
+    return Rgb{static_cast<double>(image.planes(x, y, 0)), static_cast<double>(image.planes(x, y, 1)),
+               static_cast<double>(image.planes(x, y, 2))};
   };
   for (int y = 60; y < 150; y += 3) {
     for (int x = 60; x < 250; x += 3) {
-      const calibration::Rgb expected = calibration::rec709_of_camera(transform, at(*camera, x, y));
+      const Rgb expected = rec709_of_camera(transform, at(*camera, x, y));
       for (std::size_t c = 0; c < 3; ++c) {
         worst = std::max(worst, std::abs(expected[c] - at(*rec709, x, y)[c]));
         below_nothing = below_nothing || at(*rec709, x, y)[c] < 0;
@@ -303,7 +302,7 @@ TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   EXPECT_TRUE(plain->channel("R.calibration").empty());
   EXPECT_TRUE(sigma->channel("normal_deg.calibration").empty()) << "nothing is known of the lights";
   const int x = 150, y = 100;
-  const calibration::Rgb a = at(*camera, x, y);
+  const Rgb a = at(*camera, x, y);
   double variance = 0, noise = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     noise += std::pow(

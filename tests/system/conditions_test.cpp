@@ -12,14 +12,14 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/calibration_sigma.h"
 #include "app/jobs/session_input.h"
-#include "app/jobs/solve_bands.h"
 #include "capture/raw/decode.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/solve_record.h"
+#include "pipeline/bands.h"
+#include "pipeline/calibration_channels.h"
 #include "simulator/camera/dng_writer.h"
 #include "tests/system/session_test.h"
 

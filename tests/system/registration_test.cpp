@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A cloth that somebody touched between the shots, from raw frames to normals.
-#include "app/jobs/registration.h"
+#include "pipeline/shifts.h"
 
 #include <gtest/gtest.h>
 
 #include <utility>
 
 #include "app/jobs/session_input.h"
-#include "app/jobs/solve_bands.h"
 #include "core/vec.h"
+#include "pipeline/bands.h"
 #include "solver/method.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
@@ -31,7 +31,7 @@ class Registration : public testing::Test {
   double mean_error_deg(const app::Photographs& photographs, int tile_height = 4, int threads = 1) {
     const LoadedImage truth = *read_image(work_ / "still.weft" / "truth" / "normal.exr");
     double sum = 0;
-    app::JobContext context;
+    JobContext context;
     context.threads = threads;
     (void)app::solve_bands(photographs, *solver::fast_method(), {.width = 64, .height = tile_height}, context,
                            [&](const app::MapBand& band) -> Result<void> {

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/evidence.h"
 #include "app/jobs/report.h"
 #include "app/jobs/report_page.h"
 #include "app/jobs/session_input.h"
+#include "pipeline/evidence.h"
 #include "simulator/scene/scene.h"
 #include "solver/diagnosis/diagnosis.h"
 #include "tests/system/samples.h"

@@ -29,7 +29,7 @@ const Division kDivisions[] = {{2, {}},
                                {7, {.width = 100, .height = 3}},
                                {2, {.width = 1 << 20, .height = 1 << 20}}};
 
-using Solve = std::function<Result<app::SolveReport>(const app::SolveOptions&, const app::JobContext&)>;
+using Solve = std::function<Result<app::SolveReport>(const app::SolveOptions&, const JobContext&)>;
 
 /// Solves by every method, whole and divided in many ways, and compares the maps byte by byte.
 void expect_same_maps(const Workspace& work, const Solve& solve) {

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/job.h"
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
 #include "core/calibration.h"
 #include "core/image.h"
+#include "core/job.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
 

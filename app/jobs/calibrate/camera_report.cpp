@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/jobs/figures.h"
+#include "report/figures.h"
 
 namespace weft::app {
 namespace {

@@ -10,9 +10,9 @@
 #include "app/jobs/linear_image.h"
 #include "app/jobs/raw_picture.h"
 #include "app/jobs/session_input.h"
-#include "app/jobs/solve_bands.h"
 #include "capture/raw/decode.h"
 #include "core/files.h"
+#include "pipeline/bands.h"
 #include "solver/method.h"
 
 namespace weft::app {
@@ -159,10 +159,10 @@ Result<ChartColors> read_chart_colors(const fs::path& input) {
   colors.name = "by chart.toml";
   for (std::size_t i = 0; i < 24; ++i) {
     const auto& t = (*triples)[i];
-    colors.reference[i] = key == "lab_d50" ? calibration::rec709_of_lab_d50({t[0], t[1], t[2]})
-                          : key == "srgb"  ? calibration::rec709_of_srgb({t[0] / 255, t[1] / 255, t[2] / 255})
+    colors.reference[i] = key == "lab_d50" ? rec709_of_lab_d50({t[0], t[1], t[2]})
+                          : key == "srgb"  ? rec709_of_srgb({t[0] / 255, t[1] / 255, t[2] / 255})
                                            : t;
-    const double luminance = calibration::xyz_of_rec709(colors.reference[i])[1];
+    const double luminance = xyz_of_rec709(colors.reference[i])[1];
     if (!(luminance > 0 && luminance < 1.2)) {
       return bad_chart_file(file, fmt::format("patch {} has a luminance of {:.3g}", i + 1, luminance));
     }

@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/job.h"
 #include "calibration/color/chart_reference.h"
 #include "core/calibration.h"
 #include "core/image.h"
+#include "core/job.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
 

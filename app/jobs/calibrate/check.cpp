@@ -15,10 +15,10 @@
 #include "app/jobs/calibrate/sheet_captures.h"
 #include "app/jobs/calibrate/sheet_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
-#include "app/jobs/figures.h"
 #include "app/jobs/session_input.h"
 #include "core/files.h"
 #include "core/toml/toml_keys.h"
+#include "report/figures.h"
 
 namespace weft::app {
 namespace {

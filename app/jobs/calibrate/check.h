@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "app/jobs/calibrate/outcome.h"
-#include "app/jobs/job.h"
 #include "calibration/checks/flatness.h"
 #include "calibration/checks/movement.h"
+#include "core/job.h"
 #include "core/result.h"
 
 // Whether a calibration holds. A result is a folder with result.json (weft.calibration-check/1: date, what

@@ -10,16 +10,17 @@
 #include "app/jobs/calibrate/chart_pictures.h"
 #include "app/jobs/calibrate/color_report.h"
 #include "calibration/suits.h"
+#include "core/color_transform.h"
 
 namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+using Rgb;
 using calibration::ChartLight;
 using calibration::ChartSample;
 using calibration::ChartSide;
 using calibration::PatchReading;
-using calibration::Rgb;
 
 constexpr double kFullShare = 0.01;  // of a patch's pixels
 constexpr double kUneven = 0.12;     // of a patch's light
@@ -284,8 +285,8 @@ Result<void> fit_curve(ColorMeasurement& color) {
   color.transform.curve = *curve;
   for (std::size_t i = 0; i < color.samples.size(); ++i) {
     const ChartSample& sample = color.samples[i];
-    color.by_curve.push_back(calibration::ciede2000_of(
-        calibration::rec709_of_camera(color.transform, sample.camera), sample.reference));
+    color.by_curve.push_back(
+        calibration::ciede2000_of(rec709_of_camera(color.transform, sample.camera), sample.reference));
     std::vector<ChartSample> others = color.samples;
     others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
     Result<ColorCurve> without = curve_of(others);
@@ -293,7 +294,7 @@ Result<void> fit_curve(ColorMeasurement& color) {
     ColorTransform transform;
     transform.curve = *without;
     color.curve_left_out.push_back(
-        calibration::ciede2000_of(calibration::rec709_of_camera(transform, sample.camera), sample.reference));
+        calibration::ciede2000_of(rec709_of_camera(transform, sample.camera), sample.reference));
   }
   return {};
 }

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "app/jobs/calibrate/outcome.h"
-#include "app/jobs/job.h"
 #include "calibration/color/chart.h"
+#include "core/job.h"
 #include "core/result.h"
 
 namespace weft::app {

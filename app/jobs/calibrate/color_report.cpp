@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/calibrate/color_report.h"
+#include "core/color_transform.h"
 
 #include <fmt/format.h>
 
@@ -9,10 +10,10 @@
 namespace weft::app {
 namespace {
 
-using calibration::Rgb;
+using Rgb;
 
 std::string css(const Rgb& linear) {
-  const Rgb display = calibration::srgb_of_rec709(linear);
+  const Rgb display = srgb_of_rec709(linear);
   return fmt::format("#{:02x}{:02x}{:02x}", std::lround(255 * display[0]), std::lround(255 * display[1]),
                      std::lround(255 * display[2]));
 }
@@ -99,7 +100,7 @@ std::string patches_svg(const ColorMeasurement& color) {
   for (std::size_t i = 0; i < color.patches.size(); ++i) {
     const int x = 6 + color.patches[i] % calibration::kChartColumns * kStep;
     const int y = 6 + color.patches[i] / calibration::kChartColumns * kStep;
-    const Rgb measured = calibration::rec709_of_camera(color.transform, color.samples[i].camera);
+    const Rgb measured = rec709_of_camera(color.transform, color.samples[i].camera);
     svg += fmt::format(
         "<rect x=\"{0}\" y=\"{2}\" width=\"{3}\" height=\"{4}\" fill=\"{5}\"/>"
         "<rect x=\"{1}\" y=\"{2}\" width=\"{3}\" height=\"{4}\" fill=\"{6}\"/>\n",

@@ -11,10 +11,10 @@
 
 #include "app/jobs/calibrate/check_result.h"
 #include "app/jobs/calibrate/movement_words.h"
-#include "app/jobs/figures.h"
 #include "calibration/camera/pose.h"
 #include "core/files.h"
 #include "core/session.h"
+#include "report/figures.h"
 
 namespace weft::app {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/jobs/calibrate/report.h"
-#include "app/jobs/job.h"
 #include "core/calibration.h"
+#include "core/job.h"
 #include "core/result.h"
 
 namespace weft::app {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "app/jobs/figures.h"
+#include "report/figures.h"
 
 namespace weft::app {
 namespace {

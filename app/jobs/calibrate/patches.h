@@ -6,7 +6,7 @@
 #include <string>
 
 #include "app/jobs/calibrate/outcome.h"
-#include "app/jobs/job.h"
+#include "core/job.h"
 #include "core/result.h"
 
 namespace weft::app {

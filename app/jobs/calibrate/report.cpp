@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-#include "app/jobs/html.h"
 #include "core/files.h"
 #include "core/text.h"
+#include "report/html.h"
 
 namespace weft::app {
 namespace {

@@ -24,7 +24,7 @@ struct ReportTable {
 
 struct ReportPicture {
   std::string label;
-  std::string svg;  ///< app/jobs/figures.h
+  std::string svg;  ///< report/figures.h
 };
 
 struct ReportSection {

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "app/jobs/calibrate/response_measurement.h"
-#include "app/jobs/figures.h"
 #include "app/jobs/raw_picture.h"
 #include "calibration/color/chart.h"
 #include "calibration/response/neutral_scale.h"
 #include "capture/raw/decode.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
+#include "report/figures.h"
 
 namespace weft::app {
 namespace {

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/job.h"
 #include "calibration/response/block_light.h"
 #include "calibration/response/photon_transfer.h"
 #include "core/calibration.h"
 #include "core/image.h"
+#include "core/job.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/photographs.h"
 #include "calibration/camera/markers.h"
 #include "calibration/checks/movement.h"
 #include "core/calibration.h"
 #include "core/result.h"
+#include "pipeline/photographs.h"
 
 // What photographs show of the rig itself: tags and white patches on the table.
 

@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "app/jobs/calibrate/sheet_files.h"
-#include "app/jobs/job.h"
 #include "app/jobs/report.h"
 #include "calibration/lights/light_map.h"
 #include "calibration/lights/paper_model.h"
 #include "calibration/lights/sheet_blocks.h"
 #include "core/calibration.h"
+#include "core/job.h"
 #include "core/result.h"
 #include "core/session.h"
 

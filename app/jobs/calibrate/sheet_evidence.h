@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "app/jobs/calibrate/sheet_files.h"
-#include "app/jobs/job.h"
-#include "app/jobs/photographs.h"
 #include "calibration/checks/flatness.h"
 #include "calibration/checks/movement.h"
 #include "core/calibration.h"
+#include "core/job.h"
 #include "core/result.h"
+#include "pipeline/photographs.h"
 
 namespace weft::app {
 

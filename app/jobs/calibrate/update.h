@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "app/jobs/calibrate/outcome.h"
-#include "app/jobs/job.h"
 #include "calibration/checks/movement.h"
+#include "core/job.h"
 #include "core/result.h"
 
 namespace weft::app {

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "calibration/color/chart_reference.h"
+#include "core/color_transform.h"
 
 namespace weft::calibration {
 namespace {

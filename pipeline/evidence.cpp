@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/evidence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "pipeline/tile_reader.h"
+#include "solver/method.h"
+#include "solver/sample_tiles.h"
+
+namespace weft::app {
+namespace {
+
+// An odd step meets all colours of the filter cell.
+int step_for(const std::vector<Rect>& tiles, std::size_t most_pixels) {
+  const auto taken = [&](int step) {
+    std::int64_t pixels = 0;
+    for (const Rect& t : tiles) {
+      pixels += std::int64_t{(t.width() + step - 1) / step} * ((t.height() + step - 1) / step);
+    }
+    return pixels;
+  };
+  int step = 1;
+  while (step < solver::kSampleTile && taken(step) > static_cast<std::int64_t>(most_pixels)) step += 2;
+  return step;
+}
+
+// One photosite, or the luminance of three channels over their strength.
+solver::EvidenceRow row_at(const LightField& field, std::size_t k, const CfaPattern* cfa,
+                           const View<const float>* planes, int x, int y, Rect tile) {
+  const int column = x - tile.x0, line = y - tile.y0;
+  if (cfa != nullptr) {
+    const LightField::Light light = field.at(k, cfa->channel_at(x, y), x, y);
+    return {light.direction, light.strength, planes[k](column, line)};
+  }
+  solver::EvidenceRow row = {{}, 1, 0};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const LightField::Light light = field.at(k, static_cast<int>(c), x, y);
+    row.direction = light.direction;
+    row.reading += solver::kLuminance[c] * planes[3 * k + c](column, line) / light.strength;
+    if (!(light.strength > 0)) row.strength = 0;
+  }
+  return row;
+}
+
+// At most so many pixels, evenly.
+solver::Evidence thinned(solver::Evidence all, std::size_t most) {
+  const std::size_t pixels = all.pixels();
+  if (pixels <= most) return all;
+  for (std::size_t i = 0; i < most; ++i) {
+    const std::size_t p = pixels * i / most;
+    all.position[i] = all.position[p];
+    std::copy_n(all.rows.begin() + static_cast<std::ptrdiff_t>(p * all.lights), all.lights,
+                all.rows.begin() + static_cast<std::ptrdiff_t>(i * all.lights));
+  }
+  all.position.resize(most);
+  all.rows.resize(most * all.lights);
+  return all;
+}
+
+}  // namespace
+
+solver::Evidence read_evidence(const Photographs& photographs) {
+  const std::size_t most = std::clamp<std::size_t>(32000 / photographs.count(), 400, 1600);
+  solver::Evidence all;
+  all.lights = photographs.count();
+  all.noise = photographs.noise;
+  const std::vector<Rect> tiles = solver::sample_tiles(photographs.size);
+  // A mask may leave little of the frame.
+  const int step = step_for(tiles, 8 * most);
+  const CfaPattern* cfa = photographs.rgb.empty() ? &photographs.radiometry->cfa() : nullptr;
+  TileReader reader(photographs, {.width = solver::kSampleTile, .height = solver::kSampleTile}, 0, false);
+  for (const Rect& tile : tiles) {
+    const std::vector<View<const float>>& readings = reader.read(tile);
+    for (int y = tile.y0; y < tile.y1; y += step) {
+      for (int x = tile.x0; x < tile.x1; x += step) {
+        const std::size_t begin = all.rows.size();
+        for (std::size_t k = 0; k < all.lights; ++k) {
+          all.rows.push_back(row_at(*photographs.field, k, cfa, readings.data(), x, y, tile));
+        }
+        const auto first = all.rows.begin() + static_cast<std::ptrdiff_t>(begin);
+        const auto usable =
+            std::count_if(first, all.rows.end(), [](const auto& row) { return std::isfinite(row.reading); });
+        if (usable >= 3) {
+          all.position.push_back(
+              {(2.0 * x + 1) / photographs.size.width - 1, (2.0 * y + 1) / photographs.size.height - 1});
+        } else {
+          all.rows.resize(begin);
+        }
+      }
+    }
+  }
+  return thinned(std::move(all), most);
+}
+
+}  // namespace weft::app

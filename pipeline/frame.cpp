@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/frame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "core/parallel.h"
+#include "pipeline/reference.h"
+#include "pipeline/samples.h"
+#include "pipeline/tile_reader.h"
+
+namespace weft::app {
+namespace {
+
+Json json_of(const ReferenceFacts& facts) {
+  Json stages = Json::array(), rounds = Json::array();
+  if (facts.stages.shadows) stages.push_back("shadows");
+  if (facts.stages.interreflection) stages.push_back("interreflection");
+  for (const ReferenceRound& round : facts.rounds) rounds.push_back({{"turned_deg", round.turned_deg}});
+  return {{"stages", std::move(stages)},
+          {"rounds", std::move(rounds)},
+          {"shadow_reach_is_capped", facts.shadow_reach_is_capped}};
+}
+
+// Readings of one channel that make one of a cell: their mean, or the value of the first that cannot be
+// used.
+class CellReading {
+ public:
+  void add(float reading) {
+    if (!std::isfinite(reading) && std::isfinite(unusable_)) unusable_ = reading;
+    sum_ += static_cast<double>(reading);
+    ++count_;
+  }
+  float mean() const { return std::isfinite(unusable_) ? static_cast<float>(sum_ / count_) : unusable_; }
+
+ private:
+  double sum_ = 0;
+  int count_ = 0;
+  float unusable_ = 0;
+};
+
+// Rows y and y + 1 of one photograph as row y / 2 of its half.
+void halve_rows(const Photographs& photographs, const std::vector<View<const float>>& readings, std::size_t k,
+                int y, Image<float>& half) {
+  const bool mosaic = photographs.rgb.empty();
+  for (int x = 0; x < half.width(); ++x) {
+    std::array<CellReading, 3> cell;
+    for (int dy = 0; dy < 2; ++dy) {
+      for (int dx = 0; dx < 2; ++dx) {
+        const int column = 2 * x + dx;
+        if (mosaic) {
+          const auto c = static_cast<std::size_t>(photographs.radiometry->cfa().channel_at(column, y + dy));
+          cell[c].add(readings[k](column, dy));
+        } else {
+          for (std::size_t c = 0; c < 3; ++c) cell[c].add(readings[3 * k + c](column, dy));
+        }
+      }
+    }
+    for (int c = 0; c < 3; ++c) half(x, y / 2, c) = cell[static_cast<std::size_t>(c)].mean();
+  }
+}
+
+// The camera that sees the same with pixels of twice the size.
+CameraModel half_camera(CameraModel camera, Size size) {
+  camera.size = size;
+  camera.fx /= 2;
+  camera.fy /= 2;
+  camera.cx = (camera.cx - 0.5) / 2;
+  camera.cy = (camera.cy - 0.5) / 2;
+  return camera;
+}
+
+}  // namespace
+
+Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
+                               const TileOptions& tile, const JobContext& context, const BandSink& sink) {
+  FrameFacts facts;
+  if (method.extent == solver::Extent::kWholeFrame) {
+    const Result<ReferenceFacts> solved = solve_reference(photographs, tile, {}, context, sink);
+    if (!solved) return solved.error();
+    facts.waited_seconds = solved->waited_seconds;
+    facts.tally = solved->tally;
+    facts.gates = json_of(solved->gates);
+    facts.reference = json_of(*solved);
+    return facts;
+  }
+  const Result<double> waited =
+      solve_bands(photographs, *method.make(), tile, context, sink, {.tally = &facts.tally});
+  if (!waited) return waited.error();
+  facts.waited_seconds = *waited;
+  return facts;
+}
+
+Json json_of(const solver::SolveTally& tally) {
+  return {{"float32", tally.by_kernel}, {"double", tally.by_normal_equations},
+          {"qr", tally.by_qr},          {"svd", tally.by_svd},
+          {"unsolved", tally.unsolved}, {"rejected_readings", tally.rejected_readings}};
+}
+
+Result<Photographs> half_size(const Photographs& photographs, int threads) {
+  const Size size = {photographs.size.width / 2, photographs.size.height / 2};
+  if (size.width == 0 || size.height == 0) {
+    return Error{ErrorKind::kBadData, "picture is too small for a preview", "photographs",
+                 "it has fewer than two rows or columns", "solve it with --quality fast"};
+  }
+  Photographs half;
+  half.size = size;
+  half.leds = photographs.leds;
+  half.albedo_scale = photographs.albedo_scale;
+  half.color = photographs.color;
+  half.conditions = photographs.conditions;
+  half.warnings = photographs.warnings;
+  half.camera = photographs.camera;
+  if (half.camera) half.camera = half_camera(*half.camera, size);
+  Result<LightField> field =
+      LightField::make(photographs.field->lights(), half.camera, size, photographs.field->cloth_height_mm());
+  if (!field) return std::move(field).error();
+  half.field = std::move(*field);
+  for (std::size_t k = 0; k < photographs.count(); ++k) half.rgb.emplace_back(size, 3);
+
+  const TileOptions rows = {.width = photographs.size.width, .height = 2};
+  std::vector<TileReader> readers;
+  for (int i = 0; i < resolved_threads(threads); ++i) readers.emplace_back(photographs, rows, 0, false);
+  parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t i, int worker) {
+    const int y = 2 * static_cast<int>(i);
+    const auto& readings =
+        readers[static_cast<std::size_t>(worker)].read({0, y, photographs.size.width, y + 2});
+    for (std::size_t k = 0; k < half.rgb.size(); ++k) halve_rows(photographs, readings, k, y, half.rgb[k]);
+  });
+  return half;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/image.h"
+#include "core/result.h"
+#include "pipeline/photographs.h"
+#include "pipeline/tile_reader.h"
+#include "solver/transport/height_grid.h"
+#include "solver/transport/shadows.h"
+
+namespace weft::app {
+
+/// A solved frame as far as light over it depends on it.
+struct SolvedFrame {
+  Image<float> normal;  ///< X, Y, Z
+  Image<float> albedo;  ///< of a mosaic each photosite's own colour, else R, G, B
+};
+
+/// Which effects of the cloth on its own light are taken out of readings.
+struct LightStages {
+  bool shadows = false;
+  bool interreflection = false;
+};
+
+struct LightCorrectionOptions {
+  LightStages stages;
+  int rays = 32;      ///< a pixel, that look for light from the cloth
+  int reach_px = 64;  ///< how far they look
+};
+
+/// Readings as a convex cloth without shadows would give them. With the relief of a frame that is solved
+/// already, light that the cloth hides from a pixel is marked as shadow (-infinity), and the light that
+/// reaches the pixel from the cloth, albedo times gather_light() (solver/transport/gather.h), is subtracted.
+///
+/// Works in slabs of rows, so that memory does not grow with the height of the frame: about (K P + 1) * 4
+/// bytes for each of kSlabRows * width pixels, and a mesh a thread. Bytes depend on neither threads nor
+/// tiles.
+class LightCorrection {
+ public:
+  static constexpr int kSlabRows = 256;
+
+  /// All arguments must outlive this. `relief` is the height of the frame.
+  LightCorrection(const Photographs& photographs, const SolvedFrame& solved, const solver::Relief& relief,
+                  const LightCorrectionOptions& options, int threads);
+
+  /// Traces light for these rows, which begin where those of the last call ended or inside them.
+  Result<void> prepare(Rect rows);
+  /// Corrects readings [k * planes + p] of a tile inside the prepared rows. From many threads.
+  void apply(Rect tile, std::span<const View<float>> readings) const;
+
+  int shadow_reach_px() const { return shadow_reach_.reach_px; }
+  bool shadow_reach_is_capped() const { return shadow_reach_.is_capped; }
+  double seconds() const { return seconds_; }  ///< wall time of prepare()
+
+ private:
+  struct Worker;
+  Result<void> trace_block(Rect block, Worker& worker);
+  void read_radiosity(Rect area, Worker& worker) const;
+  bool sees(int x, int y, std::size_t k) const;
+
+  const Photographs* photographs_;
+  const SolvedFrame* solved_;
+  const solver::Relief* relief_;
+  LightCorrectionOptions options_;
+  int threads_;
+  solver::LightDirections directions_;
+  solver::ShadowReach shadow_reach_;
+  double seconds_ = 0;
+  Rect slab_;
+  Image<float> arriving_;         ///< [k * planes + p] of the slab
+  Image<std::uint32_t> visible_;  ///< words of bits, of the slab
+};
+
+}  // namespace weft::app

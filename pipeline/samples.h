@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "core/image.h"
+#include "pipeline/photographs.h"
+#include "solver/gates/gates.h"
+#include "solver/method.h"
+
+namespace weft::app {
+
+/// What a method makes of the sample tiles (solver/sample_tiles.h), without their surroundings: the albedo
+/// of a mosaic is that of each photosite in its own colour, of RGB that of green.
+struct SampleMaps {
+  Rect tile;
+  Image<float> normal;            ///< X, Y, Z
+  Image<float> albedo;            ///< 1 plane
+  Image<float> sigma_normal_deg;  ///< 1 plane
+  Image<float> residual;          ///< 1 plane
+  Image<std::uint16_t> status;
+  std::int64_t readings = 0, shadowed = 0;  ///< as of solver::SolvedSample
+
+  solver::SolvedSample sample() const;
+};
+
+/// Solves the sample tiles on `threads` threads.
+std::vector<SampleMaps> solve_samples(const Photographs& photographs, const solver::Method& method,
+                                      int threads);
+
+/// The gates of a solve, from its samples.
+Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples);
+
+/// {"name", "value", "limit", "unit", "verdict": "over" | "under"} a gate, for solve.json.
+Json json_of(const solver::Gates& gates);
+
+}  // namespace weft::app
