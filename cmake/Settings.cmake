@@ -3,6 +3,8 @@
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
+set(CMAKE_C_FLAGS_RELEASE "-O2 -DNDEBUG")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
 
@@ -19,6 +21,7 @@ target_compile_options(weft_settings INTERFACE
 # GCC 12 reports these inside its own <string> and <regex>, depending on what it inlined.
 target_compile_options(weft_settings INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict -Wno-maybe-uninitialized>)
 target_link_options(weft_settings INTERFACE -fuse-ld=lld)
+target_link_libraries(weft_settings INTERFACE fmt::fmt)  # in the precompiled headers, so alike in every target
 if(WEFT_FUZZERS)
   target_compile_options(weft_settings INTERFACE -fsanitize=fuzzer-no-link)
 endif()
@@ -28,11 +31,35 @@ if(WEFT_SANITIZE)
   target_link_options(weft_settings INTERFACE -fsanitize=${WEFT_SANITIZE})
 endif()
 
-# weft_library(NAME DEPENDS ... SOURCES ...): one folder, one target.
+# Headers that most units read, compiled once: they were a third of the time of a build. Libraries are optimised
+# for what they measure, tests for the time that they take to compile.
+set(WEFT_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
+function(weft_precompile name)
+  cmake_parse_arguments(ARG "" "" "HEADERS;DEPENDS;OPTIONS" ${ARGN})
+  file(WRITE ${CMAKE_BINARY_DIR}/${name}.cpp "")
+  add_library(${name} OBJECT ${CMAKE_BINARY_DIR}/${name}.cpp)
+  target_link_libraries(${name} PRIVATE weft_settings ${ARG_DEPENDS})
+  target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
+  target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
+endfunction()
+set(everywhere <algorithm> <array> <chrono> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <mutex>
+  <optional> <span> <stop_token> <string> <string_view> <thread> <utility> <variant> <vector> <fmt/format.h>
+  <nlohmann/json.hpp>)
+weft_precompile(weft_precompiled HEADERS ${everywhere} DEPENDS nlohmann_json::nlohmann_json)
+weft_precompile(weft_precompiled_tests
+  HEADERS ${everywhere} <gmock/gmock.h> <gtest/gtest.h>
+  DEPENDS nlohmann_json::nlohmann_json GTest::gtest_main GTest::gmock
+  OPTIONS ${WEFT_TEST_OPTIONS})
+
+# weft_library(NAME DEPENDS ... SOURCES ...): one folder, one target. PLAIN: without the precompiled headers, for C and
+# for what is compiled with other options.
 function(weft_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "PLAIN" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC weft_settings ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+  if(NOT ARG_PLAIN)
+    target_precompile_headers(${name} REUSE_FROM weft_precompiled)
+  endif()
 endfunction()
 
 # weft_test(NAME DEPENDS ... SOURCES ...): one test program, one CTest entry.
@@ -41,6 +68,8 @@ function(weft_test name)
   cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE weft_settings ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
+  target_compile_options(${name} PRIVATE ${WEFT_TEST_OPTIONS})
+  target_precompile_headers(${name} REUSE_FROM weft_precompiled_tests)
   add_test(NAME ${name} COMMAND ${name})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
