@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/calibration.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 
 #include "core/calibration_parts.h"
 #include "core/files.h"
+#include "core/iso_time.h"
 
 namespace weft {
 namespace {
@@ -238,7 +238,7 @@ Result<Calibration> derive_calibration(const fs::path& from, Calibration change,
   Result<void> written = write_parts(partial.path(), change, digests);
   if (written && !from.empty()) written = copy_other_parts(from, partial.path(), digests);
   if (change.subject.measured.empty()) {
-    change.subject.measured = fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr)));
+    change.subject.measured = iso_time_now();
   }
   if (written) written = write_subject(partial.path(), change.subject, digests);
   if (written) written = write_reports(from, partial.path() / "report", report);

@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/text.h"
 
-#include <fmt/chrono.h>
-
 #include <algorithm>
-#include <cmath>
-#include <ctime>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -24,12 +20,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     }
   }
   return row.back();
-}
-
-std::string iso_time(double since_1970_s) {
-  const double whole_s = std::floor(since_1970_s);
-  return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(static_cast<std::time_t>(whole_s)),
-                     static_cast<int>(1000 * (since_1970_s - whole_s)));
 }
 
 std::string escape_markup(std::string_view text) {

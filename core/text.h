@@ -11,9 +11,6 @@ namespace weft {
 /// nearest known name is the one to suggest for an unknown one.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// "2026-11-21T14:25:01.250Z", of seconds since 1970.
-std::string iso_time(double since_1970_s);
-
 /// As text or as the value of an attribute in HTML and SVG.
 std::string escape_markup(std::string_view text);
 

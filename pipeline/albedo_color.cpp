@@ -11,8 +11,6 @@
 namespace weft::app {
 namespace {
 
-using Rgb;
-
 constexpr double kStep = 1e-3;  // of albedo, for the slope of a curve
 
 // d Rec.709 / d camera.

@@ -2,9 +2,8 @@
 #include "app/daemon/error_json.h"
 
 #include <new>
-#include <optional>
 
-#include "core/error_kind.h"
+#include "core/error_json.h"
 
 namespace weft::app {
 
@@ -32,12 +31,7 @@ int http_status_of(ErrorKind kind) {
 }
 
 Json error_document(const Error& error) {
-  return {{"error",
-           {{"kind", name_of(error.kind)},
-            {"what", error.what},
-            {"where", error.where},
-            {"why", error.why},
-            {"remedy", error.remedy}}}};
+  return {{"error", json_of(error)}};
 }
 
 Error error_of_exception(const std::exception& thrown, const std::string& where) {
@@ -51,14 +45,9 @@ Error error_of_exception(const std::exception& thrown, const std::string& where)
 
 Error error_of_document(const std::string& text, const std::string& where) {
   const Json document = Json::parse(text, nullptr, false);
-  const Error unknown = {ErrorKind::kProtocol, "the answer is not a daemon's", where, text.substr(0, 200),
-                         "check that the address is that of weft serve"};
-  if (!document.is_object() || !document.contains("error") || !document["error"].is_object()) return unknown;
-  JsonFields fields(document["error"], where);
-  const std::optional<ErrorKind> kind = error_kind_of(fields.text("kind"));
-  if (!kind) return unknown;
-  return {*kind, fields.text_or("what", ""), fields.text_or("where", ""), fields.text_or("why", ""),
-          fields.text_or("remedy", "")};
+  if (document.is_object() && document.contains("error")) return error_of_json(document["error"], where);
+  return {ErrorKind::kProtocol, "the answer is not a daemon's", where, text.substr(0, 200),
+          "check that the address is that of weft serve"};
 }
 
 std::string line_of(const Json& document) {

@@ -12,7 +12,7 @@
 #include "app/daemon/error_json.h"
 #include "app/daemon/session_name.h"
 #include "core/files.h"
-#include "core/text.h"
+#include "core/iso_time.h"
 
 namespace weft::app {
 namespace {

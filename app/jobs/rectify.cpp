@@ -12,6 +12,7 @@
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/session.h"
+#include "core/solve.h"
 #include "core/solve_record.h"
 #include "material/rectify.h"
 
@@ -22,40 +23,11 @@ namespace fs = std::filesystem;
 using material::MapKind;
 using material::TableGrid;
 
-constexpr const char* kSchema = "weft.rectified";
+constexpr ProductKind kRectified = {"weft.rectified", "rectify.json", "set of rectified maps",
+                                    "rectify a solve first with weft rectify"};
 constexpr int kVersion = 1;  // raised whenever the bytes of a map may change
 constexpr const char* kFilter =
     "cubic convolution, a = -1/2 (Keys 1981), stretched to the grid where it is coarser than the frame";
-
-struct Solve {
-  std::string id;
-  fs::path folder;
-};
-
-Error no_solve(const fs::path& where, std::string why) {
-  return {ErrorKind::kNoInput, "there is no complete solve", where.string(), std::move(why),
-          "solve the session first with weft solve"};
-}
-
-// The one with the id, or the newest; of two alike the last by name.
-Result<Solve> find_solve(const fs::path& session, const std::string& id) {
-  const fs::path parent = session / "solve";
-  if (!id.empty()) {
-    const bool is_name = fs::path(id).filename() == id && !id.starts_with('.');
-    if (is_name && is_there(parent / id / "solve.json")) return Solve{id, parent / id};
-    return no_solve(parent / id, "it holds no solve.json");
-  }
-  std::error_code failure;
-  std::optional<std::pair<fs::file_time_type, fs::path>> newest;
-  for (const auto& entry : fs::directory_iterator(parent, failure)) {
-    const fs::path document = entry.path() / "solve.json";
-    if (entry.path().filename().string().starts_with('.') || !is_there(document)) continue;
-    const std::pair candidate = {fs::last_write_time(document, failure), entry.path()};
-    if (!newest || candidate > *newest) newest = candidate;
-  }
-  if (!newest) return no_solve(parent, "no folder there holds a solve.json");
-  return Solve{newest->second.filename().string(), newest->second};
-}
 
 Result<CameraModel> camera_of_maps(const CameraModel& camera, Size maps, const fs::path& folder) {
   const auto reduces = [&](int factor) {
@@ -151,11 +123,11 @@ Result<Image<std::uint16_t>> read_status(const fs::path& file) {
   return status;
 }
 
-Json document_of(const std::string& id, const Solve& solve, const Calibration& calibration,
+Json document_of(const std::string& id, const Product& solve, const Calibration& calibration,
                  const Rectification& r, std::int64_t solved) {
   const TableGrid& g = r.grid;
   const Vec3 corner = g.point_mm(0, 0);
-  return {{"schema", fmt::format("{}/1", kSchema)},
+  return {{"schema", fmt::format("{}/1", kRectified.schema)},
           {"id", id},
           {"solve", solve.id},
           {"calibration", calibration.id},
@@ -172,24 +144,16 @@ Json document_of(const std::string& id, const Solve& solve, const Calibration& c
           {"pixels", solved}};
 }
 
-// A complete one of the same inputs, if the folder holds one; an error if it holds anything else.
-Result<std::optional<Json>> find_finished(const fs::path& folder, const std::string& id) {
-  if (!is_there(folder)) return std::optional<Json>();
-  if (is_there(folder / "rectify.json")) {
-    Result<Json> document = read_json(folder / "rectify.json", kSchema, 1);
-    if (!document) return std::move(document).error();
-    if (JsonFields(*document, folder.string()).text_or("id", "") == id)
-      return std::optional<Json>(std::move(*document));
-  }
-  return Error{ErrorKind::kCannotCreate, "output folder is taken", folder.string(),
-               "it holds something other than these maps", "name another folder with -o, or remove it"};
-}
-
 Result<Calibration> calibration_with_camera(const fs::path& folder) {
   Result<Calibration> calibration = read_calibration(folder);
   if (!calibration || calibration->camera) return calibration;
   return Error{ErrorKind::kBadData, "calibration has no camera", folder.string(), "there is no camera.json",
                "calibrate the camera with weft calibrate camera"};
+}
+
+// Room that the maps take at most: normal 12, sigma 16, albedo 6, status 2 bytes a pixel.
+std::uint64_t bytes_of(Size size) {
+  return 36 * static_cast<std::uint64_t>(size.pixels());
 }
 
 Result<void> check_options(const RectifyOptions& options) {
@@ -210,7 +174,7 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   const Result<Calibration> calibration = calibration_with_camera(
       options.calibration.empty() ? session->calibration_folder() : options.calibration);
   if (!calibration) return calibration.error();
-  const Result<Solve> solve = find_solve(session->folder, options.solve);
+  const Result<Product> solve = find_solve(session->folder, options.solve);
   if (!solve) return solve.error();
   Result<Image<std::uint16_t>> status = read_status(solve->folder / "status.png");
   if (!status) return std::move(status).error();
@@ -227,16 +191,13 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
                        {"height_mm", grid->height_mm},
                        {"turn_deg", grid->turn_deg},
                        {"compression", options.compression}};
-  const std::string id = sha256_of(inputs.dump()).substr(0, 16);
-  const fs::path folder =
-      fs::absolute(options.output.empty() ? session->folder / "rectified" / id : options.output)
-          .lexically_normal();
-  Result<std::optional<Json>> finished = find_finished(folder, id);
+  const Product product = product_of(kRectified, inputs, session->folder / "rectified", options.output);
+  Result<std::optional<Json>> finished = find_finished(product);
   if (!finished) return std::move(finished).error();
-  if (*finished) return RectifyReport{folder, true, std::move(**finished)};
+  if (*finished) return RectifyReport{product.folder, true, std::move(**finished)};
 
-  PartialFolder partial(folder);
-  if (const Result<void> made = make_writable_folder(partial.path()); !made) return made.error();
+  PartialFolder partial(product.folder);
+  if (const Result<void> begun = begin(partial, bytes_of(grid->size)); !begun) return begun.error();
   const Rectification r = {*camera, *grid,  std::move(*status), solve->folder, partial.path(),
                            options, context};
   std::int64_t solved = 0;
@@ -250,11 +211,11 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   context.progress("rectify", 0.7);
   if (const Result<void> ok = rectify_map(r, "sigma.exr", MapKind::kSigma, SampleType::kHalf); !ok)
     return ok.error();
-  Json document = document_of(id, *solve, *calibration, r, solved);
+  Json document = document_of(product.id, *solve, *calibration, r, solved);
   if (const Result<void> ok = write_json(partial.path() / "rectify.json", document); !ok) return ok.error();
   if (const Result<void> ok = partial.publish(); !ok) return ok.error();
   context.progress("rectify", 1);
-  return RectifyReport{folder, false, std::move(document)};
+  return RectifyReport{product.folder, false, std::move(document)};
 }
 
 }  // namespace weft::app

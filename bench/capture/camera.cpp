@@ -10,7 +10,9 @@
 #include "capture/camera/camera_link.h"
 #include "capture/camera/worker_lines.h"
 #include "capture/camera/worker_process.h"
+#include "core/error_json.h"
 #include "core/files.h"
+#include "core/statistics.h"
 
 namespace weft::bench {
 namespace {
@@ -21,19 +23,13 @@ using Steady = std::chrono::steady_clock;
 constexpr double kBar = 1.15;
 constexpr auto kPatience = std::chrono::seconds(10);
 
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 Result<Json> ask(capture::WorkerProcess& worker, const Json& request, Steady::duration patience) {
   if (Result<void> sent = worker.send(request.dump()); !sent) return std::move(sent).error();
   const Result<std::string> line = worker.read_line(Steady::now() + patience);
   if (!line) return line.error();
   const Json answer = Json::parse(*line, nullptr, false);
   if (answer.is_object() && answer.contains("ok")) return answer["ok"];
-  return capture::error_of_line(answer.is_object() ? answer.value("error", Json()) : Json());
+  return error_of_json(answer.is_object() ? answer.value("error", Json()) : Json(), "weft-camera");
 }
 
 capture::ExposureSettings exposure_of(const CaptureCameraBenchOptions& options) {

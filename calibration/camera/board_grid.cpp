@@ -11,6 +11,8 @@
 
 #include "calibration/camera/picture.h"
 
+#include "core/statistics.h"
+
 namespace weft::calibration {
 namespace {
 
@@ -37,13 +39,6 @@ std::optional<double> edge_width(View<const std::uint8_t> grey, PixelPoint a, Pi
   return (brightest - darkest) / steepest;
 }
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Of the edges along rows and those along columns the blurrier: a camera shakes in one direction.
 double edge_width(View<const std::uint8_t> grey, Grid& grid) {
   std::vector<double> along_rows, along_columns;
@@ -57,7 +52,10 @@ double edge_width(View<const std::uint8_t> grey, Grid& grid) {
       add(i, j + 1, along_columns);
     }
   }
-  return std::max(median(std::move(along_rows)), median(std::move(along_columns)));
+  const auto typical = [](std::vector<double> widths) {
+    return widths.empty() ? 0 : median(std::move(widths));
+  };
+  return std::max(typical(std::move(along_rows)), typical(std::move(along_columns)));
 }
 
 // A side on which the corners end although the frame would show more: there are no such squares. Only where

@@ -13,6 +13,8 @@
 #include "calibration/camera/bundle.h"
 #include "calibration/camera/opencv_camera.h"
 
+#include "core/statistics.h"
+
 namespace weft::calibration {
 namespace {
 
@@ -154,12 +156,6 @@ double rms_of(const std::vector<PixelPoint>& residuals) {
   double sum = 0;
   for (const PixelPoint& r : residuals) sum += r.x * r.x + r.y * r.y;
   return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(residuals.size(), 1)));
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // Noise of a corner along x or y, as the residuals of a fit with k1 and k2 show it.

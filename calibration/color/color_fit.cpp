@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "core/color_transform.h"
+#include "core/statistics.h"
 
 namespace weft::calibration {
 namespace {
@@ -180,9 +181,7 @@ double median_ratio(std::span<const ChartSample> samples) {
   for (const ChartSample& s : samples) {
     ratios.push_back(xyz_of_rec709(s.reference)[1] / std::max(xyz_of_rec709(s.camera)[1], 1e-9));
   }
-  std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2),
-                   ratios.end());
-  return ratios[ratios.size() / 2];
+  return median(std::move(ratios));
 }
 
 Result<void> check(std::span<const ChartSample> samples) {

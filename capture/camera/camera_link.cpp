@@ -13,6 +13,7 @@
 
 #include "capture/camera/photograph_facts.h"
 #include "capture/camera/worker_lines.h"
+#include "core/error_json.h"
 #include "core/files.h"
 
 namespace weft::capture {
@@ -274,7 +275,7 @@ Result<Json> CameraLink::request(Json asked, double most_s, const std::function<
   if (answer) {
     const auto error = answer->find("error");
     if (error == answer->end()) return (*answer)["ok"];
-    answer = error_of_line(*error);
+    answer = error_of_json(*error, "weft-camera");
   } else {
     worker_.reset();
   }

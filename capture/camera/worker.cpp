@@ -18,6 +18,7 @@
 #include "capture/camera/gphoto_camera.h"
 #include "capture/camera/request_lines.h"
 #include "capture/camera/worker_lines.h"
+#include "core/error_json.h"
 #include "core/files.h"
 
 namespace weft::capture {
@@ -54,7 +55,7 @@ class Worker {
     if (done) {
       say("ok", *done);
     } else {
-      say("error", line_of(done.error()));
+      say("error", json_of(done.error()));
     }
   }
 

@@ -9,9 +9,6 @@ namespace weft::capture {
 
 // What the lines between weft-camera and its parent are made of (worker.h describes them).
 
-Json line_of(const Error& error);
-Error error_of_line(const Json& line);  ///< kProtocol where the line is no error
-
 Json line_of(const ExposureSettings& exposure);
 /// kProtocol where a field is missing.
 Result<ExposureSettings> exposure_of_line(const Json& line);

@@ -13,7 +13,7 @@
 #include <csignal>
 
 #include "core/files.h"
-#include "core/text.h"
+#include "core/iso_time.h"
 
 namespace weft::capture {
 namespace {

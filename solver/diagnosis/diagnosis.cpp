@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/statistics.h"
 #include "solver/diagnosis/robust_fit.h"
 
 namespace weft::solver {
@@ -35,17 +36,6 @@ constexpr std::size_t kClasses = 4;  // of how the cloth faces a light
 constexpr std::size_t kParts = 8;    // of the picture
 constexpr double kOutlierTimes = 5;
 constexpr double kSigmaOfMad = 1.4826;  // of a normal distribution
-
-double quantile(std::vector<double> values, double q) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(q * static_cast<double>(values.size() - 1) + 0.5);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-double median(std::vector<double> values) {
-  return quantile(std::move(values), 0.5);
-}
 
 struct Gain {
   double value = 1;  // median over pixels

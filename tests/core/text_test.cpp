@@ -16,11 +16,6 @@ TEST(Text, CountsTheEditsBetweenWords) {
   EXPECT_EQ(edit_distance("heigth", "height"), 2U) << "swapped letters are two substitutions";
 }
 
-TEST(Text, WritesATimeAsPeopleAndProgramsReadIt) {
-  EXPECT_EQ(iso_time(1795271101.25), "2026-11-21T14:25:01.250Z");
-  EXPECT_EQ(iso_time(0), "1970-01-01T00:00:00.000Z");
-}
-
 TEST(EscapeMarkup, LeavesNothingThatAPageWouldTakeForItsOwn) {
   EXPECT_EQ(escape_markup("a<b> & \"c\""), "a&lt;b&gt; &amp; &quot;c&quot;");
 }

@@ -494,13 +494,5 @@ TEST_F(CalibrationCheck, TagsAloneDoNotClearLedsAndSheetsPredictNoError) {
   EXPECT_FALSE(by_sheets->affected[0].predicted_mean_deg);
 }
 
-TEST(CalibrationHistory, ReadsDatesAndRefusesWhatIsNone) {
-  EXPECT_EQ(seconds_of("1970-01-02T00:00:00Z"), 86400.0);
-  EXPECT_EQ(seconds_of("1970-01-01T02:00:00+02:00"), 0.0);
-  EXPECT_EQ(seconds_of("1970-01-01T00:00:00.5Z"), 0.5);
-  for (const char* wrong : {"", "yesterday", "2026-13-01T00:00:00Z", "2026-01-01", "2026-01-01T00:00:00 UTC"})
-    EXPECT_FALSE(seconds_of(wrong)) << wrong;
-}
-
 }  // namespace
 }  // namespace weft::app

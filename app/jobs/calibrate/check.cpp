@@ -17,6 +17,7 @@
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/session_input.h"
 #include "core/files.h"
+#include "core/iso_time.h"
 #include "core/toml/toml_keys.h"
 #include "report/figures.h"
 
@@ -128,7 +129,8 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
   checked.rows = evidence->rows;
   checked.drift = drift_in(photographs->conditions);
   checked.warnings = photographs->warnings;
-  if (const std::string& time = plan->lit.front().time; seconds_of(time) > seconds_of(taken_at))
+  if (const std::string& time = plan->lit.front().time;
+      seconds_of_iso_time(time) > seconds_of_iso_time(taken_at))
     taken_at = time;
   return checked;
 }

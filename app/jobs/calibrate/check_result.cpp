@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/calibrate/check_result.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <array>
-#include <ctime>
 
 #include "core/files.h"
+#include "core/iso_time.h"
 
 namespace weft::app {
 namespace {
@@ -26,8 +25,7 @@ Json lights_numbers(const fs::path& calibration) {
 Result<void> write_check_result(const fs::path& folder, const std::string& of, const Calibration& calibration,
                                 const CalibrationReport& report, const std::string& checked_at) {
   if (folder.empty()) return {};
-  const std::string date =
-      checked_at.empty() ? fmt::format("{:%FT%TZ}", fmt::gmtime(std::time(nullptr))) : checked_at;
+  const std::string date = checked_at.empty() ? iso_time_now() : checked_at;
   const Json result = {{"schema", fmt::format("{}/1", kCheckResultSchema)},
                        {"date", date},
                        {"of", of},

@@ -16,7 +16,6 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Rgb;
 using calibration::ChartLight;
 using calibration::ChartSample;
 using calibration::ChartSide;

@@ -10,7 +10,6 @@
 namespace weft::app {
 namespace {
 
-using Rgb;
 
 std::string css(const Rgb& linear) {
   const Rgb display = srgb_of_rec709(linear);

@@ -13,6 +13,7 @@
 #include "app/jobs/calibrate/movement_words.h"
 #include "calibration/camera/pose.h"
 #include "core/files.h"
+#include "core/iso_time.h"
 #include "core/session.h"
 #include "report/figures.h"
 
@@ -74,7 +75,7 @@ Result<void> read_calibrations(const fs::path& root, Records& records) {
       records.warnings.push_back(calibration.error().message());
       continue;
     }
-    const auto time_s = seconds_of(calibration->subject.measured);
+    const auto time_s = seconds_of_iso_time(calibration->subject.measured);
     if (!time_s) {
       records.warnings.push_back(
           fmt::format("{} says no time at which it was measured and was left out", folder.string()));
@@ -99,7 +100,7 @@ Result<DatedCheck> read_check(const fs::path& folder) {
   if (!result->contains("passed") || !(*result)["passed"].is_boolean()) {
     fields.reject("passed", "must be true or false");
   }
-  const auto time_s = seconds_of(check.date);
+  const auto time_s = seconds_of_iso_time(check.date);
   if (!time_s) fields.reject("date", "must be a date and time of ISO 8601");
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   check.time_s = *time_s;
@@ -322,7 +323,7 @@ Result<void> find_affected(const fs::path& folder, const Records& records, Calib
     }
     ++history.sessions;
     const std::string time = session->shots.empty() ? "" : session->shots.front().time;
-    const auto time_s = seconds_of(time);
+    const auto time_s = seconds_of_iso_time(time);
     if (!time_s) {
       ++history.without_time;
       history.warnings.push_back(fmt::format(
@@ -358,28 +359,6 @@ ReportSection affected_section(const std::vector<AffectedSession>& all, Json& nu
 }
 
 }  // namespace
-
-std::optional<double> seconds_of(const std::string& iso_8601) {
-  int year = 0, month = 0, day = 0, hour = 0, minute = 0, read = 0;
-  double second = 0;
-  if (std::sscanf(iso_8601.c_str(), "%4d-%2d-%2dT%2d:%2d:%lf%n", &year, &month, &day, &hour, &minute, &second,
-                  &read) != 6)
-    return std::nullopt;
-  if (month < 1 || month > 12 || day < 1 || day > 31 || hour < 0 || hour > 24 || minute < 0 || minute > 59 ||
-      !(second >= 0 && second < 61))
-    return std::nullopt;
-  const std::string zone = iso_8601.substr(static_cast<std::size_t>(read));
-  int zone_hours = 0, zone_minutes = 0;
-  char sign = '+';
-  if (zone != "Z" && !zone.empty() &&
-      std::sscanf(zone.c_str(), "%c%2d:%2d", &sign, &zone_hours, &zone_minutes) != 3)
-    return std::nullopt;
-  if (sign != '+' && sign != '-') return std::nullopt;
-  std::tm tm = {};
-  tm.tm_year = year - 1900, tm.tm_mon = month - 1, tm.tm_mday = day, tm.tm_hour = hour, tm.tm_min = minute;
-  const double utc = static_cast<double>(::timegm(&tm)) + second;
-  return utc - (sign == '-' ? -1 : 1) * (zone_hours * 3600.0 + zone_minutes * 60.0);
-}
 
 Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
                                              const JobContext& context) {

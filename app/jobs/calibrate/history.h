@@ -45,7 +45,4 @@ struct CalibrationHistory {
 Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
                                              const JobContext& context);
 
-/// Seconds since 1970 of an ISO 8601 date and time with Z or an offset; nothing where it is none.
-std::optional<double> seconds_of(const std::string& iso_8601);
-
 }  // namespace weft::app

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft {
+
+/// {"kind", "what", "where", "why", "remedy"}: an error for another process.
+Json json_of(const Error& error);
+
+/// What json_of() made of an error. kProtocol of `where` for any other document.
+Error error_of_json(const Json& document, const std::string& where);
+
+}  // namespace weft

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/statistics.h"
+
+#include <gtest/gtest.h>
+
+namespace weft {
+namespace {
+
+TEST(Statistics, GivesTheMiddleValueAndOfAnEvenNumberTheUpperOne) {
+  EXPECT_EQ(median(std::vector<double>{3, 1, 2}), 2);
+  EXPECT_EQ(median(std::vector<double>{4, 1, 3, 2}), 3);
+  EXPECT_EQ(median(std::vector<int>{7}), 7);
+}
+
+TEST(Statistics, GivesOneOfTheValuesForAnyShare) {
+  const std::vector<double> values = {50, 10, 40, 20, 30};
+  EXPECT_EQ(quantile(values, 0), 10);
+  EXPECT_EQ(quantile(values, 0.25), 20);
+  EXPECT_EQ(quantile(values, 0.3), 20);
+  EXPECT_EQ(quantile(values, 0.4), 30);
+  EXPECT_EQ(quantile(values, 1), 50);
+}
+
+TEST(Statistics, HasNoValueOfNothing) {
+  EXPECT_TRUE(std::isnan(quantile(std::vector<double>(), 0.5)));
+  EXPECT_TRUE(std::isnan(median(finite_of(std::vector<float>{NAN, INFINITY}))));
+}
+
+}  // namespace
+}  // namespace weft
