@@ -180,18 +180,19 @@ ReportSection per_pixel_section(const LightsEvidence& e) {
   return section;
 }
 
+constexpr const char* kSeedSays =
+    "One flat sheet gives one reading for two unknowns, intensity and direction: that the paper residual "
+    "falls says "
+    "nothing of the directions. The azimuth of every direction is never changed.";
+
 ReportSection seed_section(const LightsEvidence& e) {
   ReportSection section = {"The seed's iteration",
-                           {},
+                           {kSeedSays},
                            ReportTable{{"iteration", "intensities changed by %", "directions changed by deg",
                                         "paper residual deg", ""},
                                        {}},
                            {}};
   section.is_answer = true;
-  section.paragraphs.push_back(
-      "One flat sheet gives one reading for two unknowns, intensity and direction: that the paper residual "
-      "falls says nothing of the directions. "
-      "The azimuth of every direction is never changed.");
   for (std::size_t i = 0; i < e.seed->steps.size(); ++i) {
     const calibration::SeedStep& step = e.seed->steps[i];
     section.table->rows.push_back(
