@@ -198,7 +198,7 @@ Result<Rows> rendered_rows(const CalibrationCameraBenchOptions& options) {
   const Result<app::PrintedBoard> board = app::read_board_file(input / "board.toml", {});
   if (!board) return board.error();
   const Result<app::BoardPhotographs> found =
-      read_board_photographs({.folder = input, .board = board->board}, context);
+      app::read_board_photographs({.folder = input, .board = board->board}, context);
   if (!found) return found.error();
 
   const std::string name = fmt::format("photographs rendered, {} of {:.1f} megapixels", options.boards,

@@ -174,7 +174,7 @@ class Walkthrough {
     boards.rig = "virtual rig";
     const auto camera = calibrate_camera(boards, context_);
     if (!camera) return camera.error();
-    const auto response = calibrate_response({at("response"), at("c1"), at("c2"), {}}, context_);
+    const auto response = app::calibrate_response({at("response"), at("c1"), at("c2"), {}}, context_);
     if (!response) return response.error();
     contenders_.push_back({"none: tape and data sheets", at("start")});
     constexpr std::pair<const char*, app::LightsMethod> kMethods[] = {
@@ -190,13 +190,13 @@ class Walkthrough {
       chi_square_[name] = lit->report.numbers.value("chi_square", 0.0);
       if (method == app::LightsMethod::kPhysical) delta_ = lit->report.numbers.value("delta", 0.0);
       const fs::path whole = at(fmt::format("whole {}", name));
-      const auto color = calibrate_color({at("color"), lights.output, whole, {}, {}, false}, context_);
+      const auto color = app::calibrate_color({at("color"), lights.output, whole, {}, {}, false}, context_);
       if (!color) return color.error();
       contenders_.push_back({name, whole});
     }
     // What is left when lens, sensor and lights are known exactly, and only the colours are measured.
     const fs::path exact = at("cloth.weft") / "calibration";
-    const auto color = calibrate_color({at("color"), exact, at("exact"), {}, {}, false}, context_);
+    const auto color = app::calibrate_color({at("color"), exact, at("exact"), {}, {}, false}, context_);
     if (!color) return color.error();
     contenders_.push_back({"exact, and its colours by the chart", at("exact")});
     return {};
@@ -205,7 +205,7 @@ class Walkthrough {
   Result<Image<float>> solved(const std::string& session, const fs::path& calibration, const char* map) {
     const fs::path folder = at(fmt::format("solve {} {}", session, calibration.filename().string()));
     const auto report =
-        solve_session({at(session), calibration, {}}, {.output = folder, .previews = false}, context_);
+        app::solve_session({at(session), calibration, {}}, {.output = folder, .previews = false}, context_);
     if (!report) return report.error();
     auto image = read_image(folder / map);
     if (!image) return std::move(image).error();
@@ -227,7 +227,7 @@ class Walkthrough {
       farthest = std::max(farthest, std::abs(one.gain - 1));
     }
     const auto check =
-        calibrate_check({.input = at("check"), .from = calibration, .paper_delta = delta_}, context_);
+        app::calibrate_check({.input = at("check"), .from = calibration, .paper_delta = delta_}, context_);
     if (!check) return check.error();
     double sheet_deg = 0, sheet_gain = 0;
     for (const Json& sheet : check->report.numbers["sheets"]) {

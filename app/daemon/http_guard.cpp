@@ -94,7 +94,7 @@ Result<std::string> read_token(const std::string& file) {
   const auto is_space = [](unsigned char c) { return std::isspace(c) != 0; };
   const auto begin = std::ranges::find_if_not(*text, is_space);
   const auto end = std::find_if_not(text->rbegin(), std::make_reverse_iterator(begin), is_space).base();
-  std::string token(begin, end);
+  const std::string token(begin, end);
   const bool printable = std::ranges::all_of(token, [](char c) { return c > ' ' && c < 0x7f; });
   if (token.size() < kLeastTokenBytes || token.size() > kMostTokenBytes || !printable) {
     return refuse(fmt::format("it has {} characters; {} to {} that can be printed are needed", token.size(),
