@@ -6,7 +6,6 @@
 #include "core/calibration.h"
 #include "core/session.h"
 #include "core/solve_record.h"
-#include "tests/core/image_io/scratch_folder.h"
 
 namespace weft {
 namespace {
@@ -14,9 +13,7 @@ namespace {
 const std::filesystem::path kSchemas = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas";
 
 TEST(Schemas, Session1) {
-  const ScratchFolder folder;
-  std::filesystem::copy_file(kSchemas / "weft.session-1.json", folder / "session.json");
-  const Result<Session> session = read_session(folder / "");
+  const Result<Session> session = read_session(kSchemas / "weft.session-1");
   ASSERT_TRUE(session) << session.error().message();
   EXPECT_EQ(session->fabric, "linen 1/1");
   EXPECT_EQ(session->cloth_height_mm, 0.4);
@@ -38,9 +35,7 @@ TEST(Schemas, Session1) {
 }
 
 TEST(Schemas, Session1_1OfAScan) {
-  const ScratchFolder folder;
-  std::filesystem::copy_file(kSchemas / "weft.session-1.1.json", folder / "session.json");
-  const Result<Session> session = read_session(folder / "");
+  const Result<Session> session = read_session(kSchemas / "weft.session-1.1");
   ASSERT_TRUE(session) << session.error().message();
   EXPECT_EQ(session->state, "complete");
   EXPECT_EQ(session->document["plan"],
@@ -140,9 +135,9 @@ TEST(Schemas, Calibration1WithDistantLights) {
 }
 
 TEST(Schemas, Solve1) {
-  const Result<Json> document = read_json(kSchemas / "weft.solve-1.json", "weft.solve", 1);
+  const Result<Json> document = read_json(kSchemas / "weft.solve-1/solve.json", "weft.solve", 1);
   ASSERT_TRUE(document) << document.error().message();
-  JsonFields fields(*document, "weft.solve-1.json");
+  JsonFields fields(*document, "solve.json");
   EXPECT_EQ(fields.text("id").size(), 16U);
   EXPECT_GE(fields.integer("solver_version"), 1);
   EXPECT_EQ(fields.text("method"), "fast");
@@ -174,9 +169,10 @@ TEST(Schemas, Solve1) {
 }
 
 TEST(Schemas, SolveReport1) {
-  const Result<Json> document = read_json(kSchemas / "weft.solve-report-1.json", "weft.solve-report", 1);
+  const Result<Json> document =
+      read_json(kSchemas / "weft.solve-report-1/report.json", "weft.solve-report", 1);
   ASSERT_TRUE(document) << document.error().message();
-  JsonFields fields(*document, "weft.solve-report-1.json");
+  JsonFields fields(*document, "report.json");
   EXPECT_EQ(fields.text("of"), "session");
   EXPECT_EQ(fields.text("title"), "golden twill");
   EXPECT_EQ(fields.list("lights").size(), 10U);
