@@ -91,11 +91,11 @@ Result<void> write_parts(const fs::path& folder, const Calibration& c, Digests& 
   return written;
 }
 
-// Copies the parts of another calibration that have not been written.
-Result<void> copy_other_parts(const fs::path& from, const fs::path& folder, Digests& digests) {
-  const Result<Json> document = read_json(from / "calibration.json", kSchema, 1);
-  if (!document) return document.error();
-  for (const auto& [name, digest] : (*document)["parts"].items()) {
+// Copies the parts of the calibration `before` that have not been written.
+Result<void> copy_other_parts(const fs::path& from, const Json& before, const fs::path& folder,
+                              Digests& digests) {
+  const Json parts = before.value("parts", Json::object());
+  for (const auto& [name, digest] : parts.items()) {
     if (digests.contains(name)) continue;
     if (Result<void> copied = copy_part(from / name, folder, name, digests); !copied) return copied;
     if (digests[name] != digest) return check_digest(from / name, digest);
@@ -122,8 +122,9 @@ Result<void> write_reports(const fs::path& from, const fs::path& folder, std::sp
   return {};
 }
 
-Result<void> write_subject(const fs::path& folder, const CalibrationSubject& subject,
-                           const Digests& digests) {
+// `before` is the calibration.json that this one derives from: what a newer version of weft said there stays.
+Result<void> write_subject(const fs::path& folder, const CalibrationSubject& subject, const Digests& digests,
+                           const Json& before) {
   const char* minor = subject.focal_length_mm > 0 ? ".2" : subject.measured.empty() ? "" : ".1";
   Json document = {{"schema", fmt::format("{}/1{}", kSchema, minor)},
                    {"rig", subject.rig},
@@ -134,6 +135,11 @@ Result<void> write_subject(const fs::path& folder, const CalibrationSubject& sub
   if (!subject.measured.empty()) document["measured"] = subject.measured;
   if (subject.focal_length_mm > 0) document["focal_length_mm"] = subject.focal_length_mm;
   document["parts"] = digests;
+  for (const auto& [name, value] : before.items()) {
+    if (document.contains(name) || name == "measured" || name == "focal_length_mm") continue;
+    document[name] = value;
+    document["schema"] = before["schema"];
+  }
   return write_json(folder / "calibration.json", document);
 }
 
@@ -220,7 +226,7 @@ Result<Calibration> write_calibration(const fs::path& folder, Calibration calibr
   Digests digests;
   if (Result<void> ok = write_parts(folder, calibration, digests); !ok) return std::move(ok).error();
   if (calibration.hot_picture) calibration.hot_picture = folder / kHotFile;
-  if (Result<void> ok = write_subject(folder, calibration.subject, digests); !ok)
+  if (Result<void> ok = write_subject(folder, calibration.subject, digests, Json::object()); !ok)
     return std::move(ok).error();
   Result<std::string> id = id_of(folder, std::move(digests));
   if (!id) return std::move(id).error();
@@ -231,16 +237,22 @@ Result<Calibration> write_calibration(const fs::path& folder, Calibration calibr
 Result<Calibration> derive_calibration(const fs::path& from, Calibration change, const fs::path& folder,
                                        std::span<const NamedFile> report) {
   if (is_there(folder)) return there_is_one(folder);
+  Json before = Json::object();
+  if (!from.empty()) {
+    Result<Json> document = read_json(from / "calibration.json", kSchema, 1);
+    if (!document) return std::move(document).error();
+    before = std::move(*document);
+  }
   PartialFolder partial(folder);
   if (Result<void> made = make_writable_folder(partial.path() / "report"); !made)
     return std::move(made).error();
   Digests digests;
   Result<void> written = write_parts(partial.path(), change, digests);
-  if (written && !from.empty()) written = copy_other_parts(from, partial.path(), digests);
+  if (written) written = copy_other_parts(from, before, partial.path(), digests);
   if (change.subject.measured.empty()) {
     change.subject.measured = iso_time_now();
   }
-  if (written) written = write_subject(partial.path(), change.subject, digests);
+  if (written) written = write_subject(partial.path(), change.subject, digests, before);
   if (written) written = write_reports(from, partial.path() / "report", report);
   if (written) written = partial.publish();
   if (!written) return std::move(written).error();

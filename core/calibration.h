@@ -111,9 +111,10 @@ struct NamedFile {
 };
 
 /// A new calibration, which must not be there yet: the parts and the subject of `change`; every other part of
-/// the calibration `from` (empty: there is none) byte by byte, its reports too (but for maps of LEDs where
-/// these files are of new lights); and in report/ these files. It is made aside: after an error there is
-/// nothing. `change.subject.measured` is the time now unless it is given.
+/// the calibration `from` (empty: there is none) byte by byte, fields of its calibration.json that this
+/// version does not know, its reports too (but for maps of LEDs where these files are of new lights); and in
+/// report/ these files. It is made aside: after an error there is nothing. `change.subject.measured` is the
+/// time now unless it is given.
 Result<Calibration> derive_calibration(const std::filesystem::path& from, Calibration change,
                                        const std::filesystem::path& folder,
                                        std::span<const NamedFile> report);

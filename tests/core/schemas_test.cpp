@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Today's readers on the stored documents of testdata/schemas, which are kept for ever.
+// Today's readers on what stored documents say, which are kept for ever.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/calibration.h"
 #include "core/session.h"
+#include "core/solve.h"
 #include "core/solve_record.h"
 
 namespace weft {
 namespace {
 
 const std::filesystem::path kSchemas = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas";
+const std::filesystem::path kGolden = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/golden";
 
 TEST(Schemas, Session1) {
   const Result<Session> session = read_session(kSchemas / "weft.session-1");
@@ -122,6 +124,45 @@ TEST(Schemas, Calibration1WithResponse11AndLights11) {
   EXPECT_EQ(calibration->hot_picture, kSchemas / "weft.calibration-1.1" / "hot.png");
 }
 
+TEST(Schemas, Calibration11WithCamera11Response12AndColor1) {
+  const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1.1-measured");
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  EXPECT_EQ(calibration->id, "7fd117105c5f1cb9739ebed77157a1bb6a3e6880736a6ae7b439e476e5f0d708");
+  EXPECT_EQ(calibration->subject.measured, "2026-02-14T09:30:00Z");
+  EXPECT_EQ(calibration->subject.focal_length_mm, 0) << "nobody said";
+  ASSERT_TRUE(calibration->camera_covariance);
+  EXPECT_EQ(calibration->camera_covariance->parameters, (std::vector<std::string>{"fx", "fy"}));
+  EXPECT_EQ(calibration->camera_covariance->matrix, (std::vector<double>{0.04, 0.01, 0.01, 0.09}));
+  EXPECT_EQ(calibration->fiducials,
+            (std::vector<Fiducial>{
+                {"DICT_APRILTAG_36h11", 3, {{{1, 2, 0}, {3, 2, 0}, {3, 0.5, 0}, {1, 0.5, 0}}}}}));
+  ASSERT_TRUE(calibration->response);
+  EXPECT_EQ(calibration->response->black_counts, 600.25);
+  EXPECT_FALSE(calibration->response->iso);
+  ASSERT_TRUE(calibration->color && calibration->color->curve);
+  EXPECT_EQ(calibration->color->rec709_from_camera[2], (std::array{0.0, -0.5, 1.5}));
+  EXPECT_TRUE(calibration->color->covariance.empty());
+  EXPECT_EQ(calibration->color->curve->before[3], 0.125);
+  EXPECT_EQ(calibration->color->curve->cubic[7], -0.125);
+  EXPECT_EQ(calibration->color->curve->after[0], 0.9375);
+}
+
+TEST(Schemas, Calibration12OfAMeasuredRig) {
+  const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1.2-measured");
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  EXPECT_EQ(calibration->id, "a8a2599596fda3f4db95ce6551f97125f4a438185f23adc607cf4a14b4372742");
+  EXPECT_EQ(calibration->subject.focal_length_mm, 50);
+  EXPECT_EQ(calibration->fiducials.size(), 4U);
+  ASSERT_TRUE(calibration->camera_covariance);
+  EXPECT_EQ(calibration->camera_covariance->parameters.size(), 12U);
+  ASSERT_TRUE(calibration->response);
+  EXPECT_EQ(calibration->response->iso, 100);
+  EXPECT_EQ(calibration->response->exposure_ratios.size(), 6U);
+  ASSERT_TRUE(calibration->color);
+  EXPECT_EQ(calibration->color->covariance.size(), 81U);
+  EXPECT_TRUE(calibration->hot_picture);
+}
+
 TEST(Schemas, Calibration1WithDistantLights) {
   const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1-distant");
   ASSERT_TRUE(calibration) << calibration.error().message();
@@ -165,6 +206,50 @@ TEST(Schemas, Solve1) {
   EXPECT_GT(error.number("max_deg"), error.number("p95_deg"));
   EXPECT_GT(error.number("p95_deg"), error.number("median_deg"));
   EXPECT_TRUE(error.status()) << error.status().error().message();
+  EXPECT_TRUE(fields.status()) << fields.status().error().message();
+}
+
+TEST(Schemas, Rectified1) {
+  const auto found = list_products({"weft.rectified", "rectify.json", "set of rectified maps", ""},
+                                   kGolden / "satin.weft/rectified");
+  ASSERT_EQ(found.size(), 1U);
+  const Result<Json> document = read_json(found[0].folder / "rectify.json", "weft.rectified", 1);
+  ASSERT_TRUE(document) << document.error().message();
+  JsonFields fields(*document, "rectify.json");
+  EXPECT_EQ(fields.text("id"), found[0].id);
+  const Result<Product> solve = find_solve(kGolden / "satin.weft", fields.text("solve"));
+  EXPECT_TRUE(solve) << solve.error().message();
+  EXPECT_EQ(fields.integer("width"), 16);
+  EXPECT_EQ(fields.integer("height"), 11);
+  EXPECT_EQ(fields.number("mm_per_pixel"), 12);
+  EXPECT_EQ(fields.list("first_pixel_mm"), Json({-90.0, 60.0}));
+  EXPECT_EQ(fields.integer("pixels"), 16 * 11);
+  EXPECT_TRUE(fields.status()) << fields.status().error().message();
+}
+
+TEST(Schemas, CalibrationReport1) {
+  const Result<Json> document =
+      read_json(kSchemas / "weft.calibration-1.2-measured/report/camera.json", "weft.calibration-report", 1);
+  ASSERT_TRUE(document) << document.error().message();
+  JsonFields fields(*document, "camera.json");
+  EXPECT_EQ(fields.text("part"), "camera");
+  EXPECT_EQ(fields.text("title"), "Camera of virtual rig");
+  EXPECT_FALSE(fields.text("summary").empty() || fields.object("numbers").empty());
+  ASSERT_EQ(fields.list("verdicts").size(), 1U);
+  EXPECT_EQ(fields.list("verdicts")[0].value("name", ""), "LIGHTS_OF_ANOTHER_FRAME");
+  EXPECT_TRUE(fields.status()) << fields.status().error().message();
+}
+
+TEST(Schemas, CalibrationCheck1) {
+  const Result<Json> document =
+      read_json(kSchemas / "weft.calibration-check-1/result.json", "weft.calibration-check", 1);
+  ASSERT_TRUE(document) << document.error().message();
+  JsonFields fields(*document, "result.json");
+  EXPECT_EQ(fields.text("date"), "2026-11-22T15:51:02Z");
+  EXPECT_EQ(fields.text("of"), "session");
+  EXPECT_EQ(fields.text("calibration"), read_calibration(kSchemas / "weft.calibration-1.2-measured")->id);
+  EXPECT_EQ((*document)["passed"], true);
+  EXPECT_FALSE(fields.object("numbers").empty());
   EXPECT_TRUE(fields.status()) << fields.status().error().message();
 }
 

@@ -81,6 +81,21 @@ TEST(Golden, EverySimdTargetOfThisMachineSolvesToTheStoredMaps) {
   }
 }
 
+TEST(Golden, AScanOfAnEarlierVersionIsSolvedAndItsSolveOfThenRectified) {
+  const Workspace work;
+  const fs::path scan = kGolden / "satin.weft";
+  const auto before = contents_of(scan);
+  const Outcome solved =
+      run_weft({"solve", scan.string(), "--quality", "fast", "-o", (work / "maps").string(), "-q"});
+  EXPECT_EQ(solved.exit_code, 0) << solved.error;
+  const Outcome rectified = run_weft({"rectify", scan.string(), "--solve", "7cf91e8f08f74f49",
+                                      "--mm-per-pixel", "12", "-o", (work / "rectified").string(), "-q"});
+  ASSERT_EQ(rectified.exit_code, 0) << rectified.error;
+  EXPECT_EQ(bytes_of(work / "rectified" / "status.png"),
+            bytes_of(scan / "rectified" / "409d289d795aa39e" / "status.png"));
+  EXPECT_EQ(contents_of(scan), before);
+}
+
 TEST(Golden, TheSceneSimulatesToTheStoredSession) {
   const Workspace work;
   const Outcome run = run_weft({"simulate", source_file("testdata/scenes/golden.toml").string(), "-o",
