@@ -11,6 +11,7 @@
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
+#include "core/image_io/solve_maps.h"
 #include "core/session.h"
 #include "core/solve.h"
 #include "core/solve_record.h"
@@ -47,7 +48,7 @@ struct Rectification {
   CameraModel camera;
   TableGrid grid;
   Image<std::uint16_t> status;
-  fs::path from, to;
+  fs::path to;
   const RectifyOptions& options;
   const JobContext& context;
 };
@@ -63,22 +64,11 @@ Result<void> by_bands(const Rectification& r, const Make& make) {
   return {};
 }
 
-Result<void> rectify_map(const Rectification& r, const std::string& name, MapKind kind, SampleType type) {
-  const Result<LoadedImage> map = read_image(r.from / name);
+Result<void> rectify_map(const Rectification& r, const std::string& name, MapKind kind, SampleType type,
+                         const Result<LoadedImage>& map) {
   if (!map) return map.error();
-  if (map->info.size != r.status.size()) {
-    return Error{ErrorKind::kBadData, "maps of a solve differ in size", (r.from / name).string(),
-                 fmt::format("it has {} x {} pixels, status.png {} x {}", map->info.size.width,
-                             map->info.size.height, r.status.width(), r.status.height()),
-                 "solve the session again"};
-  }
   std::vector<View<const float>> planes;
   for (int p = 0; p < map->planes.planes(); ++p) planes.push_back(map->planes.plane(p));
-  if (planes.empty() || planes.size() > material::kMostPlanes ||
-      (kind == MapKind::kNormal && planes.size() != 3)) {
-    return Error{ErrorKind::kBadData, "map has other channels than a solve writes", (r.from / name).string(),
-                 fmt::format("{} channels", planes.size()), "solve the session again"};
-  }
   Result<ImageWriter> writer =
       ImageWriter::open(r.to / name, r.grid.size, map->info.channels, {type, r.options.compression});
   if (!writer) return std::move(writer).error();
@@ -110,17 +100,6 @@ Result<void> rectify_status(const Rectification& r, std::int64_t& solved) {
   });
   if (!done) return done;
   return writer->finish();
-}
-
-Result<Image<std::uint16_t>> read_status(const fs::path& file) {
-  const Result<LoadedImage> image = read_image(file);
-  if (!image) return image.error();
-  Image<std::uint16_t> status(image->info.size);
-  for (int y = 0; y < status.height(); ++y) {
-    for (int x = 0; x < status.width(); ++x)
-      status(x, y) = static_cast<std::uint16_t>(std::lround(65535 * image->planes(x, y)));
-  }
-  return status;
 }
 
 Json document_of(const std::string& id, const Product& solve, const Calibration& calibration,
@@ -176,9 +155,9 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   if (!calibration) return calibration.error();
   const Result<Product> solve = find_solve(session->folder, options.solve);
   if (!solve) return solve.error();
-  Result<Image<std::uint16_t>> status = read_status(solve->folder / "status.png");
-  if (!status) return std::move(status).error();
-  const Result<CameraModel> camera = camera_of_maps(*calibration->camera, status->size(), solve->folder);
+  const Result<SolveMaps> maps = SolveMaps::open(solve->folder);
+  if (!maps) return maps.error();
+  const Result<CameraModel> camera = camera_of_maps(*calibration->camera, maps->size(), solve->folder);
   if (!camera) return camera.error();
   const Result<TableGrid> grid =
       material::table_grid(*camera, {options.mm_per_pixel, session->cloth_height_mm, options.turn_deg});
@@ -196,21 +175,22 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   if (!finished) return std::move(finished).error();
   if (*finished) return RectifyReport{product.folder, true, std::move(**finished)};
 
+  Result<Image<std::uint16_t>> status = maps->status();
+  if (!status) return std::move(status).error();
   PartialFolder partial(product.folder);
   if (const Result<void> begun = begin(partial, bytes_of(grid->size)); !begun) return begun.error();
-  const Rectification r = {*camera, *grid,  std::move(*status), solve->folder, partial.path(),
-                           options, context};
+  const Rectification r = {*camera, *grid, std::move(*status), partial.path(), options, context};
   std::int64_t solved = 0;
   if (const Result<void> ok = rectify_status(r, solved); !ok) return ok.error();
   context.progress("rectify", 0.1);
-  if (const Result<void> ok = rectify_map(r, "normal.exr", MapKind::kNormal, SampleType::kFloat); !ok)
-    return ok.error();
+  Result<void> made = rectify_map(r, "normal.exr", MapKind::kNormal, SampleType::kFloat, maps->normal());
+  if (!made) return std::move(made).error();
   context.progress("rectify", 0.4);
-  if (const Result<void> ok = rectify_map(r, "albedo.exr", MapKind::kValue, SampleType::kHalf); !ok)
-    return ok.error();
+  made = rectify_map(r, "albedo.exr", MapKind::kValue, SampleType::kHalf, maps->albedo());
+  if (!made) return std::move(made).error();
   context.progress("rectify", 0.7);
-  if (const Result<void> ok = rectify_map(r, "sigma.exr", MapKind::kSigma, SampleType::kHalf); !ok)
-    return ok.error();
+  made = rectify_map(r, "sigma.exr", MapKind::kSigma, SampleType::kHalf, maps->sigma());
+  if (!made) return std::move(made).error();
   Json document = document_of(product.id, *solve, *calibration, r, solved);
   if (const Result<void> ok = write_json(partial.path() / "rectify.json", document); !ok) return ok.error();
   if (const Result<void> ok = partial.publish(); !ok) return ok.error();
