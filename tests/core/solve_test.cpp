@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/solve.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+namespace weft {
+namespace {
+
+using testing::HasSubstr;
+
+SolveFacts some_facts() {
+  SolveFacts facts;
+  facts.id = "0123456789abcdef";
+  facts.solver_version = 3;
+  facts.method = "reference";
+  facts.compression = "zip";
+  facts.size = {6, 4};
+  facts.lights = 10;
+  facts.albedo_scale = "absolute";
+  facts.color = "rec709";
+  facts.pixels = 23;
+  std::iota(facts.status.begin(), facts.status.end(), 11);
+  facts.warnings = {{"LED_DEAD", "LED 3 is dead", "check its cable"},
+                    {"CONDITIONS", "a frame was left out", ""}};
+  facts.pictures = {"sheet.png"};
+  facts.error = SolveError{0.5, 0.25, 1.5, 8};
+  return facts;
+}
+
+TEST(SolveFacts, AreReadAsTheyWereWritten) {
+  const SolveFacts written = some_facts();
+  const Json json = json_of(written);
+  EXPECT_EQ(json["schema"], "weft.solve/1");
+  EXPECT_EQ(json["status"]["SATURATED"], 11);
+  EXPECT_EQ(json["error"]["p95_deg"], 1.5);
+  const Result<SolveFacts> read = solve_facts_of(json);
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(read->id, written.id);
+  EXPECT_EQ(read->solver_version, 3);
+  EXPECT_EQ(read->method, "reference");
+  EXPECT_EQ(read->compression, "zip");
+  EXPECT_EQ(read->size, (Size{6, 4}));
+  EXPECT_EQ(read->lights, 10);
+  EXPECT_EQ(read->albedo_scale, "absolute");
+  EXPECT_EQ(read->color, "rec709");
+  EXPECT_EQ(read->pixels, 23);
+  EXPECT_EQ(read->status, written.status);
+  EXPECT_EQ(read->with(kShadowed), 12);
+  EXPECT_EQ(read->with(kInvalidReading), 18);
+  EXPECT_EQ(read->warnings, written.warnings);
+  EXPECT_EQ(read->pictures, written.pictures);
+  EXPECT_EQ(read->error, written.error);
+}
+
+TEST(SolveFacts, KeepFieldsThatTheyDoNotKnow) {
+  Json json = json_of(some_facts());
+  json["schema"] = "weft.solve/1.4";
+  json["gates"] = {{{"name", "slope"}}};
+  json["status"]["DUSTY"] = 5;
+  Result<SolveFacts> facts = solve_facts_of(json);
+  ASSERT_TRUE(facts) << facts.error().message();
+  facts->pictures.clear();
+  facts->error.reset();
+  json["pictures"] = Json::array();
+  json.erase("error");
+  EXPECT_EQ(json_of(*facts).dump(1), json.dump(1));
+}
+
+TEST(SolveFacts, OfAnEarlyVersionHaveNoColorWarningsOrPictures) {
+  Json json = json_of(some_facts());
+  for (const char* field : {"color", "warnings", "pictures", "error"}) json.erase(field);
+  json["status"].erase("INVALID_READING");
+  const Result<SolveFacts> facts = solve_facts_of(json);
+  ASSERT_TRUE(facts) << facts.error().message();
+  EXPECT_EQ(facts->color, "camera");
+  EXPECT_TRUE(facts->warnings.empty() && facts->pictures.empty() && !facts->error);
+  EXPECT_EQ(facts->with(kInvalidReading), 0);
+}
+
+TEST(SolveFacts, WithAFieldOfTheWrongKindAreRefusedByItsName) {
+  const Json good = json_of(some_facts());
+  for (const auto& [path, value, said] : {std::tuple<const char*, Json, const char*>{"/id", 3, "\"id\""},
+                                          {"/width", "wide", "\"width\""},
+                                          {"/status/DARK", 0.5, "status: \"DARK\""},
+                                          {"/warnings/1/text", Json(), "warnings: \"text\""},
+                                          {"/pictures/0", 7, "\"pictures\" must be names of files"},
+                                          {"/error/max_deg", "8", "error: \"max_deg\""}}) {
+    Json json = good;
+    json[Json::json_pointer(path)] = value;
+    const Result<SolveFacts> facts = solve_facts_of(json);
+    ASSERT_FALSE(facts) << path;
+    EXPECT_EQ(facts.error().kind, ErrorKind::kBadData);
+    EXPECT_THAT(facts.error().message(), HasSubstr(said));
+  }
+  for (const char* field : {"id", "method", "lights", "width", "albedo_scale", "pixels", "status"}) {
+    Json json = good;
+    json.erase(field);
+    const Result<SolveFacts> facts = solve_facts_of(json);
+    ASSERT_FALSE(facts) << field;
+    EXPECT_THAT(facts.error().message(), HasSubstr(field));
+  }
+}
+
+TEST(SolveFacts, OfStoredSolvesAreRead) {
+  const std::filesystem::path data = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata";
+  const Result<Json> first = read_json(data / "schemas/weft.solve-1/solve.json", "weft.solve", 1);
+  ASSERT_TRUE(first) << first.error().message();
+  const Result<SolveFacts> early = solve_facts_of(*first);
+  ASSERT_TRUE(early) << early.error().message();
+  EXPECT_EQ(early->lights, 10);
+  EXPECT_EQ(early->color, "camera");
+  EXPECT_TRUE(early->error);
+
+  const Result<Product> solve = find_solve(data / "golden/satin.weft");
+  ASSERT_TRUE(solve) << solve.error().message();
+  const Result<Json> document = read_json(solve->folder / solve->kind.document, solve->kind.schema, 1);
+  ASSERT_TRUE(document) << document.error().message();
+  const Result<SolveFacts> facts = solve_facts_of(*document);
+  ASSERT_TRUE(facts) << facts.error().message();
+  EXPECT_EQ(facts->id, solve->id);
+  EXPECT_EQ(facts->method, "reference");
+  EXPECT_EQ(facts->size, (Size{38, 26}));
+  EXPECT_EQ(facts->warnings.size(), 4U);
+  EXPECT_EQ(json_of(*facts), *document);
+}
+
+}  // namespace
+}  // namespace weft
