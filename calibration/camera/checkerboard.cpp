@@ -69,8 +69,7 @@ bool goes_on(View<const std::uint8_t> grey, Grid& grid) {
          beyond(false, grid.columns(), grid.columns() - 1);
 }
 
-// Corners of whatever checkerboard there is, row by row. OpenCV's second detector (Duda and Frese, BMVC 2018)
-// finds boards of any size, some that its first one misses too, and takes ten times as long.
+// Corners of whatever checkerboard there is, row by row.
 struct AnyBoard {
   int columns = 0, rows = 0;
   std::vector<cv::Point2f> corners;
@@ -123,8 +122,8 @@ BoardSighting find_checkerboard(View<const std::uint8_t> grey, const Board& boar
   Grid grid = {board};
   const int columns = grid.columns(), rows = grid.rows();
   std::vector<cv::Point2f> seen;
-  if (!cv::findChessboardCorners(picture.picture, {columns, rows}, seen,
-                                 cv::CALIB_CB_ADAPTIVE_THRESH | cv::CALIB_CB_NORMALIZE_IMAGE)) {
+  // OpenCV's detector of Duda and Frese (BMVC 2018). Its older one misses most boards of many squares.
+  if (!cv::findChessboardCornersSB(picture.picture, {columns, rows}, seen, cv::CALIB_CB_EXHAUSTIVE)) {
     AnyBoard any = any_checkerboard(picture.picture);
     if (any.columns == rows && any.rows == columns) any = transposed(any);
     if (any.columns != columns || any.rows != rows) return other_board(any, board, picture.picture.size());
