@@ -122,8 +122,13 @@ BoardSighting find_checkerboard(View<const std::uint8_t> grey, const Board& boar
   Grid grid = {board};
   const int columns = grid.columns(), rows = grid.rows();
   std::vector<cv::Point2f> seen;
-  // OpenCV's detector of Duda and Frese (BMVC 2018). Its older one misses most boards of many squares.
-  if (!cv::findChessboardCornersSB(picture.picture, {columns, rows}, seen, cv::CALIB_CB_EXHAUSTIVE)) {
+  // By OpenCV's detector of Duda and Frese (BMVC 2018): its older one misses most boards of many squares.
+  // Some are found only as they are, some only with their contrast evened out.
+  const auto find = [&](int flags) {
+    return cv::findChessboardCornersSB(picture.picture, {columns, rows}, seen,
+                                       cv::CALIB_CB_EXHAUSTIVE | flags);
+  };
+  if (!find(0) && !find(cv::CALIB_CB_NORMALIZE_IMAGE)) {
     AnyBoard any = any_checkerboard(picture.picture);
     if (any.columns == rows && any.rows == columns) any = transposed(any);
     if (any.columns != columns || any.rows != rows) return other_board(any, board, picture.picture.size());

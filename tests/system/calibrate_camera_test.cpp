@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -298,6 +299,29 @@ TEST_F(CalibrateCamera, LeavesOutWhatIsNotTrueOfItsOwnTable) {
   EXPECT_THAT(outcome->calibration.patches, testing::IsEmpty());
   EXPECT_THAT(outcome->warnings, testing::Contains(HasSubstr("weft calibrate patches")));
   EXPECT_TRUE(outcome->calibration.lights);
+}
+
+// Of Bouguet's camera calibration toolbox; its page gives these values and uncertainties for them.
+TEST(RealBoards, GiveThePublishedLensFromTwentyPhotographsOfACheckerboard) {
+  const char* shared = std::getenv("WEFT_SHARED_DATA");
+  if (shared == nullptr) GTEST_SKIP() << "WEFT_SHARED_DATA is not set";
+  const fs::path photographs = fs::path(shared) / "bouguet_boards";
+  if (!fs::exists(photographs)) GTEST_SKIP() << photographs << " is not there";
+  const Workspace work;
+  CalibrateCameraOptions options;
+  options.input = photographs;
+  options.output = work / "new";
+  const auto outcome = calibrate_camera(options, {});
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  int used = 0;
+  for (const Json& photograph : outcome->report.numbers["photographs"])
+    used += photograph["left_out"].get<std::string>().empty() ? 1 : 0;
+  EXPECT_GE(used, 19) << testing::PrintToString(outcome->warnings);
+  const CameraModel& camera = *outcome->calibration.camera;
+  EXPECT_NEAR(camera.fx, 657.463, 3 * 0.318);
+  EXPECT_NEAR(camera.fy, 657.947, 3 * 0.340);
+  EXPECT_NEAR(camera.cx, 303.137, 3 * 0.647);
+  EXPECT_NEAR(camera.cy, 242.569, 3 * 0.592);
 }
 
 }  // namespace
