@@ -33,7 +33,8 @@ struct ScaleCheck {
 };
 
 /// Fits log v = log(reflectance) + level of the channel + a parabola along the scale (LEDs stand near and to
-/// one side) to the linear v of each patch, by least squares of patches above 1 percent of full scale.
+/// one side) to the linear v of each patch, by least squares of patches above 1 percent of full scale. The
+/// parabola takes up nearly all of a bent response: what is left speaks of the patches.
 /// kBadData where fewer than five are; kUsage where the numbers differ.
 Result<ScaleCheck> check_scale(std::span<const double> reflectances,
                                std::span<const std::array<double, 3>> linear_v);
