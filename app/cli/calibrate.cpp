@@ -39,6 +39,9 @@ Result<CalibrateOutcome> run_step(const CheckRigOptions& options, const JobConte
 Result<CalibrateOutcome> run_step(const CalibratePatchesOptions& options, const JobContext& context) {
   return calibrate_patches(options, context);
 }
+Result<CalibrateOutcome> run_step(const CalibrateGreyOptions& options, const JobContext& context) {
+  return calibrate_grey(options, context);
+}
 Result<CalibrateOutcome> run_step(const CalibrateUpdateOptions& options, const JobContext& context) {
   return calibrate_update(options, context);
 }

@@ -137,6 +137,18 @@ CLI::App* add_check(CLI::App& calibrate, CalibrateCheckOptions& a, CheckRigOptio
   return verb;
 }
 
+CLI::App* add_grey(CLI::App& calibrate, CalibrateGreyOptions& a) {
+  CLI::App* verb = calibrate.add_subcommand(
+      "grey",
+      "How bright each LED is by channel, and its white balance, from a grey scale of known reflectances");
+  verb->add_option("session", a.session, "A scan of the scale, flat on the table")->required();
+  verb->add_option("--scale", a.scale, "scale.toml: where it lies; default beside the session");
+  verb->add_option("--from", a.from, "The calibration to change; default the session's own");
+  verb->add_option("-o,--output", a.output, "Folder of the new calibration, which must not exist")
+      ->required();
+  return verb;
+}
+
 CLI::App* add_patches(CLI::App& calibrate, CalibratePatchesOptions& a) {
   CLI::App* verb = calibrate.add_subcommand(
       "patches", "White patches beside the cloth, by which later scans tell drift and moves");
@@ -182,6 +194,7 @@ std::vector<CLI::App*> add_calibrate(CLI::App& app, CalibrateForms& forms) {
           add_color(*calibrate, forms.color, forms.chart_corners),
           add_lights(*calibrate, forms.lights, forms.lights_method),
           add_check(*calibrate, forms.check, forms.check_rig),
+          add_grey(*calibrate, forms.grey),
           add_patches(*calibrate, forms.patches),
           add_update(*calibrate, forms.update),
           add_history(*calibrate, forms.history)};
@@ -199,6 +212,7 @@ CalibrateArguments chosen_step(const CLI::App& calibrate, const CalibrateForms& 
     lights.method = methods.at(forms.lights_method);
     return lights;
   }
+  if (step == "grey") return forms.grey;
   if (step == "patches") return forms.patches;
   if (step == "update") return forms.update;
   if (step == "history") return forms.history;

@@ -8,6 +8,7 @@
 #include "app/jobs/calibrate/camera.h"
 #include "app/jobs/calibrate/check.h"
 #include "app/jobs/calibrate/color.h"
+#include "app/jobs/calibrate/grey.h"
 #include "app/jobs/calibrate/history.h"
 #include "app/jobs/calibrate/lights.h"
 #include "app/jobs/calibrate/patches.h"
@@ -23,8 +24,8 @@ namespace weft::app {
 /// `weft calibrate`: one step of it.
 using CalibrateArguments =
     std::variant<CalibrateCameraOptions, CalibrateResponseOptions, CalibrateColorOptions,
-                 CalibrateLightsOptions, CalibrateCheckOptions, CheckRigOptions, CalibratePatchesOptions,
-                 CalibrateUpdateOptions, CalibrateHistoryOptions>;
+                 CalibrateLightsOptions, CalibrateCheckOptions, CheckRigOptions, CalibrateGreyOptions,
+                 CalibratePatchesOptions, CalibrateUpdateOptions, CalibrateHistoryOptions>;
 
 /// What is filled in while the command line is read: a form a step.
 struct CalibrateForms {
@@ -36,6 +37,7 @@ struct CalibrateForms {
   std::string lights_method = "physical";
   CalibrateCheckOptions check;
   CheckRigOptions check_rig;
+  CalibrateGreyOptions grey;
   CalibratePatchesOptions patches;
   CalibrateUpdateOptions update;
   CalibrateHistoryOptions history;

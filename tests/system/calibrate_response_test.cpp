@@ -178,7 +178,7 @@ TEST(CalibrateResponse, KeepsTheOtherPartsOfTheCalibrationBefore) {
   EXPECT_EQ(bytes_of(work / "new" / "camera.json"), bytes_of(work / "old" / "camera.json"));
 }
 
-TEST(CalibrateResponse, ChecksLinearityOnAGreyScale) {
+TEST(CalibrateResponse, ChecksThePatchesOfAGreyScale) {
   const Workspace work;
   Frames frames;
   frames.add_all(work / "response");
@@ -217,7 +217,7 @@ TEST(CalibrateResponse, ChecksLinearityOnAGreyScale) {
   ASSERT_TRUE(write_file(work / "response" / "scale" / "scale.toml", "reflectance = [1, 2]\n"));
   fs::remove_all(work / "response" / "dark");
   fs::remove_all(work / "response" / "led01");
-  EXPECT_THAT(refusal(work), HasSubstr("reflectance means nothing")) << "before any frame is looked at";
+  EXPECT_THAT(refusal(work), HasSubstr("reflectance: there is no such key")) << "before any frame is looked at";
 }
 
 TEST(CalibrateResponse, CountsFramesThatAreFull) {

@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <toml++/toml.h>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <vector>
 
 #include "app/jobs/calibrate/response_measurement.h"
+#include "app/jobs/calibrate/scale_file.h"
 #include "app/jobs/raw_picture.h"
 #include "calibration/color/chart.h"
 #include "calibration/response/neutral_scale.h"
@@ -33,55 +33,6 @@ struct ScaleReading {
   calibration::ScaleCheck straight;  // without the measured curve
   calibration::ScaleCheck corrected;
 };
-
-struct ScaleSettings {
-  std::vector<double> reflectances;
-  std::optional<calibration::ChartCorners> corners_px;
-};
-
-Result<ScaleSettings> read_scale_settings(const fs::path& file) {
-  ScaleSettings settings;
-  for (const calibration::MunsellPatch& patch : calibration::munsell_scale()) {
-    settings.reflectances.push_back(patch.reflectance);
-  }
-  if (!is_there(file)) return settings;
-  const Result<std::string> text = read_text(file);
-  if (!text) return text.error();
-  const auto refuse = [&](std::string why) {
-    return Error{ErrorKind::kBadData, "scale.toml cannot be used", file.string(), std::move(why),
-                 "give reflectances = [...], each above 0 and to 1, and corners_px = [[x, y], ...], four"};
-  };
-  toml::table table;
-  try {
-    table = toml::parse(*text);
-  } catch (const toml::parse_error& e) {
-    return refuse(fmt::format("line {}: {}", e.source().begin.line, e.description()));
-  }
-  for (const auto& [key, value] : table) {
-    if (key != "reflectances" && key != "corners_px")
-      return refuse(fmt::format("{} means nothing", key.str()));
-  }
-  if (const toml::array* list = table["reflectances"].as_array()) {
-    settings.reflectances.clear();
-    for (const toml::node& node : *list) {
-      const double r = node.value_or(0.0);
-      if (!(r > 0 && r <= 1)) return refuse("a reflectance is not a number above 0 and to 1");
-      settings.reflectances.push_back(r);
-    }
-    if (settings.reflectances.size() < 5) return refuse("a scale has five patches or more");
-  }
-  if (const toml::array* list = table["corners_px"].as_array()) {
-    calibration::ChartCorners corners;
-    if (list->size() != 4) return refuse("a scale has four corners");
-    for (std::size_t i = 0; i < 4; ++i) {
-      const toml::array* corner = list->get_as<toml::array>(i);
-      if (corner == nullptr || corner->size() != 2) return refuse("a corner is [x, y]");
-      corners[i] = {corner->get(0)->value_or(NAN), corner->get(1)->value_or(NAN)};
-    }
-    settings.corners_px = corners;
-  }
-  return settings;
-}
 
 // Mean linear v of each patch over all frames; 0 where it is full in one of them.
 Result<std::vector<std::array<double, 3>>> read_scale(const ResponseFrames& frames, const Response& response,
@@ -365,7 +316,7 @@ Result<void> write_hot_picture(const fs::path& file, View<const std::uint8_t> ba
 Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& options,
                                             const JobContext& context) {
   if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
-  const Result<ScaleSettings> settings = read_scale_settings(options.input / "scale" / "scale.toml");
+  const Result<ScaleSettings> settings = read_scale_file(options.input / "scale" / "scale.toml");
   if (!settings) return settings.error();
   std::optional<Calibration> from;
   if (!options.from.empty()) {

@@ -18,11 +18,10 @@ struct CalibrateResponseOptions {
 };
 
 /// Measures gain, read noise, black level, linearity, bad photosites, exposure ratios and the white balance
-/// of the LEDs from raw frames (app/jobs/calibrate/response_measurement.h), checks linearity on a grey scale
-/// where there is one, and writes a calibration with response.json, hot.png (where there are dark frames) and
-/// report/response.html. scale.toml: `reflectances` (default the neutral scale of Munsell) and `corners_px`,
-/// the outer corners of the row of patches, [[x, y], ...] clockwise from the first patch, on the active area.
-/// Nothing is written unless all went well. Errors as read_response_frames() and measure_response().
+/// of the LEDs from raw frames (app/jobs/calibrate/response_measurement.h), checks the patches of a grey
+/// scale (scale/scale.toml, scale_file.h) where there is one, and writes a calibration with response.json,
+/// hot.png (where there are dark frames) and report/response.html. Nothing is written unless all went well.
+/// Errors as read_response_frames() and measure_response().
 Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& options,
                                             const JobContext& context);
 
