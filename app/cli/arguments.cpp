@@ -266,8 +266,9 @@ CLI::App* add_rectify(CLI::App& app, RectifyOptions& a) {
 
 CLI::App* add_bench_calibration(CLI::App& bench, BenchCalibrationArguments& a) {
   CLI::App* verb = bench.add_subcommand("calibration", "What calibrating a simulated rig recovers");
-  verb->add_option("--part", a.part, "camera, response, color, lights, degenerate, moved, end-to-end")
-      ->check(CLI::IsMember({"camera", "response", "color", "lights", "degenerate", "moved", "end-to-end"}))
+  verb->add_option("--part", a.part, "camera, response, color, lights, grey, degenerate, moved, end-to-end")
+      ->check(CLI::IsMember(
+          {"camera", "response", "color", "lights", "grey", "degenerate", "moved", "end-to-end"}))
       ->capture_default_str();
   verb->add_option("--seeds", a.seeds, "Rigs or noises to average over; 0 is as many as docs/calibration.md")
       ->check(CLI::Range(0, 10000))

@@ -5,6 +5,7 @@
 #include "bench/calibration_color.h"
 #include "bench/calibration_degenerate.h"
 #include "bench/calibration_end_to_end.h"
+#include "bench/calibration_grey.h"
 #include "bench/calibration_lights.h"
 #include "bench/calibration_moved.h"
 #include "bench/calibration_response.h"
@@ -47,6 +48,7 @@ Result<bench::Rows> measure(const BenchCalibrationArguments& a, int threads) {
     return calibration_color_table(options);
   }
   if (a.part == "lights") return measure_lights(a, threads);
+  if (a.part == "grey") return calibration_grey_table(seeded<CalibrationGreyBenchOptions>(a, threads));
   if (a.part == "moved") return calibration_moved_table(seeded<CalibrationMovedBenchOptions>(a, threads));
   if (a.part == "degenerate")
     return calibration_degenerate_table(seeded<CalibrationDegenerateBenchOptions>(a, threads));
