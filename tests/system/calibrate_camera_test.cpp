@@ -316,7 +316,7 @@ TEST(RealBoards, GiveThePublishedLensFromTwentyPhotographsOfACheckerboard) {
   int used = 0;
   for (const Json& photograph : outcome->report.numbers["photographs"])
     used += photograph["left_out"].get<std::string>().empty() ? 1 : 0;
-  EXPECT_GE(used, 19) << testing::PrintToString(outcome->warnings);
+  EXPECT_EQ(used, 20) << testing::PrintToString(outcome->warnings);
   const CameraModel& camera = *outcome->calibration.camera;
   EXPECT_NEAR(camera.fx, 657.463, 3 * 0.318);
   EXPECT_NEAR(camera.fy, 657.947, 3 * 0.340);
