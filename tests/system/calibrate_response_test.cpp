@@ -217,7 +217,8 @@ TEST(CalibrateResponse, ChecksThePatchesOfAGreyScale) {
   ASSERT_TRUE(write_file(work / "response" / "scale" / "scale.toml", "reflectance = [1, 2]\n"));
   fs::remove_all(work / "response" / "dark");
   fs::remove_all(work / "response" / "led01");
-  EXPECT_THAT(refusal(work), HasSubstr("reflectance: there is no such key")) << "before any frame is looked at";
+  EXPECT_THAT(refusal(work), HasSubstr("reflectance: there is no such key"))
+      << "before any frame is looked at";
 }
 
 TEST(CalibrateResponse, CountsFramesThatAreFull) {
