@@ -4,7 +4,7 @@
 #include <filesystem>
 
 #include "app/jobs/calibrate/outcome.h"
-#include "app/jobs/job.h"
+#include "core/job.h"
 #include "core/result.h"
 
 namespace weft::app {
