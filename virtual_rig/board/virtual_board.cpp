@@ -19,6 +19,7 @@
 #include "virtual_rig/board/avr.h"
 #include "virtual_rig/board/pseudo_terminal.h"
 #include "virtual_rig/terminal/modem_lines.h"
+#include "virtual_rig/terminal/usb_terminal.h"
 
 namespace weft::simulator {
 namespace {
@@ -103,6 +104,11 @@ class SimulatedBoard final : public VirtualBoard {
         lose_power();
         static_cast<void>(get_power());
         return;
+      case BoardFault::kElsewhere:
+        lose_power();
+        ++usb_number_;
+        static_cast<void>(get_power());
+        return;
       case BoardFault::kReset:
         return reset();
       case BoardFault::kHang:
@@ -126,6 +132,7 @@ class SimulatedBoard final : public VirtualBoard {
   }
 
   void lose_power() {
+    usb_.reset();
     terminal_.reset();
     modem_->terminal = 0;
     inbox_.clear();
@@ -137,7 +144,14 @@ class SimulatedBoard final : public VirtualBoard {
     auto terminal = PseudoTerminal::make(options_.terminal);
     if (!terminal) return std::move(terminal).error();
     terminal_ = std::move(*terminal);
+    if (options_.usb) {
+      auto usb =
+          UsbTerminal::make(options_.usb->machine, usb_number_, options_.usb->serial, options_.terminal);
+      if (!usb) return std::move(usb).error();
+      usb_ = std::move(*usb);
+    }
     modem_->lines = 0;
+    modem_->exclusive = 0;
     modem_->terminal = terminal_->device();
     dtr_rises_ = modem_->dtr_rises;
     set_clock();
@@ -237,7 +251,9 @@ class SimulatedBoard final : public VirtualBoard {
   const int wake_;
   std::unique_ptr<Avr> avr_;
   std::unique_ptr<PseudoTerminal> terminal_;  ///< none: unplugged
-  RigClock::time_point clock_time_;           ///< when the board was at clock_cycle_
+  std::unique_ptr<UsbTerminal> usb_;
+  int usb_number_ = 0;
+  RigClock::time_point clock_time_;  ///< when the board was at clock_cycle_
   std::uint64_t clock_cycle_ = 0;
   std::uint32_t dtr_rises_ = 0;
   RigClock::time_point bootloader_until_, noise_until_, busy_until_;

@@ -17,6 +17,7 @@ namespace weft::simulator {
 struct ModemLines {
   std::atomic<std::uint64_t> terminal;   ///< st_rdev of the pseudo-terminal these are the lines of; 0: none
   std::atomic<std::uint32_t> lines;      ///< TIOCM_DTR and TIOCM_RTS as the host has set them
+  std::atomic<std::uint32_t> exclusive;  ///< 1: the host wants nobody else to open it (TIOCEXCL)
   std::atomic<std::uint32_t> dtr_rises;  ///< times the host has raised DTR: an Arduino resets then
 };
 static_assert(std::atomic<std::uint64_t>::is_always_lock_free);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Modem lines for the pseudo-terminal of a virtual board, so that the unchanged libserialport opens it:
-// loaded before the C library (LD_PRELOAD=libweft_terminal_shim.so) or linked into a program. It answers for
-// the one terminal that the file named by WEFT_TERMINAL_MODEM names, and for nothing else.
+// Modem lines for the pseudo-terminal of a virtual board, so that the unchanged libserialport opens it.
+// TIOCEXCL is noted and goes no further: the pseudo-terminal would stay closed to all after the host's death,
+// for its board has it open too. This is loaded before the C library (LD_PRELOAD=libweft_terminal_shim.so) or
+// linked into a program. It answers for the one terminal that the file named by WEFT_TERMINAL_MODEM names,
+// and for nothing else.
 #include <dlfcn.h>
 #include <sys/ioctl.h>
 #include <sys/stat.h>
@@ -55,6 +57,12 @@ extern "C" __attribute__((visibility("default"))) int ioctl(int descriptor, unsi
   va_start(arguments, request);
   void* argument = va_arg(arguments, void*);
   va_end(arguments);
+  if (request == TIOCEXCL) {
+    if (const auto lines = lines_of(descriptor)) {
+      lines->exclusive = 1;
+      return 0;
+    }
+  }
   if (is_modem_request(request) && argument != nullptr) {
     if (const auto lines = lines_of(descriptor)) {
       answer(*lines, request, static_cast<int*>(argument));

@@ -16,6 +16,7 @@
 
 #include "virtual_rig/terminal/modem_lines.h"
 #include "virtual_rig/terminal/port_name.h"
+#include "virtual_rig/terminal/usb_terminal.h"
 
 namespace weft::test {
 namespace {
@@ -38,15 +39,21 @@ T valid(Result<T> result) {
 
 }  // namespace
 
-Desk::Desk(const std::string& firmware, double bootloader_s) : folder_(new_folder()) {
-  board_ = valid(simulator::VirtualBoard::start(
-      {firmware_file(firmware), terminal(), folder_ / "modem", bootloader_s}, pins_));
+Desk::Desk(const std::string& firmware, double bootloader_s, bool usb) : folder_(new_folder()) {
+  simulator::VirtualBoardOptions options = {firmware_file(firmware), terminal(), folder_ / "modem",
+                                            bootloader_s};
+  if (usb) {
+    options.usb = {.machine = folder_};
+    setenv(simulator::kMachineVariable, folder_.c_str(), 1);
+  }
+  board_ = valid(simulator::VirtualBoard::start(options, pins_));
   setenv(simulator::kModemVariable, (folder_ / "modem").c_str(), 1);
 }
 
 Desk::~Desk() {
   board_.reset();
   unsetenv(simulator::kModemVariable);
+  unsetenv(simulator::kMachineVariable);
   std::filesystem::remove_all(folder_);
 }
 

@@ -19,7 +19,10 @@ namespace weft::test {
 class Desk {
  public:
   /// `firmware`: "firmware", "firmware_older" or "firmware_newer".
-  explicit Desk(const std::string& firmware = "firmware", double bootloader_s = 0.05);
+  explicit Desk(const std::string& firmware = "firmware", double bootloader_s = 0.05)
+      : Desk(firmware, bootloader_s, false) {}
+  /// The board is a USB device, /dev/ttyACM0, for this process and those it starts.
+  static Desk with_usb() { return Desk("firmware", 0.05, true); }
   ~Desk();
   Desk(const Desk&) = delete;
   Desk& operator=(const Desk&) = delete;
@@ -27,6 +30,7 @@ class Desk {
   simulator::VirtualBoard& board() { return *board_; }
   simulator::LitLog& pins() { return pins_; }
   void inject(simulator::BoardFault fault) { board_->inject(fault); }
+  std::filesystem::path folder() const { return folder_; }
   std::filesystem::path terminal() const { return folder_ / "led"; }
   std::string port() const;
   capture::LedBoardOptions options() const { return {port(), 4}; }
@@ -39,6 +43,8 @@ class Desk {
   double lit_s_since(simulator::RigClock::time_point then) const;
 
  private:
+  Desk(const std::string& firmware, double bootloader_s, bool usb);
+
   std::filesystem::path folder_;
   simulator::LitLog pins_;
   std::unique_ptr<simulator::VirtualBoard> board_;
