@@ -16,7 +16,7 @@ struct Rig {
   int leds = 10;               ///< 1 to 10
 
   struct Board {
-    std::string port = "/dev/weft-led";  ///< as libserialport names it
+    std::string port = "/dev/weft-led";  ///< any name that leads to it
   } board;
 
   struct Camera {

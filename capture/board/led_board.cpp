@@ -36,17 +36,28 @@ struct Connection {
   BoardFacts facts;
 };
 
-Result<std::unique_ptr<Connection>> connect(const LedBoardOptions& options) {
-  auto port = SerialPort::open(options.port);
+Result<std::unique_ptr<Connection>> connect(const std::string& name, double greeting_s) {
+  auto port = SerialPort::open(name);
   if (!port) return std::move(port).error();
   auto connection = std::make_unique<Connection>(Connection{BoardWire(std::move(*port)), {}});
-  const auto hello = connection->wire.greet(options.greeting_s);
+  const auto hello = connection->wire.greet(greeting_s);
   if (!hello) return hello.error();
-  auto facts = facts_in(*hello, options.port);
+  auto facts = facts_in(*hello, name);
   if (!facts) return std::move(facts).error();
   connection->facts = std::move(*facts);
   connection->facts.usb = connection->wire.port().usb_identity();
   return connection;
+}
+
+/// Where the board of this USB identity is now: under the name it was given, unless one other port is it. So
+/// no other device is opened, which resets it. Boards without a serial number are not told from each other.
+Result<std::string> port_of(const std::string& usb, const std::string& given) {
+  if (usb.empty() || usb.ends_with(' ')) return given;
+  const auto names = SerialPort::names_of_usb(usb);
+  if (names.size() == 1) return names.front();
+  if (!names.empty()) return given;
+  return Error{ErrorKind::kNoDevice, "the LED board is gone", given,
+               fmt::format("no port is USB device {}", usb), "plug the rig's own board in"};
 }
 
 /// LEDs as bits, and the request that lights them.
@@ -114,7 +125,7 @@ class OpenLedBoard final : public LedBoard {
       if (!rest) return rest.error();
       if (*rest == 0ms) return {};
       if (auto dark = send({}); !dark) return dark.error();
-      changed_.wait_for(lock, *rest + kRestMargin, [] { return false; });
+      tick_.wait_for(lock, *rest + kRestMargin, [] { return false; });
     }
     return Error{ErrorKind::kTryAgain, "the LED must cool before it is lit for so long", options_.port, "",
                  "light it for a shorter time"};
@@ -129,7 +140,9 @@ class OpenLedBoard final : public LedBoard {
     const std::lock_guard lock(mutex_);
     lit_ = 0;
     connection_.reset();
-    auto connection = connect(options_);
+    const auto name = port_of(facts_.usb, options_.port);
+    if (!name) return name.error();
+    auto connection = connect(*name, options_.greeting_s);
     if (!connection) return std::move(connection).error();
     const BoardFacts& found = (*connection)->facts;
     if (found.leds != facts_.leds || found.usb != facts_.usb) {
@@ -156,7 +169,6 @@ class OpenLedBoard final : public LedBoard {
     const bool kept = is_still_lit(answer->lit_before);
     lit_ = light.mask;
     lit_until_ = Clock::now() + seconds(light.most_s);
-    changed_.notify_all();
     if (kept) return 0ms;
     const auto status = ask_status();
     lit_ = 0;
@@ -185,20 +197,23 @@ class OpenLedBoard final : public LedBoard {
 
   Result<BoardReply> ask(std::uint8_t command, std::span<const std::uint8_t> payload) {
     if (!connection_) {
-      return Error{ErrorKind::kNoDevice, "the LED board is gone", options_.port, "it was not found again",
-                   "check its cable and plug it in"};
+      return Error{ErrorKind::kNoDevice, "the LED board is gone", options_.port,
+                   "its port does not exist any more", "check its cable and plug it in"};
     }
     auto reply = connection_->wire.ask(command, payload);
-    if (!reply) lit_ = 0;  // whatever it lights now, its dead-man timer ends
+    if (reply) return reply;
+    lit_ = 0;  // whatever it lights now, its dead-man timer ends
+    if (reply.error().kind == ErrorKind::kNoDevice) connection_.reset();
     return reply;
   }
 
   void keep_alive(const std::stop_token& stop) {
     std::unique_lock lock(mutex_);
     while (!stop.stop_requested()) {
-      if (!changed_.wait(lock, stop, [&] { return lit_ != 0; })) return;
-      changed_.wait_for(lock, stop, kKeepAlive, [&] { return lit_ == 0; });
-      if (lit_ != 0 && !stop.stop_requested()) look_after_light();
+      tick_.wait_for(lock, stop, kKeepAlive, [] { return false; });
+      if (stop.stop_requested()) return;
+      if (lit_ != 0) look_after_light();
+      if (connection_ && !connection_->wire.port().is_there()) connection_.reset();
     }
   }
 
@@ -217,8 +232,8 @@ class OpenLedBoard final : public LedBoard {
   const LedBoardOptions options_;
   const BoardFacts facts_;
   std::mutex mutex_;
-  std::condition_variable_any changed_;
-  std::unique_ptr<Connection> connection_;  ///< none: lost, and not found again
+  std::condition_variable_any tick_;
+  std::unique_ptr<Connection> connection_;  ///< none: gone, and not found again
   std::uint16_t lit_ = 0;                   ///< what should be lit now
   Clock::time_point lit_until_;
   std::optional<Error> fault_;  ///< what the keeper found, for the next light()
@@ -228,7 +243,7 @@ class OpenLedBoard final : public LedBoard {
 }  // namespace
 
 Result<std::unique_ptr<LedBoard>> LedBoard::open(const LedBoardOptions& options) {
-  auto connection = connect(options);
+  auto connection = connect(options.port, options.greeting_s);
   if (!connection) return std::move(connection).error();
   return std::unique_ptr<LedBoard>(std::make_unique<OpenLedBoard>(options, std::move(*connection)));
 }

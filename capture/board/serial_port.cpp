@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 #include <libserialport.h>
 #include <sys/file.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
 #include <sys/sysmacros.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <thread>
@@ -57,7 +59,11 @@ Error cannot_open(const std::string& name, int error_number) {
     return no_port(name, "the LED board's port may not be opened by this user", system_reason(error_number),
                    "run `sudo usermod -aG dialout $USER` and log in again");
   }
-  if (error_number == EBUSY) return busy(name, {});
+  if (error_number == EBUSY) {
+    struct stat facts {};
+    const bool known = stat(name.c_str(), &facts) == 0;
+    return busy(name, known ? holder_of(facts) : std::string());
+  }
   return no_port(
       name, "the LED board is not there", system_reason(error_number),
       "plug it in, or name its port in the rig file: `ls /dev/serial/by-id` lists those there are");
@@ -71,6 +77,25 @@ Result<Descriptor> lock_device(const std::string& name) {
   struct stat facts {};
   const bool known = fstat(device.get(), &facts) == 0;
   return busy(name, known ? holder_of(facts) : std::string());
+}
+
+/// What the kernel calls the device, "/dev/ttyACM0": libserialport 0.1.1 looks for what stands after /dev/ in
+/// /sys/class/tty, so it opens none of the links that udev makes. A device without such a name keeps its own.
+std::string kernel_name(const Descriptor& device, const std::string& name) {
+  struct stat facts {};
+  if (fstat(device.get(), &facts) != 0 || !S_ISCHR(facts.st_mode)) return name;
+  std::error_code failed;
+  const auto in_class = std::filesystem::read_symlink(
+      fmt::format("/sys/dev/char/{}:{}", major(facts.st_rdev), minor(facts.st_rdev)), failed);
+  return failed ? name : "/dev/" + in_class.filename().string();
+}
+
+/// "2341:0043 5573"; empty where it is no USB device.
+std::string usb_identity_of(const sp_port* port) {
+  int vendor = 0, product = 0;
+  if (sp_get_port_usb_vid_pid(port, &vendor, &product) != SP_OK) return {};
+  const char* serial = sp_get_port_usb_serial(port);
+  return fmt::format("{:04x}:{:04x} {}", vendor, product, serial ? serial : "");
 }
 
 unsigned int milliseconds(std::chrono::milliseconds time) {
@@ -94,7 +119,7 @@ Result<std::unique_ptr<SerialPort>> SerialPort::open(const std::string& name) {
 
 Result<void> SerialPort::set_up() {
   sp_port* port = nullptr;
-  if (sp_get_port_by_name(name_.c_str(), &port) != SP_OK) {
+  if (sp_get_port_by_name(kernel_name(lock_, name_).c_str(), &port) != SP_OK) {
     return no_port(name_, "this is not a serial port", "libserialport does not know it",
                    "name the LED board's port in the rig file: `ls /dev/serial/by-id` lists those there are");
   }
@@ -109,7 +134,7 @@ Result<void> SerialPort::set_up() {
                    sp_set_parity(port, SP_PARITY_NONE) == SP_OK && sp_set_stopbits(port, 1) == SP_OK &&
                    sp_set_flowcontrol(port, SP_FLOWCONTROL_NONE) == SP_OK &&
                    sp_get_port_handle(port, &descriptor) == SP_OK &&
-                   fcntl(descriptor, F_SETFD, FD_CLOEXEC) == 0;
+                   fcntl(descriptor, F_SETFD, FD_CLOEXEC) == 0 && ioctl(descriptor, TIOCEXCL) == 0;
   if (!set) return gone();
   return {};
 }
@@ -137,15 +162,27 @@ Result<void> SerialPort::write(std::span<const std::uint8_t> bytes, std::chrono:
 Result<std::size_t> SerialPort::read(std::span<std::uint8_t> bytes, std::chrono::milliseconds most) {
   const int count = sp_blocking_read_next(port_.get(), bytes.data(), bytes.size(), milliseconds(most));
   // A port that has gone reads as one that is silent, until it is asked how much is waiting.
-  if (count < 0 || (count == 0 && sp_input_waiting(port_.get()) < 0)) return gone();
+  if (count < 0 || (count == 0 && !is_there())) return gone();
   return static_cast<std::size_t>(count);
 }
 
+bool SerialPort::is_there() const {
+  return sp_input_waiting(port_.get()) >= 0;
+}
+
 std::string SerialPort::usb_identity() const {
-  int vendor = 0, product = 0;
-  if (sp_get_port_usb_vid_pid(port_.get(), &vendor, &product) != SP_OK) return {};
-  const char* serial = sp_get_port_usb_serial(port_.get());
-  return fmt::format("{:04x}:{:04x} {}", vendor, product, serial ? serial : "");
+  return usb_identity_of(port_.get());
+}
+
+std::vector<std::string> SerialPort::names_of_usb(const std::string& identity) {
+  std::vector<std::string> names;
+  sp_port** ports = nullptr;
+  if (sp_list_ports(&ports) != SP_OK) return names;
+  for (sp_port** port = ports; *port != nullptr; ++port) {
+    if (usb_identity_of(*port) == identity) names.emplace_back(sp_get_port_name(*port));
+  }
+  sp_free_port_list(ports);
+  return names;
 }
 
 Error SerialPort::gone() const {

@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/descriptor.h"
 #include "core/result.h"
@@ -15,12 +16,15 @@ struct sp_port;
 
 namespace weft::capture {
 
-/// A serial port at 115200 baud, 8N1, that no other weft can open (libserialport 0.1.1 has no exclusive open:
-/// this holds a lock on the device itself, which goes with the process). Errors: kNoDevice where it is gone,
+/// A serial port at 115200 baud, 8N1. While it is open no other weft opens it (a lock on the device, which
+/// goes with the process), nor any other program (TIOCEXCL) but root's. Errors: kNoDevice where it is gone,
 /// held by another program, or may not be opened; kTryAgain where it does not take what is written in time.
 class SerialPort {
  public:
+  /// `name` is any that leads to the device, links too.
   static Result<std::unique_ptr<SerialPort>> open(const std::string& name);
+  /// What the kernel calls the ports that are this USB device.
+  static std::vector<std::string> names_of_usb(const std::string& identity);
   SerialPort(const SerialPort&) = delete;
   SerialPort& operator=(const SerialPort&) = delete;
 
@@ -30,6 +34,8 @@ class SerialPort {
   /// Reads what comes first; 0 bytes where nothing came in time and the port is still there.
   Result<std::size_t> read(std::span<std::uint8_t> bytes, std::chrono::milliseconds most);
 
+  /// False once it has been pulled out.
+  bool is_there() const;
   const std::string& name() const { return name_; }
   /// Which USB device it is, "2341:0043 5573"; empty where it is none.
   std::string usb_identity() const;

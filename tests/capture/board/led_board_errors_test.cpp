@@ -2,15 +2,20 @@
 // Ports that cannot be opened and boards that cannot be used: what a person is told.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/ioctl.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <cstdlib>
 #include <fstream>
+#include <functional>
 
 #include "capture/board/led_board.h"
+#include "core/descriptor.h"
 #include "tests/capture/board/desk.h"
+#include "virtual_rig/terminal/modem_lines.h"
 
 namespace weft::capture {
 namespace {
@@ -60,25 +65,53 @@ TEST(OpeningALedBoard, SaysWhichProcessHoldsIt) {
   EXPECT_EQ(desk.pins().now(), 4) << "asking for the port disturbed the light";
 }
 
+TEST(OpeningALedBoard, KeepsOtherProgramsOut) {
+  Desk desk;
+  const auto lines = simulator::open_modem_lines(desk.folder() / "modem");
+  ASSERT_TRUE(lines);
+  EXPECT_EQ(lines->exclusive.load(), 0U);
+  const auto board = desk.open();
+  EXPECT_EQ(lines->exclusive.load(), 1U) << "TIOCEXCL";
+}
+
 TEST(OpeningALedBoard, IsFreeAgainWhenItIsClosed) {
   Desk desk;
   for (int i = 0; i < 3; ++i) EXPECT_NO_THROW(desk.open()) << i;
 }
 
-// In a child that is nobody: root may open anything.
+/// Whether it holds in a child that is nobody: root may open anything.
+bool holds_for_nobody(const std::function<bool()>& condition) {
+  const pid_t child = fork();
+  if (child == 0) _exit(setuid(65534) == 0 && condition() ? 0 : 1);
+  int state = 0;
+  waitpid(child, &state, 0);
+  return WIFEXITED(state) && WEXITSTATUS(state) == 0;
+}
+
 TEST(OpeningALedBoard, SaysHowToBeAllowedTo) {
   if (geteuid() != 0) GTEST_SKIP() << "needs root to become somebody else";
   Desk desk;
-  const pid_t child = fork();
-  if (child == 0) {
-    const std::string terminal = std::filesystem::read_symlink(desk.terminal());
-    if (chmod(terminal.c_str(), 0600) != 0 || setuid(65534) != 0) _exit(3);
+  const std::string terminal = std::filesystem::read_symlink(desk.terminal());
+  ASSERT_EQ(chmod(terminal.c_str(), 0600), 0);
+  EXPECT_TRUE(holds_for_nobody([&] {
     const Error error = error_of({terminal});
-    _exit(error.kind == ErrorKind::kNoDevice && error.remedy.find("dialout") != std::string::npos ? 0 : 1);
-  }
-  int state = 0;
-  waitpid(child, &state, 0);
-  EXPECT_TRUE(WIFEXITED(state) && WEXITSTATUS(state) == 0) << state;
+    return error.kind == ErrorKind::kNoDevice && error.remedy.find("dialout") != std::string::npos;
+  }));
+}
+
+TEST(OpeningALedBoard, SaysWhoHasItForItselfAlone) {
+  if (geteuid() != 0) GTEST_SKIP() << "needs root to become somebody else";
+  Desk desk;
+  LightHolder host(desk.port(), 3);
+  ASSERT_TRUE(desk.comes_to_light({3}, 10));
+  const std::string terminal = std::filesystem::read_symlink(desk.terminal());
+  ASSERT_EQ(chmod(terminal.c_str(), 0666), 0);
+  const Descriptor exclusive(terminal, O_RDWR | O_NOCTTY);
+  ASSERT_EQ(syscall(SYS_ioctl, exclusive.get(), TIOCEXCL), 0) << "past the shim, which keeps it to itself";
+  EXPECT_TRUE(holds_for_nobody([&] {
+    const std::string said = error_of({terminal}).message();
+    return said.find("hold_light (process " + std::to_string(host.process()) + ")") != std::string::npos;
+  }));
 }
 
 TEST(OpeningALedBoard, RefusesAnOlderAndANewerFirmware) {
