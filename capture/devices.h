@@ -26,8 +26,9 @@ class Lamps {
 
   virtual int leds() const = 0;
   /// Lights these LEDs (from 1; at most two; none: all off) and no other, until the next call or for at most
-  /// `most_s` seconds, whichever ends first. Returns when the board has said that it is so.
-  virtual Result<void> light(std::span<const int> leds, double most_s) = 0;
+  /// `most_s` seconds, whichever ends first. Returns 0 when the board has said that it is so. Above 0: they
+  /// are too warm, all are off; to be asked again after so many seconds.
+  virtual Result<double> light(std::span<const int> leds, double most_s) = 0;
   /// After an error: finds the board again, all off. The same board or an error.
   virtual Result<void> recover() = 0;
 };

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <thread>
 
 #include "app/cli/exit_code.h"
@@ -59,6 +60,15 @@ Result<int> show_status(const capture::Rig& rig, const CommonArguments& common) 
   return kDone;
 }
 
+/// False where somebody wants an end before.
+bool wait(double seconds, const std::stop_token& stop) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+  while (std::chrono::steady_clock::now() < until && !stop.stop_requested()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return !stop.stop_requested();
+}
+
 Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments,
                           const CommonArguments& common) {
   const auto board = open_board(rig);
@@ -66,12 +76,16 @@ Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments
   const std::stop_token stop = stop_on_signal();
   const double most_s = arguments.seconds + 1;
   for (const int led : chosen_leds(rig, arguments)) {
-    if (stop.stop_requested()) return interrupted();
-    if (Result<void> ok = (*board)->light(std::array{led}, most_s); !ok) return std::move(ok).error();
+    Result<double> cools_s = (*board)->light(std::array{led}, most_s);
+    for (; cools_s && *cools_s > 0; cools_s = (*board)->light(std::array{led}, most_s)) {
+      if (!common.quiet) note(fmt::format("LED {} cools, {:.0f} s", led, std::ceil(*cools_s)));
+      if (!wait(*cools_s, stop)) return interrupted();
+    }
+    if (!cools_s) return cools_s.error();
     if (!common.json) print(fmt::format("LED {}", led));
-    std::this_thread::sleep_for(std::chrono::duration<double>(arguments.seconds));
+    if (!wait(arguments.seconds, stop)) return interrupted();
   }
-  if (Result<void> ok = (*board)->light({}, 0); !ok) return std::move(ok).error();
+  if (const Result<double> off = (*board)->light({}, 0); !off) return off.error();
   if (common.json) print_json({{"leds", chosen_leds(rig, arguments)}});
   return kDone;
 }

@@ -32,7 +32,7 @@ Result<Rows> capture_board_table(const CaptureBoardOptions& options) {
     const auto begin = std::chrono::steady_clock::now();
     const auto lit = (*board)->light({&led, 1}, 1);
     const std::chrono::duration<double, std::milli> time_ms = std::chrono::steady_clock::now() - begin;
-    if (lit) times_ms.push_back(time_ms.count());
+    if (lit && *lit == 0) times_ms.push_back(time_ms.count());
   }
   static_cast<void>((*board)->light({}, 0));
   const auto after = (*board)->status();

@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kKeepAlive = 120ms;  ///< a quarter of the dead-man's time: three may be lost
 constexpr auto kEndOfLight = 50ms;  ///< so close to the end of a light, it may be over already
-constexpr auto kRestMargin = 20ms;
+constexpr double kRestMargin_s = 0.02;
 
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
@@ -114,21 +114,16 @@ class OpenLedBoard final : public LedBoard {
   int leds() const override { return facts_.leds; }
   BoardFacts facts() const override { return facts_; }
 
-  Result<void> light(std::span<const int> leds, double most_s) override {
+  Result<double> light(std::span<const int> leds, double most_s) override {
     const auto wanted = light_of(leds, most_s, facts_, options_.port);
     if (!wanted) return wanted.error();
-    std::unique_lock lock(mutex_);
+    const std::lock_guard lock(mutex_);
     if (fault_) return *std::exchange(fault_, std::nullopt);
-    // Each round waits for as long as the board says; the second one finds the LED cool.
-    for (int round = 0; round < 3; ++round) {
-      const auto rest = send(*wanted);
-      if (!rest) return rest.error();
-      if (*rest == 0ms) return {};
-      if (auto dark = send({}); !dark) return dark.error();
-      tick_.wait_for(lock, *rest + kRestMargin, [] { return false; });
-    }
-    return Error{ErrorKind::kTryAgain, "the LED must cool before it is lit for so long", options_.port, "",
-                 "light it for a shorter time"};
+    const auto rest = send(*wanted);
+    if (!rest) return rest.error();
+    if (*rest == 0ms) return 0.0;
+    if (auto dark = send({}); !dark) return dark.error();
+    return std::chrono::duration<double>(*rest).count() + kRestMargin_s;
   }
 
   Result<BoardStatus> status() override {

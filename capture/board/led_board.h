@@ -11,7 +11,7 @@
 namespace weft::capture {
 
 struct LedBoardOptions {
-  std::string port;       ///< as libserialport names it: "/dev/weft-led"
+  std::string port;       ///< any name that leads to it: "/dev/weft-led"
   double greeting_s = 4;  ///< how long it may take to say what it is, its bootloader's two seconds included
 };
 
@@ -45,8 +45,11 @@ struct BoardStatus {
 
 /// The LED board on a serial port (docs/protocol.md). While a LED is lit a thread asks the board for its
 /// status every 120 ms: that keeps its dead-man timer from ending the exposure, and lets it end it when this
-/// process dies. Every call ends: within a second, but where light() waits for a LED that must cool (40 s at
-/// most) and recover() for a board that starts (`greeting_s`).
+/// process dies. Every call ends: within a second, but where recover() waits for a board that starts
+/// (`greeting_s`).
+///
+/// A port that has gone is closed within a second, lit or not: for as long as it is open the kernel gives a
+/// board that comes back another name. recover() finds a board with a USB serial number under any name.
 ///
 /// Errors are those of capture/devices.h; light() also kUsage, for a LED that is not there or a time longer
 /// than the board allows, and kTryAgain where the light that was lit before went out too soon: whatever was

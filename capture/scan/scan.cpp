@@ -462,6 +462,8 @@ const char* name_of(ScanPhase phase) {
       return "connecting";
     case ScanPhase::kMetering:
       return "metering";
+    case ScanPhase::kCooling:
+      return "cooling";
     case ScanPhase::kExposing:
       return "exposing";
     case ScanPhase::kFetching:

@@ -39,6 +39,7 @@ struct ScanRequest {
 enum class ScanPhase {
   kConnecting,
   kMetering,
+  kCooling,  ///< the next LED was lit for so long that it must rest; `why` says for how many seconds
   kExposing,
   kFetching,
   kRecovering,
@@ -69,7 +70,7 @@ struct ScanStatus {
   int frames = 0;  ///< kept
   int frames_planned = 0;
   double exposure_us = 0;
-  std::string why;  ///< of a pause, a failure, a recovery: one sentence with what to do
+  std::string why;  ///< of a pause, a rest, a failure, a recovery: one sentence with what to do
 };
 
 /// Called from the scan's own threads, one call at a time.
@@ -87,6 +88,7 @@ struct ScanControl {
 struct ScanOptions {
   double device_patience_s = 30;  ///< how long a device that is gone is waited for before the scan ends
   int tries_per_shot = 3;         ///< takes of one shot before the scan ends
+  double lamp_margin_s = 8;       ///< how long a LED may wait for the camera to open its shutter
 };
 
 struct ScanOutcome {

@@ -14,7 +14,6 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr std::chrono::duration<double> kLampMargin(8);  // for the camera to open its shutter
 constexpr auto kPause = std::chrono::milliseconds(20);
 constexpr auto kBetweenSearches = std::chrono::milliseconds(500);
 
@@ -48,6 +47,11 @@ void Report::kept(const KeptFrame& frame) {
   ++status_.frames;
   events_.kept(frame);
   events_.status(status_);
+}
+
+ScanPhase Report::phase() {
+  const std::lock_guard lock(mutex_);
+  return status_.phase;
 }
 
 Error cancelled(const std::string& where) {
@@ -87,6 +91,7 @@ Result<CameraFacts> Shooter::connect() {
     return lamps_.recover();
   });
   if (!found) return found.error();
+  lamps_failed_ = false;
   return facts;
 }
 
@@ -100,9 +105,9 @@ Result<std::vector<double>> Shooter::shutter_times_us() {
 }
 
 Result<void> Shooter::wait_while_paused() {
-  if (control_.pause == nullptr || !control_.pause->load()) return {};
+  if (!is_paused()) return {};
   report_.phase(ScanPhase::kPaused, "paused on request; resume to go on");
-  while (control_.pause->load()) {
+  while (is_paused()) {
     if (is_cancelled()) return cancelled("scan");
     std::this_thread::sleep_for(kPause);
   }
@@ -112,7 +117,7 @@ Result<void> Shooter::wait_while_paused() {
 Result<void> Shooter::recover(const Error& error) {
   report_.phase(ScanPhase::kRecovering, error.message());
   set_.reset();
-  if (!lamps_off()) lamps_failed_ = true;
+  (void)lamps_off();
   if (lamps_failed_) {
     Result<void> back = wait_for([&] { return lamps_.recover(); });
     if (!back) return back;
@@ -123,6 +128,44 @@ Result<void> Shooter::recover(const Error& error) {
     const Result<CameraFacts> facts = camera_.recover();
     return facts ? Result<void>() : facts.error();
   });
+}
+
+Result<void> Shooter::lamps_off() {
+  const Result<double> off = lamps_.light({}, 1);
+  if (off) return {};
+  lamps_failed_ = true;
+  return off.error();
+}
+
+Result<void> Shooter::let_cool(int led, double cools_s) {
+  const ScanPhase before = report_.phase();
+  const auto whole_s = static_cast<int>(std::ceil(cools_s));
+  report_.phase(ScanPhase::kCooling,
+                "LED " + std::to_string(led) + " cools, " + std::to_string(whole_s) + " s");
+  const auto until = steady_clock::now() + std::chrono::duration<double>(cools_s);
+  while (steady_clock::now() < until && !is_paused()) {
+    if (is_cancelled()) return cancelled("scan");
+    std::this_thread::sleep_for(kPause);
+  }
+  if (Result<void> go = wait_while_paused(); !go) return go;
+  report_.phase(before);
+  return {};
+}
+
+Result<steady_clock::time_point> Shooter::light(int led, std::chrono::duration<double> most_lit) {
+  const std::array<int, 1> one = {led};
+  const auto leds = led == 0 ? std::span<const int>() : std::span<const int>(one);
+  for (;;) {  // ends: a LED that is dark cools
+    if (is_cancelled()) return cancelled("scan");
+    const auto asked = steady_clock::now();
+    const Result<double> cools_s = lamps_.light(leds, most_lit.count());
+    if (!cools_s) {
+      lamps_failed_ = true;
+      return cools_s.error();
+    }
+    if (*cools_s <= 0) return std::chrono::time_point_cast<steady_clock::duration>(asked + most_lit);
+    if (Result<void> cool = let_cool(led, *cools_s); !cool) return cool.error();
+  }
 }
 
 Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
@@ -137,30 +180,21 @@ Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
     status.why.clear();
     if (status.phase != ScanPhase::kMetering) status.phase = ScanPhase::kExposing;
   });
-  const std::array<int, 1> one = {led};
-  const std::chrono::duration<double> most_lit =
-      kLampMargin + std::chrono::duration<double>(exposure.exposure_us * 1e-6);
-  const auto light = [&](std::span<const int> leds) {
-    Result<void> lit = lamps_.light(leds, most_lit.count());
-    if (!lit) lamps_failed_ = true;
-    return lit;
-  };
-  const auto goes_out = steady_clock::now() + most_lit;
-  if (Result<void> lit = light(led == 0 ? std::span<const int>() : std::span<const int>(one)); !lit) {
-    return lit.error();
-  }
+  const std::chrono::duration<double> most_lit(options_.lamp_margin_s + exposure.exposure_us * 1e-6);
+  const auto goes_out = light(led, most_lit);
+  if (!goes_out) return goes_out.error();
   Result<void> off;
   bool is_exposed = false;
   Result<Photograph> photograph = camera_.take(file, [&] {
     is_exposed = true;
-    const bool went_out = led != 0 && steady_clock::now() >= goes_out;
-    off = light({});
+    const bool went_out = led != 0 && steady_clock::now() >= *goes_out;
+    off = lamps_off();
     if (off && went_out) off = light_went_out(led, most_lit);
     report_.change([](ScanStatus& status) {
       if (status.phase != ScanPhase::kMetering) status.phase = ScanPhase::kFetching;
     });
   });
-  if (!is_exposed) off = light({});
+  if (!is_exposed) off = lamps_off();
   if (!photograph) return photograph;
   // Asked first: a photograph that is not used counts all the same.
   if (Result<void> ours = count_.check(*photograph); !ours) return ours.error();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -20,6 +21,7 @@ class Report {
   explicit Report(const ScanEvents& events) : events_(events) {}
   void change(const std::function<void(ScanStatus&)>& change);
   void phase(ScanPhase phase, std::string why = {});
+  ScanPhase phase();
   void kept(const KeptFrame& frame);
 
  private:
@@ -45,12 +47,16 @@ class Shooter {
   /// between `clear` removes what a failed take left. Waits while the scan is paused.
   Result<Photograph> take(int led, const ExposureSettings& exposure, const std::filesystem::path& file,
                           const std::function<void()>& clear);
-  Result<void> lamps_off() { return lamps_.light({}, 1); }
+  Result<void> lamps_off();
   bool is_cancelled() const { return control_.cancel.stop_requested(); }
+  bool is_paused() const { return control_.pause != nullptr && control_.pause->load(); }
   int retaken() const { return retaken_; }
 
  private:
   Result<Photograph> take_once(int led, const ExposureSettings& exposure, const std::filesystem::path& file);
+  /// Lights a LED (0: none) as soon as it is cool. When it goes out at the earliest.
+  Result<std::chrono::steady_clock::time_point> light(int led, std::chrono::duration<double> most_lit);
+  Result<void> let_cool(int led, double cools_s);
   Result<void> wait_while_paused();
   /// Whether devices answer again after `error`; else the error that ends the scan.
   Result<void> recover(const Error& error);

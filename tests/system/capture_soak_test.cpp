@@ -75,5 +75,23 @@ TEST_F(CaptureSoak, TwentyScansOfSixteenMegapixelsAreAlikeAndLeaveNothingBehind)
   expect_flat(rows("scans", 20, 16, 1200));
 }
 
+// A LED may be lit for 40 s at once and half of the time. The third photograph of LED 1 within two minutes,
+// after one that was truncated, asks for more than that.
+TEST_F(CaptureSoak, ExposuresOf25SecondsWaitForTheLedToCool) {
+  const auto rig =
+      bench::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
+                                .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
+                                .folder = folder_ / "rig",
+                                .megapixels = 0.05});
+  ASSERT_TRUE(rig) << rig.error().message();
+  ASSERT_TRUE((*rig)->say("camera short_data 2"));
+  const auto weft = (*rig)->weft(
+      {"scan", "--leds", "1", "--exposure", "25000000", "--fabric", "long", "--no-preview"}, "scan.log");
+  ASSERT_TRUE(weft) << weft.error().message();
+  EXPECT_EQ((*weft)->wait(300), 0) << (*weft)->said();
+  EXPECT_NE((*weft)->said().find("LED 1 cools, "), std::string::npos) << (*weft)->said();
+  EXPECT_EQ((*weft)->said().find("went out"), std::string::npos) << (*weft)->said();
+}
+
 }  // namespace
 }  // namespace weft

@@ -60,7 +60,7 @@ class Rigged : public testing::Test {
       ASSERT_TRUE(board) << board.error().message();
       board_ = std::move(*board);
     }
-    const Result<void> lit = board_->light(leds, 20);
+    const Result<double> lit = board_->light(leds, 20);
     ASSERT_TRUE(lit) << lit.error().message();
   }
 

@@ -23,7 +23,7 @@ using std::chrono::milliseconds;
 class NoLamps : public capture::Lamps {
  public:
   int leds() const override { return 3; }
-  Result<void> light(std::span<const int>, double) override { return {}; }
+  Result<double> light(std::span<const int>, double) override { return 0.0; }
   Result<void> recover() override { return {}; }
 };
 

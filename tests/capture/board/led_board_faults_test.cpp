@@ -21,7 +21,7 @@ using test::comes_true;
 using test::Desk;
 using test::LightHolder;
 
-Result<void> light(LedBoard& board, const std::vector<int>& leds, double most_s = 10) {
+Result<double> light(LedBoard& board, const std::vector<int>& leds, double most_s = 10) {
   return board.light(leds, most_s);
 }
 

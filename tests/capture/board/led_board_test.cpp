@@ -17,7 +17,7 @@ namespace {
 using simulator::RigClock;
 using test::Desk;
 
-Result<void> light(LedBoard& board, const std::vector<int>& leds, double most_s = 5) {
+Result<double> light(LedBoard& board, const std::vector<int>& leds, double most_s = 5) {
   return board.light(leds, most_s);
 }
 
@@ -102,6 +102,25 @@ TEST(LedBoard, TurnsALightOffAfterItsTime) {
   ASSERT_TRUE(status) << status.error().message();
   EXPECT_EQ(status->dark, WentDark::kByTime) << name_of(status->dark);
   EXPECT_TRUE(light(*board, {4})) << "a light that ended in time is no fault";
+}
+
+TEST(LedBoard, SaysForHowLongALedMustCoolAndLightsItThen) {
+  Desk desk;
+  const auto board = desk.open();
+  ASSERT_TRUE(light(*board, {3}, 1));
+  std::this_thread::sleep_for(std::chrono::milliseconds(400));
+  const auto begin = RigClock::now();
+  const auto cools_s = light(*board, {3}, 40);
+  ASSERT_TRUE(cools_s) << cools_s.error().message();
+  EXPECT_LT(std::chrono::duration<double>(RigClock::now() - begin).count(), 0.3)
+      << "it waited for that itself";
+  EXPECT_NEAR(*cools_s, 0.4, 0.1);
+  EXPECT_EQ(desk.pins().now(), 0) << "it cools while it is dark";
+  std::this_thread::sleep_for(std::chrono::duration<double>(*cools_s));
+  const auto lit = light(*board, {3}, 40);
+  ASSERT_TRUE(lit) << lit.error().message();
+  EXPECT_EQ(*lit, 0);
+  EXPECT_EQ(desk.pins().now(), 1 << 2);
 }
 
 TEST(LedBoard, KeepsALightOnThroughALongExposure) {

@@ -4,7 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <set>
+#include <stop_token>
 
 #include "core/files.h"
 #include "tests/capture/scan/scan_bench.h"
@@ -241,6 +245,67 @@ TEST(Scan, IsPausedWithAllLedsOffBetweenTwoShots) {
   ASSERT_TRUE(bench.scan());
   EXPECT_EQ(takes_while_paused, 3);
   EXPECT_FALSE(was_lit);
+  EXPECT_EQ(bench.objection(), "");
+}
+
+constexpr int kCallForLed1 = 4;  // of light(): off, nothing for the dark shot, off, LED 1
+
+TEST(Scan, TellsOfTheRestOfALedAndDoesNotTakeItForALightThatWentOut) {
+  ScanBench bench;
+  bench.options.lamp_margin_s = 0.3;
+  bench.rig.rests_s[kCallForLed1] = 0.6 + 1e-6 * bench.request.exposure.exposure_us;  // longer than it is lit
+  std::set<std::string> rests;
+  bool was_lit = false;
+  bench.on_status = [&](const ScanStatus& status) {
+    if (status.phase != ScanPhase::kCooling) return;
+    rests.insert(status.why);
+    was_lit = was_lit || bench.rig.is_lit();
+  };
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_EQ(outcome->frames_retaken, 0);
+  EXPECT_THAT(rests, testing::ElementsAre("LED 1 cools, 1 s"));
+  EXPECT_FALSE(was_lit);
+  EXPECT_EQ(bench.objection(), "");
+}
+
+TEST(Scan, IsStoppedInTheRestOfALedWithoutAnotherShot) {
+  ScanBench bench;
+  bench.rig.rests_s[kCallForLed1] = 30;
+  std::stop_source stop;
+  bench.control.cancel = stop.get_token();
+  std::chrono::steady_clock::time_point asked;
+  bench.on_status = [&](const ScanStatus& status) {
+    if (status.phase != ScanPhase::kCooling) return;
+    EXPECT_EQ(status.why, "LED 1 cools, 30 s");
+    asked = std::chrono::steady_clock::now();
+    stop.request_stop();
+  };
+  const Result<ScanOutcome> stopped = bench.scan();
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().kind, ErrorKind::kInterrupted) << stopped.error().message();
+  EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - asked).count(), 1);
+  EXPECT_EQ(bench.rig.takes(), 1) << "the dark shot, and no other";
+  EXPECT_FALSE(bench.rig.is_lit());
+}
+
+TEST(Scan, IsPausedInTheRestOfALed) {
+  ScanBench bench;
+  bench.rig.rests_s[kCallForLed1] = 0.5;
+  std::atomic<bool> pause = false;
+  bench.control.pause = &pause;
+  std::vector<ScanPhase> phases;
+  bench.on_status = [&](const ScanStatus& status) {
+    if (phases.empty() || phases.back() != status.phase) phases.push_back(status.phase);
+    pause = status.phase == ScanPhase::kCooling && std::ranges::count(phases, ScanPhase::kPaused) == 0;
+  };
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  const auto rest = std::ranges::find(phases, ScanPhase::kCooling);
+  ASSERT_GE(phases.end() - rest, 4);
+  EXPECT_THAT(std::vector(rest, rest + 4), testing::ElementsAre(ScanPhase::kCooling, ScanPhase::kPaused,
+                                                                ScanPhase::kExposing, ScanPhase::kCooling))
+      << "the pause does not wait for the end of the rest";
   EXPECT_EQ(bench.objection(), "");
 }
 

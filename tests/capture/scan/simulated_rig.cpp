@@ -106,7 +106,7 @@ Lighting SimulatedRig::lighting() const {
   return lighting;
 }
 
-Result<void> SimulatedRig::Lamps::light(std::span<const int> leds, double) {
+Result<double> SimulatedRig::Lamps::light(std::span<const int> leds, double) {
   if (rig_.lamps_absent_ > 0) return device_error(ErrorKind::kNoDevice, "board is gone");
   const auto fault = rig_.lamp_faults.find(++rig_.lamp_calls_);
   if (fault != rig_.lamp_faults.end()) {
@@ -114,8 +114,15 @@ Result<void> SimulatedRig::Lamps::light(std::span<const int> leds, double) {
     if (fault->second == ErrorKind::kNoDevice) rig_.lamps_absent_ = rig_.absent;
     return device_error(fault->second, "board fails");
   }
+  rig_.lit_.clear();
+  const auto now = std::chrono::steady_clock::now();
+  if (const auto rest = rig_.rests_s.find(rig_.lamp_calls_); rest != rig_.rests_s.end()) {
+    rig_.cool_at_ = now + std::chrono::duration_cast<std::chrono::nanoseconds>(
+                              std::chrono::duration<double>(rest->second));
+  }
+  if (!leds.empty() && now < rig_.cool_at_) return std::chrono::duration<double>(rig_.cool_at_ - now).count();
   rig_.lit_.assign(leds.begin(), leds.end());
-  return {};
+  return 0.0;
 }
 
 Result<void> SimulatedRig::Lamps::recover() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -69,6 +70,7 @@ class SimulatedRig {
   };
   std::map<int, Fault> camera_faults;    ///< by take, from 1
   std::map<int, ErrorKind> lamp_faults;  ///< by call of light(), from 1
+  std::map<int, double> rests_s;         ///< by call of light(), from 1: so long its LED must cool first
   int absent = 2;                        ///< calls of recover() until an unplugged device is back
 
   std::map<int, int> wires;                            ///< LED that lights in the place of the one asked for
@@ -90,7 +92,7 @@ class SimulatedRig {
    public:
     explicit Lamps(SimulatedRig& rig) : rig_(rig) {}
     int leds() const override { return rig_.cloth_.leds(); }
-    Result<void> light(std::span<const int> leds, double most_s) override;
+    Result<double> light(std::span<const int> leds, double most_s) override;
     Result<void> recover() override;
 
    private:
@@ -118,6 +120,7 @@ class SimulatedRig {
   Lamps lamps_{*this};
   Camera camera_{*this};
   std::vector<int> lit_;
+  std::chrono::steady_clock::time_point cool_at_;
   int takes_ = 0, lamp_calls_ = 0, camera_absent_ = 0, lamps_absent_ = 0;
   std::uint32_t image_number_ = 4711;
 };
