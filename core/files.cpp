@@ -56,6 +56,14 @@ fs::path parent_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
 
+/// The path itself, or its nearest parent that is there.
+fs::path existing_parent(const fs::path& path) {
+  std::error_code failed;
+  fs::path existing = fs::absolute(path, failed);
+  while (!fs::exists(existing, failed) && existing.has_relative_path()) existing = existing.parent_path();
+  return existing;
+}
+
 }  // namespace
 
 fs::path absolute_folder(const fs::path& folder) {
@@ -66,6 +74,14 @@ fs::path absolute_folder(const fs::path& folder) {
 bool is_there(const fs::path& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
+}
+
+Result<bool> look_for(const fs::path& path) {
+  std::error_code failed;
+  const fs::file_status status = fs::symlink_status(path, failed);
+  if (fs::status_known(status)) return fs::exists(status);
+  return Error{ErrorKind::kInputOutput, "cannot see what is there", path.string(), failed.message(),
+               "bring its disk back, or give this user the right to see it, then run the same command again"};
 }
 
 std::string system_reason(int error_number) {
@@ -212,10 +228,14 @@ std::string sha256_of(std::string_view text) {
 
 std::uint64_t free_disk_bytes(const fs::path& path) {
   std::error_code failed;
-  fs::path existing = fs::absolute(path, failed);
-  while (!fs::exists(existing, failed) && existing.has_relative_path()) existing = existing.parent_path();
-  const fs::space_info space = fs::space(existing, failed);
+  const fs::space_info space = fs::space(existing_parent(path), failed);
   return failed ? 0 : space.available;
+}
+
+bool are_on_one_disk(const fs::path& a, const fs::path& b) {
+  struct stat of_a = {}, of_b = {};
+  return ::stat(existing_parent(a).c_str(), &of_a) == 0 && ::stat(existing_parent(b).c_str(), &of_b) == 0 &&
+         of_a.st_dev == of_b.st_dev;
 }
 
 std::uint64_t available_memory_bytes() {

@@ -18,6 +18,11 @@ std::filesystem::path absolute_folder(const std::filesystem::path& folder);
 /// nothing.
 bool is_there(const std::filesystem::path& path);
 
+/// The same where much hangs on it: false only where the system says that there is nothing, not even a link
+/// that leads nowhere. kInputOutput where it does not tell: a folder that may not be entered, a disk that
+/// fails.
+Result<bool> look_for(const std::filesystem::path& path);
+
 /// The whole of a text file. kNoInput if it is not there or may not be read, kBadData above `most_bytes`.
 Result<std::string> read_text(const std::filesystem::path& file,
                               std::size_t most_bytes = std::size_t{64} << 20);
@@ -60,6 +65,9 @@ std::string sha256_of(std::string_view text);
 
 /// Bytes free for this user on the disk that holds `path` or its nearest existing parent.
 std::uint64_t free_disk_bytes(const std::filesystem::path& path);
+/// Whether both lie on one disk, or their nearest parents that are there, as far as the system tells disks
+/// apart.
+bool are_on_one_disk(const std::filesystem::path& a, const std::filesystem::path& b);
 /// Bytes of memory the system could hand out now without swapping; 0 where it does not say.
 std::uint64_t available_memory_bytes();
 /// The most memory this process has held at once, in bytes.

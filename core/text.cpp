@@ -22,6 +22,13 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+std::string plain_name(std::string text) {
+  constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
+  std::ranges::replace_if(
+      text, [&](char c) { return kPlain.find(c) == kPlain.npos; }, '-');
+  return text;
+}
+
 std::string escape_markup(std::string_view text) {
   std::string out;
   for (const char c : text) {

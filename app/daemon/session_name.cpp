@@ -9,24 +9,14 @@
 #include <map>
 #include <string_view>
 
+#include "core/text.h"
+
 namespace weft::app {
 namespace {
 
 constexpr std::size_t kMostBytes = 100;
 constexpr std::size_t kMostFabricBytes = 40;
 constexpr int kMostCount = 99999;
-
-bool may_be_in_name(char c) {
-  const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
-  return letter || (c >= '0' && c <= '9') || c == '.' || c == '_' || c == '-';
-}
-
-std::string made_fit(std::string text) {
-  for (char& c : text) {
-    if (!may_be_in_name(c)) c = '-';
-  }
-  return text.substr(0, kMostFabricBytes);
-}
 
 std::string local_time(std::chrono::system_clock::time_point time, const char* format) {
   const std::time_t seconds = std::chrono::system_clock::to_time_t(time);
@@ -67,7 +57,7 @@ Result<std::string> filled(const std::string& name_template,
 
 bool is_session_name(const std::string& name) {
   return !name.empty() && name.size() <= kMostBytes && name[0] != '.' && name[0] != '-' &&
-         std::ranges::all_of(name, may_be_in_name);
+         plain_name(name) == name;
 }
 
 Result<std::filesystem::path> session_folder(const std::filesystem::path& sessions, const std::string& name) {
@@ -90,8 +80,8 @@ Result<std::string> next_session_name(const std::string& name_template, const st
                                       std::chrono::system_clock::time_point now) {
   std::map<std::string, std::string> values = {{"date", local_time(now, "%Y-%m-%d")},
                                                {"time", local_time(now, "%H%M%S")},
-                                               {"fabric", made_fit(fabric)},
-                                               {"rig", made_fit(rig)}};
+                                               {"fabric", plain_name(fabric).substr(0, kMostFabricBytes)},
+                                               {"rig", plain_name(rig).substr(0, kMostFabricBytes)}};
   const bool counts = name_template.find("{count}") != std::string::npos;
   for (int count = 1; count <= kMostCount; ++count) {
     values["count"] = fmt::format("{:03}", count);

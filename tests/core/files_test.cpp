@@ -238,6 +238,23 @@ TEST(Sha256, OfAFileIsThatOfItsBytesAroundTheBlockSize) {
   EXPECT_EQ(kind_of(sha256_of_file(folder / "")), kNoInput) << "a folder";
 }
 
+TEST(LookFor, TellsWhatIsNotThereFromWhatCannotBeSeen) {
+  const fs::path folder = fresh_folder();
+  fs::create_symlink("/nowhere", folder / "link");
+  EXPECT_TRUE(look_for(folder / "link").value()) << "a link that leads nowhere is there";
+  EXPECT_FALSE(look_for(folder / "nothing").value());
+  EXPECT_FALSE(look_for(folder / "nothing" / "below it").value());
+  const Result<bool> unseen = look_for(folder / std::string(300, 'x'));
+  ASSERT_FALSE(unseen);
+  EXPECT_EQ(unseen.error().kind, ErrorKind::kInputOutput);
+}
+
+TEST(AreOnOneDisk, LooksAtTheNearestParentsThatAreThere) {
+  const fs::path folder = fresh_folder();
+  EXPECT_TRUE(are_on_one_disk(folder / "a", folder / "b" / "c"));
+  EXPECT_FALSE(are_on_one_disk(folder, "/proc/self"));
+}
+
 TEST(FreeDiskBytes, OfAPathThatIsNotThereYetAreThoseOfItsParent) {
   const ScratchFolder folder;
   const auto here = static_cast<double>(free_disk_bytes(folder / ""));
