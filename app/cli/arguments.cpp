@@ -384,7 +384,8 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
                          rig_verbs.status,
                          rig_verbs.lights,
                          rig_verbs.test,
-                         rig_verbs.doctor}) {
+                         rig_verbs.doctor,
+                         rig_verbs.copy}) {
     add_common(*verb, common);
   }
   for (CLI::App* step : calibrate_steps) {
@@ -423,6 +424,7 @@ std::optional<Arguments> parse_arguments(int argc, char** argv, int& exit_code) 
   if (*rig_verbs.serve) return Arguments{common, rig.serve};
   if (*rig_verbs.scan) return Arguments{common, rig.scan};
   if (*rig_verbs.doctor) return Arguments{common, rig.doctor};
+  if (*rig_verbs.copy) return Arguments{common, rig.copy};
   if (*rig_verbs.rig) {
     rig.rig.task = *rig_verbs.lights ? RigTask::kLights : *rig_verbs.test ? RigTask::kTest : RigTask::kStatus;
     return Arguments{common, rig.rig};

@@ -132,7 +132,7 @@ struct Arguments {
                BenchSolveArguments, BenchTransportArguments, BenchEffectsArguments, BenchHeightArguments,
                BenchNumericsArguments, BenchAccuracyArguments, BenchExplainArguments, BenchPhotosArguments,
                BenchRegistrationArguments, BenchCalibrationArguments, BenchCaptureArguments, DemoArguments,
-               ServeArguments, ScanArguments, RigArguments, DoctorArguments>
+               ServeArguments, ScanArguments, RigArguments, DoctorArguments, CopyArguments>
       verb;
 };
 

@@ -40,6 +40,7 @@ Result<int> run(const Arguments& arguments) {
                [&](const ScanArguments& a) { return run_scan(a, common); },
                [&](const RigArguments& a) { return run_rig(a, common); },
                [&](const DoctorArguments& a) { return run_doctor(a, common); },
+               [&](const CopyArguments& a) { return run_copy(a, common); },
                [&](const DemoArguments& a) { return run_demo(a, common); }},
       arguments.verb);
 }

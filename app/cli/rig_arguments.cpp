@@ -75,6 +75,10 @@ RigVerbs add_rig_verbs(CLI::App& app, RigForms& forms) {
   verbs.doctor = app.add_subcommand(
       "doctor", "What is wrong with this machine's set-up for a rig, and the command that mends it");
   add_rig_file(*verbs.doctor, forms.doctor.rig);
+  verbs.copy = app.add_subcommand("copy", "Make or verify the second copy of a finished session");
+  verbs.copy->add_option("session", forms.copy.session, "Session folder, NAME.weft")->required();
+  verbs.copy->add_option("--to", forms.copy.to,
+                         "Folder on another disk; default the one it was scanned with");
   return verbs;
 }
 

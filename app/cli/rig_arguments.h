@@ -46,17 +46,24 @@ struct DoctorArguments {
   std::filesystem::path rig;
 };
 
+/// `weft copy`.
+struct CopyArguments {
+  std::filesystem::path session;
+  std::filesystem::path to;  ///< folder; empty: where the session says that its copy belongs
+};
+
 /// What the verbs of a rig fill in.
 struct RigForms {
   ServeArguments serve;
   ScanArguments scan;
   RigArguments rig;
   DoctorArguments doctor;
+  CopyArguments copy;
 };
 
 /// The verbs of a rig, and where each of them puts what was said.
 struct RigVerbs {
-  CLI::App *serve, *scan, *rig, *status, *lights, *test, *doctor;
+  CLI::App *serve, *scan, *rig, *status, *lights, *test, *doctor, *copy;
 };
 RigVerbs add_rig_verbs(CLI::App& app, RigForms& forms);
 

@@ -29,6 +29,7 @@ Result<int> run_serve(const ServeArguments& arguments, const CommonArguments& co
 Result<int> run_scan(const ScanArguments& arguments, const CommonArguments& common);
 Result<int> run_rig(const RigArguments& arguments, const CommonArguments& common);
 Result<int> run_doctor(const DoctorArguments& arguments, const CommonArguments& common);
+Result<int> run_copy(const CopyArguments& arguments, const CommonArguments& common);
 Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& common);
 
 }  // namespace weft::app

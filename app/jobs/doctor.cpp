@@ -13,6 +13,7 @@
 #include <fstream>
 #include <optional>
 
+#include "capture/scan/second_copy.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/same_camera.h"
@@ -298,7 +299,13 @@ std::vector<Finding> examine_folders(const capture::Rig& rig, std::uint64_t fram
   std::vector<Finding> found;
   examine_calibration(rig, found);
   examine_room("disk", rig.scan.sessions, frame_bytes, found);
-  if (!rig.scan.copy.empty()) examine_room("second disk", rig.scan.copy, frame_bytes, found);
+  if (!rig.scan.copy.empty()) {
+    examine_room("second disk", rig.scan.copy, frame_bytes, found);
+    if (const auto one_disk = capture::warning_of_one_disk(rig.scan.sessions, rig.scan.copy)) {
+      found.push_back(
+          {Verdict::kWarning, "second disk", *one_disk, "mount it, or name a folder on another disk"});
+    }
+  }
   examine_clock(found);
   return found;
 }

@@ -112,23 +112,18 @@ Result<Descriptor> locked(const fs::path& folder) {
                "its folder is locked by another process", "wait for that scan, or choose another name"};
 }
 
-/// Removes everything in a folder that `stays` does not say stays.
-template <typename Stays>
-Result<void> remove_from(const fs::path& folder, const Stays& stays) {
-  std::error_code failed;
-  for (const auto& entry : fs::directory_iterator(folder, failed)) {
-    if (!stays(entry.path())) fs::remove_all(entry.path(), failed);
-    if (failed) break;
-  }
-  if (failed && failed != std::errc::no_such_file_or_directory) return cannot_write(folder, failed.value());
-  return {};
+Error unseen(const fs::path& path, std::string why) {
+  return {ErrorKind::kInputOutput, "frames of the session cannot be seen", path.string(), std::move(why),
+          "bring back the disk they are on, then run the same command again; until then all stays as it is"};
 }
 
 }  // namespace
 
 Result<int> Journal::check(const ScanRequest& request, const std::string& calibration_id,
                            const ShotList& list) {
-  if (!is_there(request.session)) return list.count();
+  const Result<bool> there = look_for(request.session);
+  if (!there) return there.error();
+  if (!*there) return list.count();
   const Result<Session> session = unfinished(request, calibration_id, list);
   if (!session) return session.error();
   return list.count() - static_cast<int>(session->shots.size());
@@ -136,7 +131,9 @@ Result<int> Journal::check(const ScanRequest& request, const std::string& calibr
 
 Result<Journal> Journal::open(const ScanRequest& request, const std::string& calibration_id,
                               const ShotList& list, AfterStep after_step) {
-  if (!is_there(request.session)) {
+  const Result<bool> there = look_for(request.session);
+  if (!there) return there.error();
+  if (!*there) {
     if (Result<void> made = make_session(request, calibration_id, list, after_step); !made)
       return made.error();
   }
@@ -150,31 +147,58 @@ Result<Journal> Journal::open(const ScanRequest& request, const std::string& cal
   if (Result<void> made = make_writable_folder(journal.incoming_); !made) return made.error();
   if (Result<void> cleared = journal.clear_incoming(); !cleared) return cleared.error();
   if (Result<void> forgotten = journal.forget_damaged(); !forgotten) return forgotten.error();
-  if (Result<void> removed = journal.remove_unnamed(); !removed) return removed.error();
+  if (Result<void> aside = journal.move_unnamed_aside(); !aside) return aside.error();
   return journal;
 }
 
 Result<void> Journal::clear_incoming() const {
-  return remove_from(incoming_, [](const fs::path&) { return false; });
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(incoming_, failed)) {
+    fs::remove_all(entry.path(), failed);
+    if (failed) break;
+  }
+  return failed ? Result<void>(cannot_write(incoming_, failed.value())) : Result<void>();
 }
 
 Result<void> Journal::forget_damaged() {
+  const fs::path raw = session_.folder / "raw";
+  std::error_code failed;
+  if (fs::directory_iterator(raw, failed); failed) return unseen(raw, failed.message());
   std::vector<int> damaged;
   for (const Shot& shot : session_.shots) {
     const fs::path file = session_.path_of(shot);
-    const Result<std::string> digest = is_there(file) ? sha256_of_file(file) : std::string();
-    if (!digest) return digest.error();
+    const Result<bool> there = look_for(file);
+    if (!there) return there.error();
+    const Result<std::string> digest = *there ? sha256_of_file(file) : std::string();
+    if (!digest) return unseen(file, digest.error().why);
     if (*digest != shot.sha256) damaged.push_back(shot.index);
   }
   return damaged.empty() ? Result<void>() : discard(damaged);
 }
 
-Result<void> Journal::remove_unnamed() const {
-  return remove_from(session_.folder / "raw", [&](const fs::path& file) {
-    return std::any_of(session_.shots.begin(), session_.shots.end(), [&](const Shot& shot) {
-      return session_.path_of(shot).filename() == file.filename();
+Result<void> Journal::move_unnamed_aside() const {
+  const fs::path raw = session_.folder / "raw";
+  std::vector<fs::path> unnamed;
+  std::error_code failed;
+  for (const auto& entry : fs::directory_iterator(raw, failed)) {
+    const bool is_named = std::any_of(session_.shots.begin(), session_.shots.end(), [&](const Shot& shot) {
+      return session_.path_of(shot).filename() == entry.path().filename();
     });
-  });
+    if (!is_named && entry.path() != dropped()) unnamed.push_back(entry.path());
+  }
+  if (failed) return unseen(raw, failed.message());
+  for (const fs::path& file : unnamed) {
+    if (Result<void> moved = move_aside(file); !moved) return moved;
+  }
+  return {};
+}
+
+Result<void> Journal::move_aside(const fs::path& file) const {
+  if (Result<void> made = make_writable_folder(dropped()); !made) return made;
+  fs::path place = dropped() / file.filename();
+  for (int i = 2; is_there(place); ++i) place = dropped() / fmt::format("{}.{}", file.filename().string(), i);
+  if (::rename(file.c_str(), place.c_str()) != 0) return cannot_write(place, errno);
+  return {};
 }
 
 Result<void> Journal::replace(Session session) {
@@ -243,8 +267,9 @@ Result<void> Journal::discard(const std::vector<int>& indices) {
   });
   if (Result<void> written = replace(std::move(session)); !written) return written;
   after_step_("frames forgotten");
-  std::error_code ignored;  // the next open() removes what stays
-  for (const fs::path& file : files) fs::remove(file, ignored);
+  for (const fs::path& file : files) {
+    if (is_there(file)) static_cast<void>(move_aside(file));  // the next open() moves what stays
+  }
   return {};
 }
 
@@ -255,12 +280,16 @@ Session Journal::finished(const std::vector<std::string>& warnings) const {
   return session;
 }
 
-Result<void> Journal::finish(const std::vector<std::string>& warnings) {
-  std::error_code failed;
-  fs::remove_all(incoming_, failed);
-  if (failed) return cannot_write(incoming_, failed.value());
+Result<void> Journal::finish(const std::vector<std::string>& warnings, const Json& copy) {
+  for (const fs::path& folder : {incoming_, dropped()}) {
+    std::error_code failed;
+    fs::remove_all(folder, failed);
+    if (failed) return cannot_write(folder, failed.value());
+  }
   after_step_("incoming removed");
-  Result<void> done = replace(finished(warnings));
+  Session session = finished(warnings);
+  if (!copy.is_null()) session.document["copy"] = copy;
+  Result<void> done = replace(std::move(session));
   after_step_("session complete");
   return done;
 }

@@ -20,13 +20,14 @@ namespace weft::capture {
 using AfterStep = std::function<void(const char* step)>;
 
 /// The session folder of a scan. Whenever the process or the machine ends, the folder holds whole frames that
-/// session.json names, and perhaps files that it does not, which the next open() removes. One process at a
-/// time writes it (flock on the folder).
+/// session.json names, and perhaps files that it does not, which the next open() moves into raw/.dropped.
+/// What is there goes when the session is finished. One process at a time writes it (flock on the folder).
 class Journal {
  public:
   /// Makes the session, or takes up one that is not finished: frames that are missing or whose bytes changed
-  /// are forgotten, so that they are taken again. Errors: those of check(), kTryAgain (another scan writes
-  /// it), kInputOutput (a frame cannot be read: nothing is forgotten).
+  /// are forgotten, so that they are taken again. Missing is only what is not in a raw/ that can be listed.
+  /// Errors: those of check(), kTryAgain (another scan writes it), kInputOutput (raw/ or a frame cannot be
+  /// seen: nothing is forgotten).
   static Result<Journal> open(
       const ScanRequest& request, const std::string& calibration_id, const ShotList& list,
       AfterStep after_step = [](const char*) {});
@@ -47,11 +48,12 @@ class Journal {
   /// Puts a photograph in its place, read-only, its digest verified (kTryAgain where it is another), and then
   /// into session.json. `notes` are further fields of the shot.
   Result<Shot> keep(const PlannedShot& planned, const Photograph& photograph, const Json& notes);
-  /// Takes frames out again.
+  /// Takes frames out again; their files go to raw/.dropped.
   Result<void> discard(const std::vector<int>& indices);
   /// The session as finish() will leave it.
   Session finished(const std::vector<std::string>& warnings) const;
-  Result<void> finish(const std::vector<std::string>& warnings);
+  /// `copy`: what became of the second copy, as record_of_copy() has it; null: none was asked for.
+  Result<void> finish(const std::vector<std::string>& warnings, const Json& copy = {});
 
  private:
   Journal(Session session, Descriptor lock, AfterStep after_step)
@@ -60,7 +62,9 @@ class Journal {
         lock_(std::move(lock)),
         after_step_(std::move(after_step)) {}
   Result<void> forget_damaged();
-  Result<void> remove_unnamed() const;
+  Result<void> move_unnamed_aside() const;
+  Result<void> move_aside(const std::filesystem::path& file) const;
+  std::filesystem::path dropped() const { return session_.folder / "raw" / ".dropped"; }
   Result<void> replace(Session session);
 
   Session session_;

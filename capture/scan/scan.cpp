@@ -419,15 +419,23 @@ class Scan {
                     name_of(shot), 100 * clipped));
   }
 
-  /// The second copy comes first: until it is there, the same scan again makes it.
   Result<void> finish() {
     report_.phase(ScanPhase::kFinishing);
     for (const std::string& warning : warnings_of_frames_) warnings_.push_back(warning);
-    if (!request_.copy.empty()) {
-      const Result<void> copied = copy_session(journal_->finished(warnings_), request_.copy);
-      if (!copied) warnings_.push_back("there is no second copy: " + copied.error().message());
+    return journal_->finish(warnings_, request_.copy.empty() ? Json() : second_copy());
+  }
+
+  /// It comes before the end of the session: a scan that is killed meanwhile makes it when it is run again.
+  /// One that cannot be made is made by weft copy, once its disk is there.
+  Json second_copy() {
+    if (const auto one_disk = warning_of_one_disk(request_.session, request_.copy))
+      warnings_.push_back(*one_disk);
+    const Result<void> copied = copy_session(journal_->finished(warnings_), request_.copy);
+    if (!copied) {
+      warnings_.push_back(fmt::format("there is no second copy: {} Then make it: weft copy {}",
+                                      copied.error().message(), request_.session.string()));
     }
-    return journal_->finish(warnings_);
+    return record_of_copy(request_.copy, copied);
   }
 
   const ScanRequest& request_;

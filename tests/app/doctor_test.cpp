@@ -198,6 +198,16 @@ TEST(Doctor, CountsTheSessionsThatFitOnTheDisk) {
   EXPECT_THAT(full, Contains(faults("disk", "room for 0 sessions", "free some")));
 }
 
+TEST(Doctor, WarnsOfASecondCopyOnTheDiskOfTheSessions) {
+  Machine machine("one_disk");
+  machine.rig().scan.sessions = machine.root() / "scans";
+  machine.rig().scan.copy = machine.root() / "copies";
+  EXPECT_THAT(
+      examine_folders(machine.rig(), 1),
+      Contains(AllOf(Field(&Finding::part, "second disk"), Field(&Finding::verdict, Verdict::kWarning),
+                     Field(&Finding::says, HasSubstr("is on the disk of the sessions")))));
+}
+
 TEST(Doctor, RefusesTheCalibrationOfAnotherApertureOrNone) {
   Machine machine("calibration");
   machine.rig().scan.sessions = machine.root() / "scans";

@@ -11,7 +11,6 @@
 #include <fstream>
 #include <set>
 
-#include "capture/scan/second_copy.h"
 #include "core/files.h"
 
 namespace weft::capture {
@@ -192,7 +191,56 @@ TEST(Journal, TakesFramesAgainThatAreMissingOrChanged) {
   EXPECT_FALSE(is_there(request.session / "raw" / "02_led02.dng"));
 }
 
-TEST(Journal, RemovesWhatNoSessionNames) {
+TEST(Journal, ForgetsNoFrameWhileItsFoldersDiskIsAway) {
+  const ScanRequest request = unfinished(fresh_folder());
+  const fs::path raw = request.session / "raw", disk = request.session.parent_path() / "disk";
+  const std::string before = bytes_of(request.session / "session.json");
+  fs::rename(raw, disk);
+  fs::create_symlink("/nowhere/raw", raw);
+  const Result<Journal> away = opened(request);
+  ASSERT_FALSE(away);
+  EXPECT_EQ(away.error().kind, ErrorKind::kInputOutput) << away.error().message();
+  EXPECT_THAT(away.error().remedy, HasSubstr("bring back the disk"));
+  EXPECT_EQ(bytes_of(request.session / "session.json"), before);
+
+  fs::remove(raw);
+  fs::rename(disk, raw);
+  const Result<Journal> back = opened(request);
+  ASSERT_TRUE(back) << back.error().message();
+  EXPECT_EQ(back->session().shots.size(), 4u);
+}
+
+TEST(Journal, LosesNoFrameThatComesBackWithItsDiskAfterItWasForgotten) {
+  const ScanRequest request = unfinished(fresh_folder());
+  const fs::path raw = request.session / "raw", disk = request.session.parent_path() / "disk";
+  fs::rename(raw, disk);
+  fs::create_directory(raw);  // a mount point that nothing is mounted on
+  ASSERT_TRUE(opened(request));
+  ASSERT_TRUE(read_session(request.session)->shots.empty());
+  fs::remove(raw);
+  fs::rename(disk, raw);
+  ASSERT_TRUE(opened(request));
+  EXPECT_EQ(bytes_of(raw / ".dropped" / "01_led01.dng"), text_of(1));
+  EXPECT_EQ(files_under(raw).size(), 4u);
+}
+
+TEST(Journal, KeepsEveryTakeAsideUntilTheSessionIsFinished) {
+  const ScanRequest request = unfinished(fresh_folder());
+  const fs::path raw = request.session / "raw";
+  {
+    Result<Journal> journal = opened(request);
+    ASSERT_TRUE(journal) << journal.error().message();
+    const PlannedShot shot = plan_shots(kList, kExposure, 0)[1];
+    ASSERT_TRUE(journal->discard({1}));
+    ASSERT_TRUE(journal->keep(shot, landed(*journal, shot), Json::object()));
+    ASSERT_TRUE(journal->discard({1}));
+  }
+  EXPECT_EQ(files_under(raw / ".dropped"), (std::set<std::string>{"01_led01.dng", "01_led01.dng.2"}));
+  ASSERT_TRUE(scanned(request));
+  EXPECT_FALSE(is_there(raw / ".dropped"));
+}
+
+TEST(Journal, MovesAsideWhatNoSessionNames) {
   const ScanRequest request = unfinished(fresh_folder());
   std::ofstream(request.session / "raw" / "04_led02.dng") << "of a crash";
   fs::create_directories(request.session / "incoming");
@@ -200,6 +248,7 @@ TEST(Journal, RemovesWhatNoSessionNames) {
   const Result<Journal> journal = opened(request);
   ASSERT_TRUE(journal) << journal.error().message();
   EXPECT_FALSE(is_there(request.session / "raw" / "04_led02.dng"));
+  EXPECT_EQ(bytes_of(request.session / "raw" / ".dropped" / "04_led02.dng"), "of a crash");
   EXPECT_FALSE(is_there(request.session / "incoming" / "x.dng.partial"));
   EXPECT_EQ(journal->session().shots.size(), 4u);
 }
@@ -255,6 +304,7 @@ TEST(Journal, ForgetsNoFrameThatItOnlyCannotRead) {
   fs::create_directory(frame);  // opens, and every read of it fails, for root too
   const Result<Journal> journal = opened(request);
   ASSERT_FALSE(journal);
+  EXPECT_EQ(journal.error().kind, ErrorKind::kInputOutput) << journal.error().message();
   EXPECT_TRUE(is_there(frame));
   EXPECT_EQ(read_session(request.session)->shots.size(), 4u);
 }
@@ -303,22 +353,6 @@ TEST(Journal, TakesFramesOutAgain) {
   EXPECT_EQ(journal->session().shots.size(), 2u);
   EXPECT_FALSE(is_there(request.session / "raw" / "01_led01.dng"));
   EXPECT_EQ(read_session(request.session)->shots.size(), 2u);
-}
-
-TEST(SecondCopy, HoldsEveryFileOfTheSession) {
-  const fs::path folder = fresh_folder();
-  const ScanRequest request = request_in(folder);
-  ASSERT_TRUE(scanned(request));
-  Result<Session> session = read_session(request.session);
-  ASSERT_TRUE(session) << session.error().message();
-  const Result<void> copied = copy_session(*session, folder / "other disk");
-  ASSERT_TRUE(copied) << copied.error().message();
-  EXPECT_EQ(files_under(folder / "other disk" / "cloth.weft"), files_under(request.session));
-  EXPECT_TRUE(copy_session(*session, folder / "other disk")) << "it is there already";
-  session->shots[1].sha256 = session->shots[0].sha256;
-  const Result<void> again = copy_session(*session, folder / "other disk");
-  ASSERT_FALSE(again) << "a copy is never overwritten";
-  EXPECT_EQ(again.error().kind, ErrorKind::kCannotCreate);
 }
 
 }  // namespace

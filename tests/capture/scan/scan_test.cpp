@@ -10,6 +10,7 @@
 #include <set>
 #include <stop_token>
 
+#include "capture/scan/second_copy.h"
 #include "core/files.h"
 #include "tests/capture/scan/scan_bench.h"
 
@@ -160,14 +161,20 @@ TEST(Scan, MakesASecondCopyAndOnlyWarnsWhereItCannot) {
   ScanBench bench;
   bench.request.copy = bench.folder / "other disk";
   ASSERT_TRUE(bench.scan());
-  EXPECT_TRUE(is_there(bench.request.copy / "cloth.weft" / "session.json"));
+  const Result<Session> first = read_session(bench.request.session);
+  ASSERT_TRUE(first) << first.error().message();
+  EXPECT_TRUE(is_there(place_of_copy(*first, bench.request.copy) / "session.json"));
+  EXPECT_EQ(first->document["copy"]["state"], "verified");
 
   bench.request.session = bench.folder / "next.weft";
-  fs::create_directories(bench.request.copy / "next.weft");
+  fs::create_directories(place_of_copy(*first, bench.request.copy).parent_path() / "next.weft");
   const Result<ScanOutcome> outcome = bench.scan();
   ASSERT_TRUE(outcome) << outcome.error().message();
-  ASSERT_EQ(outcome->warnings.size(), 1u);
-  EXPECT_THAT(outcome->warnings.front(), HasSubstr("there is no second copy"));
+  ASSERT_EQ(outcome->warnings.size(), 2u);
+  EXPECT_THAT(outcome->warnings[0], HasSubstr("on the disk of the sessions"));
+  EXPECT_THAT(outcome->warnings[1], HasSubstr("there is no second copy"));
+  EXPECT_THAT(outcome->warnings[1], HasSubstr("weft copy " + bench.request.session.string()));
+  EXPECT_EQ(outcome->session.document["copy"]["state"], "missing");
   EXPECT_EQ(bench.objection(), "");
 }
 
