@@ -77,6 +77,26 @@ std::vector<Vec3> together(const std::vector<Vec3>& a, const std::vector<Vec3>& 
 
 }  // namespace
 
+const char* code_of(Finding finding) {
+  switch (finding) {
+    case Finding::kAgrees:
+      return "";
+    case Finding::kDark:
+      return "dark";
+    case Finding::kDim:
+      return "dim";
+    case Finding::kOther:
+      return "swapped";
+    case Finding::kStaysLit:
+      return "stays_lit";
+    case Finding::kRoomLight:
+      return "room_light";
+    case Finding::kChanged:
+      return "changed";
+  }
+  return "";
+}
+
 LightEvidence::LightEvidence(PatchGrid grid, std::optional<LightModel> model)
     : grid_(grid), model_(std::move(model)) {}
 
@@ -135,6 +155,7 @@ Verdict LightEvidence::judge_dark(const PlannedShot& shot, const std::vector<dou
   }
   Verdict verdict;
   if (bright > kDarkWarns) {
+    verdict.doubt = Finding::kRoomLight;
     verdict.warnings.push_back(
         fmt::format("the dark shot has {:.2g} of full scale: darken the room for cleaner maps", bright));
   }
@@ -191,6 +212,7 @@ Verdict LightEvidence::judge_lit(const PlannedShot& shot, const std::vector<doub
   Verdict verdict = judge_pattern(shot, light);
   verdict.level = level;
   if (verdict.finding == Finding::kAgrees && level < kDimWarns) {
+    verdict.doubt = Finding::kDim;
     verdict.warnings.push_back(
         fmt::format("LED {} gives {:.0f} percent of the light that the others let expect: look at it before "
                     "the next scan",
@@ -304,6 +326,7 @@ Verdict LightEvidence::judge_again(const PlannedShot& shot, const std::vector<do
                "the camera was moved, or another light is on",
                name_of(shot), 100 * ratio->scatter));
   } else if (is_repeat && off > kDriftWarns) {
+    verdict.doubt = Finding::kChanged;
     verdict.warnings.push_back(fmt::format("LED {} gave {:.1f} percent {} light at the end than at first",
                                            shot.led, 100 * off, *verdict.level < 1 ? "less" : "more"));
   }

@@ -29,6 +29,9 @@ enum class Finding {
   kChanged,    ///< not the same cloth or light as at first
 };
 
+/// "dark", "dim", "swapped", "stays_lit", "room_light", "changed"; "" where it agrees.
+const char* code_of(Finding finding);
+
 struct Verdict {
   Finding finding = Finding::kAgrees;
   std::string sentence;      ///< names the LED
@@ -36,7 +39,8 @@ struct Verdict {
   std::vector<std::string> warnings;  ///< of a frame that is kept
   /// A lit frame's brightness over what the frames before let expect; a repeat's over its first.
   std::optional<double> level;
-  std::optional<double> misfit;  ///< of LightFit, as planned
+  std::optional<double> misfit;      ///< of LightFit, as planned
+  Finding doubt = Finding::kAgrees;  ///< what a frame that is kept is warned of
 
   /// Whether the same shot once more may come out right.
   bool may_pass() const {

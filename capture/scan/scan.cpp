@@ -351,18 +351,20 @@ class Scan {
   Kept checked_and_kept(const PlannedShot& shot, const Photograph& photograph) try {
     const std::string where = fmt::format("{} ({})", name_of(shot), file_stem(shot));
     Result<RawFrame> frame = decode_raw(photograph.file);
-    if (!frame) return {frame.error(), {shot.index}};
+    if (!frame) return unusable(shot, "damaged", frame.error(), {shot.index});
     if (!first_) {
-      if (Result<void> suits = accept_first(*frame, where); !suits) return {suits.error(), {}};
+      if (Result<void> suits = accept_first(*frame, where); !suits)
+        return unusable(shot, "unlike", suits.error(), {});
     } else if (Result<void> alike = check_alike(*frame, *first_, first_size_, where); !alike) {
-      return {alike.error(), {shot.index}};
+      return unusable(shot, "unlike", alike.error(), {shot.index});
     }
 
     std::vector<double> light = evidence_->glance(*frame);
     const Verdict verdict = evidence_->judge(shot, light);
     if (verdict.finding != Finding::kAgrees) return refused(verdict);
 
-    KeptFrame kept = {{}, histogram_rgb(*frame), verdict.warnings};
+    KeptFrame kept = {
+        {}, histogram_rgb(*frame), verdict.warnings, {code_of(verdict.doubt), verdict.level, verdict.misfit}};
     warn_of_clipping(shot, kept);
     Json notes = Json::object();
     if (verdict.level) notes["level"] = *verdict.level;
@@ -383,6 +385,11 @@ class Scan {
             {}};
   }
 
+  Kept unusable(const PlannedShot& shot, const char* code, const Error& error, std::vector<int> take_again) {
+    report_.refused({shot.index, shot.led, shot.role, {code, {}, {}}, error.message()});
+    return {error, std::move(take_again)};
+  }
+
   /// Takes what is accused out of the session, so that it is taken again, now or by the next scan.
   Kept refused(const Verdict& verdict) {
     Kept kept = {Error{ErrorKind::kBadData, verdict.sentence, names_of(verdict.accused),
@@ -393,7 +400,15 @@ class Scan {
                  {}};
     const Result<void> out = journal_->discard(verdict.accused);
     if (!out) return {out.error(), {}};
-    for (const int index : verdict.accused) evidence_->forget(index);
+    for (const int index : verdict.accused) {
+      evidence_->forget(index);
+      const PlannedShot& shot = plan_[static_cast<std::size_t>(index)];
+      report_.refused({index,
+                       shot.led,
+                       shot.role,
+                       {code_of(verdict.finding), verdict.level, verdict.misfit},
+                       kept.error->message()});
+    }
     report_.change(
         [&](ScanStatus& status) { status.frames = static_cast<int>(journal_->session().shots.size()); });
     if (verdict.may_pass()) kept.take_again = verdict.accused;
@@ -413,6 +428,7 @@ class Scan {
     double clipped = 0;
     for (const RawHistogram& histogram : kept.histogram_rgb) clipped = std::max(clipped, histogram.clipped);
     if (clipped <= kMostClipped) return;
+    kept.finding.code = "clipped";
     kept.warnings.push_back(
         fmt::format("{} has {:.2g} percent of a channel full: scan with a shorter --exposure, or "
                     "with --bracket 0.25",

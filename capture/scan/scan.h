@@ -57,11 +57,29 @@ struct RawHistogram {
   double clipped = 0;  ///< share
 };
 
-/// A frame that is kept.
+/// What the pixels of a frame say of it.
+struct FrameFinding {
+  /// "dark", "dim", "swapped", "stays_lit", "room_light", "changed", "clipped"; of a frame that cannot be
+  /// used at all "damaged" or "unlike" (the others). "": nothing is wrong.
+  std::string code;
+  std::optional<double> level, misfit;  ///< as in Verdict (light_evidence.h)
+};
+
+/// A frame that is kept. Its finding has a code where there is a warning.
 struct KeptFrame {
   Shot shot;
   std::array<RawHistogram, 3> histogram_rgb;
   std::vector<std::string> warnings;
+  FrameFinding finding = {};
+};
+
+/// A frame that is not kept, or that leaves the session because of what a later one says of it.
+struct RefusedFrame {
+  int index = 0;
+  int led = 0;
+  ShotRole role = ShotRole::kLit;
+  FrameFinding finding;
+  std::string why;  ///< one sentence with what to do
 };
 
 struct ScanStatus {
@@ -77,6 +95,7 @@ struct ScanStatus {
 struct ScanEvents {
   std::function<void(const ScanStatus&)> status = [](const ScanStatus&) {};
   std::function<void(const KeptFrame&)> kept = [](const KeptFrame&) {};
+  std::function<void(const RefusedFrame&)> refused = [](const RefusedFrame&) {};
 };
 
 /// What a person may ask of a running scan, from any thread.

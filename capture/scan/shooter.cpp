@@ -49,7 +49,12 @@ void Report::kept(const KeptFrame& frame) {
   events_.status(status_);
 }
 
-ScanPhase Report::phase() {
+void Report::refused(const RefusedFrame& frame) {
+  const std::lock_guard lock(mutex_);
+  events_.refused(frame);
+}
+
+ScanPhase Report::phase() const {
   const std::lock_guard lock(mutex_);
   return status_.phase;
 }
@@ -169,7 +174,7 @@ Result<steady_clock::time_point> Shooter::light(int led, std::chrono::duration<d
 }
 
 Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
-                                      const std::filesystem::path& file) {
+                                      const std::filesystem::path& file, bool is_metering) {
   if (set_ != exposure) {
     const Result<CameraFacts> set = camera_.set(exposure);
     if (!set) return set.error();
@@ -178,7 +183,7 @@ Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
   report_.change([&](ScanStatus& status) {
     status.led = led;
     status.why.clear();
-    if (status.phase != ScanPhase::kMetering) status.phase = ScanPhase::kExposing;
+    status.phase = is_metering ? ScanPhase::kMetering : ScanPhase::kExposing;
   });
   const std::chrono::duration<double> most_lit(options_.lamp_margin_s + exposure.exposure_us * 1e-6);
   const auto goes_out = light(led, most_lit);
@@ -190,9 +195,7 @@ Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
     const bool went_out = led != 0 && steady_clock::now() >= *goes_out;
     off = lamps_off();
     if (off && went_out) off = light_went_out(led, most_lit);
-    report_.change([](ScanStatus& status) {
-      if (status.phase != ScanPhase::kMetering) status.phase = ScanPhase::kFetching;
-    });
+    if (!is_metering) report_.change([](ScanStatus& status) { status.phase = ScanPhase::kFetching; });
   });
   if (!is_exposed) off = lamps_off();
   if (!photograph) return photograph;
@@ -204,10 +207,11 @@ Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
 
 Result<Photograph> Shooter::take(int led, const ExposureSettings& exposure, const std::filesystem::path& file,
                                  const std::function<void()>& clear) {
+  const bool is_metering = report_.phase() == ScanPhase::kMetering;
   for (int i = 1;; ++i) {
     if (Result<void> go = wait_while_paused(); !go) return go.error();
     if (is_cancelled()) return cancelled("scan");
-    Result<Photograph> photograph = take_once(led, exposure, file);
+    Result<Photograph> photograph = take_once(led, exposure, file, is_metering);
     if (photograph) return photograph;
     count_.failed();
     if (!may_pass(photograph.error().kind) || i >= options_.tries_per_shot) {

@@ -21,12 +21,13 @@ class Report {
   explicit Report(const ScanEvents& events) : events_(events) {}
   void change(const std::function<void(ScanStatus&)>& change);
   void phase(ScanPhase phase, std::string why = {});
-  ScanPhase phase();
   void kept(const KeptFrame& frame);
+  void refused(const RefusedFrame& frame);
+  ScanPhase phase() const;
 
  private:
   const ScanEvents& events_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   ScanStatus status_;
 };
 
@@ -53,7 +54,8 @@ class Shooter {
   int retaken() const { return retaken_; }
 
  private:
-  Result<Photograph> take_once(int led, const ExposureSettings& exposure, const std::filesystem::path& file);
+  Result<Photograph> take_once(int led, const ExposureSettings& exposure, const std::filesystem::path& file,
+                               bool is_metering);
   /// Lights a LED (0: none) as soon as it is cool. When it goes out at the earliest.
   Result<std::chrono::steady_clock::time_point> light(int led, std::chrono::duration<double> most_lit);
   Result<void> let_cool(int led, double cools_s);

@@ -55,6 +55,7 @@ ScanBench::ScanBench() : folder(fresh_folder()), rig(cloth()) {
 
 Result<capture::ScanOutcome> ScanBench::scan() {
   kept.clear();
+  refused.clear();
   statuses.clear();
   capture::ScanEvents events;
   events.status = [&](const capture::ScanStatus& status) {
@@ -62,6 +63,7 @@ Result<capture::ScanOutcome> ScanBench::scan() {
     on_status(status);
   };
   events.kept = [&](const capture::KeptFrame& frame) { kept.push_back(frame); };
+  events.refused = [&](const capture::RefusedFrame& frame) { refused.push_back(frame); };
   return capture::scan(request, rig.lamps(), rig.camera(), events, control, options);
 }
 

@@ -25,6 +25,7 @@ struct ScanBench {
   capture::ScanControl control;
   capture::ScanOptions options = {.device_patience_s = 5, .tries_per_shot = 3};
   std::vector<capture::KeptFrame> kept;
+  std::vector<capture::RefusedFrame> refused;
   std::vector<capture::ScanStatus> statuses;
   std::function<void(const capture::ScanStatus&)> on_status = [](const capture::ScanStatus&) {};
 };

@@ -176,6 +176,31 @@ TEST(ScanFaults, ALampInTheRoomEndsTheScanAtItsFirstShots) {
   EXPECT_LE(bench.rig.takes(), 2);
 }
 
+TEST(ScanFaults, EachRefusedFrameIsToldWithTheCodeOfItsFinding) {
+  using Told = std::vector<std::pair<int, std::string>>;  // index and code
+  const auto told = [](const std::function<void(ScanBench&)>& damage) {
+    ScanBench bench;
+    damage(bench);
+    static_cast<void>(bench.scan().has_value());
+    Told all;
+    for (const RefusedFrame& frame : bench.refused) {
+      EXPECT_NE(frame.why, "");
+      EXPECT_EQ(frame.led, frame.index) << "the dark shot and a LED each";
+      all.emplace_back(frame.index, frame.finding.code);
+    }
+    return all;
+  };
+  EXPECT_EQ(told([](ScanBench& b) { b.rig.camera_faults[4] = Fault::kLedWentOut; }), (Told{{3, "dark"}}));
+  EXPECT_EQ(told([](ScanBench& b) { b.rig.gain[5] = 0; }), (Told{{5, "dark"}, {5, "dark"}}));
+  EXPECT_EQ(told([](ScanBench& b) { b.rig.room = 0.2; }), (Told{{0, "room_light"}}));
+  EXPECT_EQ(told([](ScanBench& b) { b.rig.camera_faults[4] = Fault::kTruncated; }), (Told{{3, "damaged"}}));
+  EXPECT_THAT(told([](ScanBench& b) {
+                b.rig.wires = {{3, 4}, {4, 3}};
+              }),
+              testing::UnorderedElementsAre(std::pair(3, "swapped"), std::pair(4, "swapped")));
+  EXPECT_EQ(told([](ScanBench&) {}), Told{});
+}
+
 TEST(ScanFaults, TakesNoMoreThanOneFurtherShotAfterAWrongOne) {
   ScanBench bench;
   bench.rig.wires = {{7, 8}};

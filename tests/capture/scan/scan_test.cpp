@@ -316,6 +316,38 @@ TEST(Scan, IsPausedInTheRestOfALed) {
   EXPECT_EQ(bench.objection(), "");
 }
 
+TEST(Scan, IsMeteringAgainAfterAPauseAndAFaultOfItsTestShots) {
+  ScanBench bench;
+  bench.request.exposure.exposure_us = 0;
+  std::atomic<bool> pause = false;
+  bench.control.pause = &pause;
+  bench.rig.camera_faults[2] = test::SimulatedRig::Fault::kNoAnswer;
+  bench.rig.on_take = [&](int take) {
+    if (take == 1) pause = true;
+  };
+  bench.on_status = [&](const ScanStatus& status) {
+    if (status.phase == ScanPhase::kPaused) pause = false;
+  };
+  ASSERT_TRUE(bench.scan());
+  std::vector<ScanPhase> phases;  // until the first frame is taken
+  for (const ScanStatus& status : bench.statuses) {
+    if (status.exposure_us > 0) break;
+    if (phases.empty() || phases.back() != status.phase) phases.push_back(status.phase);
+  }
+  EXPECT_THAT(phases,
+              testing::ElementsAre(ScanPhase::kConnecting, ScanPhase::kMetering, ScanPhase::kPaused,
+                                   ScanPhase::kMetering, ScanPhase::kRecovering, ScanPhase::kMetering));
+}
+
+TEST(Scan, GivesTheCodeOfWhatAFrameIsWarnedOf) {
+  ScanBench bench;
+  bench.request.exposure.exposure_us *= 8;
+  ASSERT_TRUE(bench.scan());
+  EXPECT_EQ(bench.kept[0].finding.code, "") << "the dark shot";
+  EXPECT_EQ(bench.kept[1].finding.code, "clipped");
+  EXPECT_THAT(bench.kept[1].warnings, testing::Not(IsEmpty()));
+}
+
 TEST(Scan, WithoutACalibrationSaysThatFramesAreNotHeldAgainstTheLeds) {
   ScanBench bench;
   bench.request.calibration.clear();
