@@ -25,6 +25,7 @@ namespace {
 using Steady = std::chrono::steady_clock;
 
 constexpr std::size_t kLongestLine = std::size_t{1} << 20;
+constexpr std::uintmax_t kMostLogBytes = std::uintmax_t{1} << 20;
 
 Error hung(const std::string& why) {
   return {ErrorKind::kTryAgain, "the camera hangs", "weft-camera", why,
@@ -54,7 +55,7 @@ int spawn(const std::filesystem::path& program, const Environment& environment,
   posix_spawn_file_actions_adddup2(&actions, socket, STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, socket, STDOUT_FILENO);
   if (!log.empty())
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_APPEND,
                                      0644);
   posix_spawnattr_init(&attributes);
   sigset_t none;
@@ -76,6 +77,13 @@ int spawn(const std::filesystem::path& program, const Environment& environment,
   return failed;
 }
 
+/// A log that has grown becomes LOG.1: what a crash said outlives the next start.
+void turn_over(const std::filesystem::path& log) {
+  std::error_code ignored;
+  const std::uintmax_t bytes = std::filesystem::file_size(log, ignored);
+  if (!ignored && bytes > kMostLogBytes) std::filesystem::rename(log, log.string() + ".1", ignored);
+}
+
 }  // namespace
 
 std::filesystem::path weft_camera_program() {
@@ -90,6 +98,7 @@ Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::filesyste
   std::array<int, 2> sockets;
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, sockets.data()) != 0)
     return Error{ErrorKind::kTryAgain, "no socket for weft-camera", "", system_reason(errno), "try again"};
+  if (!log.empty()) turn_over(log);
   pid_t pid = 0;
   const int failed = spawn(program, environment, log, sockets[1], pid);
   ::close(sockets[1]);

@@ -27,7 +27,8 @@ class WorkerProcess {
   using Deadline = std::chrono::steady_clock::time_point;
 
   /// Starts `program` with these variables on top of this process's; what it says on its standard error goes
-  /// to the file `log`, begun anew, or where this process's goes. kNoInput, kTryAgain.
+  /// to the end of the file `log` (one over 1 MB becomes LOG.1 first), or where this process's goes.
+  /// kNoInput, kTryAgain.
   static Result<std::unique_ptr<WorkerProcess>> start(const std::filesystem::path& program,
                                                       const Environment& environment,
                                                       const std::filesystem::path& log = {});

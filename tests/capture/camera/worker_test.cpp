@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 
 #include "capture/camera/worker_process.h"
 #include "core/json_document.h"
@@ -95,6 +96,30 @@ TEST(Worker, EndsWithoutItsParentEvenWhereTheCameraBlocksIt) {
   spoken.worker->end(begin + seconds(20));
   EXPECT_GT(seconds_since(begin), 2) << "it did not hang";
   EXPECT_LT(seconds_since(begin), 5) << "it was killed";
+}
+
+TEST(WorkerProcess, LeavesWhatTheOneBeforeSaidInItsLogUpToAMegabyte) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::path(testing::TempDir()) / ("weft_worker_log_" + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  const fs::path program = folder / "speaker", log = folder / "log", before = folder / "log.1";
+  std::ofstream(program) << "#!/bin/sh\necho 0123456 >&2\n";
+  fs::permissions(program, fs::perms::owner_all);
+  const auto speak = [&] {
+    auto speaker = WorkerProcess::start(program, {}, log);
+    ASSERT_TRUE(speaker) << speaker.error().message();
+    EXPECT_FALSE((*speaker)->read_line(steady_clock::now() + seconds(5))) << "it has ended";
+  };
+  speak();
+  speak();
+  EXPECT_EQ(fs::file_size(log), 16U) << "what the first said is there";
+  EXPECT_FALSE(fs::exists(before));
+  fs::resize_file(log, (1U << 20) + 1);
+  speak();
+  EXPECT_EQ(fs::file_size(log), 8U);
+  EXPECT_EQ(fs::file_size(before), (1U << 20) + 1);
+  fs::remove_all(folder);
 }
 
 TEST(WorkerProcess, TellsACrashFromAHang) {
