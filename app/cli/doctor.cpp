@@ -71,8 +71,11 @@ Result<Finding> ask_owner(const capture::Rig& rig, const std::string& address) {
 
 std::vector<Finding> examine(const capture::Rig& rig) {
   std::vector<Finding> found;
-  if (const std::optional<std::string> owner = address_of_owner(rig)) {
-    const Result<Finding> said = ask_owner(rig, *owner);
+  const Result<std::optional<std::string>> owner = address_of_owner(rig);
+  if (!owner) {
+    found.push_back(fault_of("daemon", owner.error()));
+  } else if (*owner) {
+    const Result<Finding> said = ask_owner(rig, **owner);
     found.push_back(said ? *said : fault_of("daemon", said.error()));
   } else if (const Result<RigLock> lock = RigLock::take(rig); !lock) {
     found.push_back(fault_of("rig", lock.error()));

@@ -5,7 +5,7 @@
 
 #include <utility>
 
-#include "app/daemon/http_guard.h"
+#include "app/daemon/rig_lock.h"
 
 namespace weft::app {
 
@@ -31,8 +31,7 @@ Result<RigDevices> open_devices(const capture::Rig& rig) {
 }
 
 Result<RigClient> connect_to_owner(const capture::Rig& rig, const std::string& address) {
-  const Result<std::string> token =
-      rig.daemon.token.empty() ? Result<std::string>(std::string()) : read_token(rig.daemon.token);
+  const Result<std::string> token = token_of_owner(rig);
   if (!token) return token.error();
   return RigClient::connect(address, *token);
 }

@@ -18,7 +18,7 @@ Result<std::unique_ptr<capture::LedBoard>> open_board(const capture::Rig& rig);
 Result<std::unique_ptr<capture::CameraLink>> open_camera(const capture::Rig& rig);
 Result<RigDevices> open_devices(const capture::Rig& rig);
 
-/// The daemon that owns this rig, at the address of address_of_owner(), by the rig file's token.
+/// The daemon that owns this rig, at the address of address_of_owner(), by token_of_owner().
 Result<RigClient> connect_to_owner(const capture::Rig& rig, const std::string& address);
 
 /// "firmware 1.0, 10 LEDs, began by power".

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "app/cli/exit_code.h"
@@ -25,6 +26,8 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr auto kBetweenQuestions = std::chrono::milliseconds(500);
 
 /// Who scans: the daemon that owns the rig, or one in this process for as long as this scan takes.
 struct Scanner {
@@ -55,7 +58,8 @@ Result<Scanner> find_scanner(capture::Rig rig, const std::optional<std::string>&
       rig, open_devices,
       [](const auto& request, auto& lamps, auto& camera, const auto& events, const auto& control) {
         return capture::scan(request, lamps, camera, events, control);
-      });
+      },
+      {.own_token = true});
   if (!server) return std::move(server).error();
   Result<RigClient> client = RigClient::connect((*server)->address(), (*server)->token());
   if (!client) return std::move(client).error();
@@ -101,7 +105,7 @@ class Narrator {
     why_ = why;
   }
   void show_frame(const Json& frame) const {
-    if (quiet_) return;
+    if (quiet_ || frame["kept"] == false) return;  // a refused one is told by the status
     double clipped = 0;
     for (const Json& share : frame["clipped_rgb"]) clipped = std::max(clipped, share.get<double>());
     const int led = frame["led"].get<int>();
@@ -121,8 +125,19 @@ bool has_ended(const Json& status) {
   return status["state"] == "idle" || status["state"] == "failed";
 }
 
-/// Follows the scan to its end; an interrupt cancels it first. The last status.
-Result<Json> follow(const RigClient& client, const CommonArguments& common) {
+/// The last status of a scan whose events are not told, because too many clients follow them already.
+Result<Json> ask_until_it_ends(const RigClient& client, const Json& session, Narrator& narrator,
+                               const Error& not_followed) {
+  for (;; std::this_thread::sleep_for(kBetweenQuestions)) {
+    Result<Json> status = client.get("/api/v1/rig");
+    if (!status || status->at("session") != session) return not_followed;
+    narrator.show_status(*status);
+    if (has_ended(*status)) return status;
+  }
+}
+
+/// Follows the scan of this session to its end; an interrupt cancels it first. The last status.
+Result<Json> follow(const RigClient& client, const Json& session, const CommonArguments& common) {
   const std::stop_token interrupt = stop_on_signal();
   const std::stop_callback cancel(interrupt, [&] { static_cast<void>(client.post("/api/v1/scan/cancel")); });
   Narrator narrator(common);
@@ -136,8 +151,8 @@ Result<Json> follow(const RigClient& client, const CommonArguments& common) {
         return !has_ended(last);
       },
       {});
-  if (!followed) return followed.error();
-  return last;
+  if (followed) return last;
+  return ask_until_it_ends(client, session, narrator, followed.error());
 }
 
 /// What is worth knowing of the session where the command named none.
@@ -195,8 +210,9 @@ Result<int> run_scan(const ScanArguments& said, const CommonArguments& common) {
   if (!rig) return std::move(rig).error();
   const Result<Json> body = body_of(arguments);
   if (!body) return body.error();
-  const std::optional<std::string> owner = address_of_owner(*rig);
-  if (owner) {
+  const Result<std::optional<std::string>> owner = address_of_owner(*rig);
+  if (!owner) return owner.error();
+  if (*owner) {
     if (Result<void> ok = check_folder(*rig, arguments.output); !ok) return std::move(ok).error();
   } else if (!arguments.output.empty()) {
     rig->scan.sessions = fs::absolute(arguments.output).parent_path();
@@ -204,12 +220,12 @@ Result<int> run_scan(const ScanArguments& said, const CommonArguments& common) {
   if (arguments.dry_run) return name_only(*rig, *body, common);
   Json status;
   {
-    const Result<Scanner> scanner = find_scanner(*rig, owner);
+    const Result<Scanner> scanner = find_scanner(*rig, *owner);
     if (!scanner) return scanner.error();
     const Result<Json> begun = scanner->client.post("/api/v1/scan", *body);
     if (!begun) return begun.error();
     if (arguments.output.empty()) say_choice(*begun, *rig);
-    Result<Json> ended = follow(scanner->client, common);
+    Result<Json> ended = follow(scanner->client, begun->at("session"), common);
     if (!ended) return std::move(ended).error();
     status = std::move(*ended);
   }

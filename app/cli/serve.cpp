@@ -63,7 +63,8 @@ Result<int> run_serve(const ServeArguments& arguments, const CommonArguments& co
   if (arguments.host) rig->daemon.host = *arguments.host;
   if (arguments.port) rig->daemon.port = *arguments.port;
 
-  const Result<std::unique_ptr<RigServer>> server = RigServer::start(*rig, open_devices, run_scan_of);
+  const Result<std::unique_ptr<RigServer>> server =
+      RigServer::start(*rig, open_devices, run_scan_of, {.say = [](const std::string& line) { note(line); }});
   if (!server) return server.error();
   if (Result<void> said = say_address(**server, rig->name, common.json); !said)
     return std::move(said).error();

@@ -4,6 +4,7 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <openssl/crypto.h>
+#include <openssl/rand.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -79,6 +80,15 @@ std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rul
                   "send 'Content-Type: application/json'");
   }
   return std::nullopt;
+}
+
+Result<std::string> new_token() {
+  std::array<unsigned char, 32> bytes = {};
+  if (RAND_bytes(bytes.data(), static_cast<int>(bytes.size())) != 1) {
+    return Error{ErrorKind::kTryAgain, "no token can be made", "", "the system gives no random numbers",
+                 "try again"};
+  }
+  return fmt::format("{:02x}", fmt::join(bytes, ""));
 }
 
 Result<std::string> read_token(const std::string& file) {

@@ -31,6 +31,9 @@ struct Refused {
 /// The port in Host is not looked at, so that a tunnel may begin at another one.
 std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rules);
 
+/// A token that nobody can guess: 64 hexadecimal digits. kTryAgain where the system has no random numbers.
+Result<std::string> new_token();
+
 /// The token in a file, without white space around it. kBadData if it is shorter than 16 characters, is not
 /// printable, or if others than the owner may read the file.
 Result<std::string> read_token(const std::string& file);

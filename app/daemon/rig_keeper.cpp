@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/daemon/rig_keeper.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -34,14 +36,28 @@ Json to_json(const capture::CameraFacts& facts) {
           {"clock_uncertainty_s", facts.clock_uncertainty_s}};
 }
 
+/// What every frame is told with, kept or not.
+Json frame_event(const std::string& session, int index, int led, ShotRole role,
+                 const capture::FrameFinding& finding) {
+  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+  return {{"session", session},
+          {"index", index},
+          {"led", led},
+          {"role", app::name_of(role)},
+          {"code", finding.code},
+          {"level", number(finding.level)},
+          {"misfit", number(finding.misfit)}};
+}
+
 }  // namespace
 
-RigKeeper::RigKeeper(capture::Rig rig, OpenDevices open, RunScan run, EventLog& events,
+RigKeeper::RigKeeper(capture::Rig rig, OpenDevices open, RunScan run, EventLog& events, Logbook& log,
                      FramePictures& pictures)
     : rig_(std::move(rig)),
       open_(std::move(open)),
       run_(std::move(run)),
       events_(events),
+      log_(log),
       pictures_(pictures) {
   tell_status_locked();
 }
@@ -84,7 +100,10 @@ Result<void> RigKeeper::begin(capture::ScanRequest request) {
   tell_status_locked();
   // The last one's thread has done its last deed once running_ is false: joining it here takes no time.
   scan_ = std::jthread([this, request = std::move(request)](const std::stop_token& cancel) {
-    on_end(scan_with_devices(request, cancel));
+    log_.add("scan_began", fmt::format("{} of {}", name_of_session(request), request.fabric),
+             {{"session", name_of_session(request)}, {"fabric", request.fabric}});
+    logged_.clear();
+    on_end(request, scan_with_devices(request, cancel));
   });
   return {};
 }
@@ -92,6 +111,10 @@ Result<void> RigKeeper::begin(capture::ScanRequest request) {
 Result<void> RigKeeper::pause() {
   const std::lock_guard lock(mutex_);
   if (!running_) return nothing_runs(rig_.name, "start one");
+  if (status_.phase == capture::ScanPhase::kFinishing) {
+    return Error{ErrorKind::kTryAgain, "the scan is about to end", rig_.name, "its last frame is kept",
+                 "wait for its end"};
+  }
   pause_ = true;
   return {};
 }
@@ -132,6 +155,7 @@ Result<RigDevices> RigKeeper::open_devices(const std::stop_token& cancel) {
     Result<RigDevices> devices = open_(rig_);
     if (devices || devices.error().kind != ErrorKind::kNoDevice || std::chrono::steady_clock::now() >= until)
       return devices;
+    log_once("waiting", devices.error().message());
     std::unique_lock lock(mutex_);
     if (std::string why = devices.error().message(); why != status_.why) {
       status_.why = std::move(why);
@@ -149,15 +173,33 @@ Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanReq
                                                           const std::stop_token& cancel) try {
   Result<RigDevices> devices = open_devices(cancel);
   if (!devices) return std::move(devices).error();
+  {
+    const std::lock_guard lock(mutex_);
+    devices_open_ = true;
+  }
   WatchedCamera camera(*devices->camera, [this](const capture::CameraFacts& facts) { on_facts(facts); });
-  const capture::ScanEvents events = {[this](const capture::ScanStatus& status) { on_status(status); },
-                                      [&](const capture::KeptFrame& frame) { on_kept(request, frame); }};
+  const capture::ScanEvents events = {
+      [this](const capture::ScanStatus& status) { on_status(status); },
+      [&](const capture::KeptFrame& frame) { on_kept(request, frame); },
+      [&](const capture::RefusedFrame& frame) { on_refused(request, frame); }};
   return run_(request, *devices->lamps, camera, events, {cancel, &pause_});
 } catch (const std::exception& thrown) {
   return error_of_exception(thrown, name_of_session(request));
 }
 
+/// What comes again and again until it passes is written once.
+void RigKeeper::log_once(const char* event, const std::string& why) {
+  if (std::exchange(logged_, why) != why) log_.add(event, why);
+}
+
 void RigKeeper::on_status(const capture::ScanStatus& status) {
+  if (status.phase == capture::ScanPhase::kRecovering) {
+    log_once("recovering", status.why);
+  } else if (status.phase == capture::ScanPhase::kPaused) {
+    log_once("paused", status.why);
+  } else {
+    logged_.clear();
+  }
   const std::lock_guard lock(mutex_);
   status_ = status;
   switch (status.phase) {
@@ -177,15 +219,22 @@ void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::Kept
   pictures_.prepare({request.session / frame.shot.file, frame.shot.sha256, frame.histogram_rgb});
   const std::string name = name_of_session(request);
   const auto& rgb = frame.histogram_rgb;
-  events_.add("frame", {{"session", name},
-                        {"index", frame.shot.index},
-                        {"led", frame.shot.led},
-                        {"role", app::name_of(frame.shot.role)},
-                        {"clipped_rgb", {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped}},
-                        {"warnings", frame.warnings},
-                        {"thumbnail", "/api/v1/sessions/" + name + "/frames/" +
-                                          std::to_string(frame.shot.index) + "/thumbnail"},
-                        {"histogram", to_json(rgb)}});
+  Json event = frame_event(name, frame.shot.index, frame.shot.led, frame.shot.role, frame.finding);
+  event["kept"] = true;
+  event["clipped_rgb"] = {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped};
+  event["warnings"] = frame.warnings;
+  event["thumbnail"] = fmt::format("/api/v1/sessions/{}/frames/{}/thumbnail", name, frame.shot.index);
+  log_.add("frame", fmt::format("{} is kept", frame.shot.file), event);
+  event["histogram"] = to_json(rgb);
+  events_.add("frame", event);
+}
+
+void RigKeeper::on_refused(const capture::ScanRequest& request, const capture::RefusedFrame& frame) {
+  Json event = frame_event(name_of_session(request), frame.index, frame.led, frame.role, frame.finding);
+  event["kept"] = false;
+  event["why"] = frame.why;
+  log_.add("frame_refused", frame.why, event);
+  events_.add("frame", event);
 }
 
 void RigKeeper::on_facts(const capture::CameraFacts& facts) {
@@ -193,9 +242,19 @@ void RigKeeper::on_facts(const capture::CameraFacts& facts) {
   facts_ = facts;
 }
 
-void RigKeeper::on_end(const Result<capture::ScanOutcome>& outcome) {
-  const std::lock_guard lock(mutex_);
+void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome) {
   const bool cancelled = !outcome && outcome.error().kind == ErrorKind::kInterrupted;
+  Json record = {{"session", name_of_session(request)}};
+  if (outcome) {
+    record["frames_resumed"] = outcome->frames_resumed;
+    record["frames_retaken"] = outcome->frames_retaken;
+    record["warnings"] = outcome->warnings;
+    log_.add("scan_complete", name_of_session(request), std::move(record));
+  } else {
+    record["error"] = error_document(outcome.error())["error"];
+    log_.add(cancelled ? "scan_cancelled" : "scan_failed", outcome.error().message(), std::move(record));
+  }
+  const std::lock_guard lock(mutex_);
   if (outcome) {
     status_.phase = capture::ScanPhase::kComplete;
     warnings_ = outcome->warnings;
@@ -207,6 +266,7 @@ void RigKeeper::on_end(const Result<capture::ScanOutcome>& outcome) {
   state_ = outcome || cancelled ? State::kIdle : State::kFailed;
   status_.led = 0;
   running_ = false;
+  devices_open_ = false;
   tell_status_locked();
   ended_.notify_all();
 }
@@ -235,12 +295,12 @@ Json RigKeeper::status_locked() const {
           {"error", error_ ? error_document(*error_)["error"] : nothing},
           {"warnings", warnings_},
           {"devices",
-           {{"board", {{"port", rig_.board.port}, {"leds", rig_.leds}, {"open", running_}}},
+           {{"board", {{"port", rig_.board.port}, {"leds", rig_.leds}, {"open", devices_open_}}},
             {"camera",
              {{"profile", rig_.camera.profile},
               {"port", rig_.camera.port},
               {"serial", rig_.camera.serial},
-              {"open", running_},
+              {"open", devices_open_},
               {"says", facts_ ? to_json(*facts_) : nothing}}}}}};
 }
 

@@ -12,6 +12,7 @@
 
 #include "app/daemon/event_log.h"
 #include "app/daemon/frame_pictures.h"
+#include "app/daemon/logbook.h"
 #include "capture/devices.h"
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
@@ -42,7 +43,8 @@ using RunScan =
 /// and closed in idle and failed, so that other programs can use them. Safe from any thread.
 class RigKeeper {
  public:
-  RigKeeper(capture::Rig rig, OpenDevices open, RunScan run, EventLog& events, FramePictures& pictures);
+  RigKeeper(capture::Rig rig, OpenDevices open, RunScan run, EventLog& events, Logbook& log,
+            FramePictures& pictures);
   ~RigKeeper();
 
   /// Starts a scan, or resumes a session that is there. kTryAgain while one runs.
@@ -70,8 +72,10 @@ class RigKeeper {
                                                  const std::stop_token& cancel);
   void on_status(const capture::ScanStatus& status);
   void on_kept(const capture::ScanRequest& request, const capture::KeptFrame& frame);
+  void on_refused(const capture::ScanRequest& request, const capture::RefusedFrame& frame);
   void on_facts(const capture::CameraFacts& facts);
-  void on_end(const Result<capture::ScanOutcome>& outcome);
+  void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome);
+  void log_once(const char* event, const std::string& why);
   Json status_locked() const;
   void tell_status_locked() { events_.add("status", status_locked()); }
 
@@ -79,12 +83,14 @@ class RigKeeper {
   const OpenDevices open_;
   const RunScan run_;
   EventLog& events_;
+  Logbook& log_;
   FramePictures& pictures_;
 
   mutable std::mutex mutex_;
   std::condition_variable_any ended_;  ///< or asked to end
   State state_ = State::kIdle;
   bool running_ = false;
+  bool devices_open_ = false;
   bool stopping_ = false;
   capture::ScanStatus status_;
   std::optional<capture::ScanRequest> request_;  ///< the last one
@@ -92,6 +98,7 @@ class RigKeeper {
   std::vector<std::string> warnings_;
   std::optional<capture::CameraFacts> facts_;
   std::atomic<bool> pause_ = false;
+  std::string logged_;  ///< the last trouble that log_once() wrote; the scan's own
   std::jthread scan_;
 };
 

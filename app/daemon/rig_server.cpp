@@ -2,6 +2,7 @@
 #include "app/daemon/rig_server.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <utility>
 
@@ -14,17 +15,19 @@
 namespace weft::app {
 
 struct RigServer::State {
-  State(const capture::Rig& its_rig, RigLock its_lock, OpenDevices open, RunScan run)
+  State(const capture::Rig& its_rig, RigLock its_lock, OpenDevices open, RunScan run, Logbook::Say say)
       : rig(its_rig),
         lock(std::move(its_lock)),
+        log(lock.folder() / "log", std::move(say)),
         pictures(lock.folder() / "pictures"),
         sessions(rig.scan.sessions, rig.name, pictures),
-        keeper(rig, std::move(open), std::move(run), events, pictures),
+        keeper(rig, std::move(open), std::move(run), events, log, pictures),
         parts{rig, lock.folder(), keeper, sessions, pictures} {}
 
   const capture::Rig rig;
   RigLock lock;
   EventLog events;
+  Logbook log;
   FramePictures pictures;
   SessionCatalog sessions;
   RigKeeper keeper;
@@ -34,22 +37,27 @@ struct RigServer::State {
 };
 
 Result<std::unique_ptr<RigServer>> RigServer::start(const capture::Rig& rig, OpenDevices open, RunScan run,
-                                                    const HttpLimits& limits) {
+                                                    const RigServerOptions& options) {
   Result<RigLock> lock = RigLock::take(rig);
   if (!lock) return std::move(lock).error();
-  Result<std::string> token =
-      rig.daemon.token.empty() ? std::string() : read_token(rig.daemon.token.string());
+  const bool is_own = rig.daemon.token.empty() && options.own_token;
+  Result<std::string> token = is_own                     ? new_token()
+                              : rig.daemon.token.empty() ? std::string()
+                                                         : read_token(rig.daemon.token.string());
   if (!token) return std::move(token).error();
-  auto state = std::make_unique<State>(rig, std::move(*lock), std::move(open), std::move(run));
+  auto state = std::make_unique<State>(rig, std::move(*lock), std::move(open), std::move(run), options.say);
   state->token = *token;
   Result<std::unique_ptr<HttpServer>> http = HttpServer::start(
-      rig.daemon.port, {rig.daemon.host, *token}, rig_routes(state->parts), state->events, limits);
+      rig.daemon.port, {rig.daemon.host, *token}, rig_routes(state->parts), state->events, options.limits);
   if (!http) return std::move(http).error();
   state->http = std::move(*http);
   const bool v6 = rig.daemon.host.find(':') != std::string::npos;
   const std::string host = v6 ? "[" + rig.daemon.host + "]" : rig.daemon.host;
   state->address = fmt::format("http://{}:{}", host, state->http->port());
-  if (Result<void> told = state->lock.publish_address(state->address); !told) return std::move(told).error();
+  if (Result<void> told = state->lock.publish(state->address, is_own ? *token : ""); !told)
+    return std::move(told).error();
+  state->log.add("daemon_began", fmt::format("rig {} is served at {}", rig.name, state->address),
+                 {{"rig", rig.name}, {"pid", getpid()}});
   return std::unique_ptr<RigServer>(new RigServer(std::move(state)));
 }
 
@@ -77,6 +85,10 @@ std::vector<std::string> RigServer::calls() const {
 
 bool RigServer::stop(std::chrono::milliseconds most) {
   const bool ended = state_->keeper.stop(most);
+  if (!state_->events.closed()) {
+    state_->log.add("daemon_ended",
+                    ended ? "it was told to" : "it was told to, and a device does not answer");
+  }
   state_->events.close();
   state_->pictures.stop();
   state_->http->stop();

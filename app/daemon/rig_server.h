@@ -6,21 +6,29 @@
 #include <string>
 
 #include "app/daemon/http_server.h"
+#include "app/daemon/logbook.h"
 #include "app/daemon/rig_keeper.h"
 #include "capture/rig.h"
 #include "core/result.h"
 
 namespace weft::app {
 
+struct RigServerOptions {
+  HttpLimits limits = {};
+  bool own_token =
+      false;  ///< where the rig file names none: one of its own, which clients of this user can read
+  Logbook::Say say = {};  ///< hears each line of its log; empty: nobody does
+};
+
 /// One rig behind HTTP (docs/http.md): its lock, its scan, its sessions. Run by weft serve for as long as the
 /// machine is up, and by weft scan within its own process where no daemon is.
 class RigServer {
  public:
-  /// Takes the rig's lock, listens at rig.daemon.host and port, and leaves its address in the state folder.
-  /// Errors: kTryAgain (another process owns the rig, or the port is in use), kUsage (open to the network
-  /// without a token), kBadData (a bad token file), kCannotCreate.
+  /// Takes the rig's lock, listens at rig.daemon.host and port, leaves its address in the state folder and
+  /// writes what happens to log/ in there. Errors: kTryAgain (another process owns the rig, or the port is in
+  /// use), kUsage (open to the network without a token), kBadData (a bad token file), kCannotCreate.
   static Result<std::unique_ptr<RigServer>> start(const capture::Rig& rig, OpenDevices open, RunScan run,
-                                                  const HttpLimits& limits = {});
+                                                  const RigServerOptions& options = {});
   /// Waits for a running scan to end.
   ~RigServer();
 

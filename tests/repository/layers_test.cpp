@@ -76,6 +76,7 @@ const std::vector<Door> kDoors = {
     {"libraw/", {"capture/raw/", "bench/"}},
     {"hwy/", {"core/", "solver/kernels/", "tests/"}},
     {"embree3/", {"simulator/transport/", "solver/transport/", "bench/"}},
+    {"spdlog/", {"app/daemon/"}},
     {"kissfft/", {"solver/height/", "bench/"}},
 };
 

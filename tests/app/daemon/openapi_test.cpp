@@ -46,6 +46,7 @@ class OpenApi : public testing::Test {
       if (frame == 2 && holding_) gate_.pass();
       return {};
     };
+    scripted_.refuse = {2, 2, ShotRole::kLit, {"swapped", 0.9, 0.2}, "LED 2 lights where LED 3 should"};
     server_ = scripted_.started();
     port_ = server_->port();
     document_ = ask(port_, "GET", "/api/v1/openapi.json").json();
@@ -173,7 +174,7 @@ TEST_F(OpenApi, DescribesItsEvents) {
     (name == "frame" ? frames : statuses)++;
     EXPECT_THAT(misfits(event, document_["components"]["schemas"][schema], document_), IsEmpty()) << event;
   }
-  EXPECT_EQ(frames, 4);
+  EXPECT_EQ(frames, 5) << "four that are kept and one that is refused";
   EXPECT_GE(statuses, 5);
 }
 

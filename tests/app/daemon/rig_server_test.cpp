@@ -215,6 +215,7 @@ TEST(RigServer, WaitsForADeviceThatIsNotThereYet) {
       status = wait_for_state(port, "connecting");
     } while (status["why"] == "" && std::chrono::steady_clock::now() < deadline);
     EXPECT_THAT(status["why"].get<std::string>(), HasSubstr("no LED board: /dev/weft-led"));
+    EXPECT_EQ(status["devices"]["board"]["open"], false) << "it is still searched for";
   };
   ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
   wait_for_why();
@@ -247,6 +248,48 @@ TEST(RigServer, OutlivesAnExceptionOfItsScan) {
     EXPECT_THAT(failed["why"].get<std::string>(), HasSubstr(why));
   }
   ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  EXPECT_EQ(wait_for_state(port, "idle")["phase"], "complete");
+}
+
+TEST(RigServer, WritesWhatHappenedToItsLog) {
+  ScriptedRig scripted("log");
+  scripted.refuse = {1, 1, ShotRole::kLit, {"dark", 0.01, {}}, "LED 1 is dark"};
+  scripted.before = [](int frame) -> Result<void> {
+    if (frame < 2) return {};
+    return Error{ErrorKind::kTryAgain, "the camera hangs", "camera", "no answer", "switch it off and on"};
+  };
+  auto server = scripted.started();
+  ASSERT_EQ(ask(server->port(), "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  wait_for_state(server->port(), "failed");
+  server.reset();
+  std::vector<std::string> events;
+  Json failed, refused;
+  for (const Json& line : json_lines(scripted.rig.daemon.state / "log" / "weft.jsonl")) {
+    events.push_back(line.value("event", "no JSON"));
+    if (events.back() == "scan_failed") failed = line;
+    if (events.back() == "frame_refused") refused = line;
+  }
+  EXPECT_THAT(events, testing::ElementsAre("daemon_began", "scan_began", "frame_refused", "frame", "frame",
+                                           "scan_failed", "daemon_ended"));
+  EXPECT_EQ(failed["error"]["where"], "camera");
+  EXPECT_EQ(refused["code"], "dark");
+}
+
+TEST(RigServer, CannotBePausedWhileTheScanEnds) {
+  ScriptedRig scripted("finishing");
+  Gate gate;
+  scripted.at_end = [&] { gate.pass(); };
+  const auto server = scripted.started();
+  const int port = server->port();
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  const auto deadline = std::chrono::steady_clock::now() + seconds(5);
+  while (wait_for_state(port, "scanning")["phase"] != "finishing" &&
+         std::chrono::steady_clock::now() < deadline) {
+  }
+  const Answer pause = ask(port, "POST", "/api/v1/scan/pause", "{}");
+  EXPECT_EQ(pause.status, 409) << pause.body;
+  EXPECT_EQ(pause.json()["error"]["what"], "the scan is about to end");
+  gate.open();
   EXPECT_EQ(wait_for_state(port, "idle")["phase"], "complete");
 }
 
@@ -367,13 +410,13 @@ TEST(RigServer, EndsWithinThreeSecondsInTheMiddleOfAScan) {
 TEST(RigServer, IsTheOnlyOneOfItsRig) {
   ScriptedRig scripted("only");
   auto first = scripted.started();
-  EXPECT_EQ(address_of_owner(scripted.rig), first->address());
+  EXPECT_EQ(address_of_owner(scripted.rig).value(), first->address());
   const auto second = scripted.start();
   ASSERT_FALSE(second);
   EXPECT_EQ(second.error().kind, ErrorKind::kTryAgain);
   EXPECT_THAT(second.error().message(), HasSubstr("process " + std::to_string(getpid())));
   first.reset();
-  EXPECT_EQ(address_of_owner(scripted.rig), std::nullopt);
+  EXPECT_EQ(address_of_owner(scripted.rig).value(), std::nullopt);
   EXPECT_TRUE(scripted.start());
 }
 

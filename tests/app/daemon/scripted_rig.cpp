@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <fstream>
 #include <thread>
 
 #include "capture/raw/decode.h"
@@ -120,7 +121,7 @@ Result<std::unique_ptr<RigServer>> ScriptedRig::start(const HttpLimits& limits) 
     EXPECT_TRUE(camera.connect());
     return scan(request, events, control);
   };
-  return RigServer::start(rig, open, run, limits);
+  return RigServer::start(rig, open, run, {.limits = limits, .own_token = own_token, .say = {}});
 }
 
 std::unique_ptr<RigServer> ScriptedRig::started(const HttpLimits& limits) {
@@ -143,6 +144,7 @@ Result<capture::ScanOutcome> ScriptedRig::scan(const capture::ScanRequest& reque
     events.status(status);
   };
   tell(capture::ScanPhase::kConnecting, 0);
+  if (refuse) events.refused(*refuse);
   for (int i = resumed; i < frames; ++i) {
     tell(capture::ScanPhase::kExposing, i);
     if (Result<void> may = before(i); !may) return std::move(may).error();
@@ -153,6 +155,8 @@ Result<capture::ScanOutcome> ScriptedRig::scan(const capture::ScanRequest& reque
     }
     events.kept(take(session, i));
   }
+  tell(capture::ScanPhase::kFinishing, 0);
+  at_end();
   session.state = "complete";
   EXPECT_TRUE(write_session(session));
   tell(capture::ScanPhase::kComplete, 0);
@@ -169,6 +173,13 @@ void ScriptedRig::leave_unfinished(const std::string& name) const {
   request.rig = rig.name;
   Session session = read_or_make(request);
   take(session, 0);
+}
+
+std::vector<Json> json_lines(const fs::path& file) {
+  std::vector<Json> documents;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) documents.push_back(Json::parse(line, nullptr, false));
+  return documents;
 }
 
 Json wait_for_state(int port, const std::string& state, const std::string& token) {

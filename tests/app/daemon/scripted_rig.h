@@ -25,7 +25,10 @@ class ScriptedRig {
   // The script, set before a scan begins.
   std::function<Result<void>()> devices = []() -> Result<void> { return {}; };             ///< opening them
   std::function<Result<void>(int frame)> before = [](int) -> Result<void> { return {}; };  ///< each shot
-  int frames = 4;  ///< the dark one and a LED each
+  std::function<void()> at_end = [] {};         ///< while it finishes
+  std::optional<capture::RefusedFrame> refuse;  ///< told of before the first shot
+  bool own_token = false;                       ///< of the server
+  int frames = 4;                               ///< the dark one and a LED each
 
   Result<std::unique_ptr<RigServer>> start(const HttpLimits& limits = {});
   /// As start(), which must succeed.
@@ -40,6 +43,9 @@ class ScriptedRig {
   Result<capture::ScanOutcome> scan(const capture::ScanRequest& request, const capture::ScanEvents& events,
                                     const capture::ScanControl& control) const;
 };
+
+/// The documents of a file of JSON lines.
+std::vector<Json> json_lines(const std::filesystem::path& file);
 
 /// Asks for the rig's status until it is in this state, for 5 seconds; that status.
 Json wait_for_state(int port, const std::string& state, const std::string& token = "");

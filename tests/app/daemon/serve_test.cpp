@@ -15,6 +15,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <thread>
 #include <vector>
@@ -45,17 +46,19 @@ bool comes_true(const Condition& condition) {
   return true;
 }
 
-/// A running weft serve; killed with its owner.
+/// A running weft with this verb, its rig and one more option; killed with its owner.
 class Daemon {
  public:
-  explicit Daemon(const fs::path& rig) : said_(rig.parent_path() / "said.txt") {
+  explicit Daemon(const fs::path& rig, const std::string& verb = "serve", const std::string& more = "-q")
+      : said_(rig.parent_path() / (verb + ".txt")) {
     const std::string file = rig.string(), said = said_.string();
     pid_ = fork();
     if (pid_ != 0) return;
     dup2(open(said.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), STDERR_FILENO);
     const int nothing = open("/dev/null", O_WRONLY);
     dup2(nothing, STDOUT_FILENO);
-    execl(WEFT_PROGRAM, "weft", "serve", "--rig", file.c_str(), static_cast<char*>(nullptr));
+    execl(WEFT_PROGRAM, "weft", verb.c_str(), "--rig", file.c_str(), more.c_str(),
+          static_cast<char*>(nullptr));
     _exit(127);
   }
   Daemon(const Daemon&) = delete;
@@ -112,7 +115,8 @@ class Serve : public testing::Test {
 
   Result<RigClient> client() const {
     std::optional<std::string> address;
-    EXPECT_TRUE(comes_true([&] { return (address = address_of_owner(rig_)).has_value(); })) << "no address";
+    EXPECT_TRUE(comes_true([&] { return (address = address_of_owner(rig_).value()).has_value(); }))
+        << "no address";
     return RigClient::connect(address.value_or(""));
   }
   const fs::path folder_ = fs::path(testing::TempDir()) / ("weft_serve_" + std::to_string(getpid()));
@@ -125,7 +129,8 @@ TEST_F(Serve, AnswersUntilItIsToldToEnd) {
   ASSERT_TRUE(client) << client.error().message() << daemon.said();
   EXPECT_EQ(client->get("/api/v1/rig")->at("rig"), "north");
 
-  RawClient follower(std::stoi(address_of_owner(rig_)->substr(std::string("http://127.0.0.1:").size())));
+  RawClient follower(
+      std::stoi(address_of_owner(rig_).value()->substr(std::string("http://127.0.0.1:").size())));
   follower.say("GET /api/v1/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
   follower.hear(seconds(5), "\n\n");
   const Clock::time_point told = Clock::now();
@@ -151,6 +156,37 @@ TEST_F(Serve, SaysThatTheBoardIsNotThereAndWaitsForIt) {
   EXPECT_TRUE(comes_true([&] { return client->get("/api/v1/rig").value()["state"] == "idle"; }));
 }
 
+TEST_F(Serve, SaysWhatHappensALineAnEvent) {
+  Daemon daemon(folder_ / "rig.toml");
+  const Result<RigClient> client = this->client();
+  ASSERT_TRUE(client) << client.error().message() << daemon.said();
+  ASSERT_TRUE(client->post("/api/v1/scan", {{"fabric", "satin"}, {"session", "a"}}));
+  EXPECT_TRUE(comes_true([&] { return daemon.said().find("waiting: ") != std::string::npos; }));
+  EXPECT_THAT(daemon.said(), testing::AllOf(testing::HasSubstr("daemon_began: rig north"),
+                                            testing::HasSubstr("scan_began: a of satin"),
+                                            testing::HasSubstr("/dev/no-board")));
+}
+
+TEST_F(Serve, AScanThatHearsNoEventsIsStillCancelledByItsPerson) {
+  Daemon daemon(folder_ / "rig.toml");
+  const Result<RigClient> client = this->client();
+  ASSERT_TRUE(client) << client.error().message() << daemon.said();
+  const int port = std::stoi(address_of_owner(rig_).value()->substr(std::string("http://127.0.0.1:").size()));
+  std::vector<std::unique_ptr<RawClient>> followers;  // as many as may follow
+  for (int i = 0; i < 16; ++i) {
+    followers.push_back(std::make_unique<RawClient>(port));
+    followers.back()->say("GET /api/v1/events HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_THAT(followers.back()->hear(seconds(5), "\n\n"), testing::HasSubstr("200"));
+  }
+  Daemon scan(folder_ / "rig.toml", "scan", "--fabric=satin");
+  const auto state = [&] { return client->get("/api/v1/rig").value()["state"]; };
+  ASSERT_TRUE(comes_true([&] { return state() == "connecting"; })) << scan.said();
+  std::this_thread::sleep_for(seconds(1));  // it was turned away by now
+  scan.signal(SIGINT);
+  EXPECT_EQ(scan.ended(), 130) << scan.said();
+  EXPECT_EQ(state(), "idle");
+}
+
 TEST_F(Serve, ASecondOneOfTheRigEndsAtOnce) {
   Daemon first(folder_ / "rig.toml");
   ASSERT_TRUE(client());
@@ -164,7 +200,7 @@ TEST_F(Serve, OneThatWasKilledLeavesNothingInTheWay) {
   ASSERT_TRUE(client());
   first.signal(SIGKILL);
   EXPECT_EQ(first.ended(), 128 + SIGKILL);
-  EXPECT_EQ(address_of_owner(rig_), std::nullopt) << "an address without an owner is none";
+  EXPECT_EQ(address_of_owner(rig_).value(), std::nullopt) << "an address without an owner is none";
   Daemon second(folder_ / "rig.toml");
   const Result<RigClient> again = client();
   EXPECT_TRUE(again) << again.error().message() << second.said();
