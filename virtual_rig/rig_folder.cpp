@@ -22,8 +22,32 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLock = "lock";
 // What a rig makes and takes away again.
-constexpr std::array kMade = {"rig.toml", "calibration", "environment", "home",   "board",
-                              "modem",    "control",     "camera.sock", kFullDisk};
+constexpr const char* kProfile = "camera.toml";
+constexpr std::array kMade = {"rig.toml", kProfile, "calibration", "environment", "home",
+                              "board",    "modem",  "control",     "camera.sock", kFullDisk};
+
+constexpr const char* kD80 = R"toml(# A Nikon D80 that takes its pictures to its card.
+model = "D80"
+usb = ["Nikon DSC D80 (PTP mode)"]
+trigger = "returns_at_once"
+
+[widgets]
+shutter = "shutterspeed2"
+iso = "iso"
+f_number = "f-number"
+
+[[by_hand]]
+widget = "expprogram"
+values = ["M"]
+says = "the mode dial is not on M"
+remedy = "turn the camera's mode dial to M"
+
+[set]
+imagequality = "NEF (Raw)"
+capturetarget = "Memory card"
+autofocus = "Off"
+whitebalance = "Daylight"
+)toml";
 
 /// A basic string of TOML.
 std::string quoted(const std::string& text) {
@@ -33,6 +57,10 @@ std::string quoted(const std::string& text) {
     quoted += c;
   }
   return quoted + '"';
+}
+
+bool is_d80(const LightFrames& frames) {
+  return frames.scene().camera.body == Body::kD80;
 }
 
 std::string rig_toml(const LightFrames& frames, const RigFiles& files) {
@@ -45,7 +73,7 @@ leds = {}
 port = {}
 
 [camera]
-profile = "nikon-d5100"
+profile = {}
 port = {}
 serial = {}
 
@@ -59,7 +87,8 @@ sessions = "scans"
 [daemon]
 port = 0
 )",
-                     frames.leds(), quoted(files.board_port), quoted(files.camera_port),
+                     frames.leds(), quoted(files.board_port),
+                     quoted(is_d80(frames) ? kProfile : "nikon-d5100"), quoted(files.camera_port),
                      quoted(files.camera_serial), scene.camera.iso, scene.camera.f_number,
                      scene.geometry.cloth_height_mm);
 }
@@ -118,6 +147,9 @@ Result<void> RigFolder::write(const LightFrames& frames, const RigFiles& files) 
   const Result<Calibration> written = write_calibration(path_ / "calibration", std::move(exact));
   if (!written) return written.error();
   if (Result<void> ok = make_writable_folder(path_ / "home"); !ok) return ok;
+  if (is_d80(frames)) {
+    if (Result<void> ok = write_file(path_ / kProfile, kD80); !ok) return ok;
+  }
   std::string environment;
   for (const std::string& line : files.environment) environment += line + '\n';
   if (Result<void> ok = write_file(path_ / "environment", environment); !ok) return ok;

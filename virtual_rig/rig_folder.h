@@ -34,7 +34,7 @@ class RigFolder {
   ~RigFolder();
 
   const std::filesystem::path& path() const { return path_; }
-  /// rig.toml, calibration/, environment and home/.
+  /// rig.toml, calibration/, environment, home/ and, where none is built in, the camera's profile.
   Result<void> write(const LightFrames& frames, const RigFiles& files) const;
 
  private:

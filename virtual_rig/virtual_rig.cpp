@@ -150,6 +150,7 @@ class RunningRig : public VirtualRig {
 
   Result<void> start_camera() {
     VirtualCameraOptions camera;
+    camera.body = options_.body == Body::kD80 ? CameraBody::kD80 : CameraBody::kD5100;
     camera.serial = options_.serial;
     camera.size = frames_.size();
     camera.clock_offset_s = options_.clock_offset_s;
@@ -296,7 +297,7 @@ class RunningRig : public VirtualRig {
 
 Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& options) {
   Scene scene = options.scene;
-  scene.camera.body = Body::kD5100;
+  scene.camera.body = options.body;
   Result<RigFolder> folder = RigFolder::take(options.folder, options.keep_log);
   if (!folder) return folder.error();
   Result<LightFrames> frames = LightFrames::open(scene, options.cache, options.render);

@@ -15,7 +15,8 @@
 namespace weft::simulator {
 
 struct VirtualRigOptions {
-  Scene scene;  ///< its camera becomes a D5100 (Body::kD5100), which the virtual camera says it is
+  Scene scene;                   ///< its camera's body becomes `body`
+  Body body = Body::kD5100;      ///< or Body::kD80: what the virtual camera says it is
   std::filesystem::path folder;  ///< everything of the rig is in it; made where it is not there
   std::filesystem::path cache = default_light_cache();
   std::filesystem::path firmware;               ///< the ELF on the board

@@ -55,14 +55,22 @@ std::vector<CameraProfile::Setting> read_settings(const toml::table& table, cons
   return settings;
 }
 
+CameraProfile::Trigger read_trigger(TomlKeys& keys) {
+  const std::string name = keys.text_or("trigger", "returns_at_once");
+  if (name == "blocks") return CameraProfile::Trigger::kBlocks;
+  if (name != "returns_at_once") keys.reject("trigger", "it must be \"blocks\" or \"returns_at_once\"");
+  return CameraProfile::Trigger::kReturnsAtOnce;
+}
+
 Result<CameraProfile> read_profile(const toml::table& table, const std::string& where) {
   CameraProfile profile;
   TomlKeys keys(table, where, kPage);
-  keys.know({"model", "usb", "ptpip", "readout_s", "least_battery", "widgets", "by_hand", "set",
+  keys.know({"model", "usb", "ptpip", "trigger", "readout_s", "least_battery", "widgets", "by_hand", "set",
              "set_where_there"});
   profile.model = needed(keys, "model");
   profile.usb_models = keys.texts_or("usb", {});
   profile.ptpip_model = keys.text_or("ptpip", profile.ptpip_model);
+  profile.trigger = read_trigger(keys);
   profile.readout_s = keys.number_or("readout_s", profile.readout_s, 0.1, 120);
   profile.least_battery = keys.number_or("least_battery", profile.least_battery, 0, 1);
   const Result<void> widgets = read_widgets(keys.table("widgets"), where, profile);

@@ -15,6 +15,9 @@ struct CameraProfile {
   std::string model;                    ///< as the camera names itself: "D5100"
   std::vector<std::string> usb_models;  ///< as libgphoto2 names it on USB
   std::string ptpip_model = "PTP/IP Camera";
+  /// When libgphoto2's trigger returns: once the shutter has closed, or at once, before it has opened. The
+  /// second is safe with either kind of body: the LED is lit for longer.
+  enum class Trigger { kBlocks, kReturnsAtOnce } trigger = Trigger::kReturnsAtOnce;
   double readout_s = 5;         ///< most a photograph takes from the end of its exposure until it has arrived
   double least_battery = 0.15;  ///< share
 

@@ -7,6 +7,7 @@ std::string_view nikon_d5100_toml() {
   return R"toml(# Nikon D5100. The names are those of `gphoto2 --list-all-config`.
 model = "D5100"
 usb = ["Nikon DSC D5100 (PTP mode)"]
+trigger = "blocks"
 readout_s = 5
 least_battery = 0.15
 

@@ -101,6 +101,7 @@ class Worker {
     const Result<ExposureSettings> exposure = exposure_of(camera, profile_);
     if (!exposure) return exposure.error();
     const auto clock = read_clock(camera, profile_, watched);
+    exposure_us_ = exposure->exposure_us;
     camera_ = std::move(*opened);
     return Json{{"model", profile_.model},
                 {"serial", *serial},
@@ -117,6 +118,7 @@ class Worker {
     if (!wanted) return bad_request(wanted.error().why);
     const Result<ExposureSettings> exposure = set_exposure(*camera_, profile_, *wanted);
     if (!exposure) return exposure.error();
+    exposure_us_ = exposure->exposure_us;
     const Result<double> battery = battery_of(*camera_, profile_);
     if (!battery) return battery.error();
     return Json{{"exposure", line_of(*exposure)}, {"battery", *battery}};
@@ -137,7 +139,6 @@ class Worker {
     const double triggered_s = seconds_since_1970();
     const auto triggered = Steady::now();
     if (Result<void> released = camera_->trigger(); !released) return std::move(released).error();
-    say("event", "exposed");
     const Result<CameraFileName> name = arrival(triggered, deadline_s);
     if (!name) return name.error();
     const Result<FetchedFile> fetched = camera_->fetch(*name);
@@ -180,11 +181,23 @@ class Worker {
                  "100 events without a pause", "switch the camera off and on"};
   }
 
+  /// Waits for the photograph, and says as soon as its shutter must have closed: at once where the trigger
+  /// has waited for that, else when the photograph is there or its time is over, whichever comes first.
   Result<CameraFileName> arrival(Steady::time_point triggered, double deadline_s) {
+    const bool has_closed = profile_.trigger == CameraProfile::Trigger::kBlocks;
+    const double closed_s =
+        seconds_since(triggered) + (has_closed ? 0 : kLongestShutterLagS + 1e-6 * exposure_us_);
+    bool is_told = false;
+    const auto tell = [&] {
+      if (!std::exchange(is_told, true)) say("event", "exposed");
+    };
     while (seconds_since(triggered) < deadline_s && !requests_.ended()) {
+      if (seconds_since(triggered) >= closed_s) tell();
       const auto event = camera_->wait_for_event(kPollMs);
       if (!event) return event.error();
-      if (event->file) return *event->file;
+      if (!event->file) continue;
+      tell();
+      return *event->file;
     }
     return Error{ErrorKind::kTryAgain, "no photograph came", camera_->address().port,
                  "the camera was busy or lost it", "take it again"};
@@ -234,6 +247,7 @@ class Worker {
   }
 
   static constexpr int kPollMs = 10;
+  static constexpr double kLongestShutterLagS = 2;  // a mirror that is locked up first, a slow focal plane
   static constexpr double kFreshS = 1;
   static constexpr int kBareWaitMs = 200;
   static constexpr double kBareDeadlineS = 60;
@@ -243,6 +257,7 @@ class Worker {
   Json id_;
   CameraProfile profile_;
   std::unique_ptr<GphotoCamera> camera_;
+  double exposure_us_ = 0;                // that the camera is set to
   std::optional<Result<void>> prepared_;  // how the next shot was prepared since
   Steady::time_point prepared_at_;
 };

@@ -6,9 +6,24 @@
 
 namespace weft::simulator {
 
+namespace {
+
+Sensor sensor_of(Body body) {
+  switch (body) {
+    case Body::kD5100:
+      return {"NIKON CORPORATION", "NIKON D5100", 0, 15846};
+    case Body::kD80:
+      return {"NIKON CORPORATION", "NIKON D80", 0, 15846};
+    case Body::kOffset:
+      break;
+  }
+  return {"weft", "virtual camera", 600, 15520};
+}
+
+}  // namespace
+
 Sensor sensor_of(const CameraSettings& camera) {
-  Sensor sensor = camera.body == Body::kOffset ? Sensor{"weft", "virtual camera", 600, 15520}
-                                               : Sensor{"NIKON CORPORATION", "NIKON D5100", 0, 15846};
+  Sensor sensor = sensor_of(camera.body);
   const double scale = std::ldexp(1.0, camera.bits - 14);  // the levels above are those of 14 bits
   sensor.black = std::floor(sensor.black * scale);
   sensor.white = std::floor(sensor.white * scale);

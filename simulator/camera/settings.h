@@ -94,6 +94,7 @@ struct BloomSettings {
 enum class Body {
   kOffset,  ///< black at 600 counts, so that noise below it survives; white at 15520
   kD5100,   ///< black subtracted and clipped at 0, as a Nikon D5100 does; white at 15846
+  kD80,     ///< the same sensor by another name: the virtual rig's second body
 };
 
 struct CameraSettings {

@@ -127,7 +127,7 @@ void walk(Visitor& v, CameraSettings& c) {
   v.require(c.height % 2 == 0, "height", "it must be even, as a mosaic has whole 2 x 2 cells");
   v.number("mm_per_pixel", c.mm_per_pixel, {1e-4, 10});
   v.number("distance_mm", c.distance_mm, {10, 1e4});
-  v.choice("body", c.body, {{"offset", Body::kOffset}, {"d5100", Body::kD5100}});
+  v.choice("body", c.body, {{"offset", Body::kOffset}, {"d5100", Body::kD5100}, {"d80", Body::kD80}});
   v.integer("bits", c.bits, 12, 16);
   v.require(c.bits % 2 == 0, "bits", "it must be 12, 14 or 16");
   v.number("full_well_electrons", c.full_well_electrons, {100, 1e9});

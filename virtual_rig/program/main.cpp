@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,12 @@ void define(CLI::App& app, Arguments& a) {
                  "files, removed at the end]");
   app.add_option("--megapixels", a.megapixels, "the same cloth at another resolution [the scene's]")
       ->check(CLI::Range(0.001, 100.0));
+  app.add_option(
+         "--body", a.rig.body,
+         "d5100, whose trigger blocks while its shutter is open, or d80, whose trigger returns at once")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, simulator::Body>{
+          {"d5100", simulator::Body::kD5100}, {"d80", simulator::Body::kD80}}))
+      ->default_str("d5100");
   app.add_flag("--usb", a.rig.usb, "the camera hangs on USB, not on PTP/IP");
   app.add_option("--port", a.rig.port, "TCP port of PTP/IP on 127.0.0.1 [a free one]");
   app.add_option("--serial", a.rig.serial, "serial number of the camera")->capture_default_str();

@@ -2,7 +2,6 @@
 #include "virtual_rig/ptp/body.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
@@ -12,20 +11,6 @@ namespace weft::simulator::ptp {
 namespace {
 
 constexpr std::uint32_t kAnyStore = 0xffffffff, kAtRoot = 0xffffffff;
-
-constexpr std::array kOperations = {kGetDeviceInfo,      kOpenSession,
-                                    kCloseSession,       kGetStorageIds,
-                                    kGetStorageInfo,     kGetNumObjects,
-                                    kGetObjectHandles,   kGetObjectInfo,
-                                    kGetObject,          kGetThumb,
-                                    kDeleteObject,       kInitiateCapture,
-                                    kGetDevicePropDesc,  kGetDevicePropValue,
-                                    kSetDevicePropValue, kGetPartialObject,
-                                    kCaptureRecInSdram,  kAfDrive,
-                                    kChangeCameraMode,   kDeleteSdramImage,
-                                    kGetEvent,           kDeviceReady,
-                                    kGetVendorPropCodes, kAfCaptureSdram,
-                                    kEndLiveView,        kInitiateCaptureRecInMedia};
 
 Answer with_data(Bytes bytes) {
   return {.data = Payload::of(std::move(bytes))};
@@ -58,6 +43,7 @@ Delivery delivery_of(Fault in_transfer) {
 
 Body::Body(const VirtualCameraOptions& options, DevelopExposure develop)
     : options_(options),
+      facts_(facts_of(options.body)),
       develop_(std::move(develop)),
       properties_(options.battery, options.dial_manual, options.raw, options.clock_offset_s),
       image_number_(options.shots_before) {
@@ -85,6 +71,7 @@ bool Body::admit_to_network() {
   const std::lock_guard lock(mutex_);
   ++connections_;
   session_silent_ = faults_.take(Fault::kOpenSessionSilent, connections_);
+  card_full_ = faults_.take(Fault::kCardFull, connections_);
   return powered_ && !faults_.take(Fault::kInitFail, connections_);
 }
 
@@ -94,6 +81,7 @@ bool Body::admit_to_usb() {
   ++connections_;
   stuck_ = false;
   session_silent_ = faults_.take(Fault::kOpenSessionSilent, connections_);
+  card_full_ = faults_.take(Fault::kCardFull, connections_);
   if (faults_.take(Fault::kUsbStaleSession, connections_)) session_open_ = true;
   if (!faults_.take(Fault::kUsbClaimed, connections_)) return true;
   claimed_until_ = RigClock::now() + std::chrono::duration_cast<RigClock::duration>(
@@ -104,6 +92,11 @@ bool Body::admit_to_usb() {
 void Body::end_session() {
   const std::lock_guard lock(mutex_);
   session_open_ = stuck_ = false;
+}
+
+void Body::reset() {
+  const std::lock_guard lock(mutex_);
+  session_open_ = session_silent_ = stuck_ = false;
 }
 
 void Body::pull_cable() {
@@ -119,12 +112,14 @@ int Body::shots() const {
 Answer Body::serve(const Request& request, BytesView data) {
   const auto [first, second, third, fourth, fifth] = request.parameters;
   const std::uint16_t operation = request.operation;
-  if (std::ranges::find(kOperations, operation) == kOperations.end()) return {.code = kOperationNotSupported};
+  const auto& operations = facts_.operations;
+  if (std::ranges::find(operations, operation) == operations.end()) return {.code = kOperationNotSupported};
   if (operation == kOpenSession) return open_session();
   if (operation == kGetDeviceInfo)
     return with_data(device_info(
-        {options_.serial,
-         {kOperations.begin(), kOperations.end()},
+        {facts_.model,
+         options_.serial,
+         {operations.begin(), operations.end()},
          {kObjectAdded, kDevicePropChanged, kCaptureComplete, kObjectAddedInSdram, kCaptureCompleteInSdram},
          properties_.codes(false)}));
   if (!session_open_) return {.code = kSessionNotOpen};
@@ -180,6 +175,7 @@ Answer Body::open_session() {
 }
 
 Answer Body::object_handles(const Request& request) const {
+  if (card_full_) return {.delivery = Delivery::kNothing};
   const auto [store, format, parent, unused, unused_too] = request.parameters;
   if (store != kStore && store != kAnyStore) return {.code = kInvalidStorage};
   std::vector<std::uint32_t> handles;

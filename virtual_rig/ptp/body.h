@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 
+#include "virtual_rig/ptp/body_facts.h"
 #include "virtual_rig/ptp/dataset.h"
 #include "virtual_rig/ptp/faults.h"
 #include "virtual_rig/ptp/link.h"
@@ -19,7 +20,7 @@
 
 namespace weft::simulator::ptp {
 
-/// A D5100 behind its sockets: session, properties, pictures and exposures in real time. Links bring it
+/// A body behind its sockets: session, properties, pictures and exposures in real time. Links bring it
 /// operations; it does not know which. Safe from any thread.
 class Body {
  public:
@@ -38,6 +39,8 @@ class Body {
   bool admit_to_usb();
   /// The host went without closing its session, and the link tells so. (On USB a killed host's stays open.)
   void end_session();
+  /// The host resets the body (USB's still image class): no session, and whatever kept it silent is over.
+  void reset();
   /// The cable is out, and in again after a while.
   void pull_cable();
 
@@ -92,6 +95,7 @@ class Body {
   void after(double seconds, std::function<void()> action);
 
   const VirtualCameraOptions options_;
+  const BodyFacts& facts_;
   const DevelopExposure develop_;
 
   mutable std::mutex mutex_;
@@ -107,7 +111,7 @@ class Body {
   std::uint32_t image_number_;
   int power_cycles_ = 0;
   bool powered_ = true, cable_in_ = true, port_open_ = true;
-  bool session_open_ = false, session_silent_ = false;
+  bool session_open_ = false, session_silent_ = false, card_full_ = false;
   bool exposing_ = false, stuck_ = false, undeveloped_ = false;
   RigClock::time_point busy_until_ = {}, claimed_until_ = {};
   Timeline timeline_;  // last: ends before what it uses

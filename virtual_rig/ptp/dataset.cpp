@@ -41,7 +41,9 @@ Bytes device_info(const DeviceFacts& facts) {
   writer.put_array(facts.operations).put_array(facts.events).put_array(facts.properties);
   writer.put_array(std::vector<std::uint16_t>{kExifJpeg, kUndefinedFormat});           // that it takes
   writer.put_array(std::vector<std::uint16_t>{kExifJpeg, kUndefinedFormat, kFolder});  // that it shows
-  for (const std::string_view text : {"Nikon Corporation", "D5100", "V1.01"}) put_string(writer, text);
+  put_string(writer, "Nikon Corporation");
+  put_string(writer, facts.model);
+  put_string(writer, "V1.01");
   put_string(writer, facts.serial);
   return writer.take();
 }

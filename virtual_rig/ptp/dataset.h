@@ -19,7 +19,7 @@ void put_string(ByteWriter& writer, std::string_view text);
 std::optional<std::string> get_string(ByteReader& reader);
 
 struct DeviceFacts {
-  std::string serial;
+  std::string model, serial;
   std::vector<std::uint16_t> operations, events, properties;
 };
 Bytes device_info(const DeviceFacts& facts);

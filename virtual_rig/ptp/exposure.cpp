@@ -12,7 +12,6 @@
 namespace weft::simulator::ptp {
 namespace {
 
-constexpr std::chrono::milliseconds kShutterLag{10};
 constexpr std::int64_t kRawQuality = 4;
 
 RigClock::duration duration(double seconds) {
@@ -33,11 +32,11 @@ Body::Exposure Body::expose(bool to_memory) {
   camera.exposure_us = properties_.exposure_us();
   camera.iso = static_cast<double>(properties_.number(kIso));
   camera.f_number = properties_.f_number();
-  camera.opened = RigClock::now() + kShutterLag;
+  camera.opened = RigClock::now() + facts_.shutter_lag;
   camera.closed = camera.opened + duration(camera.exposure_us * 1e-6);
   camera.image_number = ++image_number_;
   const ClockReading clock =
-      read_clock(std::chrono::system_clock::now() + kShutterLag, properties_.clock_offset_s());
+      read_clock(std::chrono::system_clock::now() + facts_.shutter_lag, properties_.clock_offset_s());
   camera.date_time = exif_time(clock);
   camera.milliseconds = clock.milliseconds;
   exposure.date = ptp_time(clock);

@@ -18,6 +18,7 @@ enum class Fault : std::uint8_t {
   kDataStalls,
   kDataEndsEarly,
   kOpenSessionSilent,
+  kCardFull,
   kInitFail,
   kRefused,
   kCaptureBusy,

@@ -83,18 +83,20 @@ Descriptor listening_at(const sockaddr_un& address) {
 
 }  // namespace
 
-Result<std::unique_ptr<UsbLink>> UsbLink::make(Body& body, const std::filesystem::path& path) {
+Result<std::unique_ptr<UsbLink>> UsbLink::make(Body& body, const std::filesystem::path& path,
+                                               std::uint16_t product) {
   const Result<sockaddr_un> address = address_of(path);
   if (!address) return address.error();
   if (listening_at(*address).get() < 0)
     return Error{ErrorKind::kCannotCreate, "socket of a USB cable cannot be made", path.string(),
                  std::strerror(errno), "choose a folder that can be written to"};
-  return std::unique_ptr<UsbLink>(new UsbLink(body, path, *address));
+  return std::unique_ptr<UsbLink>(new UsbLink(body, path, *address, product));
 }
 
-UsbLink::UsbLink(Body& body, std::filesystem::path path, const sockaddr_un& address)
+UsbLink::UsbLink(Body& body, std::filesystem::path path, const sockaddr_un& address, std::uint16_t product)
     : body_(body),
       path_(std::move(path)),
+      product_(product),
       acceptor_(
           [address] { return listening_at(address); },
           [this](Descriptor socket) { connections_.add(std::move(socket), [this](int fd) { serve(fd); }); }) {
@@ -142,7 +144,7 @@ void UsbLink::serve(int fd) {
 bool UsbLink::answer(int fd, const CallHead& call, BytesView data, bool& admitted) {
   if (call.call == Call::kDescribe) {
     const std::lock_guard lock(mutex_);
-    return reply(fd, Status::kDone, bytes_of(address_));
+    return reply(fd, Status::kDone, bytes_of(usb::Description{product_, address_}));
   }
   if (call.call == Call::kEvents) {
     const std::lock_guard lock(mutex_);
@@ -164,7 +166,7 @@ bool UsbLink::answer(int fd, const CallHead& call, BytesView data, bool& admitte
       return reply(fd, Status::kDone);
     }
     case Call::kReset: {
-      body_.end_session();
+      body_.reset();
       const std::lock_guard lock(mutex_);
       clear();
       return reply(fd, Status::kDone);
@@ -173,7 +175,7 @@ bool UsbLink::answer(int fd, const CallHead& call, BytesView data, bool& admitte
       if (call.value == kGetDeviceStatus)
         return reply(fd, Status::kDone,
                      ByteWriter().put(std::uint16_t{4}).put(static_cast<std::uint16_t>(kOk)).take());
-      if (call.value == kDeviceReset) body_.end_session();
+      if (call.value == kDeviceReset) body_.reset();
       if (call.value != kDeviceReset && call.value != kCancelRequest) return reply(fd, Status::kStall);
       const std::lock_guard lock(mutex_);
       clear();

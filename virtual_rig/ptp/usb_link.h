@@ -23,7 +23,8 @@ namespace weft::simulator::ptp {
 class UsbLink : public Link {
  public:
   /// The cable's socket. kCannotCreate.
-  static Result<std::unique_ptr<UsbLink>> make(Body& body, const std::filesystem::path& socket);
+  static Result<std::unique_ptr<UsbLink>> make(Body& body, const std::filesystem::path& socket,
+                                               std::uint16_t product);
   ~UsbLink() override;
 
   void hang_up() override {}  // a bus has no connection but its cable: set_present()
@@ -51,7 +52,7 @@ class UsbLink : public Link {
     Request request;
   };
 
-  UsbLink(Body& body, std::filesystem::path path, const sockaddr_un& address);
+  UsbLink(Body& body, std::filesystem::path path, const sockaddr_un& address, std::uint16_t product);
   void serve(int fd);
   bool answer(int fd, const usb::CallHead& call, BytesView data, bool& admitted);
   bool claim(int fd, bool& admitted);
@@ -64,6 +65,7 @@ class UsbLink : public Link {
 
   Body& body_;
   const std::filesystem::path path_;
+  const std::uint16_t product_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool present_ = false;

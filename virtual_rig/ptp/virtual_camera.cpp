@@ -24,7 +24,8 @@ class PtpCamera : public VirtualCamera {
     if (!network) return network.error();
     network_ = *std::move(network);
     if (!options.usb.empty()) {
-      Result<std::unique_ptr<ptp::UsbLink>> usb = ptp::UsbLink::make(body_, options.usb);
+      Result<std::unique_ptr<ptp::UsbLink>> usb =
+          ptp::UsbLink::make(body_, options.usb, ptp::facts_of(options.body).usb_product);
       if (!usb) return usb.error();
       usb_ = *std::move(usb);
     }

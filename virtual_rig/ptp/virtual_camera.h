@@ -29,7 +29,16 @@ struct CameraExposure {
 /// Makes the file of an exposure: its bytes. Called on a thread of the camera's; what it takes is read-out.
 using DevelopExposure = std::function<Result<std::vector<std::uint8_t>>(const CameraExposure&)>;
 
+/// The bodies that the camera can be.
+enum class CameraBody {
+  kD5100,  ///< is busy while its shutter is open, which libgphoto2's trigger waits for
+  /// Takes pictures to its card by the command that PTP itself has (InitiateCapture), which it answers at
+  /// once: libgphoto2's trigger returns before the shutter opens, 80 ms later.
+  kD80,
+};
+
 struct VirtualCameraOptions {
+  CameraBody body = CameraBody::kD5100;
   std::string serial = "6000001";
   Size size = {};         ///< what it says its pictures are
   double battery = 0.87;  ///< share left
@@ -51,7 +60,7 @@ struct CameraFault {
 /// Names and a sentence each.
 const std::vector<std::pair<std::string, std::string>>& camera_faults();
 
-/// A D5100 as libgphoto2 meets one: PTP (ISO 15740) over PTP/IP (CIPA DC-005) and, by the stand-in for
+/// A Nikon as libgphoto2 meets one: PTP (ISO 15740) over PTP/IP (CIPA DC-005) and, by the stand-in for
 /// libusb, over USB; one body, so that what one link does the other sees.
 class VirtualCamera {
  public:

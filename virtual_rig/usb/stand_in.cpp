@@ -22,6 +22,7 @@
 
 using weft::simulator::usb::Cable;
 using weft::simulator::usb::Call;
+using weft::simulator::usb::Description;
 using weft::simulator::usb::Status;
 
 namespace {
@@ -45,7 +46,8 @@ struct libusb_device {
   std::atomic<int> owners = 1;
   libusb_context* context = nullptr;
   std::string socket;
-  std::uint8_t bus = 0, address = 0;
+  std::uint8_t bus = 0;
+  Description is = {};
 };
 
 struct libusb_device_handle {
@@ -68,11 +70,12 @@ std::vector<std::string> sockets() {
   return found;
 }
 
-/// Where the camera at the other end is; nothing if none is.
-std::optional<std::uint8_t> address_at(Cable& cable) {
-  std::uint8_t address = 0;
-  if (!cable.connected() || !cable.call(Call::kDescribe, {}, {&address, 1})) return std::nullopt;
-  return address;
+/// The camera at the other end; nothing if none is.
+std::optional<Description> camera_at(Cable& cable) {
+  Description camera = {};
+  const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(&camera), sizeof camera);
+  if (!cable.connected() || !cable.call(Call::kDescribe, {}, bytes)) return std::nullopt;
+  return camera;
 }
 
 void let_go(libusb_device* device) {
@@ -195,13 +198,13 @@ ssize_t libusb_get_device_list(libusb_context* context, libusb_device*** list) {
   for (const std::string& socket : sockets()) {
     ++bus;
     Cable cable(socket);
-    const std::optional<std::uint8_t> address = address_at(cable);
-    if (!address) continue;
+    const std::optional<Description> camera = camera_at(cable);
+    if (!camera) continue;
     auto* const device = new libusb_device;
     device->context = &context_of(context);
     device->socket = socket;
     device->bus = bus;
-    device->address = *address;
+    device->is = *camera;
     found.push_back(device);
   }
   *list = new libusb_device* [found.size() + 1] {};
@@ -219,17 +222,17 @@ std::uint8_t libusb_get_bus_number(libusb_device* device) {
 }
 
 std::uint8_t libusb_get_device_address(libusb_device* device) {
-  return device->address;
+  return device->is.address;
 }
 
-int libusb_get_device_descriptor(libusb_device*, libusb_device_descriptor* descriptor) {
+int libusb_get_device_descriptor(libusb_device* device, libusb_device_descriptor* descriptor) {
   *descriptor = {};
   descriptor->bLength = LIBUSB_DT_DEVICE_SIZE;
   descriptor->bDescriptorType = LIBUSB_DT_DEVICE;
   descriptor->bcdUSB = 0x0200;
   descriptor->bMaxPacketSize0 = 64;
   descriptor->idVendor = weft::simulator::usb::kNikon;
-  descriptor->idProduct = weft::simulator::usb::kD5100;
+  descriptor->idProduct = device->is.product;
   descriptor->bcdDevice = 0x0100;
   descriptor->bNumConfigurations = 1;
   return LIBUSB_SUCCESS;
@@ -250,7 +253,9 @@ int libusb_get_max_packet_size(libusb_device*, unsigned char address) {
 int libusb_open(libusb_device* device, libusb_device_handle** handle) {
   auto opened = std::unique_ptr<libusb_device_handle>(
       new libusb_device_handle{device, Cable(device->socket), Cable(device->socket)});
-  if (address_at(opened->calls) != device->address || !opened->events.connected() || !opened->events.listen())
+  const std::optional<Description> camera = camera_at(opened->calls);
+  if (!camera || camera->address != device->is.address || !opened->events.connected() ||
+      !opened->events.listen())
     return LIBUSB_ERROR_NO_DEVICE;
   ++device->owners;
   *handle = opened.release();

@@ -8,7 +8,7 @@
 namespace weft::simulator::usb {
 
 enum class Call : std::uint32_t {
-  kDescribe,   ///< replies with the address: one byte
+  kDescribe,   ///< replies with a Description
   kConfigure,  ///< set configuration, clear halt: what waits to be read is thrown away
   kClaim,      ///< needed for all below but events; ends with the connection
   kRelease,
@@ -26,6 +26,12 @@ struct CallHead {
   std::uint32_t value;
 };
 
+/// What stands at the other end of a cable.
+struct Description {
+  std::uint16_t product;  ///< USB's number of it
+  std::uint8_t address;
+};
+
 enum class Status : std::int32_t { kDone, kBusy, kTimeOut, kStall };
 
 struct ReplyHead {
@@ -33,7 +39,7 @@ struct ReplyHead {
   std::uint32_t length;  ///< of the data that follow
 };
 
-constexpr std::uint16_t kNikon = 0x04b0, kD5100 = 0x0429;
+constexpr std::uint16_t kNikon = 0x04b0;
 constexpr std::uint16_t kPacket = 512;  ///< bytes, of the bulk endpoints; a shorter one ends a transfer
 
 }  // namespace weft::simulator::usb

@@ -133,6 +133,60 @@ TEST(CameraLink, TakesTwentyPhotographs) {
   EXPECT_EQ(left_over(bench.folder() / "raw"), 0);
 }
 
+/// What a D80 needs, told that its trigger returns at once or, wrongly, that it blocks.
+void use_d80(LinkBench& bench, const std::string& trigger, double readout_s = 5) {
+  bench.change_profile({{"model = \"D5100\"", "model = \"D80\""},
+                        {"trigger = \"blocks\"", "trigger = \"" + trigger + "\""},
+                        {"readout_s = 5", "readout_s = " + std::to_string(readout_s)},
+                        {"Internal RAM", "Memory card"}});
+}
+
+/// When, in seconds after the shot began, it was said that the shutter has closed.
+double told_after_s(LinkBench& bench, Result<Photograph>& taken) {
+  CameraLink& link = bench.ready();
+  EXPECT_TRUE(link.set({4e5, 100, 8}));
+  const auto begin = std::chrono::steady_clock::now();
+  double told_s = 0;
+  int times = 0;
+  taken = link.take(bench.raw(1), [&] {
+    told_s = seconds_since(begin);
+    ++times;
+  });
+  EXPECT_EQ(times, 1);
+  return told_s;
+}
+
+constexpr double kD80Closes_s = 0.48;  // its lag and the exposure
+
+TEST(CameraLink, TellsThatTheShutterHasClosedWhereTheTriggerReturnsAtOnce) {
+  LinkBench bench({.body = simulator::CameraBody::kD80});
+  use_d80(bench, "returns_at_once");
+  Result<Photograph> taken = Photograph();
+  const double told_s = told_after_s(bench, taken);
+  ASSERT_TRUE(taken) << taken.error().message();
+  EXPECT_EQ(wrong_with(*taken, 1), "");
+  EXPECT_GE(told_s, kD80Closes_s);
+  EXPECT_LT(told_s, 1.5) << "the photograph was there long before";
+}
+
+TEST(CameraLink, TellsSoTooEarlyWhereAProfileWronglySaysThatTheTriggerBlocks) {
+  LinkBench bench({.body = simulator::CameraBody::kD80});
+  use_d80(bench, "blocks");
+  Result<Photograph> taken = Photograph();
+  EXPECT_LT(told_after_s(bench, taken), kD80Closes_s) << "then no test here tells the two kinds apart";
+}
+
+TEST(CameraLink, TellsSoWhenTheTimeIsOverWhereNoPhotographComes) {
+  LinkBench bench({.body = simulator::CameraBody::kD80});
+  use_d80(bench, "returns_at_once", 2.5);
+  ASSERT_TRUE(bench.camera().inject({"no_object", 1}));
+  Result<Photograph> taken = Photograph();
+  const double told_s = told_after_s(bench, taken);
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().what, "no photograph came") << taken.error().message();
+  EXPECT_NEAR(told_s, 2.4, 0.2) << "the exposure, and 2 s for a slow shutter";
+}
+
 TEST(CameraLink, RefusesAnotherCameraThanTheRigs) {
   LinkBench bench;
   bench.options().serial = "6009999";

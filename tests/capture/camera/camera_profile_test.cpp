@@ -38,6 +38,7 @@ TEST(CameraProfile, OfTheD5100IsBuiltIn) {
   ASSERT_TRUE(profile) << profile.error().message();
   EXPECT_EQ(profile->model, "D5100");
   EXPECT_THAT(profile->usb_models, testing::ElementsAre("Nikon DSC D5100 (PTP mode)"));
+  EXPECT_EQ(profile->trigger, CameraProfile::Trigger::kBlocks);
   EXPECT_EQ(profile->widgets.shutter, "shutterspeed2");
   EXPECT_EQ(profile->by_hand.size(), 2U);
   EXPECT_THAT(profile->set, testing::Contains(testing::Pair("imagequality", "NEF (Raw)")));
@@ -53,6 +54,7 @@ TEST(CameraProfile, NeedsLittle) {
   const auto profile = read(kLeast);
   ASSERT_TRUE(profile) << profile.error().message();
   EXPECT_EQ(profile->ptpip_model, "PTP/IP Camera");
+  EXPECT_EQ(profile->trigger, CameraProfile::Trigger::kReturnsAtOnce) << "right for either kind of body";
   EXPECT_TRUE(profile->widgets.f_number.empty());
   EXPECT_TRUE(profile->by_hand.empty());
 }
@@ -63,6 +65,7 @@ TEST(CameraProfile, SaysWhichKeyIsWrong) {
            {"model = \"Z 6\"\n[widgets]\niso = \"iso\"\n", "shutter"},
            {"modle = \"Z 6\"\n" + least, "modle"},
            {"readout_s = -1\n" + least, "readout_s"},
+           {"trigger = \"sometimes\"\n" + least, "trigger"},
            {least + "[set]\nimagequality = 4\n", "set.imagequality"},
            {least + "[[by_hand]]\nwidget = \"expprogram\"\nsays = \"a\"\nremedy = \"b\"\n", "values"}}) {
     const auto profile = read(toml);

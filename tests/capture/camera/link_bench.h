@@ -9,7 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <string>
-#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "capture/camera/camera_link.h"
@@ -84,10 +84,13 @@ class LinkBench {
 
   /// A D5100 that is given up sooner.
   void hurry(double readout_s) {
+    change_profile({{"readout_s = 5", "readout_s = " + std::to_string(readout_s)}});
+  }
+  /// The D5100's profile with some of its lines replaced.
+  void change_profile(const std::vector<std::pair<std::string, std::string>>& changes) {
     std::string toml(nikon_d5100_toml());
-    const std::string_view slow = "readout_s = 5";
-    toml.replace(toml.find(slow), slow.size(), "readout_s = " + std::to_string(readout_s));
-    link_options_.profile = folder_ / "hurried.toml";
+    for (const auto& [line, instead] : changes) toml.replace(toml.find(line), line.size(), instead);
+    link_options_.profile = folder_ / "changed.toml";
     if (const auto written = write_file(link_options_.profile, toml); !written)
       throw std::runtime_error(written.error().message());
   }
