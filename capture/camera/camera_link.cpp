@@ -22,7 +22,11 @@ namespace {
 namespace fs = std::filesystem;
 using Steady = std::chrono::steady_clock;
 
-constexpr double kOpenS = 6;      // detection, session, settings, 1.5 s of watching a clock
+// Detection, session, the card's list, settings, 1.5 s of watching a clock. On USB a silent body is reset
+// twice, after 1.5 s each; over the network a new connection does more than libgphoto2's third try.
+constexpr double kOpenUsbS = 12, kOpenNetworkS = 6;
+constexpr const char* kNotOpenedRemedy =
+    "switch the camera off and on; if its card holds thousands of pictures, format it or take it out";
 constexpr double kSetS = 5;       // libgphoto2 gives up on a packet after 2.5 s
 constexpr double kOverdueS = 1;   // beyond the deadline that the worker keeps by itself
 constexpr double kEndS = 0.5;     // for the camera's session to be closed
@@ -211,8 +215,13 @@ Result<CameraFacts> CameraLink::open(const std::string& serial, bool watch_clock
   if (Result<void> started = start_worker(); !started) return std::move(started).error();
   Json asked = {{"do", "open"}, {"profile", options_.profile}, {"port", options_.port}, {"serial", serial}};
   if (watch_clock) asked["watch_clock"] = true;
-  const Result<Json> opened = request(std::move(asked), kOpenS);
-  if (!opened) return opened.error();
+  const bool is_network = options_.port.starts_with("ptpip:");
+  const Result<Json> opened = request(std::move(asked), is_network ? kOpenNetworkS : kOpenUsbS);
+  if (!opened) {
+    Error error = opened.error();
+    if (!worker_) error.remedy = kNotOpenedRemedy;
+    return error;
+  }
   Result<CameraFacts> facts = note_opened(*opened);
   if (facts && watch_clock && clock_) clock_memory_.keep({facts_.serial, *clock_}, seconds_since_1970());
   return facts;

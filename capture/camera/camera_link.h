@@ -23,7 +23,7 @@ namespace weft::capture {
 struct CameraLinkOptions {
   std::string profile = "nikon-d5100";  ///< built in, or the path of a TOML file
   std::string port;              ///< "ptpip:ADDRESS:PORT:PORT"; "usb:BUS,DEVICE" or empty: found on USB
-  std::string serial;            ///< empty: whichever camera is there, and from then on that one
+  std::string serial;            ///< empty: the only camera there is, and from then on that one
   std::filesystem::path worker;  ///< weft-camera; empty: beside the running program
   std::filesystem::path state;   ///< folder for what libgphoto2 remembers and says; empty: one that goes
   Environment environment;       ///< for the worker, on top of this process's

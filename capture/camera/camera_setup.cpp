@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "capture/camera/camera_values.h"
+#include "capture/camera/usb_serial.h"
 #include "core/same_camera.h"
 
 namespace weft::capture {
@@ -44,6 +45,23 @@ Result<std::vector<CameraAddress>> candidates(const CameraProfile& profile, cons
   return Error{ErrorKind::kNoDevice, fmt::format("no {} on USB", profile.model), wanted.port,
                others.empty() ? "there is no camera" : fmt::format("there is {}", fmt::join(others, ", ")),
                "switch the camera on and check its cable"};
+}
+
+/// A body as a person tells it from others; one that another program holds cannot be asked.
+std::string name_of(const CameraAddress& address, const CameraProfile& profile) {
+  const auto camera = GphotoCamera::open(address);
+  const Result<std::string> serial = camera ? serial_of(**camera, profile) : camera.error();
+  if (serial) return *serial;
+  const std::string told = usb_serial_of(address.port);
+  return told.empty() ? "the one at " + address.port : told;
+}
+
+Error which_of(const std::vector<CameraAddress>& addresses, const CameraProfile& profile) {
+  std::vector<std::string> names;
+  for (const CameraAddress& address : addresses) names.push_back(name_of(address, profile));
+  return {ErrorKind::kBadData, fmt::format("there are {} cameras that may be the rig's", names.size()),
+          "usb:", fmt::format("they have the serial numbers {}", fmt::join(names, ", ")),
+          "write the rig's in its rig file: serial = \"...\" below [camera]"};
 }
 
 Result<void> check_model(GphotoCamera& camera, const CameraProfile& profile) {
@@ -109,8 +127,15 @@ Result<std::string> serial_of(GphotoCamera& camera, const CameraProfile& profile
 }
 
 Result<std::unique_ptr<GphotoCamera>> open_camera(const CameraProfile& profile, const WantedCamera& wanted) {
-  const auto addresses = candidates(profile, wanted);
+  auto addresses = candidates(profile, wanted);
   if (!addresses) return addresses.error();
+  if (wanted.serial.empty() && addresses->size() > 1) return which_of(*addresses, profile);
+  // Where the kernel knows which one it is, no other is opened: it may be another rig's.
+  const auto is_another = [&](const CameraAddress& address) {
+    const std::string told = usb_serial_of(address.port);
+    return told.empty() || !same_serial(told, wanted.serial);
+  };
+  if (!std::ranges::all_of(*addresses, is_another)) std::erase_if(*addresses, is_another);
   std::vector<std::string> others;
   std::optional<Error> trouble;
   for (const CameraAddress& address : *addresses) {

@@ -20,7 +20,8 @@ struct WantedCamera {
   std::string serial;  ///< empty: any
 };
 
-/// Finds the camera and opens it. Errors: kNoDevice, kTryAgain, and kBadData for another model or number.
+/// Finds the camera and opens it. Errors: kNoDevice, kTryAgain, and kBadData for another model or number and
+/// where several may be meant.
 Result<std::unique_ptr<GphotoCamera>> open_camera(const CameraProfile& profile, const WantedCamera& wanted);
 
 /// Its number without the zeros that a body puts before it.

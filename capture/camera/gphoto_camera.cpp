@@ -156,8 +156,11 @@ Error GphotoCamera::failed(int code, const std::string& what) const {
 }
 
 void GphotoCamera::set_up_library() {
-  char cached[] = "cachetime", seconds[] = "0", driver[] = "ptp2";
-  gp_setting_set(driver, cached, seconds);
+  char driver[] = "ptp2";
+  char cached[] = "cachetime", cached_s[] = "0";
+  gp_setting_set(driver, cached, cached_s);
+  char patience[] = "start_timeout", patience_ms[] = "1500";
+  gp_setting_set(driver, patience, patience_ms);
 }
 
 Result<std::vector<CameraAddress>> GphotoCamera::on_usb() {

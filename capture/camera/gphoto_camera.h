@@ -49,7 +49,8 @@ class FetchedFile {
 class GphotoCamera {
  public:
   /// To be called once before anything else of a process: reads properties afresh each time, so that a value
-  /// read back is the camera's. The library keeps what it remembers in $HOME/.gphoto.
+  /// read back is the camera's, and resets a body on USB that lets OpenSession wait for 1.5 s, twice at most.
+  /// The library keeps what it remembers in $HOME/.gphoto.
   static void set_up_library();
   /// The cameras that libgphoto2 knows among what is plugged in.
   static Result<std::vector<CameraAddress>> on_usb();
@@ -67,8 +68,8 @@ class GphotoCamera {
   /// Sets a value and reads it back.
   Result<void> set(const std::string& widget, const std::string& value);
 
-  /// Releases the shutter, returns once it has closed. Success does not prove that it opened: a body that was
-  /// busy says the same.
+  /// Releases the shutter. Returns once it has closed, or at once, by the kind of body
+  /// (CameraProfile::Trigger). Success does not prove that it opened: a body that was busy says the same.
   Result<void> trigger();
   /// Waits for the next event, and polls more often the shorter `most_ms` is. The download of a photograph in
   /// the camera's memory happens within and is not bounded by it.
@@ -79,7 +80,8 @@ class GphotoCamera {
   Result<Event> wait_for_event(int most_ms);
   /// The file whole, its size compared with what the camera said it is.
   Result<FetchedFile> fetch(const CameraFileName& file);
-  /// Frees what camera and library hold of a file.
+  /// Frees what camera and library hold of a file. Of a photograph that came from a body's memory ("capt...")
+  /// libgphoto2 2.5.30 drops its own copy alone: the body has freed its when it was fetched.
   void forget(const CameraFileName& file);
 
  private:

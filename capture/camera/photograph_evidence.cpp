@@ -3,14 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <string>
+
+#include "core/same_camera.h"
 
 namespace weft::capture {
 namespace {
 
-// Bodies write nominal values, 1/60 or 0.0167.
-constexpr double kExposureTolerance = 0.02;
 // A clock's seconds as a property and as a photograph's sub-seconds need not turn at the same moment.
 constexpr double kClockSlackS = 0.25;
 
@@ -48,7 +47,7 @@ Result<void> check_order(const PhotographFacts& facts, const AskedFor& asked) {
 
 Result<void> check_exposure(const PhotographFacts& facts, const ExposureSettings& set) {
   const auto differs = [](double said, double wanted) {
-    return said > 0 && wanted > 0 && std::abs(said / wanted - 1) > kExposureTolerance;
+    return said > 0 && wanted > 0 && !same_setting(said, wanted);
   };
   const auto refuse = [](const char* name, double said, double wanted) {
     return Error{ErrorKind::kBadData, "the photograph was not taken as set", "",

@@ -95,6 +95,16 @@ TEST(CameraFaults, OfASessionThatIsNotOpenedEndInTime) {
   }
 }
 
+TEST(CameraFaults, OfACardThatTakesTooLongToListSaysWhatToDoWithIt) {
+  LinkBench bench;
+  ASSERT_TRUE(bench.camera().inject({"card_full", 1}));
+  const auto facts = bench.link().connect();
+  ASSERT_FALSE(facts);
+  EXPECT_EQ(facts.error().kind, ErrorKind::kTryAgain) << facts.error().message();
+  EXPECT_THAT(facts.error().remedy, testing::HasSubstr("format it or take it out"));
+  EXPECT_TRUE(bench.link().connect()) << "without the card";
+}
+
 TEST(CameraFaults, OfTheWorkerAtAnyMomentLoseNothing) {
   std::mt19937 random(1);
   LinkBench bench;

@@ -69,6 +69,36 @@ TEST(CameraUsb, FindsTheRigsCameraAmongOthersByItsSerialNumber) {
   EXPECT_THAT(absent.error().message(), HasSubstr("6000011"));
 }
 
+TEST(CameraUsb, AsksWhichOfTwoCamerasIsTheRigs) {
+  UsbBench first("either", "6000011"), second("other", "6000022");
+  second.use_usb(first.socket() + ":" + second.socket());
+  const auto facts = second.link().connect();
+  ASSERT_FALSE(facts) << facts->serial << " was taken";
+  EXPECT_EQ(facts.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(facts.error().message(), HasSubstr("6000011, 6000022"));
+  EXPECT_THAT(facts.error().remedy, HasSubstr("serial = "));
+}
+
+TEST(CameraUsb, TakesNoneOfTwoCamerasBecauseTheOtherIsHeld) {
+  UsbBench held("held", "6000011"), free("free", "6000022");
+  ASSERT_TRUE(held.camera().inject({"usb_claimed", 1}));
+  free.use_usb(held.socket() + ":" + free.socket());
+  const auto facts = free.link().connect();
+  ASSERT_FALSE(facts) << facts->serial << " was taken";
+  EXPECT_THAT(facts.error().message(), HasSubstr("2 cameras"));
+  EXPECT_THAT(facts.error().message(), HasSubstr(", 6000022"));
+}
+
+TEST(CameraUsb, ResetsABodyThatDoesNotOpenASession) {
+  UsbBench bench("silent");
+  ASSERT_TRUE(bench.camera().inject({"open_session_silent", 1}));
+  const auto facts = bench.link().connect();
+  ASSERT_TRUE(facts) << facts.error().message();
+  const auto taken = bench.link().take(bench.raw(1), [] {});
+  ASSERT_TRUE(taken) << taken.error().message();
+  EXPECT_EQ(wrong_with(*taken, 1), "");
+}
+
 TEST(CameraUsb, FindsTheCameraAgainUnderANewAddress) {
   UsbBench bench("replug");
   CameraLink& link = bench.ready();
