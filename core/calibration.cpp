@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <map>
 
 #include "core/calibration_parts.h"
 #include "core/files.h"
 #include "core/iso_time.h"
+#include "core/same_camera.h"
 
 namespace weft {
 namespace {
@@ -151,10 +151,12 @@ Error there_is_one(const fs::path& folder) {
 }  // namespace
 
 std::optional<double> Response::exposure_ratio(double exposure_us, double to_exposure_us) const {
-  const auto alike = [](double a, double b) { return std::abs(a - b) <= 1e-3 * b; };
   for (const ExposureRatio& e : exposure_ratios) {
-    if (alike(e.exposure_us, exposure_us) && alike(e.to_exposure_us, to_exposure_us)) return e.ratio;
-    if (alike(e.exposure_us, to_exposure_us) && alike(e.to_exposure_us, exposure_us)) return 1 / e.ratio;
+    const auto is_of = [&e](double a, double b) {
+      return same_setting(e.exposure_us, a) && same_setting(e.to_exposure_us, b);
+    };
+    if (is_of(exposure_us, to_exposure_us)) return e.ratio;
+    if (is_of(to_exposure_us, exposure_us)) return 1 / e.ratio;
   }
   return {};
 }

@@ -35,7 +35,7 @@ struct Response {
   std::optional<double> black_counts = {};  ///< measured, where the file's own level is not to be trusted
   std::optional<double> iso = {};           ///< of the frames it was measured on
 
-  /// The measured ratio between two exposure times (alike to 0.1 percent), whichever way it was measured.
+  /// The measured ratio between two exposure times (by same_setting()), whichever way it was measured.
   std::optional<double> exposure_ratio(double exposure_us, double to_exposure_us) const;
   friend bool operator==(const Response&, const Response&) = default;
 };

@@ -16,8 +16,9 @@ inline bool same_serial(std::string_view a, std::string_view b) {
   return a.empty() || b.empty() || number(a) == number(b);
 }
 
-/// Whether two f-numbers, ISO values or focal lengths are one setting: people, lenses and files round them by
-/// a percent or so; a third of a stop is 12 percent of an f-number and 26 of an ISO value.
+/// Whether two exposure times, f-numbers, ISO values or focal lengths are one setting: people, lenses, bodies
+/// and files round them by a percent or so (1/60 s is 0.0166 s to one and 0.0167 s to another); a third of a
+/// stop is 12 percent of an f-number and 26 of a time or an ISO value.
 inline bool same_setting(double a, double b) {
   return std::abs(a - b) <= 0.02 * std::max(a, b);
 }

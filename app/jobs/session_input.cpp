@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/jobs/linear_image.h"
 #include "app/jobs/session_conditions.h"
@@ -13,6 +12,7 @@
 #include "capture/raw/raw_info.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "core/same_camera.h"
 
 namespace weft::app {
 namespace {
@@ -95,7 +95,7 @@ Result<void> check_alike(const SessionPlan& plan, const Shot& shot, const captur
   if (info.cfa != cfa) return refuse("its colour filters are laid out differently from the first frame's");
   // A file that records its exposure must agree with the journal: mixed-up frames are caught here.
   const auto differs = [](double recorded, double journal) {
-    return recorded > 0 && std::abs(recorded - journal) > 1e-3 * journal;
+    return recorded > 0 && !same_setting(recorded, journal);
   };
   if (differs(info.shot.exposure_us, shot.exposure_us)) {
     return refuse(fmt::format("it was exposed for {:.6g} us, session.json says {:.6g} us",

@@ -112,6 +112,16 @@ Result<Descriptor> locked(const fs::path& folder) {
                "its folder is locked by another process", "wait for that scan, or choose another name"};
 }
 
+/// The time of the session's other frames of this setting, else the one that the photograph says, else the
+/// one that was set: cameras name 1/60 s in several ways, and a session has one.
+double exposure_us_of(const PlannedShot& planned, const Photograph& photograph, const Session& session) {
+  const bool is_bracket = planned.role == ShotRole::kBracket;
+  for (const Shot& shot : session.shots) {
+    if ((shot.role == ShotRole::kBracket) == is_bracket) return shot.exposure_us;
+  }
+  return photograph.exposure.exposure_us > 0 ? photograph.exposure.exposure_us : planned.exposure.exposure_us;
+}
+
 Error unseen(const fs::path& path, std::string why) {
   return {ErrorKind::kInputOutput, "frames of the session cannot be seen", path.string(), std::move(why),
           "bring back the disk they are on, then run the same command again; until then all stays as it is"};
@@ -231,7 +241,7 @@ Result<Shot> Journal::keep(const PlannedShot& planned, const Photograph& photogr
   shot.role = planned.role;
   shot.file = fmt::format("raw/{}.{}", file_stem(planned), photograph.ending);
   shot.sha256 = photograph.sha256;
-  shot.exposure_us = planned.exposure.exposure_us;
+  shot.exposure_us = exposure_us_of(planned, photograph, session_);
   shot.iso = planned.exposure.iso;
   shot.f_number = planned.exposure.f_number;
   shot.time = iso_time(photograph.taken_s.value_or(photograph.triggered_s));

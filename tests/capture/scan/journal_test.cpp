@@ -91,6 +91,19 @@ std::set<std::string> files_under(const fs::path& folder) {
   return files;
 }
 
+TEST(Journal, StoresOneExposureTimeForASetting) {
+  const ScanRequest request = request_in(fresh_folder());
+  Result<Journal> journal = opened(request);
+  ASSERT_TRUE(journal) << journal.error().message();
+  for (const PlannedShot& shot : plan_shots(kList, kExposure, 0)) {
+    Photograph photograph = landed(*journal, shot);
+    photograph.exposure.exposure_us = shot.index == 0 ? 20080 : 19990;  // as a body that measures each anew
+    ASSERT_TRUE(journal->keep(shot, photograph, Json::object()));
+  }
+  for (const Shot& shot : journal->session().shots)
+    EXPECT_EQ(shot.exposure_us, 20080) << shot.file << ": what the first photograph says";
+}
+
 TEST(Journal, MakesASessionThatEveryReaderTakes) {
   const ScanRequest request = request_in(fresh_folder());
   ASSERT_TRUE(scanned(request));

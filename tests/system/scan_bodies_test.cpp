@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whole scans with the bodies that a virtual rig can have: the firmware through libserialport, the camera
+// through weft-camera and libgphoto2.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/jobs/session_input.h"
+#include "capture/board/led_board.h"
+#include "capture/camera/camera_link.h"
+#include "capture/camera/camera_profile.h"
+#include "capture/raw/decode.h"
+#include "capture/rig.h"
+#include "capture/scan/scan.h"
+#include "core/files.h"
+#include "tests/virtual_rig/small_scene.h"
+#include "virtual_rig/terminal/modem_lines.h"
+#include "virtual_rig/virtual_rig.h"
+
+namespace weft {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ScanWithABody : public testing::Test {
+ protected:
+  void start(simulator::Body body) {
+    simulator::VirtualRigOptions options;
+    options.scene = simulator::small_scene();
+    options.body = body;
+    options.folder = folder_ / "rig";
+    options.cache = folder_ / "cache";
+    options.firmware = WEFT_FIRMWARE;
+    options.bootloader_s = 0.02;
+    auto rig = simulator::VirtualRig::start(options);
+    ASSERT_TRUE(rig) << rig.error().message();
+    rig_ = std::move(*rig);
+    setenv(simulator::kModemVariable, (options.folder / "modem").c_str(), 1);
+  }
+  void TearDown() override { unsetenv(simulator::kModemVariable); }
+
+  /// A session of the rig's file; `profile` in place of its own.
+  Result<capture::ScanOutcome> scan(double exposure_us, const std::string& profile = "") {
+    const Result<capture::Rig> file = capture::read_rig(folder_ / "rig" / "rig.toml");
+    if (!file) return file.error();
+    const auto board = capture::LedBoard::open({.port = file->board.port});
+    if (!board) return board.error();
+    capture::CameraLinkOptions options;
+    options.profile = profile.empty() ? file->camera.profile : profile;
+    options.port = file->camera.port;
+    options.serial = file->camera.serial;
+    const auto camera = capture::CameraLink::make(options);
+    if (!camera) return camera.error();
+    capture::ScanRequest request;
+    request.session = folder_ / "cloth.weft";
+    request.fabric = "satin";
+    request.rig = file->name;
+    request.calibration = file->scan.calibration;
+    request.leds = {1, 2, 3};  // of the scene; the board has ten outputs
+    request.exposure = {exposure_us, file->scan.iso, file->scan.f_number};
+    return capture::scan(request, **board, **camera, {}, {});
+  }
+
+  /// How alike a frame is to what one LED's light gives, 1 where it is of that light alone.
+  double likeness(const fs::path& frame, int led) const {
+    const Result<RawFrame> decoded = capture::decode_raw(frame);
+    EXPECT_TRUE(decoded) << decoded.error().message();
+    double both = 0, own = 0, taken = 0;
+    const View<const float> plane = rig_->frames().led(led);
+    for (int y = 0; decoded && y < decoded->counts.height(); ++y) {
+      for (int x = 0; x < decoded->counts.width(); ++x) {
+        const double wanted = static_cast<double>(plane(x, y)), count = decoded->counts(x, y);
+        both += wanted * count;
+        own += wanted * wanted;
+        taken += count * count;
+      }
+    }
+    return both / std::sqrt(own * taken);
+  }
+
+  const fs::path folder_ = simulator::fresh_folder();
+  std::unique_ptr<simulator::VirtualRig> rig_;
+};
+
+/// Shares of an exposure that the pins were on for, a line an exposure.
+std::vector<Json> pin_shares(const fs::path& log) {
+  std::vector<Json> shares;
+  std::ifstream in(log);
+  for (std::string line; std::getline(in, line);) shares.push_back(Json::parse(line).at("pin_shares"));
+  return shares;
+}
+
+TEST_F(ScanWithABody, WhoseTriggerReturnsAtOnceHasEachLedLitThroughoutItsFrame) {
+  start(simulator::Body::kD80);
+  const Result<capture::ScanOutcome> outcome = scan(1e6 / 30);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_EQ(outcome->session.state, "complete");
+  EXPECT_EQ(outcome->frames_retaken, 0);
+  ASSERT_EQ(outcome->session.lit().size(), 3u);
+  for (const Shot* shot : outcome->session.lit())
+    EXPECT_GT(likeness(outcome->session.path_of(*shot), shot->led), 0.999) << shot->file;
+  const std::vector<Json> shares = pin_shares(folder_ / "rig" / "exposures.jsonl");
+  EXPECT_THAT(shares,
+              testing::ElementsAre(Json({0.0, 0.0, 0.0}), Json({1.0, 0.0, 0.0}), Json({0.0, 1.0, 0.0}),
+                                   Json({0.0, 0.0, 1.0}), Json({1.0, 0.0, 0.0})));
+}
+
+TEST_F(ScanWithABody, WhoseSettingRoundsTheShutterTimeIsSolved) {
+  start(simulator::Body::kD5100);
+  std::string toml(capture::nikon_d5100_toml());
+  const std::string exact = "shutter = \"shutterspeed2\"";
+  toml.replace(toml.find(exact), exact.size(), "shutter = \"shutterspeed\"");
+  const fs::path profile = folder_ / "rounded.toml";
+  ASSERT_TRUE(write_file(profile, toml));
+  const Result<capture::ScanOutcome> outcome = scan(16600, profile);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_EQ(outcome->session.document["exposure"]["exposure_us"], 16600) << "as the camera names 1/60 s";
+  for (const Shot& shot : outcome->session.shots)
+    EXPECT_NEAR(shot.exposure_us, 1e6 / 60, 1) << shot.file << ": as the photograph does";
+  app::SessionOptions options;
+  options.folder = outcome->session.folder;
+  const Result<app::SessionPlan> plan = app::plan_session(options);
+  ASSERT_TRUE(plan) << plan.error().message();
+  EXPECT_EQ(plan->lit.size(), 3u);
+  EXPECT_EQ(plan->repeats.size(), 1u);
+}
+
+}  // namespace
+}  // namespace weft
