@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "app/jobs/calibrate/camera.h"
+#include "bench/oracles/board_views.h"
 #include "bench/rig.h"
 #include "calibration/camera/lens.h"
 #include "capture/raw/decode.h"
@@ -20,7 +21,6 @@
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
 #include "simulator/targets/target.h"
-#include "tests/support/board_views.h"
 
 namespace weft::bench {
 namespace {

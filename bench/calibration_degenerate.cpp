@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/oracles/board_views.h"
+#include "bench/oracles/paper_oracle.h"
 #include "calibration/camera/lens.h"
 #include "calibration/lights/physical.h"
 #include "calibration/lights/sheet_blocks.h"
 #include "core/parallel.h"
-#include "tests/support/board_views.h"
-#include "tests/support/paper_oracle.h"
 
 namespace weft::bench {
 namespace {

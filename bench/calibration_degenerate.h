@@ -14,8 +14,8 @@ struct CalibrationDegenerateBenchOptions {
 /// Captures that cannot say what is asked of them: all tilts under 2 degrees, a board or sheet seen edge-on,
 /// a LED on the optical axis, one pose taken again and again, one sheet or board, the sum of 100 megapixels.
 /// A row a case and kind ("lights": positions of LEDs, "camera": focal lengths and principal point, "sum":
-/// the mean of white paper by channel), made by formulas of their own (tests/support/paper_oracle.h,
-/// tests/support/board_views.h): in how many of `seeds` it is `refused` (by an error or as a misfit), and of
+/// the mean of white paper by channel), made by formulas of their own (bench/oracles/paper_oracle.h,
+/// bench/oracles/board_views.h): in how many of `seeds` it is `refused` (by an error or as a misfit), and of
 /// those accepted the predicted sigma (rms, in `unit`), the error over it (rms and worst) and the least and
 /// most chi-square a degree of freedom, where the fit has one. The camera's is of the corners' noise that was
 /// put in.

@@ -10,7 +10,7 @@
 #include "calibration/lights/physical.h"
 #include "calibration/response/neutral_scale.h"
 #include "core/parallel.h"
-#include "tests/support/grey_oracle.h"
+#include "bench/oracles/grey_oracle.h"
 
 namespace weft::bench {
 namespace {

@@ -12,7 +12,7 @@ struct CalibrationGreyBenchOptions {
 };
 
 /// Fluxes and white balances of ten LEDs from a chart of the nine greys of the Munsell scale, made by
-/// formulas of their own (tests/support/grey_oracle.h). A row a case and quantity: "flux" and "balance"
+/// formulas of their own (bench/oracles/grey_oracle.h). A row a case and quantity: "flux" and "balance"
 /// (percent), with LEDs at their true places against the truth, and with LEDs as five poses of white paper
 /// found them against what the paper found; then "bend" (percent of the light at full scale) of a response
 /// bent by 0 to 100 percent. `rms_error` (of a bend: its mean), the `sigma` that the fit predicts, the

@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "app/jobs/calibrate/lights.h"
+#include "bench/oracles/paper_oracle.h"
 #include "calibration/lights/per_pixel.h"
 #include "calibration/lights/physical.h"
 #include "calibration/lights/seed_iteration.h"
@@ -22,7 +23,6 @@
 #include "core/session.h"
 #include "simulator/simulate.h"
 #include "solver/uncertainty/calibration_sigma.h"
-#include "tests/support/paper_oracle.h"
 
 namespace weft::bench {
 namespace {

@@ -17,7 +17,7 @@ struct CalibrationLightsBenchOptions {
 
 /// How well the lights are found from averages of white paper (26 x 17 blocks, 0.2 percent noise, tape 10 mm
 /// wrong, poses off by 0.05 degrees and 0.1 mm; ten LEDs of differing aim and lobe, a vignette, uneven
-/// paper), made by formulas of their own (tests/support/paper_oracle.h). A row a quantity, `asked` being the
+/// paper), made by formulas of their own (bench/oracles/paper_oracle.h). A row a quantity, `asked` being the
 /// bar, root mean square over the seeds, or the worst where it says so:
 ///
 /// - "five poses", the paper Lambertian or not: positions, directions, iterations, chi-square, delta; and

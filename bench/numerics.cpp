@@ -11,11 +11,11 @@
 
 #include <fmt/format.h>
 
+#include "bench/oracles/hard_lights.h"
+#include "bench/oracles/quad_oracle.h"
+#include "bench/oracles/rig.h"
 #include "bench/plain_formula.h"
 #include "solver/in_double/pixel.h"
-#include "tests/support/hard_lights.h"
-#include "tests/support/quad_oracle.h"
-#include "tests/support/rig.h"
 
 namespace weft::bench {
 namespace {

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "bench/numerics.h"
+#include "bench/oracles/hard_lights.h"
+#include "bench/oracles/quad_oracle.h"
+#include "bench/oracles/rig.h"
 #include "bench/plain_formula.h"
 #include "core/solve_record.h"
-#include "tests/support/hard_lights.h"
-#include "tests/support/quad_oracle.h"
-#include "tests/support/rig.h"
 
 namespace weft::bench {
 namespace {

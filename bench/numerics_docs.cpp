@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "bench/numerics.h"
+#include "bench/oracles/quad_oracle.h"
 #include "bench/plain_formula.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
@@ -18,7 +19,6 @@
 #include "simulator/plan.h"
 #include "simulator/simulate.h"
 #include "solver/method.h"
-#include "tests/support/quad_oracle.h"
 
 namespace weft::bench {
 namespace {

@@ -6,7 +6,7 @@
 #include <hwy/targets.h>
 #include <cmath>
 
-#include "tests/support/rig.h"
+#include "bench/oracles/rig.h"
 
 namespace weft {
 namespace {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <string>
 
-#include "tests/support/hard_lights.h"
-#include "tests/support/rig.h"
+#include "bench/oracles/hard_lights.h"
+#include "bench/oracles/rig.h"
 
 namespace weft::test {
 namespace {

@@ -7,11 +7,11 @@
 #include <limits>
 #include <tuple>
 
+#include "bench/oracles/hard_lights.h"
+#include "bench/oracles/quad_oracle.h"
+#include "bench/oracles/rig.h"
 #include "core/tiles.h"
 #include "solver/in_double/pixel.h"
-#include "tests/support/hard_lights.h"
-#include "tests/support/quad_oracle.h"
-#include "tests/support/rig.h"
 
 namespace weft {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "bench/oracles/rig.h"
 #include "solver/in_double/pixel.h"
-#include "tests/support/rig.h"
 
 namespace weft {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <utility>
 
+#include "bench/oracles/rig.h"
 #include "solver/in_double/pixel.h"
 #include "solver/kernels/weighted.h"
-#include "tests/support/rig.h"
 
 namespace weft {
 namespace {

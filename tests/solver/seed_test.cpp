@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "tests/support/rig.h"
+#include "bench/oracles/rig.h"
 
 namespace weft {
 namespace {

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/hard_lights.h"
-#include "tests/support/rig.h"
+#include "bench/oracles/hard_lights.h"
+#include "bench/oracles/rig.h"
 
 namespace weft {
 namespace {

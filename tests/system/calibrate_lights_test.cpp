@@ -14,12 +14,12 @@
 #include "app/jobs/calibrate/check.h"
 #include "app/jobs/calibrate/sheet_captures.h"
 #include "app/jobs/calibrate/sheet_files.h"
+#include "bench/oracles/paper_oracle.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/session.h"
 #include "simulator/simulate.h"
-#include "tests/support/paper_oracle.h"
 #include "tests/system/program.h"
 
 namespace weft::app {

@@ -9,12 +9,12 @@
 #include <cmath>
 #include <functional>
 
+#include "bench/oracles/virtual_sensor.h"
 #include "calibration/response/neutral_scale.h"
 #include "calibration/response/superposition.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "simulator/camera/dng_writer.h"
-#include "tests/support/virtual_sensor.h"
 #include "tests/system/workspace.h"
 
 namespace weft::app {

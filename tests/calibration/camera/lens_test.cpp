@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tests/support/board_views.h"
-#include "tests/support/rig.h"
+#include "bench/oracles/board_views.h"
+#include "bench/oracles/rig.h"
 
 namespace weft::test {
 namespace {

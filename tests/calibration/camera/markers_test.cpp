@@ -8,8 +8,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "bench/oracles/rig.h"
 #include "tests/calibration/camera/frames.h"
-#include "tests/support/rig.h"
 
 namespace weft::test {
 namespace {

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
+#include "bench/oracles/rig.h"
 #include "core/camera.h"
 #include "simulator/light/incidence.h"
-#include "tests/support/rig.h"
 
 namespace weft::test {
 namespace {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/oracles/paper_oracle.h"
 #include "calibration/lights/physical.h"
-#include "tests/support/paper_oracle.h"
 
 // Captures that can hardly say what they are asked: which of them are solved, with a sigma that tells the
 // truth, and which are refused.

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "calibration/lights/physical.h"
-#include "tests/support/grey_oracle.h"
+#include "bench/oracles/grey_oracle.h"
 
 namespace weft::calibration {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "tests/support/paper_oracle.h"
+#include "bench/oracles/paper_oracle.h"
 
 namespace weft::calibration {
 namespace {

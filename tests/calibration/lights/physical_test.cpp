@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/paper_oracle.h"
+#include "bench/oracles/paper_oracle.h"
 
 namespace weft::calibration {
 namespace {

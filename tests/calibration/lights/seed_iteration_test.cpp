@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "tests/support/paper_oracle.h"
+#include "bench/oracles/paper_oracle.h"
 
 namespace weft::calibration {
 namespace {

@@ -7,7 +7,7 @@
 #include <functional>
 #include <limits>
 
-#include "tests/support/rig.h"
+#include "bench/oracles/rig.h"
 
 namespace weft::calibration {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/support/virtual_sensor.h"
+#include "bench/oracles/virtual_sensor.h"
 
 namespace weft::calibration {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "tests/support/virtual_sensor.h"
+#include "bench/oracles/virtual_sensor.h"
 
 namespace weft::calibration {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <deque>
 
-#include "tests/support/virtual_sensor.h"
+#include "bench/oracles/virtual_sensor.h"
 
 namespace weft::calibration {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/support/rig.h"
+#include "bench/oracles/rig.h"
 
 namespace weft::solver {
 namespace {

@@ -10,9 +10,9 @@
 #include <string>
 #include <variant>
 
+#include "bench/oracles/rig.h"
 #include "core/light_field.h"
 #include "solver/diagnosis/robust_fit.h"
-#include "tests/support/rig.h"
 
 namespace weft::solver {
 namespace {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/oracles/rig.h"
 #include "core/vec.h"
-#include "tests/support/rig.h"
 
 namespace weft::solver {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
+#include "bench/oracles/rig.h"
 #include "core/vec.h"
 #include "tests/solver/height/surface.h"
-#include "tests/support/rig.h"
 
 namespace weft::solver {
 namespace {

@@ -6,10 +6,10 @@
 #include <Eigen/Dense>
 #include <cmath>
 
+#include "bench/oracles/rig.h"
 #include "core/vec.h"
 #include "solver/height/grid.h"
 #include "tests/solver/height/surface.h"
-#include "tests/support/rig.h"
 
 namespace weft::solver {
 namespace {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "bench/oracles/rig.h"
 #include "core/vec.h"
-#include "tests/support/rig.h"
 
 namespace weft::test {
 namespace {

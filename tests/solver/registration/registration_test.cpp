@@ -8,9 +8,9 @@
 #include <functional>
 #include <vector>
 
+#include "bench/oracles/rig.h"
 #include "core/vec.h"
 #include "solver/sample_tiles.h"
-#include "tests/support/rig.h"
 
 namespace weft::solver {
 namespace {

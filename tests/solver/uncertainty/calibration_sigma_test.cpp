@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include "tests/support/rig.h"
+#include "bench/oracles/rig.h"
 
 namespace weft::solver {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/hard_lights.h"
+#include "bench/oracles/hard_lights.h"
 
 #include <cmath>
 #include <map>

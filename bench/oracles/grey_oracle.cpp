@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/grey_oracle.h"
+#include "bench/oracles/grey_oracle.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "tests/support/rig.h"
+#include "bench/oracles/rig.h"
 
 namespace weft::test {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "calibration/lights/grey_chart.h"
-#include "tests/support/paper_oracle.h"
+#include "bench/oracles/paper_oracle.h"
 
 namespace weft::test {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/paper_oracle.h"
+#include "bench/oracles/paper_oracle.h"
 
 #include <cmath>
 
-#include "tests/support/rig.h"
+#include "bench/oracles/rig.h"
 
 namespace weft::test {
 namespace {

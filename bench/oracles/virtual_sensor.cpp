@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/virtual_sensor.h"
+#include "bench/oracles/virtual_sensor.h"
 
 #include "simulator/camera/saturation.h"
 #include "simulator/sampling/random.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/rig.h"
+#include "bench/oracles/rig.h"
 
 #include <algorithm>
 #include <cmath>

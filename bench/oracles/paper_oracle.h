@@ -32,7 +32,7 @@ struct PaperRig {
   double reading(std::size_t sheet, std::size_t led, std::size_t channel, double x_px, double y_px) const;
 };
 
-/// The ten LEDs of tests/support/rig.h with aims up to 5 degrees off the centre and lobes of 0.7 to 1.3, a
+/// The ten LEDs of bench/oracles/rig.h with aims up to 5 degrees off the centre and lobes of 0.7 to 1.3, a
 /// vignette of 20 percent, and paper whose albedo varies by half a percent, in five poses.
 PaperRig common_rig();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/quad_oracle.h"
+#include "bench/oracles/quad_oracle.h"
 
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/support/board_views.h"
+#include "bench/oracles/board_views.h"
 
 #include <cmath>
 #include <string>
 
-#include "tests/support/rig.h"
+#include "bench/oracles/rig.h"
 
 namespace weft::test {
 
