@@ -36,7 +36,7 @@ struct Forecast {
 /// both directions across the normal is sqrt(pi) / 2 of that. Quicker levels add their mean angle to
 /// `standard`; a preview has the noise of four photosites and the mean normal of each cell. What `robust`
 /// turns was misfit. Indirect: degrees from the gate of that name, of which `reference` leaves less where the
-/// gate is open; two factors, fitted to simulated plain weaves without gloss (bench/accuracy_scenes.h, the
+/// gate is open; two factors, fitted to simulated plain weaves without gloss (bench/accuracy/scenes.h, the
 /// tuning set).
 /// `weft bench explain` holds all of it against the truth: on held-out cloths within a factor 1.7 without
 /// gloss, and from 0.4 to 1.6 of the truth with it, as residuals show only part of a highlight's harm.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/accuracy.h"
+#include "bench/accuracy/accuracy.h"
 
 #include "app/cli/bench_rows.h"
 #include "app/cli/verbs.h"
-#include "bench/accuracy_bound.h"
-#include "bench/accuracy_page.h"
+#include "bench/accuracy/bound.h"
+#include "bench/accuracy/page.h"
 
 namespace weft::app {
 namespace {

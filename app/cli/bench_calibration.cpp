@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/bench_rows.h"
 #include "app/cli/verbs.h"
-#include "bench/calibration_camera.h"
-#include "bench/calibration_color.h"
-#include "bench/calibration_degenerate.h"
-#include "bench/calibration_end_to_end.h"
-#include "bench/calibration_grey.h"
-#include "bench/calibration_lights.h"
-#include "bench/calibration_moved.h"
-#include "bench/calibration_response.h"
+#include "bench/calibration/camera.h"
+#include "bench/calibration/color.h"
+#include "bench/calibration/degenerate.h"
+#include "bench/calibration/end_to_end.h"
+#include "bench/calibration/grey.h"
+#include "bench/calibration/lights.h"
+#include "bench/calibration/moved.h"
+#include "bench/calibration/response.h"
 
 namespace weft::app {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/bench_rows.h"
 #include "app/cli/verbs.h"
-#include "bench/effects_auto.h"
-#include "bench/effects_cost.h"
-#include "bench/effects_embree.h"
-#include "bench/effects_gallery.h"
-#include "bench/effects_rays.h"
+#include "bench/effects/auto.h"
+#include "bench/effects/cost.h"
+#include "bench/effects/embree.h"
+#include "bench/effects/gallery.h"
+#include "bench/effects/rays.h"
 
 namespace weft::app {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/explain.h"
+#include "bench/accuracy/explain.h"
 
 #include "app/cli/bench_rows.h"
 #include "app/cli/verbs.h"

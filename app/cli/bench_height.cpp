@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/bench_rows.h"
 #include "app/cli/verbs.h"
-#include "bench/height.h"
+#include "bench/solve/height.h"
 
 namespace weft::app {
 

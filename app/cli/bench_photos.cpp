@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "bench/photos.h"
+#include "bench/accuracy/photos.h"
 
 #include "app/cli/bench_rows.h"
 #include "app/cli/verbs.h"

@@ -4,7 +4,7 @@
 #include "app/cli/arguments.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/terminal.h"
-#include "bench/report.h"
+#include "bench/base/report.h"
 
 namespace weft::app {
 

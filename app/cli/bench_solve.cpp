@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/bench_rows.h"
 #include "app/cli/verbs.h"
-#include "bench/end_to_end.h"
-#include "bench/solve_accuracy.h"
-#include "bench/solve_speed.h"
+#include "bench/solve/accuracy.h"
+#include "bench/solve/end_to_end.h"
+#include "bench/solve/speed.h"
 
 namespace weft::app {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/bench_rows.h"
 #include "app/cli/verbs.h"
-#include "bench/transport.h"
+#include "bench/solve/transport.h"
 
 namespace weft::app {
 

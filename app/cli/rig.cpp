@@ -14,7 +14,7 @@
 #include "app/cli/verbs.h"
 #include "app/daemon/rig_lock.h"
 #include "app/daemon/scan_body.h"
-#include "bench/report.h"
+#include "bench/base/report.h"
 #include "capture/scan/scan.h"
 
 namespace weft::app {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/report.h"
+#include "bench/base/report.h"
 #include "core/result.h"
 
 namespace weft::bench {

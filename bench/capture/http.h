@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "bench/report.h"
+#include "bench/base/report.h"
 #include "core/result.h"
 
 namespace weft::bench {

@@ -6,7 +6,7 @@
 #include <stop_token>
 
 #include "app/daemon/rig_keeper.h"
-#include "bench/report.h"
+#include "bench/base/report.h"
 #include "capture/rig.h"
 #include "core/result.h"
 

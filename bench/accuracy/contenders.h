@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/accuracy/scenes.h"
+#include "bench/base/solved_maps.h"
+#include "core/result.h"
+#include "pipeline/reference.h"
+#include "solver/method.h"
+
+namespace weft::bench {
+
+/// A way from a patch's readings to its maps, on so many threads.
+using SolvePatch = std::function<Result<void>(const Patch& patch, int threads, SolvedMaps& maps)>;
+
+struct Contender {
+  std::string name;
+  SolvePatch solve;
+  bool is_quality = false;    ///< a level
+  bool is_yardstick = false;  ///< knows what no scan knows: not compared by price
+  int planes = 1;             ///< of its readings
+};
+
+/// Every level and method of the solver, and last `oracle`: least squares on the readings of the LEDs that
+/// the simulator knows each point to face and see.
+std::vector<Contender> contenders();
+/// Those with these names, and the yardsticks; all where there are no names. kUsage for a name that is not
+/// there.
+Result<std::vector<Contender>> contenders_named(const std::vector<std::string>& names);
+
+/// The reference level with these options.
+SolvePatch by_reference(const app::ReferenceOptions& options);
+/// The level preview, each of its pixels standing for the four photosites it was made of.
+SolvePatch by_preview();
+/// A method as the product runs it: on the mosaic, or after demosaicing where that is what it wants.
+SolvePatch as_product(std::shared_ptr<const solver::Method> method);
+
+/// A method over whole images in the tiles of `weft solve`; `readings` holds `maps.planes` views a light.
+Result<void> solve_images(const solver::Method& method, const std::vector<View<const float>>& readings,
+                          const LightField& field, const CfaPattern& cfa,
+                          const std::optional<NoiseModel>& noise, int threads, SolvedMaps& maps);
+
+std::vector<View<const float>> planes_of(const Image<float>& readings);
+
+Error no_such(const char* what, const std::string& name, const std::vector<std::string>& names);
+
+}  // namespace weft::bench

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/accuracy/curves.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+#include <vector>
+
+#include "bench/accuracy/contenders.h"
+#include "bench/accuracy/score.h"
+#include "core/parallel.h"
+#include "solver/method.h"
+
+namespace weft::bench {
+namespace {
+
+struct Setting {
+  const char* curve;
+  Contender contender;  ///< named by its setting
+};
+
+std::vector<Setting> settings() {
+  std::vector<Setting> all = {
+      {"resolution", {"half", by_preview()}},
+      {"resolution", {"full", as_product(solver::fast_method())}},
+      {"arithmetic", {"float32", as_product(solver::robust_method())}},
+      {"arithmetic", {"double", as_product(solver::exact_method())}},
+  };
+  for (const int rays : {4, 8, 16, 32, 64, 128}) {
+    all.push_back({"rays", {fmt::format("{}", rays), by_reference({.rays = rays})}});
+  }
+  for (const int rounds : {1, 2, 3, 4, 6}) {
+    all.push_back(
+        {"rounds", {fmt::format("{}", rounds), by_reference({.most_rounds = rounds, .settled_deg = 0})}});
+  }
+  return all;
+}
+
+}  // namespace
+
+Result<Rows> accuracy_curves(const AccuracyTableOptions& options) {
+  const std::vector<Setting> all = settings();
+  const int threads = resolved_threads(options.threads);
+  std::vector<Rows> scored(all.size());
+  for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, options.quick)) {
+    Result<std::vector<Patch>> patches = render_patches(scene, threads);
+    if (!patches) return std::move(patches).error();
+    const BoundedPatches bounded = with_bounds(std::move(*patches), threads);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      Result<Json> row = score(all[i].contender, bounded, threads);
+      if (!row) return std::move(row).error();
+      scored[i].push_back(std::move(*row));
+    }
+  }
+  Rows table;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    std::vector<const Json*> rows;
+    for (const Json& row : scored[i]) rows.push_back(&row);
+    const Json mean = mean_row(rows);
+    table.push_back({{"curve", all[i].curve}, {"setting", all[i].contender.name}});
+    for (const char* key : {"mean_deg", "p95_deg", "albedo_mean_rel", "ns_per_pixel", "threads"}) {
+      table.back()[key] = mean[key];
+    }
+  }
+  return table;
+}
+
+Result<Rows> accuracy_gates(const AccuracyTableOptions& options) {
+  const std::vector<Contender> both = {{"gated", by_reference({})},
+                                       {"forced", by_reference({.force_stages = true})}};
+  const int threads = resolved_threads(options.threads);
+  Rows table;
+  for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, options.quick)) {
+    Result<std::vector<Patch>> patches = render_patches(scene, threads);
+    if (!patches) return std::move(patches).error();
+    const BoundedPatches bounded = with_bounds(std::move(*patches), threads);
+    for (const Contender& contender : both) {
+      const Result<Json> row = score(contender, bounded, threads);
+      if (!row) return row.error();
+      table.push_back({{"scene", scene.name}, {"method", contender.name}});
+      for (const char* key : {"mean_deg", "p95_deg", "albedo_mean_rel", "ns_per_pixel"}) {
+        table.back()[key] = (*row)[key];
+      }
+    }
+  }
+  return table;
+}
+
+}  // namespace weft::bench

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/accuracy/photos.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <utility>
+
+#include "app/jobs/compare.h"
+#include "app/jobs/photo_input.h"
+#include "bench/accuracy/contenders.h"
+#include "bench/base/solved_maps.h"
+#include "core/image_io/image_io.h"
+#include "core/parallel.h"
+#include "simulator/sampling/random.h"
+#include "solver/method.h"
+
+namespace weft::bench {
+namespace {
+
+struct Truth {
+  LoadedImage normal;
+  Image<std::uint8_t> counts;  ///< 1 inside the mask where there is a normal
+  std::int64_t pixels = 0;
+  Rect around;  ///< the least rectangle with all of them
+};
+
+Result<Truth> read_truth(const app::PhotoPlan& plan, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "normal_gt.exr";
+  Result<LoadedImage> normal = read_image(file);
+  if (!normal) return std::move(normal).error();
+  if (normal->info.size != plan.size || normal->planes.planes() < 3) {
+    return Error{
+        ErrorKind::kBadData, "truth does not belong to the photographs", file.string(),
+        fmt::format("it has {} x {} pixels and {} channels, the photographs {} x {}", normal->info.size.width,
+                    normal->info.size.height, normal->planes.planes(), plan.size.width, plan.size.height),
+        "copy the folder again"};
+  }
+  std::optional<LoadedImage> mask;
+  if (!plan.mask.empty()) {
+    Result<LoadedImage> read = read_image(plan.mask);
+    if (!read) return std::move(read).error();
+    mask = std::move(*read);
+  }
+  Truth truth;
+  truth.normal = std::move(*normal);
+  truth.counts = Image<std::uint8_t>(plan.size);
+  for (int y = 0; y < plan.size.height; ++y) {
+    for (int x = 0; x < plan.size.width; ++x) {
+      const Image<float>& n = truth.normal.planes;
+      const double square = std::hypot(n(x, y, 0), n(x, y, 1), n(x, y, 2));
+      const bool counts = std::isfinite(square) && square > 0 && (!mask || mask->planes(x, y) > 0.5F);
+      truth.counts(x, y) = counts ? 1 : 0;
+      if (!counts) continue;
+      ++truth.pixels;
+      Rect& r = truth.around;
+      r = truth.pixels == 1 ? Rect{x, y, x + 1, y + 1}
+                            : Rect{std::min(r.x0, x), r.y0, std::max(r.x1, x + 1), y + 1};
+    }
+  }
+  if (truth.pixels == 0) {
+    return Error{ErrorKind::kBadData, "no pixel can be compared", file.string(),
+                 "the mask leaves none for which the truth has a normal", "copy the folder again"};
+  }
+  return truth;
+}
+
+struct Solved {
+  double mean_deg = 0;
+  double seconds = 0;
+};
+
+Result<Solved> solve(const solver::Method& method, const app::Photographs& photographs,
+                     const std::vector<int>& numbers, const Truth& truth, int threads) {
+  Result<Lights> lights = select_lights(photographs.field->lights(), numbers);
+  if (!lights) return std::move(lights).error();
+  const Rect part = truth.around;
+  const Size size = {part.width(), part.height()};
+  const Result<LightField> field = LightField::make(std::move(*lights), std::nullopt, size, 0);
+  if (!field) return field.error();
+  std::vector<View<const float>> readings;
+  for (const int number : numbers) {
+    const Image<float>& photo = photographs.rgb[static_cast<std::size_t>(number) - 1];
+    for (int c = 0; c < 3; ++c) readings.push_back(photo.plane(c).crop(part));
+  }
+  SolvedMaps maps(size);
+  maps.planes = 3;
+  Result<void> solved;
+  Solved result;
+  result.seconds = least_seconds(
+      1, [&] { solved = solve_images(method, readings, *field, {}, std::nullopt, threads, maps); });
+  if (!solved) return std::move(solved).error();
+  double sum = 0;
+  for (int y = part.y0; y < part.y1; ++y) {
+    for (int x = part.x0; x < part.x1; ++x) {
+      if (truth.counts(x, y) == 0) continue;
+      const Image<float>& n = truth.normal.planes;
+      const double angle =
+          angle_deg(maps.normal_at(x - part.x0, y - part.y0), {n(x, y, 0), n(x, y, 1), n(x, y, 2)});
+      sum += std::isfinite(angle) ? angle : static_cast<double>(solver::kUnknownAngleDeg);
+    }
+  }
+  result.mean_deg = sum / static_cast<double>(truth.pixels);
+  return result;
+}
+
+Result<Json> row_of(const solver::MethodName& name, const app::Photographs& photographs,
+                    const std::vector<std::vector<int>>& subsets, const Truth& truth, int threads) {
+  const std::unique_ptr<solver::Method> method = name.make();
+  std::vector<double> means;
+  double seconds = 0;
+  for (const std::vector<int>& numbers : subsets) {
+    const Result<Solved> solved = solve(*method, photographs, numbers, truth, threads);
+    if (!solved) return solved.error();
+    means.push_back(solved->mean_deg);
+    seconds += solved->seconds;
+  }
+  const auto count = static_cast<double>(means.size());
+  const double mean = std::accumulate(means.begin(), means.end(), 0.0) / count;
+  double square = 0;
+  for (const double m : means) square += (m - mean) * (m - mean);
+  return Json{{"method", name.name},
+              {"lights", subsets.front().size()},
+              {"subsets", means.size()},
+              {"pixels", truth.pixels},
+              {"mean_deg", mean},
+              {"sd_deg", means.size() > 1 ? std::sqrt(square / (count - 1)) : 0.0},
+              {"least_deg", *std::min_element(means.begin(), means.end())},
+              {"most_deg", *std::max_element(means.begin(), means.end())},
+              {"ns_per_pixel", seconds * 1e9 / (count * static_cast<double>(truth.around.pixels()))},
+              {"threads", threads}};
+}
+
+Result<std::vector<std::vector<int>>> choose_subsets(const app::PhotoPlan& plan,
+                                                     const PhotosOptions& options) {
+  std::vector<Vec3> directions;
+  for (const DistantLight& light : plan.lights.lights) directions.push_back(light.direction);
+  const auto lights = static_cast<int>(directions.size());
+  if (options.pick == 0) {
+    std::vector<int> all(directions.size());
+    std::iota(all.begin(), all.end(), 1);
+    return std::vector<std::vector<int>>{all};
+  }
+  if (options.pick < 3 || options.pick > lights) {
+    return Error{ErrorKind::kUsage, "so many lights cannot be picked", fmt::format("--pick {}", options.pick),
+                 fmt::format("there are {} lights and three are the fewest", lights),
+                 fmt::format("pick 3 to {}, or 0 for all", lights)};
+  }
+  std::vector<std::vector<int>> subsets;
+  for (const int first : first_lights(lights, options.subsets, options.seed)) {
+    subsets.push_back(spread_lights(directions, options.pick, first));
+  }
+  return subsets;
+}
+
+Result<std::vector<solver::MethodName>> chosen_methods(const std::vector<std::string>& asked) {
+  std::vector<solver::MethodName> chosen;
+  std::vector<std::string> names;
+  for (const solver::MethodName& name : solver::method_names()) {
+    names.emplace_back(name.name);
+    if (asked.empty() || std::count(asked.begin(), asked.end(), name.name) > 0) chosen.push_back(name);
+  }
+  for (const std::string& name : asked) {
+    if (std::count(names.begin(), names.end(), name) == 0) return no_such("method", name, names);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+std::vector<int> spread_lights(std::span<const Vec3> directions, int count, int first) {
+  std::vector<int> chosen = {first};
+  while (static_cast<int>(chosen.size()) < count) {
+    int farthest = 0;
+    double distance_deg = 0;
+    for (int candidate = 1; candidate <= static_cast<int>(directions.size()); ++candidate) {
+      double nearest_deg = 180;
+      for (const int other : chosen) {
+        nearest_deg = std::min(nearest_deg, angle_deg(directions[static_cast<std::size_t>(candidate) - 1],
+                                                      directions[static_cast<std::size_t>(other) - 1]));
+      }
+      if (nearest_deg <= distance_deg) continue;
+      distance_deg = nearest_deg;
+      farthest = candidate;
+    }
+    if (farthest == 0) break;  // the rest repeat directions that are chosen
+    chosen.push_back(farthest);
+  }
+  return chosen;
+}
+
+std::vector<int> first_lights(int lights, int subsets, std::uint32_t seed) {
+  std::vector<int> order(static_cast<std::size_t>(lights)), first;
+  std::iota(order.begin(), order.end(), 1);
+  // Fisher and Yates, as Durstenfeld's algorithm 235 (1964) has it.
+  for (std::size_t i = order.size() - 1; i > 0; --i) {
+    const auto bits = simulator::philox({static_cast<std::uint32_t>(i), 0, 0, 0}, {seed, 0});
+    const double u = simulator::uniform(bits[0], bits[1]);
+    std::swap(order[i], order[static_cast<std::size_t>(u * static_cast<double>(i + 1))]);
+  }
+  for (int i = 0; i < subsets; ++i) first.push_back(order[static_cast<std::size_t>(i % lights)]);
+  return first;
+}
+
+Result<Rows> photos_table(const PhotosOptions& options) {
+  const Result<std::vector<solver::MethodName>> methods = chosen_methods(options.methods);
+  if (!methods) return methods.error();
+  app::PhotoOptions photos;
+  photos.folder = options.folder;
+  Result<app::PhotoPlan> plan = app::plan_photos(photos);
+  if (!plan) return std::move(plan).error();
+  const auto subsets = choose_subsets(*plan, options);
+  if (!subsets) return subsets.error();
+  const Result<Truth> truth = read_truth(*plan, options.folder);
+  if (!truth) return truth.error();
+  const int threads = resolved_threads(options.threads);
+  Rows rows;
+  for (const bool keep : {false, true}) {
+    const auto wants_this = [&](const solver::MethodName& name) { return name.keeps_clipped == keep; };
+    if (std::none_of(methods->begin(), methods->end(), wants_this)) continue;
+    plan->clipped = keep ? app::Clipped::kKeep : app::Clipped::kMark;
+    JobContext context;
+    context.threads = threads;
+    const auto photographs = app::load_photos(*plan, context);
+    if (!photographs) return photographs.error();
+    for (const solver::MethodName& name : *methods) {
+      if (!wants_this(name)) continue;
+      Result<Json> row = row_of(name, *photographs, *subsets, *truth, threads);
+      if (!row) return std::move(row).error();
+      rows.push_back(std::move(*row));
+    }
+  }
+  return rows;
+}
+
+}  // namespace weft::bench

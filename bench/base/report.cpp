@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/base/report.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "core/parallel.h"
+
+namespace weft::bench {
+namespace {
+
+std::string processor_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);) {
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  }
+  return "unknown";
+}
+
+std::string cell_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_integer()) return value.dump();
+  if (!value.is_number()) return value.is_null() ? "" : value.dump();
+  const double v = value.get<double>();
+  return v == 0 || std::abs(v) >= 0.001 ? fmt::format("{:.4g}", v) : fmt::format("{:.2e}", v);
+}
+
+}  // namespace
+
+Json document_of(const Rows& rows) {
+  return {{"machine", {{"processor", processor_name()}, {"threads", hardware_threads()}}}, {"rows", rows}};
+}
+
+std::string table_of(const Rows& rows) {
+  std::vector<std::string> keys;
+  for (const Json& row : rows) {
+    for (const auto& [key, value] : row.items()) {
+      if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+    }
+  }
+  std::string table;
+  std::vector<std::size_t> widths;
+  for (const std::string& key : keys) {
+    std::size_t width = key.size();
+    for (const Json& row : rows) {
+      if (row.contains(key)) width = std::max(width, cell_of(row[key]).size());
+    }
+    widths.push_back(width);
+    table += fmt::format("{:>{}}  ", key, width);
+  }
+  for (const Json& row : rows) {
+    table += '\n';
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      table += fmt::format("{:>{}}  ", row.contains(keys[i]) ? cell_of(row[keys[i]]) : "", widths[i]);
+    }
+  }
+  return table;
+}
+
+ScratchFolder::ScratchFolder() {
+  static int count = 0;
+  path_ = std::filesystem::temp_directory_path() / fmt::format("weft-bench-{}-{}", getpid(), count++);
+  std::filesystem::create_directories(path_);
+}
+
+ScratchFolder::~ScratchFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+}
+
+}  // namespace weft::bench

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/base/yardsticks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "bench/base/libraw_alone.h"
+#include "bench/base/report.h"
+#include "bench/base/rig.h"
+#include "core/parallel.h"
+#include "simulator/camera/dng_writer.h"
+
+namespace weft::bench {
+namespace {
+
+constexpr int kRepeats = 3;
+constexpr double kMegapixels = 4;
+
+Result<std::vector<std::filesystem::path>> write_frames(const app::Photographs& photographs,
+                                                        const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  const auto write = [&](const RawFrame& frame) -> Result<void> {
+    files.push_back(folder / fmt::format("{:02}.dng", files.size()));
+    return simulator::write_dng(files.back(), frame);
+  };
+  for (const RawFrame& frame : photographs.mosaics) {
+    if (Result<void> ok = write(frame); !ok) return std::move(ok).error();
+  }
+  if (Result<void> ok = write(*photographs.dark); !ok) return std::move(ok).error();
+  return files;
+}
+
+}  // namespace
+
+double copy_seconds(double bytes, int threads) {
+  const auto half = static_cast<std::size_t>(std::max(bytes / 2, 128.0 * (1 << 20)));
+  const Size size = {1 << 20, static_cast<int>(half >> 20) + 1};
+  Image<std::uint8_t> from(size), to(size);
+  const std::size_t part = half / static_cast<std::size_t>(threads);
+  const auto copy = [&](std::size_t i, int) {
+    std::memcpy(to.plane().row(0) + i * part, from.plane().row(0) + i * part, part);
+  };
+  std::memset(from.plane().row(0), 1, half);
+  parallel_for(static_cast<std::size_t>(threads), threads, copy);
+  const double seconds =
+      least_seconds(kRepeats, [&] { parallel_for(static_cast<std::size_t>(threads), threads, copy); });
+  return seconds * bytes / (2 * static_cast<double>(half));
+}
+
+app::Photographs grey_mosaics(const LightField& field, Size size, int threads) {
+  app::Photographs photographs;
+  photographs.size = size;
+  photographs.field = field;
+  constexpr double kExposureUs = 10000;
+  const double seconds = kExposureUs * 1e-6;
+  const auto frame = [&] {
+    RawFrame f;
+    f.counts = Image<std::uint16_t>(size);
+    f.black = {{{600, 600}, {600, 600}}};
+    f.white = 15520;
+    f.shot = {"weft", "bench", "1", kExposureUs, 100, 8};
+    return f;
+  };
+  for (std::size_t k = 0; k < field.count(); ++k) {
+    RawFrame f = frame();
+    parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
+      const int y = static_cast<int>(row);
+      for (int x = 0; x < size.width; ++x) {
+        const LightField::Light light = field.at(k, f.cfa.channel_at(x, y), x, y);
+        const double signal = 0.4 * light.strength * light.direction.z * seconds;
+        f.counts(x, y) = static_cast<std::uint16_t>(600 + std::min(1.0, signal) * (15520 - 600));
+      }
+    });
+    photographs.mosaics.push_back(std::move(f));
+  }
+  photographs.dark = frame();
+  parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
+    std::uint16_t* counts = photographs.dark->counts.plane().row(static_cast<int>(row));
+    std::fill_n(counts, size.width, std::uint16_t{600});
+  });
+  photographs.radiometry.emplace(photographs.mosaics.front(), &*photographs.dark, Response{2.7, 1.2, {}},
+                                 Radiometry::Exposure{kExposureUs, 100});
+  photographs.noise = photographs.radiometry->noise();
+  return photographs;
+}
+
+Result<double> unpack_seconds_a_pixel(const app::Photographs& photographs, int threads) {
+  const ScratchFolder scratch;
+  const auto files = write_frames(photographs, scratch.path());
+  if (!files) return files.error();
+  const Result<double> unpack = unpack_seconds(*files, threads);
+  if (!unpack) return unpack.error();
+  return *unpack / static_cast<double>(photographs.size.pixels());
+}
+
+Result<Yardsticks> measure_yardsticks(int threads) {
+  constexpr double kBytes = 256.0 * (1 << 20);
+  const Size size = bench_size(kMegapixels);
+  const Result<LightField> field = LightField::make(bench_lights(1, false), bench_camera(size), size, 0);
+  if (!field) return field.error();
+  const Result<double> unpack = unpack_seconds_a_pixel(grey_mosaics(*field, size, threads), threads);
+  if (!unpack) return unpack.error();
+  return Yardsticks{copy_seconds(kBytes, threads) / kBytes, *unpack};
+}
+
+}  // namespace weft::bench

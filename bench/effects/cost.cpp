@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/effects/cost.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/base/rig.h"
+#include "bench/effects/scenes.h"
+#include "core/parallel.h"
+#include "simulator/build_passes.h"
+
+namespace weft::bench {
+namespace {
+
+using namespace simulator;
+
+constexpr double kMostTraced = 1;          // megapixels
+constexpr double kMostTracedAFrame = 0.1;  // where every frame is traced anew, as the cloth moves
+constexpr int kRounds = 3;
+constexpr double kLong_s = 3;  // what took longer is not run again
+
+bool is_traced(const EffectSettings& effects) {
+  return effects.cast_shadows || effects.interreflection;
+}
+
+struct Measured {
+  std::string name;
+  EffectSettings effects, without;
+  double megapixels = 0;
+  double ns_per_pixel = std::numeric_limits<double>::infinity();
+  double seconds = 0;  ///< of the last run
+};
+
+std::vector<Measured> everything(double megapixels) {
+  std::vector<Measured> all = {{"lambert", {}, {}}};
+  for (const EffectKey& key : effect_keys()) {
+    all.push_back({key.name, effects_for(key.on), effects_under(key.on)});
+  }
+  EffectSettings soft = effects_for(&EffectSettings::cast_shadows);
+  soft.finite_led = true;
+  all.push_back({"cast_shadows + finite_led", soft, effects_under(&EffectSettings::cast_shadows)});
+  EffectSettings noisy = effects_for(&EffectSettings::near_light);
+  noisy.noise = true;
+  all.push_back({"near_light + noise", noisy, {}});
+  EffectSettings still = all_effects();
+  still.movement = false;
+  all.push_back({"all but movement", still, {}});
+  all.push_back({"all", all_effects(), {}});
+  for (Measured& m : all) {
+    m.megapixels = megapixels;
+    if (is_traced(m.effects)) {
+      m.megapixels = std::min(megapixels, m.effects.movement ? kMostTracedAFrame : kMostTraced);
+    }
+  }
+  return all;
+}
+
+Result<void> run(Measured& m, int threads) {
+  Scene scene = cloth_scene(Family::kPlain, bench_size(m.megapixels));
+  scene.effects = m.effects;
+  const Result<Rig> rig = rig_of(scene);
+  if (!rig) return rig.error();
+  Result<PassList> passes = build_passes(scene, *rig, Output::kCounts);
+  if (!passes) return passes.error();
+  PassRunner runner(std::move(*passes), {.threads = threads});
+  std::vector<int> leds(rig->leds.leds.size());
+  std::iota(leds.begin(), leds.end(), 1);
+  const Rect frame = {0, 0, scene.camera.width, scene.camera.height};
+  Result<void> ran;
+  m.seconds = least_seconds(1, [&] {
+    ran = runner.run(
+        frame, leds, {}, [](const Tile&) {}, [](const Tile&) {});
+  });
+  const double samples = static_cast<double>(frame.pixels()) * static_cast<double>(leds.size());
+  m.ns_per_pixel = std::min(m.ns_per_pixel, m.seconds * 1e9 / samples);
+  return ran;
+}
+
+}  // namespace
+
+Result<Rows> effects_cost(const EffectsOptions& options) {
+  std::vector<Measured> all = everything(options.megapixels);
+  const int threads = resolved_threads(options.threads);
+  // In rounds, so that a minute in which the machine is busy touches every row alike.
+  for (int round = 0; round < kRounds; ++round) {
+    for (Measured& m : all) {
+      if (m.seconds > kLong_s) continue;
+      if (Result<void> ok = run(m, threads); !ok) return ok.error();
+    }
+  }
+  Rows rows;
+  for (const Measured& m : all) {
+    const auto base = std::find_if(all.begin(), all.end(),
+                                   [&](const Measured& other) { return other.effects == m.without; });
+    rows.push_back({{"effect", m.name},
+                    {"megapixels", m.megapixels},
+                    {"threads", threads},
+                    {"ns_per_pixel", m.ns_per_pixel},
+                    {"added_ns", m.ns_per_pixel - base->ns_per_pixel},
+                    {"ratio", m.ns_per_pixel / all.front().ns_per_pixel},
+                    {"s_16mp", m.ns_per_pixel * 16e-3}});
+  }
+  return rows;
+}
+
+}  // namespace weft::bench

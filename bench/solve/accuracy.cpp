@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/solve/accuracy.h"
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "app/jobs/compare.h"
+#include "app/jobs/solve.h"
+#include "bench/base/bound.h"
+#include "bench/base/rig.h"
+#include "bench/base/solved_maps.h"
+#include "core/image_io/image_io.h"
+#include "core/vec.h"
+#include "pipeline/bands.h"
+#include "simulator/sampling/random.h"
+#include "simulator/scene/rig.h"
+#include "simulator/simulate.h"
+#include "solver/method.h"
+#include "solver/normals/seed.h"
+
+namespace weft::bench {
+namespace {
+
+using simulator::GeometryKind;
+using simulator::Scene;
+
+Scene scene_of(GeometryKind kind, Size size) {
+  Scene scene;
+  scene.camera.width = size.width;
+  scene.camera.height = size.height;
+  scene.geometry.kind = kind;
+  scene.effects.near_light = true;
+  return scene;
+}
+
+Vec3 at(const Image<double>& planes, int x, int y) {
+  return {planes(x, y, 0), planes(x, y, 1), planes(x, y, 2)};
+}
+
+Json error_row(const char* kind, const char* name, const char* input, const std::vector<double>& angles) {
+  double sum = 0, most = 0;
+  for (const double a : angles) {
+    sum += a;
+    most = std::max(most, a);
+  }
+  return {{kind, name},
+          {"input", input},
+          {"pixels", angles.size()},
+          {"mean_deg", sum / static_cast<double>(angles.size())},
+          {"max_deg", most}};
+}
+
+// Errors of a method on rendered readings as floats, one plane a light (a mosaic) or three.
+Json float_row(const simulator::Rendering& truth, const LightField& field, int planes) {
+  const Size size = truth.normal.size();
+  const auto lights = static_cast<int>(field.count());
+  const CfaPattern cfa;
+  Image<float> readings(size, lights * planes);
+  std::vector<View<const float>> views;
+  for (int k = 0; k < lights; ++k) {
+    for (int p = 0; p < planes; ++p) {
+      for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+          const int c = planes == 1 ? cfa.channel_at(x, y) : p;
+          readings(x, y, k * planes + p) = static_cast<float>(truth.readings(x, y, 3 * k + c));
+        }
+      }
+      views.emplace_back(readings.plane(k * planes + p));
+    }
+  }
+  SolvedMaps maps(size);
+  solver::fast_method()->solve({{0, 0, size.width, size.height}, planes, cfa, views, &field, std::nullopt},
+                               maps.output({0, 0, size.width, size.height}));
+  std::vector<double> angles;
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x)
+      angles.push_back(angle_deg(maps.normal_at(x, y), at(truth.normal, x, y)));
+  }
+  return error_row("quality", "fast", planes == 1 ? "twill, float mosaic" : "twill, float RGB", angles);
+}
+
+Json seed_row(const simulator::Rendering& truth, const LightField& field) {
+  std::vector<double> angles;
+  std::vector<solver::PixelRow> rows(field.count());
+  for (int y = 0; y < truth.normal.height(); y += 2) {
+    for (int x = 0; x < truth.normal.width(); x += 2) {
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          const LightField::Light light = field.at(k, static_cast<int>(c), x, y);
+          rows[k].direction = light.direction;
+          rows[k].strength[c] = light.strength;
+          rows[k].reading[c] = truth.readings(x, y, static_cast<int>(3 * k + c));
+        }
+      }
+      angles.push_back(angle_deg(solver::solve_seed_pixel(rows).n[3], at(truth.normal, x, y)));
+    }
+  }
+  return error_row("method", "seed", "plane, double RGB", angles);
+}
+
+Result<LightField> field_of(const Scene& scene) {
+  const Result<simulator::Rig> rig = simulator::rig_of(scene);
+  if (!rig) return rig.error();
+  const Calibration exact = simulator::exact_calibration(scene, *rig);
+  return LightField::make(*exact.lights, exact.camera, {scene.camera.width, scene.camera.height},
+                          scene.geometry.cloth_height_mm);
+}
+
+// A flat cloth through DNG files, solved by the whole product.
+Result<Json> file_row(Size size, int threads) {
+  const ScratchFolder scratch;
+  Scene scene = scene_of(GeometryKind::kFlat, size);
+  scene.material.albedo = {0.2, 0.2, 0.2};
+  const std::filesystem::path session = scratch.path() / "flat.weft";
+  const auto simulated = simulator::simulate_session(
+      scene, session, {.tiles = {.threads = threads}, .stop = {}, .progress = {}});
+  if (!simulated) return simulated.error();
+  JobContext context;
+  context.threads = threads;
+  const auto solved = app::solve_session({session, {}, {}}, {}, context);
+  if (!solved) return solved.error();
+  const auto compared =
+      app::compare_normals(solved->folder / "normal.exr", session / "truth" / "normal.exr", {});
+  if (!compared) return compared.error();
+  return Json{{"quality", "fast"},
+              {"input", "flat, 14-bit DNG to EXR"},
+              {"pixels", compared->pixels},
+              {"mean_deg", compared->mean_deg},
+              {"max_deg", compared->max_deg}};
+}
+
+}  // namespace
+
+Result<Rows> solve_exactness(const AccuracyOptions& options) {
+  const Size size = bench_size(options.megapixels);
+  const Rect all = {0, 0, size.width, size.height};
+  // The seed's method knows no shadow: a plane that every light reaches is its truth.
+  Scene plane = scene_of(GeometryKind::kTilted, size);
+  plane.geometry.tilt_deg = 15;
+  const Scene cloth = scene_of(GeometryKind::kTwill, size);
+  const Result<LightField> field = field_of(cloth);
+  if (!field) return field.error();
+  const auto lit = simulator::render_readings(plane, all, {.threads = options.threads});
+  if (!lit) return lit.error();
+  const auto woven = simulator::render_readings(cloth, all, {.threads = options.threads});
+  if (!woven) return woven.error();
+  Rows rows = {seed_row(*lit, *field), float_row(*woven, *field, 1), float_row(*woven, *field, 3)};
+  Result<Json> files = file_row(size, options.threads);
+  if (!files) return std::move(files).error();
+  rows.push_back(std::move(*files));
+  return rows;
+}
+
+Result<Rows> solve_noise(const AccuracyOptions& options) {
+  const Size size = bench_size(options.megapixels);
+  Rows rows;
+  for (const double albedo : {0.04, 0.2, 0.9}) {
+    Scene scene = scene_of(GeometryKind::kFlat, size);
+    scene.material.albedo = {albedo, albedo, albedo};
+    const Result<simulator::Rig> rig = simulator::rig_of(scene);
+    if (!rig) return rig.error();
+    const Result<LightField> field = field_of(scene);
+    if (!field) return field.error();
+    const double exposure = rig->exposure(scene.camera.iso);
+    const double e = rig->sensor.electrons_at_white, read = rig->sensor.read_noise_electrons;
+    const NoiseModel noise = {1 / (e * exposure), read * read / (e * e * exposure * exposure), 0};
+
+    // Every pixel is one trial of the centre's green photosite, where the cloth faces the camera.
+    const int x0 = size.width / 2, y0 = size.height / 2;
+    const Vec3 normal = {0, 0, 1};
+    NearLights lights = std::get<NearLights>(field->lights());
+    DistantLights here;
+    for (std::size_t k = 0; k < lights.leds.size(); ++k) {
+      const LightField::Light light = field->at(k, 1, x0, y0);
+      here.lights.push_back({light.direction, {light.strength, light.strength, light.strength}});
+    }
+    const Result<LightField> same = LightField::make(here, std::nullopt, size, 0);
+    if (!same) return same.error();
+    Image<float> readings(size, static_cast<int>(same->count()));
+    std::vector<View<const float>> views;
+    for (std::size_t k = 0; k < same->count(); ++k) {
+      const LightField::Light light = same->at(k, 1, 0, 0);
+      const double signal = albedo * light.strength * light.direction.z * exposure;
+      for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+          const auto bits = simulator::philox({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
+                                               static_cast<std::uint32_t>(k), 0},
+                                              {1, 0});
+          readings(x, y, static_cast<int>(k)) =
+              static_cast<float>(simulator::noisy(rig->sensor, signal, bits) / exposure);
+        }
+      }
+      views.emplace_back(readings.plane(static_cast<int>(k)));
+    }
+    SolvedMaps maps(size);
+    solver::least_squares_method()->solve(
+        {{0, 0, size.width, size.height}, 1, CfaPattern{}, views, &*same, noise},
+        maps.output({0, 0, size.width, size.height}));
+    double square = 0, predicted = 0, albedo_square = 0, albedo_predicted = 0;
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        square += std::pow(angle_deg(maps.normal_at(x, y), normal), 2);
+        predicted += std::pow(maps.sigma_normal_deg(x, y), 2);
+        albedo_square += std::pow(maps.albedo(x, y) - albedo, 2);
+        albedo_predicted += std::pow(maps.sigma_albedo(x, y), 2);
+      }
+    }
+    const auto pixels = static_cast<double>(size.pixels());
+    const double rms = std::sqrt(square / pixels);
+    std::vector<LightField::Light> reaching;
+    for (std::size_t k = 0; k < same->count(); ++k) reaching.push_back(same->at(k, 1, 0, 0));
+    const double bound = cramer_rao(reaching, normal, albedo, noise).rms_deg();
+    rows.push_back({{"method", "least-squares"},
+                    {"albedo", albedo},
+                    {"pixels", size.pixels()},
+                    {"rms_deg", rms},
+                    {"bound_deg", bound},
+                    {"ratio_to_bound", rms / bound},
+                    {"predicted_over_rms", std::sqrt(predicted / square)},
+                    {"albedo_predicted_over_rms", std::sqrt(albedo_predicted / albedo_square)}});
+  }
+  return rows;
+}
+
+namespace {
+
+struct Truth {
+  LoadedImage normal, albedo;
+};
+
+Result<Truth> read_truth(const std::filesystem::path& session) {
+  Result<LoadedImage> normal = read_image(session / "truth" / "normal.exr");
+  if (!normal) return std::move(normal).error();
+  Result<LoadedImage> albedo = read_image(session / "truth" / "albedo.exr");
+  if (!albedo) return std::move(albedo).error();
+  return Truth{std::move(*normal), std::move(*albedo)};
+}
+
+// Error and time of one order of work.
+Result<Json> order_row(const app::Photographs& photographs, const solver::Method& method, const Truth& truth,
+                       const JobContext& context) {
+  std::vector<float> angles;
+  double albedo_error = 0, albedo_samples = 0;
+  const auto measure = [&](const app::MapBand& band) -> Result<void> {
+    for (int y = band.rows.y0; y < band.rows.y1; ++y) {
+      for (int x = 0; x < band.rows.x1; ++x) {
+        const auto solved = [&](int c) {
+          return band.normal[static_cast<std::size_t>(c)](x, y - band.rows.y0);
+        };
+        const auto real = [&](int c) { return truth.normal.planes(x, y, c); };
+        angles.push_back(
+            static_cast<float>(angle_deg({solved(0), solved(1), solved(2)}, {real(0), real(1), real(2)})));
+      }
+    }
+    for (int y = band.albedo_rows.y0; y < band.albedo_rows.y1; ++y) {
+      for (int x = 0; x < band.albedo_rows.x1; ++x) {
+        for (std::size_t c = 0; c < 3; ++c) {
+          const float real = truth.albedo.planes(x, y, static_cast<int>(c));
+          albedo_error += std::abs(band.albedo[c](x, y - band.albedo_rows.y0) - real) / real;
+          ++albedo_samples;
+        }
+      }
+    }
+    return {};
+  };
+  const Result<double> measured = app::solve_bands(photographs, method, app::kSolveTile, context, measure);
+  if (!measured) return measured.error();
+  const double seconds = least_seconds(3, [&] {
+    (void)app::solve_bands(photographs, method, app::kSolveTile, context,
+                           [](const app::MapBand&) { return Result<void>(); });
+  });
+  const app::NormalComparison c = app::summarize(angles);
+  return Json{{"pixels", c.pixels},
+              {"mean_deg", c.mean_deg},
+              {"median_deg", c.median_deg},
+              {"p95_deg", c.p95_deg},
+              {"albedo_mean_rel", albedo_error / albedo_samples},
+              {"ns_per_pixel", seconds * 1e9 / static_cast<double>(c.pixels)}};
+}
+
+// `fast` on photographs that were demosaiced first.
+class FastOnRgb : public solver::Method {
+ public:
+  void solve(const solver::TileInput& input, const solver::TileOutput& output) const override {
+    fast_->solve(input, output);
+  }
+  bool wants_rgb() const override { return true; }
+
+ private:
+  std::unique_ptr<solver::Method> fast_ = solver::fast_method();
+};
+
+}  // namespace
+
+Result<Rows> solve_order(const AccuracyOptions& options) {
+  const ScratchFolder scratch;
+  Rows rows;
+  for (const auto& [name, kind] :
+       {std::pair{"plain", GeometryKind::kPlain}, std::pair{"twill", GeometryKind::kTwill},
+        std::pair{"satin", GeometryKind::kSatin}}) {
+    Scene scene = scene_of(kind, bench_size(options.megapixels));
+    scene.material.warp_albedo = {0.06, 0.08, 0.2};
+    scene.material.weft_albedo = {0.6, 0.5, 0.4};
+    scene.material.yarn_variation = 0.1;
+    scene.effects.noise = true;
+    const std::filesystem::path folder = scratch.path() / (std::string(name) + ".weft");
+    const auto simulated = simulator::simulate_session(
+        scene, folder, {.tiles = {.threads = options.threads}, .stop = {}, .progress = {}});
+    if (!simulated) return simulated.error();
+    const auto plan = app::plan_session({folder, {}, {}});
+    if (!plan) return plan.error();
+    JobContext context;
+    context.threads = options.threads;
+    const auto photographs = app::load_session(*plan, context);
+    if (!photographs) return photographs.error();
+    const auto truth = read_truth(folder);
+    if (!truth) return truth.error();
+    for (const bool after : {true, false}) {
+      const std::unique_ptr<solver::Method> method =
+          after ? solver::fast_method() : std::unique_ptr<solver::Method>(new FastOnRgb);
+      Result<Json> row = order_row(*photographs, *method, *truth, context);
+      if (!row) return std::move(row).error();
+      Json named = {
+          {"quality", "fast"}, {"cloth", name}, {"demosaicing", after ? "after solving" : "before solving"}};
+      named.update(*row);
+      rows.push_back(std::move(named));
+    }
+  }
+  return rows;
+}
+
+}  // namespace weft::bench

@@ -1,0 +1,418 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/solve/transport.h"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "bench/effects/scenes.h"
+#include "core/parallel.h"
+#include "core/tiles.h"
+#include "simulator/geometry/surface.h"
+#include "solver/transport/gather.h"
+#include "solver/transport/horizon.h"
+#include "solver/transport/shadows.h"
+
+namespace weft::bench {
+namespace {
+
+using namespace solver;
+using std::chrono::steady_clock;
+
+constexpr int kRepeats = 7;
+constexpr Size kBlock = {1024, 512};
+constexpr double kAlbedo = 0.5;
+
+struct Cloth {
+  double mm_per_pixel;
+  Image<float> height_mm, normal;
+
+  Normals normals_of(Rect tile) const {
+    return {normal.plane(0).crop(tile), normal.plane(1).crop(tile), normal.plane(2).crop(tile)};
+  }
+};
+
+Cloth deep_weave(Size size) {
+  const simulator::Scene scene = cloth_scene(simulator::Family::kDeep, size);
+  Cloth cloth = {scene.camera.mm_per_pixel, Image<float>(size), Image<float>(size, 3)};
+  const simulator::Surface surface = simulator::surface_of(scene.geometry);
+  parallel_for(static_cast<std::size_t>(size.height), 0, [&](std::size_t row, int) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < size.width; ++x) {
+      const auto at = simulator::point_at(surface, cloth.mm_per_pixel * x, -cloth.mm_per_pixel * y);
+      cloth.height_mm(x, y) = static_cast<float>(at.height_mm);
+      cloth.normal(x, y, 0) = static_cast<float>(at.normal.x);
+      cloth.normal(x, y, 1) = static_cast<float>(at.normal.y);
+      cloth.normal(x, y, 2) = static_cast<float>(at.normal.z);
+    }
+  });
+  return cloth;
+}
+
+/// Four LEDs 35 degrees and six 62 degrees from the vertical over the picture's centre.
+LightDirections leds_over(const Cloth& cloth) {
+  const Size size = cloth.height_mm.size();
+  const double pitch_mm = cloth.mm_per_pixel;
+  std::vector<Vec3> positions_mm;
+  for (int k = 0; k < 10; ++k) {
+    const double zenith = radians(k < 4 ? 35 : 62), azimuth = radians(k < 4 ? 90 * k : 60 * k + 15);
+    const Vec3 centre_mm = {pitch_mm * size.width / 2, -pitch_mm * size.height / 2, 0};
+    positions_mm.push_back(centre_mm + 600.0 * Vec3{std::sin(zenith) * std::cos(azimuth),
+                                                    std::sin(zenith) * std::sin(azimuth), std::cos(zenith)});
+  }
+  return {positions_mm.size(), [positions_mm, pitch_mm](std::size_t k, int x, int y) {
+            return normalized(positions_mm[k] - Vec3{pitch_mm * x, -pitch_mm * y, 0});
+          }};
+}
+
+/// Embree with nothing of ours around it, on the same heights.
+class BareEmbree {
+ public:
+  explicit BareEmbree(const HeightGrid& grid) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
+    const Rect area = grid.area();
+    const auto width = static_cast<unsigned>(area.width()), height = static_cast<unsigned>(area.height());
+    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
+    auto* xyz =
+        static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                    3 * sizeof(float), std::size_t{width} * height));
+    for (int y = area.y0; y < area.y1; ++y) {
+      for (int x = area.x0; x < area.x1; ++x) {
+        *xyz++ = static_cast<float>(x);
+        *xyz++ = static_cast<float>(-y);
+        *xyz++ = grid.relief().z_px(x, y);
+      }
+    }
+    auto* corner = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
+                                                                  RTC_FORMAT_UINT4, 4 * sizeof(unsigned),
+                                                                  std::size_t{width - 1} * (height - 1)));
+    for (unsigned y = 0; y + 1 < height; ++y) {
+      for (unsigned x = 0; x + 1 < width; ++x) {
+        const unsigned i = y * width + x;
+        for (const unsigned vertex : {i, i + 1, i + width + 1, i + width}) *corner++ = vertex;
+      }
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(scene_, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(scene_);
+  }
+  ~BareEmbree() {
+    rtcReleaseScene(scene_);
+    rtcReleaseDevice(device_);
+  }
+  BareEmbree(const BareEmbree&) = delete;
+  BareEmbree& operator=(const BareEmbree&) = delete;
+
+  double occlude_ns(std::span<const RayPacket> rays) const {
+    RTCIntersectContext singly = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    RTCIntersectContext together = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+    return std::min(ns_per_ray<RTCRayHit, 1>(
+                        rays, [&](const int*, RTCRayHit& ray) { rtcOccluded1(scene_, &singly, &ray.ray); }),
+                    ns_per_ray<RTCRayHit16, kPacket>(rays, [&](const int* active, RTCRayHit16& packet) {
+                      rtcOccluded16(active, scene_, &together, &packet.ray);
+                    }));
+  }
+
+  double intersect_ns(std::span<const RayPacket> rays) const {
+    RTCIntersectContext singly = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
+    RTCIntersectContext together = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
+    return std::min(ns_per_ray<RTCRayHit, 1>(
+                        rays, [&](const int*, RTCRayHit& ray) { rtcIntersect1(scene_, &singly, &ray); }),
+                    ns_per_ray<RTCRayHit16, kPacket>(rays, [&](const int* active, RTCRayHit16& packet) {
+                      rtcIntersect16(active, scene_, &together, &packet);
+                    }));
+  }
+
+ private:
+  static RTCIntersectContext context(RTCIntersectContextFlags flags) {
+    RTCIntersectContext made;
+    rtcInitIntersectContext(&made);
+    made.flags = flags;
+    return made;
+  }
+
+  static void fill(const RayPacket& from, RTCRayHit16& to) {
+    std::copy_n(from.start_x, kPacket, to.ray.org_x);
+    std::copy_n(from.start_y, kPacket, to.ray.org_y);
+    std::copy_n(from.start_z, kPacket, to.ray.org_z);
+    std::copy_n(from.direction_x, kPacket, to.ray.dir_x);
+    std::copy_n(from.direction_y, kPacket, to.ray.dir_y);
+    std::copy_n(from.direction_z, kPacket, to.ray.dir_z);
+    std::copy_n(from.length, kPacket, to.ray.tfar);
+    std::fill_n(to.ray.mask, kPacket, ~0U);
+    std::fill_n(to.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
+  }
+
+  static void fill(const RayPacket& from, std::size_t lane, RTCRayHit& to) {
+    to.ray.org_x = from.start_x[lane];
+    to.ray.org_y = from.start_y[lane];
+    to.ray.org_z = from.start_z[lane];
+    to.ray.dir_x = from.direction_x[lane];
+    to.ray.dir_y = from.direction_y[lane];
+    to.ray.dir_z = from.direction_z[lane];
+    to.ray.tfar = from.length[lane];
+    to.ray.mask = ~0U;
+    to.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  }
+
+  /// Times trace(active, ray or packet) alone, 64 packets at a time, over the rays that are active.
+  template <typename Ray, int kRays, typename Trace>
+  static double ns_per_ray(std::span<const RayPacket> rays, const Trace& trace) {
+    constexpr std::size_t kAtOnce = 64;
+    std::vector<Ray> ready;
+    std::vector<const int*> active;
+    double least = std::numeric_limits<double>::infinity();
+    std::int64_t traced = 0;
+    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+      auto spent = steady_clock::duration::zero();
+      traced = 0;
+      for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
+        ready.clear();
+        active.clear();
+        for (const RayPacket& packet : rays.subspan(first, std::min(kAtOnce, rays.size() - first))) {
+          traced += -std::accumulate(packet.is_active, packet.is_active + kPacket, 0);
+          if constexpr (kRays == 1) {
+            for (std::size_t lane = 0; lane < kPacket; ++lane) {
+              if (packet.is_active[lane] != 0) fill(packet, lane, ready.emplace_back());
+            }
+            active.resize(ready.size());
+          } else {
+            fill(packet, ready.emplace_back());
+            active.push_back(packet.is_active);
+          }
+        }
+        const auto begin = steady_clock::now();
+        for (std::size_t i = 0; i < ready.size(); ++i) trace(active[i], ready[i]);
+        spent += steady_clock::now() - begin;
+      }
+      least = std::min(least, std::chrono::duration<double, std::nano>(spent).count());
+    }
+    return least / static_cast<double>(traced);
+  }
+
+  RTCDevice device_;
+  RTCScene scene_;
+};
+
+template <typename T>
+std::vector<View<T>> planes_of(Image<T>& image, Rect part) {
+  std::vector<View<T>> planes;
+  for (int p = 0; p < image.planes(); ++p) planes.push_back(image.plane(p).crop(part));
+  return planes;
+}
+
+/// What an area would send back under each light by direct light alone.
+std::vector<float> direct_radiosity(const Cloth& cloth, const LightDirections& lights, Rect area) {
+  std::vector<float> values;
+  values.reserve(static_cast<std::size_t>(area.pixels()) * lights.count);
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) {
+      const Vec3 n = {static_cast<double>(cloth.normal(x, y, 0)), static_cast<double>(cloth.normal(x, y, 1)),
+                      static_cast<double>(cloth.normal(x, y, 2))};
+      for (std::size_t k = 0; k < lights.count; ++k) {
+        values.push_back(static_cast<float>(kAlbedo * std::max(dot(n, lights.at(k, x, y)), 0.0)));
+      }
+    }
+  }
+  return values;
+}
+
+struct Errors {
+  double mean = 0, rms = 0;
+};
+
+Errors errors_of(const Image<float>& found, const Image<float>& truth) {
+  Errors errors;
+  const double count = static_cast<double>(found.size().pixels()) * found.planes();
+  for (int p = 0; p < found.planes(); ++p) {
+    for (int y = 0; y < found.height(); ++y) {
+      for (int x = 0; x < found.width(); ++x) {
+        const double error = static_cast<double>(found(x, y, p)) - static_cast<double>(truth(x, y, p));
+        errors.mean += error / count;
+        errors.rms += error * error / count;
+      }
+    }
+  }
+  errors.rms = std::sqrt(errors.rms);
+  return errors;
+}
+
+double rays_in(std::span<const RayPacket> packets) {
+  double rays = 0;
+  for (const RayPacket& packet : packets) {
+    for (const int active : packet.is_active) rays -= active;
+  }
+  return rays;
+}
+
+/// A block of cloth, ready for rays, and the tiles of it that are measured.
+struct Measured {
+  const Cloth& cloth;
+  const LightDirections& lights;
+  const HeightGrid& grid;
+  Rect timed, compared;
+};
+
+Json traced_row(const char* stage, int rays_a_pixel, double seconds, std::span<const RayPacket> packets,
+                double bare_ns, Rect tile) {
+  const double rays = rays_in(packets);
+  return {{"stage", stage},
+          {"rays", rays_a_pixel},
+          {"ns_per_ray", seconds * 1e9 / rays},
+          {"bare_ns", bare_ns},
+          {"ratio", seconds * 1e9 / rays / bare_ns},
+          {"ns_per_pixel", seconds * 1e9 / static_cast<double>(tile.pixels())},
+          {"threads", 1}};
+}
+
+Result<void> add_shadows(const Measured& m, const BareEmbree& bare, int reach_px, Rows& rows) {
+  Image<std::uint32_t> bits({m.timed.width(), m.timed.height()});
+  const std::array<View<std::uint32_t>, 1> planes = {bits.plane()};
+  const Normals normals = m.cloth.normals_of(m.timed);
+  Result<void> found;
+  const double seconds = least_seconds(
+      kRepeats, [&] { found = find_visible_lights(m.grid, m.timed, normals, m.lights, reach_px, planes); });
+  if (!found) return found;
+  const auto packets = shadow_packets(m.grid, m.timed, normals, m.lights, reach_px);
+  rows.push_back(traced_row("shadows", static_cast<int>(m.lights.count), seconds, packets,
+                            bare.occlude_ns(packets), m.timed));
+  return found;
+}
+
+Result<void> add_gathers(const Measured& m, const BareEmbree& bare, Rows& rows) {
+  const std::vector<float> values = direct_radiosity(m.cloth, m.lights, m.grid.area());
+  const int count = static_cast<int>(m.lights.count);
+  const Radiosity radiosity = {m.grid.area(), count, values};
+  const auto gathered = [&](Rect tile, int rays) -> Result<Image<float>> {
+    Image<float> light({tile.width(), tile.height()}, count);
+    const auto planes = planes_of(light, {0, 0, tile.width(), tile.height()});
+    auto done = gather_light(m.grid, tile, m.cloth.normals_of(tile), radiosity, {.rays = rays}, planes);
+    if (!done) return done.error();
+    return light;
+  };
+  const auto truth = gathered(m.compared, kMostRays);
+  if (!truth) return truth.error();
+  for (const int rays : {8, 16, 32, 64, 128}) {
+    const double seconds = least_seconds(kRepeats, [&] { (void)gathered(m.timed, rays); });
+    const auto packets = gather_packets(m.grid, m.timed, m.cloth.normals_of(m.timed), {.rays = rays});
+    Json row = traced_row("gather", rays, seconds, packets, bare.intersect_ns(packets), m.timed);
+    const auto found = gathered(m.compared, rays);
+    if (!found) return found.error();
+    const Errors errors = errors_of(*found, *truth);
+    row["mean_error"] = errors.mean;
+    row["rms_error"] = errors.rms;
+    rows.push_back(std::move(row));
+  }
+  return {};
+}
+
+Result<void> add_horizons(const Measured& m, Rows& rows) {
+  const Normals normals = m.cloth.normals_of(m.compared);
+  Image<float> truth({m.compared.width(), m.compared.height()}), found(truth.size());
+  auto done = trace_openness(m.grid, m.compared, normals, {.rays = kMostRays}, truth.plane());
+  if (!done) return done;
+  for (const auto& [slices, steps] : {std::pair{4, 8}, {8, 16}}) {
+    const double seconds = least_seconds(kRepeats, [&] {
+      done = scan_openness(m.grid.relief(), m.compared, normals, {slices, steps}, found.plane());
+    });
+    if (!done) return done;
+    const Errors errors = errors_of(found, truth);
+    rows.push_back({{"stage", slices == 4 ? "openness 4 x 8" : "openness 8 x 16"},
+                    {"ns_per_pixel", seconds * 1e9 / static_cast<double>(m.compared.pixels())},
+                    {"threads", 1},
+                    {"mean_error", errors.mean},
+                    {"rms_error", errors.rms}});
+  }
+  return {};
+}
+
+/// Grid, shadows and arriving light of one block; Embree's memory for it.
+Result<std::int64_t> round_of(const Cloth& cloth, const Relief& relief, const LightDirections& lights,
+                              Rect block, int reach_px) {
+  const GatherSettings settings;
+  const auto grid = HeightGrid::build(relief, block, std::max(reach_px, settings.reach_px) + 1);
+  if (!grid) return grid.error();
+  const std::int64_t bytes = HeightGrid::bytes_in_use();
+  const Size size = {block.width(), block.height()};
+  Image<std::uint32_t> bits(size, visibility_words(lights.count));
+  Image<float> light(size, static_cast<int>(lights.count));
+  const Rect whole = {0, 0, size.width, size.height};
+  const Normals normals = cloth.normals_of(block);
+  const auto seen = find_visible_lights(*grid, block, normals, lights, reach_px, planes_of(bits, whole));
+  if (!seen) return seen.error();
+  const std::vector<float> values(static_cast<std::size_t>(grid->area().pixels()) * lights.count, 0.5f);
+  const Radiosity radiosity = {grid->area(), static_cast<int>(lights.count), values};
+  const auto done = gather_light(*grid, block, normals, radiosity, settings, planes_of(light, whole));
+  if (!done) return done.error();
+  return bytes;
+}
+
+Result<void> add_round(const TransportOptions& options, const Cloth& cloth, const Relief& relief,
+                       const LightDirections& lights, int reach_px, Rows& rows) {
+  const auto blocks = tiles_of(relief.pixels(), {.width = kBlock.width, .height = kBlock.height / 4});
+  std::vector<Result<std::int64_t>> bytes(blocks.size(), std::int64_t{0});
+  const double seconds = least_seconds(1, [&] {
+    parallel_for(blocks.size(), options.threads, [&](std::size_t i, int) {
+      bytes[i] = round_of(cloth, relief, lights, blocks[i], reach_px);
+    });
+  });
+  std::int64_t most_bytes = 0;
+  for (const auto& each : bytes) {
+    if (!each) return each.error();
+    most_bytes = std::max(most_bytes, *each);
+  }
+  const double pixels = static_cast<double>(relief.pixels().pixels());
+  rows.push_back({{"stage", "round"},
+                  {"ns_per_pixel", seconds * 1e9 / pixels},
+                  {"threads", resolved_threads(options.threads)},
+                  {"bytes_per_pixel", static_cast<double>(most_bytes) / pixels}});
+  return {};
+}
+
+}  // namespace
+
+Result<Rows> transport(const TransportOptions& options) {
+  const int side = std::max(static_cast<int>(std::sqrt(options.megapixels * 1e6 / 1.5)), 256);
+  const Size size = {side * 3 / 2, side};
+  const Cloth cloth = deep_weave(size);
+  const LightDirections lights = leds_over(cloth);
+  const auto relief = Relief::of(cloth.height_mm.plane(), cloth.mm_per_pixel);
+  if (!relief) return relief.error();
+  const int reach_px = shadow_reach(*relief, lights).reach_px;
+  const int halo_px = std::max(reach_px, GatherSettings{}.reach_px) + 1;
+  const Rect block = {0, 0, std::min(size.width, kBlock.width), std::min(size.height, kBlock.height)};
+
+  std::optional<Result<HeightGrid>> grid;
+  const std::int64_t bytes_before = HeightGrid::bytes_in_use();
+  const double build_seconds = least_seconds(kRepeats, [&] {
+    grid.reset();
+    grid = HeightGrid::build(*relief, block, halo_px);
+  });
+  if (!*grid) return grid->error();
+  const double pixels = static_cast<double>(block.pixels());
+  Rows rows = {
+      {{"stage", "grid"},
+       {"ns_per_pixel", build_seconds * 1e9 / pixels},
+       {"threads", hardware_threads()},
+       {"bytes_per_pixel", static_cast<double>(HeightGrid::bytes_in_use() - bytes_before) / pixels}}};
+
+  const BareEmbree bare(**grid);
+  const Measured measured = {cloth, lights, **grid, {64, 64, 192, 128}, {80, 80, 112, 112}};
+  if (auto done = add_shadows(measured, bare, reach_px, rows); !done) return done.error();
+  if (auto done = add_gathers(measured, bare, rows); !done) return done.error();
+  if (auto done = add_horizons(measured, rows); !done) return done.error();
+  if (auto done = add_round(options, cloth, *relief, lights, reach_px, rows); !done) return done.error();
+  return rows;
+}
+
+}  // namespace weft::bench
