@@ -6,11 +6,11 @@
 #include "app/cli/verbs.h"
 #include "app/jobs/compare.h"
 #include "app/jobs/solve.h"
-#include "bench/capture/rig_process.h"
 #include "core/files.h"
 #include "core/session.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/simulate.h"
+#include "virtual_rig/rig_process.h"
 
 namespace weft::app {
 namespace {
@@ -41,10 +41,10 @@ Result<void> scan(const DemoArguments& arguments, const simulator::Scene& scene,
                   const CommonArguments& common) {
   std::error_code failed;
   const auto rig =
-      bench::RigProcess::start({.programs = fs::read_symlink("/proc/self/exe", failed).parent_path(),
-                                .scene = arguments.scene,
-                                .folder = arguments.output / "rig",
-                                .megapixels = arguments.megapixels});
+      simulator::RigProcess::start({.programs = fs::read_symlink("/proc/self/exe", failed).parent_path(),
+                                    .scene = arguments.scene,
+                                    .folder = arguments.output / "rig",
+                                    .megapixels = arguments.megapixels});
   if (!rig) return rig.error();
   std::vector<std::string> command = {"scan",     "-o",         session.string(),
                                       "--fabric", scene.fabric, "--no-preview"};

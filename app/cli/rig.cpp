@@ -14,8 +14,8 @@
 #include "app/cli/verbs.h"
 #include "app/daemon/rig_lock.h"
 #include "app/daemon/scan_body.h"
-#include "bench/base/report.h"
 #include "capture/scan/scan.h"
+#include "core/temporary_folder.h"
 
 namespace weft::app {
 namespace {
@@ -105,7 +105,7 @@ Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& argu
                                const CommonArguments& common) {
   Result<RigDevices> devices = open_devices(rig);
   if (!devices) return std::move(devices).error();
-  const bench::ScratchFolder scratch;
+  const TemporaryFolder scratch;
   capture::ScanRequest request = request_of_rig(rig);
   request.session = scratch.path() / "test.weft";
   request.fabric = "test";

@@ -2,7 +2,6 @@
 #include "bench/base/report.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
@@ -58,17 +57,6 @@ std::string table_of(const Rows& rows) {
     }
   }
   return table;
-}
-
-ScratchFolder::ScratchFolder() {
-  static int count = 0;
-  path_ = std::filesystem::temp_directory_path() / fmt::format("weft-bench-{}-{}", getpid(), count++);
-  std::filesystem::create_directories(path_);
-}
-
-ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;
-  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace weft::bench

@@ -13,6 +13,7 @@
 #include "bench/base/report.h"
 #include "bench/base/rig.h"
 #include "core/parallel.h"
+#include "core/temporary_folder.h"
 #include "simulator/camera/dng_writer.h"
 
 namespace weft::bench {
@@ -90,7 +91,7 @@ app::Photographs grey_mosaics(const LightField& field, Size size, int threads) {
 }
 
 Result<double> unpack_seconds_a_pixel(const app::Photographs& photographs, int threads) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const auto files = write_frames(photographs, scratch.path());
   if (!files) return files.error();
   const Result<double> unpack = unpack_seconds(*files, threads);

@@ -18,6 +18,7 @@
 #include "capture/raw/decode.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "core/temporary_folder.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
 #include "simulator/targets/target.h"
@@ -175,7 +176,7 @@ void add_errors(const simulator::Scene& scene, const CameraModel& camera, const 
 }
 
 Result<Rows> rendered_rows(const CalibrationCameraBenchOptions& options) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path input = scratch.path() / "camera";
   if (Result<void> ok = make_writable_folder(input); !ok) return ok.error();
   if (Result<void> ok = write_board_file(input); !ok) return ok.error();
@@ -225,7 +226,7 @@ Result<Rows> rendered_rows(const CalibrationCameraBenchOptions& options) {
 }
 
 Result<Rows> time_rows(const CalibrationCameraBenchOptions& options) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path input = scratch.path() / "camera";
   if (Result<void> ok = make_writable_folder(input); !ok) return ok.error();
   if (Result<void> ok = write_board_file(input); !ok) return ok.error();

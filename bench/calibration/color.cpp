@@ -13,6 +13,7 @@
 #include "calibration/color/color_fit.h"
 #include "core/color_transform.h"
 #include "core/files.h"
+#include "core/temporary_folder.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
 #include "simulator/spectra/observer.h"
@@ -142,7 +143,7 @@ Result<Rows> calibration_color_table(const CalibrationColorBenchOptions& options
   const Result<Vora> span = vora_of(*spectra);
   if (!span) return span.error();
   const simulator::Scene scene = scene_of(*spectra);
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   simulator::SimulateOptions simulate;
   simulate.tiles.threads = options.threads;
   const fs::path session = scratch.path() / "session", photograph = scratch.path() / "photograph";

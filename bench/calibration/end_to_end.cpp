@@ -17,6 +17,7 @@
 #include "app/jobs/solve.h"
 #include "calibration/color/color_fit.h"
 #include "core/image_io/image_io.h"
+#include "core/temporary_folder.h"
 #include "simulator/captures.h"
 #include "simulator/scene/scene.h"
 #include "simulator/simulate.h"
@@ -264,7 +265,7 @@ class Walkthrough {
   Scene scene_;
   JobContext context_;
   simulator::SimulateOptions simulate_;
-  ScratchFolder scratch_;
+  TemporaryFolder scratch_;
   std::vector<std::pair<std::string, fs::path>> contenders_;
   std::map<std::string, double> chi_square_;  ///< of the fits of lights
   double delta_ = 0;                          ///< of the paper, as our fit found it

@@ -21,6 +21,7 @@
 #include "core/light_field.h"
 #include "core/parallel.h"
 #include "core/session.h"
+#include "core/temporary_folder.h"
 #include "simulator/simulate.h"
 #include "solver/uncertainty/calibration_sigma.h"
 
@@ -310,7 +311,7 @@ simulator::Scene sheet_scene(const PaperRig::Lie& lie, double megapixels) {
 }
 
 Result<void> time_job(const CalibrationLightsBenchOptions& options, Rows& rows) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path lights = scratch.path() / "lights";
   std::string text = "width_mm = 300\nheight_mm = 220\nreflectance = 0.9\n";
   for (std::size_t i = 0; i < kTags_mm.size(); ++i)

@@ -11,6 +11,7 @@
 #include "app/jobs/calibrate/response.h"
 #include "calibration/response/superposition.h"
 #include "core/files.h"
+#include "core/temporary_folder.h"
 #include "simulator/scene/rig.h"
 #include "simulator/simulate.h"
 
@@ -122,7 +123,7 @@ Result<void> measure(const char* name, simulator::Body body, const CalibrationRe
   JobContext context;
   context.threads = options.threads;
   for (int seed = 1; seed <= options.seeds; ++seed) {
-    const ScratchFolder scratch;
+    const TemporaryFolder scratch;
     const fs::path input = scratch.path() / "response";
     if (Result<void> ok = capture(scene_of(body, seed), rig->exposure_us, input, options.threads); !ok)
       return ok;

@@ -13,6 +13,7 @@
 #include "core/error_json.h"
 #include "core/files.h"
 #include "core/statistics.h"
+#include "core/temporary_folder.h"
 
 namespace weft::bench {
 namespace {
@@ -78,14 +79,14 @@ Result<void> add_ours(const CaptureCameraBenchOptions& options, const fs::path& 
 }  // namespace
 
 Result<std::vector<double>> bare_shots_s(const CaptureCameraBenchOptions& options) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   std::vector<double> seconds;
   if (Result<void> ok = add_bare(options, scratch.path(), seconds); !ok) return std::move(ok).error();
   return seconds;
 }
 
 Result<Rows> capture_camera_table(const CaptureCameraBenchOptions& options) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const fs::path folder = options.folder.empty() ? scratch.path() : options.folder;
   if (Result<void> made = make_writable_folder(folder); !made) return std::move(made).error();
   std::vector<double> bare, ours;

@@ -13,10 +13,13 @@
 #include <set>
 #include <thread>
 
-#include "bench/capture/rig_process.h"
+#include "bench/capture/process_size.h"
 #include "capture/raw/decode.h"
 #include "core/files.h"
+#include "core/process.h"
 #include "core/session.h"
+#include "core/temporary_folder.h"
+#include "virtual_rig/rig_process.h"
 
 namespace weft::bench {
 namespace {
@@ -271,12 +274,12 @@ class Bench {
   Result<void> start(bool usb) {
     rig_ = &rigs_[usb ? 1 : 0];
     if (*rig_) return {};
-    auto rig = RigProcess::start({.programs = options_.programs,
-                                  .scene = options_.scene,
-                                  .folder = folder_ / (usb ? "usb" : "network"),
-                                  .megapixels = options_.megapixels,
-                                  .usb = usb,
-                                  .same_noise = true});
+    auto rig = simulator::RigProcess::start({.programs = options_.programs,
+                                             .scene = options_.scene,
+                                             .folder = folder_ / (usb ? "usb" : "network"),
+                                             .megapixels = options_.megapixels,
+                                             .usb = usb,
+                                             .same_noise = true});
     if (!rig) return std::move(rig).error();
     *rig_ = std::move(*rig);
     return {};
@@ -451,8 +454,8 @@ class Bench {
 
   const FaultMatrixOptions& options_;
   fs::path folder_;
-  std::array<std::unique_ptr<RigProcess>, 2> rigs_;  ///< made when first needed
-  std::unique_ptr<RigProcess>* rig_ = nullptr;       ///< the one that a run is at
+  std::array<std::unique_ptr<simulator::RigProcess>, 2> rigs_;  ///< made when first needed
+  std::unique_ptr<simulator::RigProcess>* rig_ = nullptr;       ///< the one that a run is at
   std::unique_ptr<ChildProcess> daemon_;
   std::string said_;
   bool has_befallen_ = false;
@@ -467,7 +470,7 @@ std::vector<std::string> fault_names() {
 }
 
 Result<std::vector<FaultTally>> fault_matrix(const FaultMatrixOptions& options) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const std::vector<Run> runs = runs_of(options);
   Bench first(options, scratch.path() / "rig0");
   const Result<Truth> truth = first.truth();

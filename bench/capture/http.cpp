@@ -20,6 +20,7 @@
 #include "bench/capture/malformed_request.h"
 #include "core/descriptor.h"
 #include "core/files.h"
+#include "core/temporary_folder.h"
 
 namespace weft::bench {
 namespace {
@@ -88,7 +89,7 @@ Result<void> send_malformed(const CaptureHttpOptions& options, int port) {
 }  // namespace
 
 Result<Rows> capture_http_table(const CaptureHttpOptions& options) {
-  const ScratchFolder folder;
+  const TemporaryFolder folder;
   capture::Rig rig;
   rig.name = "bench";
   rig.scan.sessions = folder.path() / "scans";

@@ -9,11 +9,12 @@
 #include <numeric>
 
 #include "bench/capture/camera.h"
-#include "bench/capture/rig_process.h"
+#include "bench/capture/process_size.h"
 #include "capture/raw/decode.h"
 #include "capture/scan/scan.h"
 #include "core/files.h"
 #include "core/job.h"
+#include "core/temporary_folder.h"
 
 namespace weft::bench {
 namespace {
@@ -85,7 +86,7 @@ Result<OneScan> scan_once(const ScansOptions& options, const fs::path& folder) {
 }  // namespace
 
 Result<Rows> capture_scans_table(const ScansOptions& options) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const Result<double> bare = bare_s(options);
   if (!bare) return bare.error();
   Rows rows;

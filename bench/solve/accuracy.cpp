@@ -12,6 +12,7 @@
 #include "bench/base/rig.h"
 #include "bench/base/solved_maps.h"
 #include "core/image_io/image_io.h"
+#include "core/temporary_folder.h"
 #include "core/vec.h"
 #include "pipeline/bands.h"
 #include "simulator/sampling/random.h"
@@ -110,7 +111,7 @@ Result<LightField> field_of(const Scene& scene) {
 
 // A flat cloth through DNG files, solved by the whole product.
 Result<Json> file_row(Size size, int threads) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   Scene scene = scene_of(GeometryKind::kFlat, size);
   scene.material.albedo = {0.2, 0.2, 0.2};
   const std::filesystem::path session = scratch.path() / "flat.weft";
@@ -295,7 +296,7 @@ class FastOnRgb : public solver::Method {
 }  // namespace
 
 Result<Rows> solve_order(const AccuracyOptions& options) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   Rows rows;
   for (const auto& [name, kind] :
        {std::pair{"plain", GeometryKind::kPlain}, std::pair{"twill", GeometryKind::kTwill},

@@ -13,6 +13,7 @@
 #include "bench/base/rig.h"
 #include "core/parallel.h"
 #include "core/session.h"
+#include "core/temporary_folder.h"
 #include "simulator/simulate.h"
 
 namespace weft::bench {
@@ -61,7 +62,7 @@ Result<double> write_seconds(const fs::path& maps, const fs::path& folder) {
 }  // namespace
 
 Result<Rows> end_to_end(const EndToEndOptions& options) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const Size size = bench_size(options.megapixels);
   const int threads = resolved_threads(options.threads);
   simulator::Scene scene;

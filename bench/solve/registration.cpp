@@ -7,6 +7,7 @@
 
 #include "app/jobs/session_input.h"
 #include "core/image_io/image_io.h"
+#include "core/temporary_folder.h"
 #include "core/vec.h"
 #include "pipeline/bands.h"
 #include "pipeline/shifts.h"
@@ -76,7 +77,7 @@ Result<NormalError> error_of(const app::Photographs& photographs, const Image<fl
 }
 
 Result<Json> row_of(const char* name, Family family, double mm_per_pixel, const JobContext& context) {
-  const ScratchFolder scratch;
+  const TemporaryFolder scratch;
   const simulator::Scene scene = scene_of(family, mm_per_pixel, true);
   Result<app::Photographs> still =
       photograph(scene_of(family, mm_per_pixel, false), scratch.path() / "still.weft", context);

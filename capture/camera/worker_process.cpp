@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "core/files.h"
+#include "core/process.h"
 
 namespace weft::capture {
 namespace {
@@ -87,8 +88,7 @@ void turn_over(const std::filesystem::path& log) {
 }  // namespace
 
 std::filesystem::path weft_camera_program() {
-  std::error_code failed;
-  return std::filesystem::read_symlink("/proc/self/exe", failed).parent_path() / "weft-camera";
+  return program_beside("weft-camera");
 }
 
 Result<std::unique_ptr<WorkerProcess>> WorkerProcess::start(const std::filesystem::path& program,

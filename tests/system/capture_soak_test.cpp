@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/capture/rig_process.h"
 #include "core/json_document.h"
+#include "virtual_rig/rig_process.h"
 
 namespace weft {
 namespace {
@@ -28,11 +28,11 @@ class CaptureSoak : public testing::Test {
   /// The rows of `weft bench capture --part PART --runs N`.
   Json rows(const std::string& part, int runs, double megapixels, double most_s) {
     const auto rig =
-        bench::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
-                                  .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
-                                  .folder = folder_ / "rig",
-                                  .megapixels = megapixels,
-                                  .same_noise = true});
+        simulator::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
+                                      .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
+                                      .folder = folder_ / "rig",
+                                      .megapixels = megapixels,
+                                      .same_noise = true});
     EXPECT_TRUE(rig) << rig.error().message();
     if (!rig) return Json::array();
     const auto weft = (*rig)->weft(

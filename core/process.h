@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+
+namespace weft {
+
+/// Another program of weft, where it is installed: beside the running one.
+std::filesystem::path program_beside(const std::string& name);
+
+/// Becomes `program` with these arguments: its output and exit code are this process's. Returns only where
+/// that fails. kNoInput.
+Error become(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+
+/// A program that runs beside this one, killed with this object if it still does.
+class ChildProcess {
+ public:
+  /// Standard output and error go to `log`; empty: to this one's standard error. `environment` is NAME=value
+  /// on top of this process's. kNoInput.
+  static Result<std::unique_ptr<ChildProcess>> start(const std::vector<std::string>& command,
+                                                     const std::vector<std::string>& environment,
+                                                     const std::filesystem::path& log);
+  ~ChildProcess();
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  pid_t pid() const { return pid_; }
+  bool runs();
+  void signal(int number) const;
+  /// Its exit code, 128 + the signal that killed it; nothing where it still runs after `most_s`.
+  std::optional<int> wait(double most_s);
+  /// What it has printed.
+  std::string said() const;
+
+ private:
+  ChildProcess(pid_t pid, std::filesystem::path log) : pid_(pid), log_(std::move(log)) {}
+
+  pid_t pid_;
+  std::filesystem::path log_;
+  std::optional<int> code_;
+};
+
+}  // namespace weft
