@@ -4,18 +4,36 @@
 namespace weft::solver {
 
 std::span<const MethodName> method_names() {
-  static constexpr std::array<MethodName, 11> kNames = {
-      {{"preview", true, false, &least_squares_method, Extent::kHalfSize},
-       {"fast", true, false, &fast_method},
-       {"standard", true, false, &standard_method},
-       {"robust", true, false, &robust_method},
-       {"reference", true, false, &exact_method, Extent::kWholeFrame},
-       {"seed", false, true, &seed_method},
-       {"least-squares", false, true, &least_squares_method},
-       {"wls", false, false, &weighted_method},
-       {"l1", false, false, &least_absolute_method},
-       {"sbl", false, false, &sparse_method},
-       {"lts", false, false, &trimmed_method}}};
+  static constexpr std::array kNames = {
+      MethodName{.name = "preview",
+                 .help = "half size, no masks",
+                 .is_quality = true,
+                 .make = &least_squares_method,
+                 .extent = Extent::kHalfSize},
+      MethodName{
+          .name = "fast", .help = "least squares without shadows", .is_quality = true, .make = &fast_method},
+      MethodName{.name = "standard",
+                 .help = "weighted, misfits rejected; default",
+                 .is_quality = true,
+                 .make = &standard_method},
+      MethodName{.name = "robust", .help = "for highlights", .is_quality = true, .make = &robust_method},
+      MethodName{.name = "reference",
+                 .help = "in double, shadows and light between yarns taken out where the cloth needs it",
+                 .is_quality = true,
+                 .make = &exact_method,
+                 .extent = Extent::kWholeFrame},
+      MethodName{.name = "seed",
+                 .help = "four systems a pixel by SVD, after demosaicing",
+                 .keeps_clipped = true,
+                 .make = &seed_method},
+      MethodName{.name = "least-squares",
+                 .help = "every valid reading",
+                 .keeps_clipped = true,
+                 .make = &least_squares_method},
+      MethodName{.name = "wls", .help = "weighted", .make = &weighted_method},
+      MethodName{.name = "l1", .help = "least absolute residuals", .make = &least_absolute_method},
+      MethodName{.name = "sbl", .help = "sparse errors", .make = &sparse_method},
+      MethodName{.name = "lts", .help = "least trimmed squares", .make = &trimmed_method}};
   return kNames;
 }
 

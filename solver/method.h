@@ -106,12 +106,13 @@ enum class Extent { kTiles, kHalfSize, kWholeFrame };
 
 /// Levels and methods by the name a person gives them.
 struct MethodName {
-  const char* name;
-  bool is_quality;  ///< a level of --quality; else a method of --method
+  const char* name = "";
+  const char* help = "";    ///< in a few words
+  bool is_quality = false;  ///< a level of --quality; else a method of --method
   /// Takes the clipped values of developed photographs at their word, so that it can be held against
   /// published figures. Saturated raw counts enter no method.
-  bool keeps_clipped;
-  std::unique_ptr<Method> (*make)();
+  bool keeps_clipped = false;
+  std::unique_ptr<Method> (*make)() = nullptr;
   Extent extent = Extent::kTiles;
 };
 std::span<const MethodName> method_names();
