@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "app/cli/calibrate.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/exit_code.h"
@@ -12,44 +16,6 @@
 
 namespace weft::app {
 namespace {
-
-Result<CalibrateOutcome> run_step(const CalibrateCameraOptions& options, const JobContext& context) {
-  return calibrate_camera(options, context);
-}
-Result<CalibrateOutcome> run_step(const CalibrateResponseOptions& options, const JobContext& context) {
-  return calibrate_response(options, context);
-}
-Result<CalibrateOutcome> run_step(const CalibrateColorOptions& options, const JobContext& context) {
-  return calibrate_color(options, context);
-}
-
-Result<CalibrateOutcome> run_step(const CalibrateLightsOptions& options, const JobContext& context) {
-  return calibrate_lights(options, context);
-}
-Result<CalibrateOutcome> run_step(const CalibrateCheckOptions& options, const JobContext& context) {
-  if (options.input.empty()) {
-    return Error{ErrorKind::kUsage, "nothing to check", "weft calibrate check", "neither input nor --session",
-                 "name a session of a sheet, a folder of them, or a scan by --session"};
-  }
-  return calibrate_check(options, context);
-}
-Result<CalibrateOutcome> run_step(const CheckRigOptions& options, const JobContext& context) {
-  return calibrate_check_rig(options, context);
-}
-Result<CalibrateOutcome> run_step(const CalibratePatchesOptions& options, const JobContext& context) {
-  return calibrate_patches(options, context);
-}
-Result<CalibrateOutcome> run_step(const CalibrateGreyOptions& options, const JobContext& context) {
-  return calibrate_grey(options, context);
-}
-Result<CalibrateOutcome> run_step(const CalibrateUpdateOptions& options, const JobContext& context) {
-  return calibrate_update(options, context);
-}
-Result<CalibrateOutcome> run_step(const CalibrateHistoryOptions& options, const JobContext& context) {
-  Result<CalibrationHistory> history = calibrate_history(options, context);
-  if (!history) return std::move(history).error();
-  return CalibrateOutcome{options.output, {}, std::move(history->report), std::move(history->warnings)};
-}
 
 // A table of a report in columns of even width.
 void print_table(const ReportTable& table) {
@@ -96,25 +62,46 @@ void print_outcome(const CalibrateOutcome& outcome, const CommonArguments& commo
   }
 }
 
-}  // namespace
-
-Result<int> run_calibrate(const CalibrateArguments& arguments, const CommonArguments& common) {
-  const Result<CalibrateOutcome> outcome = [&] {
-    ProgressLine line(common.quiet);
-    const JobContext context = {common.threads, stop_on_signal(), line.callback()};
-    return std::visit([&](const auto& options) { return run_step(options, context); }, arguments);
-  }();
-  if (!outcome) return outcome.error();
-  print_outcome(*outcome, common);
-  for (const Verdict& verdict : outcome->report.verdicts) {
+void print_notes(const CalibrateOutcome& outcome) {
+  for (const Verdict& verdict : outcome.report.verdicts) {
     note(fmt::format("{}.{}", verdict.text, verdict.remedy.empty() ? "" : " To do: " + verdict.remedy + "."));
   }
-  for (const std::string& warning : outcome->warnings) note(warning);
-  const bool is_check = std::holds_alternative<CalibrateCheckOptions>(arguments) ||
-                        std::holds_alternative<CheckRigOptions>(arguments);
-  if (is_check && !outcome->report.verdicts.empty()) return kBadDataError;  // its answer is no
-  const bool warned = !outcome->report.verdicts.empty() || !outcome->warnings.empty();
-  return common.strict && warned ? kDoneWithWarnings : kDone;
+  for (const std::string& warning : outcome.warnings) note(warning);
+}
+
+Run run_job(Options& options, CalibrateJob job, ExitCode of_verdicts) {
+  const auto strict = std::make_shared<bool>(false);
+  options.add_flag("--strict", strict.get(), "Exit with 2 where the report has something to say");
+  return [strict, job = std::move(job), of_verdicts](const CommonArguments& common) -> Result<int> {
+    const Result<CalibrateOutcome> outcome = [&] {
+      ProgressLine line(common.quiet);
+      return job({common.threads, stop_on_signal(), line.callback()});
+    }();
+    if (!outcome) return outcome.error();
+    print_outcome(*outcome, common);
+    print_notes(*outcome);
+    if (!outcome->report.verdicts.empty() && of_verdicts != kDone) return of_verdicts;
+    const bool warned = !outcome->report.verdicts.empty() || !outcome->warnings.empty();
+    return *strict && warned ? kDoneWithWarnings : kDone;
+  };
+}
+
+}  // namespace
+
+Run run_step(Options& options, CalibrateJob job) {
+  return run_job(options, std::move(job), kDone);
+}
+
+Run run_check(Options& options, CalibrateJob job) {
+  return run_job(options, std::move(job), kBadDataError);
+}
+
+Verb calibrate_verb() {
+  return {.name = "calibrate",
+          .help = "Measure a rig; each step writes a new calibration",
+          .verbs = {calibrate_camera_verb(), calibrate_response_verb(), calibrate_color_verb(),
+                    calibrate_lights_verb(), calibrate_check_verb(), calibrate_grey_verb(),
+                    calibrate_patches_verb(), calibrate_update_verb(), calibrate_history_verb()}};
 }
 
 }  // namespace weft::app

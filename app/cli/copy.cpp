@@ -1,12 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <filesystem>
+#include <memory>
+
 #include "app/cli/exit_code.h"
+#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "capture/scan/second_copy.h"
 
 namespace weft::app {
+namespace {
 
-Result<int> run_copy(const CopyArguments& arguments, const CommonArguments& common) {
+struct CopyArguments {
+  std::filesystem::path session;
+  std::filesystem::path to;  ///< folder; empty: where the session says that its copy belongs
+};
+
+Result<int> copy(const CopyArguments& arguments, const CommonArguments& common) {
   const Result<std::filesystem::path> copy = capture::copy_later(arguments.session, arguments.to);
   if (!copy) return copy.error();
   const auto one_disk = capture::warning_of_one_disk(arguments.session, *copy);
@@ -17,6 +27,19 @@ Result<int> run_copy(const CopyArguments& arguments, const CommonArguments& comm
     print(copy->string());
   }
   return kDone;
+}
+
+Run add(Options& options) {
+  const auto a = std::make_shared<CopyArguments>();
+  options.add("session", &a->session, "Session folder, NAME.weft").required();
+  options.add("--to", &a->to, "Folder on another disk; default the one it was scanned with");
+  return [a](const CommonArguments& common) { return copy(*a, common); };
+}
+
+}  // namespace
+
+Verb copy_verb() {
+  return {"copy", "Make or verify the second copy of a finished session", add};
 }
 
 }  // namespace weft::app

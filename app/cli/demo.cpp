@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "app/cli/exit_code.h"
+#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/compare.h"
 #include "app/jobs/solve.h"
 #include "core/files.h"
+#include "core/process.h"
 #include "core/session.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/simulate.h"
@@ -16,6 +20,12 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+struct DemoArguments {
+  fs::path output = "demo";
+  std::optional<double> megapixels;
+  fs::path scene;
+};
 
 Result<std::uint64_t> bytes_in(const fs::path& folder) {
   std::uint64_t bytes = 0;
@@ -39,12 +49,10 @@ struct Outcome {
 /// `weft scan` on a virtual rig that lasts for it, and the truth beside what it photographed.
 Result<void> scan(const DemoArguments& arguments, const simulator::Scene& scene, const fs::path& session,
                   const CommonArguments& common) {
-  std::error_code failed;
-  const auto rig =
-      simulator::RigProcess::start({.programs = fs::read_symlink("/proc/self/exe", failed).parent_path(),
-                                    .scene = arguments.scene,
-                                    .folder = arguments.output / "rig",
-                                    .megapixels = arguments.megapixels});
+  const auto rig = simulator::RigProcess::start({.programs = program_beside("weft").parent_path(),
+                                                 .scene = arguments.scene,
+                                                 .folder = arguments.output / "rig",
+                                                 .megapixels = arguments.megapixels});
   if (!rig) return rig.error();
   std::vector<std::string> command = {"scan",     "-o",         session.string(),
                                       "--fabric", scene.fabric, "--no-preview"};
@@ -134,9 +142,7 @@ Json json_of(const Outcome& o) {
       {"map_bytes", o.map_bytes}};
 }
 
-}  // namespace
-
-Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& common) {
+Result<int> demo(const DemoArguments& arguments, const CommonArguments& common) {
   Result<simulator::Scene> scene = simulator::read_scene(arguments.scene);
   if (!scene) return std::move(scene).error();
   if (arguments.megapixels) simulator::resize(scene->camera, *arguments.megapixels);
@@ -154,6 +160,21 @@ Result<int> run_demo(const DemoArguments& arguments, const CommonArguments& comm
     print_table(*scene, *outcome);
   }
   return kDone;
+}
+
+Run add(Options& options) {
+  const auto a = std::make_shared<DemoArguments>();
+  options.add("scene", &a->scene, "Scene file (TOML)").required();
+  options.add("-o,--output", &a->output, "Folder for the session and its maps").shows_default();
+  options.add("--megapixels", &a->megapixels, "Size instead of the scene's, millions of pixels")
+      .in_range(0.01, 200.0);
+  return [a](const CommonArguments& common) { return demo(*a, common); };
+}
+
+}  // namespace
+
+Verb demo_verb() {
+  return {"demo", "Scan a simulated cloth, solve it and show the result", add};
 }
 
 }  // namespace weft::app

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_devices.h"
+#include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/daemon/rig_lock.h"
@@ -86,10 +88,8 @@ std::vector<Finding> examine(const capture::Rig& rig) {
   return found;
 }
 
-}  // namespace
-
-Result<int> run_doctor(const DoctorArguments& arguments, const CommonArguments& common) {
-  const Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
+Result<int> examine_and_print(const std::filesystem::path& rig_file, const CommonArguments& common) {
+  const Result<capture::Rig> rig = capture::read_rig(find_rig(rig_file));
   if (!rig) return rig.error();
   const std::vector<Finding> found = examine(*rig);
   Json rows = Json::array();
@@ -103,6 +103,18 @@ Result<int> run_doctor(const DoctorArguments& arguments, const CommonArguments& 
   if (common.json) print_json({{"rig", rig->name}, {"findings", rows}});
   const auto first = std::find_if(found.begin(), found.end(), is_fault);
   return first == found.end() ? kDone : exit_code_of(first->kind);
+}
+
+Run add(Options& options) {
+  const auto rig_file = std::make_shared<std::filesystem::path>();
+  add_rig_file(options, *rig_file);
+  return [rig_file](const CommonArguments& common) { return examine_and_print(*rig_file, common); };
+}
+
+}  // namespace
+
+Verb doctor_verb() {
+  return {"doctor", "What is wrong with this machine's set-up for a rig, and the command that mends it", add};
 }
 
 }  // namespace weft::app

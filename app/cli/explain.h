@@ -3,7 +3,8 @@
 
 #include <string>
 
-#include "app/cli/arguments.h"
+#include "app/cli/solve.h"
+#include "app/cli/verb.h"
 #include "core/result.h"
 
 namespace weft::app {

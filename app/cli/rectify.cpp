@@ -3,13 +3,17 @@
 
 #include <fmt/format.h>
 
+#include <memory>
+
 #include "app/cli/exit_code.h"
+#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 
 namespace weft::app {
+namespace {
 
-Result<int> run_rectify(const RectifyOptions& options, const CommonArguments& common) {
+Result<int> rectify(const RectifyOptions& options, const CommonArguments& common) {
   const Result<RectifyReport> report = [&] {
     ProgressLine line(common.quiet);
     return rectify_session(options, {common.threads, stop_on_signal(), line.callback()});
@@ -28,6 +32,28 @@ Result<int> run_rectify(const RectifyOptions& options, const CommonArguments& co
                           : fmt::format("  {} x {} pixels of {:.5g} mm", d["width"].get<int>(),
                                         d["height"].get<int>(), d["mm_per_pixel"].get<double>()));
   return kDone;
+}
+
+Run add(Options& options) {
+  const auto a = std::make_shared<RectifyOptions>();
+  options.add("session", &a->session, "Session folder, NAME.weft").required();
+  options.add("--solve", &a->solve, "Id of the solve; default the newest complete one");
+  options.add("--calibration", &a->calibration, "Calibration folder; default the session's own");
+  options.add("-o,--output", &a->output, "Folder for the maps; default SESSION/rectified/ID");
+  options.add("--mm-per-pixel", &a->mm_per_pixel, "Of the grid; default what the camera sees").above_zero();
+  options.add("--turn", &a->turn_deg, "Degrees that the grid is turned, counterclockwise from above")
+      .in_range(-360.0, 360.0)
+      .shows_default();
+  options.add("--compress", &a->compression, "Of EXR files: none, zip, piz")
+      .one_of({"none", "zip", "piz"})
+      .shows_default();
+  return [a](const CommonArguments& common) { return rectify(*a, common); };
+}
+
+}  // namespace
+
+Verb rectify_verb() {
+  return {"rectify", "Put the maps of a solve on a square grid of the table, lens removed", add};
 }
 
 }  // namespace weft::app

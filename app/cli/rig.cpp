@@ -6,10 +6,12 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <memory>
 #include <thread>
 
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_devices.h"
+#include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/daemon/rig_lock.h"
@@ -22,11 +24,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct RigArguments {
+  fs::path rig;
+  std::vector<int> leds;  ///< of `lights` and `test`; empty: all
+  double seconds = 1;     ///< of `lights`, each LED
+};
+
 std::vector<int> chosen_leds(const capture::Rig& rig, const RigArguments& arguments) {
   return arguments.leds.empty() ? request_of_rig(rig).leds : arguments.leds;
 }
 
-Result<int> show_status(const capture::Rig& rig, const CommonArguments& common) {
+Result<int> show_status(const capture::Rig& rig, const RigArguments&, const CommonArguments& common) {
   const auto board = open_board(rig);
   if (!board) return board.error();
   const capture::BoardFacts& lamps = (*board)->facts();
@@ -137,22 +145,49 @@ Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& argu
   return kDone;
 }
 
+using Trial = Result<int> (*)(const capture::Rig& rig, const RigArguments& arguments,
+                              const CommonArguments& common);
+
+/// A trial of a rig that nobody else has meanwhile.
+Run run_alone(Trial trial, const std::shared_ptr<RigArguments>& a) {
+  return [trial, a](const CommonArguments& common) -> Result<int> {
+    const Result<capture::Rig> rig = capture::read_rig(find_rig(a->rig));
+    if (!rig) return rig.error();
+    const Result<RigLock> lock = RigLock::take(*rig);
+    if (!lock) return lock.error();
+    return trial(*rig, *a, common);
+  };
+}
+
+Run add_status(Options& options) {
+  const auto a = std::make_shared<RigArguments>();
+  add_rig_file(options, a->rig);
+  return run_alone(show_status, a);
+}
+
+Run add_lights(Options& options) {
+  const auto a = std::make_shared<RigArguments>();
+  add_rig_file(options, a->rig);
+  add_leds(options, a->leds);
+  options.add("--seconds", &a->seconds, "That each LED is lit, s").shows_default().in_range(0.1, 30.0);
+  return run_alone(light_in_turn, a);
+}
+
+Run add_test(Options& options) {
+  const auto a = std::make_shared<RigArguments>();
+  add_rig_file(options, a->rig);
+  add_leds(options, a->leds);
+  return run_alone(photograph_in_turn, a);
+}
+
 }  // namespace
 
-Result<int> run_rig(const RigArguments& arguments, const CommonArguments& common) {
-  const Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
-  if (!rig) return rig.error();
-  const Result<RigLock> lock = RigLock::take(*rig);
-  if (!lock) return lock.error();
-  switch (arguments.task) {
-    case RigTask::kStatus:
-      return show_status(*rig, common);
-    case RigTask::kLights:
-      return light_in_turn(*rig, arguments, common);
-    case RigTask::kTest:
-      return photograph_in_turn(*rig, arguments, common);
-  }
-  return kDone;
+Verb rig_verb() {
+  return {.name = "rig",
+          .help = "Try the parts of a rig",
+          .verbs = {{"status", "What board and camera say of themselves", add_status},
+                    {"lights", "Light the LEDs one after another", add_lights},
+                    {"test", "Photograph the table under each LED: is each where it should be?", add_test}}};
 }
 
 }  // namespace weft::app

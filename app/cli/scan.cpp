@@ -5,12 +5,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <optional>
 #include <thread>
 #include <utility>
 
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_devices.h"
+#include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/daemon/error_json.h"
@@ -28,6 +30,18 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto kBetweenQuestions = std::chrono::milliseconds(500);
+
+struct ScanArguments {
+  fs::path rig;
+  fs::path output;  ///< session; empty: named by the rig file's template
+  std::string fabric;
+  std::vector<int> leds;  ///< empty: all
+  std::optional<double> exposure_us, bracket, cloth_height_mm;
+  std::vector<std::string> metadata;  ///< "key=value"
+  bool repeat = true;
+  bool preview = true;  ///< a quick solve at the end
+  bool dry_run = false;
+};
 
 /// Who scans: the daemon that owns the rig, or one in this process for as long as this scan takes.
 struct Scanner {
@@ -200,10 +214,33 @@ fs::path solve_preview(const fs::path& session, const CommonArguments& common, J
   return {};
 }
 
-}  // namespace
+/// Scans. Returns the rig's last status, once nothing of this process holds the rig any more.
+Result<Json> photograph(const capture::Rig& rig, const std::optional<std::string>& owner, const Json& body,
+                        const CommonArguments& common) {
+  const Result<Scanner> scanner = find_scanner(rig, owner);
+  if (!scanner) return scanner.error();
+  const Result<Json> begun = scanner->client.post("/api/v1/scan", body);
+  if (!begun) return begun.error();
+  if (!body.contains("session")) say_choice(*begun, rig);
+  return follow(scanner->client, begun->at("session"), common);
+}
 
-Result<int> run_scan(const ScanArguments& said, const CommonArguments& common) {
-  ScanArguments arguments = said;
+void print_outcome(const fs::path& session, const Json& status, const Json& warnings, const fs::path& sheet,
+                   const CommonArguments& common) {
+  if (common.json) {
+    print_json({{"session", session.string()},
+                {"frames", status["frames"]},
+                {"exposure_us", status["exposure_us"]},
+                {"warnings", warnings},
+                {"preview", sheet.string()}});
+    return;
+  }
+  print(session.string());
+  for (const Json& warning : warnings) print("  " + warning.get<std::string>());
+  if (!sheet.empty()) print("  look at " + sheet.string());
+}
+
+Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
   // "NAME.weft/", as a shell completes it.
   if (!arguments.output.has_filename()) arguments.output = arguments.output.parent_path();
   Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
@@ -218,17 +255,9 @@ Result<int> run_scan(const ScanArguments& said, const CommonArguments& common) {
     rig->scan.sessions = fs::absolute(arguments.output).parent_path();
   }
   if (arguments.dry_run) return name_only(*rig, *body, common);
-  Json status;
-  {
-    const Result<Scanner> scanner = find_scanner(*rig, *owner);
-    if (!scanner) return scanner.error();
-    const Result<Json> begun = scanner->client.post("/api/v1/scan", *body);
-    if (!begun) return begun.error();
-    if (arguments.output.empty()) say_choice(*begun, *rig);
-    Result<Json> ended = follow(scanner->client, begun->at("session"), common);
-    if (!ended) return std::move(ended).error();
-    status = std::move(*ended);
-  }
+  Result<Json> ended = photograph(*rig, *owner, *body, common);
+  if (!ended) return std::move(ended).error();
+  Json& status = *ended;
   if (!status["error"].is_null())
     return error_of_document(Json{{"error", status["error"]}}.dump(), rig->name);
   const fs::path session = rig->scan.sessions / (status["session"].get<std::string>() + ".weft");
@@ -240,18 +269,41 @@ Result<int> run_scan(const ScanArguments& said, const CommonArguments& common) {
   }
   Json warnings = status["warnings"];
   const fs::path sheet = arguments.preview ? solve_preview(session, common, warnings) : fs::path();
-  if (common.json) {
-    print_json({{"session", session.string()},
-                {"frames", status["frames"]},
-                {"exposure_us", status["exposure_us"]},
-                {"warnings", warnings},
-                {"preview", sheet.string()}});
-    return kDone;
-  }
-  print(session.string());
-  for (const Json& warning : warnings) print("  " + warning.get<std::string>());
-  if (!sheet.empty()) print("  look at " + sheet.string());
+  print_outcome(session, status, warnings, sheet, common);
   return kDone;
+}
+
+Run add(Options& options) {
+  const auto a = std::make_shared<ScanArguments>();
+  add_rig_file(options, a->rig);
+  options.add("-o,--output", &a->output,
+              "Session folder, NAME.weft, new or unfinished; default the one that the same command left "
+              "unfinished in the last hour, else a new one by the rig file's session_name");
+  options.add("--fabric", &a->fabric, "Name of the cloth");
+  add_leds(options, a->leds);
+  options.add("--exposure", &a->exposure_us, "Shutter time, us; default metered for this cloth")
+      .in_range(1.0, 1e9);
+  options
+      .add("--bracket", &a->bracket,
+           "Each LED once more at so many times the exposure, 0.001 to 100: for cloth that one "
+           "exposure cannot hold")
+      .in_range(0.001, 100.0);
+  options
+      .add("--height", &a->cloth_height_mm,
+           "Of the cloth's surface above the table, mm; default the rig file's")
+      .in_range(-1000.0, 1000.0);
+  options.add("--metadata", &a->metadata, "KEY=VALUE to keep with the session: id, weight, side, notes");
+  options.add_flag("!--no-repeat", &a->repeat,
+                   "Do not light the first LED once more at the end, to see drift");
+  options.add_flag("!--no-preview", &a->preview, "Do not solve a quick preview at the end");
+  options.add_flag("--dry-run", &a->dry_run, "Only say which session would be made or gone on with");
+  return [a](const CommonArguments& common) { return scan(*a, common); };
+}
+
+}  // namespace
+
+Verb scan_verb() {
+  return {"scan", "Photograph a cloth under each LED; run again, it finishes a scan that was cut short", add};
 }
 
 }  // namespace weft::app

@@ -3,10 +3,13 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <memory>
+#include <optional>
 #include <thread>
 
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_devices.h"
+#include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/daemon/client.h"
@@ -19,6 +22,12 @@ namespace weft::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+struct ServeArguments {
+  std::filesystem::path rig;        ///< rig.toml; empty: found as find_rig() says
+  std::optional<std::string> host;  ///< in place of what the rig file says
+  std::optional<int> port;
+};
 
 constexpr auto kTick = std::chrono::milliseconds(50);
 
@@ -54,9 +63,7 @@ class Watchdog {
   Clock::time_point next_ = {};
 };
 
-}  // namespace
-
-Result<int> run_serve(const ServeArguments& arguments, const CommonArguments& common) {
+Result<int> serve(const ServeArguments& arguments, const CommonArguments& common) {
   const std::stop_token stop = stop_on_signal();
   Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
   if (!rig) return std::move(rig).error();
@@ -81,6 +88,22 @@ Result<int> run_serve(const ServeArguments& arguments, const CommonArguments& co
   // does not answer is no reason to stay.
   note("weft: a device did not answer in time; the lights go off by the board's own timer");
   std::_Exit(kDone);
+}
+
+Run add(Options& options) {
+  const auto a = std::make_shared<ServeArguments>();
+  add_rig_file(options, a->rig);
+  options.add("--host", &a->host,
+              "Address to listen on; default the rig file's, 127.0.0.1. Any other needs a token");
+  options.add("--port", &a->port, "Port to listen on; 0 is any free one; default the rig file's, 8470")
+      .in_range(0, 65535);
+  return [a](const CommonArguments& common) { return serve(*a, common); };
+}
+
+}  // namespace
+
+Verb serve_verb() {
+  return {"serve", "Own a rig and answer over HTTP (docs/http.md)", add};
 }
 
 }  // namespace weft::app

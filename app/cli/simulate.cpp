@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <optional>
 
 #include "app/cli/exit_code.h"
+#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "core/files.h"
@@ -21,6 +24,15 @@ namespace {
 using simulator::LeftOut;
 using simulator::PassCost;
 using simulator::Plan;
+
+struct SimulateArguments {
+  std::filesystem::path scene;
+  std::filesystem::path output;
+  std::optional<int> led;  ///< one frame alone: a LED from 1, or 0 for the dark shot
+  bool explain = false;
+  bool captures = false;           ///< what calibrating the scene's rig needs, instead of one scan
+  std::vector<std::string> parts;  ///< of the captures; empty: all
+};
 
 constexpr double kWorthTelling_s = 0.05;
 
@@ -135,25 +147,15 @@ Result<int> run_captures(const simulator::Scene& scene, const SimulateArguments&
   return kDone;
 }
 
-}  // namespace
-
-Result<int> run_simulate(const SimulateArguments& arguments, const CommonArguments& common) {
-  const Result<simulator::Scene> scene = simulator::read_scene(arguments.scene);
-  if (!scene) return scene.error();
-  ProgressLine line(common.quiet);
-  simulator::SimulateOptions options;
-  options.tiles.threads = common.threads;
-  options.stop = stop_on_signal();
-  options.progress = [&](int done, int parts) { line.update("simulate", static_cast<double>(done) / parts); };
-  if (arguments.led) return run_frame(*scene, arguments, common, options);
-  if (arguments.captures) return run_captures(*scene, arguments, common, options);
+Result<int> run_session(const simulator::Scene& scene, const SimulateArguments& arguments,
+                        const CommonArguments& common, const simulator::SimulateOptions& options) {
   if (arguments.explain && !common.json) {
-    const Result<Explanation> explanation = explain(*scene);
+    const Result<Explanation> explanation = explain(scene);
     if (!explanation) return explanation.error();
-    print_plan(*explanation, *scene);
+    print_plan(*explanation, scene);
   }
   const Result<simulator::SimulationReport> report =
-      simulator::simulate_session(*scene, arguments.output, options);
+      simulator::simulate_session(scene, arguments.output, options);
   if (!report) return report.error();
   const std::string session = std::filesystem::absolute(arguments.output).lexically_normal().string();
   if (common.json) {
@@ -168,9 +170,58 @@ Result<int> run_simulate(const SimulateArguments& arguments, const CommonArgumen
   }
   if (arguments.explain) print_costs(report->passes);
   print(fmt::format("{}: {} frames of {} x {} at {:.0f} us, rendered in {:.1f} s, written in {:.1f} s",
-                    session, report->frames, scene->camera.width, scene->camera.height, report->exposure_us,
+                    session, report->frames, scene.camera.width, scene.camera.height, report->exposure_us,
                     report->render_seconds, report->write_seconds));
   return kDone;
+}
+
+Result<int> simulate(const SimulateArguments& arguments, const CommonArguments& common) {
+  const Result<simulator::Scene> scene = simulator::read_scene(arguments.scene);
+  if (!scene) return scene.error();
+  ProgressLine line(common.quiet);
+  simulator::SimulateOptions options;
+  options.tiles.threads = common.threads;
+  options.stop = stop_on_signal();
+  options.progress = [&](int done, int parts) { line.update("simulate", static_cast<double>(done) / parts); };
+  if (arguments.led) return run_frame(*scene, arguments, common, options);
+  if (arguments.captures) return run_captures(*scene, arguments, common, options);
+  return run_session(*scene, arguments, common, options);
+}
+
+Run add(Options& options) {
+  const auto a = std::make_shared<SimulateArguments>();
+  options.add("scene", &a->scene, "Scene file; docs/scenes.md lists its keys and units").required();
+  options
+      .add("-o,--output", &a->output,
+           "Session folder to make, NAME.weft, which must not exist; with --led the DNG file, with "
+           "--captures the folder of the parts")
+      .required();
+  const Option led = options.add("--led", &a->led, "Render one frame alone: of this LED, 0 for the dark shot")
+                         .not_negative();
+  options
+      .add_flag("--explain", &a->explain,
+                "List the passes that run and why, the effects left out with what they would change and "
+                "cost, and after the run what each pass cost")
+      .excludes(led);
+  const Option captures =
+      options
+          .add("--captures", &a->parts,
+               "Take what calibrating this scene's rig needs, a folder a part: all, or some of start, "
+               "camera, response, color, lights, check")
+          .by_commas()
+          .takes(0, 6)
+          .excludes(led);
+  return [a, captures](const CommonArguments& common) {
+    a->captures = captures.is_given();
+    std::erase_if(a->parts, [](const std::string& part) { return part.empty() || part == "all"; });
+    return simulate(*a, common);
+  };
+}
+
+}  // namespace
+
+Verb simulate_verb() {
+  return {"simulate", "Render a scene (TOML) into a session of raw DNG frames with its truth", add};
 }
 
 }  // namespace weft::app

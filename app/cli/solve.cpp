@@ -1,13 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/solve.h"
+#include "app/cli/solve.h"
 
 #include <fmt/format.h>
 
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "app/cli/exit_code.h"
 #include "app/cli/explain.h"
+#include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "core/files.h"
+#include "solver/method.h"
 
 namespace weft::app {
 namespace {
@@ -68,9 +75,17 @@ void print_words(const SolveReport& report) {
   print(fmt::format("  look at {}", (report.folder / "report.html").string()));
 }
 
-}  // namespace
+void print_warnings(const Json& warnings) {
+  for (const Json& warning : warnings) {
+    const std::string remedy = warning.value("remedy", "");
+    note(fmt::format("{}.{}", warning.value("text", ""), remedy.empty() ? "" : " To do: " + remedy + "."));
+  }
+}
 
-Result<int> run_solve(const SolveArguments& arguments, const CommonArguments& common) {
+Result<int> solve(const SolveArguments& arguments, const CommonArguments& common) {
+  const bool is_session = !arguments.session.folder.empty();
+  if (!is_session && arguments.photos.folder.empty() && arguments.photos.light_file.empty())
+    return Error{ErrorKind::kUsage, "solve needs a session, --photos or --lp", "", "", "See weft --help"};
   if (!arguments.ladder.empty()) return run_ladder(arguments, common);
   if (arguments.explain) return run_explain(arguments, common);
   SolveOptions options = arguments.options;
@@ -82,12 +97,11 @@ Result<int> run_solve(const SolveArguments& arguments, const CommonArguments& co
   Result<SolveReport> report = [&] {
     ProgressLine line(common.quiet);
     const JobContext context = {common.threads, stop_on_signal(), line.callback()};
-    const bool session = !arguments.session.folder.empty();
-    return session ? solve_session(arguments.session, options, context)
-                   : solve_photos(arguments.photos, options, context);
+    return is_session ? solve_session(arguments.session, options, context)
+                      : solve_photos(arguments.photos, options, context);
   }();
   if (!report) return std::move(report).error();
-  if (arguments.session.folder.empty() && !common.quiet) {
+  if (!is_session && !common.quiet) {
     note("photographs are taken as " + report->document["input"]["transfer"].get<std::string>() +
          "; --transfer overrides");
   }
@@ -97,12 +111,128 @@ Result<int> run_solve(const SolveArguments& arguments, const CommonArguments& co
     print_words(*report);
   }
   const Json warnings = warnings_of(*report);
-  for (const Json& warning : warnings) {
-    const std::string remedy = warning.value("remedy", "");
-    note(fmt::format("{}.{}", warning.value("text", ""), remedy.empty() ? "" : " To do: " + remedy + "."));
-  }
+  print_warnings(warnings);
   const bool unsolved = report->document["status"]["NO_SOLUTION"].get<std::int64_t>() > 0;
-  return common.strict && (unsolved || !warnings.empty()) ? kDoneWithWarnings : kDone;
+  return arguments.strict && (unsolved || !warnings.empty()) ? kDoneWithWarnings : kDone;
+}
+
+// An option for the levels, or for the methods that they are compared with.
+Option add_method(Options& options, const std::string& option, const std::string& what, bool quality,
+                  std::string& method) {
+  std::vector<std::string> names, words;
+  for (const solver::MethodName& each : solver::method_names()) {
+    if (each.is_quality != quality) continue;
+    names.emplace_back(each.name);
+    words.push_back(fmt::format("{} ({})", each.name, each.help));
+  }
+  return options.add(option, &method, fmt::format("{}: {}", what, fmt::join(words, ", "))).one_of(names);
+}
+
+struct Input {
+  Option session, photos, light_file;
+};
+
+Input add_input(Options& options, SolveArguments& a) {
+  const Input input = {
+      options.add("session", &a.session.folder, "Session folder, NAME.weft"),
+      options.add(
+          "--photos", &a.photos.folder,
+          "Folder of photographs under distant lights: filenames.txt, light_directions.txt (unit x y z, "
+          "x right, y up, z to the camera), light_intensities.txt (R G B), mask.png"),
+      options.add("--lp", &a.photos.light_file,
+                  "RTI light file: a count, then a line \"file x y z\" a photograph")};
+  input.session.excludes(input.photos).excludes(input.light_file);
+  input.photos.excludes(input.light_file);
+  return input;
+}
+
+struct Level {
+  Option explain, ladder;  ///< they write no maps
+};
+
+Level add_level(Options& options, const Option& session, SolveArguments& a) {
+  const Option level = add_method(options, "--quality", "Level", true, a.options.method);
+  const Option by_name =
+      add_method(options, "--method", "Method for comparison", false, a.options.method).excludes(level);
+  const Option explain = options.add_flag(
+      "--explain", &a.explain,
+      "Solve nothing: predict, from sample tiles, each level's mean error in degrees and its seconds here");
+  const Option within = options
+                            .add("--within", &a.wish.within_seconds,
+                                 "Choose the best level that takes so many seconds, by --explain")
+                            .above_zero();
+  const Option to =
+      options
+          .add("--to", &a.wish.to_deg, "Choose the cheapest level expected to be so many degrees off at most")
+          .above_zero();
+  const Option ladder =
+      options
+          .add("--ladder", &a.ladder,
+               "Solve by every level, and draw the same 128 x 128 normals of each into this PNG")
+          .needs(session);
+  for (const Option& priced : {explain, within, to, ladder}) priced.excludes(level).excludes(by_name);
+  ladder.excludes(explain).excludes(within).excludes(to);
+  return {explain, ladder};
+}
+
+void add_readings(Options& options, const Option& session, SolveArguments& a, std::string& transfer) {
+  options
+      .add("--lights", &a.session.leds,
+           "LEDs or photographs to solve from, numbered from 1: 1,4,7; default all")
+      .by_commas()
+      .above_zero();
+  options.add("--calibration", &a.session.calibration, "Calibration folder; default the session's own")
+      .needs(session);
+  options
+      .add("--transfer", &transfer,
+           "How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb")
+      .one_of({"auto", "linear", "srgb"})
+      .shows_default();
+}
+
+void add_maps(Options& options, const Level& level, SolveArguments& a) {
+  const Option output =
+      options.add("-o,--output", &a.options.output,
+                  "Folder for the maps; default SESSION/solve/ID, or ./NAME-solve/ID for photographs");
+  for (const Option& unsaved : {level.explain, level.ladder}) unsaved.excludes(output);
+  options.add("--compress", &a.options.compression, "Of EXR files: none, zip, piz")
+      .one_of({"none", "zip", "piz"})
+      .shows_default();
+  options.add("--tile-width", &a.options.tile.width, "Columns a tile (changes no byte of the result)")
+      .in_range(1, 1 << 20)
+      .shows_default();
+  options.add("--tile-height", &a.options.tile.height, "Rows a tile (changes no byte of the result)")
+      .in_range(1, 1 << 20)
+      .shows_default();
+  options.add_flag("!--no-previews", &a.options.previews, "Write no pictures");
+  options.add_flag("--strict", &a.strict, "Exit with 2 where pixels have no solution");
+}
+
+Run add(Options& options) {
+  struct Said {
+    SolveArguments arguments;
+    std::string transfer = "auto";
+  };
+  const auto said = std::make_shared<Said>();
+  SolveArguments& a = said->arguments;
+  const Input input = add_input(options, a);
+  const Level level = add_level(options, input.session, a);
+  add_readings(options, input.session, a, said->transfer);
+  add_maps(options, level, a);
+  return [said](const CommonArguments& common) {
+    static const std::map<std::string, Transfer> transfers = {
+        {"auto", Transfer::kAuto}, {"linear", Transfer::kLinear}, {"srgb", Transfer::kSrgb}};
+    PhotoOptions& photos = said->arguments.photos;
+    photos.transfer = transfers.at(said->transfer);
+    photos.lights = said->arguments.session.leds;
+    return solve(said->arguments, common);
+  };
+}
+
+}  // namespace
+
+Verb solve_verb() {
+  return {"solve", "Turn a session, or photographs under known lights, into albedo and normals", add};
 }
 
 }  // namespace weft::app

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/files.h"
+#include "core/process.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {
@@ -185,6 +186,16 @@ TEST(Bench, PrintsOneJsonDocument) {
     EXPECT_GT(row.at("threads").get<int>(), 0) << row;
     EXPECT_GT(row.at("ratio_to_copy").get<double>(), 0) << row;
   }
+}
+
+TEST(Bench, IsMissedBesideAWeftThatWasInstalledAlone) {
+  const Workspace work;
+  fs::copy(WEFT_PROGRAM, work / "weft");
+  const auto weft = ChildProcess::start({(work / "weft").string(), "bench", "solve"}, {}, work / "bench.log");
+  ASSERT_TRUE(weft) << weft.error().message();
+  EXPECT_EQ((*weft)->wait(60), 66);
+  EXPECT_THAT((*weft)->said(), testing::AllOf(testing::HasSubstr((work / "weft-bench").string()),
+                                              testing::HasSubstr("build all of weft")));
 }
 
 TEST(Demo, LeavesASessionAndItsMaps) {

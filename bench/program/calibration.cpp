@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/cli/bench_rows.h"
-#include "app/cli/verbs.h"
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "app/cli/options.h"
 #include "bench/calibration/camera.h"
 #include "bench/calibration/color.h"
 #include "bench/calibration/degenerate.h"
@@ -9,13 +13,21 @@
 #include "bench/calibration/lights.h"
 #include "bench/calibration/moved.h"
 #include "bench/calibration/response.h"
+#include "bench/program/rows.h"
+#include "bench/program/verbs.h"
 
-namespace weft::app {
+namespace weft::bench {
 namespace {
+
+struct CalibrationArguments {
+  std::string part = "camera";
+  int seeds = 0;               ///< 0: as many as the part is quoted for
+  std::filesystem::path docs;  ///< folder with calibration.md; empty: no picture
+};
 
 // Options of a part, with as many seeds as were asked for.
 template <typename Options>
-Options seeded(const BenchCalibrationArguments& a, int threads) {
+Options seeded(const CalibrationArguments& a, int threads) {
   Options options;
   options.threads = threads;
   if (a.seeds > 0) options.seeds = a.seeds;
@@ -23,18 +35,17 @@ Options seeded(const BenchCalibrationArguments& a, int threads) {
 }
 
 // For the docs, photographs are not timed: the picture has none of it.
-Result<bench::Rows> measure_lights(const BenchCalibrationArguments& a, int threads) {
-  auto options = seeded<bench::CalibrationLightsBenchOptions>(a, threads);
+Result<Rows> measure_lights(const CalibrationArguments& a, int threads) {
+  auto options = seeded<CalibrationLightsBenchOptions>(a, threads);
   if (!a.docs.empty()) options.megapixels = 0;
-  Result<bench::Rows> rows = calibration_lights_table(options);
+  Result<Rows> rows = calibration_lights_table(options);
   if (!rows || a.docs.empty()) return rows;
-  if (Result<void> written = bench::write_calibration_docs(a.docs, *rows); !written)
+  if (Result<void> written = write_calibration_docs(a.docs, *rows); !written)
     return std::move(written).error();
   return rows;
 }
 
-Result<bench::Rows> measure(const BenchCalibrationArguments& a, int threads) {
-  using namespace bench;
+Result<Rows> measure(const CalibrationArguments& a, int threads) {
   if (!a.docs.empty() && a.part != "lights") {
     return Error{ErrorKind::kUsage, "part has no pictures", "--docs", "only the part lights makes one",
                  "give --part lights, or leave --docs out"};
@@ -57,10 +68,22 @@ Result<bench::Rows> measure(const BenchCalibrationArguments& a, int threads) {
   return calibration_end_to_end_table(options);
 }
 
-}  // namespace
-
-Result<int> run_bench_calibration(const BenchCalibrationArguments& arguments, const CommonArguments& common) {
-  return print_rows(measure(arguments, common.threads), common);
+app::Run add(app::Options& options) {
+  const auto a = std::make_shared<CalibrationArguments>();
+  options.add("--part", &a->part, "camera, response, color, lights, grey, degenerate, moved, end-to-end")
+      .one_of({"camera", "response", "color", "lights", "grey", "degenerate", "moved", "end-to-end"})
+      .shows_default();
+  options.add("--seeds", &a->seeds, "Rigs or noises to average over; 0 is as many as docs/calibration.md")
+      .in_range(0, 10000)
+      .shows_default();
+  options.add("--docs", &a->docs, "With --part lights: folder for pictures/calibration_poses.svg");
+  return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.threads), common); };
 }
 
-}  // namespace weft::app
+}  // namespace
+
+app::Verb calibration_verb() {
+  return {"calibration", "What calibrating a simulated rig recovers", add};
+}
+
+}  // namespace weft::bench

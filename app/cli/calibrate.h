@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+
+#include "app/cli/options.h"
+#include "app/cli/verb.h"
+#include "app/jobs/calibrate/outcome.h"
+#include "core/job.h"
+
+namespace weft::app {
+
+/// The work of one step, by what its options have read.
+using CalibrateJob = std::function<Result<CalibrateOutcome>(const JobContext&)>;
+
+/// Adds --strict. The step does its job, and prints what came out of it.
+Run run_step(Options& options, CalibrateJob job);
+
+/// The same of a step that asks whether a calibration holds: exit code 65 where it does not.
+Run run_check(Options& options, CalibrateJob job);
+
+// The verbs of `weft calibrate`: those that measure a part, and those that look at what was measured.
+Verb calibrate_camera_verb();
+Verb calibrate_response_verb();
+Verb calibrate_color_verb();
+Verb calibrate_lights_verb();
+Verb calibrate_grey_verb();
+Verb calibrate_check_verb();
+Verb calibrate_patches_verb();
+Verb calibrate_update_verb();
+Verb calibrate_history_verb();
+
+}  // namespace weft::app

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/cli/verb.h"
+
+namespace weft::app {
+
+/// A program that is told what to do by a verb.
+struct Program {
+  std::string name;  ///< as its help calls it
+  std::string help;
+  std::vector<Verb> verbs;
+};
+
+/// Reads the command line and runs the verb it names. Whatever goes wrong becomes words on standard error
+/// and the exit code that is returned.
+int run_program(const Program& program, int argc, char** argv);
+
+}  // namespace weft::app

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace CLI {
+class App;
+class Option;
+}  // namespace CLI
+
+namespace weft::app {
+
+/// One option of a verb: what it needs and what it refuses. A refusal names the option and ends with exit
+/// code 64.
+class Option {
+ public:
+  explicit Option(CLI::Option* option) : option_(option) {}
+
+  Option required() const;
+  Option excludes(const Option& other) const;
+  Option needs(const Option& other) const;
+
+  Option one_of(const std::vector<std::string>& words) const;
+  Option in_range(int least, int most) const;
+  Option in_range(double least, double most) const;
+  Option above_zero() const;
+  Option not_negative() const;
+
+  /// A list is written 1,4,7.
+  Option by_commas() const;
+  /// How many values follow its name.
+  Option takes(int least, int most) const;
+  /// Its help says what it is where it is not given.
+  Option shows_default() const;
+
+  /// Whether it was given; once the command line is read.
+  bool is_given() const;
+
+ private:
+  CLI::Option* option_;
+};
+
+/// The options of a verb (CLI11, behind this header). `names` is "input" for a word without a dash, else
+/// "-o,--output".
+class Options {
+ public:
+  /// What an option is read into. It must live until the verb has run.
+  using Value =
+      std::variant<int*, double*, std::uint32_t*, std::uint64_t*, std::string*, std::filesystem::path*,
+                   std::optional<int>*, std::optional<double>*, std::optional<std::string>*,
+                   std::vector<int>*, std::vector<double>*, std::vector<std::string>*>;
+
+  explicit Options(CLI::App& verb) : verb_(verb) {}
+
+  Option add(const std::string& names, Value value, const std::string& help);
+  /// Turns `value` on; "!--no-previews" turns it off.
+  Option add_flag(const std::string& names, bool* value, const std::string& help);
+
+ private:
+  CLI::App& verb_;
+};
+
+}  // namespace weft::app

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "app/jobs/explain.h"
+#include "app/jobs/solve.h"
+
+namespace weft::app {
+
+/// What `weft solve` is told: one of `session` and `photos` is named.
+struct SolveArguments {
+  SessionOptions session;
+  PhotoOptions photos;
+  SolveOptions options;
+  bool explain = false;
+  LevelWish wish;
+  std::filesystem::path ladder;  ///< a picture of all levels, instead of one solve
+  bool strict = false;           ///< pixels without a solution, and warnings, end with exit code 2
+};
+
+}  // namespace weft::app

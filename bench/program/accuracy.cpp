@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/accuracy/accuracy.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "app/cli/options.h"
+#include "bench/accuracy/bound.h"
+#include "bench/accuracy/page.h"
+#include "bench/program/rows.h"
+#include "bench/program/verbs.h"
+
+namespace weft::bench {
+namespace {
+
+struct AccuracyArguments {
+  AccuracyTableOptions table;
+  std::string set = "held-out";
+  bool bound = false;
+  bool leds = false;
+  bool specular = false;
+  std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
+};
+
+Result<Rows> measure(const AccuracyArguments& a, int threads) {
+  AccuracyTableOptions options = a.table;
+  options.set = a.set == "tuning" ? SceneSet::kTuning : SceneSet::kHeldOut;
+  options.threads = threads;
+  if (a.bound) return accuracy_bound({options.methods, threads});
+  if (a.leds) return accuracy_by_leds(options);
+  if (a.specular) return specular_warnings(options);
+  if (a.docs.empty()) return accuracy_table(options);
+  Result<AccuracyFigures> figures = measure_figures(options);
+  if (!figures) return std::move(figures).error();
+  if (Result<void> written = write_accuracy_docs(a.docs, *figures); !written) {
+    return std::move(written).error();
+  }
+  return std::move(figures->table);
+}
+
+app::Run add(app::Options& options) {
+  const auto a = std::make_shared<AccuracyArguments>();
+  options.add_flag("--quick", &a->table.quick, "One small patch a scene, no yardsticks");
+  options.add("--set", &a->set, "Scenes: those that methods are tuned on, or those held out")
+      .one_of({"tuning", "held-out"})
+      .shows_default();
+  options.add("--scene", &a->table.scene, "One scene alone, such as \"deep satin\"");
+  options.add("--method", &a->table.methods, "These levels and methods alone: fast,least-squares")
+      .by_commas();
+  const app::Option bound = options.add_flag(
+      "--bound", &a->bound, "Instead: scatter against the Cramer-Rao bound, and whether sigma is honest");
+  const app::Option leds = options.add_flag("--leds", &a->leds, "Instead: from three to ten LEDs");
+  const app::Option specular = options.add_flag(
+      "--specular", &a->specular, "Instead: who says SPECULAR on 30 dark satins and 90 other cloths");
+  const app::Option docs =
+      options.add("--docs", &a->docs,
+                  "All of it, into this folder: the figures of accuracy.md, pictures/accuracy.svg, .json");
+  bound.excludes(leds).excludes(specular).excludes(docs);
+  leds.excludes(specular).excludes(docs);
+  specular.excludes(docs);
+  return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.threads), common); };
+}
+
+}  // namespace
+
+app::Verb accuracy_verb() {
+  return {"accuracy", "What each level and method gets right, and its price", add};
+}
+
+}  // namespace weft::bench

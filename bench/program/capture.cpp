@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/cli/options.h"
+#include "app/cli/rig_devices.h"
+#include "app/cli/rig_options.h"
+#include "app/cli/terminal.h"
+#include "bench/capture/board.h"
+#include "bench/capture/camera.h"
+#include "bench/capture/fault_matrix.h"
+#include "bench/capture/http.h"
+#include "bench/capture/scans.h"
+#include "bench/program/rows.h"
+#include "bench/program/verbs.h"
+#include "core/process.h"
+
+namespace weft::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CaptureArguments {
+  std::string part = "scans";  ///< board, camera, scans: of a running rig; faults, http: of what it starts
+  fs::path rig;
+  int runs = 0;  ///< commands, shots, scans, runs or requests; 0: as many as docs/reliability.md
+  fs::path scene = "testdata/scenes/satin.toml";
+  double megapixels = 0.2;
+  int rigs = 16;
+  std::uint64_t seed = 1;
+  std::vector<std::string> faults;
+  fs::path keep;
+};
+
+Result<Rows> measure_matrix(const CaptureArguments& a, app::ProgressLine& line) {
+  FaultMatrixOptions options;
+  options.programs = program_beside("weft").parent_path();
+  options.scene = a.scene;
+  options.megapixels = a.megapixels;
+  options.runs = a.runs > 0 ? a.runs : 1000;
+  options.rigs = a.rigs;
+  options.seed = a.seed;
+  options.faults = a.faults;
+  options.keep = a.keep;
+  options.progress = [&](int done, int runs) { line.update("faults", static_cast<double>(done) / runs); };
+  const Result<std::vector<FaultTally>> tallies = fault_matrix(options);
+  if (!tallies) return tallies.error();
+  for (const FaultTally& tally : *tallies) {
+    for (const std::string& wrong : tally.wrong) app::note(tally.fault + ": " + wrong);
+  }
+  return rows_of(*tallies);
+}
+
+Result<Rows> measure_rig(const CaptureArguments& a, app::ProgressLine& line) {
+  const Result<capture::Rig> rig = capture::read_rig(app::find_rig(a.rig));
+  if (!rig) return rig.error();
+  if (a.part == "board")
+    return capture_board_table({.port = rig->board.port, .commands = a.runs > 0 ? a.runs : 10'000});
+  if (a.part == "camera")
+    return capture_camera_table(
+        {.port = rig->camera.port, .profile = rig->camera.profile, .shots = a.runs > 0 ? a.runs : 10});
+  const int scans = a.runs > 0 ? a.runs : 3;
+  return capture_scans_table(
+      {.rig = *rig,
+       .open = app::open_devices,
+       .scans = scans,
+       .stop = app::stop_on_signal(),
+       .progress = [&](int done) { line.update("scans", static_cast<double>(done) / scans); }});
+}
+
+Result<Rows> measure(const CaptureArguments& a, bool quiet) {
+  app::ProgressLine line(quiet);
+  if (a.part == "http") return capture_http_table({.requests = a.runs > 0 ? a.runs : 200, .seed = a.seed});
+  return a.part == "faults" ? measure_matrix(a, line) : measure_rig(a, line);
+}
+
+app::Run add(app::Options& options) {
+  const auto a = std::make_shared<CaptureArguments>();
+  options
+      .add("--part", &a->part,
+           "board, camera, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that "
+           "it starts; http: a daemon among hostile clients")
+      .one_of({"board", "camera", "scans", "faults", "http"})
+      .shows_default();
+  options.add("--rig", &a->rig, "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
+  options
+      .add("--runs", &a->runs,
+           "Commands, shots, scans, runs or requests; 0 is as many as docs/reliability.md")
+      .in_range(0, 1000000);
+  options.add("--scene", &a->scene, "Scene of the fault matrix").shows_default();
+  options.add("--megapixels", &a->megapixels, "Size of its frames, millions of pixels")
+      .in_range(0.05, 200.0)
+      .shows_default();
+  options.add("--rigs", &a->rigs, "Rigs side by side").in_range(1, 64).shows_default();
+  options.add("--seed", &a->seed, "Of shots and moments, or of malformed requests").shows_default();
+  options.add("--fault", &a->faults, "These faults alone, by their names in the table");
+  options.add("--keep", &a->keep, "Folder for the sessions and logs of runs that went wrong");
+  return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.quiet), common); };
+}
+
+}  // namespace
+
+app::Verb capture_verb() {
+  return {"capture", "Scans: their speed, and what faults do to them", add};
+}
+
+}  // namespace weft::bench
