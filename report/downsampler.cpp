@@ -7,7 +7,7 @@
 
 #include "core/solve_record.h"
 
-namespace weft::material {
+namespace weft::report {
 namespace {
 
 int ceil_div(int a, int b) {
@@ -76,4 +76,4 @@ void Downsampler::finish_squares() {
   }
 }
 
-}  // namespace weft::material
+}  // namespace weft::report

@@ -7,7 +7,7 @@
 
 #include "core/image.h"
 
-namespace weft::material {
+namespace weft::report {
 
 /// The longest side of a preview unless asked otherwise, in pixels.
 inline constexpr int kPreviewSide = 1024;
@@ -47,4 +47,4 @@ class Downsampler {
   std::vector<float> weight_;  // 1 for the valid pixels of a row, 0 for missing ones
 };
 
-}  // namespace weft::material
+}  // namespace weft::report

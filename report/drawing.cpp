@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace weft::material {
+namespace weft::report {
 namespace {
 
 constexpr int kAdvance = 6;
@@ -171,4 +171,4 @@ Picture contact_sheet(std::string_view title, std::span<const Panel> panels, int
   return sheet;
 }
 
-}  // namespace weft::material
+}  // namespace weft::report

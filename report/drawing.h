@@ -7,7 +7,7 @@
 
 #include "core/image.h"
 
-namespace weft::material {
+namespace weft::report {
 
 /// A picture for people: planes R, G, B of display values in [0, 1], sRGB-encoded, as an 8-bit PNG keeps
 /// them.
@@ -50,4 +50,4 @@ struct Panel {
 /// All panels in a grid on a dark background, each below its label; `columns` 0 makes the grid about square.
 Picture contact_sheet(std::string_view title, std::span<const Panel> panels, int columns = 0);
 
-}  // namespace weft::material
+}  // namespace weft::report

@@ -8,7 +8,7 @@
 
 #include "core/text.h"
 
-namespace weft::app {
+namespace weft::report {
 namespace {
 
 constexpr std::string_view kStyle = R"(
@@ -56,9 +56,9 @@ std::string html_section(std::string_view title, std::string_view body, std::str
   return fmt::format("<section{}><h2>{}</h2>\n{}</section>\n", mark, escape_markup(title), body);
 }
 
-std::string css_colour(material::Colour c) {
+std::string css_colour(Colour c) {
   const auto byte = [](float v) { return static_cast<int>(std::lround(255 * std::clamp(v, 0.0F, 1.0F))); };
   return fmt::format("#{:02x}{:02x}{:02x}", byte(c.r), byte(c.g), byte(c.b));
 }
 
-}  // namespace weft::app
+}  // namespace weft::report

@@ -6,100 +6,89 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "core/text.h"
+#include "report/axis.h"
 
-namespace weft::bench {
+namespace weft::report {
 namespace {
 
-constexpr double kWidth = 760, kHeight = 520;
-constexpr double kLeft = 64, kRight = 740, kTop = 66, kBottom = 466;  // of the field
-constexpr double kFontSize = 12, kMark = 4.5;
-constexpr double kLetter = 0.56 * kFontSize;  // mean width of a sans-serif letter
-constexpr double kMargin = 0.06;              // of the field, between it and the outermost points
+constexpr double kWidth = 760, kHeight = 520, kFlatHeight = 372;
+constexpr double kLeft = 64, kRight = 740, kAbove = 14, kBelow = 54;  // of the field, and around it
+constexpr double kTitleHeight = 26, kLegendHeight = 26, kLegendLine = 18, kLegendGap = 18.5;
+constexpr double kFontSize = 12, kLetter = 0.56 * kFontSize;  // mean width of a sans-serif letter
+constexpr double kMark = 4.5, kSmallMark = 2.2;               // half the size of a mark
+constexpr std::size_t kMostLarge = 24;                        // marks of a series
+constexpr std::size_t kMarks = 5;                             // kinds of them
+constexpr std::array<const char*, 4> kDashes = {"none", "6 3", "2 3", "8 3 2 3"};
+constexpr double kSample = 24;  // length of a line in the legend
 
 struct Box {
   double x0, y0, x1, y1;
   bool meets(const Box& o) const { return x0 < o.x1 && o.x0 < x1 && y0 < o.y1 && o.y0 < y1; }
 };
 
-bool is_shown(const PlotPoint& p) {
-  return std::isfinite(p.x) && std::isfinite(p.y) && p.x > 0 && p.y > 0;
+// A mark of the series by its number: disc, ring, square, diamond, triangle.
+std::string mark(std::size_t series, double x, double y, double r) {
+  switch (series % kMarks) {
+    case 0:
+      return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{}'/>", x, y, r);
+    case 1:
+      return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{}' fill='white' stroke='black'/>", x, y, r);
+    case 2:
+      return fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{}' height='{}'/>", x - r, y - r, 2 * r, 2 * r);
+    case 3:
+      return fmt::format("<path d='M{:.1f} {:.1f}l{} {}l-{} {}l-{} -{}z'/>", x, y - 1.3 * r, 1.3 * r, 1.3 * r,
+                         1.3 * r, 1.3 * r, 1.3 * r, 1.3 * r);
+    default:
+      return fmt::format("<path d='M{:.1f} {:.1f}l{} {}h-{}z'/>", x, y - 1.2 * r, 1.2 * r, 2.2 * r, 2.4 * r);
+  }
 }
 
-// A logarithmic axis from `low` to `high`, drawn from `from` to `to`.
-struct Axis {
-  double low, high, from, to;
+// Marks come round again after kMarks series; from then on dashes tell lines apart.
+std::string stroke(std::size_t series) {
+  const std::size_t dash = series / kMarks % kDashes.size();
+  return dash == 0 ? "stroke='#555'" : fmt::format("stroke='#555' stroke-dasharray='{}'", kDashes[dash]);
+}
 
-  static Axis around(double least, double most, double from, double to) {
-    const double spread = std::max(std::log10(most / least), 0.3);
-    const double pad = std::pow(10, kMargin * spread);
-    return {least / pad, most * pad, from, to};
+// Without the points that the plot cannot show.
+Plot reduced_to_shown(Plot plot) {
+  const Axis x = {.log = plot.log_x}, y = {.log = plot.log_y};
+  for (PlotSeries& series : plot.series) {
+    std::erase_if(series.points, [&](const PlotPoint& p) { return !x.takes(p.x) || !y.takes(p.y); });
   }
-  double at(double value) const { return from + (to - from) * std::log(value / low) / std::log(high / low); }
-  /// Whole digits where the axis spans a decade, 1, 2 and 5 of a few decades, powers of ten of many.
-  std::vector<double> ticks() const {
-    static const std::vector<double> kAll = {1, 1.5, 2, 3, 4, 5, 6, 8}, kSome = {1, 2, 5}, kOne = {1};
-    const std::vector<double>& digits = high / low < 20 ? kAll : high / low < 1e3 ? kSome : kOne;
-    std::vector<double> values;
-    for (int decade = static_cast<int>(std::floor(std::log10(low))); std::pow(10, decade) <= high; ++decade) {
-      for (const double digit : digits) {
-        const double value = digit * std::pow(10, decade);
-        if (value >= low && value <= high) values.push_back(value);
-      }
-    }
-    return values;
-  }
-};
-
-// A mark of the series by its number: disc, ring, square, diamond, triangle.
-std::string mark(std::size_t series, double x, double y) {
-  switch (series % 5) {
-    case 0:
-      return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{}'/>", x, y, kMark);
-    case 1:
-      return fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{}' fill='white' stroke='black'/>", x, y, kMark);
-    case 2:
-      return fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{}' height='{}'/>", x - kMark, y - kMark,
-                         2 * kMark, 2 * kMark);
-    case 3:
-      return fmt::format("<path d='M{:.1f} {:.1f}l{} {}l-{} {}l-{} -{}z'/>", x, y - 1.3 * kMark, 1.3 * kMark,
-                         1.3 * kMark, 1.3 * kMark, 1.3 * kMark, 1.3 * kMark, 1.3 * kMark);
-    default:
-      return fmt::format("<path d='M{:.1f} {:.1f}l{} {}h-{}z'/>", x, y - 1.2 * kMark, 1.2 * kMark,
-                         2.2 * kMark, 2.4 * kMark);
-  }
+  return plot;
 }
 
 class Drawing {
  public:
-  explicit Drawing(const Plot& plot) : plot_(plot) {
-    double x0 = std::numeric_limits<double>::infinity(), x1 = 0, y0 = x0, y1 = 0;
-    for (const PlotSeries& series : plot.series) {
+  explicit Drawing(const Plot& plot) : plot_(reduced_to_shown(plot)) {
+    place_legend();
+    top_ = kAbove + (plot.title.empty() ? 0 : kTitleHeight) +
+           (legend_.empty() ? 0 : kLegendHeight + kLegendLine * legend_.back().line);
+    std::vector<double> x, y;
+    for (const PlotSeries& series : plot_.series) {
       for (const PlotPoint& p : series.points) {
-        if (!is_shown(p)) continue;
-        x0 = std::min(x0, p.x);
-        x1 = std::max(x1, p.x);
-        y0 = std::min(y0, p.y);
-        y1 = std::max(y1, p.y);
+        x.push_back(p.x);
+        y.push_back(p.y);
       }
     }
-    const bool nothing = x1 == 0;
-    x_ = nothing ? Axis{1, 10, kLeft, kRight} : Axis::around(x0, x1, kLeft, kRight);
-    y_ = nothing ? Axis{1, 10, kBottom, kTop} : Axis::around(y0, y1, kBottom, kTop);
+    height_ = plot.title.empty() ? kFlatHeight : kHeight;
+    bottom_ = height_ - kBelow;
+    x_ = Axis::around(x, plot.log_x, kLeft, kRight);
+    y_ = Axis::around(y, plot.log_y, bottom_, top_);
   }
 
   std::string draw() {
     out_ = fmt::format(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {} {}' font-family='sans-serif' "
         "font-size='{}'>\n<rect width='{}' height='{}' fill='white'/>\n",
-        kWidth, kHeight, kFontSize, kWidth, kHeight);
+        kWidth, height_, kFontSize, kWidth, height_);
     add_axes();
     if (plot_.frontier) add_frontier();
     add_legend();
-    for (std::size_t s = 0; s < plot_.series.size(); ++s) add_lines(plot_.series[s]);
+    for (std::size_t s = 0; s < plot_.series.size(); ++s) add_lines(s);
     for (std::size_t s = plot_.series.size(); s-- > 0;) add_marks(s);  // the first on top
     for (const PlotSeries& series : plot_.series) {
       for (const PlotPoint& p : series.points) add_label(p);
@@ -112,25 +101,25 @@ class Drawing {
     out_ += fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='{}'{}>{}</text>\n", x, y, anchor, more,
                         escape_markup(words));
   }
-  void line(double x0, double y0, double x1, double y1, const char* style) {
+  void line(double x0, double y0, double x1, double y1, const std::string& style) {
     out_ +=
         fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' {}/>\n", x0, y0, x1, y1, style);
   }
 
   void add_axes() {
     for (const double value : x_.ticks()) {
-      line(x_.at(value), kTop, x_.at(value), kBottom, "stroke='#ddd'");
-      text(x_.at(value), kBottom + 18, "middle", fmt::format("{:g}", value));
+      line(x_.at(value), top_, x_.at(value), bottom_, "stroke='#ddd'");
+      text(x_.at(value), bottom_ + 18, "middle", fmt::format("{:g}", value));
     }
     for (const double value : y_.ticks()) {
       line(kLeft, y_.at(value), kRight, y_.at(value), "stroke='#ddd'");
       text(kLeft - 8, y_.at(value) + 4, "end", fmt::format("{:g}", value));
     }
     out_ += fmt::format("<rect x='{}' y='{}' width='{}' height='{}' fill='none' stroke='black'/>\n", kLeft,
-                        kTop, kRight - kLeft, kBottom - kTop);
-    text(kLeft, kTop - 40, "start", plot_.title, " font-weight='bold'");
-    text((kLeft + kRight) / 2, kBottom + 40, "middle", plot_.x_label);
-    const double middle = (kTop + kBottom) / 2;
+                        top_, kRight - kLeft, bottom_ - top_);
+    if (!plot_.title.empty()) text(kLeft, kTitleHeight, "start", plot_.title, " font-weight='bold'");
+    text((kLeft + kRight) / 2, bottom_ + 40, "middle", plot_.x_label);
+    const double middle = (top_ + bottom_) / 2;
     text(18, middle, "middle", plot_.y_label, fmt::format(" transform='rotate(-90 18 {})'", middle).c_str());
   }
 
@@ -139,45 +128,67 @@ class Drawing {
     std::optional<double> height;
     for (const PlotPoint& p : frontier_of(plot_.series)) {
       const double x = x_.at(p.x), y = y_.at(p.y);
-      path += height ? fmt::format("H{:.1f}V{:.1f}", x, y) : fmt::format("M{:.1f} {:.1f}V{:.1f}", x, kTop, y);
+      path += height ? fmt::format("H{:.1f}V{:.1f}", x, y) : fmt::format("M{:.1f} {:.1f}V{:.1f}", x, top_, y);
       height = y;
     }
     if (height) path += fmt::format("H{:.1f}", kRight);
     out_ += fmt::format("<path d='{}' fill='none' stroke='#999' stroke-dasharray='5 4'/>\n", path);
   }
 
-  // What each mark stands for, in a row under the title.
-  void add_legend() {
-    double x = kLeft + kMark;
+  // Whether the mark alone does not tell the series.
+  bool has_sample(std::size_t s) const {
+    return plot_.series[s].joined && (!plot_.series[s].marked || s >= kMarks);
+  }
+
+  // What each mark and dash stands for, in rows under the title.
+  void place_legend() {
+    double x = kLeft;
+    int row = 0;
     for (std::size_t s = 0; s < plot_.series.size(); ++s) {
-      const std::string& name = plot_.series[s].name;
-      out_ += mark(s, x, kTop - 18) + '\n';
-      text(x + 2 * kMark, kTop - 14, "start", name);
-      x += kLetter * static_cast<double>(name.size()) + 32;
+      const double before = (has_sample(s) ? kSample : 2 * kMark) + kMark;  // its name
+      const double width = before + kLetter * static_cast<double>(plot_.series[s].name.size());
+      if (x > kLeft && x + width > kRight) {
+        x = kLeft;
+        ++row;
+      }
+      legend_.push_back({x, x + before, row});
+      x += width + kLegendGap;
     }
   }
 
-  void add_lines(const PlotSeries& series) {
+  void add_legend() {
+    for (std::size_t s = 0; s < plot_.series.size(); ++s) {
+      const LegendEntry& at = legend_[s];
+      const double y = top_ - 14 - kLegendLine * (legend_.back().line - at.line);
+      if (has_sample(s)) line(at.x, y - 4, at.x + kSample, y - 4, stroke(s));
+      const double centre = at.x + (has_sample(s) ? kSample / 2 : kMark);
+      if (plot_.series[s].marked) out_ += mark(s, centre, y - 4, kMark) + '\n';
+      text(at.text_x, y, "start", plot_.series[s].name);
+    }
+  }
+
+  void add_lines(std::size_t s) {
+    const PlotSeries& series = plot_.series[s];
     if (!series.joined) return;
     std::string points;
-    for (const PlotPoint& p : series.points) {
-      if (is_shown(p)) points += fmt::format("{:.1f},{:.1f} ", x_.at(p.x), y_.at(p.y));
-    }
-    out_ += fmt::format("<polyline points='{}' fill='none' stroke='#555'/>\n", points);
+    for (const PlotPoint& p : series.points) points += fmt::format("{:.1f},{:.1f} ", x_.at(p.x), y_.at(p.y));
+    out_ += fmt::format("<polyline points='{}' fill='none' {}/>\n", points, stroke(s));
   }
 
-  void add_marks(std::size_t series) {
-    for (const PlotPoint& p : plot_.series[series].points) {
-      if (!is_shown(p)) continue;
+  void add_marks(std::size_t s) {
+    const PlotSeries& series = plot_.series[s];
+    if (!series.marked) return;
+    const double r = series.points.size() > kMostLarge ? kSmallMark : kMark;
+    for (const PlotPoint& p : series.points) {
       const double x = x_.at(p.x), y = y_.at(p.y);
-      out_ += mark(series, x, y) + '\n';
-      taken_.push_back({x - kMark, y - kMark, x + kMark, y + kMark});
+      out_ += mark(s, x, y, r) + '\n';
+      taken_.push_back({x - r, y - r, x + r, y + r});
     }
   }
 
   // Beside its mark, at the first of eight places that nothing takes yet.
   void add_label(const PlotPoint& p) {
-    if (!is_shown(p) || p.label.empty()) return;
+    if (p.label.empty()) return;
     const double x = x_.at(p.x), y = y_.at(p.y), width = kLetter * static_cast<double>(p.label.size());
     const double near = kMark + 3, up = kMark + 4 + kFontSize / 2;
     const std::array<std::array<double, 2>, 8> places = {{{near, 0},
@@ -193,7 +204,7 @@ class Drawing {
                  y + place[1] + kFontSize / 2};
     };
     const auto is_free = [&](const Box& box) {
-      return box.x0 > kLeft && box.x1 < kRight && box.y0 > kTop && box.y1 < kBottom &&
+      return box.x0 > kLeft && box.x1 < kRight && box.y0 > top_ && box.y1 < bottom_ &&
              std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) { return other.meets(box); });
     };
     const auto place = std::find_if(places.begin(), places.end(),
@@ -203,7 +214,14 @@ class Drawing {
     text(best.x0, best.y1 - 2, "start", p.label);
   }
 
-  const Plot& plot_;
+  struct LegendEntry {
+    double x, text_x;  // where its mark and its name begin
+    int line;          // from 0
+  };
+
+  const Plot plot_;
+  std::vector<LegendEntry> legend_;  // one a series
+  double top_ = 0, bottom_ = 0, height_ = 0;
   Axis x_ = {}, y_ = {};
   std::vector<Box> taken_;
   std::string out_;
@@ -231,8 +249,7 @@ Json plot_json(const Plot& plot) {
 
 std::vector<PlotPoint> frontier_of(const std::vector<PlotSeries>& series) {
   std::vector<PlotPoint> points, frontier;
-  for (const PlotSeries& s : series)
-    std::copy_if(s.points.begin(), s.points.end(), std::back_inserter(points), is_shown);
+  for (const PlotSeries& s : series) points.insert(points.end(), s.points.begin(), s.points.end());
   std::stable_sort(points.begin(), points.end(), [](const PlotPoint& a, const PlotPoint& b) {
     return a.x < b.x || (a.x == b.x && a.y < b.y);
   });
@@ -242,4 +259,4 @@ std::vector<PlotPoint> frontier_of(const std::vector<PlotSeries>& series) {
   return frontier;
 }
 
-}  // namespace weft::bench
+}  // namespace weft::report

@@ -6,30 +6,34 @@
 
 #include "core/json_document.h"
 
-// A scatter of one quantity against another, both on logarithmic axes, for pages and for print: black and
-// grey, series told apart by their marks, every mark labelled.
+// One quantity against another, for pages and for print: black and grey, series told apart by marks and
+// dashes.
 
-namespace weft::bench {
+namespace weft::report {
 
 struct PlotPoint {
-  double x = 0, y = 0;  ///< over 0; others are left out
-  std::string label;    ///< empty: none
+  double x = 0, y = 0;     ///< what an axis cannot show is left out (report/axis.h)
+  std::string label = {};  ///< written beside the mark; empty: none
 };
 
 struct PlotSeries {
   std::string name;
-  std::vector<PlotPoint> points;
-  bool joined = false;  ///< by a line, in their order
+  std::vector<PlotPoint> points = {};
+  bool joined = false;  ///< by a line, in the order of the points
+  bool marked = true;   ///< a mark at every point
 };
 
 struct Plot {
-  std::string title, x_label, y_label;
-  std::vector<PlotSeries> series;
+  /// Empty: the plot is a figure of a page, which has a caption; it is drawn flatter then.
+  std::string title = {};
+  std::string x_label, y_label;
+  std::vector<PlotSeries> series = {};
   /// Less is better on both axes: draws the staircase of the points that no other point beats.
   bool frontier = false;
+  bool log_x = false, log_y = false;
 };
 
-/// The drawing, 760 x 520 units. The same plot gives the same bytes.
+/// The drawing: 760 x 520 units, without a title 760 x 372. The same plot gives the same bytes.
 std::string plot_svg(const Plot& plot);
 
 /// The same numbers for programs: schema weft.plot/1.
@@ -38,4 +42,4 @@ Json plot_json(const Plot& plot);
 /// The points of all series that no other beats, by rising x.
 std::vector<PlotPoint> frontier_of(const std::vector<PlotSeries>& series);
 
-}  // namespace weft::bench
+}  // namespace weft::report

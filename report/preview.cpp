@@ -12,7 +12,7 @@
 #include "core/solve_record.h"
 #include "core/vec.h"
 
-namespace weft::material {
+namespace weft::report {
 namespace {
 
 constexpr double kLeastFullScale = 1e-6;
@@ -270,4 +270,4 @@ Picture StatusPreview::picture() const {
   return stacked(map, legend);
 }
 
-}  // namespace weft::material
+}  // namespace weft::report

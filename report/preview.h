@@ -13,7 +13,7 @@
 // Pictures of maps for people. Maps come in as the averages of a Downsampler, or whole if they are small, and
 // every picture has their size. Pixels that are not finite are magenta.
 
-namespace weft::material {
+namespace weft::report {
 
 inline constexpr Colour kMissing{1, 0, 1};
 
@@ -65,4 +65,4 @@ class StatusPreview {
   Image<float> row_;
 };
 
-}  // namespace weft::material
+}  // namespace weft::report

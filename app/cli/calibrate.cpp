@@ -18,7 +18,7 @@ namespace weft::app {
 namespace {
 
 // A table of a report in columns of even width.
-void print_table(const ReportTable& table) {
+void print_table(const report::Table& table) {
   std::vector<std::size_t> width(table.header.size(), 0);
   const auto measure = [&](const std::vector<std::string>& row) {
     for (std::size_t i = 0; i < std::min(row.size(), width.size()); ++i) {
@@ -55,7 +55,7 @@ void print_outcome(const CalibrateOutcome& outcome, const CommonArguments& commo
         "  look at {}",
         ((is_there(reports) ? reports : outcome.folder) / (outcome.report.part + ".html")).string()));
   }
-  for (const ReportSection& section : outcome.report.sections) {
+  for (const report::Section& section : outcome.report.sections) {
     if (!section.is_answer || !section.table) continue;
     print("\n" + section.title);
     print_table(*section.table);
@@ -63,7 +63,7 @@ void print_outcome(const CalibrateOutcome& outcome, const CommonArguments& commo
 }
 
 void print_notes(const CalibrateOutcome& outcome) {
-  for (const Verdict& verdict : outcome.report.verdicts) {
+  for (const report::Verdict& verdict : outcome.report.verdicts) {
     note(fmt::format("{}.{}", verdict.text, verdict.remedy.empty() ? "" : " To do: " + verdict.remedy + "."));
   }
   for (const std::string& warning : outcome.warnings) note(warning);

@@ -50,7 +50,7 @@ void prune(const std::filesystem::path& folder, std::size_t most) {
 }
 
 Image<float> reduced(Image<float> picture) {
-  material::Downsampler averages(picture.size(), 3, kThumbnailSide);
+  report::Downsampler averages(picture.size(), 3, kThumbnailSide);
   std::vector<View<const float>> planes;
   for (int c = 0; c < 3; ++c) {
     const View<float> plane = picture.plane(c);
@@ -84,7 +84,7 @@ void balance_to_grey(Image<float>& picture) {
     const auto gain = static_cast<float>(std::clamp(ratio, 0.5, 4.0));
     for (int y = 0; y < picture.height(); ++y) {
       for (int x = 0; x < picture.width(); ++x) {
-        picture(x, y, c) = material::srgb_from_linear(gain * picture(x, y, c));
+        picture(x, y, c) = report::srgb_from_linear(gain * picture(x, y, c));
       }
     }
   }

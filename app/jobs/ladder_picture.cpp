@@ -59,8 +59,8 @@ double mean_angle_deg(const Image<float>& a, const Image<float>& b) {
   return sum / static_cast<double>(a.size().pixels());
 }
 
-material::Picture enlarged(const material::Picture& picture) {
-  material::Picture large({picture.width() * kEnlarged, picture.height() * kEnlarged}, 3);
+report::Picture enlarged(const report::Picture& picture) {
+  report::Picture large({picture.width() * kEnlarged, picture.height() * kEnlarged}, 3);
   for (int c = 0; c < 3; ++c) {
     for (int y = 0; y < large.height(); ++y) {
       for (int x = 0; x < large.width(); ++x) large(x, y, c) = picture(x / kEnlarged, y / kEnlarged, c);
@@ -69,7 +69,7 @@ material::Picture enlarged(const material::Picture& picture) {
   return large;
 }
 
-Result<void> write_png(const fs::path& file, const material::Picture& picture) {
+Result<void> write_png(const fs::path& file, const report::Picture& picture) {
   const std::array<View<const float>, 3> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};
   return write_image(file, planes, {"R", "G", "B"}, {.type = SampleType::kUint8});
 }
@@ -90,7 +90,7 @@ Result<std::vector<LadderStep>> draw_ladder(const SessionOptions& input, const S
   }
 
   std::vector<LadderStep> steps;
-  std::vector<material::Panel> panels;
+  std::vector<report::Panel> panels;
   for (const solver::MethodName& level : solver::method_names()) {
     if (!level.is_quality) continue;
     SolveOptions solve = options;
@@ -103,12 +103,12 @@ Result<std::vector<LadderStep>> draw_ladder(const SessionOptions& input, const S
     LadderStep step = {level.name, solved->folder, {}};
     if (truth) step.error_deg = mean_angle_deg(*crop, *truth);
     panels.push_back({level.name, step.error_deg ? fmt::format("mean {:.3f}°", *step.error_deg) : "",
-                      enlarged(material::normal_picture(*crop))});
+                      enlarged(report::normal_picture(*crop))});
     steps.push_back(std::move(step));
   }
-  if (truth) panels.push_back({"truth", "", enlarged(material::normal_picture(*truth))});
-  const material::Picture sheet =
-      material::contact_sheet(plan->session.fabric, panels, static_cast<int>(panels.size()));
+  if (truth) panels.push_back({"truth", "", enlarged(report::normal_picture(*truth))});
+  const report::Picture sheet =
+      report::contact_sheet(plan->session.fabric, panels, static_cast<int>(panels.size()));
   if (Result<void> written = write_png(file, sheet); !written) return std::move(written).error();
   return steps;
 }

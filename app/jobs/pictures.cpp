@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Result<void> write_png(const fs::path& file, const material::Picture& picture) {
+Result<void> write_png(const fs::path& file, const report::Picture& picture) {
   const std::array<View<const float>, 3> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};
   return write_image(file, planes, {"R", "G", "B"}, {.type = SampleType::kUint8});
 }
@@ -33,7 +33,7 @@ Result<TruthError> error_against(const fs::path& truth, const fs::path& normal) 
                              real->info.size.height, size.width, size.height),
                  "simulate the session again"};
   }
-  TruthError error = {{}, material::Downsampler(size, 1)};
+  TruthError error = {{}, report::Downsampler(size, 1)};
   std::vector<float> angles;
   Image<float> row({size.width, 1});
   for (int y = 0; y < size.height; ++y) {
@@ -43,7 +43,7 @@ Result<TruthError> error_against(const fs::path& truth, const fs::path& normal) 
                                               image.planes.plane(1).crop(line),
                                               image.planes.plane(2).crop(line)};
     };
-    material::angular_error_deg(rows(*solved), rows(*real), row.plane());
+    report::angular_error_deg(rows(*solved), rows(*real), row.plane());
     error.reduced_deg.add_rows(std::array{View<const float>(row.plane())});
     for (int x = 0; x < size.width; ++x) {
       if (std::isfinite(row(x, 0))) angles.push_back(row(x, 0));
@@ -64,28 +64,28 @@ void Pictures::add(const MapBand& band) {
 Result<std::vector<std::string>> Pictures::write(const fs::path& folder, const std::string& title,
                                                  bool absolute_albedo, const TruthError* error) const {
   const Image<float>&normal = normal_.averages(), &albedo = albedo_.averages();
-  const double scale = absolute_albedo ? 1 : material::display_scale(albedo);
+  const double scale = absolute_albedo ? 1 : report::display_scale(albedo);
   std::vector<std::string> names;
-  std::vector<material::Panel> panels;
-  const auto add = [&](const char* name, const char* label, std::string note, material::Picture picture) {
+  std::vector<report::Panel> panels;
+  const auto add = [&](const char* name, const char* label, std::string note, report::Picture picture) {
     names.emplace_back(name);
     panels.push_back({label, std::move(note), std::move(picture)});
   };
   add("albedo.png", "albedo", absolute_albedo ? "sRGB, absolute" : fmt::format("sRGB, x {:.3g}", scale),
-      material::albedo_picture(albedo, scale));
-  add("normal.png", "normal", "OpenGL, green up", material::normal_picture(normal));
-  add("relit.png", "relit", "lamp from the upper left", material::relit_picture(albedo, normal, scale));
+      report::albedo_picture(albedo, scale));
+  add("normal.png", "normal", "OpenGL, green up", report::normal_picture(normal));
+  add("relit.png", "relit", "lamp from the upper left", report::relit_picture(albedo, normal, scale));
   if (error != nullptr) {
     const View<const float> reduced = error->reduced_deg.averages().plane();
     add("error.png", "error", fmt::format("mean {:.3f}°", error->normal.mean_deg),
-        material::heat_picture(reduced, material::round_full_scale(reduced)));
+        report::heat_picture(reduced, report::round_full_scale(reduced)));
   } else {
     add("status_preview.png", "status", "", status_.picture());
   }
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (Result<void> ok = write_png(folder / names[i], panels[i].picture); !ok) return std::move(ok).error();
   }
-  if (Result<void> ok = write_png(folder / "sheet.png", material::contact_sheet(title, panels)); !ok) {
+  if (Result<void> ok = write_png(folder / "sheet.png", report::contact_sheet(title, panels)); !ok) {
     return std::move(ok).error();
   }
   names.emplace_back("sheet.png");

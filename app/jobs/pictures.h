@@ -17,7 +17,7 @@ namespace weft::app {
 /// How a solve differs from its truth, as numbers and as a picture.
 struct TruthError {
   NormalComparison normal;
-  material::Downsampler reduced_deg;  ///< the error at preview size
+  report::Downsampler reduced_deg;  ///< the error at preview size
 };
 
 /// Compares two normal maps on disk.
@@ -36,8 +36,8 @@ class Pictures {
                                          bool absolute_albedo, const TruthError* error) const;
 
  private:
-  material::Downsampler normal_, albedo_;
-  material::StatusPreview status_;
+  report::Downsampler normal_, albedo_;
+  report::StatusPreview status_;
 };
 
 }  // namespace weft::app

@@ -17,6 +17,7 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+using report::Verdict;
 using solver::Fault;
 using solver::FaultKind;
 
@@ -257,12 +258,6 @@ Json condition_over(const LightField& field, Size size) {
   }
   std::sort(conditions.begin(), conditions.end());
   return {{"median", number(conditions[conditions.size() / 2])}, {"worst", number(conditions.back())}};
-}
-
-Json json_of(const std::vector<Verdict>& verdicts) {
-  Json all = Json::array();
-  for (const Verdict& v : verdicts) all.push_back({{"name", v.name}, {"text", v.text}, {"remedy", v.remedy}});
-  return all;
 }
 
 PhotographsSummary summarize_photographs(const Photographs& photographs, const std::vector<int>& picked,

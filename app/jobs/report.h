@@ -13,6 +13,7 @@
 #include "pipeline/bands.h"
 #include "pipeline/photographs.h"
 #include "report/downsampler.h"
+#include "report/verdict.h"
 #include "solver/diagnosis/diagnosis.h"
 
 // The report of a solve: what went wrong, and where its error comes from. report.json (weft.solve-report/1,
@@ -34,21 +35,13 @@ class MapSummary {
  private:
   double quantile(double q) const;
 
-  material::Downsampler sigma_;
+  report::Downsampler sigma_;
   Image<float> row_;
   std::vector<std::int64_t> histogram_;  // of log sigma
 };
 
 /// Condition number of the lights over the frame: {"median", "worst"}.
 Json condition_over(const LightField& field, Size size);
-
-/// A sentence for the person at the rig, and what to do.
-struct Verdict {
-  std::string name;    ///< LEDS_EXCHANGED, LED_DEAD, LED_GAIN, SPECULAR_DOMINATED, CONDITIONS
-  std::string text;    ///< one sentence, with its numbers
-  std::string remedy;  ///< an imperative phrase without a full stop; may be empty
-};
-Json json_of(const std::vector<Verdict>& verdicts);
 
 /// What speaks of the photographs while they are in memory.
 struct PhotographsSummary {
@@ -67,7 +60,7 @@ PhotographsSummary summarize_photographs(const Photographs& photographs, const s
 inline constexpr double kSpecularDominated = 0.2;
 
 /// Everything to be warned of, the gravest first. `specular` is the share of pixels with that bit.
-std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular);
+std::vector<report::Verdict> verdicts_of(const PhotographsSummary& photographs, double specular);
 
 /// report.json from solve.json (`solve`, where "gates", "conditions", "registration" and "error" may be
 /// absent) and seconds by phase. Nothing but "seconds" differs from run to run.

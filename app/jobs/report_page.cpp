@@ -10,8 +10,9 @@
 #include <string_view>
 
 #include "core/text.h"
+#include "report/figures.h"
 #include "report/html.h"
-#include "report/preview.h"
+#include "report/page.h"
 
 namespace weft::app {
 namespace {
@@ -41,7 +42,7 @@ double number(const Json& object, const char* key, double otherwise = 0) {
 std::string percent(double share) {
   const double p = 100 * share;
   if (p == 0) return "0 %";
-  if (p < 0.01) return "&lt; 0.01 %";
+  if (p < 0.01) return "< 0.01 %";
   return fmt::format(fmt::runtime(p < 1 ? "{:.2f} %" : "{:.1f} %"), p);
 }
 
@@ -68,28 +69,24 @@ std::string head(const Json& report) {
 }
 
 std::string verdict(const Json& report) {
-  std::string body;
+  std::vector<report::Verdict> warnings;
   for (const Json& warning : report["warnings"]) {
-    body += fmt::format("<p>{}.</p>\n", escape_markup(warning.value("text", "")));
-    std::string remedy = warning.value("remedy", "");
-    if (remedy.empty()) continue;
-    remedy[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(remedy[0])));
-    body += fmt::format("<p class=\"do\">{}.</p>\n", escape_markup(remedy));
+    warnings.push_back({warning.value("name", ""), warning.value("text", ""), warning.value("remedy", "")});
   }
-  if (!body.empty()) return "<div class=\"verdict alarm\">\n" + body + "</div>\n";
+  std::string otherwise;
   if (report.value("looked_at", 0) == 0) {
-    body = "<p>No pixel was bright and lit enough to hold the lights against each other.</p>\n";
+    otherwise = "No pixel was bright and lit enough to hold the lights against each other.";
   } else if (report["lights"].size() < 6) {
-    body =
-        "<p>Nothing stands out. Six lights are needed to hold them against each other; "
-        "here each was taken at its word.</p>\n";
+    otherwise =
+        "Nothing stands out. Six lights are needed to hold them against each other; here each was taken at "
+        "its word.";
   } else {
-    body = fmt::format(
-        "<p>Nothing stands out: half of the pixels agree with the model to {} of the albedo or "
-        "better, and no light contradicts its calibration.</p>\n",
+    otherwise = fmt::format(
+        "Nothing stands out: half of the pixels agree with the model to {} of the albedo or better, and no "
+        "light contradicts its calibration.",
         percent(number(report, "residual_explained")));
   }
-  return "<div class=\"verdict\">\n" + body + "</div>\n";
+  return report::verdict_box(warnings, otherwise);
 }
 
 std::string picture_row(const std::vector<PagePicture>& pictures) {
@@ -123,7 +120,7 @@ std::string residual_chart(const Json& report) {
           "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"{}\">{} {}</text>"
           "<text x=\"{:.1f}\" y=\"{}\" fill=\"#77736b\">{}</text>\n",
           left - 8, y + 15, alarm.count(n) != 0 ? "#b3261e" : "#22211f", light_noun(report), n,
-          left + size / most * width + 6, y + 15, percent(size));
+          left + size / most * width + 6, y + 15, escape_markup(percent(size)));
     } else if (n % 8 == 0 || alarm.count(n) != 0) {
       bars += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"{}\">{}</text>\n", left - 8,
                           y + 9, alarm.count(n) != 0 ? "#b3261e" : "#22211f", n);
@@ -142,38 +139,19 @@ std::string status_chart(const Json& report) {
         "<tr><td>{}</td><td style=\"width:45%\"><svg viewBox=\"0 0 200 12\" preserveAspectRatio=\"none\" "
         "style=\"height:12px;margin-top:4px\"><rect width=\"200\" height=\"12\" fill=\"#eeebe3\"/>"
         "<rect width=\"{:.1f}\" height=\"12\" fill=\"#8f8a7e\"/></svg></td><td class=\"n\">{}</td></tr>\n",
-        escape_markup(name), 200 * std::clamp(s, 0.0, 1.0), percent(s));
+        escape_markup(name), 200 * std::clamp(s, 0.0, 1.0), escape_markup(percent(s)));
   }
   return "<table>\n" + rows +
          "</table>\n<p class=\"note\">Share of pixels with each bit of status.png; a pixel may have "
          "several.</p>\n";
 }
 
-// Predicted angle of the normal over the frame, in squares, over a scale from 0.
+// Predicted angle of the normal over the frame, in squares.
 std::string sigma_map(const Json& report) {
   const Json& sigma = report["sigma_normal_deg"];
   if (!sigma["median"].is_number()) return "";
-  const int columns = sigma.value("columns", 0), rows = sigma.value("rows", 0);
-  std::vector<double> known;
-  for (const Json& v : sigma["grid"]) {
-    if (v.is_number()) known.push_back(v.get<double>());
-  }
-  if (known.empty() || columns <= 0) return "";
-  std::sort(known.begin(), known.end());
-  const double full = std::max(known[known.size() * 98 / 100] * 1.1, 1e-6);
-  std::string squares;
-  for (int i = 0; i < columns * rows; ++i) {
-    const Json& v = sigma["grid"][static_cast<std::size_t>(i)];
-    squares +=
-        fmt::format("<rect x=\"{}\" y=\"{}\" width=\"10.3\" height=\"10.3\" fill=\"{}\"/>",
-                    10 * (i % columns), 10 * (i / columns),
-                    v.is_number() ? css_colour(material::heat_colour(v.get<double>() / full)) : "#ffffff");
-  }
-  std::string scale;
-  for (int i = 0; i < 40; ++i) {
-    scale += fmt::format("<rect x=\"{}\" width=\"8.2\" height=\"10\" fill=\"{}\"/>", 8 * i,
-                         css_colour(material::heat_colour((i + 0.5) / 40)));
-  }
+  report::FrameMap map = {sigma.value("columns", 0), sigma.value("rows", 0), {}, "°"};
+  for (const Json& v : sigma["grid"]) map.values.push_back(v.is_number() ? v.get<double>() : NAN);
   const Json condition = report.value("condition", Json::object());
   std::string note =
       fmt::format("Median {:.3g}°, 95 percent below {:.3g}°.", number(sigma, "median"), number(sigma, "p95"));
@@ -181,14 +159,8 @@ std::string sigma_map(const Json& report) {
     note += fmt::format(" Condition number of all lights {:.2f}, at worst {:.2f}.",
                         number(condition, "median"), number(condition, "worst", INFINITY));
   }
-  return html_section(
-      "How well the lights fix the normal",
-      fmt::format(
-          "<svg viewBox=\"0 0 {} {}\" role=\"img\">{}</svg>\n"
-          "<svg viewBox=\"0 0 320 22\" style=\"margin-top:6px;font-size:9px\">{}<text x=\"0\" y=\"20\" "
-          "fill=\"#77736b\">0°</text><text x=\"320\" y=\"20\" text-anchor=\"end\" "
-          "fill=\"#77736b\">{:.2g}°</text></svg>\n<p class=\"note\">{}</p>\n",
-          10 * columns, 10 * rows, squares, scale, full, note));
+  return report::html_section("How well the lights fix the normal",
+                              report::frame_map_svg(map) + "<p class=\"note\">" + note + "</p>\n");
 }
 
 std::string budget(const Json& report) {
@@ -198,7 +170,7 @@ std::string budget(const Json& report) {
     const double value = number(b, "value");
     rows += fmt::format("<tr><td>{}<br><span class=\"note\">{}</span></td><td class=\"n\">{}</td></tr>\n",
                         escape_markup(b.value("source", "")), escape_markup(b.value("what", "")),
-                        degrees ? fmt::format("{:.3g}°", value) : percent(value / 100));
+                        degrees ? fmt::format("{:.3g}°", value) : escape_markup(percent(value / 100)));
   }
   if (const auto error = report.find("error"); error != report.end()) {
     rows += fmt::format(
@@ -211,86 +183,73 @@ std::string budget(const Json& report) {
 
 std::string light_table(const Json& report) {
   const std::set<int> alarm = named(report);
-  std::string rows;
+  report::Table table = {{"", "rms residual", "its mean", "gain", "in shadow", "saturated", "missing",
+                          "outliers", "change over the frame"}};
   for (const Json& light : report["lights"]) {
     const int n = light.value("light", 0);
-    // Of very many lights the first and those that are named.
-    if (report["lights"].size() > 24 && alarm.count(n) == 0) continue;
-    rows += fmt::format(
-        "<tr{}><td>{} {}</td><td class=\"n\">{}</td><td class=\"n\">{:+.2f} %</td><td "
-        "class=\"n\">{:.1f} %</td><td class=\"n\">{}</td><td class=\"n\">{}</td><td class=\"n\">{}</td>"
-        "<td class=\"n\">{}</td><td class=\"n\">{:.1f} % ({:.0f} %)</td></tr>\n",
-        alarm.count(n) != 0 ? " class=\"alarm\"" : "", light_noun(report), n,
-        percent(number(light, "residual_rms")), 100 * number(light, "residual_mean"),
-        100 * number(light, "gain", 1), percent(number(light, "shadowed")),
-        percent(number(light, "saturated")), percent(number(light, "missing")),
-        percent(number(light, "outlier")), 100 * number(light, "gradient"),
-        100 * number(light, "gradient_share"));
+    const bool is_named = alarm.count(n) != 0;
+    // Very many lights are not listed but for those that are named.
+    if (report["lights"].size() > 24 && !is_named) continue;
+    if (is_named) table.alarms.insert(table.rows.size());
+    table.rows.push_back({fmt::format("{} {}", light_noun(report), n), percent(number(light, "residual_rms")),
+                          fmt::format("{:+.2f} %", 100 * number(light, "residual_mean")),
+                          fmt::format("{:.1f} %", 100 * number(light, "gain", 1)),
+                          percent(number(light, "shadowed")), percent(number(light, "saturated")),
+                          percent(number(light, "missing")), percent(number(light, "outlier")),
+                          fmt::format("{:.1f} % ({:.0f} %)", 100 * number(light, "gradient"),
+                                      100 * number(light, "gradient_share"))});
   }
-  if (rows.empty()) return "";
-  return html_section(
+  if (table.rows.empty()) return "";
+  return report::html_section(
       "Light by light",
-      "<table><tr><th></th><th class=\"n\">rms residual</th><th class=\"n\">its mean</th><th "
-      "class=\"n\">gain</th>"
-      "<th class=\"n\">in shadow</th><th class=\"n\">saturated</th><th class=\"n\">missing</th><th "
-      "class=\"n\">outliers</th><th class=\"n\">change over the frame</th></tr>\n" +
-          rows +
+      html_of(table) +
           fmt::format(
-              "</table>\n<p class=\"note\">From {} pixels all over the frame. Gain: what the light "
-              "gives of what the other lights let expect, named faults put right. A residual that changes "
-              "over the frame and explains much of its variance (in brackets) hints that a light has "
+              "<p class=\"note\">From {} pixels all over the frame. Gain: what the light gives of what "
+              "the other lights let expect, named faults put right. A residual that changes over the "
+              "frame and explains much of its variance (in brackets) hints that a light has "
               "moved.</p>\n",
               report.value("looked_at", 0)));
 }
 
 // Names and plain values of a JSON object of any shape, as rows.
-void flatten(const Json& value, const std::string& name, std::string& rows) {
+void flatten(const Json& value, const std::string& name, report::Table& table) {
   if (value.is_object()) {
     for (const auto& [key, inner] : value.items()) {
-      flatten(inner, name.empty() ? key : name + " · " + key, rows);
+      flatten(inner, name.empty() ? key : name + " · " + key, table);
     }
     return;
   }
-  const std::string text = value.is_string()         ? value.get<std::string>()
-                           : value.is_number_float() ? fmt::format("{:.4g}", value.get<double>())
-                                                     : value.dump();
-  rows +=
-      fmt::format("<tr><td>{}</td><td class=\"n\">{}</td></tr>\n", escape_markup(name), escape_markup(text));
+  table.rows.push_back({name, value.is_string()         ? value.get<std::string>()
+                              : value.is_number_float() ? fmt::format("{:.4g}", value.get<double>())
+                                                        : value.dump()});
 }
 
 std::string conditions(const Json& report) {
-  std::string rows;
+  report::Table table;
   for (const char* key : {"registration", "conditions"}) {
-    if (const auto found = report.find(key); found != report.end()) flatten(*found, "", rows);
+    if (const auto found = report.find(key); found != report.end()) flatten(*found, "", table);
   }
-  return rows.empty() ? "" : html_section("Conditions", "<table>\n" + rows + "</table>\n");
+  return table.rows.empty() ? "" : report::html_section("Conditions", html_of(table));
 }
 
 std::string gates(const Json& report) {
   const auto found = report.find("gates");
   if (found == report.end() || !found->is_array()) return "";
-  std::string rows;
+  report::Table table = {{"stage", "measured", "limit", "verdict"}};
   for (const Json& gate : *found) {
-    const Json verdict_of = gate.value("verdict", Json());
-    rows += fmt::format(
-        "<tr><td>{}</td><td class=\"n\">{:.3g} {}</td><td class=\"n\">{:.3g} {}</td><td>{}</td></tr>\n",
-        escape_markup(gate.value("name", "")), number(gate, "value"), escape_markup(gate.value("unit", "")),
-        number(gate, "limit"), escape_markup(gate.value("unit", "")),
-        escape_markup(verdict_of.is_string() ? verdict_of.get<std::string>() : verdict_of.dump()));
+    const std::string unit = gate.value("unit", "");
+    table.rows.push_back({gate.value("name", ""), fmt::format("{:.3g} {}", number(gate, "value"), unit),
+                          fmt::format("{:.3g} {}", number(gate, "limit"), unit), gate.value("verdict", "")});
   }
-  return html_section("Gates",
-                      "<table><tr><th>stage</th><th class=\"n\">measured</th><th class=\"n\">limit</th>"
-                      "<th>verdict</th></tr>\n" +
-                          rows + "</table>\n");
+  return report::html_section("Gates", html_of(table));
 }
 
 std::string time(const Json& report) {
-  std::string rows;
+  report::Table table;
   for (const auto& [phase, seconds] : report["seconds"].items()) {
-    rows += fmt::format("<tr><td>{}</td><td class=\"n\">{:.2f} s</td></tr>\n", escape_markup(phase),
-                        seconds.get<double>());
+    table.rows.push_back({phase, fmt::format("{:.2f} s", seconds.get<double>())});
   }
-  return rows.empty() ? "" : html_section("Time by phase", "<table>\n" + rows + "</table>\n", "time");
+  return table.rows.empty() ? "" : report::html_section("Time by phase", html_of(table), "time");
 }
 
 std::string two(const std::string& left, const std::string& right) {
@@ -303,12 +262,12 @@ std::string report_page(const Json& report, const std::vector<PagePicture>& pict
   std::string page = head(report);
   page += verdict(report);
   page += picture_row(pictures);
-  page += two(html_section("Residual by light", residual_chart(report)),
-              html_section("Pixels by state", status_chart(report)));
-  page += two(html_section("Where the error comes from", budget(report)), sigma_map(report));
+  page += two(report::html_section("Residual by light", residual_chart(report)),
+              report::html_section("Pixels by state", status_chart(report)));
+  page += two(report::html_section("Where the error comes from", budget(report)), sigma_map(report));
   page += light_table(report);
   page += two(gates(report) + time(report), conditions(report));
-  return html_page(report.value("title", "") + " · report of a solve", page);
+  return report::html_page(report.value("title", "") + " · report of a solve", page);
 }
 
 }  // namespace weft::app

@@ -8,9 +8,10 @@
 
 namespace weft::app {
 
+/// A picture inside the page.
 struct PagePicture {
-  std::string label;
-  std::string png;  ///< the bytes of the file
+  std::string label;  ///< written under it
+  std::string png;    ///< the bytes of the file
 };
 
 /// The page of a report (weft.solve-report/1): one HTML file with its style, charts and pictures inside, no

@@ -120,7 +120,7 @@ struct Facts {
   std::size_t lights;
   std::vector<std::string> pictures;
   std::optional<NormalComparison> error;  // against the truth, where there is one
-  std::vector<Verdict> verdicts;
+  std::vector<report::Verdict> verdicts;
   FrameFacts frame;
   Json registration;
   Json conditions;

@@ -154,12 +154,14 @@ Result<AccuracyFigures> measure_figures(const AccuracyTableOptions& options) {
   return figures;
 }
 
-Plot accuracy_plot(const AccuracyFigures& figures) {
-  Plot plot = {"Error against time, mean over all scenes",
-               "nanoseconds a pixel",
-               "mean angular error, degrees",
-               {{"level", {}}, {"method", {}}},
-               true};
+report::Plot accuracy_plot(const AccuracyFigures& figures) {
+  report::Plot plot = {.title = "Error against time, mean over all scenes",
+                       .x_label = "nanoseconds a pixel",
+                       .y_label = "mean angular error, degrees",
+                       .series = {{"level"}, {"method"}},
+                       .frontier = true,
+                       .log_x = true,
+                       .log_y = true};
   const std::vector<Contender> all = contenders();
   for (const Json& row : overall(figures.table)) {
     if (is_yardstick(row)) continue;
@@ -171,17 +173,17 @@ Plot accuracy_plot(const AccuracyFigures& figures) {
   }
   // A curve ends at the level's own mark, with all LEDs; without one (the oracle) there is no curve.
   const auto ends_at = [&](const std::string& method) {
-    for (const PlotSeries& series : plot.series) {
-      for (const PlotPoint& p : series.points) {
-        if (p.label == method) return PlotPoint{p.x, p.y, ""};
+    for (const report::PlotSeries& series : plot.series) {
+      for (const report::PlotPoint& p : series.points) {
+        if (p.label == method) return report::PlotPoint{p.x, p.y, ""};
       }
     }
-    return PlotPoint{};
+    return report::PlotPoint{};
   };
   for (const std::string& method : distinct(figures.leds, "method")) {
-    const PlotPoint with_all = ends_at(method);
+    const report::PlotPoint with_all = ends_at(method);
     if (with_all.x == 0) continue;
-    PlotSeries curve = {method + " by LEDs", {}, true};
+    report::PlotSeries curve = {method + " by LEDs", {}, true};
     for (const Json& row : figures.leds) {
       if (row["method"] != method || row["leds"] == figures.leds.back()["leds"]) continue;
       curve.points.push_back({number(row, "ns_per_pixel"), number(row, "mean_deg"), cell_of(row["leds"])});
@@ -192,14 +194,14 @@ Plot accuracy_plot(const AccuracyFigures& figures) {
   return plot;
 }
 
-Plot curves_plot(const AccuracyFigures& figures) {
-  Plot plot = {"What each setting buys, mean over all scenes",
-               "nanoseconds a pixel",
-               "mean angular error, degrees",
-               {},
-               false};
+report::Plot curves_plot(const AccuracyFigures& figures) {
+  report::Plot plot = {.title = "What each setting buys, mean over all scenes",
+                       .x_label = "nanoseconds a pixel",
+                       .y_label = "mean angular error, degrees",
+                       .log_x = true,
+                       .log_y = true};
   for (const std::string& name : distinct(figures.curves, "curve")) {
-    PlotSeries curve = {name, {}, true};
+    report::PlotSeries curve = {name, {}, true};
     for (const Json& row : figures.curves) {
       if (row["curve"] != name) continue;
       curve.points.push_back({number(row, "ns_per_pixel"), number(row, "mean_deg"), row["setting"]});
@@ -286,7 +288,7 @@ Result<void> write_accuracy_docs(const std::filesystem::path& folder, const Accu
   const Result<std::string> renewed = with_figures(*page, accuracy_markdown(figures));
   if (!renewed) return renewed.error();
   if (Result<void> made = make_writable_folder(pictures); !made) return made;
-  const Plot plot = accuracy_plot(figures);
+  const report::Plot plot = accuracy_plot(figures);
   Json document = document_of(figures.table);
   document["leds"] = figures.leds;
   document["curves"] = figures.curves;

@@ -18,9 +18,9 @@ struct AccuracyFigures {
 Result<AccuracyFigures> measure_figures(const AccuracyTableOptions& options);
 
 /// Mean error against time over all scenes: levels, other methods, and each level from three to ten LEDs.
-Plot accuracy_plot(const AccuracyFigures& figures);
+report::Plot accuracy_plot(const AccuracyFigures& figures);
 /// The same of the settings of accuracy_curves().
-Plot curves_plot(const AccuracyFigures& figures);
+report::Plot curves_plot(const AccuracyFigures& figures);
 
 /// The page's generated part: plot and tables in Markdown.
 std::string accuracy_markdown(const AccuracyFigures& figures);

@@ -367,7 +367,7 @@ Result<Rows> calibration_lights_table(const CalibrationLightsBenchOptions& optio
   return rows;
 }
 
-Plot calibration_poses_plot(const Rows& rows) {
+report::Plot calibration_poses_plot(const Rows& rows) {
   // By name of the case: what it reached.
   const auto reached = [&](const std::string& name, const std::string& quantity) {
     const auto found = std::find_if(rows.begin(), rows.end(), [&](const Json& each) {
@@ -375,8 +375,8 @@ Plot calibration_poses_plot(const Rows& rows) {
     });
     return found == rows.end() ? 0 : (*found)["reached"].get<double>();
   };
-  PlotSeries predicted = {"ours, predicted", {}, true}, real = {"ours, true", {}, true},
-             methods = {"other methods", {}};
+  report::PlotSeries predicted = {"ours, predicted", {}, true}, real = {"ours, true", {}, true},
+                     methods = {"other methods"};
   for (const int poses : kPoses) {
     const std::string name = name_of(poses);
     const double x = reached(name, kMinutes);
@@ -387,14 +387,15 @@ Plot calibration_poses_plot(const Rows& rows) {
     methods.points.push_back({reached(name, kMinutes), reached(name, kTrue), label});
   // No photographs take no minutes, which a logarithmic axis does not have: a line across all of it.
   const double without = reached(kTape, kTrue);
-  PlotSeries tape = {"no calibration: the tape alone",
-                     {{real.points.front().x, without, ""}, {real.points.back().x, without, ""}},
-                     true};
-  return {"Lights of a calibration: error of normals against time at the rig",
-          "minutes at the rig and of the fit (2 a pose, estimated)",
-          "error of normals at a slope of 20 degrees, rms over the frame, degrees",
-          {predicted, real, methods, tape},
-          false};
+  report::PlotSeries tape = {"no calibration: the tape alone",
+                             {{real.points.front().x, without, ""}, {real.points.back().x, without, ""}},
+                             true};
+  return {.title = "Lights of a calibration: error of normals against time at the rig",
+          .x_label = "minutes at the rig and of the fit (2 a pose, estimated)",
+          .y_label = "error of normals at a slope of 20 degrees, rms over the frame, degrees",
+          .series = {predicted, real, methods, tape},
+          .log_x = true,
+          .log_y = true};
 }
 
 Result<void> write_calibration_docs(const fs::path& folder, const Rows& rows) {

@@ -33,7 +33,7 @@ Result<Rows> calibration_lights_table(const CalibrationLightsBenchOptions& optio
 
 /// The error of normals in these rows against the minutes: predicted and true from one pose to nine, and the
 /// other methods.
-Plot calibration_poses_plot(const Rows& rows);
+report::Plot calibration_poses_plot(const Rows& rows);
 /// Writes it to `folder`/pictures/calibration_poses.svg.
 Result<void> write_calibration_docs(const std::filesystem::path& folder, const Rows& rows);
 

@@ -18,7 +18,7 @@ namespace weft::bench {
 namespace {
 
 using namespace simulator;
-using material::Picture;
+using report::Picture;
 
 /// Light by cell of four photosites: planes R, G, B, white-balanced, 1 is full scale.
 struct Shown {
@@ -61,7 +61,7 @@ Picture picture_of(Size size, const Level& level) {
   Picture picture(size, 3);
   for (int c = 0; c < 3; ++c) {
     for (int y = 0; y < size.height; ++y) {
-      for (int x = 0; x < size.width; ++x) picture(x, y, c) = material::srgb_from_linear(level(x, y, c));
+      for (int x = 0; x < size.width; ++x) picture(x, y, c) = report::srgb_from_linear(level(x, y, c));
     }
   }
   return picture;
@@ -74,7 +74,7 @@ Result<void> write_sheet(const std::filesystem::path& file, const Example& examp
   const auto lit = [&](const Image<float>& light) {
     return picture_of(size, [&](int x, int y, int c) { return brighten * light(x, y, c); });
   };
-  std::vector<material::Panel> panels;
+  std::vector<report::Panel> panels;
   panels.push_back({"off", "", lit(off)});
   panels.push_back({"on", example.shows, lit(on)});
   if (example.difference > 0) {
@@ -85,7 +85,7 @@ Result<void> write_sheet(const std::filesystem::path& file, const Example& examp
                         return kMiddle + times * (on(x, y, c) - off(x, y, c));
                       })});
   }
-  const Picture sheet = material::contact_sheet(example.effect, panels, static_cast<int>(panels.size()));
+  const Picture sheet = report::contact_sheet(example.effect, panels, static_cast<int>(panels.size()));
   return write_image(file, std::array<View<const float>, 3>{sheet.plane(0), sheet.plane(1), sheet.plane(2)},
                      {"R", "G", "B"}, {.type = SampleType::kUint8});
 }

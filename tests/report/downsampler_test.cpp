@@ -12,7 +12,7 @@
 
 #include "core/solve_record.h"
 
-namespace weft::material {
+namespace weft::report {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -144,4 +144,4 @@ TEST(Downsampler, ShowsRowsThatHaveNotComeAsMissing) {
 }
 
 }  // namespace
-}  // namespace weft::material
+}  // namespace weft::report

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-namespace weft::material {
+namespace weft::report {
 namespace {
 
 constexpr Colour kBlack{0, 0, 0}, kWhite{1, 1, 1};
@@ -115,4 +115,4 @@ TEST(ContactSheet, OfNothingIsATitle) {
 }
 
 }  // namespace
-}  // namespace weft::material
+}  // namespace weft::report

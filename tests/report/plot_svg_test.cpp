@@ -6,19 +6,21 @@
 
 #include <limits>
 
-namespace weft::bench {
+namespace weft::report {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
 
 Plot some_plot() {
-  return {"Error & time",
-          "ns",
-          "degrees",
-          {{"level", {{10, 4, "fast"}, {1000, 3, "standard"}, {100, 5, "slow and bad"}}},
-           {"by LEDs", {{12, 8, "3"}, {11, 6, "4"}}, true}},
-          true};
+  return {.title = "Error & time",
+          .x_label = "ns",
+          .y_label = "degrees",
+          .series = {{"level", {{10, 4, "fast"}, {1000, 3, "standard"}, {100, 5, "slow and bad"}}},
+                     {"by LEDs", {{12, 8, "3"}, {11, 6, "4"}}, true}},
+          .frontier = true,
+          .log_x = true,
+          .log_y = true};
 }
 
 TEST(PlotSvg, FrontierIsWhatNothingBeatsInBoth) {
@@ -51,13 +53,61 @@ TEST(PlotSvg, LeavesOutWhatALogarithmicAxisCannotShow) {
 }
 
 TEST(PlotSvg, DrawsAnEmptyPlotAndASinglePoint) {
-  for (const Plot& plot :
-       {Plot{"nothing", "x", "y", {}, true}, Plot{"one", "x", "y", {{"s", {{3, 7, "p"}}}}, true}}) {
-    const std::string svg = plot_svg(plot);
-    EXPECT_THAT(svg, HasSubstr("</svg>"));
-    EXPECT_THAT(svg, Not(HasSubstr("nan")));
-    EXPECT_THAT(svg, Not(HasSubstr("inf")));
+  for (const bool log : {false, true}) {
+    for (const std::vector<PlotSeries>& series :
+         {std::vector<PlotSeries>{}, std::vector<PlotSeries>{{"s", {{3, 7, "p"}}}}}) {
+      const std::string svg = plot_svg({"t", "x", "y", series, true, log, log});
+      EXPECT_THAT(svg, HasSubstr("</svg>"));
+      EXPECT_THAT(svg, Not(HasSubstr("nan")));
+      EXPECT_THAT(svg, Not(HasSubstr("inf")));
+    }
   }
+}
+
+TEST(PlotSvg, ShowsValuesBelowZeroOnLinearAxes) {
+  const std::string svg =
+      plot_svg({.x_label = "x", .y_label = "y", .series = {{"s", {{-1, -1}, {0, 0}, {1, 1}}}}});
+  EXPECT_THAT(svg, HasSubstr("<circle cx='402.0' cy='179.0' r='4.5'/>")) << "0 is in the middle of the field";
+  EXPECT_THAT(svg, HasSubstr(">-1</text>"));
+}
+
+TEST(PlotSvg, IsFlatterWithoutATitle) {
+  Plot plot = some_plot();
+  EXPECT_THAT(plot_svg(plot), HasSubstr("viewBox='0 0 760 520'"));
+  plot.title = "";
+  EXPECT_THAT(plot_svg(plot), HasSubstr("viewBox='0 0 760 372'"));
+}
+
+TEST(PlotSvg, DrawsALineAloneWhereThereAreNoMarks) {
+  const PlotSeries line = {.name = "fit", .points = {{1, 1}, {2, 2}}, .joined = true, .marked = false};
+  const std::string svg = plot_svg({.x_label = "x", .y_label = "y", .series = {line}});
+  EXPECT_THAT(svg, HasSubstr("<polyline"));
+  EXPECT_THAT(svg, HasSubstr("x2='88.0' y2='22.0' stroke='#555'/>")) << "its legend is a piece of the line";
+  EXPECT_THAT(svg, Not(HasSubstr("<circle")));
+}
+
+TEST(PlotSvg, TellsLinesApartByDashesWhereMarksComeRoundAgain) {
+  Plot plot = {.x_label = "x", .y_label = "y"};
+  for (int led = 1; led <= 10; ++led) {
+    plot.series.push_back(
+        {.name = "LED " + std::to_string(led), .points = {{0, 0}, {1, 1.0 * led}}, .joined = true});
+  }
+  const std::string svg = plot_svg(plot);
+  EXPECT_THAT(svg, HasSubstr("stroke-dasharray='6 3'"));
+  EXPECT_THAT(svg, HasSubstr(">LED 10<"));
+  plot.series.resize(5);
+  EXPECT_THAT(plot_svg(plot), Not(HasSubstr("stroke-dasharray")));
+}
+
+TEST(PlotSvg, BreaksALegendThatIsTooLong) {
+  Plot plot = {.x_label = "x", .y_label = "y"};
+  const std::string name(40, 'n');
+  for (int i = 0; i < 3; ++i) plot.series.push_back({.name = name});
+  const std::string svg = plot_svg(plot);
+  const std::string text = " text-anchor='start'>" + name;
+  EXPECT_THAT(svg, HasSubstr("<text x='77.5' y='26.0'" + text));
+  EXPECT_THAT(svg, HasSubstr("<text x='378.3' y='26.0'" + text)) << "40 letters of 6.72 and 32 of space on";
+  EXPECT_THAT(svg, HasSubstr("<text x='77.5' y='44.0'" + text));
 }
 
 TEST(PlotJson, HoldsEveryPoint) {
@@ -67,4 +117,4 @@ TEST(PlotJson, HoldsEveryPoint) {
 }
 
 }  // namespace
-}  // namespace weft::bench
+}  // namespace weft::report

@@ -9,7 +9,7 @@
 #include "core/solve_record.h"
 #include "core/vec.h"
 
-namespace weft::material {
+namespace weft::report {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -223,4 +223,4 @@ TEST(StatusPreview, IsTheSameForAnyBands) {
 }
 
 }  // namespace
-}  // namespace weft::material
+}  // namespace weft::report

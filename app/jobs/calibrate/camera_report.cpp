@@ -51,8 +51,8 @@ double mm_per_pixel(const CameraModel& c) {
 }
 
 /// Predicted standard deviation of where a pixel is on the table, in mm, over the frame.
-FrameMap table_sigma(const CameraFacts& facts) {
-  FrameMap map = {kColumns, kRows, {}, "mm"};
+report::FrameMap table_sigma(const CameraFacts& facts) {
+  report::FrameMap map = {kColumns, kRows, {}, "mm"};
   const Size size = facts.fit.camera.size;
   for (int j = 0; j < kRows; ++j) {
     for (int i = 0; i < kColumns; ++i) {
@@ -76,7 +76,7 @@ double rms(const std::vector<double>& values) {
 /// What the report says in numbers.
 struct Figures {
   Measured fx, fy, cx, cy, height_mm, tilt_deg, scale_mm;
-  FrameMap table_sigma_mm;
+  report::FrameMap table_sigma_mm;
   std::vector<int> corners;  // of each part of the frame
   double coverage = 0;
 };
@@ -123,8 +123,8 @@ double moved_mm(const CameraModel& before, const CameraModel& now) {
   return std::max(most, length(centre_of(now) - centre_of(before)));
 }
 
-std::vector<Verdict> verdicts_of(const CameraFacts& facts, const Figures& f) {
-  std::vector<Verdict> verdicts;
+std::vector<report::Verdict> verdicts_of(const CameraFacts& facts, const Figures& f) {
+  std::vector<report::Verdict> verdicts;
   if (f.coverage < kLeastCoverage) {
     verdicts.push_back(
         {"WEAK_COVERAGE",
@@ -163,9 +163,9 @@ std::vector<Verdict> verdicts_of(const CameraFacts& facts, const Figures& f) {
   return verdicts;
 }
 
-ReportTable board_table(const CameraFacts& facts) {
-  ReportTable table = {{"photograph", "corners", "edges, pixels", "tilt, degrees", "residual, pixels", ""},
-                       {}};
+report::Table board_table(const CameraFacts& facts) {
+  report::Table table = {{"photograph", "corners", "edges, pixels", "tilt, degrees", "residual, pixels", ""},
+                         {}};
   for (std::size_t p = 0; p < facts.photographs.photographs.size(); ++p) {
     const BoardPhotograph& photograph = facts.photographs.photographs[p];
     const auto view = std::find(facts.viewed.begin(), facts.viewed.end(), p);
@@ -185,10 +185,10 @@ ReportTable board_table(const CameraFacts& facts) {
   return table;
 }
 
-ReportTable covariance_table(const ParameterCovariance& covariance) {
+report::Table covariance_table(const ParameterCovariance& covariance) {
   const std::size_t n = covariance.parameters.size();
   const auto sigma = [&](std::size_t i) { return std::sqrt(covariance.matrix[i * n + i]); };
-  ReportTable table = {{"parameter", "standard deviation"}, {}};
+  report::Table table = {{"parameter", "standard deviation"}, {}};
   for (std::size_t j = 0; j < n; ++j) table.header.push_back(fmt::format("{}", j + 1));
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<std::string> row = {fmt::format("{} {}", i + 1, covariance.parameters[i]),
@@ -200,8 +200,8 @@ ReportTable covariance_table(const ParameterCovariance& covariance) {
   return table;
 }
 
-ReportTable trial_table(const std::vector<LensTrial>& trials) {
-  ReportTable table = {{"terms", "held-out error, pixels", "better by, standard errors", "than", ""}, {}};
+report::Table trial_table(const std::vector<LensTrial>& trials) {
+  report::Table table = {{"terms", "held-out error, pixels", "better by, standard errors", "than", ""}, {}};
   for (const LensTrial& t : trials) {
     table.rows.push_back({t.terms, fmt::format("{:.4f}", t.held_out_px),
                           t.than.empty() ? "" : fmt::format("{:.1f}", t.better_by), t.than,
@@ -210,8 +210,8 @@ ReportTable trial_table(const std::vector<LensTrial>& trials) {
   return table;
 }
 
-ReportPicture residual_arrows(const CameraFacts& facts) {
-  std::vector<Arrow> arrows;
+report::Figure residual_arrows(const CameraFacts& facts) {
+  std::vector<report::Arrow> arrows;
   for (std::size_t i = 0; i < facts.views.size(); ++i) {
     if (!facts.fit.boards[i].used) continue;
     for (std::size_t k = 0; k < facts.views[i].corners.size(); ++k) {
@@ -227,7 +227,7 @@ ReportPicture residual_arrows(const CameraFacts& facts) {
       fmt::format(
           "Where corners were seen against where they are predicted, {:g} times as long; rms {:.3f} pixels",
           magnification, facts.fit.rms_px),
-      arrows_svg(facts.fit.camera.size, arrows, magnification)};
+      report::arrows_svg(facts.fit.camera.size, arrows, magnification)};
 }
 
 Json numbers_of(const CameraFacts& facts, const Figures& f) {
@@ -306,7 +306,7 @@ CalibrationReport camera_report(const CameraFacts& facts) {
   report.verdicts = verdicts_of(facts, f);
   report.numbers = numbers_of(facts, f);
 
-  ReportTable numbers = {{"", "value"}, {}};
+  report::Table numbers = {{"", "value"}, {}};
   numbers.rows = {
       {"focal length along x, pixels", words(f.fx, 2)},
       {"focal length along y, pixels", words(f.fy, 2)},
@@ -323,13 +323,14 @@ CalibrationReport camera_report(const CameraFacts& facts) {
       {"Numbers", {"Each with its standard deviation, by the noise that the corners show."}, numbers});
 
   report.sections.push_back({"Reprojection", {}, {}, {residual_arrows(facts)}});
-  FrameMap coverage = {kColumns, kRows, {f.corners.begin(), f.corners.end()}, "corners"};
+  report::FrameMap coverage = {kColumns, kRows, {f.corners.begin(), f.corners.end()}, "corners"};
   report.sections.push_back(
       {"Coverage of the frame",
        {fmt::format("{:.0f} percent of the frame's parts have corners in them.", 100 * f.coverage)},
        {},
-       {{"Corners seen", frame_map_svg(coverage)},
-        {"Predicted standard deviation of a pixel's place on the table", frame_map_svg(f.table_sigma_mm)}}});
+       {{"Corners seen", report::frame_map_svg(coverage)},
+        {"Predicted standard deviation of a pixel's place on the table",
+         report::frame_map_svg(f.table_sigma_mm)}}});
   report.sections.push_back({"Photographs", {}, board_table(facts)});
   report.sections.push_back({"Distortion terms",
                              {"Error on boards that were not fitted to, five folds. Terms beyond k1 and k2 "

@@ -136,9 +136,9 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
 }
 
 /// What a sheet says against the calibration.
-std::vector<Verdict> verdicts_of(const CheckedSheet& sheet, const calibration::CheckLimits& limits) {
+std::vector<report::Verdict> verdicts_of(const CheckedSheet& sheet, const calibration::CheckLimits& limits) {
   constexpr const char* kRemedy = "calibrate the lights again, and camera and response before them";
-  std::vector<Verdict> verdicts;
+  std::vector<report::Verdict> verdicts;
   const SheetCheck& check = sheet.check;
   if (sheet.was_fitted) {
     verdicts.push_back(
@@ -197,7 +197,7 @@ CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const C
   CalibrationReport report;
   report.part = "check";
   report.title = fmt::format("Check of the calibration of {}", calibration.subject.rig);
-  ReportSection section = {"Sheets", {}, ReportTable{}, {}};
+  report::Section section = {"Sheets", {}, report::Table{}, {}};
   section.paragraphs = {fmt::format(
       "Each sheet was solved in squares of {} pixels, at the point that its tags give. A flat sheet may be "
       "{} "
@@ -222,8 +222,8 @@ CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const C
          number(c.pattern_rms_deg, 3), number(c.worst_deg, 3),
          c.slope_gain ? fmt::format("{:.4f} ± {:.4f}", *c.slope_gain, c.slope_gain_sigma) : "",
          sheet.drift ? number(100 * *sheet.drift, 2) : ""});
-    section.pictures.push_back({fmt::format("Angle between {} as it is solved and as it lies", sheet.name),
-                                frame_map_svg({sheet.columns, sheet.rows, c.error_deg, "degrees"})});
+    section.figures.push_back({fmt::format("Angle between {} as it is solved and as it lies", sheet.name),
+                               report::frame_map_svg({sheet.columns, sheet.rows, c.error_deg, "degrees"})});
     Json json = {{"session", sheet.name},
                  {"tilt_deg", c.tilt_deg},
                  {"squares", c.squares},
@@ -237,7 +237,8 @@ CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const C
     }
     if (sheet.drift) json["drift"] = *sheet.drift;
     report.numbers["sheets"].push_back(std::move(json));
-    for (Verdict& verdict : verdicts_of(sheet, options.limits)) report.verdicts.push_back(std::move(verdict));
+    for (report::Verdict& verdict : verdicts_of(sheet, options.limits))
+      report.verdicts.push_back(std::move(verdict));
   }
   std::vector<std::string> not_checked;
   std::string found = fmt::format("{} sheet{}", sheets.size(), sheets.size() == 1 ? "" : "s");
@@ -285,7 +286,7 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
   const calibration::Movement& movement = rig.movement;
   report.part = "check";
   report.title = fmt::format("Has {} moved?", rig.calibration.subject.rig);
-  ReportSection section = {"What the session shows", {}, {}, {}};
+  report::Section section = {"What the session shows", {}, {}, {}};
   section.paragraphs.push_back(fmt::format(
       "{} corners of tags and {} readings were compared with what the calibration predicts: chi-square "
       "{:.2f} each "

@@ -10,7 +10,6 @@
 namespace weft::app {
 namespace {
 
-
 std::string css(const Rgb& linear) {
   const Rgb display = srgb_of_rec709(linear);
   return fmt::format("#{:02x}{:02x}{:02x}", std::lround(255 * display[0]), std::lround(255 * display[1]),
@@ -21,24 +20,24 @@ double most_of(const std::vector<double>& values) {
   return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
 }
 
-ReportSection patches_section(const ColorMeasurement& color) {
-  ReportSection section = {"Patches"};
+report::Section patches_section(const ColorMeasurement& color) {
+  report::Section section = {"Patches"};
   section.paragraphs = {
       fmt::format("Each patch as it should be ({}) on the left, and as it came out on the right; "
                   "colours outside the screen's are clipped.",
                   color.reference)};
-  section.pictures = {{"reference | measured", patches_svg(color)}};
+  section.figures = {{"reference | measured", patches_svg(color)}};
   return section;
 }
 
-ReportSection differences_section(const ColorMeasurement& color) {
+report::Section differences_section(const ColorMeasurement& color) {
   const bool has_curve = !color.by_curve.empty();
-  ReportSection section = {"Colour differences"};
+  report::Section section = {"Colour differences"};
   section.paragraphs = {
       "CIEDE2000 (Sharma, Wu, Dalal 2005) of every patch: the camera's own channels with the scale that "
       "suits "
       "them best; after the matrix; and held out, by the matrix fitted to all other patches."};
-  ReportTable table = {{"patch", "before", "after", "held out"}, {}};
+  report::Table table = {{"patch", "before", "after", "held out"}, {}};
   if (has_curve) table.header.insert(table.header.end(), {"curve", "curve, held out"});
   const auto row_of = [&](const std::string& name, const auto& value) {
     std::vector<std::string> row = {name};
@@ -61,13 +60,13 @@ ReportSection differences_section(const ColorMeasurement& color) {
   return section;
 }
 
-ReportSection matrix_section(const ColorMeasurement& color) {
-  ReportSection section = {"Matrix"};
+report::Section matrix_section(const ColorMeasurement& color) {
+  report::Section section = {"Matrix"};
   section.paragraphs = {
       "Linear Rec.709 from the camera's channels after white balance; rows sum to 1, so that white stays "
       "white. "
       "Standard deviations in brackets."};
-  ReportTable table = {{"", "red", "green", "blue"}, {}};
+  report::Table table = {{"", "red", "green", "blue"}, {}};
   const char* const names[] = {"red", "green", "blue"};
   for (std::size_t r = 0; r < 3; ++r) {
     std::vector<std::string> row = {names[r]};
@@ -122,7 +121,7 @@ CalibrationReport report_of(const ColorMeasurement& color, const std::string& ri
   }
   report.verdicts = color.verdicts;
   report.sections = {patches_section(color), differences_section(color), matrix_section(color)};
-  ReportSection sources = {"Sources"};
+  report::Section sources = {"Sources"};
   sources.paragraphs = color.sources;
   if (color.has_albedo) {
     sources.paragraphs.push_back(

@@ -15,7 +15,7 @@
 #include "core/files.h"
 #include "core/iso_time.h"
 #include "core/session.h"
-#include "report/figures.h"
+#include "report/plot_svg.h"
 
 namespace weft::app {
 namespace {
@@ -163,42 +163,44 @@ std::string number(std::optional<double> value, int digits) {
 template <typename Value>
 std::string plot_of_leds(const std::vector<DatedCalibration>& all, const std::string& label,
                          const Value& value) {
-  LinePlot plot;
-  plot.x_label = "days";
-  plot.y_label = label;
+  report::Plot plot = {.x_label = "days", .y_label = label};
   const NearLights* first = nullptr;
   for (const DatedCalibration& each : all) {
     const NearLights* lights = near_lights(each.calibration);
     if (lights == nullptr) continue;
     if (first == nullptr) first = lights;
     for (std::size_t k = 0; k < std::min(first->leds.size(), lights->leds.size()); ++k) {
-      if (plot.curves.size() <= k) plot.curves.push_back({fmt::format("LED {}", k + 1), {}, {}});
-      plot.curves[k].x.push_back((each.time_s - all.front().time_s) / kDay_s);
-      plot.curves[k].y.push_back(value(lights->leds[k], first->leds[k]));
+      if (plot.series.size() <= k) {
+        plot.series.push_back({.name = fmt::format("LED {}", k + 1), .joined = true});
+      }
+      plot.series[k].points.push_back(
+          {(each.time_s - all.front().time_s) / kDay_s, value(lights->leds[k], first->leds[k])});
     }
   }
-  return plot.curves.empty() ? "" : lines_svg(plot);
+  return plot.series.empty() ? "" : report::plot_svg(plot);
 }
 
 std::string plot_of_camera(const std::vector<DatedCalibration>& all) {
-  LinePlot plot = {
-      "days", "mm against the first calibration", {{"x", {}, {}}, {"y", {}, {}}, {"height", {}, {}}}};
+  report::PlotSeries x = {.name = "x", .joined = true}, y = {.name = "y", .joined = true},
+                     height = {.name = "height", .joined = true};
   std::optional<Vec3> first;
   for (const DatedCalibration& each : all) {
     if (!each.calibration.camera) continue;
     const Vec3 centre = camera_centre_mm(*each.calibration.camera);
     if (!first) first = centre;
     const Vec3 moved = centre - *first;
-    for (Curve& curve : plot.curves) curve.x.push_back((each.time_s - all.front().time_s) / kDay_s);
-    plot.curves[0].y.push_back(moved.x);
-    plot.curves[1].y.push_back(moved.y);
-    plot.curves[2].y.push_back(moved.z);
+    const double days = (each.time_s - all.front().time_s) / kDay_s;
+    x.points.push_back({days, moved.x});
+    y.points.push_back({days, moved.y});
+    height.points.push_back({days, moved.z});
   }
-  return first ? lines_svg(plot) : "";
+  if (!first) return "";
+  return report::plot_svg(
+      {.x_label = "days", .y_label = "mm against the first calibration", .series = {x, y, height}});
 }
 
-ReportSection calibrations_section(const std::vector<DatedCalibration>& all, Json& numbers) {
-  ReportSection section = {"Calibrations", {}, ReportTable{}, {}};
+report::Section calibrations_section(const std::vector<DatedCalibration>& all, Json& numbers) {
+  report::Section section = {"Calibrations", {}, report::Table{}, {}};
   section.is_answer = true;
   section.table->header = {"measured",
                            "folder",
@@ -240,7 +242,7 @@ ReportSection calibrations_section(const std::vector<DatedCalibration>& all, Jso
     numbers["calibrations"].push_back(std::move(json));
   }
   const auto add = [&](const char* label, std::string svg) {
-    if (!svg.empty()) section.pictures.push_back({label, std::move(svg)});
+    if (!svg.empty()) section.figures.push_back({label, std::move(svg)});
   };
   add("Distance of each LED from where it was first",
       plot_of_leds(all, "mm", [](const NearLight& now, const NearLight& first) {
@@ -254,8 +256,8 @@ ReportSection calibrations_section(const std::vector<DatedCalibration>& all, Jso
   return section;
 }
 
-ReportSection checks_section(const std::vector<DatedCheck>& all, Json& numbers) {
-  ReportSection section = {"Checks", {}, ReportTable{}, {}};
+report::Section checks_section(const std::vector<DatedCheck>& all, Json& numbers) {
+  report::Section section = {"Checks", {}, report::Table{}, {}};
   section.is_answer = true;
   section.table->header = {"date", "folder", "of", "calibration", "passed", "found", "cost, degrees"};
   for (const DatedCheck& check : all) {
@@ -336,8 +338,8 @@ Result<void> find_affected(const fs::path& folder, const Records& records, Calib
   return {};
 }
 
-ReportSection affected_section(const std::vector<AffectedSession>& all, Json& numbers) {
-  ReportSection section = {"Affected sessions", {}, ReportTable{}, {}};
+report::Section affected_section(const std::vector<AffectedSession>& all, Json& numbers) {
+  report::Section section = {"Affected sessions", {}, report::Table{}, {}};
   section.paragraphs = {
       "These were taken after the last check that their calibration passed. Those up to the check that found "
       "the move are perhaps from before it, and then have no error; those after that check are not. The "

@@ -77,7 +77,7 @@ class LightsJob {
   SheetCaptures captures_;
   std::vector<std::vector<char>> left_out_;
   LightsEvidence evidence_;
-  std::vector<Verdict> verdicts_;
+  std::vector<report::Verdict> verdicts_;
 };
 
 Result<void> LightsJob::prepare() {

@@ -48,9 +48,9 @@ double rms_of_sheet(const LightsEvidence& e, std::size_t sheet) {
   return rms_of(e, [=](const calibration::PaperReading& r) { return r.sheet == sheet; });
 }
 
-ReportSection led_section(const LightsEvidence& e) {
+report::Section led_section(const LightsEvidence& e) {
   const LightFit& fit = *e.fit;
-  ReportTable table = {
+  report::Table table = {
       {"LED", "x mm", "y mm", "z mm", "sigma x, y, z mm", "from the tape mm", "aim off the centre deg", "mu",
        "flux of green", "red : green", "blue : green", "residual %"},
       {}};
@@ -67,7 +67,7 @@ ReportSection led_section(const LightsEvidence& e) {
                           fmt::format("{:.3f}", led.flux_rgb[2] / led.flux_rgb[1]),
                           fmt::format("{:.2f}", 100 * rms_of_led(e, k))});
   }
-  ReportSection section = {
+  report::Section section = {
       "LEDs",
       {fmt::format("Chi-square is {:.3f} for each of {:.0f} degrees of freedom, after {} iterations; from "
                    "{:.1f} on the photographs "
@@ -83,11 +83,11 @@ ReportSection led_section(const LightsEvidence& e) {
   return section;
 }
 
-ReportSection sheet_section(const LightsEvidence& e) {
+report::Section sheet_section(const LightsEvidence& e) {
   const LightFit& fit = *e.fit;
-  ReportTable table = {{"session", "tilt deg by its tags", "after the fit", "towards deg",
-                        "turned by the fit deg", "shifted mm", "residual %"},
-                       {}};
+  report::Table table = {{"session", "tilt deg by its tags", "after the fit", "towards deg",
+                          "turned by the fit deg", "shifted mm", "residual %"},
+                         {}};
   for (std::size_t j = 0; j < e.captures.size(); ++j) {
     const Pose &before = fit.sheets_before[j].rig_from_sheet, &after = fit.scene.sheets[j].rig_from_sheet;
     const double turned =
@@ -101,10 +101,10 @@ ReportSection sheet_section(const LightsEvidence& e) {
   return {"Sheets", {}, table, {}};
 }
 
-ReportSection paper_section(const LightsEvidence& e) {
+report::Section paper_section(const LightsEvidence& e) {
   const LightFit& fit = *e.fit;
   const auto& q = fit.scene.paper.log_albedo;
-  ReportSection section = {"Paper", {}, {}, {}};
+  report::Section section = {"Paper", {}, {}, {}};
   section.paragraphs.push_back(
       fmt::format("Departure from Lambert's law: 1 - delta (1 - n.l) with delta = {:.4f} +- {:.4f}.",
                   fit.scene.paper.delta, fit.delta_sigma));
@@ -119,28 +119,30 @@ ReportSection paper_section(const LightsEvidence& e) {
   return section;
 }
 
-ReportSection error_section(const LightsEvidence& e) {
+report::Section error_section(const LightsEvidence& e) {
   const PredictedError& p = *e.predicted;
-  ReportSection section = {"Predicted error of normals", {}, {}, {}};
+  report::Section section = {"Predicted error of normals", {}, {}, {}};
   section.paragraphs.push_back(
       fmt::format("What the covariance of the lights makes of a solved normal: at a slope of 20 degrees "
                   "{:.3f} degrees at the "
                   "centre of the frame and {:.3f} in its worst corner.",
                   p.centre_deg, p.corner_deg));
-  section.pictures.push_back({"Level cloth, degrees over the frame",
-                              frame_map_svg({p.grid.columns, p.grid.rows, p.level_deg, "deg", 0, {}})});
-  section.pictures.push_back({"Slope of 20 degrees, degrees over the frame",
-                              frame_map_svg({p.grid.columns, p.grid.rows, p.slope_deg, "deg", 0, {}})});
+  section.figures.push_back(
+      {"Level cloth, degrees over the frame",
+       report::frame_map_svg({p.grid.columns, p.grid.rows, p.level_deg, "deg", 0, {}})});
+  section.figures.push_back(
+      {"Slope of 20 degrees, degrees over the frame",
+       report::frame_map_svg({p.grid.columns, p.grid.rows, p.slope_deg, "deg", 0, {}})});
   return section;
 }
 
 // Mean departure of each LED over the frame, in percent.
-ReportSection residual_section(const LightsEvidence& e) {
-  ReportSection section = {"Residuals over the frame",
-                           {"Mean over all sheets of measured over predicted, in percent. What is left "
-                            "should be noise without shape."},
-                           {},
-                           {}};
+report::Section residual_section(const LightsEvidence& e) {
+  report::Section section = {"Residuals over the frame",
+                             {"Mean over all sheets of measured over predicted, in percent. What is left "
+                              "should be noise without shape."},
+                             {},
+                             {}};
   const calibration::CellGrid& grid = e.predicted->grid;
   for (std::size_t k = 0; k < e.start.lights.leds.size(); ++k) {
     std::vector<double> sum(grid.cells()), count(grid.cells());
@@ -153,15 +155,16 @@ ReportSection residual_section(const LightsEvidence& e) {
     }
     for (std::size_t cell = 0; cell < grid.cells(); ++cell)
       sum[cell] = count[cell] > 0 ? sum[cell] / count[cell] : std::numeric_limits<double>::quiet_NaN();
-    section.pictures.push_back({fmt::format("LED {}", k + 1),
-                                frame_map_svg({grid.columns, grid.rows, std::move(sum), "%", -0.5, 0.5})});
+    section.figures.push_back(
+        {fmt::format("LED {}", k + 1),
+         report::frame_map_svg({grid.columns, grid.rows, std::move(sum), "%", -0.5, 0.5})});
   }
   return section;
 }
 
-ReportSection per_pixel_section(const LightsEvidence& e) {
+report::Section per_pixel_section(const LightsEvidence& e) {
   const calibration::PerPixelLights& p = *e.per_pixel;
-  ReportSection section = {"By the pixel", {}, ReportTable{{"LED", "most apart deg", "rms deg"}, {}}, {}};
+  report::Section section = {"By the pixel", {}, report::Table{{"LED", "most apart deg", "rms deg"}, {}}, {}};
   section.paragraphs.push_back(
       fmt::format("Directions and intensities of {} x {} cells without a model of the LED, settled to {:.4f} "
                   "degrees in {} rounds. Where they "
@@ -174,24 +177,24 @@ ReportSection per_pixel_section(const LightsEvidence& e) {
         {fmt::format("{}", k + 1),
          fmt::format("{:.3f}", *std::max_element(p.apart_deg[k].begin(), p.apart_deg[k].end())),
          fmt::format("{:.3f}", std::sqrt(sum))});
-    section.pictures.push_back({fmt::format("LED {}: degrees between map and model", k + 1),
-                                frame_map_svg({p.grid.columns, p.grid.rows, p.apart_deg[k], "deg", 0, {}})});
+    section.figures.push_back(
+        {fmt::format("LED {}: degrees between map and model", k + 1),
+         report::frame_map_svg({p.grid.columns, p.grid.rows, p.apart_deg[k], "deg", 0, {}})});
   }
   return section;
 }
 
 constexpr const char* kSeedSays =
     "One flat sheet gives one reading for two unknowns, intensity and direction: that the paper residual "
-    "falls says "
-    "nothing of the directions. The azimuth of every direction is never changed.";
+    "falls says nothing of the directions. The azimuth of every direction is never changed.";
 
-ReportSection seed_section(const LightsEvidence& e) {
-  ReportSection section = {"The seed's iteration",
-                           {kSeedSays},
-                           ReportTable{{"iteration", "intensities changed by %", "directions changed by deg",
-                                        "paper residual deg", ""},
-                                       {}},
-                           {}};
+report::Section seed_section(const LightsEvidence& e) {
+  report::Section section = {"The seed's iteration",
+                             {kSeedSays},
+                             report::Table{{"iteration", "intensities changed by %",
+                                            "directions changed by deg", "paper residual deg", ""},
+                                           {}},
+                             {}};
   section.is_answer = true;
   for (std::size_t i = 0; i < e.seed->steps.size(); ++i) {
     const calibration::SeedStep& step = e.seed->steps[i];
@@ -273,7 +276,7 @@ std::string lax_gate(const LightsEvidence& e) {
   return text;
 }
 
-CalibrationReport lights_report(const LightsEvidence& e, std::vector<Verdict> verdicts) {
+CalibrationReport lights_report(const LightsEvidence& e, std::vector<report::Verdict> verdicts) {
   CalibrationReport report;
   report.part = "lights";
   report.title = fmt::format("Lights of {}", e.rig);

@@ -121,8 +121,8 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
   const auto evidence = rig_evidence(change, *photographs);
   if (!evidence) return evidence.error();
   CalibrateOutcome outcome;
-  ReportSection section = {
-      "Patches", {}, ReportTable{{"patch", "red", "green", "blue", "spread, percent"}, {}}, {}};
+  report::Section section = {
+      "Patches", {}, report::Table{{"patch", "red", "green", "blue", "spread, percent"}, {}}, {}};
   for (std::size_t p = 0; p < change.patches.size(); ++p) {
     const Reflectance r =
         reflectance_of(evidence->places[p], std::get<NearLights>(*change.lights), plan->size, delta);

@@ -1,67 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/calibrate/report.h"
 
-#include <fmt/format.h>
-
 #include "core/files.h"
-#include "core/text.h"
-#include "report/html.h"
 
 namespace weft::app {
-namespace {
 
 namespace fs = std::filesystem;
-
-std::string paragraph(std::string_view text, std::string_view style = "") {
-  return fmt::format("<p{}>{}</p>\n", style, escape_markup(text));
-}
-
-std::string sentence(std::string text) {
-  if (text.empty()) return text;
-  text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text.back() == '.' ? text : text + '.';
-}
-
-std::string head(const CalibrationReport& report) {
-  std::string body;
-  for (const Verdict& verdict : report.verdicts) {
-    body += paragraph(sentence(verdict.text));
-    if (!verdict.remedy.empty()) body += paragraph(sentence(verdict.remedy), " class=\"do\"");
-  }
-  const bool good = body.empty();
-  if (good) body = paragraph(sentence(report.summary));
-  return fmt::format("<h1>{}</h1>\n{}<div class=\"verdict{}\">\n{}</div>\n", escape_markup(report.title),
-                     good ? "" : paragraph(sentence(report.summary), " class=\"meta\""), good ? "" : " alarm",
-                     body);
-}
-
-std::string cells(const std::vector<std::string>& row, const char* tag) {
-  std::string html = "<tr>";
-  for (std::size_t i = 0; i < row.size(); ++i) {
-    html += fmt::format("<{0}{1}>{2}</{0}>", tag, i == 0 ? "" : " class=\"n\"", escape_markup(row[i]));
-  }
-  return html + "</tr>\n";
-}
-
-std::string section_of(const ReportSection& section) {
-  std::string body;
-  for (const std::string& text : section.paragraphs) body += paragraph(text);
-  if (section.table) {
-    body += "<table>\n" + cells(section.table->header, "th");
-    for (const std::vector<std::string>& row : section.table->rows) body += cells(row, "td");
-    body += "</table>\n";
-  }
-  std::string figures;
-  for (const ReportPicture& picture : section.pictures) {
-    figures += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", picture.svg,
-                           escape_markup(picture.label));
-  }
-  const bool side_by_side = section.pictures.size() > 1;
-  if (side_by_side) figures = "<div class=\"two\">\n" + figures + "</div>\n";
-  return html_section(section.title, body + figures);
-}
-
-}  // namespace
 
 Json document_of(const CalibrationReport& report) {
   return {{"schema", "weft.calibration-report/1"},
@@ -73,9 +17,7 @@ Json document_of(const CalibrationReport& report) {
 }
 
 std::vector<NamedFile> report_files(const CalibrationReport& report) {
-  std::string body = head(report);
-  for (const ReportSection& section : report.sections) body += section_of(section);
-  return {{report.part + ".html", html_page(report.title, body)},
+  return {{report.part + ".html", html_of(report)},
           {report.part + ".json", document_of(report).dump(2) + "\n"}};
 }
 

@@ -2,45 +2,23 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "app/jobs/report.h"
 #include "core/calibration.h"
 #include "core/json_document.h"
 #include "core/result.h"
+#include "report/page.h"
 
 // The report of one step of a calibration: what was measured, how well, and what to do where it is not well
-// enough. All text is plain; it is escaped when the page is made.
+// enough.
 
 namespace weft::app {
 
-struct ReportTable {
-  std::vector<std::string> header;
-  std::vector<std::vector<std::string>> rows;
-};
-
-struct ReportPicture {
-  std::string label;
-  std::string svg;  ///< report/figures.h
-};
-
-struct ReportSection {
-  std::string title;
-  std::vector<std::string> paragraphs = {};
-  std::optional<ReportTable> table = {};
-  std::vector<ReportPicture> pictures = {};
-  bool is_answer = false;  ///< its table is what was asked for: on the terminal, too
-};
-
-struct CalibrationReport {
-  std::string part;               ///< "camera": names the files
-  std::string title;              ///< "Camera of rig A, 2026-01-31"
-  std::string summary;            ///< one sentence with the numbers that matter most
-  std::vector<Verdict> verdicts;  ///< what is wrong or weak, the gravest first; empty: accepted
-  std::vector<ReportSection> sections;
+/// What one step found, as a page and as numbers for programs. No verdict: the calibration is accepted.
+struct CalibrationReport : report::Page {
+  std::string part;  ///< "camera": names the files
   Json numbers = Json::object();
 };
 

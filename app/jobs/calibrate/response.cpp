@@ -16,7 +16,7 @@
 #include "capture/raw/decode.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
-#include "report/figures.h"
+#include "report/plot_svg.h"
 
 namespace weft::app {
 namespace {
@@ -85,9 +85,9 @@ std::string percent(double share, int digits = 2) {
   return fmt::format("{:.{}f} %", 100 * share, digits);
 }
 
-ReportSection summary_section(const ResponseFrames& frames, const ResponseMeasurement& m) {
+report::Section summary_section(const ResponseFrames& frames, const ResponseMeasurement& m) {
   const calibration::PhotonTransfer& t = m.transfer;
-  ReportTable table = {{"what", "measured", "standard deviation"}, {}};
+  report::Table table = {{"what", "measured", "standard deviation"}, {}};
   table.rows.push_back({"gain, electrons a count", fmt::format("{:.4f}", t.electrons_per_count),
                         fmt::format("{:.4f}", t.sigma_electrons_per_count)});
   table.rows.push_back({"read noise, counts", fmt::format("{:.4f}", t.read_noise_counts),
@@ -105,48 +105,50 @@ ReportSection summary_section(const ResponseFrames& frames, const ResponseMeasur
   table.rows.push_back({"light from frame to frame", percent(m.drift, 3), ""});
   table.rows.push_back({"pairs of frames", std::to_string(frames.pairs), ""});
   table.rows.push_back({"frames left out, being full", std::to_string(frames.full.size()), ""});
-  ReportSection section = {"Measured"};
+  report::Section section = {"Measured"};
   section.table = std::move(table);
   return section;
 }
 
-ReportSection transfer_section(const ResponseMeasurement& m) {
-  Curve measured = {"measured", {}, {}, false}, fitted = {"fitted line", {}, {}, true};
+report::Section transfer_section(const ResponseMeasurement& m) {
+  report::PlotSeries measured = {.name = "measured"},
+                     fitted = {.name = "fitted line", .joined = true, .marked = false};
   for (const calibration::TransferBin& bin : m.transfer.bins) {
-    measured.x.push_back(bin.signal_counts);
-    measured.y.push_back(bin.variance_counts2);
-    fitted.x.push_back(bin.signal_counts);
-    fitted.y.push_back(bin.fitted_counts2);
+    measured.points.push_back({bin.signal_counts, bin.variance_counts2});
+    fitted.points.push_back({bin.signal_counts, bin.fitted_counts2});
   }
-  ReportSection section = {"Photon transfer"};
+  report::Section section = {"Photon transfer"};
   section.paragraphs = {fmt::format(
       "Half the variance of the difference of two frames alike, in squares of {} photosites, against their "
       "mean. Chi-square a degree of freedom: {:.3f}; well above 1 the noise is not that of photons.",
       calibration::kResponseBlock, m.transfer.chi_square_per_freedom)};
-  section.pictures = {{"variance by signal, both linear in light",
-                       lines_svg({"signal, counts", "variance, counts^2", {measured, fitted}, true, true})}};
+  section.figures = {
+      {"variance by signal, both linear in light", report::plot_svg({.x_label = "signal, counts",
+                                                                     .y_label = "variance, counts^2",
+                                                                     .series = {measured, fitted},
+                                                                     .log_x = true,
+                                                                     .log_y = true})}};
   return section;
 }
 
-ReportSection linearity_section(const calibration::Superposition& s) {
-  ReportSection section = {"Linearity"};
+report::Section linearity_section(const calibration::Superposition& s) {
+  report::Section section = {"Linearity"};
   section.paragraphs = {fmt::format(
       "What the light of two LEDs one by one has over that of both together, with what the LEDs drifted "
       "taken "
       "out. Chi-square a degree of freedom: {:.2f}; well above 1 something else changed between the frames.",
       s.chi_square_per_freedom)};
-  ReportTable table = {{"channel", "a", "b", "seen up to", "off a line before", "left, by the fit's sigma"},
-                       {}};
+  report::Table table = {{"channel", "a", "b", "seen up to", "off a line before", "left, by the fit's sigma"},
+                         {}};
   for (std::size_t c = 0; c < 3; ++c) {
-    Curve before = {"before", {}, {}, true}, after = {"after", {}, {}, true};
+    report::PlotSeries before = {.name = "before", .joined = true}, after = {.name = "after", .joined = true};
     for (const calibration::SuperpositionBin& bin : s.bins[c]) {
-      before.x.push_back(100 * bin.v);
-      before.y.push_back(100 * bin.before);
-      after.x.push_back(100 * bin.v);
-      after.y.push_back(100 * bin.after);
+      before.points.push_back({100 * bin.v, 100 * bin.before});
+      after.points.push_back({100 * bin.v, 100 * bin.after});
     }
-    section.pictures.push_back(
-        {kChannels[c], lines_svg({"both, percent of full scale", "missing, percent", {before, after}})});
+    section.figures.push_back({kChannels[c], report::plot_svg({.x_label = "both, percent of full scale",
+                                                               .y_label = "missing, percent",
+                                                               .series = {before, after}})});
     table.rows.push_back({kChannels[c], fmt::format("{:.5f}", s.linearity[c][0]),
                           fmt::format("{:.5f}", s.linearity[c][1]), percent(s.highest_v[c], 0),
                           percent(s.departure(c), 3), percent(s.sigma_departure(c), 3)});
@@ -155,12 +157,12 @@ ReportSection linearity_section(const calibration::Superposition& s) {
   return section;
 }
 
-ReportSection balance_section(const ResponseMeasurement& m, const Calibration* from) {
-  ReportSection section = {"White balance of the LEDs"};
+report::Section balance_section(const ResponseMeasurement& m, const Calibration* from) {
+  report::Section section = {"White balance of the LEDs"};
   section.paragraphs = {
       "Light by channel over that in green, mean over the frame: that of the LED where the scene is white or "
       "grey, and of the same scene differences from LED to LED are those of the LEDs."};
-  ReportTable table = {{"LED", "red / green", "blue / green", "in the calibration before"}, {}};
+  report::Table table = {{"LED", "red / green", "blue / green", "in the calibration before"}, {}};
   const NearLights* lights =
       from != nullptr && from->lights ? std::get_if<NearLights>(&*from->lights) : nullptr;
   for (const LedBalance& b : m.balance) {
@@ -177,11 +179,11 @@ ReportSection balance_section(const ResponseMeasurement& m, const Calibration* f
   return section;
 }
 
-ReportSection ratio_section(const ResponseMeasurement& m) {
-  ReportSection section = {"Exposure times"};
+report::Section ratio_section(const ResponseMeasurement& m) {
+  report::Section section = {"Exposure times"};
   section.paragraphs = {
       "Light gathered by the longer over the shorter exposure, against what their times say."};
-  ReportTable table = {{"longer, us", "shorter, us", "measured", "by the times", "among LEDs"}, {}};
+  report::Table table = {{"longer, us", "shorter, us", "measured", "by the times", "among LEDs"}, {}};
   for (const MeasuredRatio& r : m.ratios) {
     table.rows.push_back({fmt::format("{:.0f}", r.ratio.exposure_us),
                           fmt::format("{:.0f}", r.ratio.to_exposure_us), fmt::format("{:.5f}", r.ratio.ratio),
@@ -192,15 +194,15 @@ ReportSection ratio_section(const ResponseMeasurement& m) {
   return section;
 }
 
-ReportSection scale_section(const ScaleReading& scale) {
-  ReportSection section = {"Grey scale"};
+report::Section scale_section(const ScaleReading& scale) {
+  report::Section section = {"Grey scale"};
   section.paragraphs = {fmt::format(
       "Each patch against its reflectance, light along the scale fitted as a parabola ({:+.1f} percent from "
       "end to end). Off by {:.2f} percent rms before the correction of linearity, by {:.2f} after. At its "
       "middle a perfect white would be at {:.3f}, {:.3f}, {:.3f} of full scale.",
       100 * scale.corrected.shading, scale.straight.rms_percent, scale.corrected.rms_percent,
       scale.corrected.v_of_white[0], scale.corrected.v_of_white[1], scale.corrected.v_of_white[2])};
-  ReportTable table = {{"patch", "reflectance", "off before, %", "off after, %"}, {}};
+  report::Table table = {{"patch", "reflectance", "off before, %", "off after, %"}, {}};
   for (std::size_t i = 0; i < scale.reflectances.size(); ++i) {
     table.rows.push_back({std::to_string(i + 1), fmt::format("{:.4f}", scale.reflectances[i]),
                           fmt::format("{:+.2f}", scale.straight.off_percent[i]),
@@ -256,9 +258,9 @@ Json numbers_of(const ResponseFrames& frames, const ResponseMeasurement& m,
   return numbers;
 }
 
-std::vector<Verdict> verdicts_of(const ResponseFrames& frames, const ResponseMeasurement& m,
-                                 const std::optional<ScaleReading>& scale) {
-  std::vector<Verdict> verdicts = m.verdicts;
+std::vector<report::Verdict> verdicts_of(const ResponseFrames& frames, const ResponseMeasurement& m,
+                                         const std::optional<ScaleReading>& scale) {
+  std::vector<report::Verdict> verdicts = m.verdicts;
   if (!frames.full.empty()) {
     verdicts.push_back({"FULL_FRAMES",
                         fmt::format("{} frames were full everywhere and left out, {} the first",

@@ -42,7 +42,7 @@ struct ResponseMeasurement {
   double drift = 0;              ///< of light from frame to frame, relative
   std::vector<LedBalance> balance;
   std::vector<MeasuredRatio> ratios;
-  std::vector<Verdict> verdicts;  ///< what could not be measured, and what looks wrong
+  std::vector<report::Verdict> verdicts;  ///< what could not be measured, and what looks wrong
 };
 
 /// Black level, noise, linearity, exposure ratios and white balance, in this order. Errors (kBadData): fewer

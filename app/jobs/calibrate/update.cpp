@@ -107,7 +107,7 @@ CalibrationReport report_of(const RigCheck& rig, const fs::path& session) {
   CalibrationReport report;
   report.part = "update";
   report.title = fmt::format("Update of {}", rig.calibration.subject.rig);
-  ReportSection section = {"What was fitted again", {}, {}, {}};
+  report::Section section = {"What was fitted again", {}, {}, {}};
   report.numbers = {{"session", session.string()},
                     {"updates", rig.calibration.id},
                     {"chi_square_before", rig.movement.chi_square_before},

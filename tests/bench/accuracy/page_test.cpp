@@ -49,7 +49,7 @@ TEST(AccuracyPage, ShowsEachMethodOnceWithItsFigures) {
   const std::string page = accuracy_markdown(figures);
   EXPECT_THAT(page, testing::HasSubstr("| deep white | 4.12 | 3 | 7.7 | 3.6 |")) << page;
   EXPECT_THAT(page, testing::HasSubstr("| 3 | [5,7,9] | fast | 9.5 |")) << page;
-  const Plot plot = accuracy_plot(figures);
+  const report::Plot plot = accuracy_plot(figures);
   ASSERT_EQ(plot.series.size(), 3U);
   ASSERT_EQ(plot.series[0].points.size(), 1U) << "the oracle has no price";
   EXPECT_EQ(plot.series[0].points[0].label, "fast");
