@@ -170,8 +170,7 @@ Json json_of(const solver::LightEvidence& light, int number_of_light) {
 }
 
 // Where the error comes from: what is known of each source, in its own unit.
-Json budget_of(const Json& solve, const PhotographsSummary& photographs, const Json& sigma,
-               const Json& shares) {
+Json budget_of(const PhotographsSummary& photographs, const MapSummary& maps, const Json& shares) {
   Json budget = Json::array();
   const auto add = [&](const char* source, const std::string& what, const Json& value, const char* unit) {
     if (value.is_number()) {
@@ -179,9 +178,9 @@ Json budget_of(const Json& solve, const PhotographsSummary& photographs, const J
     }
   };
   add(photographs.noise_is_known ? "photon and read noise" : "scatter of the readings",
-      "median predicted angle of the normal", sigma["median"], "deg");
-  if (solve.contains("sigma_calibration_deg")) {
-    add("calibration", "median predicted angle of the normal", solve["sigma_calibration_deg"], "deg");
+      "median predicted angle of the normal", maps.sigma_normal_deg()["median"], "deg");
+  if (const Json sigma = maps.sigma_calibration_deg(); !sigma.is_null()) {
+    add("calibration", "median predicted angle of the normal", sigma["median"], "deg");
   }
   for (const Fault& fault : photographs.diagnosis.faults) {
     if (fault.kind == FaultKind::kDead) continue;
@@ -203,33 +202,45 @@ Json budget_of(const Json& solve, const PhotographsSummary& photographs, const J
 
 }  // namespace
 
-MapSummary::MapSummary(Size size) : sigma_(size, 1, kGridSide), row_({size.width, 1}), histogram_(kBins) {}
+AngleHistogram::AngleHistogram() : counts_(kBins) {}
 
-void MapSummary::add(const MapBand& band) {
+void AngleHistogram::add(double angle_deg) {
+  if (!std::isfinite(angle_deg)) return;
+  const double bin = std::log(std::max(angle_deg, kLeastSigma) / kLeastSigma) / std::log(kBinRatio);
+  ++counts_[std::min(static_cast<std::size_t>(bin), kBins - 1)];
+}
+
+double AngleHistogram::quantile(double share) const {
+  std::int64_t all = 0, seen = 0;
+  for (const std::int64_t n : counts_) all += n;
+  for (std::size_t i = 0; i < kBins; ++i) {
+    seen += counts_[i];
+    if (seen > 0 && static_cast<double>(seen) >= share * static_cast<double>(all)) {
+      return kLeastSigma * std::pow(kBinRatio, static_cast<double>(i) + 0.5);
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+MapSummary::MapSummary(Size size) : sigma_(size, 1, kGridSide), row_({size.width, 1}) {}
+
+void MapSummary::add(const MapBand& band, View<const float> calibration_deg) {
   for (int y = 0; y < band.albedo_rows.height(); ++y) {
     const float* sigma = band.sigma_normal_deg.row(y);
     for (int x = 0; x < row_.width(); ++x) {
       const bool known = sigma[x] < solver::kUnknownAngleDeg;
       row_(x, 0) = known ? sigma[x] : std::numeric_limits<float>::quiet_NaN();
       if (!known) continue;
-      const double bin =
-          std::log(std::max<double>(sigma[x], kLeastSigma) / kLeastSigma) / std::log(kBinRatio);
-      ++histogram_[std::min(static_cast<std::size_t>(bin), kBins - 1)];
+      noise_.add(sigma[x]);
+      if (calibration_deg.height() > 0) calibration_.add(calibration_deg(x, y));
     }
     sigma_.add_rows(std::array{View<const float>(row_.plane())});
   }
 }
 
-double MapSummary::quantile(double q) const {
-  std::int64_t all = 0, seen = 0;
-  for (const std::int64_t n : histogram_) all += n;
-  for (std::size_t i = 0; i < kBins; ++i) {
-    seen += histogram_[i];
-    if (seen > 0 && static_cast<double>(seen) >= q * static_cast<double>(all)) {
-      return kLeastSigma * std::pow(kBinRatio, static_cast<double>(i) + 0.5);
-    }
-  }
-  return std::numeric_limits<double>::quiet_NaN();
+Json MapSummary::sigma_calibration_deg() const {
+  const double median = calibration_.quantile(0.5);
+  return std::isfinite(median) ? Json({{"median", median}, {"p95", calibration_.quantile(0.95)}}) : Json();
 }
 
 Json MapSummary::sigma_normal_deg() const {
@@ -238,8 +249,12 @@ Json MapSummary::sigma_normal_deg() const {
   for (int y = 0; y < means.height(); ++y) {
     for (int x = 0; x < means.width(); ++x) grid.push_back(number(means(x, y)));
   }
-  return {{"median", number(quantile(0.5))}, {"p95", number(quantile(0.95))}, {"square_px", sigma_.square()},
-          {"columns", means.width()},        {"rows", means.height()},        {"grid", std::move(grid)}};
+  return {{"median", number(noise_.quantile(0.5))},
+          {"p95", number(noise_.quantile(0.95))},
+          {"square_px", sigma_.square()},
+          {"columns", means.width()},
+          {"rows", means.height()},
+          {"grid", std::move(grid)}};
 }
 
 Json condition_over(const LightField& field, Size size) {
@@ -307,7 +322,6 @@ Json report_document(const std::string& title, const Json& solve, const Photogra
     lights.push_back(json_of(diagnosis.lights[k], photographs.numbers[k]));
   }
   for (const Fault& fault : diagnosis.faults) faults.push_back(json_of(fault, say));
-  Json sigma = maps.sigma_normal_deg();
 
   Json report = {{"schema", "weft.solve-report/1"},
                  {"title", title},
@@ -322,9 +336,12 @@ Json report_document(const std::string& title, const Json& solve, const Photogra
   report["residual_explained"] = number(diagnosis.left);
   report["lights"] = std::move(lights);
   report["faults"] = std::move(faults);
-  report["budget"] = budget_of(solve, photographs, sigma, shares);
+  report["budget"] = budget_of(photographs, maps, shares);
   report["condition"] = photographs.condition;
-  report["sigma_normal_deg"] = std::move(sigma);
+  report["sigma_normal_deg"] = maps.sigma_normal_deg();
+  if (Json sigma = maps.sigma_calibration_deg(); !sigma.is_null()) {
+    report["sigma_calibration_deg"] = std::move(sigma);
+  }
   for (const char* key : {"error", "gates", "registration", "conditions"}) {
     if (solve.contains(key) && !solve[key].empty()) report[key] = solve[key];
   }

@@ -21,36 +21,50 @@
 
 namespace weft::app {
 
+/// How many pixels have which angle, in bins of one percent from 1e-4 to 180 degrees.
+class AngleHistogram {
+ public:
+  AngleHistogram();
+  void add(double angle_deg);  ///< what is not finite is left out
+  /// To one percent; NaN where nothing was added.
+  double quantile(double share) const;
+
+ private:
+  std::vector<std::int64_t> counts_;
+};
+
 /// What the report says of the maps, gathered while they are solved.
 class MapSummary {
  public:
   explicit MapSummary(Size size);
-  void add(const MapBand& band);
+  /// `calibration_deg` is the channel normal_deg.calibration of sigma.exr over band.albedo_rows; empty where
+  /// the calibration has no covariance.
+  void add(const MapBand& band, View<const float> calibration_deg = {});
 
   /// {"median", "p95", "square_px", "columns", "rows", "grid"} of the predicted angle in degrees; the grid's
   /// values are means of squares, row by row, null where there is none. "median" is null where no pixel has
   /// an angle.
   Json sigma_normal_deg() const;
+  /// {"median", "p95"} of the angle that the calibration's covariance gives, in degrees; null without one.
+  Json sigma_calibration_deg() const;
 
  private:
-  double quantile(double q) const;
-
   report::Downsampler sigma_;
-  Image<float> row_;
-  std::vector<std::int64_t> histogram_;  // of log sigma
+  Image<float> row_;  // of the band, NaN where the angle is not known
+  AngleHistogram noise_, calibration_;
 };
 
 /// Condition number of the lights over the frame: {"median", "worst"}.
 Json condition_over(const LightField& field, Size size);
 
-/// What speaks of the photographs while they are in memory.
+/// What the report says of the photographs, gathered while they are in memory.
 struct PhotographsSummary {
-  solver::Diagnosis diagnosis;
-  std::vector<int> numbers;  ///< of the lights, as a person knows them
-  bool of_session = true;    ///< lights are LEDs of a rig; else photographs in a list
-  bool noise_is_known = false;
-  Json condition;
-  std::vector<std::string> warnings;
+  solver::Diagnosis diagnosis;        ///< lights by their index in the photographs
+  std::vector<int> numbers;           ///< the number of each light, as a person knows it
+  bool of_session = true;             ///< lights are LEDs of a rig; else photographs in a list
+  bool noise_is_known = false;        ///< the camera's noise was calibrated
+  Json condition;                     ///< condition_over()
+  std::vector<std::string> warnings;  ///< a sentence each, said when the photographs were read
 };
 /// `picked` are the numbers of the lights where photographs were picked from a list; else empty.
 PhotographsSummary summarize_photographs(const Photographs& photographs, const std::vector<int>& picked,
@@ -59,7 +73,8 @@ PhotographsSummary summarize_photographs(const Photographs& photographs, const s
 /// The scene is called dominated by highlights where this share of pixels has the bit SPECULAR.
 inline constexpr double kSpecularDominated = 0.2;
 
-/// Everything to be warned of, the gravest first. `specular` is the share of pixels with that bit.
+/// Everything to be warned of, the gravest first: LEDS_EXCHANGED, LED_DEAD, LED_GAIN, SPECULAR_DOMINATED,
+/// CONDITIONS. `specular` is the share of pixels with that bit.
 std::vector<report::Verdict> verdicts_of(const PhotographsSummary& photographs, double specular);
 
 /// report.json from solve.json (`solve`, where "gates", "conditions", "registration" and "error" may be

@@ -234,7 +234,7 @@ Result<SolveReport> run(const solver::MethodName& method_name, const Input& inpu
         }
         const MapBand band = color ? color->of(camera_band, share) : camera_band;
         counts.add(band.status);
-        maps.add(band);
+        maps.add(band, calibration ? share.back() : View<const float>());
         if (options.previews) pictures.add(band);
         return files->write(band, share);
       });

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <tuple>
@@ -12,6 +13,8 @@
 #include "app/jobs/report.h"
 #include "app/jobs/report_page.h"
 #include "app/jobs/session_input.h"
+#include "app/jobs/solve.h"
+#include "core/calibration.h"
 #include "pipeline/evidence.h"
 #include "simulator/scene/scene.h"
 #include "solver/diagnosis/diagnosis.h"
@@ -198,6 +201,59 @@ TEST_F(Report, OfPhotographsWithoutANoiseModel) {
   EXPECT_EQ(document["of"], "photographs");
   EXPECT_THAT(document["warnings"], IsEmpty()) << document["warnings"];
   EXPECT_THAT(bytes_of(work_ / "maps" / "report.html"), HasSubstr("Light 6"));
+}
+
+TEST(MapSummary, FindsQuantilesOfNoiseAndOfCalibrationWhereTheNormalIsKnown) {
+  constexpr int kWidth = 1000;
+  Image<float> noise({kWidth, 1}), calibration({kWidth, 1});
+  for (int x = 0; x < kWidth; ++x) {
+    noise(x, 0) = 0.001F * static_cast<float>(x + 1);
+    calibration(x, 0) = 0.01F * static_cast<float>(x + 1);
+  }
+  for (int x = 800; x < kWidth; ++x) noise(x, 0) = 180;  // without a normal
+  app::MapSummary with({kWidth, 1}), without({kWidth, 1});
+  app::MapBand band;
+  band.albedo_rows = {0, 0, kWidth, 1};
+  band.sigma_normal_deg = noise.plane();
+  with.add(band, calibration.plane());
+  without.add(band);
+  EXPECT_NEAR(with.sigma_normal_deg()["median"], 0.4, 0.004);
+  EXPECT_NEAR(with.sigma_calibration_deg()["median"], 4, 0.04);
+  EXPECT_NEAR(with.sigma_calibration_deg()["p95"], 7.6, 0.076);
+  EXPECT_EQ(without.sigma_normal_deg(), with.sigma_normal_deg());
+  EXPECT_TRUE(without.sigma_calibration_deg().is_null());
+}
+
+TEST(Budget, NamesTheCalibrationWhereItHasACovariance) {
+  Workspace work;
+  simulate(cloth("plain", "lambert", 5), work / "c");
+  Result<app::SessionPlan> plan = app::plan_session({.folder = work / "c", .calibration = {}, .leds = {}});
+  ASSERT_TRUE(plan) << plan.error().message();
+  Calibration known = plan->calibration;
+  known.light_covariance = ParameterCovariance{};
+  for (int led = 1; led <= 10; ++led) {
+    known.light_covariance->parameters.push_back("led" + std::to_string(led) + ".log_flux");
+  }
+  known.light_covariance->matrix.resize(100);
+  for (std::size_t i = 0; i < 10; ++i) known.light_covariance->matrix[11 * i] = 1e-4;
+  const Result<Calibration> written = write_calibration(work / "known", std::move(known));
+  ASSERT_TRUE(written) << written.error().message();
+
+  app::SolveOptions options;
+  options.previews = false;
+  options.output = work / "maps";
+  const Result<app::SolveReport> solved =
+      app::solve_session({.folder = work / "c", .calibration = work / "known", .leds = {}}, options, {});
+  ASSERT_TRUE(solved) << solved.error().message();
+  const Json report = Json::parse(bytes_of(work / "maps" / "report.json"));
+  const double median_deg = report["sigma_calibration_deg"]["median"];
+  EXPECT_NEAR(median_deg, 0.28, 0.15) << "1 percent of each LED";
+  const auto row = std::find_if(report["budget"].begin(), report["budget"].end(),
+                                [](const Json& each) { return each["source"] == "calibration"; });
+  ASSERT_NE(row, report["budget"].end()) << report["budget"];
+  EXPECT_EQ((*row)["value"], median_deg);
+  EXPECT_EQ((*row)["unit"], "deg");
+  EXPECT_THAT(bytes_of(work / "maps" / "report.html"), HasSubstr("<td>calibration<br>"));
 }
 
 TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
