@@ -16,6 +16,8 @@
 #include "core/image_io/image_io.h"
 #include "core/light_field.h"
 #include "core/solve_record.h"
+#include "report/drawing.h"
+#include "report/preview.h"
 #include "simulator/plan.h"
 #include "simulator/simulate.h"
 #include "solver/method.h"
@@ -24,31 +26,31 @@ namespace weft::bench {
 namespace {
 
 namespace fs = std::filesystem;
-using Colour = std::array<float, 3>;
+using report::Colour;
+using report::Picture;
 
-constexpr int kZoom = 2;
-constexpr Colour kUnsolved = {0.45f, 0.45f, 0.45f}, kNoNumber = {0, 0, 0};
+constexpr int kZoom = 2, kTextScale = 2, kGap = 8;
+constexpr Colour kWhite = {1, 1, 1}, kUnsolved = {0.45f, 0.45f, 0.45f};
 
-/// Black, violet, orange, yellow over `low` to `high` (log10): rises in lightness, so that it prints in grey.
-Colour colour_of(double log10_value, double low, double high) {
-  static constexpr std::array<Colour, 5> kStops = {{{0.05f, 0.03f, 0.2f},
-                                                    {0.35f, 0.07f, 0.45f},
-                                                    {0.75f, 0.22f, 0.33f},
-                                                    {0.97f, 0.55f, 0.1f},
-                                                    {1, 0.98f, 0.65f}}};
-  const double t = std::clamp((log10_value - low) / (high - low), 0.0, 1.0) * 4;
-  const auto i = std::min<std::size_t>(static_cast<std::size_t>(t), 3);
-  const auto f = static_cast<float>(t - static_cast<double>(i));
-  Colour c;
-  for (std::size_t p = 0; p < 3; ++p) c[p] = kStops[i][p] + f * (kStops[i + 1][p] - kStops[i][p]);
-  return c;
+/// What a pixel shows: a colour, or stripes where it has no place on the scale of colours.
+struct Paint {
+  Colour colour;
+  bool striped = false;
+
+  Colour at(int x, int y) const { return striped && (x + y) / 4 % 2 == 0 ? kWhite : colour; }
+};
+constexpr Paint kNoNumber = {kUnsolved, true};
+
+/// A number on a scale of colours from `low` to `high` (log10).
+Paint paint_of(double log10_value, double low, double high) {
+  return {report::heat_colour((log10_value - low) / (high - low))};
 }
 
-Colour colour_of_error(double error_deg) {
-  return colour_of(std::log10(std::max(error_deg, 1e-9)), -6, 2);
+Paint paint_of_error(double error_deg) {
+  return std::isnan(error_deg) ? kNoNumber : paint_of(std::log10(std::max(error_deg, 1e-9)), -6, 2);
 }
 
-Colour colour_of_status(int status) {
+Paint paint_of_status(int status) {
   static constexpr std::array<std::pair<int, Colour>, 7> kColours = {
       {{kDark, {0.15f, 0.15f, 0.15f}},
        {kNoSolution | kSaturated, {0.75f, 0.1f, 0.1f}},
@@ -58,9 +60,9 @@ Colour colour_of_status(int status) {
        {kSaturated, {0.98f, 0.7f, 0.6f}},
        {kInvalidReading, {0.65f, 0.78f, 0.98f}}}};
   for (const auto& [bits, colour] : kColours) {
-    if ((status & bits) == bits) return colour;
+    if ((status & bits) == bits) return {colour};
   }
-  return {1, 1, 1};
+  return {kWhite};
 }
 
 /// A scene's pixels, solved and judged.
@@ -133,38 +135,71 @@ Result<Judged> judge(const fs::path& scene_file) {
   return judged;
 }
 
-Result<void> write_picture(const fs::path& file, Size size,
-                           const std::function<Colour(std::size_t)>& colour_at) {
-  Image<float> picture({size.width * kZoom, size.height * kZoom}, 3);
+/// The scale of colours with its ends, and what has no place on it.
+Picture legend_of(int width, const char* least, const char* most) {
+  constexpr int kLine = report::kGlyphHeight * kTextScale, kSecond = 2 * kLine + 3 * kGap;
+  Picture legend = report::blank_picture({width, kSecond + kLine + kGap});
+  for (int x = 0; x < width; ++x) {
+    report::fill(legend, {x, kGap, x + 1, kGap + kLine}, report::heat_colour(x / (width - 1.0)));
+  }
+  const auto text = [&](int x, int y, const char* words) {
+    report::draw_text(legend, x, y, words, report::kInk, kTextScale);
+  };
+  text(0, kLine + 2 * kGap, least);
+  text(width - report::text_width(most, kTextScale), kLine + 2 * kGap, most);
+  int left = 0;
+  for (const auto& [paint, words] : {std::pair{Paint{kUnsolved}, "no solution"}, {kNoNumber, "no number"}}) {
+    for (int y = kSecond; y < kSecond + kLine; ++y) {
+      for (int x = left; x < left + 2 * kLine; ++x)
+        report::fill(legend, {x, y, x + 1, y + 1}, paint.at(x, y));
+    }
+    text(left + 2 * kLine + kGap, kSecond, words);
+    left += width / 2;
+  }
+  return legend;
+}
+
+Picture picture_of(Size size, const std::function<Paint(std::size_t)>& paint_at) {
+  Picture picture = report::blank_picture({size.width * kZoom, size.height * kZoom});
   for (int y = 0; y < picture.height(); ++y) {
     for (int x = 0; x < picture.width(); ++x) {
-      const Colour c = colour_at(static_cast<std::size_t>(y / kZoom * size.width + x / kZoom));
-      for (int p = 0; p < 3; ++p) picture(x, y, p) = c[static_cast<std::size_t>(p)];
+      const Paint paint = paint_at(static_cast<std::size_t>(y / kZoom * size.width + x / kZoom));
+      report::fill(picture, {x, y, x + 1, y + 1}, paint.at(x, y));
     }
   }
-  const std::array<View<const float>, 3> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};
-  return write_image(file, planes, {"R", "G", "B"}, {.type = SampleType::kUint8});
+  return picture;
+}
+
+Picture with_legend(const Picture& picture, const char* least, const char* most) {
+  const Picture legend = legend_of(picture.width(), least, most);
+  Picture both = report::blank_picture({picture.width(), picture.height() + legend.height()});
+  report::paste(both, 0, 0, picture);
+  report::paste(both, 0, picture.height(), legend);
+  return both;
 }
 
 Result<void> write_pictures(const fs::path& folder, const Judged& judged) {
-  const auto where_solved = [&](std::size_t i, Colour colour) {
-    return (judged.status[i] & kNoSolution) != 0 ? kUnsolved : colour;
+  const auto where_solved = [&](std::size_t i, Paint paint) {
+    return (judged.status[i] & kNoSolution) != 0 ? Paint{kUnsolved} : paint;
   };
-  const auto error_picture = [&](const std::vector<double>& errors) {
-    return [&](std::size_t i) {
-      return where_solved(i, std::isnan(errors[i]) ? kNoNumber : colour_of_error(errors[i]));
-    };
+  const auto of_condition = [&](std::size_t i) {
+    return where_solved(i, paint_of(std::log10(judged.condition[i]), 0, 8));
   };
-  const std::vector<std::pair<const char*, std::function<Colour(std::size_t)>>> pictures = {
-      {"numerics_condition.png",
-       [&](std::size_t i) { return where_solved(i, colour_of(std::log10(judged.condition[i]), 0, 8)); }},
-      {"numerics_status.png", [&](std::size_t i) { return colour_of_status(judged.status[i]); }},
-      {"numerics_plain.png", error_picture(judged.plain_deg)},
-      {"numerics_ours.png", error_picture(judged.ours_deg)}};
-  for (const auto& [name, colour_at] : pictures) {
-    if (Result<void> ok = write_picture(folder / name, judged.size, colour_at); !ok) return ok;
-  }
-  return {};
+  const auto of_status = [&](std::size_t i) { return paint_of_status(judged.status[i]); };
+  const auto of_errors = [&](const std::vector<double>& errors) {
+    const Picture picture =
+        picture_of(judged.size, [&](std::size_t i) { return where_solved(i, paint_of_error(errors[i])); });
+    return with_legend(picture, "1e-6°", "100°");
+  };
+  const auto write = [&](const char* name, const Picture& picture) {
+    const std::array<View<const float>, 3> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};
+    return write_image(folder / name, planes, {"R", "G", "B"}, {.type = SampleType::kUint8});
+  };
+  const Picture condition = with_legend(picture_of(judged.size, of_condition), "1", "1e8");
+  if (Result<void> ok = write("numerics_condition.png", condition); !ok) return ok;
+  if (Result<void> ok = write("numerics_status.png", picture_of(judged.size, of_status)); !ok) return ok;
+  if (Result<void> ok = write("numerics_plain.png", of_errors(judged.plain_deg)); !ok) return ok;
+  return write("numerics_ours.png", of_errors(judged.ours_deg));
 }
 
 std::string cell_of(const Json& value) {
