@@ -8,7 +8,7 @@
 #include "core/color_transform.h"
 #include "core/parallel.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 namespace {
 
 constexpr double kStep = 1e-3;  // of albedo, for the slope of a curve
@@ -91,4 +91,4 @@ MapBand AlbedoColor::of(const MapBand& camera, std::vector<View<const float>>& c
   return band;
 }
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

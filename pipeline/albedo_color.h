@@ -7,7 +7,7 @@
 #include "core/image.h"
 #include "pipeline/bands.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
 /// Turns solved, demosaiced albedo of a session from the camera's channels into linear Rec.709 by its
 /// calibration's ColorTransform. Albedo below 0 stays. Sigma goes through the transform's slope, channels
@@ -30,4 +30,4 @@ class AlbedoColor {
   Image<float> albedo_, sigma_, calibration_;
 };
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

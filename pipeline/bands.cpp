@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <future>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "core/parallel.h"
@@ -10,7 +14,7 @@
 #include "pipeline/tile_reader.h"
 #include "solver/kernels/demosaic.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 namespace {
 
 constexpr int kBandRows = 64;
@@ -101,7 +105,7 @@ class Photosites {
 class CorrectedTile {
  public:
   const std::vector<View<const float>>& apply(const LightCorrection& correction, Rect tile,
-                                              const std::vector<View<const float>>& readings) {
+                                              std::span<const View<const float>> readings) {
     const Size size = {tile.width(), tile.height()};
     if (readings_.width() < size.width || readings_.height() < size.height) {
       readings_ = Image<float>(size, static_cast<int>(readings.size()));
@@ -121,96 +125,141 @@ class CorrectedTile {
   std::vector<View<const float>> views_;
 };
 
+std::array<View<const float>, 3> constant(const std::array<View<float>, 3>& views) {
+  return {views[0], views[1], views[2]};
+}
+
+// Solves one band after the other.
+class BandSolver {
+ public:
+  BandSolver(const Photographs& photographs, const solver::Method& method, const TileOptions& tile,
+             const JobContext& context, LightCorrection* correction)
+      : photographs_(photographs),
+        method_(method),
+        tile_(tile),
+        stop_(context.stop),
+        correction_(correction),
+        tallies_(static_cast<std::size_t>(resolved_threads(context.threads))),
+        corrected_(tallies_.size()) {
+    tile_.threads = static_cast<int>(tallies_.size());
+    for (int i = 0; i < tile_.threads; ++i) {
+      readers_.emplace_back(photographs, tile, method.wants_rgb() ? ReadAs::kRgb : ReadAs::kTaken);
+    }
+    if (demosaics_after()) photosites_.emplace(photographs.size.width);
+  }
+
+  Result<MapBand> solve(Rect band, BandMaps& maps) {
+    if (correction_ != nullptr) {
+      if (Result<void> ok = correction_->prepare(band); !ok) return std::move(ok).error();
+    }
+    const Result<void> solved = for_each_tile(band, tile_, stop_, [&](Rect tile, int worker) {
+      const auto w = static_cast<std::size_t>(worker);
+      solver::TileInput input = readers_[w].read(tile);
+      if (correction_ != nullptr) input.readings = corrected_[w].apply(*correction_, tile, input.readings);
+      solver::TileOutput output = output_of({tile.x0, tile.y0 - band.y0, tile.x1, tile.y1 - band.y0}, maps);
+      output.tally = &tallies_[w];
+      method_.solve(input, output);
+    });
+    if (!solved) return solved.error();
+    if (const Mosaics* mosaics = photographs_.mosaics())
+      mark_replaced(mosaics->replaced, band, maps.status.plane());
+    const Rect albedo_rows = demosaics_after()
+                                 ? photosites_->demosaic(band, photographs_.size.height,
+                                                         readers_.front().planes().cfa, tile_.threads, maps)
+                                 : band;
+    const Rect rows = {0, 0, band.x1, band.height()}, lagging = {0, 0, band.x1, albedo_rows.height()};
+    return MapBand{band,
+                   constant(crop(three(maps.normal), rows)),
+                   maps.residual.plane().crop(rows),
+                   maps.status.plane().crop(rows),
+                   albedo_rows,
+                   constant(crop(three(maps.albedo), lagging)),
+                   constant(crop(three(maps.sigma_albedo), lagging)),
+                   maps.sigma_normal_deg.plane().crop(lagging)};
+  }
+
+  solver::SolveTally tally() const {
+    solver::SolveTally sum;
+    for (const solver::SolveTally& each : tallies_) sum += each;
+    return sum;
+  }
+
+ private:
+  // Whether albedo is solved photosite by photosite.
+  bool demosaics_after() const { return readers_.front().planes().count == 1; }
+
+  // Where a tile goes, by its place in the band.
+  solver::TileOutput output_of(Rect local, BandMaps& maps) {
+    solver::TileOutput output;
+    output.normal = crop(three(maps.normal), local);
+    output.residual = maps.residual.plane().crop(local);
+    output.status = maps.status.plane().crop(local);
+    if (photosites_) {
+      output.albedo[0] = photosites_->rho().crop(local);
+      output.sigma_albedo[0] = photosites_->sigma().crop(local);
+      output.sigma_normal_deg = photosites_->sigma_normal_deg().crop(local);
+    } else {
+      output.albedo = crop(three(maps.albedo), local);
+      output.sigma_albedo = crop(three(maps.sigma_albedo), local);
+      output.sigma_normal_deg = maps.sigma_normal_deg.plane().crop(local);
+    }
+    return output;
+  }
+
+  const Photographs& photographs_;
+  const solver::Method& method_;
+  TileOptions tile_;
+  std::stop_token stop_;
+  LightCorrection* correction_;
+  std::vector<TileReader> readers_;  // one a worker, as what follows
+  std::vector<solver::SolveTally> tallies_;
+  std::vector<CorrectedTile> corrected_;
+  std::optional<Photosites> photosites_;
+};
+
+// Hands bands to the sink on a thread of its own, one at a time.
+class Handover {
+ public:
+  explicit Handover(const BandSink& sink) : sink_(sink) {}
+  void put(const MapBand& band) {
+    under_way_ = std::async(std::launch::async, [this, band] { return sink_(band); });
+  }
+  // Until the sink has done with the last band.
+  Result<void> wait() {
+    if (!under_way_.valid()) return {};
+    Stopwatch watch;
+    Result<void> result = under_way_.get();
+    waited_seconds_ += watch.lap();
+    return result;
+  }
+  double waited_seconds() const { return waited_seconds_; }
+
+ private:
+  const BandSink& sink_;
+  double waited_seconds_ = 0;
+  std::future<Result<void>> under_way_;  // last: waited for before the others go
+};
+
 }  // namespace
 
 Result<double> solve_bands(const Photographs& photographs, const solver::Method& method,
                            const TileOptions& tile, const JobContext& context, const BandSink& sink,
-                           const BandOptions& band_options) {
-  LightCorrection* const correction = band_options.correction;
+                           const BandOptions& options) {
   const Size size = photographs.size;
-  const bool mosaics = photographs.rgb.empty();
-  const bool to_rgb = mosaics && method.wants_rgb();
-  const bool demosaic_after = mosaics && !to_rgb;
-  const int threads = resolved_threads(context.threads);
-
-  std::vector<TileReader> readers;
-  for (int i = 0; i < threads; ++i) readers.emplace_back(photographs, tile, to_rgb ? kReach : 0, to_rgb);
-  std::vector<solver::SolveTally> tallies(static_cast<std::size_t>(threads));
-  std::vector<CorrectedTile> corrected(correction == nullptr ? 0 : static_cast<std::size_t>(threads));
   std::array<BandMaps, 2> maps = {BandMaps(size.width), BandMaps(size.width)};
-  Photosites photosites(demosaic_after ? size.width : 0);
-  TileOptions options = tile;
-  options.threads = threads;
-
-  std::future<Result<void>> written;
-  double waited = 0;
-  const auto wait_for_sink = [&]() -> Result<void> {
-    if (!written.valid()) return {};
-    Stopwatch watch;
-    Result<void> result = written.get();
-    waited += watch.lap();
-    return result;
-  };
-
+  BandSolver solver(photographs, method, tile, context, options.correction);
+  Handover handover(sink);
   for (int y0 = 0, turn = 0; y0 < size.height; y0 += kBandRows, turn ^= 1) {
     const Rect band = {0, y0, size.width, std::min(y0 + kBandRows, size.height)};
-    if (correction != nullptr) {
-      if (Result<void> ok = correction->prepare(band); !ok) return std::move(ok).error();
-    }
-    BandMaps& out = maps[static_cast<std::size_t>(turn)];
-    const Result<void> solved = for_each_tile(band, options, context.stop, [&](Rect t, int worker) {
-      const Rect local = {t.x0, t.y0 - band.y0, t.x1, t.y1 - band.y0};
-      const std::vector<View<const float>>& as_read = readers[static_cast<std::size_t>(worker)].read(t);
-      const std::vector<View<const float>>& readings =
-          correction == nullptr ? as_read
-                                : corrected[static_cast<std::size_t>(worker)].apply(*correction, t, as_read);
-      const solver::TileInput input = {
-          t,        demosaic_after ? 1 : 3, mosaics ? photographs.radiometry->cfa() : CfaPattern{},
-          readings, &*photographs.field,    demosaic_after ? photographs.noise : std::nullopt};
-      solver::TileOutput output;
-      output.normal = crop(three(out.normal), local);
-      output.residual = out.residual.plane().crop(local);
-      output.status = out.status.plane().crop(local);
-      if (demosaic_after) {
-        output.albedo[0] = photosites.rho().crop(local);
-        output.sigma_albedo[0] = photosites.sigma().crop(local);
-        output.sigma_normal_deg = photosites.sigma_normal_deg().crop(local);
-      } else {
-        output.sigma_normal_deg = out.sigma_normal_deg.plane().crop(local);
-        output.albedo = crop(three(out.albedo), local);
-        output.sigma_albedo = crop(three(out.sigma_albedo), local);
-      }
-      output.tally = &tallies[static_cast<std::size_t>(worker)];
-      method.solve(input, output);
-    });
-    mark_replaced(photographs.replaced, band, out.status.plane());
-    Rect albedo_rows = band;
-    if (demosaic_after && solved) {
-      albedo_rows = photosites.demosaic(band, size.height, photographs.radiometry->cfa(), threads, out);
-    }
-    if (Result<void> ok = wait_for_sink(); !ok) return std::move(ok).error();
+    const Result<MapBand> solved = solver.solve(band, maps[static_cast<std::size_t>(turn)]);
+    if (Result<void> ok = handover.wait(); !ok) return std::move(ok).error();
     if (!solved) return solved.error();
-
-    const Rect rows = {0, 0, size.width, band.height()}, lagging = {0, 0, size.width, albedo_rows.height()};
-    const auto constant = [](const std::array<View<float>, 3>& v) {
-      return std::array<View<const float>, 3>{v[0], v[1], v[2]};
-    };
-    const MapBand finished = {band,
-                              constant(crop(three(out.normal), rows)),
-                              out.residual.plane().crop(rows),
-                              out.status.plane().crop(rows),
-                              albedo_rows,
-                              constant(crop(three(out.albedo), lagging)),
-                              constant(crop(three(out.sigma_albedo), lagging)),
-                              out.sigma_normal_deg.plane().crop(lagging)};
-    written = std::async(std::launch::async, [finished, &sink] { return sink(finished); });
+    handover.put(*solved);
     context.progress("solve", static_cast<double>(band.y1) / size.height);
   }
-  if (Result<void> ok = wait_for_sink(); !ok) return std::move(ok).error();
-  for (const solver::SolveTally& tally : tallies) {
-    if (band_options.tally != nullptr) *band_options.tally += tally;
-  }
-  return waited;
+  if (Result<void> ok = handover.wait(); !ok) return std::move(ok).error();
+  if (options.tally != nullptr) *options.tally += solver.tally();
+  return handover.waited_seconds();
 }
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

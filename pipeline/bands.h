@@ -13,7 +13,7 @@
 #include "pipeline/photographs.h"
 #include "solver/method.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
 class LightCorrection;
 
@@ -50,4 +50,4 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
                            const TileOptions& tile, const JobContext& context, const BandSink& sink,
                            const BandOptions& options = {});
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -10,7 +10,7 @@
 #include "solver/method.h"
 #include "solver/sample_tiles.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 namespace {
 
 // An odd step meets all colours of the filter cell.
@@ -28,18 +28,17 @@ int step_for(const std::vector<Rect>& tiles, std::size_t most_pixels) {
 }
 
 // One photosite, or the luminance of three channels over their strength.
-solver::EvidenceRow row_at(const LightField& field, std::size_t k, const CfaPattern* cfa,
-                           const View<const float>* planes, int x, int y, Rect tile) {
-  const int column = x - tile.x0, line = y - tile.y0;
-  if (cfa != nullptr) {
-    const LightField::Light light = field.at(k, cfa->channel_at(x, y), x, y);
-    return {light.direction, light.strength, planes[k](column, line)};
+solver::EvidenceRow row_at(const solver::TileInput& input, std::size_t k, int x, int y) {
+  const int column = x - input.tile.x0, line = y - input.tile.y0;
+  if (input.planes == 1) {
+    const LightField::Light light = input.field->at(k, input.cfa.channel_at(x, y), x, y);
+    return {light.direction, light.strength, input.readings[k](column, line)};
   }
   solver::EvidenceRow row = {{}, 1, 0};
   for (std::size_t c = 0; c < 3; ++c) {
-    const LightField::Light light = field.at(k, static_cast<int>(c), x, y);
+    const LightField::Light light = input.field->at(k, static_cast<int>(c), x, y);
     row.direction = light.direction;
-    row.reading += solver::kLuminance[c] * planes[3 * k + c](column, line) / light.strength;
+    row.reading += solver::kLuminance[c] * input.readings[3 * k + c](column, line) / light.strength;
     if (!(light.strength > 0)) row.strength = 0;
   }
   return row;
@@ -66,19 +65,18 @@ solver::Evidence read_evidence(const Photographs& photographs) {
   const std::size_t most = std::clamp<std::size_t>(32000 / photographs.count(), 400, 1600);
   solver::Evidence all;
   all.lights = photographs.count();
-  all.noise = photographs.noise;
+  all.noise = photographs.noise();
   const std::vector<Rect> tiles = solver::sample_tiles(photographs.size);
   // A mask may leave little of the frame.
   const int step = step_for(tiles, 8 * most);
-  const CfaPattern* cfa = photographs.rgb.empty() ? &photographs.radiometry->cfa() : nullptr;
-  TileReader reader(photographs, {.width = solver::kSampleTile, .height = solver::kSampleTile}, 0, false);
+  TileReader reader(photographs, {.width = solver::kSampleTile, .height = solver::kSampleTile});
   for (const Rect& tile : tiles) {
-    const std::vector<View<const float>>& readings = reader.read(tile);
+    const solver::TileInput input = reader.read(tile);
     for (int y = tile.y0; y < tile.y1; y += step) {
       for (int x = tile.x0; x < tile.x1; x += step) {
         const std::size_t begin = all.rows.size();
         for (std::size_t k = 0; k < all.lights; ++k) {
-          all.rows.push_back(row_at(*photographs.field, k, cfa, readings.data(), x, y, tile));
+          all.rows.push_back(row_at(input, k, x, y));
         }
         const auto first = all.rows.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto usable =
@@ -95,4 +93,4 @@ solver::Evidence read_evidence(const Photographs& photographs) {
   return thinned(std::move(all), most);
 }
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

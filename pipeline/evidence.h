@@ -4,7 +4,7 @@
 #include "pipeline/photographs.h"
 #include "solver/diagnosis/evidence.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
 /// Pixels for a diagnosis (solver/diagnosis/diagnosis.h), evenly from the sample tiles
 /// (solver/sample_tiles.h): at most 1600, or fewer where there are more than twenty lights, down to 400;
@@ -12,4 +12,4 @@ namespace weft::app {
 /// luminance of the channels, each over its strength, stands for the reading.
 solver::Evidence read_evidence(const Photographs& photographs);
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

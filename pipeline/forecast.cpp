@@ -12,7 +12,7 @@
 #include "solver/method.h"
 #include "solver/uncertainty/calibration_sigma.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 namespace {
 
 // Mean over rms of an angle whose two components scatter alike.
@@ -136,14 +136,15 @@ Result<double> calibration_deg(const Photographs& photographs, const std::vector
   if (!photographs.light_covariance) return 0.0;
   const Size size = photographs.size;
   const Result<solver::CalibrationSigmas> sigmas = solver::CalibrationSigmas::make(
-      *photographs.field, size, photographs.leds, *photographs.light_covariance, photographs.noise);
+      *photographs.field, size, photographs.leds, *photographs.light_covariance, photographs.noise());
   if (!sigmas) return sigmas.error();
+  const Planes planes = photographs.planes();
   Rms rms;
   for (const SampleMaps& maps : samples) {
     const int x = maps.tile.width() / 2, y = maps.tile.height() / 2;
     if (!is_solved(maps, x, y)) continue;
     const int px = maps.tile.x0 + x, py = maps.tile.y0 + y;
-    const int c = photographs.rgb.empty() ? photographs.radiometry->cfa().channel_at(px, py) : 1;
+    const int c = planes.channel_at(planes.speaker(), px, py);
     rms.add(sigmas->at(px, py, c, normal_at(maps, x, y), static_cast<double>(maps.albedo(x, y))).normal_deg);
   }
   return kMeanOfRms * rms.value();
@@ -166,7 +167,7 @@ Result<Forecast> forecast_errors(const Photographs& photographs, int threads) {
   if (!gates) return gates.error();
   const Result<double> calibration = calibration_deg(photographs, standard);
   if (!calibration) return calibration.error();
-  const double share = gates->measured[2].value;
+  const double share = gates->indirect.value;
   const LightField& field = *photographs.field;
 
   ErrorForecast of_standard = scatter_of(standard, field);
@@ -197,4 +198,4 @@ Result<Forecast> forecast_errors(const Photographs& photographs, int threads) {
   return Forecast{*gates, {of_preview, of_fast, of_standard, of_robust, of_reference}};
 }
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -8,7 +8,7 @@
 #include "pipeline/photographs.h"
 #include "solver/gates/gates.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
 /// The error that a level is expected to leave in the normals of a cloth, mean angles in degrees. There is no
 /// truth to hold it against, so each part is what the sample tiles (solver/sample_tiles.h) let one see of it.
@@ -43,4 +43,4 @@ struct Forecast {
 /// Errors: as measure_gates and CalibrationSigmas::make.
 Result<Forecast> forecast_errors(const Photographs& photographs, int threads);
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -6,24 +6,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <span>
+#include <utility>
 
 #include "core/parallel.h"
-#include "pipeline/reference.h"
-#include "pipeline/samples.h"
 #include "pipeline/tile_reader.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 namespace {
-
-Json json_of(const ReferenceFacts& facts) {
-  Json stages = Json::array(), rounds = Json::array();
-  if (facts.stages.shadows) stages.push_back("shadows");
-  if (facts.stages.interreflection) stages.push_back("interreflection");
-  for (const ReferenceRound& round : facts.rounds) rounds.push_back({{"turned_deg", round.turned_deg}});
-  return {{"stages", std::move(stages)},
-          {"rounds", std::move(rounds)},
-          {"shadow_reach_is_capped", facts.shadow_reach_is_capped}};
-}
 
 // Readings of one channel that make one of a cell: their mean, or the value of the first that cannot be
 // used.
@@ -43,19 +33,16 @@ class CellReading {
 };
 
 // Rows y and y + 1 of one photograph as row y / 2 of its half.
-void halve_rows(const Photographs& photographs, const std::vector<View<const float>>& readings, std::size_t k,
-                int y, Image<float>& half) {
-  const bool mosaic = photographs.rgb.empty();
+void halve_rows(const Planes& planes, std::span<const View<const float>> readings, int y,
+                Image<float>& half) {
   for (int x = 0; x < half.width(); ++x) {
     std::array<CellReading, 3> cell;
     for (int dy = 0; dy < 2; ++dy) {
       for (int dx = 0; dx < 2; ++dx) {
         const int column = 2 * x + dx;
-        if (mosaic) {
-          const auto c = static_cast<std::size_t>(photographs.radiometry->cfa().channel_at(column, y + dy));
-          cell[c].add(readings[k](column, dy));
-        } else {
-          for (std::size_t c = 0; c < 3; ++c) cell[c].add(readings[3 * k + c](column, dy));
+        for (int p = 0; p < planes.count; ++p) {
+          const int c = planes.channel_at(p, column, y + dy);
+          cell[static_cast<std::size_t>(c)].add(readings[static_cast<std::size_t>(p)](column, dy));
         }
       }
     }
@@ -83,8 +70,7 @@ Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::Met
     if (!solved) return solved.error();
     facts.waited_seconds = solved->waited_seconds;
     facts.tally = solved->tally;
-    facts.gates = json_of(solved->gates);
-    facts.reference = json_of(*solved);
+    facts.reference = *solved;
     return facts;
   }
   const Result<double> waited =
@@ -92,12 +78,6 @@ Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::Met
   if (!waited) return waited.error();
   facts.waited_seconds = *waited;
   return facts;
-}
-
-Json json_of(const solver::SolveTally& tally) {
-  return {{"float32", tally.by_kernel}, {"double", tally.by_normal_equations},
-          {"qr", tally.by_qr},          {"svd", tally.by_svd},
-          {"unsolved", tally.unsolved}, {"rejected_readings", tally.rejected_readings}};
 }
 
 Result<Photographs> half_size(const Photographs& photographs, int threads) {
@@ -111,26 +91,29 @@ Result<Photographs> half_size(const Photographs& photographs, int threads) {
   half.leds = photographs.leds;
   half.albedo_scale = photographs.albedo_scale;
   half.color = photographs.color;
-  half.conditions = photographs.conditions;
-  half.warnings = photographs.warnings;
   half.camera = photographs.camera;
   if (half.camera) half.camera = half_camera(*half.camera, size);
   Result<LightField> field =
       LightField::make(photographs.field->lights(), half.camera, size, photographs.field->cloth_height_mm());
   if (!field) return std::move(field).error();
   half.field = std::move(*field);
-  for (std::size_t k = 0; k < photographs.count(); ++k) half.rgb.emplace_back(size, 3);
+  std::vector<Image<float>> rgb;
+  for (std::size_t k = 0; k < photographs.count(); ++k) rgb.emplace_back(size, 3);
 
+  const Planes planes = photographs.planes();
   const TileOptions rows = {.width = photographs.size.width, .height = 2};
   std::vector<TileReader> readers;
-  for (int i = 0; i < resolved_threads(threads); ++i) readers.emplace_back(photographs, rows, 0, false);
+  for (int i = 0; i < resolved_threads(threads); ++i) readers.emplace_back(photographs, rows);
   parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t i, int worker) {
     const int y = 2 * static_cast<int>(i);
-    const auto& readings =
-        readers[static_cast<std::size_t>(worker)].read({0, y, photographs.size.width, y + 2});
-    for (std::size_t k = 0; k < half.rgb.size(); ++k) halve_rows(photographs, readings, k, y, half.rgb[k]);
+    const std::span<const View<const float>> readings =
+        readers[static_cast<std::size_t>(worker)].read({0, y, photographs.size.width, y + 2}).readings;
+    const auto count = static_cast<std::size_t>(planes.count);
+    for (std::size_t k = 0; k < rgb.size(); ++k)
+      halve_rows(planes, readings.subspan(k * count, count), y, rgb[k]);
   });
+  half.frames = Developed{std::move(rgb)};
   return half;
 }
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -12,7 +12,7 @@
 #include "core/parallel.h"
 #include "solver/transport/gather.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 namespace {
 
 constexpr int kBlockColumns = 512;
@@ -50,6 +50,7 @@ LightCorrection::LightCorrection(const Photographs& photographs, const SolvedFra
     : photographs_(&photographs),
       solved_(&solved),
       relief_(&relief),
+      planes_(photographs.planes()),
       options_(options),
       threads_(resolved_threads(threads)) {
   directions_.count = photographs.count();
@@ -64,16 +65,15 @@ LightCorrection::LightCorrection(const Photographs& photographs, const SolvedFra
 void LightCorrection::read_radiosity(Rect area, Worker& worker) const {
   constexpr int kTileRows = 16;
   const LightField& field = *photographs_->field;
-  const bool mosaics = photographs_->rgb.empty();
-  const std::size_t lights = photographs_->count(), planes = mosaics ? 1 : 3;
+  const std::size_t lights = photographs_->count();
+  const auto planes = static_cast<std::size_t>(planes_.count);
   const auto width = static_cast<std::size_t>(area.width());
-  const CfaPattern cfa = mosaics ? photographs_->radiometry->cfa() : CfaPattern{};
   worker.radiosity_area = area;
   worker.radiosity.resize(width * static_cast<std::size_t>(area.height()) * lights * planes);
   worker.strengths.resize(width * 3);
   for (int y0 = area.y0; y0 < area.y1; y0 += kTileRows) {
     const Rect tile = rows_of(area, y0, kTileRows);
-    const std::vector<View<const float>>& readings = worker.reader.read(tile);
+    const std::span<const View<const float>> readings = worker.reader.read(tile).readings;
     for (int y = tile.y0; y < tile.y1; ++y) {
       float* row = worker.radiosity.data() + static_cast<std::size_t>(y - area.y0) * width * lights * planes;
       for (std::size_t k = 0; k < lights; ++k) {
@@ -85,13 +85,13 @@ void LightCorrection::read_radiosity(Rect area, Worker& worker) const {
           const float* reading = readings[k * planes + p].row(y - tile.y0);
           for (std::size_t i = 0; i < width; ++i) {
             const int x = area.x0 + static_cast<int>(i);
-            const auto c = mosaics ? static_cast<std::size_t>(cfa.channel_at(x, y)) : p;
+            const auto c = static_cast<std::size_t>(planes_.channel_at(static_cast<int>(p), x, y));
             float value = reading[i] / worker.strengths[c * width + i];
             if (!std::isfinite(value)) {
               const Vec3 n = {solved_->normal(x, y, 0), solved_->normal(x, y, 1), solved_->normal(x, y, 2)};
               const double lit = std::max(0.0, dot(n, field.at(k, 1, x, y).direction));
-              value = static_cast<float>(
-                  static_cast<double>(solved_->albedo(x, y, mosaics ? 0 : static_cast<int>(p))) * lit);
+              value =
+                  static_cast<float>(static_cast<double>(solved_->albedo(x, y, static_cast<int>(p))) * lit);
             }
             row[(i * lights + k) * planes + p] = value;
           }
@@ -102,8 +102,6 @@ void LightCorrection::read_radiosity(Rect area, Worker& worker) const {
 }
 
 Result<void> LightCorrection::trace_block(Rect block, Worker& worker) {
-  const std::size_t lights = photographs_->count();
-  const bool mosaics = photographs_->rgb.empty();
   const int bounce_reach = options_.stages.interreflection ? options_.reach_px + 1 : 0;
   const int halo = std::max(shadow_reach_.reach_px + 1, bounce_reach);
   Result<solver::HeightGrid> grid = solver::HeightGrid::build(*relief_, block, halo);
@@ -126,9 +124,8 @@ Result<void> LightCorrection::trace_block(Rect block, Worker& worker) {
   read_radiosity(area, worker);
   std::vector<View<float>> arriving;
   for (int p = 0; p < arriving_.planes(); ++p) arriving.push_back(arriving_.plane(p).crop(local));
-  const int count = static_cast<int>(lights) * (mosaics ? 1 : 3);
-  return solver::gather_light(*grid, block, normals, {area, count, worker.radiosity},
-                              {options_.rays, options_.reach_px, mosaics}, arriving);
+  return solver::gather_light(*grid, block, normals, {area, arriving_.planes(), worker.radiosity},
+                              {options_.rays, options_.reach_px, planes_.count == 1}, arriving);
 }
 
 Result<void> LightCorrection::prepare(Rect rows) {
@@ -137,9 +134,9 @@ Result<void> LightCorrection::prepare(Rect rows) {
   const Size size = photographs_->size;
   slab_ = {0, rows.y0, size.width, std::min(std::max(rows.y0 + kSlabRows, rows.y1), size.height)};
   const Size slab = {size.width, slab_.height()};
-  const int planes = static_cast<int>(photographs_->count()) * (photographs_->rgb.empty() ? 1 : 3);
   if (arriving_.size() != slab) {
-    if (options_.stages.interreflection) arriving_ = Image<float>(slab, planes);
+    if (options_.stages.interreflection)
+      arriving_ = Image<float>(slab, static_cast<int>(photographs_->count()) * planes_.count);
     if (options_.stages.shadows) {
       visible_ = Image<std::uint32_t>(slab, solver::visibility_words(photographs_->count()));
     }
@@ -151,7 +148,7 @@ Result<void> LightCorrection::prepare(Rect rows) {
   std::vector<Worker> workers;
   for (int i = 0; i < threads_; ++i) {
     const TileOptions tile = {.width = kBlockColumns + 2 * options_.reach_px + 2 * kRowGroup, .height = 16};
-    workers.push_back({TileReader(*photographs_, tile, 0, false), {}, {}, {}});
+    workers.push_back({TileReader(*photographs_, tile), {}, {}, {}});
   }
   std::mutex mutex;
   std::optional<Error> failure;
@@ -178,9 +175,8 @@ bool LightCorrection::sees(int x, int y, std::size_t k) const {
 
 void LightCorrection::apply(Rect tile, std::span<const View<float>> readings) const {
   const LightField& field = *photographs_->field;
-  const bool mosaics = photographs_->rgb.empty();
-  const std::size_t lights = photographs_->count(), planes = mosaics ? 1 : 3;
-  const CfaPattern cfa = mosaics ? photographs_->radiometry->cfa() : CfaPattern{};
+  const std::size_t lights = photographs_->count();
+  const auto planes = static_cast<std::size_t>(planes_.count);
   const auto width = static_cast<std::size_t>(tile.width());
   std::vector<float> strengths(3 * width);
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -195,8 +191,8 @@ void LightCorrection::apply(Rect tile, std::span<const View<float>> readings) co
         for (std::size_t i = 0; i < width; ++i) {
           const int x = tile.x0 + static_cast<int>(i), row = y - slab_.y0;
           if (options_.stages.interreflection) {
-            const auto c = mosaics ? static_cast<std::size_t>(cfa.channel_at(x, y)) : p;
-            const float albedo = solved_->albedo(x, y, mosaics ? 0 : static_cast<int>(p));
+            const auto c = static_cast<std::size_t>(planes_.channel_at(static_cast<int>(p), x, y));
+            const float albedo = solved_->albedo(x, y, static_cast<int>(p));
             reading[i] -=
                 albedo * arriving_(x, row, static_cast<int>(k * planes + p)) * strengths[c * width + i];
           }
@@ -209,4 +205,4 @@ void LightCorrection::apply(Rect tile, std::span<const View<float>> readings) co
   }
 }
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

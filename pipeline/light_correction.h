@@ -11,7 +11,7 @@
 #include "solver/transport/height_grid.h"
 #include "solver/transport/shadows.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
 /// A solved frame as far as light over it depends on it.
 struct SolvedFrame {
@@ -64,6 +64,7 @@ class LightCorrection {
   const Photographs* photographs_;
   const SolvedFrame* solved_;
   const solver::Relief* relief_;
+  Planes planes_;
   LightCorrectionOptions options_;
   int threads_;
   solver::LightDirections directions_;
@@ -74,4 +75,4 @@ class LightCorrection {
   Image<std::uint32_t> visible_;  ///< words of bits, of the slab
 };
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

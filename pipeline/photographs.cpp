@@ -2,29 +2,81 @@
 #include "pipeline/photographs.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/solve_record.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
-void Photographs::read(std::size_t k, Rect tile, View<float> out) const {
-  radiometry->read(mosaics[k].counts.plane(), tile, out);
-  if (brackets.empty() || brackets[k].empty()) return;
-  const Size row = {tile.width(), 1};
-  Image<float> others(row, static_cast<int>(brackets[k].size()));
-  std::vector<NoiseModel> noise_of = {radiometry->noise()};
+std::vector<View<const float>> Developed::readings(std::size_t k, Rect part, View<float> /*scratch*/) const {
+  return {rgb[k].plane(0).crop(part), rgb[k].plane(1).crop(part), rgb[k].plane(2).crop(part)};
+}
+
+void Developed::erase(std::size_t k) {
+  rgb.erase(rgb.begin() + static_cast<std::ptrdiff_t>(k));
+}
+
+Mosaics::Mosaics(std::vector<RawFrame> mosaics, std::optional<RawFrame> dark_shot,
+                 const Response& response_of_camera, Radiometry::Exposure exposure_of_all)
+    : frames(std::move(mosaics)),
+      dark(std::move(dark_shot)),
+      response(response_of_camera),
+      exposure(exposure_of_all),
+      radiometry(frames.front(), dark ? &*dark : nullptr, response, exposure),
+      noise(radiometry.noise()) {}
+
+Mosaics::Mosaics(std::vector<RawFrame> others, const Mosaics& like)
+    : frames(std::move(others)),
+      response(like.response),
+      exposure(like.exposure),
+      radiometry(like.radiometry),
+      noise(like.radiometry.noise()) {}
+
+Mosaics Mosaics::alike(std::vector<RawFrame> others) const {
+  return {std::move(others), *this};
+}
+
+std::vector<View<const float>> Mosaics::readings(std::size_t k, Rect part, View<float> scratch) const {
+  const View<float> out = scratch.crop({0, 0, part.width(), part.height()});
+  radiometry.read(frames[k].counts.plane(), part, out);
+  if (brackets.empty() || brackets[k].empty()) return {out};
+  Image<float> others({part.width(), 1}, static_cast<int>(brackets[k].size()));
+  std::vector<NoiseModel> noise_of = {radiometry.noise()};
   for (const Bracket& bracket : brackets[k]) noise_of.push_back(bracket.radiometry.noise());
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    const View<float> here = out.crop({0, y - tile.y0, tile.width(), y - tile.y0 + 1});
-    std::vector<View<const float>> readings = {here};
+  for (int y = part.y0; y < part.y1; ++y) {
+    const View<float> here = out.crop({0, y - part.y0, part.width(), y - part.y0 + 1});
+    std::vector<View<const float>> exposures = {here};
     for (std::size_t i = 0; i < brackets[k].size(); ++i) {
       const View<float> other = others.plane(static_cast<int>(i));
-      brackets[k][i].radiometry.read(brackets[k][i].frame.counts.plane(), {tile.x0, y, tile.x1, y + 1},
+      brackets[k][i].radiometry.read(brackets[k][i].frame.counts.plane(), {part.x0, y, part.x1, y + 1},
                                      other);
-      readings.emplace_back(other);
+      exposures.emplace_back(other);
     }
-    merge_exposures(readings, noise_of, here);
+    merge_exposures(exposures, noise_of, here);
   }
+  return {out};
+}
+
+void Mosaics::erase(std::size_t k) {
+  frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(k));
+  if (!brackets.empty()) brackets.erase(brackets.begin() + static_cast<std::ptrdiff_t>(k));
+}
+
+std::vector<View<const float>> readings_of(const Frames& frames, std::size_t k, Rect part,
+                                           View<float> scratch) {
+  return std::visit([&](const auto& kind) { return kind.readings(k, part, scratch); }, frames);
+}
+
+std::size_t Photographs::count() const {
+  return std::visit([](const auto& kind) { return kind.count(); }, frames);
+}
+
+Planes Photographs::planes() const {
+  return std::visit([](const auto& kind) { return kind.planes(); }, frames);
+}
+
+std::optional<NoiseModel> Photographs::noise() const {
+  return std::visit([](const auto& kind) { return kind.noise_model(); }, frames);
 }
 
 void mark_replaced(const std::vector<Photosite>& replaced, Rect band, View<std::uint16_t> status) {
@@ -35,4 +87,4 @@ void mark_replaced(const std::vector<Photosite>& replaced, Rect band, View<std::
   }
 }
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -3,11 +3,11 @@
 
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/camera.h"
 #include "core/image.h"
-#include "core/json_document.h"
 #include "core/light_field.h"
 #include "core/lights.h"
 #include "core/photosites.h"
@@ -15,7 +15,29 @@
 #include "core/raw_frame.h"
 #include "solver/registration/cloth_shift.h"
 
-namespace weft::app {
+namespace weft::pipeline {
+
+/// The planes of readings that a photograph has: one mosaic with the filters `cfa`, or R, G and B.
+struct Planes {
+  int count = 3;        ///< 1 or 3
+  CfaPattern cfa = {};  ///< of a mosaic
+
+  /// The colour that a plane has at a pixel of the frame: 0 red, 1 green, 2 blue.
+  int channel_at(int plane, int x, int y) const { return count == 1 ? cfa.channel_at(x, y) : plane; }
+  /// The plane that speaks for a pixel where one has to: a mosaic's own, else green.
+  int speaker() const { return count == 1 ? 0 : 1; }
+};
+
+/// Linear RGB, developed by somebody else.
+struct Developed {
+  std::vector<Image<float>> rgb;  ///< readings, planes R, G, B (core/radiometry.h)
+
+  std::size_t count() const { return rgb.size(); }
+  Planes planes() const { return {}; }
+  std::optional<NoiseModel> noise_model() const { return {}; }
+  std::vector<View<const float>> readings(std::size_t k, Rect part, View<float> scratch) const;
+  void erase(std::size_t k);
+};
 
 /// A mosaic once more at another exposure.
 struct Bracket {
@@ -23,36 +45,62 @@ struct Bracket {
   Radiometry radiometry;
 };
 
+/// Counts behind colour filters, all of one exposure, and what turns them into readings.
+struct Mosaics {
+  /// At least one frame; `dark`, where there is one, has their size.
+  Mosaics(std::vector<RawFrame> mosaics, std::optional<RawFrame> dark_shot,
+          const Response& response_of_camera, Radiometry::Exposure exposure_of_all);
+  /// Other frames of the same camera and exposure. They lend the dark shot of these, which must outlive them.
+  Mosaics alike(std::vector<RawFrame> others) const;
+
+  std::vector<RawFrame> frames;
+  std::optional<RawFrame> dark;
+  Response response;
+  Radiometry::Exposure exposure;
+  Radiometry radiometry;
+  NoiseModel noise;                            ///< of brackets the worst
+  std::vector<std::vector<Bracket>> brackets;  ///< of each frame; empty where there are none at all
+  std::vector<Photosite> replaced;             ///< sorted: their counts are what their neighbours say
+
+  std::size_t count() const { return frames.size(); }
+  Planes planes() const { return {1, radiometry.cfa()}; }
+  std::optional<NoiseModel> noise_model() const { return noise; }
+  std::vector<View<const float>> readings(std::size_t k, Rect part, View<float> scratch) const;
+  void erase(std::size_t k);
+
+ private:
+  Mosaics(std::vector<RawFrame> others, const Mosaics& like);
+};
+
+using Frames = std::variant<Developed, Mosaics>;
+
+/// Readings of frame k over `part`, which begins on an even column: a view a plane, (0, 0) at the part's
+/// corner. Those of a mosaic, with its brackets, are made in `scratch`, which is at least as large as the
+/// part; developed ones are shown where they are.
+std::vector<View<const float>> readings_of(const Frames& frames, std::size_t k, Rect part,
+                                           View<float> scratch);
+
 /// What a solve starts from, in memory: K photographs of one cloth, photograph k lit by light k of the field
-/// alone. Either mosaics of counts or linear RGB.
+/// alone.
 struct Photographs {
   Size size;
-  std::vector<int> leds;  ///< number of each light in its rig; empty where there is none
-  std::vector<RawFrame> mosaics;
-  std::optional<RawFrame> dark;                ///< of the mosaics
-  std::optional<Radiometry> radiometry;        ///< of the mosaics
-  std::vector<std::vector<Bracket>> brackets;  ///< of each mosaic; empty where there are none at all
-  std::vector<Photosite> replaced;             ///< sorted: their counts are what their neighbours say
-  std::vector<Image<float>> rgb;               ///< readings, planes R, G, B (core/radiometry.h)
-  std::vector<solver::ClothShift> shifts;      ///< put right as tiles are read (pipeline/shifts.h)
-  std::optional<LightField> field;
+  Frames frames;
+  std::vector<int> leds;                                ///< number of each light in its rig, if it has one
+  std::optional<LightField> field;                      ///< always there once the photographs are whole
   std::optional<CameraModel> camera;                    ///< where the lights are near
   std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
-  std::optional<NoiseModel> noise;                      ///< of the mosaics; of brackets the worst
+  std::vector<solver::ClothShift> shifts;               ///< put right as tiles are read (pipeline/shifts.h)
   std::string albedo_scale = "relative";                ///< "absolute" where a measured patch fixed it
   std::optional<ColorTransform> color;                  ///< of solved albedo, where the calibration has one
 
-  /// What was found and corrected under way, for solve.json: docs/conditions.md.
-  Json conditions = Json::object();
-  std::vector<std::string> warnings;  ///< a sentence each
-
-  std::size_t count() const { return rgb.empty() ? mosaics.size() : rgb.size(); }
-
-  /// Readings of mosaic k with its brackets, as Radiometry::read gives them.
-  void read(std::size_t k, Rect tile, View<float> out) const;
+  std::size_t count() const;
+  Planes planes() const;
+  std::optional<NoiseModel> noise() const;  ///< of one reading; RGB has none
+  const Mosaics* mosaics() const { return std::get_if<Mosaics>(&frames); }
+  Mosaics* mosaics() { return std::get_if<Mosaics>(&frames); }
 };
 
 /// Marks with INVALID_READING the pixels of `band`, as high as `status`, whose counts were replaced.
 void mark_replaced(const std::vector<Photosite>& replaced, Rect band, View<std::uint16_t> status);
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -9,16 +9,15 @@
 #include "pipeline/samples.h"
 #include "solver/height/height.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 namespace {
 
 // Keeps a solve in memory, and by how much it turned the normals of the one before, if there is one.
 class FrameKeeper {
  public:
   FrameKeeper(const Photographs& photographs, const SolvedFrame* before)
-      : photographs_(&photographs), before_(before) {
-    frame = {Image<float>(photographs.size, 3),
-             Image<float>(photographs.size, photographs.rgb.empty() ? 1 : 3)};
+      : planes_(photographs.planes()), before_(before) {
+    frame = {Image<float>(photographs.size, 3), Image<float>(photographs.size, planes_.count)};
   }
 
   Result<void> operator()(const MapBand& band) {
@@ -26,7 +25,7 @@ class FrameKeeper {
     for (int y = 0; y < band.albedo_rows.height(); ++y) keep_albedo(band, y);
     return {};
   }
-  double mean_turn_deg() const { return turned_deg_ / static_cast<double>(photographs_->size.pixels()); }
+  double mean_turn_deg() const { return turned_deg_ / static_cast<double>(frame.normal.size().pixels()); }
 
   SolvedFrame frame;
 
@@ -48,13 +47,12 @@ class FrameKeeper {
     for (int p = 0; p < frame.albedo.planes(); ++p) {
       float* kept = frame.albedo.plane(p).row(row);
       for (int x = 0; x < band.albedo_rows.width(); ++x) {
-        const int c = frame.albedo.planes() == 3 ? p : photographs_->radiometry->cfa().channel_at(x, row);
-        kept[x] = band.albedo[static_cast<std::size_t>(c)](x, y);
+        kept[x] = band.albedo[static_cast<std::size_t>(planes_.channel_at(p, x, row))](x, y);
       }
     }
   }
 
-  const Photographs* photographs_;
+  Planes planes_;
   const SolvedFrame* before_;
   double turned_deg_ = 0;
 };
@@ -152,4 +150,4 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
   return facts;
 }
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -12,7 +12,7 @@
 #include "solver/gates/gates.h"
 #include "solver/method.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
 struct ReferenceOptions {
   int most_rounds = 4;
@@ -47,4 +47,4 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
                                        const ReferenceOptions& options, const JobContext& context,
                                        const BandSink& sink);
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

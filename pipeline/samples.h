@@ -4,11 +4,12 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/result.h"
 #include "pipeline/photographs.h"
 #include "solver/gates/gates.h"
 #include "solver/method.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
 /// What a method makes of the sample tiles (solver/sample_tiles.h), without their surroundings: the albedo
 /// of a mosaic is that of each photosite in its own colour, of RGB that of green.
@@ -24,6 +25,9 @@ struct SampleMaps {
   solver::SolvedSample sample() const;
 };
 
+/// One tile, without its count of readings.
+SampleMaps solve_sample(const solver::TileInput& input, const solver::Method& method);
+
 /// Solves the sample tiles on `threads` threads.
 std::vector<SampleMaps> solve_samples(const Photographs& photographs, const solver::Method& method,
                                       int threads);
@@ -31,7 +35,4 @@ std::vector<SampleMaps> solve_samples(const Photographs& photographs, const solv
 /// The gates of a solve, from its samples.
 Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples);
 
-/// {"name", "value", "limit", "unit", "verdict": "over" | "under"} a gate, for solve.json.
-Json json_of(const solver::Gates& gates);
-
-}  // namespace weft::app
+}  // namespace weft::pipeline

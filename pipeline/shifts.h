@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "core/job.h"
-#include "core/json_document.h"
 #include "core/result.h"
 #include "pipeline/photographs.h"
 #include "solver/registration/registration.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
 enum class ShiftVerdict {
   kStill,      ///< no shift that its error does not explain, or one that costs under kLeastCost_deg
@@ -25,6 +24,8 @@ struct ShotShift {
 struct SessionShifts {
   std::vector<ShotShift> shots;  ///< by light of the field
   bool found = true;             ///< solver::Registration::found
+  /// For Photographs::shifts: by light, or nothing where nothing is corrected, so that not a byte changes.
+  std::vector<solver::ClothShift> corrections;
 };
 
 /// A shift that costs less is not worth a resampling.
@@ -36,12 +37,8 @@ inline constexpr double kLeastGain = 0.05;
 /// Measures how the cloth lies in each shot on the sample tiles (solver/registration/registration.h), and
 /// decides what to do: shots whose shift is significant and costs enough are corrected together, if the
 /// residual of `fast` at the photosites of the tiles is smaller once they are resampled; else they are
-/// flagged. Sets photographs.shifts, to nothing where nothing is corrected, so that not a byte changes.
-/// Memory: a few megabytes. Returns kInterrupted on request.
-Result<SessionShifts> register_shots(Photographs& photographs, const JobContext& context);
+/// flagged. Shifts that the photographs have already are not looked at. Memory: a few megabytes. Returns
+/// kInterrupted on request.
+Result<SessionShifts> register_shots(const Photographs& photographs, const JobContext& context);
 
-/// For solve.json: a list by shot of {"led", "dx_px", "dy_px", "turn_deg", "sigma_px", "cost_deg",
-/// "corrected", "verdict": "still" | "corrected" | "flagged" | "not registered"}.
-Json registration_document(const SessionShifts& shifts, const std::vector<int>& leds);
-
-}  // namespace weft::app
+}  // namespace weft::pipeline

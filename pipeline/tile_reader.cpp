@@ -8,80 +8,80 @@
 
 #include "solver/kernels/demosaic.h"
 
-namespace weft::app {
+namespace weft::pipeline {
+namespace {
 
-TileReader::TileReader(const Photographs& photographs, const TileOptions& tile, int reach, bool to_rgb)
-    : photographs_(&photographs), to_rgb_(to_rgb), reach_(reach) {
-  if (!photographs.rgb.empty() && photographs.shifts.empty()) return;
+// What is read around a tile to be demosaiced.
+constexpr int kReach = solver::kDemosaicReach;
+
+}  // namespace
+
+TileReader::TileReader(const Photographs& photographs, const TileOptions& tile, ReadAs as)
+    : TileReader(photographs, tile, as, photographs.shifts) {}
+
+TileReader::TileReader(const Photographs& photographs, const TileOptions& tile, ReadAs as,
+                       std::span<const solver::ClothShift> shifts)
+    : photographs_(&photographs),
+      shifts_(shifts),
+      taken_(photographs.planes()),
+      planes_(as == ReadAs::kRgb ? Planes{} : taken_) {
+  if (taken_.count == 3 && shifts.empty()) return;  // they are shown where they are
   const Size size = {
       std::min((std::max(tile.width, 1) + kRowGroup - 1) / kRowGroup * kRowGroup, photographs.size.width),
       std::min(std::max(tile.height, 1), photographs.size.height)};
-  const int planes = static_cast<int>(photographs.count()) * (to_rgb || !photographs.rgb.empty() ? 3 : 1);
-  readings_ = Image<float>(size, planes);
-  if (to_rgb && photographs.rgb.empty())
-    mosaic_ = Image<float>({size.width + 2 * reach, size.height + 2 * reach});
+  readings_ = Image<float>(size, static_cast<int>(photographs.count()) * planes_.count);
+  if (planes_.count != taken_.count)
+    mosaic_ = Image<float>({size.width + 2 * kReach, size.height + 2 * kReach});
 }
 
-const std::vector<View<const float>>& TileReader::read(Rect tile) {
+solver::TileInput TileReader::read(Rect tile) {
   views_.clear();
-  const Rect local = {0, 0, tile.width(), tile.height()};
+  std::vector<View<float>> out(static_cast<std::size_t>(planes_.count));
   for (std::size_t k = 0; k < photographs_->count(); ++k) {
-    if (!photographs_->rgb.empty()) {
-      read_photograph(k, tile);
-    } else if (to_rgb_) {
-      const auto first = static_cast<int>(k) * 3;
-      const std::array<View<float>, 3> rgb = {readings_.plane(first).crop(local),
-                                              readings_.plane(first + 1).crop(local),
-                                              readings_.plane(first + 2).crop(local)};
-      read_rgb(k, tile, rgb);
-      views_.insert(views_.end(), rgb.begin(), rgb.end());
+    for (int p = 0; p < planes_.count && !readings_.empty(); ++p) {
+      out[static_cast<std::size_t>(p)] =
+          readings_.plane(static_cast<int>(k) * planes_.count + p).crop({0, 0, tile.width(), tile.height()});
+    }
+    if (planes_.count != taken_.count) {
+      read_rgb(k, tile, out);
+      views_.insert(views_.end(), out.begin(), out.end());
     } else {
-      const View<float> out = readings_.plane(static_cast<int>(k)).crop(local);
-      read_mosaic(k, tile, out);
-      views_.emplace_back(out);
+      const std::vector<View<const float>> taken = read_taken(k, tile, out);
+      views_.insert(views_.end(), taken.begin(), taken.end());
     }
   }
-  return views_;
+  return {tile,   planes_.count,         planes_.cfa,
+          views_, &*photographs_->field, planes_.count == 1 ? photographs_->noise() : std::nullopt};
 }
 
-bool TileReader::shifted(std::size_t k) const {
-  return !photographs_->shifts.empty() && photographs_->shifts[k] != solver::ClothShift();
-}
-
-void TileReader::read_mosaic(std::size_t k, Rect tile, View<float> out) {
-  if (!shifted(k)) return photographs_->read(k, tile, out);
-  const solver::ClothShift& shift = photographs_->shifts[k];
-  const Rect seen = solver::seen_through(shift, tile, photographs_->size, 2);
+// The planes of photograph k, with the cloth back in its place: in `out`, or where they are.
+std::vector<View<const float>> TileReader::read_taken(std::size_t k, Rect tile,
+                                                      std::span<const View<float>> out) {
+  const Frames& frames = photographs_->frames;
+  if (shifts_.empty() || shifts_[k] == solver::ClothShift()) return readings_of(frames, k, tile, out[0]);
+  const solver::ClothShift& shift = shifts_[k];
+  const int step = taken_.count == 1 ? 2 : 1;  // from a site to the next of its colour
+  const Rect seen = solver::seen_through(shift, tile, photographs_->size, step);
   if (seen.width() > unmoved_.width() || seen.height() > unmoved_.height()) {
     unmoved_ = Image<float>({seen.width(), seen.height()});
   }
-  if (seen.width() > 0 && seen.height() > 0) photographs_->read(k, seen, unmoved_.plane());
-  solver::resample(unmoved_.plane(), seen, shift, tile, photographs_->size, 2, out);
-}
-
-void TileReader::read_photograph(std::size_t k, Rect tile) {
-  const Rect all = {0, 0, photographs_->size.width, photographs_->size.height};
-  for (int c = 0; c < 3; ++c) {
-    const View<const float> plane = photographs_->rgb[k].plane(c);
-    if (!shifted(k)) {
-      views_.push_back(plane.crop(tile));
-      continue;
-    }
-    const View<float> out =
-        readings_.plane(static_cast<int>(k) * 3 + c).crop({0, 0, tile.width(), tile.height()});
-    solver::resample(plane, all, photographs_->shifts[k], tile, photographs_->size, 1, out);
-    views_.emplace_back(out);
+  const bool sees = seen.width() > 0 && seen.height() > 0;
+  const std::vector<View<const float>> unmoved =
+      sees ? readings_of(frames, k, seen, unmoved_.plane()) : std::vector<View<const float>>(out.size());
+  for (std::size_t p = 0; p < out.size(); ++p) {
+    solver::resample(unmoved[p], seen, shift, tile, photographs_->size, step, out[p]);
   }
+  return {out.begin(), out.end()};
 }
 
 // Demosaics frame k before solving, white-balanced by the flux of its light as the filters expect.
-void TileReader::read_rgb(std::size_t k, Rect tile, const std::array<View<float>, 3>& rgb) {
+void TileReader::read_rgb(std::size_t k, Rect tile, std::span<const View<float>> rgb) {
   const Size size = photographs_->size;
-  const Rect around = {std::max(tile.x0 - reach_, 0), std::max(tile.y0 - reach_, 0),
-                       std::min(tile.x1 + reach_, size.width), std::min(tile.y1 + reach_, size.height)};
+  const Rect around = {std::max(tile.x0 - kReach, 0), std::max(tile.y0 - kReach, 0),
+                       std::min(tile.x1 + kReach, size.width), std::min(tile.y1 + kReach, size.height)};
   const View<float> mosaic = mosaic_.plane().crop({0, 0, around.width(), around.height()});
-  read_mosaic(k, around, mosaic);
-  const CfaPattern& cfa = photographs_->radiometry->cfa();
+  read_taken(k, around, {&mosaic, 1});
+  const CfaPattern& cfa = taken_.cfa;
   const std::array<double, 3> flux = flux_of(k);
   for (int y = 0; y < around.height(); ++y) {
     for (int x = 0; x < around.width(); ++x) {
@@ -97,7 +97,7 @@ void TileReader::read_rgb(std::size_t k, Rect tile, const std::array<View<float>
     }
   }
   const Rect inner = {tile.x0 - around.x0, tile.y0 - around.y0, tile.x1 - around.x0, tile.y1 - around.y0};
-  solver::demosaic(mosaic, phase, inner, rgb);
+  solver::demosaic(mosaic, phase, inner, {rgb[0], rgb[1], rgb[2]});
   // What a saturated site was mixed into is as unusable as the site.
   for (std::size_t c = 0; c < 3; ++c) {
     for (int y = 0; y < tile.height(); ++y) {
@@ -116,4 +116,4 @@ std::array<double, 3> TileReader::flux_of(std::size_t k) const {
   return std::get<DistantLights>(lights).lights[k].irradiance_rgb;
 }
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -3,38 +3,46 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "core/image.h"
 #include "core/tiles.h"
 #include "pipeline/photographs.h"
+#include "solver/method.h"
 
-namespace weft::app {
+namespace weft::pipeline {
 
-/// The readings of one tile after another, made by one worker; shots of a shifted cloth
-/// (Photographs::shifts) are resampled.
+/// What becomes of mosaics as they are read. Developed photographs stay as they are.
+enum class ReadAs {
+  kTaken,  ///< one plane
+  kRgb,    ///< demosaiced before they are solved: three
+};
+
+/// The readings of one tile after another, made by one worker; shots of a shifted cloth are resampled.
 class TileReader {
  public:
-  /// `tile` bounds the tiles to come. Where mosaics are to be read as RGB (`to_rgb`), `reach` pixels around
-  /// a tile are read along with it, for demosaicing. `photographs` must outlive the reader.
-  TileReader(const Photographs& photographs, const TileOptions& tile, int reach, bool to_rgb);
+  /// `tile` bounds the tiles to come. The cloth lay as photographs.shifts says, or as `shifts` does: one a
+  /// photograph, or none at all. What is passed must outlive the reader.
+  TileReader(const Photographs& photographs, const TileOptions& tile, ReadAs as = ReadAs::kTaken);
+  TileReader(const Photographs& photographs, const TileOptions& tile, ReadAs as,
+             std::span<const solver::ClothShift> shifts);
 
-  /// Views of [k * planes + p] over the tile, valid until the next call. `tile.x0` is a multiple of
+  Planes planes() const { return planes_; }
+  /// A tile as methods want it, its readings valid until the next call. `tile.x0` is a multiple of
   /// kRowGroup.
-  const std::vector<View<const float>>& read(Rect tile);
+  solver::TileInput read(Rect tile);
 
  private:
-  bool shifted(std::size_t k) const;
-  void read_mosaic(std::size_t k, Rect tile, View<float> out);
-  void read_photograph(std::size_t k, Rect tile);
-  void read_rgb(std::size_t k, Rect tile, const std::array<View<float>, 3>& rgb);
+  std::vector<View<const float>> read_taken(std::size_t k, Rect tile, std::span<const View<float>> out);
+  void read_rgb(std::size_t k, Rect tile, std::span<const View<float>> rgb);
   std::array<double, 3> flux_of(std::size_t k) const;
 
   const Photographs* photographs_;
-  bool to_rgb_;
-  int reach_;
+  std::span<const solver::ClothShift> shifts_;
+  Planes taken_, planes_;
   Image<float> readings_, mosaic_, unmoved_;
   std::vector<View<const float>> views_;
 };
 
-}  // namespace weft::app
+}  // namespace weft::pipeline

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/method.h"
 
+#include <algorithm>
+
 namespace weft::solver {
 
 std::span<const MethodName> method_names() {
@@ -35,6 +37,12 @@ std::span<const MethodName> method_names() {
       MethodName{.name = "sbl", .help = "sparse errors", .make = &sparse_method},
       MethodName{.name = "lts", .help = "least trimmed squares", .make = &trimmed_method}};
   return kNames;
+}
+
+const MethodName* find_method(std::string_view name) {
+  const auto names = method_names();
+  const auto found = std::ranges::find(names, name, &MethodName::name);
+  return found == names.end() ? nullptr : &*found;
 }
 
 SolveTally& SolveTally::operator+=(const SolveTally& other) {

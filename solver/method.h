@@ -6,7 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/image.h"
@@ -114,7 +114,14 @@ struct MethodName {
   bool keeps_clipped = false;
   std::unique_ptr<Method> (*make)() = nullptr;
   Extent extent = Extent::kTiles;
+  bool is_quality = false;  ///< a level of --quality; else a method of --method
+  /// Takes the clipped values of developed photographs at their word, so that it can be held against
+  /// published figures. Saturated raw counts enter no method.
+  bool keeps_clipped = false;
 };
+/// The levels from the cheapest to the dearest, then the methods.
 std::span<const MethodName> method_names();
+/// Null where there is none of that name.
+const MethodName* find_method(std::string_view name);
 
 }  // namespace weft::solver

@@ -9,78 +9,22 @@
 #include <functional>
 #include <utility>
 
+#include "app/jobs/facts_json.h"
 #include "app/jobs/map_files.h"
 #include "core/files.h"
-#include "core/lights.h"
+#include "pipeline/cut.h"
 #include "pipeline/frame.h"
 #include "pipeline/reference.h"
-#include "pipeline/samples.h"
 #include "pipeline/shifts.h"
 
 namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+using pipeline::ErrorForecast;
+using pipeline::Photographs;
 
 constexpr Size kCut = {512, 256};
-
-// A part of photographs as photographs of their own, to be solved for the clock. Brackets stay behind, and so
-// does the fall of gain over the frame.
-class Cut {
- public:
-  Cut(const Photographs& whole, Rect area) : whole_(&whole), area_(area) {
-    part.size = {area.width(), area.height()};
-    part.leds = whole.leds;
-    part.shifts = whole.shifts;
-    part.camera = whole.camera;
-    if (part.camera) {
-      part.camera->size = part.size;
-      part.camera->cx -= area.x0;
-      part.camera->cy -= area.y0;
-    }
-    for (const Image<float>& image : whole.rgb) part.rgb.push_back(cut(image));
-    for (const RawFrame& frame : whole.mosaics) part.mosaics.push_back(cut(frame));
-    if (whole.dark) part.dark = cut(*whole.dark);
-  }
-
-  Result<void> light() {
-    Lights lights = whole_->field->lights();
-    if (auto* near = std::get_if<NearLights>(&lights)) {
-      near->log_gain_rgb = {};
-      for (NearLight& led : near->leds) led.log_gain_quadratic = {};
-    }
-    Result<LightField> field =
-        LightField::make(std::move(lights), part.camera, part.size, whole_->field->cloth_height_mm());
-    if (!field) return std::move(field).error();
-    part.field = std::move(*field);
-    return {};
-  }
-  void expose(const SessionPlan& plan) {
-    const Shot& first = plan.lit.front();
-    part.radiometry.emplace(part.mosaics.front(), part.dark ? &*part.dark : nullptr,
-                            *plan.calibration.response, Radiometry::Exposure{first.exposure_us, first.iso});
-    part.noise = whole_->noise;
-  }
-
-  Photographs part;
-
- private:
-  template <typename T>
-  Image<T> cut(const Image<T>& image) const {
-    Image<T> out({area_.width(), area_.height()}, image.planes());
-    for (int p = 0; p < image.planes(); ++p) {
-      for (int y = 0; y < out.height(); ++y)
-        std::copy_n(image.plane(p).row(area_.y0 + y) + area_.x0, out.width(), out.plane(p).row(y));
-    }
-    return out;
-  }
-  RawFrame cut(const RawFrame& frame) const {
-    return {cut(frame.counts), frame.cfa, frame.black, frame.white, frame.shot};
-  }
-
-  const Photographs* whole_;
-  Rect area_;
-};
 
 // The middle of a frame, on whole cells of the colour filter.
 Rect middle_of(Size size) {
@@ -102,7 +46,7 @@ Result<double> seconds_of(const std::function<Result<void>()>& run) {
 
 Result<double> solve_seconds(const Photographs& part, const solver::MethodName& level,
                              const solver::Gates& gates, const TileOptions& tile, const JobContext& context) {
-  const BandSink nowhere = [](const MapBand&) -> Result<void> { return {}; };
+  const pipeline::BandSink nowhere = [](const pipeline::MapBand&) -> Result<void> { return {}; };
   return seconds_of([&]() -> Result<void> {
     if (level.extent == solver::Extent::kWholeFrame && (gates.shadows() || gates.interreflection())) {
       const auto solved = solve_reference(part, tile, {.force_stages = true}, context, nowhere);
@@ -140,7 +84,7 @@ Result<WriteCost> measure_write(const Photographs& part, const SolveOptions& opt
   Result<MapFiles> files = MapFiles::open(scratch.path, part.size, options.compression, {});
   if (!files) return std::move(files).error();
   cost.files_seconds = watch.lap();
-  const auto write = [&](const MapBand& band) -> Result<void> {
+  const auto write = [&](const pipeline::MapBand& band) -> Result<void> {
     Stopwatch band_watch;
     Result<void> written = files->write(band, {});
     cost.maps_seconds += band_watch.lap();
@@ -156,7 +100,7 @@ Result<WriteCost> measure_write(const Photographs& part, const SolveOptions& opt
 
 std::string words_of(const solver::Gates& gates) {
   std::string words;
-  for (const solver::Gate& gate : gates.measured) {
+  for (const solver::Gate& gate : gates.measured()) {
     words += fmt::format("{}{} {:.3g} of {:.3g}{}{}", words.empty() ? "" : ", ", gate.name, gate.value,
                          gate.limit, gate.unit.empty() ? "" : " ", gate.unit);
   }
@@ -195,9 +139,9 @@ void add_notes(Ladder& ladder) {
   }
   LevelPrice& reference = ladder.levels.back();
   const bool open = ladder.gates.shadows() || ladder.gates.interreflection();
-  const char* gates = open                      ? "gates open"
-                      : ladder.gates.specular() ? "gates shut, as this cloth is no Lambertian one"
-                                                : "gates shut";
+  const char* gates = open                            ? "gates open"
+                      : ladder.gates.specular.is_over ? "gates shut, as this cloth is no Lambertian one"
+                                                      : "gates shut";
   reference.note +=
       fmt::format("{}{}: {}", reference.note.empty() ? "" : "; ", gates, words_of(ladder.gates));
 }
@@ -206,17 +150,14 @@ Result<Ladder> price(const Photographs& photographs, const Photographs& part, do
                      const SolveOptions& options, const JobContext& context) {
   const JobContext silent = {context.threads, context.stop};
   context.progress("explain", 0);
-  const Result<Forecast> forecast = forecast_errors(photographs, context.threads);
+  const Result<pipeline::Forecast> forecast = forecast_errors(photographs, context.threads);
   if (!forecast) return forecast.error();
   const Result<WriteCost> write = measure_write(part, options, silent);
   if (!write) return write.error();
   const auto cuts = static_cast<double>(photographs.size.pixels()) / static_cast<double>(part.size.pixels());
   Ladder ladder = {forecast->gates, {}};
   for (const ErrorForecast& error : forecast->levels) {
-    const auto names = solver::method_names();
-    const auto level = std::find_if(names.begin(), names.end(), [&](const solver::MethodName& name) {
-      return error.quality == name.name;
-    });
+    const solver::MethodName* level = solver::find_method(error.quality);
     const Result<double> solve = solve_seconds(part, *level, ladder.gates, options.tile, silent);
     if (!solve) return solve.error();
     const bool half = level->extent == solver::Extent::kHalfSize;
@@ -232,18 +173,16 @@ Result<Ladder> price(const Photographs& photographs, const Photographs& part, do
   return ladder;
 }
 
-// `plan` is that of a session of mosaics, or null.
-Result<Ladder> explain(Result<Photographs> photographs, double read, const SessionPlan* plan,
-                       const SolveOptions& options, const JobContext& context) {
-  if (!photographs) return std::move(photographs).error();
+Result<Ladder> explain(Photographs photographs, double read, const SolveOptions& options,
+                       const JobContext& context) {
   Stopwatch watch;
-  const Result<SessionShifts> shifts = register_shots(*photographs, context);
-  if (!shifts) return shifts.error();
+  Result<pipeline::SessionShifts> shifts = register_shots(photographs, context);
+  if (!shifts) return std::move(shifts).error();
+  photographs.shifts = std::move(shifts->corrections);
   const double prepare = watch.lap();
-  Cut cut(*photographs, middle_of(photographs->size));
-  if (Result<void> lit = cut.light(); !lit) return std::move(lit).error();
-  if (plan != nullptr) cut.expose(*plan);
-  return price(*photographs, cut.part, read, prepare, options, context);
+  const Result<Photographs> part = cut(photographs, middle_of(photographs.size));
+  if (!part) return part.error();
+  return price(photographs, *part, read, prepare, options, context);
 }
 
 Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
@@ -282,8 +221,9 @@ Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& 
   const Result<SessionPlan> plan = plan_session(input);
   if (!plan) return plan.error();
   Stopwatch watch;
-  Result<Photographs> photographs = load_session(*plan, context);
-  return explain(std::move(photographs), watch.lap(), plan->raw ? &*plan : nullptr, options, context);
+  Result<LoadedSession> loaded = load_session(*plan, context);
+  if (!loaded) return std::move(loaded).error();
+  return explain(std::move(loaded->photographs), watch.lap(), options, context);
 }
 
 Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,
@@ -292,7 +232,8 @@ Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& opt
   if (!plan) return plan.error();
   Stopwatch watch;
   Result<Photographs> photographs = load_photos(*plan, context);
-  return explain(std::move(photographs), watch.lap(), nullptr, options, context);
+  if (!photographs) return std::move(photographs).error();
+  return explain(std::move(*photographs), watch.lap(), options, context);
 }
 
 Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish) {

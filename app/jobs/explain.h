@@ -32,7 +32,7 @@ struct LevelSeconds {
 };
 
 struct LevelPrice {
-  ErrorForecast error;
+  pipeline::ErrorForecast error;
   LevelSeconds seconds;
   std::string note;  ///< what there is to say of it: nothing to gain, gates; or empty
 };

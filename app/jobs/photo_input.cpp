@@ -188,7 +188,7 @@ Result<PhotoPlan> plan_photos(const PhotoOptions& options) {
   return plan;
 }
 
-Result<Photographs> load_photos(const PhotoPlan& plan, const JobContext& context) {
+Result<pipeline::Photographs> load_photos(const PhotoPlan& plan, const JobContext& context) {
   const std::uint64_t needed = static_cast<std::uint64_t>(plan.size.pixels()) * 12 * (plan.files.size() + 4);
   const std::uint64_t free = available_memory_bytes();
   if (free != 0 && needed > free) {
@@ -196,7 +196,7 @@ Result<Photographs> load_photos(const PhotoPlan& plan, const JobContext& context
                  fmt::format("{} MB are needed, {} MB are free", needed >> 20, free >> 20),
                  "use fewer or smaller photographs, or a larger machine"};
   }
-  Photographs photographs;
+  pipeline::Photographs photographs;
   photographs.size = plan.size;
   Result<LightField> field = LightField::make(Lights(plan.lights), std::nullopt, plan.size, 0);
   if (!field) return std::move(field).error();
@@ -208,7 +208,7 @@ Result<Photographs> load_photos(const PhotoPlan& plan, const JobContext& context
     if (!loaded) return std::move(loaded).error();
     mask = std::move(*loaded);
   }
-  photographs.rgb.resize(plan.files.size());
+  std::vector<Image<float>> rgb(plan.files.size());
   const auto read_photo = [&](std::size_t k) -> Result<void> {
     Result<Image<float>> image = read_linear_image(plan.files[k], plan.transfer, plan.clipped);
     if (!image) return std::move(image).error();
@@ -220,12 +220,13 @@ Result<Photographs> load_photos(const PhotoPlan& plan, const JobContext& context
         }
       }
     }
-    photographs.rgb[k] = std::move(*image);
+    rgb[k] = std::move(*image);
     return {};
   };
   if (Result<void> read = for_each_frame(plan.files.size(), context, read_photo); !read) {
     return std::move(read).error();
   }
+  photographs.frames = pipeline::Developed{std::move(rgb)};
   return photographs;
 }
 

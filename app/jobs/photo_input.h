@@ -37,6 +37,6 @@ struct PhotoPlan {
 
 Result<PhotoPlan> plan_photos(const PhotoOptions& options);
 /// Reads the photographs; readings outside the mask are missing.
-Result<Photographs> load_photos(const PhotoPlan& plan, const JobContext& context);
+Result<pipeline::Photographs> load_photos(const PhotoPlan& plan, const JobContext& context);
 
 }  // namespace weft::app

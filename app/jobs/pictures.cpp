@@ -55,7 +55,7 @@ Result<TruthError> error_against(const fs::path& truth, const fs::path& normal) 
 
 Pictures::Pictures(Size size) : normal_(size, 3), albedo_(size, 3), status_(size) {}
 
-void Pictures::add(const MapBand& band) {
+void Pictures::add(const pipeline::MapBand& band) {
   normal_.add_rows(band.normal, band.status);
   albedo_.add_rows(band.albedo);
   status_.add_rows(band.status);

@@ -27,7 +27,7 @@ Result<TruthError> error_against(const std::filesystem::path& truth, const std::
 class Pictures {
  public:
   explicit Pictures(Size size);
-  void add(const MapBand& band);
+  void add(const pipeline::MapBand& band);
 
   /// Writes albedo.png (sRGB; a relative albedo is scaled, and the sheet says by how much), normal.png,
   /// relit.png, error.png where there is a truth, else status_preview.png, and sheet.png with all of them

@@ -224,7 +224,7 @@ double AngleHistogram::quantile(double share) const {
 
 MapSummary::MapSummary(Size size) : sigma_(size, 1, kGridSide), row_({size.width, 1}) {}
 
-void MapSummary::add(const MapBand& band, View<const float> calibration_deg) {
+void MapSummary::add(const pipeline::MapBand& band, View<const float> calibration_deg) {
   for (int y = 0; y < band.albedo_rows.height(); ++y) {
     const float* sigma = band.sigma_normal_deg.row(y);
     for (int x = 0; x < row_.width(); ++x) {
@@ -275,18 +275,20 @@ Json condition_over(const LightField& field, Size size) {
   return {{"median", number(conditions[conditions.size() / 2])}, {"worst", number(conditions.back())}};
 }
 
-PhotographsSummary summarize_photographs(const Photographs& photographs, const std::vector<int>& picked,
+PhotographsSummary summarize_photographs(const pipeline::Photographs& photographs,
+                                         const std::vector<int>& picked,
+                                         const std::vector<std::string>& warnings,
                                          const JobContext& context) {
   PhotographsSummary summary;
-  summary.diagnosis = solver::diagnose(read_evidence(photographs), context.threads);
+  summary.diagnosis = solver::diagnose(pipeline::read_evidence(photographs), context.threads);
   summary.of_session = !photographs.leds.empty();
   summary.numbers = summary.of_session ? photographs.leds : picked;
   for (std::size_t k = summary.numbers.size(); k < photographs.count(); ++k) {
     summary.numbers.push_back(static_cast<int>(k) + 1);
   }
-  summary.noise_is_known = photographs.noise.has_value();
+  summary.noise_is_known = photographs.noise().has_value();
   summary.condition = condition_over(*photographs.field, photographs.size);
-  summary.warnings = photographs.warnings;
+  summary.warnings = warnings;
   return summary;
 }
 

@@ -39,7 +39,7 @@ class MapSummary {
   explicit MapSummary(Size size);
   /// `calibration_deg` is the channel normal_deg.calibration of sigma.exr over band.albedo_rows; empty where
   /// the calibration has no covariance.
-  void add(const MapBand& band, View<const float> calibration_deg = {});
+  void add(const pipeline::MapBand& band, View<const float> calibration_deg = {});
 
   /// {"median", "p95", "square_px", "columns", "rows", "grid"} of the predicted angle in degrees; the grid's
   /// values are means of squares, row by row, null where there is none. "median" is null where no pixel has
@@ -66,9 +66,11 @@ struct PhotographsSummary {
   Json condition;                     ///< condition_over()
   std::vector<std::string> warnings;  ///< a sentence each, said when the photographs were read
 };
-/// `picked` are the numbers of the lights where photographs were picked from a list; else empty.
-PhotographsSummary summarize_photographs(const Photographs& photographs, const std::vector<int>& picked,
-                                         const JobContext& context);
+/// `picked` are the numbers of the lights where photographs were picked from a list; else empty. `warnings`
+/// are what was said when they were read.
+PhotographsSummary summarize_photographs(const pipeline::Photographs& photographs,
+                                         const std::vector<int>& picked,
+                                         const std::vector<std::string>& warnings, const JobContext& context);
 
 /// The scene is called dominated by highlights where this share of pixels has the bit SPECULAR.
 inline constexpr double kSpecularDominated = 0.2;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "app/jobs/session_input.h"
@@ -8,33 +11,32 @@
 #include "core/result.h"
 #include "pipeline/photographs.h"
 
-// What a session says of its own exposures, and what is made of it before it is solved (docs/conditions.md).
-// Each step changes `photographs` and says so in its conditions and warnings.
+// What a session says of its own exposures, and what is made of it before it is solved (docs/conditions.md):
+// pipeline/conditions does it, these say it. Each step changes the photographs, and adds to the conditions
+// and the warnings of `loaded`.
 
 namespace weft::app {
 
 /// What a session has beyond the shots that are solved, in the order of the plan.
 struct MoreFrames {
-  std::vector<RawFrame> repeats;          ///< of mosaics
-  std::vector<Image<float>> repeats_rgb;  ///< of RGB, as readings
-  std::vector<RawFrame> brackets;         ///< of mosaics
+  pipeline::Frames repeats;
+  std::vector<RawFrame> brackets;
 };
 
-/// Finds the photosites that are hot in the dark shot, dead in all lit ones or bad in the calibration's
-/// hot.png, and gives them what their neighbours say, in every frame.
-Result<void> replace_bad_photosites(const SessionPlan& plan, const JobContext& context,
-                                    Photographs& photographs, MoreFrames& more);
+/// Replaces the photosites that are hot, dead, or bad in the calibration's hot.png, in every frame.
+Result<void> replace_bad_photosites(const SessionPlan& plan, const JobContext& context, LoadedSession& loaded,
+                                    MoreFrames& more);
 
 /// Puts bracket shots beside the lit shot of their LED, by measured ratios of light.
-void join_brackets(const SessionPlan& plan, Photographs& photographs, MoreFrames& more);
+void join_brackets(const SessionPlan& plan, LoadedSession& loaded, MoreFrames& more);
 
 /// Leaves out LEDs that are full on over 99 percent of the frame or did not light. kBadData where fewer than
 /// three remain.
-Result<void> leave_out_useless_lights(const SessionPlan& plan, Photographs& photographs);
+Result<void> leave_out_useless_lights(const SessionPlan& plan, LoadedSession& loaded);
 
 /// Measures how bright each LED was in its shot, from white patches or a repeat shot, and gives the field's
 /// lights that brightness.
-Result<void> follow_drift(const SessionPlan& plan, const JobContext& context, Photographs& photographs,
-                          const MoreFrames& more);
+Result<void> follow_drift(const SessionPlan& plan, const JobContext& context, LoadedSession& loaded,
+                          MoreFrames& more);
 
 }  // namespace weft::app

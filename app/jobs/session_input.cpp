@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
 
 #include "app/jobs/linear_image.h"
 #include "app/jobs/session_conditions.h"
@@ -150,58 +152,74 @@ std::vector<Frame> take(std::vector<Frame>& frames, std::size_t count) {
   return taken;
 }
 
-// `shots` are those of plan.frames().
-Result<void> read_mosaics(const SessionPlan& plan, const std::vector<Shot>& shots, const JobContext& context,
-                          Photographs& photographs, MoreFrames& more) {
-  std::vector<RawFrame> frames(shots.size());
-  const auto read_frame = [&](std::size_t i) -> Result<void> {
+// Reads each of the shots, after a look at its digest.
+template <typename Frame>
+Result<std::vector<Frame>> read_frames(const SessionPlan& plan, const std::vector<Shot>& shots,
+                                       const JobContext& context,
+                                       const std::function<Result<Frame>(const fs::path&)>& read) {
+  std::vector<Frame> frames(shots.size());
+  const auto read_one = [&](std::size_t i) -> Result<void> {
     const fs::path file = plan.session.path_of(shots[i]);
     if (Result<void> same = check_digest(file, shots[i]); !same) return same;
-    Result<RawFrame> frame = capture::decode_raw(file, {.size = plan.size});
+    Result<Frame> frame = read(file);
     if (!frame) return std::move(frame).error();
     frames[i] = std::move(*frame);
     return {};
   };
-  if (Result<void> read = for_each_frame(shots.size(), context, read_frame); !read) return read;
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    if (Result<void> ok = check_levels(frames[i], frames[0], plan.session.path_of(shots[i])); !ok) return ok;
-  }
-  photographs.mosaics = take(frames, plan.lit.size());
-  if (plan.dark) photographs.dark = std::move(take(frames, 1).front());
-  more.repeats = take(frames, plan.repeats.size());
-  more.brackets = std::move(frames);
-  const Shot& first = plan.lit.front();
-  photographs.radiometry.emplace(photographs.mosaics.front(), photographs.dark ? &*photographs.dark : nullptr,
-                                 *plan.calibration.response,
-                                 Radiometry::Exposure{first.exposure_us, first.iso});
-  photographs.noise = photographs.radiometry->noise();
-  return {};
+  if (Result<void> ok = for_each_frame(shots.size(), context, read_one); !ok) return std::move(ok).error();
+  return frames;
 }
 
-Result<void> read_developed(const SessionPlan& plan, const std::vector<Shot>& shots,
-                            const JobContext& context, Photographs& photographs, MoreFrames& more) {
-  std::vector<Image<float>> frames(shots.size());
-  const auto read_frame = [&](std::size_t i) -> Result<void> {
-    const fs::path file = plan.session.path_of(shots[i]);
-    if (Result<void> same = check_digest(file, shots[i]); !same) return same;
-    Result<Image<float>> image =
-        read_linear_image(file, Transfer::kLinear, Clipped::kMark, NotNumbers::kMark);
-    if (!image) return std::move(image).error();
-    frames[i] = std::move(*image);
-    return {};
-  };
-  if (Result<void> read = for_each_frame(shots.size(), context, read_frame); !read) return read;
-  photographs.rgb = take(frames, plan.lit.size());
-  const std::vector<Image<float>> dark = take(frames, plan.dark ? 1 : 0);
-  more.repeats_rgb = std::move(frames);
+// `shots` are those of plan.frames().
+Result<pipeline::Frames> read_mosaics(const SessionPlan& plan, const std::vector<Shot>& shots,
+                                      const JobContext& context, MoreFrames& more) {
+  Result<std::vector<RawFrame>> frames = read_frames<RawFrame>(
+      plan, shots, context,
+      [&](const fs::path& file) { return capture::decode_raw(file, {.size = plan.size}); });
+  if (!frames) return std::move(frames).error();
+  for (std::size_t i = 1; i < frames->size(); ++i) {
+    if (Result<void> ok = check_levels((*frames)[i], frames->front(), plan.session.path_of(shots[i])); !ok)
+      return std::move(ok).error();
+  }
+  std::vector<RawFrame> lit = take(*frames, plan.lit.size());
+  std::optional<RawFrame> dark;
+  if (plan.dark) dark = std::move(take(*frames, 1).front());
   const Shot& first = plan.lit.front();
-  for (auto* list : {&photographs.rgb, &more.repeats_rgb}) {
+  pipeline::Mosaics mosaics(std::move(lit), std::move(dark), *plan.calibration.response,
+                            {first.exposure_us, first.iso});
+  more.repeats = mosaics.alike(take(*frames, plan.repeats.size()));
+  more.brackets = std::move(*frames);
+  return pipeline::Frames(std::move(mosaics));
+}
+
+Result<pipeline::Frames> read_developed(const SessionPlan& plan, const std::vector<Shot>& shots,
+                                        const JobContext& context, MoreFrames& more) {
+  Result<std::vector<Image<float>>> frames =
+      read_frames<Image<float>>(plan, shots, context, [](const fs::path& file) {
+        return read_linear_image(file, Transfer::kLinear, Clipped::kMark, NotNumbers::kMark);
+      });
+  if (!frames) return std::move(frames).error();
+  std::vector<Image<float>> lit = take(*frames, plan.lit.size());
+  const std::vector<Image<float>> dark = take(*frames, plan.dark ? 1 : 0);
+  const Shot& first = plan.lit.front();
+  for (auto* list : {&lit, &*frames}) {
     for (Image<float>& image : *list) {
       if (!dark.empty()) subtract(image, dark.front());
       scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
     }
   }
-  return {};
+  more.repeats = pipeline::Developed{std::move(*frames)};
+  return pipeline::Frames(pipeline::Developed{std::move(lit)});
+}
+
+// Before an hour of work.
+Result<void> check_memory(const SessionPlan& plan, std::size_t frames, int threads) {
+  const std::uint64_t needed = memory_needed(plan, frames, threads);
+  const std::uint64_t free = available_memory_bytes();
+  if (free == 0 || needed <= free) return {};
+  return Error{ErrorKind::kTryAgain, "not enough memory", plan.session.folder.string(),
+               fmt::format("{} MB are needed, {} MB are free", needed >> 20, free >> 20),
+               "close other programs, or solve on a larger machine"};
 }
 
 }  // namespace
@@ -281,21 +299,16 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   return plan;
 }
 
-Result<Photographs> load_session(const SessionPlan& plan, const JobContext& context) {
+Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& context) {
   const std::vector<Shot> shots = plan.frames();
   const int threads = std::min(resolved_threads(context.threads), static_cast<int>(shots.size()));
-  const std::uint64_t needed = memory_needed(plan, shots.size(), threads);
-  const std::uint64_t free = available_memory_bytes();
-  if (free != 0 && needed > free) {
-    return Error{ErrorKind::kTryAgain, "not enough memory", plan.session.folder.string(),
-                 fmt::format("{} MB are needed, {} MB are free", needed >> 20, free >> 20),
-                 "close other programs, or solve on a larger machine"};
-  }
+  if (Result<void> room = check_memory(plan, shots.size(), threads); !room) return std::move(room).error();
 
-  Photographs photographs;
+  LoadedSession loaded;
+  loaded.warnings = plan.warnings;
+  pipeline::Photographs& photographs = loaded.photographs;
   photographs.size = plan.size;
   photographs.albedo_scale = plan.calibration.subject.albedo_scale;
-  photographs.warnings = plan.warnings;
   for (const Shot& shot : plan.lit) photographs.leds.push_back(shot.led);
   Result<Lights> lights = select_lights(*plan.calibration.lights, photographs.leds);
   if (!lights) return std::move(lights).error();
@@ -308,20 +321,17 @@ Result<Photographs> load_session(const SessionPlan& plan, const JobContext& cont
   photographs.color = plan.calibration.color;
 
   MoreFrames more;
-  if (Result<void> read = plan.raw ? read_mosaics(plan, shots, context, photographs, more)
-                                   : read_developed(plan, shots, context, photographs, more);
-      !read) {
-    return std::move(read).error();
+  Result<pipeline::Frames> frames =
+      plan.raw ? read_mosaics(plan, shots, context, more) : read_developed(plan, shots, context, more);
+  if (!frames) return std::move(frames).error();
+  photographs.frames = std::move(*frames);
+  if (Result<void> ok = replace_bad_photosites(plan, context, loaded, more); !ok) {
+    return std::move(ok).error();
   }
-  if (plan.raw) {
-    if (Result<void> ok = replace_bad_photosites(plan, context, photographs, more); !ok) {
-      return std::move(ok).error();
-    }
-    join_brackets(plan, photographs, more);
-  }
-  if (Result<void> ok = leave_out_useless_lights(plan, photographs); !ok) return std::move(ok).error();
-  if (Result<void> ok = follow_drift(plan, context, photographs, more); !ok) return std::move(ok).error();
-  return photographs;
+  join_brackets(plan, loaded, more);
+  if (Result<void> ok = leave_out_useless_lights(plan, loaded); !ok) return std::move(ok).error();
+  if (Result<void> ok = follow_drift(plan, context, loaded, more); !ok) return std::move(ok).error();
+  return loaded;
 }
 
 }  // namespace weft::app

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,8 @@
 #include "core/job.h"
 #include "core/result.h"
 #include "core/session.h"
+#include "pipeline/conditions/drift.h"
+#include "pipeline/conditions/useless_lights.h"
 #include "pipeline/photographs.h"
 
 namespace weft::app {
@@ -38,8 +42,37 @@ struct SessionPlan {
 
 Result<SessionPlan> plan_session(const SessionOptions& options);
 
+/// A LED that was not solved from, and why.
+struct LeftOutLed {
+  int led = 0;
+  pipeline::UselessLight::Why why = pipeline::UselessLight::Why::kNotLit;
+};
+
+/// How bright a LED was against its calibration.
+struct LedDrift {
+  int led = 0;
+  double factor = 1;
+};
+
+/// What was found in the frames and corrected: docs/conditions.md.
+struct SessionConditions {
+  std::optional<std::size_t> replaced_photosites;  ///< of raw frames
+  std::size_t brackets = 0;                        ///< shots that were joined
+  std::vector<LeftOutLed> left_out;                ///< by LED
+  pipeline::Drift::Source drift_source = pipeline::Drift::Source::kNone;
+  std::vector<LedDrift> drift;  ///< of every LED that is solved from, where there is a source
+};
+/// {"hot_photosites", "brackets", "left_out", "drift"}, those that there are, for solve.json.
+Json json_of(const SessionConditions& conditions);
+
+struct LoadedSession {
+  pipeline::Photographs photographs;
+  SessionConditions conditions;
+  std::vector<std::string> warnings;  ///< a sentence each
+};
+
 /// Reads, checks against their digests and decodes every frame once, and corrects for the conditions they
 /// were taken in (app/jobs/session_conditions.h).
-Result<Photographs> load_session(const SessionPlan& plan, const JobContext& context);
+Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& context);
 
 }  // namespace weft::app

@@ -2,15 +2,15 @@
 #include "app/jobs/solve.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <array>
+#include <cstdint>
 #include <functional>
-#include <memory>
 #include <utility>
 #include <vector>
 
+#include "app/jobs/facts_json.h"
 #include "app/jobs/map_files.h"
 #include "app/jobs/pictures.h"
 #include "app/jobs/report.h"
@@ -18,6 +18,7 @@
 #include "core/image_io/image_io.h"
 #include "pipeline/albedo_color.h"
 #include "pipeline/bands.h"
+#include "pipeline/calibration_channels.h"
 #include "pipeline/frame.h"
 #include "pipeline/shifts.h"
 
@@ -64,10 +65,8 @@ std::string id_of(const Json& input, const SolveOptions& options) {
   return sha256_of(all.dump()).substr(0, 16);
 }
 
-Result<solver::MethodName> find_method(const std::string& name) {
-  const auto names = solver::method_names();
-  const auto found = std::find_if(names.begin(), names.end(), [&](const auto& m) { return name == m.name; });
-  if (found != names.end()) return *found;
+Result<solver::MethodName> method_named(const std::string& name) {
+  if (const solver::MethodName* found = solver::find_method(name)) return *found;
   return Error{ErrorKind::kUsage, "no such method", name, "", "see weft solve --help for their names"};
 }
 
@@ -105,51 +104,51 @@ struct Input {
   fs::path default_parent;  // of the output
   fs::path truth;           // normal.exr of a simulated session, or empty
   std::vector<int> picked;  // numbers of photographs picked from a list
-  std::function<Result<Photographs>()> load;
+  std::function<Result<LoadedSession>()> load;
 };
 
-// What solve.json says.
+// What solve.json says besides the options and the input.
 struct Facts {
-  const std::string& id;
-  const SolveOptions& options;
-  const Input& input;
   Size size;
-  const StatusCounts& counts;
+  std::size_t lights = 0;
+  std::vector<int> leds;
   std::string albedo_scale;
-  const char* color;
-  std::size_t lights;
+  bool is_rec709 = false;  // else albedo has the camera's colours
+  SessionConditions conditions;
+  pipeline::SessionShifts registration;
+  pipeline::FrameFacts frame;
+  StatusCounts counts;
   std::vector<std::string> pictures;
   std::optional<NormalComparison> error;  // against the truth, where there is one
   std::vector<report::Verdict> verdicts;
-  FrameFacts frame;
-  Json registration;
-  Json conditions;
 };
 
-Json document_of(const Facts& facts) {
+Json document_of(const Place& place, const Input& input, const SolveOptions& options, const Facts& facts) {
   Json status = Json::object();
   for (const StatusName& s : kStatusNames) status[s.name] = facts.counts.with(s.bit);
   const Size size = facts.size;
   Json document = {{"schema", std::string(kSchema) + "/1"},
-                   {"id", facts.id},
+                   {"id", place.id},
                    {"solver_version", kSolverVersion},
-                   {"method", facts.options.method},
-                   {"compression", facts.options.compression},
-                   {"input", facts.input.description},
+                   {"method", options.method},
+                   {"compression", options.compression},
+                   {"input", input.description},
                    {"lights", facts.lights},
                    {"width", size.width},
                    {"height", size.height},
                    {"albedo_scale", facts.albedo_scale},
-                   {"color", facts.color},
+                   {"color", facts.is_rec709 ? "rec709" : "camera"},
                    {"pixels", size.pixels() - facts.counts.with(kNoSolution)},
                    {"status", std::move(status)},
                    {"solved_by", json_of(facts.frame.tally)},
-                   {"conditions", facts.conditions},
-                   {"registration", facts.registration},
+                   {"conditions", json_of(facts.conditions)},
+                   {"registration", json_of(facts.registration, facts.leds)},
                    {"warnings", json_of(facts.verdicts)},
                    {"pictures", facts.pictures}};
-  if (!facts.frame.gates.is_null()) document["gates"] = facts.frame.gates;
-  if (!facts.frame.reference.is_null()) document["reference"] = facts.frame.reference;
+  if (facts.frame.reference) {
+    document["gates"] = json_of(facts.frame.reference->gates);
+    document["reference"] = json_of(*facts.frame.reference);
+  }
   if (facts.error) {
     document["error"] = {{"mean_deg", facts.error->mean_deg},
                          {"median_deg", facts.error->median_deg},
@@ -159,157 +158,230 @@ Json document_of(const Facts& facts) {
   return document;
 }
 
-// Writes the pictures beside the maps, with their error where there is a truth.
-Result<void> draw(const Pictures& pictures, const Input& input, const fs::path& folder, Facts& facts) {
-  std::optional<TruthError> error;
-  if (!input.truth.empty() && facts.size == input.size) {
-    Result<TruthError> measured = error_against(input.truth, folder / "normal.exr");
-    if (!measured) return std::move(measured).error();
-    error = std::move(*measured);
-    facts.error = error->normal;
-  }
-  Result<std::vector<std::string>> names =
-      pictures.write(folder, input.title, facts.albedo_scale == "absolute", error ? &*error : nullptr);
-  if (!names) return std::move(names).error();
-  facts.pictures = std::move(*names);
-  return {};
+Json json_of(const SolveSeconds& seconds) {
+  return {{"read", seconds.read},   {"prepare", seconds.prepare},   {"solve", seconds.solve},
+          {"write", seconds.write}, {"pictures", seconds.pictures}, {"report", seconds.report}};
 }
 
-Result<SolveReport> run(const solver::MethodName& method_name, const Input& input,
-                        const SolveOptions& options, const JobContext& context) {
-  Stopwatch total, watch;
+// What is done to a band on its way from the solver to the files: colours, and the calibration's share.
+class Finish {
+ public:
+  // `photographs` must outlive it.
+  static Result<Finish> make(const pipeline::Photographs& photographs, int threads) {
+    Finish finish;
+    if (photographs.light_covariance) {
+      Result<pipeline::CalibrationChannels> made = pipeline::CalibrationChannels::make(photographs, threads);
+      if (!made) return std::move(made).error();
+      finish.calibration_.emplace(std::move(*made));
+    }
+    if (photographs.color) finish.color_.emplace(*photographs.color, photographs.size.width, threads);
+    return finish;
+  }
+
+  // What sigma.exr has beside the noise: as of MapFiles::open.
+  std::vector<std::string> share_names() const {
+    if (calibration_) return {"R", "G", "B", "normal_deg"};
+    if (color_ && color_->has_covariance()) return {"R", "G", "B"};
+    return {};
+  }
+
+  // The band as it is written; fills `shares`, a view a name. Both are valid until the next call.
+  pipeline::MapBand of(const pipeline::MapBand& solved, std::vector<View<const float>>& shares) {
+    shares.clear();
+    if (calibration_) {
+      const auto channels = calibration_->of(solved);
+      shares.assign(channels.begin(), channels.end());
+    }
+    return color_ ? color_->of(solved, shares) : solved;
+  }
+
+ private:
+  std::optional<pipeline::CalibrationChannels> calibration_;
+  std::optional<pipeline::AlbedoColor> color_;
+};
+
+// A solve under way: its steps in their order.
+class Run {
+ public:
+  Run(const solver::MethodName& method, const Input& input, const SolveOptions& options,
+      const JobContext& context, Place place)
+      : method_(method),
+        input_(input),
+        options_(options),
+        context_(context),
+        place_(std::move(place)),
+        partial_(place_.folder) {}
+
+  Result<SolveReport> run() {
+    Stopwatch total;
+    if (Result<void> ok = prepare(); !ok) return std::move(ok).error();
+    if (Result<void> ok = solve_into_files(); !ok) return std::move(ok).error();
+    if (Result<void> ok = describe(); !ok) return std::move(ok).error();
+    if (Result<void> ok = publish(); !ok) return std::move(ok).error();
+    report_.seconds.total = total.lap();
+    return std::move(report_);
+  }
+
+ private:
+  bool is_half() const { return method_.extent == solver::Extent::kHalfSize; }
+
+  // Reads the photographs, and does with them what does not need their normals.
+  Result<void> prepare() {
+    if (Result<void> room = check_disk(place_.folder.parent_path(), input_.size); !room) return room;
+    if (Result<void> made = make_writable_folder(partial_.path()); !made) return made;
+    Result<LoadedSession> loaded = input_.load();
+    if (!loaded) return std::move(loaded).error();
+    photographs_ = std::move(loaded->photographs);
+    facts_.conditions = std::move(loaded->conditions);
+    warnings_ = std::move(loaded->warnings);
+    report_.seconds.read = watch_.lap();
+
+    if (is_half()) {
+      Result<pipeline::Photographs> half = half_size(photographs_, context_.threads);
+      if (!half) return std::move(half).error();
+      photographs_ = std::move(*half);
+    } else {
+      Result<pipeline::SessionShifts> shifts = register_shots(photographs_, context_);
+      if (!shifts) return std::move(shifts).error();
+      photographs_.shifts = shifts->corrections;
+      facts_.registration = std::move(*shifts);
+    }
+    facts_.size = photographs_.size;
+    facts_.lights = photographs_.count();
+    facts_.leds = photographs_.leds;
+    facts_.albedo_scale = photographs_.albedo_scale;
+    facts_.is_rec709 = photographs_.color.has_value();
+    return {};
+  }
+
+  Result<void> solve_into_files() {
+    Result<Finish> finish = Finish::make(photographs_, context_.threads);
+    if (!finish) return std::move(finish).error();
+    Result<MapFiles> files =
+        MapFiles::open(partial_.path(), facts_.size, options_.compression, finish->share_names());
+    if (!files) return std::move(files).error();
+    report_.seconds.prepare = watch_.lap();
+
+    pictures_.emplace(facts_.size);
+    maps_.emplace(facts_.size);
+    std::vector<View<const float>> shares;
+    const auto keep = [&](const pipeline::MapBand& solved) -> Result<void> {
+      const pipeline::MapBand band = finish->of(solved, shares);
+      facts_.counts.add(band.status);
+      maps_->add(band);
+      if (options_.previews) pictures_->add(band);
+      return files->write(band, shares);
+    };
+    Result<pipeline::FrameFacts> frame = solve_frame(photographs_, method_, options_.tile, context_, keep);
+    if (!frame) return std::move(frame).error();
+    facts_.frame = std::move(*frame);
+    report_.seconds.solve = watch_.lap() - facts_.frame.waited_seconds;
+    summary_ = summarize_photographs(photographs_, input_.picked, warnings_, context_);
+    report_.seconds.report = watch_.lap();
+    photographs_ = {};  // their memory is needed for nothing more
+
+    if (Result<void> ok = files->finish(); !ok) return ok;
+    report_.seconds.write = facts_.frame.waited_seconds + watch_.lap();
+    return {};
+  }
+
+  // Writes the pictures beside the maps, with their error where there is a truth.
+  Result<void> draw() {
+    std::optional<TruthError> error;
+    if (!input_.truth.empty() && facts_.size == input_.size) {
+      Result<TruthError> measured = error_against(input_.truth, partial_.path() / "normal.exr");
+      if (!measured) return std::move(measured).error();
+      error = std::move(*measured);
+      facts_.error = error->normal;
+    }
+    Result<std::vector<std::string>> names = pictures_->write(
+        partial_.path(), input_.title, facts_.albedo_scale == "absolute", error ? &*error : nullptr);
+    if (!names) return std::move(names).error();
+    facts_.pictures = std::move(*names);
+    return {};
+  }
+
+  // What people look at, and solve.json.
+  Result<void> describe() {
+    if (options_.previews) {
+      if (Result<void> drawn = draw(); !drawn) return drawn;
+    }
+    report_.seconds.pictures = watch_.lap();
+    // What leaves no shadow out takes much for a highlight.
+    const bool tells_highlights = method_.is_quality && !is_half();
+    const double specular =
+        static_cast<double>(facts_.counts.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
+    facts_.verdicts = verdicts_of(summary_, tells_highlights ? specular : 0);
+    report_.document = document_of(place_, input_, options_, facts_);
+    if (Result<void> ok = write_json(partial_.path() / "solve.json", report_.document); !ok) return ok;
+    const Json page =
+        report_document(input_.title, report_.document, summary_, *maps_, json_of(report_.seconds));
+    if (Result<void> ok = write_report(partial_.path(), page); !ok) return ok;
+    report_.seconds.report += watch_.lap();
+    return {};
+  }
+
+  Result<void> publish() {
+    if (context_.stop.stop_requested()) return interrupted();
+    if (Result<void> ok = partial_.publish(); !ok) return ok;
+    report_.folder = place_.folder;
+    report_.seconds.sync = watch_.lap();
+    return {};
+  }
+
+  const solver::MethodName& method_;
+  const Input& input_;
+  const SolveOptions& options_;
+  const JobContext& context_;
+  const Place place_;
+  PartialFolder partial_;
+  Stopwatch watch_;
+  pipeline::Photographs photographs_;
+  std::vector<std::string> warnings_;
+  Facts facts_;
+  std::optional<Pictures> pictures_;
+  std::optional<MapSummary> maps_;
+  PhotographsSummary summary_;
+  SolveReport report_;
+};
+
+Result<SolveReport> solve(const solver::MethodName& method, const Input& input, const SolveOptions& options,
+                          const JobContext& context) {
   Place place;
   place.id = id_of(input.description, options);
   place.folder = fs::absolute(options.output.empty() ? input.default_parent / place.id : options.output)
                      .lexically_normal();
   Result<std::optional<Json>> finished = find_finished(place);
   if (!finished) return std::move(finished).error();
-  if (*finished) return SolveReport{place.folder, true, std::move(**finished), {}};
-
-  PartialFolder partial(place.folder);
-  if (Result<void> room = check_disk(place.folder.parent_path(), input.size); !room)
-    return std::move(room).error();
-  if (Result<void> made = make_writable_folder(partial.path()); !made) return std::move(made).error();
-  SolveReport report;
-  report.folder = place.folder;
-  Result<Photographs> photographs = input.load();
-  if (!photographs) return std::move(photographs).error();
-  report.seconds.read = watch.lap();
-
-  const bool half = method_name.extent == solver::Extent::kHalfSize;
-  Json registration = Json::array();
-  if (half) {
-    photographs = half_size(*photographs, context.threads);
-    if (!photographs) return std::move(photographs).error();
-  } else {
-    const Result<SessionShifts> shifts = register_shots(*photographs, context);
-    if (!shifts) return shifts.error();
-    registration = registration_document(*shifts, photographs->leds);
-  }
-  std::optional<CalibrationChannels> calibration;
-  if (photographs->light_covariance) {
-    Result<CalibrationChannels> made = CalibrationChannels::make(*photographs, context.threads);
-    if (!made) return std::move(made).error();
-    calibration.emplace(std::move(*made));
-  }
-  const Size size = photographs->size;
-  std::optional<AlbedoColor> color;
-  if (photographs->color) color.emplace(*photographs->color, size.width, context.threads);
-  std::vector<std::string> shares;
-  if (calibration || (color && color->has_covariance())) shares = {"R", "G", "B"};
-  if (calibration) shares.push_back("normal_deg");
-  Result<MapFiles> files = MapFiles::open(partial.path(), size, options.compression, shares);
-  if (!files) return std::move(files).error();
-  report.seconds.prepare = watch.lap();
-
-  StatusCounts counts;
-  Pictures pictures(size);
-  MapSummary maps(size);
-  const Result<FrameFacts> solved = solve_frame(
-      *photographs, method_name, options.tile, context, [&](const MapBand& camera_band) -> Result<void> {
-        std::vector<View<const float>> share;
-        if (calibration) {
-          const auto channels = calibration->of(camera_band);
-          share.assign(channels.begin(), channels.end());
-        }
-        const MapBand band = color ? color->of(camera_band, share) : camera_band;
-        counts.add(band.status);
-        maps.add(band, calibration ? share.back() : View<const float>());
-        if (options.previews) pictures.add(band);
-        return files->write(band, share);
-      });
-  if (!solved) return solved.error();
-  report.seconds.solve = watch.lap() - solved->waited_seconds;
-  Facts facts = {place.id,
-                 options,
-                 input,
-                 size,
-                 counts,
-                 photographs->albedo_scale,
-                 color ? "rec709" : "camera",
-                 photographs->count(),
-                 {},
-                 {},
-                 {},
-                 *solved,
-                 std::move(registration),
-                 photographs->conditions};
-  const PhotographsSummary summary = summarize_photographs(*photographs, input.picked, context);
-  report.seconds.report = watch.lap();
-  photographs = Photographs();  // their memory is needed for nothing more
-
-  if (Result<void> ok = files->finish(); !ok) return std::move(ok).error();
-  report.seconds.write = solved->waited_seconds + watch.lap();
-  if (options.previews) {
-    Result<void> drawn = draw(pictures, input, partial.path(), facts);
-    if (!drawn) return std::move(drawn).error();
-  }
-  report.seconds.pictures = watch.lap();
-
-  // What leaves no shadow out takes much for a highlight.
-  const bool tells_highlights = method_name.is_quality && !half;
-  facts.verdicts = verdicts_of(summary, tells_highlights ? static_cast<double>(counts.with(kSpecular)) /
-                                                               static_cast<double>(size.pixels())
-                                                         : 0.0);
-  report.document = document_of(facts);
-  if (Result<void> ok = write_json(partial.path() / "solve.json", report.document); !ok)
-    return std::move(ok).error();
-  const Json seconds = {{"read", report.seconds.read},         {"prepare", report.seconds.prepare},
-                        {"solve", report.seconds.solve},       {"write", report.seconds.write},
-                        {"pictures", report.seconds.pictures}, {"report", report.seconds.report}};
-  const Json page = report_document(input.title, report.document, summary, maps, seconds);
-  if (Result<void> ok = write_report(partial.path(), page); !ok) return std::move(ok).error();
-  report.seconds.report += watch.lap();
-  if (context.stop.stop_requested()) return interrupted();
-  if (Result<void> ok = partial.publish(); !ok) return std::move(ok).error();
-  report.seconds.sync = watch.lap();
-  report.seconds.total = total.lap();
-  return report;
+  if (*finished)
+    return SolveReport{
+        .folder = place.folder, .was_there = true, .document = std::move(**finished), .seconds = {}};
+  return Run(method, input, options, context, std::move(place)).run();
 }
 
 }  // namespace
 
 Result<SolveReport> solve_session(const SessionOptions& input, const SolveOptions& options,
                                   const JobContext& context) {
-  const Result<solver::MethodName> method = find_method(options.method);
+  const Result<solver::MethodName> method = method_named(options.method);
   if (!method) return method.error();
   Result<SessionPlan> plan = plan_session(input);
   if (!plan) return std::move(plan).error();
   const fs::path truth = plan->session.folder / "truth" / "normal.exr";
-  return run(*method,
-             {.title = plan->session.fabric,
-              .description = plan->description,
-              .size = plan->size,
-              .default_parent = plan->session.folder / "solve",
-              .truth = is_there(truth) ? truth : fs::path(),
-              .picked = {},
-              .load = [&] { return load_session(*plan, context); }},
-             options, context);
+  return solve(*method,
+               {.title = plan->session.fabric,
+                .description = plan->description,
+                .size = plan->size,
+                .default_parent = plan->session.folder / "solve",
+                .truth = is_there(truth) ? truth : fs::path(),
+                .picked = {},
+                .load = [&] { return load_session(*plan, context); }},
+               options, context);
 }
 
 Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& options,
                                  const JobContext& context) {
-  const Result<solver::MethodName> method = find_method(options.method);
+  const Result<solver::MethodName> method = method_named(options.method);
   if (!method) return method.error();
   PhotoOptions photos = input;
   photos.clipped = method->keeps_clipped ? Clipped::kKeep : Clipped::kMark;
@@ -318,15 +390,19 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   const fs::path source =
       fs::absolute(input.light_file.empty() ? input.folder : input.light_file).lexically_normal();
   const fs::path name = source.has_filename() ? source.stem() : source.parent_path().filename();
-  return run(*method,
-             {.title = name.string(),
-              .description = plan->description,
-              .size = plan->size,
-              .default_parent = fs::current_path() / (name.string() + "-solve"),
-              .truth = {},
-              .picked = input.lights,
-              .load = [&] { return load_photos(*plan, context); }},
-             options, context);
+  return solve(*method,
+               {.title = name.string(),
+                .description = plan->description,
+                .size = plan->size,
+                .default_parent = fs::current_path() / (name.string() + "-solve"),
+                .truth = {},
+                .picked = input.lights,
+                .load = [&]() -> Result<LoadedSession> {
+                  Result<pipeline::Photographs> photographs = load_photos(*plan, context);
+                  if (!photographs) return std::move(photographs).error();
+                  return LoadedSession{std::move(*photographs), {}, {}};
+                }},
+               options, context);
 }
 
 }  // namespace weft::app

@@ -13,8 +13,6 @@
 #include "core/result.h"
 #include "core/tiles.h"
 #include "pipeline/bands.h"
-#include "pipeline/photographs.h"
-#include "solver/method.h"
 
 namespace weft::app {
 
@@ -22,7 +20,7 @@ struct SolveOptions {
   std::string method = "standard";   ///< a name of solver::method_names()
   std::filesystem::path output;      ///< empty: <session>/solve/<id>, or ./<photographs>-solve/<id>
   std::string compression = "none";  ///< of EXR files: none, zip, piz
-  TileOptions tile = kSolveTile;
+  TileOptions tile = pipeline::kSolveTile;
   bool previews = true;
 };
 

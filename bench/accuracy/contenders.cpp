@@ -12,23 +12,22 @@
 #include "pipeline/bands.h"
 #include "pipeline/frame.h"
 #include "pipeline/tile_reader.h"
-#include "solver/kernels/demosaic.h"
 
 namespace weft::bench {
 namespace {
 
 Result<void> solve_patch(const solver::Method& method, const std::vector<View<const float>>& readings,
                          const Patch& patch, int threads, SolvedMaps& maps) {
-  return solve_images(method, readings, patch.field(), patch.photographs.radiometry->cfa(),
-                      patch.photographs.noise, threads, maps);
+  return solve_images(method, readings, patch.field(), patch.photographs.planes().cfa,
+                      patch.photographs.noise(), threads, maps);
 }
 
 // The reference level: maps of a whole frame, band by band.
-Result<void> solve_by_reference(const Patch& patch, const app::ReferenceOptions& options, int threads,
+Result<void> solve_by_reference(const Patch& patch, const pipeline::ReferenceOptions& options, int threads,
                                 SolvedMaps& maps) {
   JobContext context;
   context.threads = threads;
-  const auto keep = [&](const app::MapBand& band) -> Result<void> {
+  const auto keep = [&](const pipeline::MapBand& band) -> Result<void> {
     for (int y = 0; y < band.rows.height(); ++y) {
       const int row = band.rows.y0 + y;
       for (int c = 0; c < 3; ++c) {
@@ -40,7 +39,7 @@ Result<void> solve_by_reference(const Patch& patch, const app::ReferenceOptions&
     for (int y = 0; y < band.albedo_rows.height(); ++y) {
       const int row = band.albedo_rows.y0 + y;
       for (int x = 0; x < band.albedo_rows.width(); ++x) {
-        const auto c = static_cast<std::size_t>(patch.photographs.radiometry->cfa().channel_at(x, row));
+        const auto c = static_cast<std::size_t>(patch.photographs.planes().cfa.channel_at(x, row));
         maps.albedo(x, row) = band.albedo[c](x, y);
         maps.sigma_albedo(x, row) = band.sigma_albedo[c](x, y);
         maps.sigma_normal_deg(x, row) = band.sigma_normal_deg(x, y);
@@ -48,7 +47,8 @@ Result<void> solve_by_reference(const Patch& patch, const app::ReferenceOptions&
     }
     return {};
   };
-  const auto solved = app::solve_reference(patch.photographs, app::kSolveTile, options, context, keep);
+  const auto solved =
+      pipeline::solve_reference(patch.photographs, pipeline::kSolveTile, options, context, keep);
   if (!solved) return solved.error();
   return {};
 }
@@ -86,12 +86,12 @@ void enlarge(const SolvedMaps& half, SolvedMaps& maps) {
 }
 
 Result<void> solve_preview(const Patch& patch, int threads, SolvedMaps& maps) {
-  const Result<app::Photographs> half = app::half_size(patch.photographs, threads);
+  const Result<pipeline::Photographs> half = pipeline::half_size(patch.photographs, threads);
   if (!half) return half.error();
   SolvedMaps solved(half->size);
   solved.planes = maps.planes = 3;
   std::vector<View<const float>> readings;
-  for (const Image<float>& rgb : half->rgb) {
+  for (const Image<float>& rgb : std::get<pipeline::Developed>(half->frames).rgb) {
     for (int c = 0; c < 3; ++c) readings.emplace_back(rgb.plane(c));
   }
   Result<void> ok = solve_images(*solver::fast_method(), readings, *half->field, {}, {}, threads, solved);
@@ -107,13 +107,14 @@ SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
       return solve_patch(*method, planes_of(patch.readings), patch, threads, maps);
     }
     const TileOptions whole = {.width = patch.size().width, .height = patch.size().height};
-    app::TileReader reader(patch.photographs, whole, solver::kDemosaicReach, true);
+    pipeline::TileReader reader(patch.photographs, whole, pipeline::ReadAs::kRgb);
     maps.planes = 3;
-    return solve_patch(*method, reader.read(patch.area()), patch, threads, maps);
+    const auto readings = reader.read(patch.area()).readings;
+    return solve_patch(*method, {readings.begin(), readings.end()}, patch, threads, maps);
   };
 }
 
-SolvePatch by_reference(const app::ReferenceOptions& options) {
+SolvePatch by_reference(const pipeline::ReferenceOptions& options) {
   return [options](const Patch& patch, int threads, SolvedMaps& maps) {
     return solve_by_reference(patch, options, threads, maps);
   };
@@ -157,7 +158,7 @@ Result<std::vector<Contender>> contenders_named(const std::vector<std::string>& 
 Result<void> solve_images(const solver::Method& method, const std::vector<View<const float>>& readings,
                           const LightField& field, const CfaPattern& cfa,
                           const std::optional<NoiseModel>& noise, int threads, SolvedMaps& maps) {
-  TileOptions tiles = app::kSolveTile;
+  TileOptions tiles = pipeline::kSolveTile;
   tiles.threads = threads;
   const Size size = maps.status.size();
   return for_each_tile({0, 0, size.width, size.height}, tiles, {}, [&](Rect tile, int) {

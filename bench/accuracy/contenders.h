@@ -34,7 +34,7 @@ std::vector<Contender> contenders();
 Result<std::vector<Contender>> contenders_named(const std::vector<std::string>& names);
 
 /// The reference level with these options.
-SolvePatch by_reference(const app::ReferenceOptions& options);
+SolvePatch by_reference(const pipeline::ReferenceOptions& options);
 /// The level preview, each of its pixels standing for the four photosites it was made of.
 SolvePatch by_preview();
 /// A method as the product runs it: on the mosaic, or after demosaicing where that is what it wants.

@@ -17,13 +17,13 @@ namespace {
 // Mean angle between the normals of a level and the truth, over the part of the patch that is measured.
 Result<double> true_deg(const Patch& patch, const solver::MethodName& level, int threads) {
   const bool half = level.extent == solver::Extent::kHalfSize;
-  Result<app::Photographs> halved = app::Photographs();
-  if (half) halved = app::half_size(patch.photographs, threads);
+  Result<pipeline::Photographs> halved = pipeline::Photographs();
+  if (half) halved = pipeline::half_size(patch.photographs, threads);
   if (!halved) return halved.error();
   const Rect part = patch.measured();
   const int scale = half ? 2 : 1;
   double sum = 0;
-  const auto compare = [&](const app::MapBand& band) -> Result<void> {
+  const auto compare = [&](const pipeline::MapBand& band) -> Result<void> {
     for (int y = part.y0; y < part.y1; ++y) {
       const int row = y / scale - band.rows.y0;
       if (row < 0 || row >= band.rows.height()) continue;
@@ -38,8 +38,8 @@ Result<double> true_deg(const Patch& patch, const solver::MethodName& level, int
   };
   JobContext context;
   context.threads = threads;
-  const Result<app::FrameFacts> solved =
-      app::solve_frame(half ? *halved : patch.photographs, level, app::kSolveTile, context, compare);
+  const Result<pipeline::FrameFacts> solved = pipeline::solve_frame(half ? *halved : patch.photographs, level,
+                                                                    pipeline::kSolveTile, context, compare);
   if (!solved) return solved.error();
   return sum / (static_cast<double>(part.width()) * part.height());
 }
@@ -60,11 +60,11 @@ Result<Rows> explain_table(const ExplainOptions& options) {
     const double share = 1.0 / static_cast<double>(patches->size());
     for (Patch& patch : *patches) {
       patch.photographs.camera = patch.camera;
-      const Result<app::Forecast> forecast = app::forecast_errors(patch.photographs, threads);
+      const Result<pipeline::Forecast> forecast = pipeline::forecast_errors(patch.photographs, threads);
       if (!forecast) return forecast.error();
       means.resize(forecast->levels.size());
       for (std::size_t i = 0; i < means.size(); ++i) {
-        const app::ErrorForecast& level = forecast->levels[i];
+        const pipeline::ErrorForecast& level = forecast->levels[i];
         const Result<double> real = true_deg(patch, solver::method_names()[i], threads);
         if (!real) return real.error();
         means[i].predicted += share * level.total_deg();
@@ -73,7 +73,7 @@ Result<Rows> explain_table(const ExplainOptions& options) {
         means[i].misfit += share * level.misfit_deg;
         means[i].indirect += share * level.indirect_deg;
         means[i].shortcut += share * level.shortcut_deg;
-        means[i].gate += share * forecast->gates.measured[2].value;
+        means[i].gate += share * forecast->gates.indirect.value;
       }
     }
     for (std::size_t i = 0; i < means.size(); ++i) {

@@ -73,7 +73,7 @@ struct Solved {
   double seconds = 0;
 };
 
-Result<Solved> solve(const solver::Method& method, const app::Photographs& photographs,
+Result<Solved> solve(const solver::Method& method, const pipeline::Photographs& photographs,
                      const std::vector<int>& numbers, const Truth& truth, int threads) {
   Result<Lights> lights = select_lights(photographs.field->lights(), numbers);
   if (!lights) return std::move(lights).error();
@@ -83,7 +83,8 @@ Result<Solved> solve(const solver::Method& method, const app::Photographs& photo
   if (!field) return field.error();
   std::vector<View<const float>> readings;
   for (const int number : numbers) {
-    const Image<float>& photo = photographs.rgb[static_cast<std::size_t>(number) - 1];
+    const Image<float>& photo =
+        std::get<pipeline::Developed>(photographs.frames).rgb[static_cast<std::size_t>(number) - 1];
     for (int c = 0; c < 3; ++c) readings.push_back(photo.plane(c).crop(part));
   }
   SolvedMaps maps(size);
@@ -107,7 +108,7 @@ Result<Solved> solve(const solver::Method& method, const app::Photographs& photo
   return result;
 }
 
-Result<Json> row_of(const solver::MethodName& name, const app::Photographs& photographs,
+Result<Json> row_of(const solver::MethodName& name, const pipeline::Photographs& photographs,
                     const std::vector<std::vector<int>>& subsets, const Truth& truth, int threads) {
   const std::unique_ptr<solver::Method> method = name.make();
   std::vector<double> means;

@@ -139,7 +139,8 @@ Result<void> run_passes(const Plan& plan, Rect area, int threads, Patch& patch) 
   const auto put_shot = [&](const Tile& tile) {
     const bool dark = tile.led == 0;
     const int k = tile.led - 1;
-    RawFrame& frame = dark ? *patch.photographs.dark : patch.photographs.mosaics[static_cast<std::size_t>(k)];
+    pipeline::Mosaics& mosaics = *patch.photographs.mosaics();
+    RawFrame& frame = dark ? *mosaics.dark : mosaics.frames[static_cast<std::size_t>(k)];
     for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {
       frame.counts(x - area.x0, y - area.y0) = tile.counts[i];
     });
@@ -190,21 +191,18 @@ Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
   patch.normal = Image<float>(size, 3);
   patch.albedo = Image<float>(size, 3);
   patch.openness = Image<float>(size);
-  app::Photographs& photographs = patch.photographs;
+  pipeline::Photographs& photographs = patch.photographs;
   photographs.size = size;
   photographs.field = std::move(*field);
   photographs.albedo_scale = "absolute";
-  for (int k = 0; k < lights; ++k) photographs.mosaics.push_back(frame_of(*plan, size));
-  photographs.dark = frame_of(*plan, size);
+  std::vector<RawFrame> frames;
+  for (int k = 0; k < lights; ++k) frames.push_back(frame_of(*plan, size));
+  photographs.frames =
+      pipeline::Mosaics(std::move(frames), frame_of(*plan, size), response_of(plan->rig.sensor),
+                        {plan->rig.exposure_us, scene.camera.iso});
   if (Result<void> ran = run_passes(*plan, area, threads, patch); !ran) return std::move(ran).error();
-
-  photographs.radiometry.emplace(photographs.mosaics.front(), &*photographs.dark,
-                                 response_of(plan->rig.sensor),
-                                 Radiometry::Exposure{plan->rig.exposure_us, scene.camera.iso});
-  photographs.noise = photographs.radiometry->noise();
   for (int k = 0; k < lights; ++k) {
-    photographs.radiometry->read(photographs.mosaics[static_cast<std::size_t>(k)].counts.plane(),
-                                 patch.area(), patch.readings.plane(k));
+    readings_of(photographs.frames, static_cast<std::size_t>(k), patch.area(), patch.readings.plane(k));
   }
   return patch;
 }
@@ -224,15 +222,16 @@ Result<Patch> with_lights(const Patch& patch, const std::vector<int>& numbers) {
   fewer.visible = Image<float>(patch.size(), static_cast<int>(numbers.size()));
   fewer.photographs.size = patch.size();
   fewer.photographs.field = std::move(*field);
-  fewer.photographs.noise = patch.photographs.noise;
-  fewer.photographs.radiometry = patch.photographs.radiometry;
   fewer.photographs.albedo_scale = patch.photographs.albedo_scale;
+  const pipeline::Mosaics& all = *patch.photographs.mosaics();
+  std::vector<RawFrame> frames;
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const int k = numbers[i] - 1, to = static_cast<int>(i);
-    fewer.photographs.mosaics.push_back(copy_of(patch.photographs.mosaics[static_cast<std::size_t>(k)]));
+    frames.push_back(copy_of(all.frames[static_cast<std::size_t>(k)]));
     copy_plane<float>(patch.readings.plane(k), fewer.readings.plane(to));
     copy_plane<float>(patch.visible.plane(k), fewer.visible.plane(to));
   }
+  fewer.photographs.frames = all.alike(std::move(frames));
   return fewer;
 }
 

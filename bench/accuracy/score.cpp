@@ -15,7 +15,7 @@ namespace {
 // The bound of every pixel of a patch, degrees.
 Image<float> bounds_of(const Patch& patch, int threads) {
   Image<float> bounds(patch.size());
-  const CfaPattern& cfa = patch.photographs.radiometry->cfa();
+  const CfaPattern cfa = patch.photographs.planes().cfa;
   parallel_for(static_cast<std::size_t>(bounds.height()), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
     std::vector<LightField::Light> lights;
@@ -27,7 +27,7 @@ Image<float> bounds_of(const Patch& patch, int threads) {
       }
       const TangentCovariance bound =
           cramer_rao(lights, {patch.normal(x, y, 0), patch.normal(x, y, 1), patch.normal(x, y, 2)},
-                     patch.albedo(x, y, c), *patch.photographs.noise);
+                     patch.albedo(x, y, c), *patch.photographs.noise());
       bounds(x, y) = static_cast<float>(bound.rms_deg());
     }
   });
@@ -59,7 +59,7 @@ class Errors {
  public:
   void add(const Patch& patch, const Image<float>& bounds, const SolvedMaps& maps) {
     const Rect part = patch.measured();
-    const CfaPattern& cfa = patch.photographs.radiometry->cfa();
+    const CfaPattern cfa = patch.photographs.planes().cfa;
     for (int y = part.y0; y < part.y1; ++y) {
       for (int x = part.x0; x < part.x1; ++x) {
         const double off = angle_deg(maps.normal_at(x, y),

@@ -40,10 +40,10 @@ double reflected(Cloth cloth, Vec3 n, Vec3 l) {
 
 }  // namespace
 
-void put_cloth(app::Photographs& photographs, Cloth cloth, int threads) {
+void put_cloth(pipeline::Photographs& photographs, Cloth cloth, int threads) {
   const double seconds = 1 / 100.0;  // as grey mosaics are exposed
-  for (std::size_t k = 0; k < photographs.mosaics.size(); ++k) {
-    RawFrame& frame = photographs.mosaics[k];
+  for (std::size_t k = 0; k < photographs.count(); ++k) {
+    RawFrame& frame = photographs.mosaics()->frames[k];
     const double black = frame.black[0][0], range = frame.white - black;
     parallel_for(static_cast<std::size_t>(photographs.size.height), threads, [&](std::size_t row, int) {
       const int y = static_cast<int>(row);

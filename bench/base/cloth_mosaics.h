@@ -13,6 +13,6 @@ enum class Cloth {
 /// Puts cloth of albedo 0.4 before the lights of grey mosaics (bench/base/yardsticks.h), with photon and read
 /// noise: a weave of 24 pixels a period whose slopes reach 12 degrees, seen from above. Counts are a function
 /// of the pixel alone.
-void put_cloth(app::Photographs& photographs, Cloth cloth, int threads);
+void put_cloth(pipeline::Photographs& photographs, Cloth cloth, int threads);
 
 }  // namespace weft::bench

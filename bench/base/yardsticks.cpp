@@ -22,17 +22,18 @@ namespace {
 constexpr int kRepeats = 3;
 constexpr double kMegapixels = 4;
 
-Result<std::vector<std::filesystem::path>> write_frames(const app::Photographs& photographs,
+Result<std::vector<std::filesystem::path>> write_frames(const pipeline::Photographs& photographs,
                                                         const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   const auto write = [&](const RawFrame& frame) -> Result<void> {
     files.push_back(folder / fmt::format("{:02}.dng", files.size()));
     return simulator::write_dng(files.back(), frame);
   };
-  for (const RawFrame& frame : photographs.mosaics) {
+  const pipeline::Mosaics& mosaics = *photographs.mosaics();
+  for (const RawFrame& frame : mosaics.frames) {
     if (Result<void> ok = write(frame); !ok) return std::move(ok).error();
   }
-  if (Result<void> ok = write(*photographs.dark); !ok) return std::move(ok).error();
+  if (Result<void> ok = write(*mosaics.dark); !ok) return std::move(ok).error();
   return files;
 }
 
@@ -53,8 +54,8 @@ double copy_seconds(double bytes, int threads) {
   return seconds * bytes / (2 * static_cast<double>(half));
 }
 
-app::Photographs grey_mosaics(const LightField& field, Size size, int threads) {
-  app::Photographs photographs;
+pipeline::Photographs grey_mosaics(const LightField& field, Size size, int threads) {
+  pipeline::Photographs photographs;
   photographs.size = size;
   photographs.field = field;
   constexpr double kExposureUs = 10000;
@@ -67,6 +68,7 @@ app::Photographs grey_mosaics(const LightField& field, Size size, int threads) {
     f.shot = {"weft", "bench", "1", kExposureUs, 100, 8};
     return f;
   };
+  std::vector<RawFrame> frames;
   for (std::size_t k = 0; k < field.count(); ++k) {
     RawFrame f = frame();
     parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
@@ -77,20 +79,19 @@ app::Photographs grey_mosaics(const LightField& field, Size size, int threads) {
         f.counts(x, y) = static_cast<std::uint16_t>(600 + std::min(1.0, signal) * (15520 - 600));
       }
     });
-    photographs.mosaics.push_back(std::move(f));
+    frames.push_back(std::move(f));
   }
-  photographs.dark = frame();
+  RawFrame dark = frame();
   parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
-    std::uint16_t* counts = photographs.dark->counts.plane().row(static_cast<int>(row));
+    std::uint16_t* counts = dark.counts.plane().row(static_cast<int>(row));
     std::fill_n(counts, size.width, std::uint16_t{600});
   });
-  photographs.radiometry.emplace(photographs.mosaics.front(), &*photographs.dark, Response{2.7, 1.2, {}},
-                                 Radiometry::Exposure{kExposureUs, 100});
-  photographs.noise = photographs.radiometry->noise();
+  photographs.frames =
+      pipeline::Mosaics(std::move(frames), std::move(dark), Response{2.7, 1.2, {}}, {kExposureUs, 100});
   return photographs;
 }
 
-Result<double> unpack_seconds_a_pixel(const app::Photographs& photographs, int threads) {
+Result<double> unpack_seconds_a_pixel(const pipeline::Photographs& photographs, int threads) {
   const TemporaryFolder scratch;
   const auto files = write_frames(photographs, scratch.path());
   if (!files) return files.error();

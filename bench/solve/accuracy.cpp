@@ -240,11 +240,11 @@ Result<Truth> read_truth(const std::filesystem::path& session) {
 }
 
 // Error and time of one order of work.
-Result<Json> order_row(const app::Photographs& photographs, const solver::Method& method, const Truth& truth,
-                       const JobContext& context) {
+Result<Json> order_row(const pipeline::Photographs& photographs, const solver::Method& method,
+                       const Truth& truth, const JobContext& context) {
   std::vector<float> angles;
   double albedo_error = 0, albedo_samples = 0;
-  const auto measure = [&](const app::MapBand& band) -> Result<void> {
+  const auto measure = [&](const pipeline::MapBand& band) -> Result<void> {
     for (int y = band.rows.y0; y < band.rows.y1; ++y) {
       for (int x = 0; x < band.rows.x1; ++x) {
         const auto solved = [&](int c) {
@@ -266,11 +266,12 @@ Result<Json> order_row(const app::Photographs& photographs, const solver::Method
     }
     return {};
   };
-  const Result<double> measured = app::solve_bands(photographs, method, app::kSolveTile, context, measure);
+  const Result<double> measured =
+      pipeline::solve_bands(photographs, method, pipeline::kSolveTile, context, measure);
   if (!measured) return measured.error();
   const double seconds = least_seconds(3, [&] {
-    (void)app::solve_bands(photographs, method, app::kSolveTile, context,
-                           [](const app::MapBand&) { return Result<void>(); });
+    (void)pipeline::solve_bands(photographs, method, pipeline::kSolveTile, context,
+                                [](const pipeline::MapBand&) { return Result<void>(); });
   });
   const app::NormalComparison c = app::summarize(angles);
   return Json{{"pixels", c.pixels},

@@ -37,8 +37,8 @@ simulator::Scene scene_of(Family family, double mm_per_pixel, bool moves) {
   return scene;
 }
 
-Result<app::Photographs> photograph(const simulator::Scene& scene, const std::filesystem::path& folder,
-                                    const JobContext& context) {
+Result<pipeline::Photographs> photograph(const simulator::Scene& scene, const std::filesystem::path& folder,
+                                         const JobContext& context) {
   const auto simulated = simulator::simulate_session(
       scene, folder, {.tiles = {.threads = context.threads}, .stop = {}, .progress = {}});
   if (!simulated) return simulated.error();
@@ -46,17 +46,19 @@ Result<app::Photographs> photograph(const simulator::Scene& scene, const std::fi
   options.folder = folder;
   const auto plan = app::plan_session(options);
   if (!plan) return plan.error();
-  return app::load_session(*plan, context);
+  Result<app::LoadedSession> loaded = app::load_session(*plan, context);
+  if (!loaded) return std::move(loaded).error();
+  return std::move(loaded->photographs);
 }
 
 struct NormalError {
   double mean_deg = 0, rms_deg = 0;
 };
 
-Result<NormalError> error_of(const app::Photographs& photographs, const Image<float>& truth,
+Result<NormalError> error_of(const pipeline::Photographs& photographs, const Image<float>& truth,
                              const JobContext& context) {
   double sum = 0, square = 0, count = 0;
-  const auto measure = [&](const app::MapBand& band) -> Result<void> {
+  const auto measure = [&](const pipeline::MapBand& band) -> Result<void> {
     for (int y = band.rows.y0; y < band.rows.y1; ++y) {
       for (int x = 0; x < band.rows.x1; ++x) {
         const int row = y - band.rows.y0;
@@ -71,7 +73,7 @@ Result<NormalError> error_of(const app::Photographs& photographs, const Image<fl
     return {};
   };
   const auto solved =
-      app::solve_bands(photographs, *solver::fast_method(), app::kSolveTile, context, measure);
+      pipeline::solve_bands(photographs, *solver::fast_method(), pipeline::kSolveTile, context, measure);
   if (!solved) return solved.error();
   return NormalError{sum / count, std::sqrt(square / count)};
 }
@@ -79,30 +81,30 @@ Result<NormalError> error_of(const app::Photographs& photographs, const Image<fl
 Result<Json> row_of(const char* name, Family family, double mm_per_pixel, const JobContext& context) {
   const TemporaryFolder scratch;
   const simulator::Scene scene = scene_of(family, mm_per_pixel, true);
-  Result<app::Photographs> still =
+  Result<pipeline::Photographs> still =
       photograph(scene_of(family, mm_per_pixel, false), scratch.path() / "still.weft", context);
   if (!still) return std::move(still).error();
-  Result<app::Photographs> moved = photograph(scene, scratch.path() / "moved.weft", context);
+  Result<pipeline::Photographs> moved = photograph(scene, scratch.path() / "moved.weft", context);
   if (!moved) return std::move(moved).error();
   const Result<LoadedImage> truth = read_image(scratch.path() / "still.weft" / "truth" / "normal.exr");
   if (!truth) return truth.error();
 
   const Result<NormalError> unmoved = error_of(*still, truth->planes, context);
   if (!unmoved) return unmoved.error();
-  const auto untouched = app::register_shots(*still, context);
+  const auto untouched = pipeline::register_shots(*still, context);
   if (!untouched) return untouched.error();
   const auto corrected_still =
-      std::ranges::count(untouched->shots, app::ShiftVerdict::kCorrected, &app::ShotShift::verdict);
+      std::ranges::count(untouched->shots, pipeline::ShiftVerdict::kCorrected, &pipeline::ShotShift::verdict);
 
-  still->shifts.clear();
-  std::swap(still->mosaics[kMoved], moved->mosaics[kMoved]);
+  std::swap(still->mosaics()->frames[kMoved], moved->mosaics()->frames[kMoved]);
   const Result<NormalError> alone = error_of(*still, truth->planes, context);
   if (!alone) return alone.error();
-  Result<app::SessionShifts> found = app::register_shots(*still, context);
+  Result<pipeline::SessionShifts> found = pipeline::register_shots(*still, context);
   if (!found) return std::move(found).error();
+  still->shifts = found->corrections;
   const Result<NormalError> corrected = error_of(*still, truth->planes, context);
   if (!corrected) return corrected.error();
-  const double seconds = least_seconds(3, [&] { (void)app::register_shots(*still, context); });
+  const double seconds = least_seconds(3, [&] { (void)pipeline::register_shots(*still, context); });
 
   const simulator::ClothMovement m = simulator::movement_of_shot(
       scene.camera.movement, static_cast<int>(kMoved) + 1, simulator::random_key(scene));
@@ -125,7 +127,7 @@ Result<Json> row_of(const char* name, Family family, double mm_per_pixel, const 
       {"predicted_deg", found->shots[kMoved].measured.cost_deg},
       {"real_deg", std::sqrt(std::max(0.0, std::pow(alone->rms_deg, 2) - std::pow(unmoved->rms_deg, 2)))},
       {"corrected",
-       std::ranges::count(found->shots, app::ShiftVerdict::kCorrected, &app::ShotShift::verdict)},
+       std::ranges::count(found->shots, pipeline::ShiftVerdict::kCorrected, &pipeline::ShotShift::verdict)},
       {"corrected_unmoved", corrected_still},
       {"seconds", seconds}};
 }

@@ -26,12 +26,13 @@ struct Timing {
   double bytes_a_pixel = 0;  ///< read and written
 };
 
-Result<Timing> time_method(const app::Photographs& photographs, const solver::Method& method, int threads) {
+Result<Timing> time_method(const pipeline::Photographs& photographs, const solver::Method& method,
+                           int threads) {
   std::optional<Error> failure;
   const double seconds = least_seconds(kRepeats, [&] {
-    const Result<double> done =
-        app::solve_bands(photographs, method, app::kSolveTile, {threads, {}, [](std::string_view, double) {}},
-                         [](const app::MapBand&) { return Result<void>(); });
+    const Result<double> done = pipeline::solve_bands(
+        photographs, method, pipeline::kSolveTile, {threads, {}, [](std::string_view, double) {}},
+        [](const pipeline::MapBand&) { return Result<void>(); });
     if (!done) failure = done.error();
   });
   if (failure) return *failure;
@@ -106,7 +107,7 @@ Result<Rows> solve_speed(const SpeedOptions& options) {
   const double copy_a_byte = copy / (bare.bytes_a_pixel * pixels);
 
   const LightField field = *LightField::make(bench_lights(1, true), bench_camera(size), size, 0);
-  app::Photographs photographs = grey_mosaics(field, size, threads);
+  pipeline::Photographs photographs = grey_mosaics(field, size, threads);
   const Result<double> unpack = unpack_seconds_a_pixel(photographs, threads);
   if (!unpack) return unpack.error();
 

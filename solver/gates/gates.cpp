@@ -90,10 +90,10 @@ Result<Gates> measure_gates(std::span<const SolvedSample> samples, const GateLim
   const auto pixels = static_cast<double>(totals.pixels);
   const double indirect = totals.albedo / pixels * (1 - totals.openness / pixels);
   return Gates{
-      {gate("slope", percentile95(totals.slopes_deg), limits.slope_deg, "degrees"),
-       gate("shadowed", share(totals.shadowed, totals.readings), limits.shadowed_share, "of readings"),
-       gate("indirect", indirect, limits.indirect_share, "of direct light"),
-       gate("specular", share(totals.specular, totals.pixels), limits.specular_share, "of pixels")}};
+      gate("slope", percentile95(totals.slopes_deg), limits.slope_deg, "degrees"),
+      gate("shadowed", share(totals.shadowed, totals.readings), limits.shadowed_share, "of readings"),
+      gate("indirect", indirect, limits.indirect_share, "of direct light"),
+      gate("specular", share(totals.specular, totals.pixels), limits.specular_share, "of pixels")};
 }
 
 }  // namespace weft::solver

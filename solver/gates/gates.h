@@ -39,15 +39,15 @@ struct GateLimits {
   double specular_share = 0.2;   ///< of the pixels: beyond, a Lambertian cloth cannot be assumed
 };
 
-/// The four gates, in the order of GateLimits. Openness is that of the height of each tile by itself, by a
-/// horizon scan of 4 slices of 8 steps.
+/// What was measured against each of the GateLimits. Openness is that of the height of each tile by itself,
+/// by a horizon scan of 4 slices of 8 steps.
 struct Gates {
-  std::array<Gate, 4> measured;
+  Gate slope, shadowed, indirect, specular;
 
-  bool specular() const { return measured[3].is_over; }
+  std::array<Gate, 4> measured() const { return {slope, shadowed, indirect, specular}; }
   /// Cast shadows are worth tracing: slopes or dark readings call for it, and the cloth is not specular.
-  bool shadows() const { return (measured[0].is_over || measured[1].is_over) && !specular(); }
-  bool interreflection() const { return measured[2].is_over && !specular(); }
+  bool shadows() const { return (slope.is_over || shadowed.is_over) && !specular.is_over; }
+  bool interreflection() const { return indirect.is_over && !specular.is_over; }
 };
 
 /// Errors: as height_from_normals and scan_openness; kBadData without samples.

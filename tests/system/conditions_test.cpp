@@ -46,14 +46,16 @@ T need(Result<T> result) {
   return *std::move(result);
 }
 
-Solved solve(const app::Photographs& photographs) {
+Solved solve(const app::LoadedSession& loaded) {
+  const pipeline::Photographs& photographs = loaded.photographs;
+  const pipeline::Mosaics* mosaics = photographs.mosaics();
   Solved out = {Image<float>(photographs.size, 3),
                 Image<std::uint16_t>(photographs.size),
-                photographs.conditions,
-                photographs.warnings,
-                photographs.replaced,
-                photographs.noise.value_or(NoiseModel())};
-  const auto keep = [&](const app::MapBand& band) -> Result<void> {
+                app::json_of(loaded.conditions),
+                loaded.warnings,
+                mosaics != nullptr ? mosaics->replaced : std::vector<Photosite>(),
+                photographs.noise().value_or(NoiseModel())};
+  const auto keep = [&](const pipeline::MapBand& band) -> Result<void> {
     for (int y = band.rows.y0; y < band.rows.y1; ++y) {
       for (int p = 0; p < 3; ++p) {
         std::copy_n(band.normal[static_cast<std::size_t>(p)].row(y - band.rows.y0), photographs.size.width,
@@ -63,7 +65,7 @@ Solved solve(const app::Photographs& photographs) {
     }
     return {};
   };
-  need(app::solve_bands(photographs, *solver::fast_method(), {}, {}, keep));
+  need(pipeline::solve_bands(photographs, *solver::fast_method(), {}, {}, keep));
   return out;
 }
 
@@ -158,26 +160,25 @@ class BadPhotosites : public Conditions {
     scene.effects.dark_current = scene.effects.noise = true;
     simulate(scene, session_);
     const app::SessionPlan plan = need(app::plan_session({session_, {}, {}}));
-    app::Photographs photographs = need(app::load_session(plan, {}));
-    const Solved with = solve(photographs);
+    app::LoadedSession loaded = need(app::load_session(plan, {}));
+    const Solved with = solve(loaded);
     EXPECT_EQ(with.conditions["hot_photosites"], with.replaced.size());
     for (const auto& [y, x] : with.replaced) {
       EXPECT_TRUE(with.status(x, y) & kInvalidReading) << x << ' ' << y;
     }
 
-    for (std::size_t k = 0; k < photographs.mosaics.size(); ++k) {
-      photographs.mosaics[k] = need(capture::decode_raw(session_ / plan.lit[k].file));
-    }
-    photographs.dark = need(capture::decode_raw(dark()));
-    const Shot& shot = plan.lit.front();
-    photographs.radiometry.emplace(photographs.mosaics.front(), &*photographs.dark,
-                                   *plan.calibration.response,
-                                   Radiometry::Exposure{shot.exposure_us, shot.iso});
+    std::vector<RawFrame> as_taken;
+    for (const Shot& shot : plan.lit) as_taken.push_back(need(capture::decode_raw(session_ / shot.file)));
+    const pipeline::Mosaics& mosaics = *loaded.photographs.mosaics();
+    pipeline::Mosaics unmended(std::move(as_taken), need(capture::decode_raw(dark())), mosaics.response,
+                               mosaics.exposure);
+    unmended.replaced = mosaics.replaced;
+    loaded.photographs.frames = std::move(unmended);
     const auto is_bad = [&](int x, int y) {
       return std::binary_search(with.replaced.begin(), with.replaced.end(), Photosite{y, x});
     };
     const Errors errors = {
-        mean_error_deg(with, session_, is_bad), mean_error_deg(solve(photographs), session_, is_bad),
+        mean_error_deg(with, session_, is_bad), mean_error_deg(solve(loaded), session_, is_bad),
         mean_error_deg(with, session_, [&](int x, int y) { return !is_bad(x, y); }), with.replaced.size()};
     RecordProperty("replaced_deg", std::to_string(errors.replaced_deg));
     RecordProperty("as_taken_deg", std::to_string(errors.as_taken_deg));
@@ -394,9 +395,9 @@ TEST_F(Conditions, WithTwoLedsThatLitThereIsNothingToSolve) {
 
 TEST_F(Conditions, CalibrationsShareOfSigmaIsWorkedOutOnAGridAndBlended) {
   simulate(scene_named("golden", {48, 32}), session_);
-  const app::Photographs photographs =
-      need(app::load_session(need(app::plan_session({session_, {}, {}})), {}));
-  const Solved solved = solve(photographs);
+  const app::LoadedSession loaded = need(app::load_session(need(app::plan_session({session_, {}, {}})), {}));
+  const pipeline::Photographs& photographs = loaded.photographs;
+  const Solved solved = solve(loaded);
   ParameterCovariance covariance;
   for (const int led : photographs.leds)
     covariance.parameters.push_back("led" + std::to_string(led) + ".log_flux");
@@ -410,8 +411,8 @@ TEST_F(Conditions, CalibrationsShareOfSigmaIsWorkedOutOnAGridAndBlended) {
                                                    solved.normal.plane(2)};
   Image<float> one({48, 32}, 2), two({48, 32}, 2);
   const Rect band = {0, 0, 48, 32};
-  app::fill_calibration_sigma(sigmas, band, normal, albedo.plane(), nullptr, 1, one.plane(0), one.plane(1));
-  app::fill_calibration_sigma(sigmas, band, normal, albedo.plane(), nullptr, 2, two.plane(0), two.plane(1));
+  pipeline::fill_calibration_sigma(sigmas, band, normal, albedo.plane(), {}, 1, one.plane(0), one.plane(1));
+  pipeline::fill_calibration_sigma(sigmas, band, normal, albedo.plane(), {}, 2, two.plane(0), two.plane(1));
   for (int y = 0; y < 32; ++y) {
     for (int x = 0; x < 48; ++x) {
       ASSERT_EQ(one(x, y, 0), two(x, y, 0));

@@ -52,9 +52,9 @@ simulator::Scene cloth(const std::string& family, const std::string& material, i
 solver::Evidence evidence_of(const fs::path& session) {
   const Result<app::SessionPlan> plan = app::plan_session({.folder = session, .calibration = {}, .leds = {}});
   if (!plan) throw std::runtime_error(plan.error().message());
-  const Result<app::Photographs> photographs = app::load_session(*plan, {});
-  if (!photographs) throw std::runtime_error(photographs.error().message());
-  return app::read_evidence(*photographs);
+  const Result<app::LoadedSession> loaded = app::load_session(*plan, {});
+  if (!loaded) throw std::runtime_error(loaded.error().message());
+  return pipeline::read_evidence(loaded->photographs);
 }
 
 void swap_photographs(solver::Evidence& evidence, std::size_t a, std::size_t b) {

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 class HalfAlbedo {
  public:
   explicit HalfAlbedo(Size size) : half_({size.width / 2, size.height / 2}, 3) {}
-  void add(const MapBand& band) {
+  void add(const pipeline::MapBand& band) {
     for (int c = 0; c < 3; ++c) {
       const View<const float>& albedo = band.albedo[static_cast<std::size_t>(c)];
       for (int y = band.albedo_rows.y0; y < std::min(band.albedo_rows.y1, 2 * half_.height()); ++y) {
@@ -46,14 +46,15 @@ Result<ChartPicture> solve_chart(const fs::path& session, const fs::path& calibr
   options.calibration = calibration;
   const Result<SessionPlan> plan = plan_session(options);
   if (!plan) return plan.error();
-  const Result<Photographs> photographs = load_session(*plan, context);
-  if (!photographs) return photographs.error();
-  HalfAlbedo albedo(photographs->size);
-  const Result<double> solved = solve_bands(*photographs, *solver::standard_method(), kSolveTile, context,
-                                            [&](const MapBand& band) -> Result<void> {
-                                              albedo.add(band);
-                                              return {};
-                                            });
+  const Result<LoadedSession> loaded = load_session(*plan, context);
+  if (!loaded) return loaded.error();
+  HalfAlbedo albedo(loaded->photographs.size);
+  const auto keep = [&](const pipeline::MapBand& band) -> Result<void> {
+    albedo.add(band);
+    return {};
+  };
+  const Result<double> solved =
+      solve_bands(loaded->photographs, *solver::standard_method(), pipeline::kSolveTile, context, keep);
   if (!solved) return solved.error();
   ChartPicture picture;
   picture.is_albedo = true;

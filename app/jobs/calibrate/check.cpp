@@ -83,11 +83,10 @@ Result<std::map<std::string, Vec3>> known_planes(const fs::path& input) {
   return planes;
 }
 
-std::optional<double> drift_in(const Json& conditions) {
-  if (!conditions.contains("drift")) return std::nullopt;
+std::optional<double> drift_in(const SessionConditions& conditions) {
+  if (conditions.drift.empty()) return std::nullopt;
   double most = 0;
-  for (const Json& led : conditions["drift"])
-    most = std::max(most, std::abs(led["factor"].get<double>() - 1));
+  for (const LedDrift& led : conditions.drift) most = std::max(most, std::abs(led.factor - 1));
   return most;
 }
 
@@ -103,15 +102,15 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
                  "name the calibration to check with --from, or check each session alone"};
   }
   plan->calibration.patches.clear();  // the sheet may cover them: drift is what the repeat shot says
-  const Result<Photographs> photographs = load_session(*plan, context);
-  if (!photographs) return photographs.error();
+  const Result<LoadedSession> loaded = load_session(*plan, context);
+  if (!loaded) return loaded.error();
   calibration = plan->calibration;
   if (!std::holds_alternative<NearLights>(*calibration.lights)) {
     return Error{ErrorKind::kBadData, "the calibration cannot be checked", session.string(),
                  "its lights are distant", "calibrate the rig's lights first"};
   }
   Result<calibration::SheetEvidence> evidence =
-      sheet_evidence(calibration, *photographs, sheet, options.square_px, session.string(), context);
+      sheet_evidence(calibration, loaded->photographs, sheet, options.square_px, session.string(), context);
   if (!evidence) return std::move(evidence).error();
   const auto plane = planes.find(session.filename().string());
   if (plane != planes.end()) evidence->known_normal = plane->second;
@@ -127,8 +126,8 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
   checked.check = check_sheet(*calibration.camera, std::get<NearLights>(*calibration.lights), *evidence);
   checked.columns = evidence->columns;
   checked.rows = evidence->rows;
-  checked.drift = drift_in(photographs->conditions);
-  checked.warnings = photographs->warnings;
+  checked.drift = drift_in(loaded->conditions);
+  checked.warnings = loaded->warnings;
   if (const std::string& time = plan->lit.front().time;
       seconds_of_iso_time(time) > seconds_of_iso_time(taken_at))
     taken_at = time;
@@ -351,11 +350,11 @@ struct Look {
 Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
   const Result<SessionPlan> plan = plan_session({options.session, options.from, {}});
   if (!plan) return plan.error();
-  const Result<Photographs> photographs = load_session(*plan, context);
-  if (!photographs) return photographs.error();
-  Look out = {{{}, {}, plan->calibration}, photographs->warnings, plan->lit.front().time};
+  const Result<LoadedSession> loaded = load_session(*plan, context);
+  if (!loaded) return loaded.error();
+  Look out = {{{}, {}, plan->calibration}, loaded->warnings, plan->lit.front().time};
   const Calibration& calibration = out.rig.calibration;
-  Result<calibration::RigEvidence> evidence = rig_evidence(calibration, *photographs);
+  Result<calibration::RigEvidence> evidence = rig_evidence(calibration, loaded->photographs);
   if (!evidence) return std::move(evidence).error();
   if (!options.sheet.empty()) {
     const Result<TaggedSheet> sheet = read_sheet_file(options.sheet);
@@ -363,7 +362,7 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
     // Every reading is weighed against every other one: about 10 squares by 7, whatever the frame.
     const int side = std::max(std::max(plan->size.width, plan->size.height) / 10 & ~1, 16);
     const auto seen =
-        sheet_evidence(calibration, *photographs, *sheet, side, options.session.string(), context);
+        sheet_evidence(calibration, loaded->photographs, *sheet, side, options.session.string(), context);
     if (!seen) return seen.error();
     for (calibration::LitPlace& place : places_of(*seen, *calibration.camera))
       evidence->places.push_back(std::move(place));

@@ -111,14 +111,14 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
     return bad_patches(options.session.string(), "the calibration's lights are distant");
   }
   plan->calibration.patches.clear();  // those of before say nothing of these
-  const Result<Photographs> photographs = load_session(*plan, context);
-  if (!photographs) return photographs.error();
+  const Result<LoadedSession> loaded = load_session(*plan, context);
+  if (!loaded) return loaded.error();
 
   const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
   const double delta = options.paper_delta.value_or(reported_delta(from));
   Calibration change = plan->calibration;
   change.patches = std::move(*patches);
-  const auto evidence = rig_evidence(change, *photographs);
+  const auto evidence = rig_evidence(change, loaded->photographs);
   if (!evidence) return evidence.error();
   CalibrateOutcome outcome;
   report::Section section = {

@@ -21,9 +21,10 @@ constexpr double kInside = 0.8;       // of a patch: its border is shared with w
 constexpr double kPatchSigma = 0.02;  // of a patch's reflectance since it was measured
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-Image<std::uint8_t> grey_of(const Photographs& photographs, std::size_t k) {
-  if (photographs.rgb.empty()) return calibration::grey_picture(photographs.mosaics[k]);
-  const Image<float>& rgb = photographs.rgb[k];
+Image<std::uint8_t> grey_of(const pipeline::Photographs& photographs, std::size_t k) {
+  if (const pipeline::Mosaics* mosaics = photographs.mosaics())
+    return calibration::grey_picture(mosaics->frames[k]);
+  const Image<float>& rgb = std::get<pipeline::Developed>(photographs.frames).rgb[k];
   const std::array<View<const float>, 3> planes = {rgb.plane(0), rgb.plane(1), rgb.plane(2)};
   return calibration::grey_picture(planes);
 }
@@ -71,21 +72,21 @@ Rect box_of(const Polygon& polygon, Size frame) {
 }
 
 // Mean reading of each channel; NaN where a photosite is full or none is there.
-std::array<double, 3> mean_in(const Photographs& photographs, std::size_t k, const Polygon& polygon) {
+std::array<double, 3> mean_in(const pipeline::Photographs& photographs, std::size_t k,
+                              const Polygon& polygon) {
   const Rect box = box_of(polygon, photographs.size);
   if (box.width() <= 0 || box.height() <= 0) return {kNaN, kNaN, kNaN};
   std::array<double, 3> sum = {};
   std::array<int, 3> count = {};
-  const bool is_raw = photographs.rgb.empty();
-  Image<float> mosaic(is_raw ? Size{box.width(), box.height()} : Size{});
-  if (is_raw) photographs.read(k, box, mosaic.plane());
+  const pipeline::Planes planes = photographs.planes();
+  Image<float> scratch({box.width(), box.height()});
+  const std::vector<View<const float>> readings = readings_of(photographs.frames, k, box, scratch.plane());
   for (int y = box.y0; y < box.y1; ++y) {
     for (int x = box.x0; x < box.x1; ++x) {
       if (!is_inside(polygon, x, y)) continue;
-      for (int c = 0; c < 3; ++c) {
-        if (is_raw && photographs.radiometry->cfa().channel_at(x, y) != c) continue;
-        const auto channel = static_cast<std::size_t>(c);
-        sum[channel] += is_raw ? mosaic(x - box.x0, y - box.y0) : photographs.rgb[k](x, y, c);
+      for (std::size_t p = 0; p < readings.size(); ++p) {
+        const auto channel = static_cast<std::size_t>(planes.channel_at(static_cast<int>(p), x, y));
+        sum[channel] += readings[p](x - box.x0, y - box.y0);
         ++count[channel];
       }
     }
@@ -97,7 +98,7 @@ std::array<double, 3> mean_in(const Photographs& photographs, std::size_t k, con
 
 }  // namespace
 
-Result<std::vector<TagSighting>> tags_in(const Photographs& photographs,
+Result<std::vector<TagSighting>> tags_in(const pipeline::Photographs& photographs,
                                          const std::vector<std::string>& dictionaries) {
   std::map<std::pair<std::string, int>, std::vector<TagSighting>> seen;
   const std::size_t looks = std::min(kMostLooks, photographs.count());
@@ -140,7 +141,7 @@ WhitePatch relocated(const WhitePatch& patch, const CameraModel& before, const C
 }
 
 Result<calibration::RigEvidence> rig_evidence(const Calibration& calibration,
-                                              const Photographs& photographs) {
+                                              const pipeline::Photographs& photographs) {
   std::set<std::string> dictionaries;
   for (const Fiducial& fiducial : calibration.fiducials) dictionaries.insert(fiducial.dictionary);
   const double plane_mm = tag_height_mm(calibration.fiducials);

@@ -18,7 +18,7 @@ namespace weft::app {
 
 /// Tags of one dictionary each of `dictionaries`, found in the first photographs of a session; corners are
 /// means over at most three photographs in which the tag was found.
-Result<std::vector<calibration::TagSighting>> tags_in(const Photographs& photographs,
+Result<std::vector<calibration::TagSighting>> tags_in(const pipeline::Photographs& photographs,
                                                       const std::vector<std::string>& dictionaries);
 
 /// Height of the tags on the table, rig frame: patches are taken to lie there, too.
@@ -32,6 +32,7 @@ WhitePatch relocated(const WhitePatch& patch, const CameraModel& before, const C
 /// The tags that the calibration knows, and what its white patches read. Where tags say that the camera and
 /// the table moved to each other, the patches are looked for where they are now. `lights` of readings are
 /// those of `photographs.leds`; a LED that was left out has no reading.
-Result<calibration::RigEvidence> rig_evidence(const Calibration& calibration, const Photographs& photographs);
+Result<calibration::RigEvidence> rig_evidence(const Calibration& calibration,
+                                              const pipeline::Photographs& photographs);
 
 }  // namespace weft::app

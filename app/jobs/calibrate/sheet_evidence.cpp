@@ -22,18 +22,17 @@ using calibration::SheetSquare;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Averages of one photograph, a band of squares in memory at a time.
-BlockGrid blocks_of(const Photographs& photographs, std::size_t k, int square_px) {
+BlockGrid blocks_of(const pipeline::Photographs& photographs, std::size_t k, int square_px) {
   BlockGrid grid(photographs.size, square_px);
-  const bool is_raw = photographs.rgb.empty();
-  Image<float> band(is_raw ? Size{photographs.size.width, square_px} : Size{});
+  const pipeline::Planes planes = photographs.planes();
+  Image<float> scratch({photographs.size.width, square_px});
   for (int row = 0; row < grid.rows; ++row) {
     const Rect rows = {0, row * square_px, photographs.size.width, (row + 1) * square_px};
-    if (is_raw) {
-      photographs.read(k, rows, band.plane());
-      average_row(grid, row, band.plane(), photographs.radiometry->cfa());
+    const std::vector<View<const float>> readings = readings_of(photographs.frames, k, rows, scratch.plane());
+    if (planes.count == 1) {
+      average_row(grid, row, readings[0], planes.cfa);
     } else {
-      const Image<float>& rgb = photographs.rgb[k];
-      average_row(grid, row, {rgb.plane(0).crop(rows), rgb.plane(1).crop(rows), rgb.plane(2).crop(rows)});
+      average_row(grid, row, {readings[0], readings[1], readings[2]});
     }
   }
   return grid;
@@ -45,7 +44,7 @@ double normal_sigma_deg(const calibration::SheetPose& pose) {
 
 }  // namespace
 
-Result<SheetEvidence> sheet_evidence(const Calibration& calibration, const Photographs& photographs,
+Result<SheetEvidence> sheet_evidence(const Calibration& calibration, const pipeline::Photographs& photographs,
                                      const TaggedSheet& sheet, int square_px, const std::string& where,
                                      const JobContext& context) {
   const CameraModel& camera = *calibration.camera;

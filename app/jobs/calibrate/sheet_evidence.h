@@ -19,9 +19,9 @@ namespace weft::app {
 /// of a square's readings is LED k + 1 of the rig; one that was left out has none. Errors as sheet_pose(),
 /// with `where`; kBadData where no square shows paper alone.
 Result<calibration::SheetEvidence> sheet_evidence(const Calibration& calibration,
-                                                  const Photographs& photographs, const TaggedSheet& sheet,
-                                                  int square_px, const std::string& where,
-                                                  const JobContext& context);
+                                                  const pipeline::Photographs& photographs,
+                                                  const TaggedSheet& sheet, int square_px,
+                                                  const std::string& where, const JobContext& context);
 
 /// The same squares as places that tell of movement: a surface of unknown reflectance, seen through the
 /// camera.

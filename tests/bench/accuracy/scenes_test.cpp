@@ -64,7 +64,7 @@ class RenderedPatch : public testing::Test {
 };
 
 TEST_F(RenderedPatch, ReadsWhatItsLightFieldAndItsTruthPredict) {
-  const CfaPattern& cfa = patch_->photographs.radiometry->cfa();
+  const CfaPattern cfa = patch_->photographs.planes().cfa;
   double normalized_square = 0, bias = 0, count = 0;
   for (int k = 0; k < patch_->readings.planes(); ++k) {
     for (int y = 0; y < 48; ++y) {
@@ -78,7 +78,7 @@ TEST_F(RenderedPatch, ReadsWhatItsLightFieldAndItsTruthPredict) {
         const double predicted = patch_->albedo(x, y, c) * light.strength * cosine;
         const double error = patch_->readings(x, y, k) - predicted;
         bias += error / predicted;
-        const NoiseModel& noise = *patch_->photographs.noise;
+        const NoiseModel noise = *patch_->photographs.noise();
         normalized_square += error * error / (noise.variance(predicted) + noise.shared);
         ++count;
       }
@@ -95,7 +95,7 @@ TEST_F(RenderedPatch, KeepsReadingsAndFieldOfTheLightsThatAreChosen) {
   EXPECT_EQ(fewer->readings(7, 5, 2), patch_->readings(7, 5, 8));
   EXPECT_EQ(fewer->visible(7, 5, 1), patch_->visible(7, 5, 4));
   EXPECT_EQ(fewer->field().at(2, 1, 7, 5).direction, patch_->field().at(8, 1, 7, 5).direction);
-  EXPECT_EQ(fewer->photographs.mosaics.size(), 3U);
+  EXPECT_EQ(fewer->photographs.count(), 3U);
   EXPECT_FALSE(with_lights(*patch_, {2, 5, 11}).has_value());
 }
 

@@ -41,7 +41,10 @@ BoundedPatches plain_patch(float bound_deg) {
   RawFrame frame;
   frame.counts = Image<std::uint16_t>({2, 2});
   frame.white = 1000;
-  patch.photographs.radiometry.emplace(frame, nullptr, Response{2, 1, {}}, Radiometry::Exposure{1000, 100});
+  std::vector<RawFrame> frames;
+  frames.push_back(std::move(frame));
+  patch.photographs.frames =
+      pipeline::Mosaics(std::move(frames), std::nullopt, Response{2, 1, {}}, {1000, 100});
   patch.normal = Image<float>(size, 3);
   patch.albedo = Image<float>(size, 3);
   patch.openness = Image<float>(size);

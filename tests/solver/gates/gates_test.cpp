@@ -60,24 +60,23 @@ TEST(Gates, AreAllShutOverAWhiteCard) {
   const Gates gates = gates_of(card);
   EXPECT_FALSE(gates.shadows());
   EXPECT_FALSE(gates.interreflection());
-  EXPECT_NEAR(gates.measured[0].value, 0, 1e-6);
-  EXPECT_NEAR(gates.measured[2].value, 0, 1e-6);
+  EXPECT_NEAR(gates.slope.value, 0, 1e-6);
+  EXPECT_NEAR(gates.indirect.value, 0, 1e-6);
 }
 
 TEST(Gates, MeasureTheSlopeOfWaves) {
   Waves waves(40, 0.5f);
   const Gates gates = gates_of(waves);
   // 95 percent of a cosine's phases lie below cos(0.05 * 90 degrees) of its height.
-  EXPECT_NEAR(gates.measured[0].value, degrees(std::atan(std::tan(radians(40)) * std::cos(radians(4.5)))),
-              0.5);
+  EXPECT_NEAR(gates.slope.value, degrees(std::atan(std::tan(radians(40)) * std::cos(radians(4.5)))), 0.5);
   EXPECT_TRUE(gates.shadows());
 }
 
 TEST(Gates, OpenForBouncesWithTheAlbedoAndNotWithTheSlopeAlone) {
   Waves black(45, 0.02f), white(45, 0.9f);
-  EXPECT_FALSE(gates_of(black).interreflection()) << gates_of(black).measured[2].value;
-  EXPECT_TRUE(gates_of(white).interreflection()) << gates_of(white).measured[2].value;
-  EXPECT_NEAR(gates_of(white).measured[2].value / gates_of(black).measured[2].value, 45, 1e-3);
+  EXPECT_FALSE(gates_of(black).interreflection()) << gates_of(black).indirect.value;
+  EXPECT_TRUE(gates_of(white).interreflection()) << gates_of(white).indirect.value;
+  EXPECT_NEAR(gates_of(white).indirect.value / gates_of(black).indirect.value, 45, 1e-3);
 }
 
 TEST(Gates, OpenForShadowsWhereReadingsAreDarkThoughSlopesAreSmall) {
@@ -91,7 +90,7 @@ TEST(Gates, StayShutWhereHighlightsDominate) {
   Waves waves(40, 0.9f);
   waves.mark(kSpecular, 4);
   const Gates gates = gates_of(waves);
-  EXPECT_NEAR(gates.measured[3].value, 0.25, 1e-9);
+  EXPECT_NEAR(gates.specular.value, 0.25, 1e-9);
   EXPECT_FALSE(gates.shadows());
   EXPECT_FALSE(gates.interreflection());
 }

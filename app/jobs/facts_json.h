@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "core/json_document.h"
+#include "pipeline/reference.h"
+#include "pipeline/shifts.h"
+#include "solver/gates/gates.h"
+#include "solver/method.h"
+
+// What the pipeline found, as solve.json says it (docs/formats.md).
+
+namespace weft::app {
+
+/// A list of {"name", "value", "limit", "unit", "verdict": "over" | "under"}.
+Json json_of(const solver::Gates& gates);
+
+/// How many pixels were solved in which way.
+Json json_of(const solver::SolveTally& tally);
+
+/// {"stages", "rounds", "shadow_reach_is_capped"}.
+Json json_of(const pipeline::ReferenceFacts& facts);
+
+/// A list by shot of {"led", "dx_px", "dy_px", "turn_deg", "sigma_px", "cost_deg", "corrected", "verdict":
+/// "still" | "corrected" | "flagged" | "not registered"}. `leds` are the numbers of the lights, if they have
+/// any.
+Json json_of(const pipeline::SessionShifts& shifts, const std::vector<int>& leds);
+
+}  // namespace weft::app

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/conditions/drift.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/parallel.h"
+#include "solver/conditions/light_change.h"
+
+namespace weft::pipeline {
+namespace {
+
+// Light of a repeat over that of the photograph of the same light.
+std::optional<double> ratio_of(const Repeat& repeat, const Photographs& photographs, const Frames& again,
+                               int threads) {
+  const Size size = photographs.size;
+  constexpr int kBlock = solver::kLightBlock;
+  const int across = (size.width + kBlock - 1) / kBlock;
+  const auto down = static_cast<std::size_t>((size.height + kBlock - 1) / kBlock);
+  std::vector<solver::BlockLight> blocks(down * static_cast<std::size_t>(across));
+  std::vector<Image<float>> scratch;
+  for (int i = 0; i < resolved_threads(threads); ++i) scratch.emplace_back(Size{kBlock, kBlock}, 2);
+  parallel_for(down, threads, [&](std::size_t j, int worker) {
+    Image<float>& mine = scratch[static_cast<std::size_t>(worker)];
+    for (int i = 0; i < across; ++i) {
+      const Rect block = {i * kBlock, static_cast<int>(j) * kBlock, std::min((i + 1) * kBlock, size.width),
+                          std::min((static_cast<int>(j) + 1) * kBlock, size.height)};
+      blocks[j * static_cast<std::size_t>(across) + static_cast<std::size_t>(i)] =
+          solver::block_light(readings_of(photographs.frames, repeat.light, block, mine.plane(0)),
+                              readings_of(again, repeat.frame, block, mine.plane(1)));
+    }
+  });
+  return solver::light_ratio(std::move(blocks));
+}
+
+void ask_repeats(const Photographs& photographs, const DriftEvidence& evidence, int threads, Drift& drift) {
+  std::vector<solver::LightRepeat> used;
+  for (const Repeat& repeat : evidence.repeats) {
+    const auto ratio = drift.ratios.emplace_back(ratio_of(repeat, photographs, evidence.again, threads));
+    if (ratio && is_drift(*ratio)) used.push_back({repeat.earlier_time, repeat.later_time, *ratio});
+  }
+  if (used.empty()) return;
+  drift.source = Drift::Source::kRepeats;
+  const double rate = solver::drift_rate(used);
+  for (const double time : evidence.times) drift.measured.push_back(1 + rate * (time - evidence.first_time));
+}
+
+// What all patches give of light k together.
+solver::PatchLight light_of_patches(const Photographs& photographs, const std::vector<WhitePatch>& patches,
+                                    std::size_t k) {
+  solver::PatchLight light;
+  for (const WhitePatch& patch : patches) {
+    const Rect area = solver::area_of(patch, photographs.size);
+    if (area.pixels() == 0) continue;
+    Image<float> scratch({area.width(), area.height()});
+    const solver::PatchLight one = solver::patch_light(
+        patch, *photographs.field, k, area, readings_of(photographs.frames, k, area, scratch.plane()),
+        photographs.planes().cfa);
+    if (one.unusable > one.used) continue;
+    light.reading += one.reading;
+    light.predicted += one.predicted;
+  }
+  return light;
+}
+
+void ask_patches(const Photographs& photographs, const std::vector<WhitePatch>& patches, Drift& drift) {
+  if (patches.empty()) return;
+  std::vector<double> factors;
+  for (std::size_t k = 0; k < photographs.count(); ++k) {
+    const solver::PatchLight light = light_of_patches(photographs, patches, k);
+    if (light.predicted <= 0) {
+      drift.unread_light = k;
+      return;
+    }
+    factors.push_back(light.reading / light.predicted);
+  }
+  drift.source = Drift::Source::kPatches;
+  drift.measured = std::move(factors);
+}
+
+}  // namespace
+
+bool is_drift(double factor) {
+  return std::abs(factor - 1) <= kMostDrift;
+}
+
+double Drift::factor(std::size_t k) const {
+  return is_drift(measured[k]) ? measured[k] : 1;
+}
+
+Drift find_drift(const Photographs& photographs, const DriftEvidence& evidence, int threads) {
+  Drift drift;
+  ask_patches(photographs, evidence.patches, drift);
+  if (drift.source == Drift::Source::kNone) ask_repeats(photographs, evidence, threads, drift);
+  return drift;
+}
+
+Result<void> follow(const Drift& drift, Photographs& photographs) {
+  if (drift.source == Drift::Source::kNone) return {};
+  std::vector<double> factors;
+  for (std::size_t k = 0; k < drift.measured.size(); ++k) factors.push_back(drift.factor(k));
+  Result<LightField> field =
+      LightField::make(brightened(photographs.field->lights(), factors), photographs.camera, photographs.size,
+                       photographs.field->cloth_height_mm());
+  if (!field) return std::move(field).error();
+  photographs.field = std::move(*field);
+  return {};
+}
+
+}  // namespace weft::pipeline

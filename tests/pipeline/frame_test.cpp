@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "core/camera.h"
+#include "pipeline/cut.h"
+#include "tests/pipeline/cloth.h"
+
+namespace weft::pipeline {
+namespace {
+
+constexpr float kFull = std::numeric_limits<float>::infinity();
+
+TEST(HalfSize, MakesTheMeanOfEachCellOfDevelopedPhotographs) {
+  Photographs photographs = developed({7, 5}, {});
+  Image<float>& image = std::get<Developed>(photographs.frames).rgb[2];
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < 7; ++x) image(x, y, 0) = static_cast<float>(x + 10 * y);
+  }
+  image(4, 2, 1) = kFull;
+  const Result<Photographs> half = half_size(photographs, 1);
+  ASSERT_TRUE(half) << half.error().message();
+  EXPECT_EQ(half->size, (Size{3, 2})) << "the odd column and row are left out";
+  EXPECT_EQ(half->planes().count, 3);
+  const Image<float>& reduced = std::get<Developed>(half->frames).rgb[2];
+  EXPECT_FLOAT_EQ(reduced(1, 1, 0), (22 + 23 + 32 + 33) / 4.0F);
+  EXPECT_EQ(reduced(2, 1, 1), kFull) << "one of its four readings was";
+  EXPECT_FLOAT_EQ(reduced(2, 1, 2), static_cast<float>(0.5 * std::cos(radians(35))));
+}
+
+TEST(HalfSize, MakesAPixelOfEachFilterCell) {
+  Photographs photographs = mosaics({8, 6}, {.albedo = {0.2, 0.4, 0.8}});
+  const Result<Photographs> half = half_size(photographs, 2);
+  ASSERT_TRUE(half) << half.error().message();
+  const Image<float>& reduced = std::get<Developed>(half->frames).rgb[0];
+  const double cosine = std::cos(radians(35));
+  EXPECT_NEAR(reduced(3, 2, 0), 0.2 * cosine, 1 / kRange);
+  EXPECT_NEAR(reduced(3, 2, 1), 0.4 * cosine, 1 / kRange);
+  EXPECT_NEAR(reduced(3, 2, 2), 0.8 * cosine, 1 / kRange);
+}
+
+TEST(HalfSize, SeesTheTableThroughACameraOfTwiceThePixels) {
+  Photographs photographs = developed({40, 30}, {});
+  photographs.camera = overhead_camera({40, 30}, 600, 0.1);
+  const Result<Photographs> half = half_size(photographs, 1);
+  ASSERT_TRUE(half) << half.error().message();
+  const Vec3 cell = point_on_plane(*half->camera, 7, 4, 0);
+  const Vec3 between = point_on_plane(*photographs.camera, 14.5, 8.5, 0);
+  EXPECT_NEAR(cell.x, between.x, 1e-9);
+  EXPECT_NEAR(cell.y, between.y, 1e-9);
+}
+
+TEST(HalfSize, IsRefusedToAPictureOfOneRow) {
+  EXPECT_FALSE(half_size(developed({64, 1}, {}), 1));
+}
+
+TEST(Cut, IsThePartOfEachPhotographUnderTheSameLights) {
+  const Cloth cloth = {.normal = wave, .albedo = {0.2, 0.4, 0.8}};
+  const Photographs counts = mosaics({96, 64}, cloth), rgb = developed({96, 64}, cloth);
+  for (const Photographs* whole : {&counts, &rgb}) {
+    const Rect area = {26, 12, 66, 44};
+    const Result<Photographs> part = cut(*whole, area);
+    ASSERT_TRUE(part) << part.error().message();
+    EXPECT_EQ(part->size, (Size{40, 32}));
+    EXPECT_EQ(part->planes().count, whole->planes().count);
+    Image<float> scratch({40, 32}), of_whole({40, 32});
+    const auto cut_out = readings_of(part->frames, 5, {0, 0, 40, 32}, scratch.plane());
+    const auto expected = readings_of(whole->frames, 5, area, of_whole.plane());
+    for (std::size_t p = 0; p < expected.size(); ++p) EXPECT_EQ(cut_out[p](31, 17), expected[p](31, 17));
+  }
+}
+
+TEST(SolveFrame, ByTheReferenceLevelOfAFlatClothTellsThatNoGateIsOpen) {
+  const Photographs photographs = mosaics({64, 64}, {.albedo = {0.1, 0.1, 0.1}});
+  WholeMaps maps(photographs.size);
+  const solver::MethodName* reference = solver::find_method("reference");
+  ASSERT_NE(reference, nullptr);
+  const auto facts = solve_frame(photographs, *reference, kSolveTile, {.threads = 1}, std::ref(maps));
+  ASSERT_TRUE(facts) << facts.error().message();
+  ASSERT_TRUE(facts->reference);
+  EXPECT_FALSE(facts->reference->gates.shadows());
+  EXPECT_TRUE(facts->reference->rounds.empty());
+  EXPECT_EQ(facts->tally.by_kernel, 0) << "its last solve is in double";
+  EXPECT_LT(angle_deg(maps.normal_at(30, 30), {0, 0, 1}), 0.01);
+}
+
+TEST(SolveFrame, ByAQuickLevelSaysNothingOfGates) {
+  const Photographs photographs = developed({64, 64}, {});
+  WholeMaps maps(photographs.size);
+  const auto facts =
+      solve_frame(photographs, *solver::find_method("fast"), kSolveTile, {.threads = 1}, std::ref(maps));
+  ASSERT_TRUE(facts) << facts.error().message();
+  EXPECT_FALSE(facts->reference);
+  EXPECT_EQ(facts->tally.unsolved, 0);
+}
+
+}  // namespace
+}  // namespace weft::pipeline

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/tile_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/pipeline/cloth.h"
+
+namespace weft::pipeline {
+namespace {
+
+constexpr Size kSize = {128, 16};
+constexpr Rect kTile = {64, 4, 128, 12};
+constexpr TileOptions kTiles = {.width = 64, .height = 8};
+
+TEST(TileReader, ShowsDevelopedPhotographsWhereTheyAre) {
+  const Photographs photographs = developed(kSize, {});
+  TileReader reader(photographs, kTiles);
+  const solver::TileInput input = reader.read(kTile);
+  EXPECT_EQ(input.planes, 3);
+  EXPECT_FALSE(input.noise);
+  ASSERT_EQ(input.readings.size(), 30U);
+  EXPECT_EQ(input.readings[3 * 7 + 2].row(0),
+            std::get<Developed>(photographs.frames).rgb[7].plane(2).row(4) + 64);
+}
+
+TEST(TileReader, ReadsAMosaicAsItsLightAndAlbedoPredict) {
+  const Photographs photographs = mosaics(kSize, {.albedo = {0.2, 0.4, 0.8}});
+  TileReader reader(photographs, kTiles);
+  const solver::TileInput input = reader.read(kTile);
+  EXPECT_EQ(input.planes, 1);
+  EXPECT_EQ(input.noise->floor, photographs.noise()->floor);
+  const double cosine = std::cos(radians(35));
+  EXPECT_NEAR(input.readings[0](0, 0), 0.2 * cosine, 1 / kRange) << "red";
+  EXPECT_NEAR(input.readings[0](1, 0), 0.4 * cosine, 1 / kRange) << "green";
+  EXPECT_NEAR(input.readings[0](1, 1), 0.8 * cosine, 1 / kRange) << "blue";
+}
+
+TEST(TileReader, DemosaicsAnEvenClothUnderColouredLightToItsOwnReadings) {
+  const DistantLights lights = ten_lights({0.5, 1, 0.25});
+  const Photographs photographs = mosaics(kSize, {.albedo = {0.6, 0.6, 0.6}}, lights);
+  TileReader reader(photographs, kTiles, ReadAs::kRgb);
+  const solver::TileInput input = reader.read(kTile);
+  EXPECT_EQ(input.planes, 3);
+  EXPECT_FALSE(input.noise) << "it holds for photosites";
+  for (std::size_t k = 0; k < 10; ++k) {
+    const DistantLight& light = lights.lights[k];
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(input.readings[3 * k + c](9, 5), 0.6 * light.irradiance_rgb[c] * light.direction.z, 3e-5)
+          << "light " << k << ", channel " << c;
+    }
+  }
+}
+
+// A reading that says where it was taken.
+double place(int x, int y) {
+  return 0.001 * x + 0.01 * y;
+}
+
+TEST(TileReader, TakesAShiftedShotFromWhereTheClothWent) {
+  Photographs photographs = mosaics(kSize, {});
+  photographs.mosaics()->frames[3] = frame_of(kSize, place);
+  std::vector<solver::ClothShift> shifts(10);
+  shifts[3] = {.dx_px = 4, .dy_px = -2, .turn = 0};
+  TileReader reader(photographs, kTiles, ReadAs::kTaken, shifts);
+  const View<const float> moved = reader.read(kTile).readings[3];
+  EXPECT_NEAR(moved(10, 5), place(64 + 10 + 4, 4 + 5 - 2), 1 / kRange);
+  EXPECT_TRUE(std::isnan(moved(63, 5))) << "it came from beyond the frame";
+
+  photographs.shifts = shifts;
+  EXPECT_EQ(TileReader(photographs, kTiles).read(kTile).readings[3](10, 5), moved(10, 5));
+}
+
+TEST(TileReader, ShiftsDevelopedPhotographsByOddPixelsToo) {
+  Photographs photographs = developed(kSize, {});
+  Image<float>& image = std::get<Developed>(photographs.frames).rgb[3];
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) image(x, y, 1) = static_cast<float>(place(x, y));
+  }
+  photographs.shifts.resize(10);
+  photographs.shifts[3] = {.dx_px = -3, .dy_px = 1, .turn = 0};
+  TileReader reader(photographs, kTiles);
+  const auto readings = reader.read(kTile).readings;
+  EXPECT_FLOAT_EQ(readings[3 * 3 + 1](10, 5), static_cast<float>(place(64 + 10 - 3, 4 + 5 + 1)));
+  EXPECT_FLOAT_EQ(readings[3 * 4 + 1](10, 5), static_cast<float>(0.5 * std::cos(radians(62))));
+}
+
+TEST(Mosaics, JoinABracketWhereTheLitShotIsFull) {
+  Photographs photographs = mosaics(kSize, {});
+  Mosaics& all = *photographs.mosaics();
+  all.frames[0] = frame_of(kSize, [](int x, int) { return x < 70 ? 1 : 0.4; });
+  RawFrame shorter = frame_of(kSize, [](int x, int) { return x < 70 ? 0.25 * 1.6 : 0.25 * 0.4; });
+  const Radiometry radiometry(shorter, nullptr, all.response, {0.25e6, 100});
+  all.brackets.resize(10);
+  all.brackets[0].push_back({std::move(shorter), radiometry});
+  Image<float> scratch({64, 8});
+  const auto readings = readings_of(photographs.frames, 0, kTile, scratch.plane());
+  ASSERT_EQ(readings.size(), 1U);
+  EXPECT_NEAR(readings[0](2, 3), 1.6, 1e-4) << "from the bracket alone";
+  EXPECT_NEAR(readings[0](30, 3), 0.4, 1e-4);
+  EXPECT_NEAR(readings_of(photographs.frames, 1, kTile, scratch.plane())[0](2, 3),
+              0.5 * std::cos(radians(35)), 1e-4);
+}
+
+}  // namespace
+}  // namespace weft::pipeline
