@@ -20,7 +20,8 @@ target_compile_options(weft_settings INTERFACE
   -ffp-contract=off)  # the same bytes from every build: operations fuse only where a kernel says so
 # GCC 12 reports these inside its own <string> and <regex>, depending on what it inlined.
 target_compile_options(weft_settings INTERFACE
-  $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow>)
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow
+  -Wno-stringop-overread>)
 target_link_options(weft_settings INTERFACE -fuse-ld=lld)
 target_link_libraries(weft_settings INTERFACE fmt::fmt)  # in the precompiled headers, so alike in every target
 if(WEFT_FUZZERS)

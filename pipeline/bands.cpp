@@ -145,7 +145,7 @@ class BandSolver {
     for (int i = 0; i < tile_.threads; ++i) {
       readers_.emplace_back(photographs, tile, method.wants_rgb() ? ReadAs::kRgb : ReadAs::kTaken);
     }
-    if (demosaics_after()) photosites_.emplace(photographs.size.width);
+    if (readers_.front().planes().count == 1) photosites_.emplace(photographs.size.width);
   }
 
   Result<MapBand> solve(Rect band, BandMaps& maps) {
@@ -163,7 +163,7 @@ class BandSolver {
     if (!solved) return solved.error();
     if (const Mosaics* mosaics = photographs_.mosaics())
       mark_replaced(mosaics->replaced, band, maps.status.plane());
-    const Rect albedo_rows = demosaics_after()
+    const Rect albedo_rows = photosites_
                                  ? photosites_->demosaic(band, photographs_.size.height,
                                                          readers_.front().planes().cfa, tile_.threads, maps)
                                  : band;
@@ -185,9 +185,6 @@ class BandSolver {
   }
 
  private:
-  // Whether albedo is solved photosite by photosite.
-  bool demosaics_after() const { return readers_.front().planes().count == 1; }
-
   // Where a tile goes, by its place in the band.
   solver::TileOutput output_of(Rect local, BandMaps& maps) {
     solver::TileOutput output;
@@ -211,10 +208,10 @@ class BandSolver {
   TileOptions tile_;
   std::stop_token stop_;
   LightCorrection* correction_;
-  std::vector<TileReader> readers_;  // one a worker, as what follows
+  std::vector<TileReader> readers_;  // one a worker, as the tallies and the corrected tiles
   std::vector<solver::SolveTally> tallies_;
   std::vector<CorrectedTile> corrected_;
-  std::optional<Photosites> photosites_;
+  std::optional<Photosites> photosites_;  // where albedo is demosaiced after it was solved
 };
 
 // Hands bands to the sink on a thread of its own, one at a time.

@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "core/image_io/image_io.h"
+#include "core/iso_time.h"
 #include "pipeline/conditions/brackets.h"
 #include "pipeline/conditions/drift.h"
 #include "pipeline/conditions/photosites.h"
@@ -51,27 +50,18 @@ std::size_t light_of(const pipeline::Photographs& photographs, int led) {
   return static_cast<std::size_t>(std::find(leds.begin(), leds.end(), led) - leds.begin());
 }
 
-// Seconds of an ISO 8601 time since some fixed day; zones are not looked at, as a session has one.
-std::optional<double> seconds_of(const std::string& time) {
-  int year = 0, month = 0, day = 0, hour = 0, minute = 0;
-  double second = 0;
-  if (std::sscanf(time.c_str(), "%d-%d-%dT%d:%d:%lf", &year, &month, &day, &hour, &minute, &second) != 6) {
-    return {};
-  }
-  const std::chrono::sys_days days = std::chrono::year(year) / month / day;
-  return 86400.0 * static_cast<double>(days.time_since_epoch().count()) + 3600.0 * hour + 60.0 * minute +
-         second;
-}
-
 // When each shot was taken, by its time where all have one, else by its place in the order of capture.
 class Clock {
  public:
   explicit Clock(const SessionPlan& plan) {
     for (const auto* shots : {&plan.lit, &plan.repeats}) {
-      for (const Shot& shot : *shots) all_have_time_ = all_have_time_ && seconds_of(shot.time).has_value();
+      for (const Shot& shot : *shots)
+        all_have_time_ = all_have_time_ && seconds_of_iso_time(shot.time).has_value();
     }
   }
-  double operator()(const Shot& shot) const { return all_have_time_ ? *seconds_of(shot.time) : shot.index; }
+  double operator()(const Shot& shot) const {
+    return all_have_time_ ? *seconds_of_iso_time(shot.time) : shot.index;
+  }
 
  private:
   bool all_have_time_ = true;

@@ -222,6 +222,16 @@ Result<void> check_memory(const SessionPlan& plan, std::size_t frames, int threa
                "close other programs, or solve on a larger machine"};
 }
 
+Json description_of(const SessionPlan& plan) {
+  Json shots = Json::array();
+  for (const Shot& shot : plan.frames())
+    shots.push_back({{"led", shot.led}, {"file", shot.file}, {"sha256", shot.sha256}});
+  return {{"session", plan.session.fabric},
+          {"calibration", plan.calibration.id},
+          {"cloth_height_mm", plan.session.cloth_height_mm},
+          {"shots", std::move(shots)}};
+}
+
 }  // namespace
 
 std::vector<Shot> SessionPlan::frames() const {
@@ -289,13 +299,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
         "name the calibration of this camera with --calibration"};
   }
 
-  Json shots = Json::array();
-  for (const Shot& shot : plan.frames())
-    shots.push_back({{"led", shot.led}, {"file", shot.file}, {"sha256", shot.sha256}});
-  plan.description = {{"session", plan.session.fabric},
-                      {"calibration", plan.calibration.id},
-                      {"cloth_height_mm", plan.session.cloth_height_mm},
-                      {"shots", std::move(shots)}};
+  plan.description = description_of(plan);
   return plan;
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/solve.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -15,7 +13,9 @@
 #include "app/jobs/pictures.h"
 #include "app/jobs/report.h"
 #include "core/files.h"
-#include "core/image_io/image_io.h"
+#include "core/product.h"
+#include "core/solve.h"
+#include "core/solve_record.h"
 #include "pipeline/albedo_color.h"
 #include "pipeline/bands.h"
 #include "pipeline/calibration_channels.h"
@@ -26,8 +26,6 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kSchema = "weft.solve";
 
 // Counts of pixels by status, gathered band by band.
 class StatusCounts {
@@ -50,50 +48,22 @@ class StatusCounts {
   std::array<std::int64_t, 256> seen_ = {};
 };
 
-// Where the maps go and by which name.
-struct Place {
-  std::string id;
-  fs::path folder;
-};
+// All that the bytes of the maps depend on.
+Json inputs_of(const Json& input, const SolveOptions& options) {
+  return {{"input", input},
+          {"method", options.method},
+          {"compression", options.compression},
+          {"solver_version", kSolverVersion}};
+}
 
-// The id says what went in; nothing about this machine or this run.
-std::string id_of(const Json& input, const SolveOptions& options) {
-  const Json all = {{"input", input},
-                    {"method", options.method},
-                    {"compression", options.compression},
-                    {"solver_version", kSolverVersion}};
-  return sha256_of(all.dump()).substr(0, 16);
+// Room for the maps: normal 12, albedo 6, sigma 8, residual 2, status and pictures 4 bytes a pixel.
+std::uint64_t bytes_of(Size size) {
+  return 32 * static_cast<std::uint64_t>(size.pixels());
 }
 
 Result<solver::MethodName> method_named(const std::string& name) {
   if (const solver::MethodName* found = solver::find_method(name)) return *found;
   return Error{ErrorKind::kUsage, "no such method", name, "", "see weft solve --help for their names"};
-}
-
-// A complete solve of the same inputs, if the folder holds one; an error if it holds anything else.
-Result<std::optional<Json>> find_finished(const Place& place) {
-  if (!is_there(place.folder)) return std::optional<Json>();
-  const fs::path file = place.folder / "solve.json";
-  if (is_there(file)) {
-    Result<Json> document = read_json(file, kSchema, 1);
-    if (!document) return std::move(document).error();
-    if (JsonFields(*document, file.string()).text_or("id", "") == place.id)
-      return std::optional<Json>(std::move(*document));
-  }
-  return Error{ErrorKind::kCannotCreate, "output folder is taken", place.folder.string(),
-               "it holds something other than this solve", "name another folder with -o, or remove it"};
-}
-
-// Room for the maps, before any work is done.
-Result<void> check_disk(const fs::path& folder, Size size) {
-  constexpr std::uint64_t kBytesAPixel =
-      32;  // normal 12, albedo 6, sigma 8, residual 2, status and pictures 4
-  const std::uint64_t needed = static_cast<std::uint64_t>(size.pixels()) * kBytesAPixel;
-  const std::uint64_t free = free_disk_bytes(folder);
-  if (free >= needed) return {};
-  return Error{ErrorKind::kInputOutput, "not enough disk space", folder.string(),
-               fmt::format("{} MB are needed, {} MB are free", needed >> 20, free >> 20),
-               "free disk space or choose another disk with -o"};
 }
 
 // One solve, whatever it starts from.
@@ -123,12 +93,13 @@ struct Facts {
   std::vector<report::Verdict> verdicts;
 };
 
-Json document_of(const Place& place, const Input& input, const SolveOptions& options, const Facts& facts) {
+Json document_of(const Product& product, const Input& input, const SolveOptions& options,
+                 const Facts& facts) {
   Json status = Json::object();
   for (const StatusName& s : kStatusNames) status[s.name] = facts.counts.with(s.bit);
   const Size size = facts.size;
-  Json document = {{"schema", std::string(kSchema) + "/1"},
-                   {"id", place.id},
+  Json document = {{"schema", std::string(product.kind.schema) + "/1"},
+                   {"id", product.id},
                    {"solver_version", kSolverVersion},
                    {"method", options.method},
                    {"compression", options.compression},
@@ -185,6 +156,9 @@ class Finish {
     return {};
   }
 
+  // Whether the last share is that of the calibration in the normal's angle.
+  bool has_calibration() const { return calibration_.has_value(); }
+
   // The band as it is written; fills `shares`, a view a name. Both are valid until the next call.
   pipeline::MapBand of(const pipeline::MapBand& solved, std::vector<View<const float>>& shares) {
     shares.clear();
@@ -204,13 +178,13 @@ class Finish {
 class Run {
  public:
   Run(const solver::MethodName& method, const Input& input, const SolveOptions& options,
-      const JobContext& context, Place place)
+      const JobContext& context, const Product& product)
       : method_(method),
         input_(input),
         options_(options),
         context_(context),
-        place_(std::move(place)),
-        partial_(place_.folder) {}
+        product_(product),
+        partial_(product.folder) {}
 
   Result<SolveReport> run() {
     Stopwatch total;
@@ -227,8 +201,7 @@ class Run {
 
   // Reads the photographs, and does with them what does not need their normals.
   Result<void> prepare() {
-    if (Result<void> room = check_disk(place_.folder.parent_path(), input_.size); !room) return room;
-    if (Result<void> made = make_writable_folder(partial_.path()); !made) return made;
+    if (Result<void> begun = begin(partial_, bytes_of(input_.size)); !begun) return begun;
     Result<LoadedSession> loaded = input_.load();
     if (!loaded) return std::move(loaded).error();
     photographs_ = std::move(loaded->photographs);
@@ -268,7 +241,7 @@ class Run {
     const auto keep = [&](const pipeline::MapBand& solved) -> Result<void> {
       const pipeline::MapBand band = finish->of(solved, shares);
       facts_.counts.add(band.status);
-      maps_->add(band);
+      maps_->add(band, finish->has_calibration() ? shares.back() : View<const float>());
       if (options_.previews) pictures_->add(band);
       return files->write(band, shares);
     };
@@ -312,7 +285,7 @@ class Run {
     const double specular =
         static_cast<double>(facts_.counts.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
     facts_.verdicts = verdicts_of(summary_, tells_highlights ? specular : 0);
-    report_.document = document_of(place_, input_, options_, facts_);
+    report_.document = document_of(product_, input_, options_, facts_);
     if (Result<void> ok = write_json(partial_.path() / "solve.json", report_.document); !ok) return ok;
     const Json page =
         report_document(input_.title, report_.document, summary_, *maps_, json_of(report_.seconds));
@@ -324,7 +297,7 @@ class Run {
   Result<void> publish() {
     if (context_.stop.stop_requested()) return interrupted();
     if (Result<void> ok = partial_.publish(); !ok) return ok;
-    report_.folder = place_.folder;
+    report_.folder = product_.folder;
     report_.seconds.sync = watch_.lap();
     return {};
   }
@@ -333,7 +306,7 @@ class Run {
   const Input& input_;
   const SolveOptions& options_;
   const JobContext& context_;
-  const Place place_;
+  const Product& product_;
   PartialFolder partial_;
   Stopwatch watch_;
   pipeline::Photographs photographs_;
@@ -347,16 +320,12 @@ class Run {
 
 Result<SolveReport> solve(const solver::MethodName& method, const Input& input, const SolveOptions& options,
                           const JobContext& context) {
-  Place place;
-  place.id = id_of(input.description, options);
-  place.folder = fs::absolute(options.output.empty() ? input.default_parent / place.id : options.output)
-                     .lexically_normal();
-  Result<std::optional<Json>> finished = find_finished(place);
+  const Product product =
+      product_of(kSolveProduct, inputs_of(input.description, options), input.default_parent, options.output);
+  Result<std::optional<Json>> finished = find_finished(product);
   if (!finished) return std::move(finished).error();
-  if (*finished)
-    return SolveReport{
-        .folder = place.folder, .was_there = true, .document = std::move(**finished), .seconds = {}};
-  return Run(method, input, options, context, std::move(place)).run();
+  if (*finished) return SolveReport{product.folder, true, std::move(**finished), {}};
+  return Run(method, input, options, context, product).run();
 }
 
 }  // namespace
