@@ -18,7 +18,7 @@ bool has_own_law(const Scene& scene) {
 /// A list of passes under construction.
 class Builder {
  public:
-  Builder(const Scene& scene, const Rig& rig, Output output, const Halos& halos)
+  Builder(const Scene& scene, const SceneRig& rig, Output output, const Halos& halos)
       : scene_(scene), rig_(rig), output_(output), halos_(halos) {}
 
   PassList build() && {
@@ -110,7 +110,7 @@ class Builder {
   }
 
   const Scene& scene_;
-  const Rig& rig_;
+  const SceneRig& rig_;
   Output output_;
   Halos halos_;
   PassList list_;
@@ -118,7 +118,7 @@ class Builder {
 
 }  // namespace
 
-Result<PassList> build_passes(const Scene& scene, const Rig& rig, Output output) {
+Result<PassList> build_passes(const Scene& scene, const SceneRig& rig, Output output) {
   Halos halos;
   if (output != Output::kSurface) {
     const Result<Halos> needed = halos_of(scene, rig);

@@ -16,6 +16,6 @@ enum class Output {
 
 /// The passes that a scene calls for, in order, and the effects it does without. `scene` and `rig` are copied
 /// into the passes. kBadData where a shadow would be too long to be traced.
-Result<PassList> build_passes(const Scene& scene, const Rig& rig, Output output);
+Result<PassList> build_passes(const Scene& scene, const SceneRig& rig, Output output);
 
 }  // namespace weft::simulator

@@ -27,8 +27,8 @@ constexpr double kTableAlbedo = 0.08;
 constexpr double kThickness_mm = 3;  // of the board
 constexpr double kWhite = 0.88;      // of paper, where the scene has none
 constexpr double kBright = 0.85;     // of full scale: the brightest spot of white paper
-constexpr SheetPose kTurned = {.rotation_deg = 90};
-constexpr SheetPose kPlane = {.tilt_deg = 15, .azimuth_deg = 210};
+constexpr CapturePose kTurned = {.rotation_deg = 90};
+constexpr CapturePose kPlane = {.tilt_deg = 15, .azimuth_deg = 210};
 
 /// The rig of a scene over a bare dark table, every effect of the cloth left out.
 Result<Scene> bare_table(const Scene& given) {
@@ -40,7 +40,7 @@ Result<Scene> bare_table(const Scene& given) {
   scene.material = {};
   scene.targets = furniture(plan->scene, plan->rig.camera);
   scene.damage.clear();
-  scene.frames = FrameFile::kDng;
+  scene.frames = FrameFormat::kDng;
   scene.camera.retakes.repeat = false;
   scene.camera.retakes.bracket.reset();
   EffectSettings& on = scene.effects;
@@ -77,7 +77,7 @@ std::vector<Vec3> taped(const NearLights& lights, double error_mm, std::int64_t 
   return positions_mm;
 }
 
-Calibration start_of(const Scene& scene, const Rig& rig, const std::vector<Vec3>& positions_mm) {
+Calibration start_of(const Scene& scene, const SceneRig& rig, const std::vector<Vec3>& positions_mm) {
   Calibration start;
   start.subject = exact_calibration(scene, rig).subject;
   start.subject.albedo_scale = "relative";
@@ -109,7 +109,7 @@ int opposite_of_first(const NearLights& lights) {
 std::string sheet_toml(const SheetLayout& sheet, double reflectance) {
   std::string text = fmt::format("width_mm = {}\nheight_mm = {}\nreflectance = {}\nmargin_mm = {}\n",
                                  sheet.width_mm, sheet.height_mm, reflectance, sheet.margin_mm);
-  for (const SheetTag& tag : sheet.tags) {
+  for (const CaptureTag& tag : sheet.tags) {
     text +=
         fmt::format("\n[[tag]]\ndictionary = \"{}\"\nid = {}\nside_mm = {}\ncentre_mm = [{:.4f}, {:.4f}]\n",
                     TagSettings().dictionary, tag.id, sheet.tag_mm, tag.centre_mm[0], tag.centre_mm[1]);
@@ -143,7 +143,7 @@ std::string board_toml(const CharucoSettings& board) {
 
 class CaptureWriter {
  public:
-  CaptureWriter(Scene scene, Rig rig, TargetSettings paper, const CapturesOptions& options)
+  CaptureWriter(Scene scene, SceneRig rig, TargetSettings paper, const CapturesOptions& options)
       : scene_(std::move(scene)),
         rig_(std::move(rig)),
         paper_(std::move(paper)),
@@ -216,7 +216,7 @@ class CaptureWriter {
 
   Result<void> write_lights(const fs::path& folder) {
     const SheetLayout sheet = lights_sheet();
-    const std::vector<SheetPose> poses = five_poses();
+    const std::vector<CapturePose> poses = five_poses();
     for (std::size_t i = 0; i < poses.size(); ++i) {
       Scene scene = with(laid(sheet, poses[i], paper_));
       scene.camera.exposure_us = sheets_exposure_us(sheet, poses);
@@ -229,7 +229,7 @@ class CaptureWriter {
 
   Result<void> write_check(const fs::path& folder) {
     const SheetLayout sheet = lights_sheet();
-    const std::tuple<const char*, SheetPose, bool> kSessions[] = {
+    const std::tuple<const char*, CapturePose, bool> kSessions[] = {
         {"turned", kTurned, true}, {"other", {}, false}, {"plane", kPlane, false}};
     for (const auto& [name, pose, same_sheet] : kSessions) {
       Scene scene = with(laid(sheet, pose, paper_, same_sheet));
@@ -250,7 +250,7 @@ class CaptureWriter {
   int leds() const { return static_cast<int>(rig_.leds.leds.size()); }
 
   SheetLayout lights_sheet() const {
-    std::vector<SheetPose> poses = five_poses();
+    std::vector<CapturePose> poses = five_poses();
     poses.push_back(kPlane);
     return sheet_layout(scene_, rig_.camera, poses);
   }
@@ -269,9 +269,9 @@ class CaptureWriter {
     return shortest;
   }
   /// One exposure for a sheet in all of its poses.
-  double sheets_exposure_us(const SheetLayout& sheet, const std::vector<SheetPose>& poses) const {
+  double sheets_exposure_us(const SheetLayout& sheet, const std::vector<CapturePose>& poses) const {
     std::vector<TargetSettings> papers;
-    for (const SheetPose& pose : poses) papers.push_back(laid(sheet, pose, paper_).front());
+    for (const CapturePose& pose : poses) papers.push_back(laid(sheet, pose, paper_).front());
     return session_exposure_us(papers);
   }
 
@@ -338,7 +338,7 @@ class CaptureWriter {
   }
 
   Scene scene_;
-  Rig rig_;
+  SceneRig rig_;
   TargetSettings paper_;
   const CapturesOptions& options_;
   std::vector<Vec3> positions_mm_;
@@ -398,7 +398,7 @@ Result<CapturesReport> simulate_captures(const Scene& given, const fs::path& fol
                                          const CapturesOptions& options) {
   Result<Scene> scene = bare_table(given);
   if (!scene) return scene.error();
-  const Result<Rig> rig = rig_of(*scene);
+  const Result<SceneRig> rig = rig_of(*scene);
   if (!rig) return rig.error();
   const Result<std::vector<std::string>> parts = chosen(options, *scene);
   if (!parts) return parts.error();

@@ -74,7 +74,7 @@ void rest(TargetSettings& target, double above_mm) {
   target.centre_mm.z += above_mm - lowest;
 }
 
-TargetSettings paper_at(const SheetLayout& sheet, const SheetPose& pose, const TargetSettings& paper) {
+TargetSettings paper_at(const SheetLayout& sheet, const CapturePose& pose, const TargetSettings& paper) {
   TargetSettings target = paper;
   target.pattern = PaperSettings{sheet.width_mm, sheet.height_mm};
   target.centre_mm = {sheet.x_mm, sheet.y_mm, 0};
@@ -102,14 +102,15 @@ SheetLayout layout_of_width(const Scene& scene, double width_mm) {
 
 }  // namespace
 
-std::vector<SheetPose> five_poses() {
+std::vector<CapturePose> five_poses() {
   return {{}, {20, 0}, {20, 180}, {20, 90}, {20, 270}};
 }
 
-SheetLayout sheet_layout(const Scene& scene, const CameraModel& camera, const std::vector<SheetPose>& poses) {
+SheetLayout sheet_layout(const Scene& scene, const CameraModel& camera,
+                         const std::vector<CapturePose>& poses) {
   constexpr double kStep = 0.01, kSmallest = 0.3;
   double share = 1;
-  const auto fits = [&](const SheetPose& pose) {
+  const auto fits = [&](const CapturePose& pose) {
     return is_in_frame(camera, points_of(paper_at(layout_of_width(scene, share * frame_width_mm(scene)), pose,
                                                   TargetSettings())));
   };
@@ -117,13 +118,13 @@ SheetLayout sheet_layout(const Scene& scene, const CameraModel& camera, const st
   return layout_of_width(scene, share * frame_width_mm(scene));
 }
 
-std::vector<TargetSettings> laid(const SheetLayout& sheet, const SheetPose& pose, const TargetSettings& paper,
-                                 bool sheet_first) {
+std::vector<TargetSettings> laid(const SheetLayout& sheet, const CapturePose& pose,
+                                 const TargetSettings& paper, bool sheet_first) {
   const TargetSettings lying = paper_at(sheet, pose, paper);
   const Target plane = plain(lying);
   std::vector<TargetSettings> targets;
   if (sheet_first) targets.push_back(lying);
-  for (const SheetTag& tag : sheet.tags) {
+  for (const CaptureTag& tag : sheet.tags) {
     TargetSettings& target = targets.emplace_back(lying);
     target.pattern =
         TagSettings{.id = tag.id, .side_mm = sheet.tag_mm, .margin_mm = kTagBorder * sheet.tag_mm};
@@ -212,7 +213,7 @@ std::vector<TargetSettings> furniture(const Scene& scene, const CameraModel& cam
   return all;
 }
 
-double exposure_for(const Scene& scene, const Rig& rig, const std::vector<TargetSettings>& targets,
+double exposure_for(const Scene& scene, const SceneRig& rig, const std::vector<TargetSettings>& targets,
                     const std::vector<int>& leds, double share) {
   double brightest = 0;
   for (const TargetSettings& target : targets) {

@@ -15,7 +15,7 @@
 namespace weft::simulator {
 
 /// Image files that are written together, band of rows by band of rows, from planes in memory.
-class MapFiles {
+class TruthFiles {
  public:
   /// One file: its name, its channels, and how wide its samples are.
   struct Map {
@@ -24,9 +24,9 @@ class MapFiles {
     SampleType type = SampleType::kFloat;
   };
 
-  static Result<MapFiles> open(const std::filesystem::path& folder, Size size, int band_rows,
-                               const std::vector<Map>& maps) {
-    MapFiles files;
+  static Result<TruthFiles> open(const std::filesystem::path& folder, Size size, int band_rows,
+                                 const std::vector<Map>& maps) {
+    TruthFiles files;
     int planes = 0;
     for (const Map& map : maps) {
       Result<ImageWriter> writer =

@@ -39,7 +39,7 @@ std::vector<LeftOut> unnamed(const EffectSettings& effects) {
 }
 
 /// Seconds of one thread for the frames of all LEDs on `area`.
-double seconds_of(const Scene& scene, const Rig& rig, Rect area) {
+double seconds_of(const Scene& scene, const SceneRig& rig, Rect area) {
   Result<PassList> passes = build_passes(scene, rig, Output::kCounts);
   if (!passes) return 0;
   PassRunner runner(std::move(*passes), {.threads = 1});
@@ -60,13 +60,13 @@ Result<Plan> plan_of(const Scene& scene) {
   if (scene.auto_to_sigma) {
     plan.scene.auto_to_sigma.reset();
     plan.scene.effects = all_effects(scene);
-    const Result<Rig> everything = rig_of(plan.scene);
+    const Result<SceneRig> everything = rig_of(plan.scene);
     if (!everything) return everything.error();
     plan.scene.effects = effects_within(plan.scene, *everything, *scene.auto_to_sigma, plan.left_out);
   } else {
     plan.left_out = unnamed(scene.effects);
   }
-  Result<Rig> rig = rig_of(plan.scene);
+  Result<SceneRig> rig = rig_of(plan.scene);
   if (!rig) return rig.error();
   plan.rig = std::move(*rig);
   return plan;
@@ -78,7 +78,7 @@ double seconds_saved(const Plan& plan, const LeftOut& effect) {
   for (const EffectKey& key : effect_keys()) {
     if (effect.name == key.name) with.effects.*key.on = true;
   }
-  const Result<Rig> rig = rig_of(with);
+  const Result<SceneRig> rig = rig_of(with);
   if (!rig) return 0;
   const auto [width, height] = plan.rig.camera.size;
   const int side = std::min({kProbe, width, height});

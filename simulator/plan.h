@@ -15,7 +15,7 @@ namespace weft::simulator {
 /// What will be simulated, decided before anything is.
 struct Plan {
   Scene scene;  ///< its effects are those that run
-  Rig rig;
+  SceneRig rig;
   std::vector<LeftOut> left_out;
 };
 

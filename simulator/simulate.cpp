@@ -108,7 +108,7 @@ std::vector<Exposure> exposures_of(const Plan& plan) {
     all.push_back({2 * leds + led, led, ShotRole::kBracket, bracket_exposure_us(retakes, plan.rig, false)});
   }
   // Developed frames have no black level.
-  if (plan.scene.frames == FrameFile::kDng) all.push_back({0, 0, ShotRole::kDark, exposure_us});
+  if (plan.scene.frames == FrameFormat::kDng) all.push_back({0, 0, ShotRole::kDark, exposure_us});
   return all;
 }
 
@@ -205,7 +205,8 @@ class SessionWriter {
     const auto pixels = static_cast<std::uint64_t>(Size{width(), height()}.pixels());
     const auto count = static_cast<std::uint64_t>(frames());
     const auto of_leds = static_cast<std::uint64_t>(planes_of_led()) * static_cast<std::uint64_t>(leds());
-    const std::uint64_t sample = scene_.frames == FrameFile::kExr ? 3 * sizeof(float) : sizeof(std::uint16_t);
+    const std::uint64_t sample =
+        scene_.frames == FrameFormat::kExr ? 3 * sizeof(float) : sizeof(std::uint16_t);
     const std::uint64_t disk =
         pixels * (kTruthPlanes * sizeof(float) + count * sample + of_leds * sizeof(std::uint16_t));
     if (const std::uint64_t free = free_disk_bytes(target); free < disk) {
@@ -242,7 +243,7 @@ class SessionWriter {
   Result<void> write_truth() {
     if (!options_.truth) return {};
     if (Result<void> ok = write_file(folder_ / "truth" / "scene.toml", to_toml(given_)); !ok) return ok;
-    Result<MapFiles> maps = MapFiles::open(
+    Result<TruthFiles> maps = TruthFiles::open(
         folder_ / "truth", {width(), height()}, band_rows_,
         {{"normal.exr", {"X", "Y", "Z"}}, {"albedo.exr", {"R", "G", "B"}}, {"height.exr", {"Y"}}});
     if (!maps) return maps.error();
@@ -255,7 +256,7 @@ class SessionWriter {
     return written ? maps->finish() : written;
   }
 
-  Result<void> render_surface(MapFiles& maps, int y0, int y1) {
+  Result<void> render_surface(TruthFiles& maps, int y0, int y1) {
     const Stopwatch timing(report_.render_seconds);
     return surface_runner_.run({0, y0, width(), y1}, {}, options_.stop,
                                [&](const Tile& tile) {
@@ -272,16 +273,16 @@ class SessionWriter {
   }
 
   Result<void> write_frames() {
-    return scene_.frames == FrameFile::kExr ? write_developed_frames() : write_raw_frames();
+    return scene_.frames == FrameFormat::kExr ? write_developed_frames() : write_raw_frames();
   }
 
   Result<void> write_developed_frames() {
-    std::vector<MapFiles::Map> maps;
+    std::vector<TruthFiles::Map> maps;
     for (int index = 0; index < frames(); ++index)
       maps.push_back({shot_name(index, ".exr"), {"R", "G", "B"}});
-    Result<MapFiles> files = MapFiles::open(folder_ / "raw", {width(), height()}, band_rows_, maps);
+    Result<TruthFiles> files = TruthFiles::open(folder_ / "raw", {width(), height()}, band_rows_, maps);
     if (!files) return files.error();
-    Result<MapFiles> light = open_light_maps();
+    Result<TruthFiles> light = open_light_maps();
     if (!light) return light.error();
     Result<void> written = for_each_band([&](int y0, int y1) {
       files->begin_band(y0);
@@ -292,7 +293,7 @@ class SessionWriter {
       return light->write_band(y1 - y0);
     });
     if (!written) return written;
-    for (MapFiles* each : {&*light, &*files}) {
+    for (TruthFiles* each : {&*light, &*files}) {
       if (Result<void> ok = each->finish(); !ok) return ok;
     }
     for (int index = 0; index < frames(); ++index) {
@@ -311,7 +312,7 @@ class SessionWriter {
       if (!file) return file.error();
       files.push_back(std::move(*file));
     }
-    Result<MapFiles> light = open_light_maps();
+    Result<TruthFiles> light = open_light_maps();
     if (!light) return light.error();
     Image<std::uint16_t> counts({width(), std::min(band_rows_, height())}, frames());
     Result<void> written = for_each_band([&](int y0, int y1) {
@@ -335,8 +336,8 @@ class SessionWriter {
     return {};
   }
 
-  Result<MapFiles> open_light_maps() const {
-    std::vector<MapFiles::Map> maps;
+  Result<TruthFiles> open_light_maps() const {
+    std::vector<TruthFiles::Map> maps;
     for (int index = 0; options_.truth && index < leds(); ++index) {
       if (scene_.effects.cast_shadows) {
         maps.push_back({"visibility_" + shot_name(index, ".exr").substr(3), {"Y"}, SampleType::kHalf});
@@ -346,12 +347,12 @@ class SessionWriter {
             {"indirect_" + shot_name(index, ".exr").substr(3), {"R", "G", "B"}, SampleType::kHalf});
       }
     }
-    return MapFiles::open(folder_ / "truth", {width(), height()}, band_rows_, maps);
+    return TruthFiles::open(folder_ / "truth", {width(), height()}, band_rows_, maps);
   }
 
   /// put(tile, index of the frame) for each tile of each frame.
   template <typename Put>
-  Result<void> render_frames(const Put& put, MapFiles& light, int y0, int y1) {
+  Result<void> render_frames(const Put& put, TruthFiles& light, int y0, int y1) {
     const Stopwatch timing(report_.render_seconds);
     light.begin_band(y0);
     const auto run = [&](PassRunner& runner, bool brackets) -> Result<void> {
@@ -373,7 +374,7 @@ class SessionWriter {
     return run(bracket_runner_, true);
   }
 
-  void put_light(MapFiles& light, const Tile& tile) const {
+  void put_light(TruthFiles& light, const Tile& tile) const {
     int plane = (tile.led - 1) * planes_of_led();
     if (scene_.effects.cast_shadows) {
       light.put(tile, plane++, [&](std::size_t i) { return tile.visibility[i]; });
@@ -446,11 +447,11 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
   const bool ends_in_slash = !session_folder.has_filename() && session_folder.has_parent_path();
   const fs::path target = ends_in_slash ? session_folder.parent_path() : session_folder;
   Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
-  const Output output = plan->scene.frames == FrameFile::kExr ? Output::kRgb : Output::kCounts;
+  const Output output = plan->scene.frames == FrameFormat::kExr ? Output::kRgb : Output::kCounts;
   Result<PassList> frames = build_passes(plan->scene, plan->rig, output);
   if (!surface) return surface.error();
   if (!frames) return frames.error();
-  Rig bracket_rig = plan->rig;
+  SceneRig bracket_rig = plan->rig;
   bracket_rig.exposure_us = bracket_exposure_us(plan->scene.camera.retakes, plan->rig, true);
   Result<PassList> brackets = build_passes(plan->scene, bracket_rig, output);
   if (!brackets) return brackets.error();
@@ -481,13 +482,13 @@ Result<void> simulate_photograph(const Scene& scene, const PhotographSettings& p
                                  const fs::path& file, const SimulateOptions& options) try {
   const Result<Plan> plan = plan_of(scene);
   if (!plan) return plan.error();
-  if (plan->scene.frames == FrameFile::kExr) {
+  if (plan->scene.frames == FrameFormat::kExr) {
     return Error{ErrorKind::kUsage, "one frame alone is a raw file", "frames", "the scene's frames are EXR",
                  "simulate the whole session, or set frames = \"dng\""};
   }
   if (Result<void> ok = check_leds(photograph.leds, static_cast<int>(plan->rig.leds.leds.size())); !ok)
     return ok;
-  Rig rig = plan->rig;
+  SceneRig rig = plan->rig;
   const double exposure_us = photograph.exposure_us.value_or(rig.exposure_us);
   if (exposure_us != rig.exposure_us)
     rig.exposure_us = exposure_us * (1 + scene.camera.retakes.shutter_error);

@@ -36,19 +36,19 @@ constexpr int kMostShots = 1000000;
 
 struct BoardCommand {
   const char* name;
-  BoardFault fault;
+  VirtualBoardFault fault;
   const char* does;
 };
 constexpr std::array kBoardCommands = {
-    BoardCommand{"unplug", BoardFault::kUnplug, "its cable is pulled: no terminal, no light"},
-    BoardCommand{"replug", BoardFault::kReplug, "and put in again"},
-    BoardCommand{"reset", BoardFault::kReset, "its button is pressed"},
-    BoardCommand{"hang", BoardFault::kHang, "its firmware hangs until the watchdog ends that"},
-    BoardCommand{"garbage", BoardFault::kGarbage, "noise in both directions for 100 ms"},
-    BoardCommand{"deaf", BoardFault::kDeaf, "nothing reaches it, until hear"},
-    BoardCommand{"hear", BoardFault::kHear, "ends deaf, slow and wrong_baud"},
-    BoardCommand{"slow", BoardFault::kSlow, "each reply is 150 ms late, until hear"},
-    BoardCommand{"wrong_baud", BoardFault::kWrongBaud, "it hears garbled bytes, until hear"},
+    BoardCommand{"unplug", VirtualBoardFault::kUnplug, "its cable is pulled: no terminal, no light"},
+    BoardCommand{"replug", VirtualBoardFault::kReplug, "and put in again"},
+    BoardCommand{"reset", VirtualBoardFault::kReset, "its button is pressed"},
+    BoardCommand{"hang", VirtualBoardFault::kHang, "its firmware hangs until the watchdog ends that"},
+    BoardCommand{"garbage", VirtualBoardFault::kGarbage, "noise in both directions for 100 ms"},
+    BoardCommand{"deaf", VirtualBoardFault::kDeaf, "nothing reaches it, until hear"},
+    BoardCommand{"hear", VirtualBoardFault::kHear, "ends deaf, slow and wrong_baud"},
+    BoardCommand{"slow", VirtualBoardFault::kSlow, "each reply is 150 ms late, until hear"},
+    BoardCommand{"wrong_baud", VirtualBoardFault::kWrongBaud, "it hears garbled bytes, until hear"},
 };
 
 Error refusal(const std::string& line, std::string why, std::string remedy) {

@@ -21,27 +21,27 @@ namespace {
 // Of an uncompressed frame of 16 megapixels: what a session is reckoned with before one was taken.
 constexpr std::uint64_t kFrameBytes = 33'000'000;
 
-const char* word_of(Finding::Verdict verdict) {
+const char* word_of(SetupFinding::Verdict verdict) {
   switch (verdict) {
-    case Finding::Verdict::kFine:
+    case SetupFinding::Verdict::kFine:
       return "fine";
-    case Finding::Verdict::kWarning:
+    case SetupFinding::Verdict::kWarning:
       return "warning";
-    case Finding::Verdict::kFault:
+    case SetupFinding::Verdict::kFault:
       return "fault";
   }
   return "";
 }
 
-bool is_fault(const Finding& finding) {
-  return finding.verdict == Finding::Verdict::kFault;
+bool is_fault(const SetupFinding& finding) {
+  return finding.verdict == SetupFinding::Verdict::kFault;
 }
 
-void append(std::vector<Finding>& all, std::vector<Finding> more) {
+void append(std::vector<SetupFinding>& all, std::vector<SetupFinding> more) {
   all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-std::vector<Finding> examine_devices(const capture::Rig& rig) {
+std::vector<SetupFinding> examine_devices(const capture::Rig& rig) {
   return examine_rig(rig, {.board = [&]() -> Result<std::string> {
                              const auto board = open_board(rig);
                              if (!board) return board.error();
@@ -55,7 +55,7 @@ std::vector<Finding> examine_devices(const capture::Rig& rig) {
 }
 
 /// What the process that owns the rig says of it; its devices are its own.
-Result<Finding> ask_owner(const capture::Rig& rig, const std::string& address) {
+Result<SetupFinding> ask_owner(const capture::Rig& rig, const std::string& address) {
   const Result<RigClient> client = connect_to_owner(rig, address);
   if (!client) return client.error();
   const Result<Json> status = client->get("/api/v1/rig");
@@ -68,16 +68,16 @@ Result<Finding> ask_owner(const capture::Rig& rig, const std::string& address) {
   }
   const std::string why = status->at("why").get<std::string>();
   if (status->at("state") != "idle" && !why.empty()) says += ": " + why;
-  return Finding{Finding::Verdict::kFine, "daemon", says + "; board and camera are left alone", ""};
+  return SetupFinding{SetupFinding::Verdict::kFine, "daemon", says + "; board and camera are left alone", ""};
 }
 
-std::vector<Finding> examine(const capture::Rig& rig) {
-  std::vector<Finding> found;
+std::vector<SetupFinding> examine(const capture::Rig& rig) {
+  std::vector<SetupFinding> found;
   const Result<std::optional<std::string>> owner = address_of_owner(rig);
   if (!owner) {
     found.push_back(fault_of("daemon", owner.error()));
   } else if (*owner) {
-    const Result<Finding> said = ask_owner(rig, **owner);
+    const Result<SetupFinding> said = ask_owner(rig, **owner);
     found.push_back(said ? *said : fault_of("daemon", said.error()));
   } else if (const Result<RigLock> lock = RigLock::take(rig); !lock) {
     found.push_back(fault_of("rig", lock.error()));
@@ -91,9 +91,9 @@ std::vector<Finding> examine(const capture::Rig& rig) {
 Result<int> examine_and_print(const std::filesystem::path& rig_file, const CommonArguments& common) {
   const Result<capture::Rig> rig = capture::read_rig(find_rig(rig_file));
   if (!rig) return rig.error();
-  const std::vector<Finding> found = examine(*rig);
+  const std::vector<SetupFinding> found = examine(*rig);
   Json rows = Json::array();
-  for (const Finding& f : found) {
+  for (const SetupFinding& f : found) {
     rows.push_back(
         {{"part", f.part}, {"verdict", word_of(f.verdict)}, {"says", f.says}, {"remedy", f.remedy}});
     if (common.json) continue;

@@ -22,7 +22,7 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Verdict = Finding::Verdict;
+using Verdict = SetupFinding::Verdict;
 
 constexpr double kLowBattery = 0.2;
 constexpr double kMegabyte = 1e6;
@@ -68,14 +68,15 @@ void for_each_process(const SystemPlaces& places, const Visit& visit) {
   }
 }
 
-Finding fault(std::string part, std::string says, std::string remedy, ErrorKind kind = ErrorKind::kNoDevice) {
+SetupFinding fault(std::string part, std::string says, std::string remedy,
+                   ErrorKind kind = ErrorKind::kNoDevice) {
   return {Verdict::kFault, std::move(part), std::move(says), std::move(remedy), kind};
 }
 
 /// A known thief keeps the device from us; another program may only be looking. A virtual rig is the other
 /// end of its board's terminal.
 void report_holders(const std::vector<Holder>& holders, const std::string& part, const fs::path& file,
-                    std::vector<Finding>& found) {
+                    std::vector<SetupFinding>& found) {
   for (const Holder& holder : holders) {
     if (holder.name == kVirtualRig) continue;
     const auto* const thief =
@@ -90,7 +91,7 @@ void report_holders(const std::vector<Holder>& holders, const std::string& part,
 /// Programs that take such devices and run. A device that `seems_taken` is theirs, though the system does not
 /// show it; any other they take at its next replug, unless our rules keep them off.
 void report_thieves(std::string_view part, bool seems_taken, const SystemPlaces& places,
-                    std::vector<Finding>& found) {
+                    std::vector<SetupFinding>& found) {
   const auto has_rules = [](const fs::path& folder) { return is_there(folder / "70-weft.rules"); };
   if (!seems_taken && std::any_of(places.udev.begin(), places.udev.end(), has_rules)) return;
   for_each_process(places, [&](int pid, const fs::path& folder) {
@@ -104,12 +105,13 @@ void report_thieves(std::string_view part, bool seems_taken, const SystemPlaces&
   });
 }
 
-bool has_fault(const std::vector<Finding>& found, std::size_t from) {
+bool has_fault(const std::vector<SetupFinding>& found, std::size_t from) {
   return std::any_of(found.begin() + static_cast<std::ptrdiff_t>(from), found.end(),
-                     [](const Finding& f) { return f.verdict == Verdict::kFault; });
+                     [](const SetupFinding& f) { return f.verdict == Verdict::kFault; });
 }
 
-void examine_board_port(const capture::Rig& rig, const SystemPlaces& places, std::vector<Finding>& found) {
+void examine_board_port(const capture::Rig& rig, const SystemPlaces& places,
+                        std::vector<SetupFinding>& found) {
   std::error_code failed;
   const fs::path port = fs::weakly_canonical(rig.board.port, failed);
   if (failed || !is_there(port)) {
@@ -125,7 +127,7 @@ void examine_board_port(const capture::Rig& rig, const SystemPlaces& places, std
 }
 
 void examine_board(const capture::Rig& rig, const Opened& open, const SystemPlaces& places,
-                   std::vector<Finding>& found) {
+                   std::vector<SetupFinding>& found) {
   const std::size_t before = found.size();
   examine_board_port(rig, places, found);
   if (has_fault(found, before)) return report_thieves("board", false, places, found);
@@ -133,7 +135,7 @@ void examine_board(const capture::Rig& rig, const Opened& open, const SystemPlac
   const bool seems_taken = !greeting && (greeting.error().kind == ErrorKind::kTryAgain ||  // silent
                                          greeting.error().kind == ErrorKind::kNoDevice);   // busy
   report_thieves("board", seems_taken, places, found);
-  found.push_back(greeting ? Finding{Verdict::kFine, "board", *greeting, ""}
+  found.push_back(greeting ? SetupFinding{Verdict::kFine, "board", *greeting, ""}
                            : fault_of("board", greeting.error()));
 }
 
@@ -162,7 +164,7 @@ std::vector<UsbCamera> usb_cameras(const SystemPlaces& places) {
 }
 
 /// Cameras that the kernel shows. None is no fault: what drives the camera knows better what is there.
-void examine_usb(const SystemPlaces& places, std::vector<Finding>& found) {
+void examine_usb(const SystemPlaces& places, std::vector<SetupFinding>& found) {
   for (const UsbCamera& camera : usb_cameras(places)) {
     if (::access(camera.node.c_str(), R_OK | W_OK) != 0) {
       found.push_back(fault("camera", fmt::format("this user may not use {}", camera.node.string()),
@@ -179,7 +181,7 @@ void examine_usb(const SystemPlaces& places, std::vector<Finding>& found) {
 }
 
 void examine_camera(const capture::Rig& rig, const Opened& open, const SystemPlaces& places,
-                    std::vector<Finding>& found) {
+                    std::vector<SetupFinding>& found) {
   const std::size_t before = found.size();
   if (!rig.camera.port.starts_with("ptpip:")) examine_usb(places, found);
   if (has_fault(found, before)) return;
@@ -205,7 +207,7 @@ void examine_camera(const capture::Rig& rig, const Opened& open, const SystemPla
 }
 
 void examine_room(const std::string& part, const fs::path& folder, std::uint64_t frame_bytes,
-                  std::vector<Finding>& found) {
+                  std::vector<SetupFinding>& found) {
   if (Result<void> ok = make_writable_folder(folder); !ok) {
     found.push_back(fault_of(part, ok.error()));
     return;
@@ -224,7 +226,7 @@ void examine_room(const std::string& part, const fs::path& folder, std::uint64_t
   }
 }
 
-void examine_calibration(const capture::Rig& rig, std::vector<Finding>& found) {
+void examine_calibration(const capture::Rig& rig, std::vector<SetupFinding>& found) {
   if (rig.scan.calibration.empty()) {
     found.push_back({Verdict::kWarning, "calibration",
                      "the rig file names none: frames are not compared with it",
@@ -258,17 +260,17 @@ void examine_calibration(const capture::Rig& rig, std::vector<Finding>& found) {
   }
 }
 
-void examine_clock(std::vector<Finding>& found) {
+void examine_clock(std::vector<SetupFinding>& found) {
   struct timex clock = {};
   const bool synchronised = ::adjtimex(&clock) != TIME_ERROR && (clock.status & STA_UNSYNC) == 0;
-  found.push_back(
-      synchronised ? Finding{Verdict::kFine, "clock", "it is set by the network", ""}
-                   : Finding{Verdict::kWarning, "clock", "nothing sets it", "sudo timedatectl set-ntp true"});
+  found.push_back(synchronised ? SetupFinding{Verdict::kFine, "clock", "it is set by the network", ""}
+                               : SetupFinding{Verdict::kWarning, "clock", "nothing sets it",
+                                              "sudo timedatectl set-ntp true"});
 }
 
 }  // namespace
 
-Finding fault_of(std::string part, const Error& error) {
+SetupFinding fault_of(std::string part, const Error& error) {
   return fault(std::move(part), error.message(), error.remedy, error.kind);
 }
 
@@ -288,15 +290,16 @@ std::vector<Holder> holders_of(const fs::path& file, const SystemPlaces& places)
   return holders;
 }
 
-std::vector<Finding> examine_rig(const capture::Rig& rig, const Opened& open, const SystemPlaces& places) {
-  std::vector<Finding> found;
+std::vector<SetupFinding> examine_rig(const capture::Rig& rig, const Opened& open,
+                                      const SystemPlaces& places) {
+  std::vector<SetupFinding> found;
   examine_board(rig, open, places, found);
   examine_camera(rig, open, places, found);
   return found;
 }
 
-std::vector<Finding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes) {
-  std::vector<Finding> found;
+std::vector<SetupFinding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes) {
+  std::vector<SetupFinding> found;
   examine_calibration(rig, found);
   examine_room("disk", rig.scan.sessions, frame_bytes, found);
   if (!rig.scan.copy.empty()) {

@@ -14,7 +14,7 @@
 namespace weft::app {
 
 /// What is right or wrong with one part of a rig's set-up.
-struct Finding {
+struct SetupFinding {
   enum class Verdict { kFine, kWarning, kFault };
   Verdict verdict = Verdict::kFine;
   std::string part;    ///< "board", "camera", "disk"
@@ -24,7 +24,7 @@ struct Finding {
 };
 
 /// A fault that an error is.
-Finding fault_of(std::string part, const Error& error);
+SetupFinding fault_of(std::string part, const Error& error);
 
 /// Where the system tells about itself; tests bring their own.
 struct SystemPlaces {
@@ -56,11 +56,11 @@ struct Opened {
 /// who is known to take them and runs, the camera's USB speed; then what each says when it is opened, unless
 /// its port has a fault already, which says more. A user may not see what root's processes hold: where the
 /// board does not answer and a program runs that takes boards, that is a fault too.
-std::vector<Finding> examine_rig(const capture::Rig& rig, const Opened& open,
-                                 const SystemPlaces& places = {});
+std::vector<SetupFinding> examine_rig(const capture::Rig& rig, const Opened& open,
+                                      const SystemPlaces& places = {});
 
 /// Room for sessions of `frame_bytes` a frame, whether the folders can be written, the calibration, the
 /// machine's clock.
-std::vector<Finding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes);
+std::vector<SetupFinding> examine_folders(const capture::Rig& rig, std::uint64_t frame_bytes);
 
 }  // namespace weft::app

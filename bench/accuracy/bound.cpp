@@ -38,7 +38,7 @@ struct Trials {
 
 Result<Trials> make_trials(double albedo, double tilt_deg, std::uint32_t seed) {
   const simulator::Scene scene;
-  const Result<simulator::Rig> rig = simulator::rig_of(scene);
+  const Result<simulator::SceneRig> rig = simulator::rig_of(scene);
   if (!rig) return rig.error();
   Trials trials;
   trials.albedo = albedo;

@@ -42,7 +42,7 @@ double badness(std::span<const LightField::Light> lights, const std::vector<Vec3
 
 Result<std::vector<int>> leds_by_bound(int count) {
   const simulator::Scene scene;
-  const Result<simulator::Rig> rig = simulator::rig_of(scene);
+  const Result<simulator::SceneRig> rig = simulator::rig_of(scene);
   if (!rig) return rig.error();
   const double full = rig->exposure(scene.camera.iso) * rig->sensor.electrons_at_white;
   const NoiseModel noise = {1 / full, std::pow(rig->sensor.read_noise_electrons / full, 2), 0};

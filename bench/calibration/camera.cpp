@@ -188,7 +188,7 @@ Result<Rows> rendered_rows(const CalibrationCameraBenchOptions& options) {
     const std::string name = i == 0 ? "table01.dng" : fmt::format("board{:02}.dng", i);
     if (Result<void> ok = simulate_frame(scenes.back(), 1, input / name, simulate); !ok) return ok.error();
   }
-  const Result<simulator::Rig> rig = rig_of(scenes.front());
+  const Result<simulator::SceneRig> rig = rig_of(scenes.front());
   if (!rig) return rig.error();
   const JobContext context = {.threads = options.threads};
   app::CalibrateCameraOptions calibrate;

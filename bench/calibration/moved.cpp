@@ -169,7 +169,7 @@ Vec3 rough(Vec3 v, double sigma, Draws& draws) {
 }
 
 /// What a calibration of the rig would have found, with its covariance.
-Calibration calibrated(const Scene& scene, const simulator::Rig& rig, Draws& draws) {
+Calibration calibrated(const Scene& scene, const simulator::SceneRig& rig, Draws& draws) {
   Calibration calibration = exact_calibration(scene, rig);
   auto& lights = std::get<NearLights>(*calibration.lights);
   ParameterCovariance covariance;

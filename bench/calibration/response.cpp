@@ -107,7 +107,7 @@ struct Quantity {
 
 Result<void> measure(const char* name, simulator::Body body, const CalibrationResponseBenchOptions& options,
                      Rows& rows) {
-  const Result<simulator::Rig> rig = rig_of(scene_of(body, 1));
+  const Result<simulator::SceneRig> rig = rig_of(scene_of(body, 1));
   if (!rig) return rig.error();
   const Response truth = response_of(rig->sensor);
   const double full = rig->sensor.white - rig->sensor.black;

@@ -30,7 +30,7 @@ struct Frames {
 
 Result<Frames> frames_without_noise(Scene scene, int threads) {
   scene.effects.noise = false;
-  const Result<Rig> rig = rig_of(scene);
+  const Result<SceneRig> rig = rig_of(scene);
   if (!rig) return rig.error();
   Result<PassList> passes = build_passes(scene, *rig, Output::kCounts);
   if (!passes) return passes.error();

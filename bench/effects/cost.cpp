@@ -62,7 +62,7 @@ std::vector<Measured> everything(double megapixels) {
 Result<void> run(Measured& m, int threads) {
   Scene scene = cloth_scene(Family::kPlain, bench_size(m.megapixels));
   scene.effects = m.effects;
-  const Result<Rig> rig = rig_of(scene);
+  const Result<SceneRig> rig = rig_of(scene);
   if (!rig) return rig.error();
   Result<PassList> passes = build_passes(scene, *rig, Output::kCounts);
   if (!passes) return passes.error();

@@ -27,7 +27,7 @@ struct Shown {
 };
 
 Result<Shown> frame_of(const Scene& scene, int led, int threads) {
-  const Result<Rig> rig = rig_of(scene);
+  const Result<SceneRig> rig = rig_of(scene);
   if (!rig) return rig.error();
   Result<PassList> passes = build_passes(scene, *rig, Output::kCounts);
   if (!passes) return passes.error();

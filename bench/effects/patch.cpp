@@ -17,7 +17,7 @@ Result<TracedPatch> traced_patch(int side_px) {
   Scene scene = cloth_scene(Family::kDeep, {side_px, side_px});
   scene.effects = effects_for(&EffectSettings::interreflection);
   scene.effects.cast_shadows = true;
-  const Result<Rig> rig = rig_of(scene);
+  const Result<SceneRig> rig = rig_of(scene);
   if (!rig) return rig.error();
   const Result<Halos> halos = halos_of(scene, *rig);
   if (!halos) return halos.error();

@@ -102,7 +102,7 @@ Json seed_row(const simulator::Rendering& truth, const LightField& field) {
 }
 
 Result<LightField> field_of(const Scene& scene) {
-  const Result<simulator::Rig> rig = simulator::rig_of(scene);
+  const Result<simulator::SceneRig> rig = simulator::rig_of(scene);
   if (!rig) return rig.error();
   const Calibration exact = simulator::exact_calibration(scene, *rig);
   return LightField::make(*exact.lights, exact.camera, {scene.camera.width, scene.camera.height},
@@ -160,7 +160,7 @@ Result<Rows> solve_noise(const AccuracyOptions& options) {
   for (const double albedo : {0.04, 0.2, 0.9}) {
     Scene scene = scene_of(GeometryKind::kFlat, size);
     scene.material.albedo = {albedo, albedo, albedo};
-    const Result<simulator::Rig> rig = simulator::rig_of(scene);
+    const Result<simulator::SceneRig> rig = simulator::rig_of(scene);
     if (!rig) return rig.error();
     const Result<LightField> field = field_of(scene);
     if (!field) return field.error();

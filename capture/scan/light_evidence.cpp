@@ -97,37 +97,37 @@ const char* code_of(Finding finding) {
   return "";
 }
 
-LightEvidence::LightEvidence(PatchGrid grid, std::optional<LightModel> model)
+ScanEvidence::ScanEvidence(PatchGrid grid, std::optional<PatchLights> model)
     : grid_(grid), model_(std::move(model)) {}
 
-std::vector<double> LightEvidence::glance(const RawFrame& frame) const {
+std::vector<double> ScanEvidence::glance(const RawFrame& frame) const {
   return glance_at(frame, grid_, model_ ? model_->scale : GlanceScale());
 }
 
-void LightEvidence::accept(const PlannedShot& shot, std::vector<double> light) {
+void ScanEvidence::accept(const PlannedShot& shot, std::vector<double> light) {
   if (shot.role == ShotRole::kDark)
     dark_ = std::move(light);
   else if (shot.role == ShotRole::kLit)
     lit_[shot.index] = {shot, std::move(light)};
 }
 
-void LightEvidence::forget(int index) {
+void ScanEvidence::forget(int index) {
   lit_.erase(index);
 }
 
-const LightEvidence::Seen* LightEvidence::of_led(int led) const {
+const ScanEvidence::Seen* ScanEvidence::of_led(int led) const {
   const auto seen =
       std::find_if(lit_.begin(), lit_.end(), [&](const auto& each) { return each.second.shot.led == led; });
   return seen == lit_.end() ? nullptr : &seen->second;
 }
 
-std::vector<double> LightEvidence::without_dark(const std::vector<double>& light) const {
+std::vector<double> ScanEvidence::without_dark(const std::vector<double>& light) const {
   std::vector<double> left = light;
   for (std::size_t i = 0; dark_ && i < left.size(); ++i) left[i] -= (*dark_)[i];
   return left;
 }
 
-Verdict LightEvidence::judge(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge(const PlannedShot& shot, const std::vector<double>& light) const {
   switch (shot.role) {
     case ShotRole::kDark:
       return judge_dark(shot, light);
@@ -140,7 +140,7 @@ Verdict LightEvidence::judge(const PlannedShot& shot, const std::vector<double>&
   return judge_again(shot, light);
 }
 
-Verdict LightEvidence::judge_dark(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_dark(const PlannedShot& shot, const std::vector<double>& light) const {
   const double bright = quantile(light, 0.9);
   if (bright > kDarkTo || !std::isfinite(light.front())) {
     return {
@@ -153,7 +153,7 @@ Verdict LightEvidence::judge_dark(const PlannedShot& shot, const std::vector<dou
         {},
         {}};
   }
-  Verdict verdict;
+  ShotVerdict verdict;
   if (bright > kDarkWarns) {
     verdict.doubt = Finding::kRoomLight;
     verdict.warnings.push_back(
@@ -162,7 +162,7 @@ Verdict LightEvidence::judge_dark(const PlannedShot& shot, const std::vector<dou
   return verdict;
 }
 
-double LightEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
+double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
   const auto of_flat_cloth = [&](int led, std::size_t i) {
     return model_->leds[static_cast<std::size_t>(led - 1)][i].z;
   };
@@ -185,10 +185,10 @@ double LightEvidence::level_of(const PlannedShot& shot, const std::vector<double
   return levels.empty() ? 1 : median_of(std::move(levels));
 }
 
-Verdict LightEvidence::judge_lit(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<double>& light) const {
   const std::vector<double> own = without_dark(light);
   const auto found = [&](Finding finding, std::string sentence) {
-    return Verdict{finding, std::move(sentence), {shot.index}, {}, {}, {}};
+    return ShotVerdict{finding, std::move(sentence), {shot.index}, {}, {}, {}};
   };
   if (std::isfinite(quantile(own, 0.5)) && quantile(own, 0.99) < kLitFrom &&
       std::count_if(own.begin(), own.end(), [](double v) { return std::isnan(v); }) == 0) {
@@ -196,7 +196,7 @@ Verdict LightEvidence::judge_lit(const PlannedShot& shot, const std::vector<doub
   }
   if (!model_ || lit_.empty()) return {};
   if (!is_readable(light)) {
-    Verdict verdict;
+    ShotVerdict verdict;
     verdict.warnings.push_back(
         fmt::format("LED {}: {:.0f} percent of the frame have full photosites, so that nothing tells whether "
                     "it was the right LED: scan with a shorter --exposure",
@@ -209,7 +209,7 @@ Verdict LightEvidence::judge_lit(const PlannedShot& shot, const std::vector<doub
     return found(Finding::kDim,
                  fmt::format("LED {} gives {:.0f} percent of the light it should", shot.led, 100 * level));
   }
-  Verdict verdict = judge_pattern(shot, light);
+  ShotVerdict verdict = judge_pattern(shot, light);
   verdict.level = level;
   if (verdict.finding == Finding::kAgrees && level < kDimWarns) {
     verdict.doubt = Finding::kDim;
@@ -221,7 +221,7 @@ Verdict LightEvidence::judge_lit(const PlannedShot& shot, const std::vector<doub
   return verdict;
 }
 
-Verdict LightEvidence::judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const {
   std::vector<Seen> frames;
   for (const auto& [index, seen] : lit_) {
     if (index != shot.index && is_readable(seen.light))
@@ -237,7 +237,7 @@ Verdict LightEvidence::judge_pattern(const PlannedShot& shot, const std::vector<
     readings.push_back(&seen.light);
     plan.push_back(of_led(seen.shot.led));
   }
-  Verdict best;
+  ShotVerdict best;
   const double planned = fit_light(readings, plan, kStoryStep).misfit;
   best.misfit = planned;
   if (planned < kSuspiciousMisfit) return best;
@@ -298,14 +298,14 @@ Verdict LightEvidence::judge_pattern(const PlannedShot& shot, const std::vector<
   return best;
 }
 
-Verdict LightEvidence::judge_again(const PlannedShot& shot, const std::vector<double>& light) const {
+ShotVerdict ScanEvidence::judge_again(const PlannedShot& shot, const std::vector<double>& light) const {
   const Seen* first = of_led(shot.led);
   if (first == nullptr) return {};
   const double times = shot.exposure.exposure_us / first->shot.exposure.exposure_us;
   const std::vector<double> own = without_dark(light), before = without_dark(first->light);
   const std::optional<Ratio> ratio = ratio_of(own, before);
   if (!ratio) return {};
-  Verdict verdict;
+  ShotVerdict verdict;
   verdict.level = ratio->median / times;
   const bool is_repeat = shot.role == ShotRole::kRepeat;
   const auto refuse = [&](Finding finding, std::string sentence) {

@@ -32,7 +32,7 @@ enum class Finding {
 /// "dark", "dim", "swapped", "stays_lit", "room_light", "changed"; "" where it agrees.
 const char* code_of(Finding finding);
 
-struct Verdict {
+struct ShotVerdict {
   Finding finding = Finding::kAgrees;
   std::string sentence;      ///< names the LED
   std::vector<int> accused;  ///< indices of shots that are not what they should be, this one or before
@@ -48,13 +48,13 @@ struct Verdict {
   }
 };
 
-class LightEvidence {
+class ScanEvidence {
  public:
   /// Without a model only darkness, the repeat and the brackets are looked at.
-  LightEvidence(PatchGrid grid, std::optional<LightModel> model);
+  ScanEvidence(PatchGrid grid, std::optional<PatchLights> model);
 
   std::vector<double> glance(const RawFrame& frame) const;
-  Verdict judge(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge(const PlannedShot& shot, const std::vector<double>& light) const;
   void accept(const PlannedShot& shot, std::vector<double> light);
   void forget(int index);
 
@@ -65,14 +65,14 @@ class LightEvidence {
   };
   const Seen* of_led(int led) const;
   std::vector<double> without_dark(const std::vector<double>& light) const;
-  Verdict judge_dark(const PlannedShot& shot, const std::vector<double>& light) const;
-  Verdict judge_lit(const PlannedShot& shot, const std::vector<double>& light) const;
-  Verdict judge_again(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_dark(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_lit(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_again(const PlannedShot& shot, const std::vector<double>& light) const;
   double level_of(const PlannedShot& shot, const std::vector<double>& light) const;
-  Verdict judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const;
 
   PatchGrid grid_;
-  std::optional<LightModel> model_;
+  std::optional<PatchLights> model_;
   std::optional<std::vector<double>> dark_;
   std::map<int, Seen> lit_;  ///< kept frames of role lit by index, the dark shot taken off
 };

@@ -77,11 +77,11 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-Result<LightModel> LightModel::make(const Calibration& calibration, double cloth_height_mm) {
+Result<PatchLights> PatchLights::make(const Calibration& calibration, double cloth_height_mm) {
   const Size size = calibration.camera->size;
   const auto field = LightField::make(*calibration.lights, calibration.camera, size, cloth_height_mm);
   if (!field) return field.error();
-  LightModel model = {PatchGrid::over(size), {}, {}, 0, {}};
+  PatchLights model = {PatchGrid::over(size), {}, {}, 0, {}};
   if (calibration.response) model.scale.linearity = calibration.response->linearity;
 
   const auto light_at = [&](std::size_t k, int c, int i) {
@@ -111,7 +111,7 @@ Result<LightModel> LightModel::make(const Calibration& calibration, double cloth
   return model;
 }
 
-LightFit fit_light(const std::vector<const std::vector<double>*>& light,
+PatchFit fit_light(const std::vector<const std::vector<double>*>& light,
                    const std::vector<const std::vector<Vec3>*>& incident, std::size_t step) {
   const std::size_t frames = light.size();
   std::vector<Patch> patches;
@@ -119,7 +119,7 @@ LightFit fit_light(const std::vector<const std::vector<double>*>& light,
     Patch patch = patch_of(i, light, incident);
     if (patch.frames.size() >= 4 && patch.mean > 0) patches.push_back(std::move(patch));
   }
-  LightFit fit = {0, std::vector<double>(frames, 1)};
+  PatchFit fit = {0, std::vector<double>(frames, 1)};
   for (int round = 0; round < kRounds; ++round) {
     std::vector<std::vector<double>> ratios(frames);
     double sum = 0;

@@ -11,7 +11,7 @@
 namespace weft::capture {
 
 /// The lights of a calibration on the patches of a frame.
-struct LightModel {
+struct PatchLights {
   PatchGrid grid;
   GlanceScale scale;
   std::vector<std::vector<Vec3>> leds;  ///< by LED (from 0) and patch: direction times strength
@@ -19,11 +19,11 @@ struct LightModel {
   std::vector<Vec3> room;  ///< by patch: light from straight above, as strong as a LED on average
 
   /// The calibration has camera and lights. Errors as LightField::make().
-  static Result<LightModel> make(const Calibration& calibration, double cloth_height_mm);
+  static Result<PatchLights> make(const Calibration& calibration, double cloth_height_mm);
 };
 
 /// What frames say of themselves when each is given the light it may have been taken in.
-struct LightFit {
+struct PatchFit {
   /// What is left of the readings once every patch has its own albedo and normal (Lambert) and every frame
   /// its own brightness: mean of their absolute deviations over the mean reading of the patch.
   double misfit = 0;
@@ -32,7 +32,7 @@ struct LightFit {
 
 /// `light[f]` is what frame f has on each patch, `incident[f]` what falls on it. At least four frames: a
 /// patch has three unknowns. Only every `step`-th patch is looked at.
-LightFit fit_light(const std::vector<const std::vector<double>*>& light,
+PatchFit fit_light(const std::vector<const std::vector<double>*>& light,
                    const std::vector<const std::vector<Vec3>*>& incident, std::size_t step = 1);
 
 /// The median; 0 of nothing.

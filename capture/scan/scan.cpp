@@ -105,7 +105,7 @@ class Scan {
           fmt::format("with {} LEDs nothing tells that two of them are exchanged: that takes {} or more",
                       list_.leds.size(), kEnoughForPatterns));
     }
-    Result<LightModel> model = LightModel::make(*calibration_, request_.cloth_height_mm);
+    Result<PatchLights> model = PatchLights::make(*calibration_, request_.cloth_height_mm);
     if (!model) return model.error();
     model_ = std::move(*model);
     return {};
@@ -360,7 +360,7 @@ class Scan {
     }
 
     std::vector<double> light = evidence_->glance(*frame);
-    const Verdict verdict = evidence_->judge(shot, light);
+    const ShotVerdict verdict = evidence_->judge(shot, light);
     if (verdict.finding != Finding::kAgrees) return refused(verdict);
 
     KeptFrame kept = {
@@ -391,7 +391,7 @@ class Scan {
   }
 
   /// Takes what is accused out of the session, so that it is taken again, now or by the next scan.
-  Kept refused(const Verdict& verdict) {
+  Kept refused(const ShotVerdict& verdict) {
     Kept kept = {Error{ErrorKind::kBadData, verdict.sentence, names_of(verdict.accused),
                        "the photograph does not agree with the calibrated light",
                        verdict.finding == Finding::kChanged
@@ -460,7 +460,7 @@ class Scan {
   int leds_of_board_;
   std::optional<Calibration> calibration_;
   ShotList list_;
-  std::optional<LightModel> model_;  ///< until the first frame has come
+  std::optional<PatchLights> model_;  ///< until the first frame has come
   std::optional<Journal> journal_;
   std::vector<double> shutter_times_us_;
   ExposureSettings exposure_;
@@ -474,7 +474,7 @@ class Scan {
   // While a frame is on its way, its thread's alone.
   std::optional<RawFrame> first_;  ///< without its counts
   Size first_size_;
-  std::optional<LightEvidence> evidence_;
+  std::optional<ScanEvidence> evidence_;
   std::vector<std::string> warnings_of_frames_;
 };
 

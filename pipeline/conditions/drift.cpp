@@ -18,7 +18,7 @@ std::optional<double> ratio_of(const Repeat& repeat, const Photographs& photogra
   constexpr int kBlock = solver::kLightBlock;
   const int across = (size.width + kBlock - 1) / kBlock;
   const auto down = static_cast<std::size_t>((size.height + kBlock - 1) / kBlock);
-  std::vector<solver::BlockLight> blocks(down * static_cast<std::size_t>(across));
+  std::vector<solver::BlockChange> blocks(down * static_cast<std::size_t>(across));
   std::vector<Image<float>> scratch;
   for (int i = 0; i < resolved_threads(threads); ++i) scratch.emplace_back(Size{kBlock, kBlock}, 2);
   parallel_for(down, threads, [&](std::size_t j, int worker) {

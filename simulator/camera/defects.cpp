@@ -31,7 +31,7 @@ SensorPattern::Draw SensorPattern::draw(int x, int y) const {
           uniform(bits[2], bits[3])};
 }
 
-void SensorPattern::fill(Rect rect, std::span<Photosite> photosites) const {
+void SensorPattern::fill(Rect rect, std::span<PhotositeDefect> photosites) const {
   const bool has_defects = settings_.hot_per_million > 0 || settings_.dead_per_million > 0;
   const bool differs = settings_.response_percent > 0 || settings_.photosite_counts > 0;
   std::vector<double> columns(static_cast<std::size_t>(rect.width()));
@@ -72,14 +72,14 @@ std::vector<DefectivePhotosite> SensorPattern::defects(Size size) const {
   return found;
 }
 
-void expose(std::span<const Photosite> photosites, double exposure_s, double electrons_at_white,
+void expose(std::span<const PhotositeDefect> photosites, double exposure_s, double electrons_at_white,
             std::span<double> samples) {
   const double signal_per_rate = exposure_s / electrons_at_white;
   for (std::size_t i = 0; i < samples.size(); ++i)
     samples[i] = samples[i] * photosites[i].response + photosites[i].dark_electrons_per_s * signal_per_rate;
 }
 
-void add_black_pattern(std::span<const Photosite> photosites, double counts_at_full,
+void add_black_pattern(std::span<const PhotositeDefect> photosites, double counts_at_full,
                        std::span<double> samples) {
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i] += photosites[i].offset_counts / counts_at_full;
 }

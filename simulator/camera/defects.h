@@ -12,7 +12,7 @@
 namespace weft::simulator {
 
 /// How one photosite departs from the ideal one. The same in every shot.
-struct Photosite {
+struct PhotositeDefect {
   double response = 1;              ///< share of the light that it counts, from 0
   double dark_electrons_per_s = 0;  ///< mean charge without light
   double offset_counts = 0;         ///< of its black level
@@ -36,7 +36,7 @@ class SensorPattern {
   SensorPattern(const DefectSettings& settings, std::array<std::uint32_t, 2> key);
 
   /// The photosites of `rect`, row by row.
-  void fill(Rect rect, std::span<Photosite> photosites) const;
+  void fill(Rect rect, std::span<PhotositeDefect> photosites) const;
   /// All defects of a frame, row by row: the hot map of its calibration.
   std::vector<DefectivePhotosite> defects(Size size) const;
 
@@ -54,11 +54,11 @@ class SensorPattern {
 };
 
 /// Before noise: signal = signal * response + dark charge of the exposure, which so has its photon noise.
-void expose(std::span<const Photosite> photosites, double exposure_s, double electrons_at_white,
+void expose(std::span<const PhotositeDefect> photosites, double exposure_s, double electrons_at_white,
             std::span<double> samples);
 
 /// After noise: adds each photosite's offset. `counts_at_full` is white - black.
-void add_black_pattern(std::span<const Photosite> photosites, double counts_at_full,
+void add_black_pattern(std::span<const PhotositeDefect> photosites, double counts_at_full,
                        std::span<double> samples);
 
 }  // namespace weft::simulator

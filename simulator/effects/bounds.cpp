@@ -113,9 +113,9 @@ double added_on_horizon(double sine) {
 
 class Bounds {
  public:
-  Bounds(const Scene& scene, const Rig& rig)
+  Bounds(const Scene& scene, const SceneRig& rig)
       : scene_(scene), rig_(rig), surface_(surface_of(scene.geometry)), slope_(steepest_slope(surface_)) {
-    is_plane_ = std::holds_alternative<Plane>(surface_);
+    is_plane_ = std::holds_alternative<TablePlane>(surface_);
     is_glossy_ = !std::holds_alternative<Lambert>(scene.material.reflectance);
     find_colours();
     find_points();
@@ -468,7 +468,7 @@ class Bounds {
   }
 
   const Scene& scene_;
-  const Rig& rig_;
+  const SceneRig& rig_;
   Surface surface_;
   double slope_;
   bool is_plane_ = false;
@@ -519,14 +519,14 @@ constexpr bool EffectSettings::*kDearest[] = {&EffectSettings::interreflection, 
 
 }  // namespace
 
-EffectBounds bounds_of(const Scene& scene, const Rig& rig) {
+EffectBounds bounds_of(const Scene& scene, const SceneRig& rig) {
   const Bounds bounds(scene, rig);
   EffectBounds all;
   for (const auto bound_of : kBoundOf) all.push_back((bounds.*bound_of)());
   return all;
 }
 
-EffectSettings effects_within(const Scene& scene, const Rig& rig, double to_sigma,
+EffectSettings effects_within(const Scene& scene, const SceneRig& rig, double to_sigma,
                               std::vector<LeftOut>& left_out) {
   const std::span<const EffectKey> keys = effect_keys();
   const EffectBounds bounds = bounds_of(scene, rig);

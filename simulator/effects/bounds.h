@@ -30,12 +30,12 @@ struct EffectBound {
 using EffectBounds = std::vector<EffectBound>;
 
 /// @param rig of the same scene, whatever effects it names
-EffectBounds bounds_of(const Scene& scene, const Rig& rig);
+EffectBounds bounds_of(const Scene& scene, const SceneRig& rig);
 
 /// All effects but those whose bounds together stay within `to_sigma`, the least first; `left_out` gets
 /// these. An effect stays while one that needs it does: near_light for relief, finite_led and vignetting,
 /// relief for cast_shadows and interreflection. Noise always stays.
-EffectSettings effects_within(const Scene& scene, const Rig& rig, double to_sigma,
+EffectSettings effects_within(const Scene& scene, const SceneRig& rig, double to_sigma,
                               std::vector<LeftOut>& left_out);
 
 }  // namespace weft::simulator

@@ -3,7 +3,7 @@
 
 namespace weft::simulator {
 
-Pass camera_pass(const Scene& scene, const Rig& rig) {
+Pass camera_pass(const Scene& scene, const SceneRig& rig) {
   constexpr const char* kDoes = "finds the point of the cloth's plane that each pixel sees";
   if (!rig.lens) {
     return {"camera", kDoes, Stage::kSurface, [scene](Tile& tile) {

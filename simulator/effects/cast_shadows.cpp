@@ -18,7 +18,7 @@ Pass mesh_pass() {
           }};
 }
 
-Pass cast_shadows_pass(const Scene& scene, const Rig& rig, const Halos& halos) {
+Pass cast_shadows_pass(const Scene& scene, const SceneRig& rig, const Halos& halos) {
   RaySettings settings;
   settings.rays = scene.effects.finite_led ? scene.transport.shadow_rays : 1;
   settings.reach_mm = halos.shadow_mm;

@@ -4,7 +4,7 @@
 
 namespace weft::simulator {
 
-Pass distant_light_pass(const Scene& scene, const Rig& rig) {
+Pass distant_light_pass(const Scene& scene, const SceneRig& rig) {
   const Vec3 centre_mm = {0, 0, scene.geometry.cloth_height_mm};
   std::vector<Incidence> lights;
   for (const NearLight& led : rig.leds.leds) lights.push_back(incidence(led, centre_mm));

@@ -12,7 +12,7 @@
 namespace weft::simulator {
 
 // Cloth, once a tile.
-Pass camera_pass(const Scene& scene, const Rig& rig);
+Pass camera_pass(const Scene& scene, const SceneRig& rig);
 Pass onto_moved_cloth_pass(const Scene& scene);  ///< movement: rig to cloth, before the cloth is looked up
 Pass geometry_pass(const Scene& scene);
 Pass albedo_pass(const Scene& scene, bool seen_by_camera);  ///< plain: one albedo
@@ -22,37 +22,37 @@ Pass back_from_moved_cloth_pass(const Scene& scene);  ///< movement: cloth to ri
 Pass relief_pass();
 Pass mesh_pass();
 Pass bounces_pass(const Scene& scene, const Halos& halos);
-Pass targets_pass(const Scene& scene, const Rig& rig, bool seen_by_camera);
+Pass targets_pass(const Scene& scene, const SceneRig& rig, bool seen_by_camera);
 
 // Light of the shot's LED: fills `light` and `irradiance`.
-Pass distant_light_pass(const Scene& scene, const Rig& rig);  ///< plain
-Pass near_light_pass(const Rig& rig);
-Pass finite_led_pass(const Scene& scene, const Rig& rig);
+Pass distant_light_pass(const Scene& scene, const SceneRig& rig);  ///< plain
+Pass near_light_pass(const SceneRig& rig);
+Pass finite_led_pass(const Scene& scene, const SceneRig& rig);
 Pass paper_pass(const Scene& scene);
-Pass cast_shadows_pass(const Scene& scene, const Rig& rig, const Halos& halos);
+Pass cast_shadows_pass(const Scene& scene, const SceneRig& rig, const Halos& halos);
 
 // From irradiance to signal.
-Pass lambert_pass(const Scene& scene, const Rig& rig);  ///< plain
-Pass reflectance_pass(const Scene& scene, const Rig& rig);
-Pass interreflection_pass(const Scene& scene, const Rig& rig);
-Pass led_drift_pass(const Scene& scene, const Rig& rig);
-Pass stray_pass(const Scene& scene, const Rig& rig);
-Pass ambient_pass(const Scene& scene, const Rig& rig);
+Pass lambert_pass(const Scene& scene, const SceneRig& rig);  ///< plain
+Pass reflectance_pass(const Scene& scene, const SceneRig& rig);
+Pass interreflection_pass(const Scene& scene, const SceneRig& rig);
+Pass led_drift_pass(const Scene& scene, const SceneRig& rig);
+Pass stray_pass(const Scene& scene, const SceneRig& rig);
+Pass ambient_pass(const Scene& scene, const SceneRig& rig);
 
 // Lens.
-Pass vignetting_pass(const Scene& scene, const Rig& rig);
+Pass vignetting_pass(const Scene& scene, const SceneRig& rig);
 Pass defocus_pass(const Scene& scene, const Halos& halos);
 
 // Photosites.
 Pass photosites_pass(const Scene& scene, const Halos& halos);
 Pass mosaic_pass(int halo_rows);  ///< plain; keeps rows above and below the tile
 Pass rgb_pass();                  ///< in its place for Output::kRgb
-Pass expose_pass(const Rig& rig);
+Pass expose_pass(const SceneRig& rig);
 Pass bloom_pass(const Scene& scene);
-Pass noise_pass(const Scene& scene, const Rig& rig);
+Pass noise_pass(const Scene& scene, const SceneRig& rig);
 Pass nonlinearity_pass(const Scene& scene);
-Pass black_pattern_pass(const Rig& rig);
+Pass black_pattern_pass(const SceneRig& rig);
 Pass damage_pass(const Scene& scene);
-Pass converter_pass(const Rig& rig);  ///< plain
+Pass converter_pass(const SceneRig& rig);  ///< plain
 
 }  // namespace weft::simulator

@@ -4,7 +4,7 @@
 
 namespace weft::simulator {
 
-Pass finite_led_pass(const Scene& scene, const Rig& rig) {
+Pass finite_led_pass(const Scene& scene, const SceneRig& rig) {
   const double radius_mm = scene.lights.led_radius_mm;
   return {"finite led", "lights each point from a sphere of the LED's size: soft horizon of attached shadows",
           Stage::kLight,

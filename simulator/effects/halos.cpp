@@ -21,7 +21,7 @@ struct Field {
   double least_step_mm;  ///< between neighbouring pixels
 };
 
-Field field_of(const Rig& rig, double height_mm) {
+Field field_of(const SceneRig& rig, double height_mm) {
   constexpr int kSteps = 16;
   const auto [width, height] = rig.camera.size;
   const Lens lens = *Lens::of(rig.camera);
@@ -42,7 +42,7 @@ Field field_of(const Rig& rig, double height_mm) {
 }
 
 /// Cotangent of the lowest elevation at which a LED stands over the field.
-double longest_shadow_of_unit(const Rig& rig, const Area& area, double highest_mm) {
+double longest_shadow_of_unit(const SceneRig& rig, const Area& area, double highest_mm) {
   double longest = 0;
   for (const NearLight& led : rig.leds.leds) {
     const double away_x =
@@ -56,7 +56,7 @@ double longest_shadow_of_unit(const Rig& rig, const Area& area, double highest_m
 
 }  // namespace
 
-Result<Halos> halos_of(const Scene& scene, const Rig& rig) {
+Result<Halos> halos_of(const Scene& scene, const SceneRig& rig) {
   constexpr double kMargin = 0.98;  // of the step: the field is looked at here and there
   Halos halos;
   if (scene.effects.defocus) halos.blur = blur_kernel(scene.camera.blur).radius;

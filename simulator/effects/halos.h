@@ -26,7 +26,7 @@ struct Halos {
 };
 
 /// kBadData where a shadow would reach over kLongestShadow pixels.
-Result<Halos> halos_of(const Scene& scene, const Rig& rig);
+Result<Halos> halos_of(const Scene& scene, const SceneRig& rig);
 inline constexpr int kLongestShadow = 640;
 
 /// Light that leaves a point at a grazing angle is followed this many times the cloth's relief, but no

@@ -36,7 +36,7 @@ Pass bounces_pass(const Scene& scene, const Halos& halos) {
           }};
 }
 
-Pass interreflection_pass(const Scene& scene, const Rig& rig) {
+Pass interreflection_pass(const Scene& scene, const SceneRig& rig) {
   return {"interreflection", "adds the light that reaches each point by way of the cloth", Stage::kLight,
           [unit = rig.signal_of_unit(scene.camera.iso), bounces = scene.transport.bounces](Tile& tile) {
             tile.indirect.assign(tile.irradiance.size(), Rgb{});

@@ -3,7 +3,7 @@
 
 namespace weft::simulator {
 
-Pass lambert_pass(const Scene& scene, const Rig& rig) {
+Pass lambert_pass(const Scene& scene, const SceneRig& rig) {
   return {"lambert", "reflects light alike in all directions", Stage::kLight,
           [unit = rig.signal_of_unit(scene.camera.iso)](Tile& tile) {
             tile.signal_rect = tile.area;

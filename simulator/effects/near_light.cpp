@@ -4,7 +4,7 @@
 
 namespace weft::simulator {
 
-Pass near_light_pass(const Rig& rig) {
+Pass near_light_pass(const SceneRig& rig) {
   return {
       "near light", "lights each point from a LED's true place: direction, distance and lobe", Stage::kLight,
       lit_by(

@@ -25,7 +25,7 @@ std::vector<Rgb> cropped(const std::vector<Rgb>& signal, Rect from, Rect to) {
 
 }  // namespace
 
-Pass vignetting_pass(const Scene& scene, const Rig& rig) {
+Pass vignetting_pass(const Scene& scene, const SceneRig& rig) {
   return {"vignetting", "darkens the frame towards its corners", Stage::kShot,
           [vignette = Vignette(scene.camera.vignette, rig.camera)](Tile& tile) {
             for_each_pixel(tile.signal_rect, [&](std::size_t i, int x, int y) {

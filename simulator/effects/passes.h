@@ -11,10 +11,10 @@
 #include <string>
 #include <vector>
 
+#include "core/color_spaces.h"
 #include "core/image.h"
 #include "core/result.h"
 #include "core/tiles.h"
-#include "simulator/base/rgb.h"
 #include "simulator/camera/defects.h"
 #include "simulator/geometry/surface_point.h"
 #include "simulator/light/incidence.h"
@@ -56,10 +56,10 @@ struct Tile {
   std::vector<Rgb> signal;         ///< light by channel, 1 is full scale
   Rect signal_rect;                ///< of `signal`: blur shrinks it
 
-  std::vector<double> samples;        ///< what photosites see: one a pixel, or three (R, G, B)
-  Rect sample_rect;                   ///< of `samples`
-  std::vector<Photosite> photosites;  ///< what they are, on `sample_rect`; empty where all are alike
-  std::vector<std::uint16_t> counts;  ///< on `rect`
+  std::vector<double> samples;              ///< what photosites see: one a pixel, or three (R, G, B)
+  Rect sample_rect;                         ///< of `samples`
+  std::vector<PhotositeDefect> photosites;  ///< what they are, on `sample_rect`; empty where all are alike
+  std::vector<std::uint16_t> counts;        ///< on `rect`
 
   std::optional<Error> failure;  ///< of a pass that could not do its work; the run ends with it
 

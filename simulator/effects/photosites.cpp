@@ -36,7 +36,7 @@ Pass rgb_pass() {
           }};
 }
 
-Pass noise_pass(const Scene& scene, const Rig& rig) {
+Pass noise_pass(const Scene& scene, const SceneRig& rig) {
   return {"noise", "draws photons (Poisson) and read noise (normal)", Stage::kShot,
           [sensor = rig.sensor, key = random_key(scene)](Tile& tile) {
             const std::size_t channels =
@@ -53,7 +53,7 @@ Pass noise_pass(const Scene& scene, const Rig& rig) {
           }};
 }
 
-Pass converter_pass(const Rig& rig) {
+Pass converter_pass(const SceneRig& rig) {
   return {"converter", "adds the black level, rounds to whole counts and clips at 0 and white", Stage::kShot,
           [sensor = rig.sensor](Tile& tile) {
             tile.counts.resize(tile.samples.size());

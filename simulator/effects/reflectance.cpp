@@ -36,7 +36,7 @@ Ggx under_light_of(Ggx model, double radius_mm, double distance_mm) {
 
 }  // namespace
 
-Pass reflectance_pass(const Scene& scene, const Rig& rig) {
+Pass reflectance_pass(const Scene& scene, const SceneRig& rig) {
   const double radius_mm = scene.effects.finite_led ? scene.lights.led_radius_mm : 0;
   const auto pass = [&](const auto& model) -> std::function<void(Tile&)> {
     return [model, radius_mm, camera_mm = rig.camera_centre_mm(),

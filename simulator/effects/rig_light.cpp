@@ -28,7 +28,7 @@ std::function<void(Tile&)> even_light(std::vector<Rgb> of_led) {
 }
 
 /// Signal of a white surface at the table's centre that faces the LED.
-std::vector<Rgb> signal_at_centre(const Scene& scene, const Rig& rig) {
+std::vector<Rgb> signal_at_centre(const Scene& scene, const SceneRig& rig) {
   std::vector<Rgb> signals;
   const double exposure = rig.exposure(scene.camera.iso);
   for (const DistantLight& light : distant_lights(rig, scene.geometry.cloth_height_mm).lights) {
@@ -40,7 +40,7 @@ std::vector<Rgb> signal_at_centre(const Scene& scene, const Rig& rig) {
 
 }  // namespace
 
-Pass led_drift_pass(const Scene& scene, const Rig& rig) {
+Pass led_drift_pass(const Scene& scene, const SceneRig& rig) {
   return {"led drift", "fades the LEDs over the session and lets each shot flicker", Stage::kLight,
           [lights = scene.lights, leds = static_cast<int>(rig.leds.leds.size()),
            key = random_key(scene)](Tile& tile) {
@@ -52,7 +52,7 @@ Pass led_drift_pass(const Scene& scene, const Rig& rig) {
           }};
 }
 
-Pass stray_pass(const Scene& scene, const Rig& rig) {
+Pass stray_pass(const Scene& scene, const SceneRig& rig) {
   std::vector<Rgb> of_led = {Rgb{}};
   for (Rgb light : signal_at_centre(scene, rig)) {
     for (double& l : light) l *= scene.lights.stray;
@@ -62,7 +62,7 @@ Pass stray_pass(const Scene& scene, const Rig& rig) {
           even_light(std::move(of_led))};
 }
 
-Pass ambient_pass(const Scene& scene, const Rig& rig) {
+Pass ambient_pass(const Scene& scene, const SceneRig& rig) {
   Rgb brightest{};
   for (const Rgb& light : signal_at_centre(scene, rig)) {
     for (std::size_t c = 0; c < 3; ++c)

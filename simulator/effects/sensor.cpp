@@ -18,7 +18,7 @@ Pass photosites_pass(const Scene& scene, const Halos& halos) {
       }};
 }
 
-Pass expose_pass(const Rig& rig) {
+Pass expose_pass(const SceneRig& rig) {
   const double exposure_s = rig.exposure_us * 1e-6;
   return {"exposure", "fills photosites by their own response and by warmth", Stage::kShot,
           [exposure_s, electrons = rig.sensor.electrons_at_white](Tile& tile) {
@@ -43,7 +43,7 @@ Pass nonlinearity_pass(const Scene& scene) {
           }};
 }
 
-Pass black_pattern_pass(const Rig& rig) {
+Pass black_pattern_pass(const SceneRig& rig) {
   return {"black pattern", "adds what columns and photosites store without light", Stage::kShot,
           [counts = rig.sensor.white - rig.sensor.black](Tile& tile) {
             const std::size_t rows_above =

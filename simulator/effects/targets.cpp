@@ -39,7 +39,7 @@ ViewRay ray_of(const Lens& lens, int x, int y) {
 
 }  // namespace
 
-Pass targets_pass(const Scene& scene, const Rig& rig, bool seen_by_camera) {
+Pass targets_pass(const Scene& scene, const SceneRig& rig, bool seen_by_camera) {
   return {"targets", "lays boards, charts and paper on the table", Stage::kSurface,
           [targets = inked_targets(scene, seen_by_camera), lens = *Lens::of(rig.camera)](Tile& tile) {
             tile.target.assign(tile.surface.size(), kCloth);

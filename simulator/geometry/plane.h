@@ -11,9 +11,9 @@
 namespace weft::simulator {
 
 /// A plane through the centre of the table.
-class Plane {
+class TablePlane {
  public:
-  explicit Plane(Vec3 normal) : normal_(normal) {}
+  explicit TablePlane(Vec3 normal) : normal_(normal) {}
   SurfacePoint at(double x_mm, double y_mm) const {
     return {-(normal_.x * x_mm + normal_.y * y_mm) / normal_.z, normal_, {}};
   }

@@ -8,13 +8,14 @@ namespace weft::simulator {
 namespace {
 
 BaseSurface base_of(const GeometrySettings& g) {
-  const Plane level({0, 0, 1});
+  const TablePlane level({0, 0, 1});
   switch (g.kind) {
     case GeometryKind::kFlat:
       return level;
     case GeometryKind::kTilted: {
       const double tilt = radians(g.tilt_deg), azimuth = radians(g.azimuth_deg);
-      return Plane({std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)});
+      return TablePlane(
+          {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth), std::cos(tilt)});
     }
     case GeometryKind::kPlain:
     case GeometryKind::kTwill:

@@ -18,7 +18,7 @@
 
 namespace weft::simulator {
 
-using BaseSurface = std::variant<Plane, Weave, Knit, Sphere, Cylinder, HeightMap>;
+using BaseSurface = std::variant<TablePlane, Weave, Knit, Sphere, Cylinder, HeightMap>;
 
 /// A surface with folds and waves on it: heights add, and so do slopes.
 class Draped {
@@ -34,7 +34,7 @@ class Draped {
   Drape drape_;
 };
 
-using Surface = std::variant<Plane, Weave, Knit, Sphere, Cylinder, HeightMap, Draped>;
+using Surface = std::variant<TablePlane, Weave, Knit, Sphere, Cylinder, HeightMap, Draped>;
 
 /// The surface of settings in range; a height map without heights is a level plane.
 Surface surface_of(const GeometrySettings& geometry);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/color_spaces.h"
 #include "core/vec.h"
-#include "simulator/base/rgb.h"
 #include "simulator/reflectance/directions.h"
 #include "simulator/reflectance/fresnel.h"
 

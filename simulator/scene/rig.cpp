@@ -85,7 +85,7 @@ Result<void> check_parts(const Scene& scene) {
   return {};
 }
 
-Result<void> place_camera(const Scene& scene, Rig& rig) {
+Result<void> place_camera(const Scene& scene, SceneRig& rig) {
   const CameraSettings& c = scene.camera;
   LensSettings lens = scene.effects.distortion ? c.lens : LensSettings();
   const Result<CameraModel> camera = camera_of({c.width, c.height}, c.distance_mm, c.mm_per_pixel, lens,
@@ -117,7 +117,7 @@ std::string name_of_model(const Sensor& sensor) {
 
 }  // namespace
 
-std::vector<Rgb> Rig::signal_of_unit(double iso) const {
+std::vector<Rgb> SceneRig::signal_of_unit(double iso) const {
   std::vector<Rgb> signals;
   for (const NearLight& led : leds.leds) {
     const double seconds = exposure(iso);
@@ -126,7 +126,7 @@ std::vector<Rgb> Rig::signal_of_unit(double iso) const {
   return signals;
 }
 
-DistantLights distant_lights(const Rig& rig, double cloth_height_mm) {
+DistantLights distant_lights(const SceneRig& rig, double cloth_height_mm) {
   DistantLights distant;
   for (const NearLight& led : rig.leds.leds) {
     const Incidence light = incidence(led, {0, 0, cloth_height_mm});
@@ -137,7 +137,7 @@ DistantLights distant_lights(const Rig& rig, double cloth_height_mm) {
   return distant;
 }
 
-Vec3 Rig::camera_centre_mm() const {
+Vec3 SceneRig::camera_centre_mm() const {
   const Mat3& m = camera.camera_from_rig_rotation;
   const Vec3 t = camera.camera_from_rig_translation_mm;
   return {-(m[0][0] * t.x + m[1][0] * t.y + m[2][0] * t.z), -(m[0][1] * t.x + m[1][1] * t.y + m[2][1] * t.z),
@@ -156,10 +156,10 @@ DefectSettings defects_of(const Scene& scene) {
   return defects;
 }
 
-Result<Rig> rig_of(const Scene& scene) {
+Result<SceneRig> rig_of(const Scene& scene) {
   if (Result<void> ok = check_scene(scene); !ok) return ok.error();
   if (Result<void> ok = check_parts(scene); !ok) return ok.error();
-  Rig rig;
+  SceneRig rig;
   rig.leds.leds = place_leds(scene.lights);
   if (Result<void> ok = check_places(scene, rig.leds.leds); !ok) return ok.error();
   rig.sensor = sensor_of(scene.camera);
@@ -182,12 +182,12 @@ Result<Rig> rig_of(const Scene& scene) {
   return rig;
 }
 
-double bracket_exposure_us(const RetakeSettings& retakes, const Rig& rig, bool as_gathered) {
+double bracket_exposure_us(const RetakeSettings& retakes, const SceneRig& rig, bool as_gathered) {
   const double taken_us = std::max(std::round(rig.exposure_us * retakes.bracket.value_or(1)), 1.0);
   return as_gathered ? taken_us * (1 + retakes.shutter_error) : taken_us;
 }
 
-Calibration exact_calibration(const Scene& scene, const Rig& rig) {
+Calibration exact_calibration(const Scene& scene, const SceneRig& rig) {
   Calibration calibration;
   calibration.subject.rig = "virtual rig";
   calibration.subject.camera_model = name_of_model(rig.sensor);

@@ -18,7 +18,7 @@ namespace weft::simulator {
 inline constexpr double kFocalLength_mm = 50;
 
 /// The virtual rig that a scene describes, in numbers.
-struct Rig {
+struct SceneRig {
   NearLights leds;
   Sensor sensor;
   CameraModel camera;
@@ -35,14 +35,14 @@ struct Rig {
 /// Checks the scene, places its LEDs and its camera and chooses the exposure. kBadData where no LED lights
 /// the table's centre, a LED or the camera is not above the cloth, the camera does not see the table, a
 /// target or a filter cannot be used, or the exposure would not be between 1 us and 1000 s.
-Result<Rig> rig_of(const Scene& scene);
+Result<SceneRig> rig_of(const Scene& scene);
 
 /// Each LED as the distant light that it is at the table's centre, on the cloth's plane.
-DistantLights distant_lights(const Rig& rig, double cloth_height_mm);
+DistantLights distant_lights(const SceneRig& rig, double cloth_height_mm);
 
 /// Exposure time that a bracket shot of the rig is taken with, whole microseconds; with `as_gathered` the one
 /// that its light is that of, as its shutter is not exact.
-double bracket_exposure_us(const RetakeSettings& retakes, const Rig& rig, bool as_gathered);
+double bracket_exposure_us(const RetakeSettings& retakes, const SceneRig& rig, bool as_gathered);
 
 /// The defects that the scene's effects call for; those of the others are zero.
 DefectSettings defects_of(const Scene& scene);
@@ -56,6 +56,6 @@ inline Vec3 point_of_pixel(const Scene& scene, int x, int y) {
 }
 
 /// Everything about the rig as a perfect calibration would have it.
-Calibration exact_calibration(const Scene& scene, const Rig& rig);
+Calibration exact_calibration(const Scene& scene, const SceneRig& rig);
 
 }  // namespace weft::simulator

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
+#include "core/color_spaces.h"
 #include "core/result.h"
 #include "core/vec.h"
-#include "simulator/base/rgb.h"
 #include "simulator/camera/settings.h"
 #include "simulator/geometry/print.h"
 #include "simulator/geometry/settings.h"
@@ -138,7 +138,7 @@ struct EffectKey {
 std::span<const EffectKey> effect_keys();
 
 /// How the frames of a session are stored.
-enum class FrameFile {
+enum class FrameFormat {
   kDng,  ///< raw mosaics of whole counts, as a camera stores them
   kExr,  ///< developed: linear R, G, B as 32-bit floats, 1 at full scale, nothing clipped
 };
@@ -173,7 +173,7 @@ struct Scene {
   LightSettings lights;
   SpectraSettings spectra;
   TransportSettings transport;
-  FrameFile frames = FrameFile::kDng;
+  FrameFormat frames = FrameFormat::kDng;
   std::vector<DamageSettings> damage;   ///< in this order
   std::vector<TargetSettings> targets;  ///< on the table beside or over the cloth
   EffectSettings effects;

@@ -529,7 +529,7 @@ template <typename Visitor>
 void walk(Visitor& v, Scene& s) {
   v.text("fabric", s.fabric);
   v.integer("seed", s.seed, 0, std::numeric_limits<std::int64_t>::max());
-  v.choice("frames", s.frames, {{"dng", FrameFile::kDng}, {"exr", FrameFile::kExr}});
+  v.choice("frames", s.frames, {{"dng", FrameFormat::kDng}, {"exr", FrameFormat::kExr}});
   v.automatic("effects", "to", s.auto_to_sigma);
   v.section("camera", s.camera);
   v.section("geometry", s.geometry);

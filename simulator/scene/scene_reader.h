@@ -17,10 +17,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/color_spaces.h"
 #include "core/image.h"
 #include "core/result.h"
 #include "core/vec.h"
-#include "simulator/base/rgb.h"
 #include "simulator/scene/scene.h"
 #include "simulator/spectra/spectrum.h"
 #include "simulator/targets/range.h"

@@ -73,11 +73,11 @@ constexpr SceneRule kRules[] = {
      },
      "the LED shines nothing or a filter of the camera passes nothing",
      "give led and filters in the section [spectra]"},
-    {"frames", [](const Scene& s) { return s.frames == FrameFile::kExr && has_photosites(s.effects); },
+    {"frames", [](const Scene& s) { return s.frames == FrameFormat::kExr && has_photosites(s.effects); },
      "bloom, dark_current, uneven_response and nonlinearity act on photosites, and developed frames have "
      "none",
      "leave these effects out, or set frames = \"dng\""},
-    {"damage", [](const Scene& s) { return s.frames == FrameFile::kDng && loses_readings(s); },
+    {"damage", [](const Scene& s) { return s.frames == FrameFormat::kDng && loses_readings(s); },
      "the whole counts of a raw file have no way to say that one is missing", "set frames = \"exr\""},
 };
 

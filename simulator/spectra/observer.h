@@ -3,8 +3,8 @@
 
 #include <array>
 
+#include "core/color_spaces.h"
 #include "core/result.h"
-#include "simulator/base/rgb.h"
 #include "simulator/spectra/spectrum.h"
 
 // What three channels make of a reflectance. The camera under a LED and the standard observer under daylight

@@ -24,10 +24,10 @@ struct SheetPoint {
 /// have slopes of rms tan(waviness_deg). Grains are squares, each with an albedo and a slope of its own drawn
 /// uniformly; a spot sees the mean of those that its box covers, by area. A box wider than 4 grains sees
 /// grains of twice the size and half the strength, or of 4 times and a quarter, which has the same variance.
-class Sheet {
+class PaperSheet {
  public:
   /// `number` is that of the target in its scene: targets of one seed differ.
-  Sheet(const SheetSettings& settings, std::int64_t seed, int number);
+  PaperSheet(const SheetSettings& settings, std::int64_t seed, int number);
   SheetPoint at(const Spot& spot) const;
 
  private:

@@ -26,7 +26,7 @@ Vec3 tilted(Vec3 v, double tilt, double azimuth) {
 
 }  // namespace
 
-Target::Target(const TargetSettings& settings, Pattern pattern, const Sheet& sheet)
+Target::Target(const TargetSettings& settings, Pattern pattern, const PaperSheet& sheet)
     : pattern_(std::move(pattern)),
       sheet_(sheet),
       non_lambertian_(settings.sheet.non_lambertian),
@@ -51,7 +51,7 @@ Result<Target> Target::make(const TargetSettings& settings, std::int64_t seed, i
   if (auto ok = check_sheet(settings.sheet); !ok) return ok.error();
   auto pattern = make_pattern(settings.pattern);
   if (!pattern) return pattern.error();
-  return Target(settings, *std::move(pattern), Sheet(settings.sheet, seed, number));
+  return Target(settings, *std::move(pattern), PaperSheet(settings.sheet, seed, number));
 }
 
 Vec3 Target::place_mm(double u_mm, double v_mm) const {

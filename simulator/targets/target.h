@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
+#include "core/color_spaces.h"
 #include "core/result.h"
 #include "core/vec.h"
-#include "simulator/base/rgb.h"
 #include "simulator/spectra/spectrum.h"
 #include "simulator/targets/pattern.h"
 #include "simulator/targets/settings.h"
@@ -67,10 +67,10 @@ class Target {
   }
 
  private:
-  Target(const TargetSettings& settings, Pattern pattern, const Sheet& sheet);
+  Target(const TargetSettings& settings, Pattern pattern, const PaperSheet& sheet);
 
   Pattern pattern_;
-  Sheet sheet_;
+  PaperSheet sheet_;
   double non_lambertian_;
   Vec3 centre_mm_;
   Vec3 u_axis_, v_axis_, normal_;

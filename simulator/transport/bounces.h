@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "core/color_spaces.h"
 #include "core/image.h"
 #include "core/result.h"
 #include "core/vec.h"
-#include "simulator/base/rgb.h"
 #include "simulator/transport/height_mesh.h"
 #include "simulator/transport/rays.h"
 

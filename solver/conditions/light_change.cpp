@@ -20,8 +20,9 @@ bool is_inside(const std::vector<std::array<double, 2>>& polygon, double x, doub
 
 }  // namespace
 
-BlockLight block_light(std::span<const View<const float>> earlier, std::span<const View<const float>> later) {
-  BlockLight light;
+BlockChange block_light(std::span<const View<const float>> earlier,
+                        std::span<const View<const float>> later) {
+  BlockChange light;
   for (std::size_t p = 0; p < earlier.size(); ++p) {
     for (int y = 0; y < earlier[p].height(); ++y) {
       for (int x = 0; x < earlier[p].width(); ++x) {
@@ -35,14 +36,14 @@ BlockLight block_light(std::span<const View<const float>> earlier, std::span<con
   return light;
 }
 
-std::optional<double> light_ratio(std::vector<BlockLight> blocks) {
-  std::erase_if(blocks, [](const BlockLight& b) { return b.earlier <= 0 || b.later <= 0; });
+std::optional<double> light_ratio(std::vector<BlockChange> blocks) {
+  std::erase_if(blocks, [](const BlockChange& b) { return b.earlier <= 0 || b.later <= 0; });
   if (blocks.empty()) return {};
-  std::stable_sort(blocks.begin(), blocks.end(), [](const BlockLight& a, const BlockLight& b) {
+  std::stable_sort(blocks.begin(), blocks.end(), [](const BlockChange& a, const BlockChange& b) {
     return a.later * b.earlier < b.later * a.earlier;
   });
   const std::size_t left_out = blocks.size() / 4;
-  BlockLight sum;
+  BlockChange sum;
   for (std::size_t i = left_out; i < blocks.size() - left_out; ++i) {
     sum.earlier += blocks[i].earlier;
     sum.later += blocks[i].later;

@@ -18,7 +18,7 @@
 namespace weft::solver {
 
 /// Light of two shots of one LED on one block of the frame.
-struct BlockLight {
+struct BlockChange {
   double earlier = 0;
   double later = 0;
 };
@@ -27,11 +27,11 @@ struct BlockLight {
 inline constexpr int kLightBlock = 32;
 
 /// Sums of the readings that both shots have, plane by plane.
-BlockLight block_light(std::span<const View<const float>> earlier, std::span<const View<const float>> later);
+BlockChange block_light(std::span<const View<const float>> earlier, std::span<const View<const float>> later);
 
 /// Light of the later shot over that of the earlier, from the half of the blocks whose own ratios lie in the
 /// middle: a hand in a corner of one shot changes nothing. None where no block has light in both.
-std::optional<double> light_ratio(std::vector<BlockLight> blocks);
+std::optional<double> light_ratio(std::vector<BlockChange> blocks);
 
 /// A LED that was lit twice.
 struct LightRepeat {

@@ -78,7 +78,7 @@ Level system_of(const SlopeLevel& slopes, bool signs_as_printed, int threads) {
   return level;
 }
 
-Level height_from_slopes(const SlopeLevel& slopes, const SeedOptions& options, int threads) {
+Level height_from_slopes(const SlopeLevel& slopes, const RelaxationOptions& options, int threads) {
   if (slopes.size().pixels() == 1) return Level(slopes.size());
   const Level coarse = height_from_slopes(halved(slopes, threads), options, threads);
   Level level = system_of(slopes, options.signs_as_printed, threads);
@@ -89,7 +89,7 @@ Level height_from_slopes(const SlopeLevel& slopes, const SeedOptions& options, i
 
 }  // namespace
 
-void solve_as_seed(const Slopes& slopes, const SlopeSurvey& survey, const SeedOptions& options,
+void solve_as_seed(const Slopes& slopes, const SlopeSurvey& survey, const RelaxationOptions& options,
                    View<float> height, int threads) {
   const Level level = height_from_slopes(finest_slopes(slopes, survey, threads), options, threads);
   for (int y = 0; y < height.height(); ++y) {

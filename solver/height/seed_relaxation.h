@@ -6,7 +6,7 @@
 
 namespace weft::solver {
 
-struct SeedOptions {
+struct RelaxationOptions {
   int relaxations = 200;          ///< iterations a level: "until convergence" in the paper
   bool signs_as_printed = false;  ///< guess from the right and lower neighbour by adding the slope
 };
@@ -17,7 +17,7 @@ struct SeedOptions {
 /// has slopes twice as large, being between pixels twice as far apart, where the paper takes them as they
 /// are. The mean slope is taken out first. Where a neighbour is missing, at the border or in the mask, the
 /// mean is over those that are there.
-void solve_as_seed(const Slopes& slopes, const SlopeSurvey& survey, const SeedOptions& options,
+void solve_as_seed(const Slopes& slopes, const SlopeSurvey& survey, const RelaxationOptions& options,
                    View<float> height, int threads);
 
 }  // namespace weft::solver

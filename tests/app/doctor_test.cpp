@@ -20,7 +20,7 @@ using testing::Field;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
-using Verdict = Finding::Verdict;
+using Verdict = SetupFinding::Verdict;
 
 /// A machine as its /proc, /sys and /dev show it.
 class Machine {
@@ -57,7 +57,7 @@ class Machine {
     rig_.camera.port.clear();
   }
   void use_usb() { rig_.camera.port.clear(); }
-  std::vector<Finding> examine() const {
+  std::vector<SetupFinding> examine() const {
     return examine_rig(rig_, {[&] { return board; }, [&] { return camera; }},
                        {root_ / "proc", root_ / "sys", root_ / "dev", {root_ / "etc", root_ / "lib"}});
   }
@@ -74,14 +74,14 @@ class Machine {
 };
 
 auto faults(const std::string& part, const std::string& says, const std::string& remedy) {
-  return AllOf(Field("verdict", &Finding::verdict, Verdict::kFault), Field("part", &Finding::part, part),
-               Field("says", &Finding::says, HasSubstr(says)),
-               Field("remedy", &Finding::remedy, HasSubstr(remedy)));
+  return AllOf(Field("verdict", &SetupFinding::verdict, Verdict::kFault),
+               Field("part", &SetupFinding::part, part), Field("says", &SetupFinding::says, HasSubstr(says)),
+               Field("remedy", &SetupFinding::remedy, HasSubstr(remedy)));
 }
 
 TEST(Doctor, FindsNothingWrongWithAFreePort) {
   const Machine machine("free");
-  EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)));
+  EXPECT_THAT(machine.examine(), Each(Field("verdict", &SetupFinding::verdict, Verdict::kFine)));
 }
 
 TEST(Doctor, NamesTheModemManagerThatHoldsTheBoard) {
@@ -95,19 +95,19 @@ TEST(Doctor, NamesBrlttyAndWarnsOfAnyOtherHolder) {
   const Machine machine("brltty");
   machine.runs(99, "brltty", "dev/ttyACM0");
   machine.runs(100, "minicom", "dev/ttyACM0");
-  const std::vector<Finding> found = machine.examine();
+  const std::vector<SetupFinding> found = machine.examine();
   EXPECT_THAT(found, Contains(faults("board", "brltty (process 99)", "apt-get remove brltty")));
-  EXPECT_THAT(found, Contains(AllOf(Field(&Finding::verdict, Verdict::kWarning),
-                                    Field(&Finding::says, HasSubstr("minicom (process 100)")),
-                                    Field(&Finding::remedy, "kill 100"))));
+  EXPECT_THAT(found, Contains(AllOf(Field(&SetupFinding::verdict, Verdict::kWarning),
+                                    Field(&SetupFinding::says, HasSubstr("minicom (process 100)")),
+                                    Field(&SetupFinding::remedy, "kill 100"))));
 }
 
 TEST(Doctor, WarnsOfAModemManagerThatWaitsUnlessOurRulesKeepItOff) {
   const Machine machine("waits");
   machine.runs(421, "ModemManager");
-  EXPECT_THAT(machine.examine(), Contains(Field("verdict", &Finding::verdict, Verdict::kWarning)));
+  EXPECT_THAT(machine.examine(), Contains(Field("verdict", &SetupFinding::verdict, Verdict::kWarning)));
   machine.write("lib/70-weft.rules", "");
-  EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)));
+  EXPECT_THAT(machine.examine(), Each(Field("verdict", &SetupFinding::verdict, Verdict::kFine)));
 }
 
 TEST(Doctor, BlamesAThiefWhoseHoldIsNotShownForABoardThatDoesNotAnswer) {
@@ -124,13 +124,13 @@ TEST(Doctor, BlamesAThiefWhoseHoldIsNotShownForABoardThatDoesNotAnswer) {
   machine.board = Error{ErrorKind::kNoDevice, "the LED board is held by another program", "", "", "end it"};
   EXPECT_THAT(machine.examine(), Contains(faults("board", "brltty (process 99)", "apt-get remove brltty")));
   machine.board = Error{ErrorKind::kBadData, "the firmware is too old", "", "", "flash it"};
-  EXPECT_THAT(machine.examine(), Not(Contains(Field("says", &Finding::says, HasSubstr("brltty")))));
+  EXPECT_THAT(machine.examine(), Not(Contains(Field("says", &SetupFinding::says, HasSubstr("brltty")))));
 }
 
 TEST(Doctor, FindsNothingWrongWithTheOtherEndOfAVirtualBoard) {
   const Machine machine("virtual");
   machine.runs(7, "weft-virtual-ri", "dev/ttyACM0");
-  EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)));
+  EXPECT_THAT(machine.examine(), Each(Field("verdict", &SetupFinding::verdict, Verdict::kFine)));
 }
 
 TEST(Doctor, OpensTheOneDeviceWhoseOtherHasAFault) {
@@ -138,9 +138,10 @@ TEST(Doctor, OpensTheOneDeviceWhoseOtherHasAFault) {
   machine.board = std::string("greets");
   machine.runs(99, "brltty", "dev/ttyACM0");
   machine.camera->model = "D5100";
-  const std::vector<Finding> found = machine.examine();
-  EXPECT_THAT(found, Contains(Field("says", &Finding::says, HasSubstr("D5100"))));
-  EXPECT_THAT(found, Not(Contains(Field("says", &Finding::says, "greets")))) << "what holds it says more";
+  const std::vector<SetupFinding> found = machine.examine();
+  EXPECT_THAT(found, Contains(Field("says", &SetupFinding::says, HasSubstr("D5100"))));
+  EXPECT_THAT(found, Not(Contains(Field("says", &SetupFinding::says, "greets"))))
+      << "what holds it says more";
 }
 
 TEST(Doctor, SaysThatAPortIsNotThere) {
@@ -160,7 +161,7 @@ TEST(Doctor, NamesTheDesktopThatClaimsTheCamera) {
 TEST(Doctor, BelievesWhatDrivesTheCameraOfWhetherOneIsThere) {
   Machine machine("usb");
   machine.use_usb();
-  EXPECT_THAT(machine.examine(), Each(Field("verdict", &Finding::verdict, Verdict::kFine)))
+  EXPECT_THAT(machine.examine(), Each(Field("verdict", &SetupFinding::verdict, Verdict::kFine)))
       << "the kernel shows none, and yet it answers";
   machine.camera = Error{ErrorKind::kNoDevice, "no D5100 on USB", "", "there is no camera", "switch it on"};
   EXPECT_THAT(machine.examine(), Contains(faults("camera", "no D5100 on USB", "switch it on")));
@@ -169,31 +170,32 @@ TEST(Doctor, BelievesWhatDrivesTheCameraOfWhetherOneIsThere) {
 TEST(Doctor, WarnsOfASlowCable) {
   Machine machine("slow");
   machine.plug_camera("12");
-  EXPECT_THAT(machine.examine(), Contains(AllOf(Field(&Finding::verdict, Verdict::kWarning),
-                                                Field(&Finding::says, HasSubstr("12 Mbit/s")))));
+  EXPECT_THAT(machine.examine(), Contains(AllOf(Field(&SetupFinding::verdict, Verdict::kWarning),
+                                                Field(&SetupFinding::says, HasSubstr("12 Mbit/s")))));
 }
 
 TEST(Doctor, PassesOnWhatAPersonMustDoToTheCamera) {
   Machine machine("dial");
   machine.camera = Error{ErrorKind::kBadData, "the dial is not on M", "camera", "it is on A", "turn it to M"};
   EXPECT_THAT(machine.examine(), Contains(AllOf(faults("camera", "the dial is not on M", "turn it to M"),
-                                                Field("kind", &Finding::kind, ErrorKind::kBadData))));
+                                                Field("kind", &SetupFinding::kind, ErrorKind::kBadData))));
 }
 
 TEST(Doctor, WarnsOfALowBatteryAndAClockThatIsOff) {
   Machine machine("battery");
   machine.camera->battery = 0.1;
   machine.camera->clock_offset_s = -3600;
-  const std::vector<Finding> found = machine.examine();
-  EXPECT_THAT(found, Contains(Field(&Finding::says, HasSubstr("battery will not last"))));
-  EXPECT_THAT(found, Contains(Field(&Finding::says, HasSubstr("off by -3600 s"))));
+  const std::vector<SetupFinding> found = machine.examine();
+  EXPECT_THAT(found, Contains(Field(&SetupFinding::says, HasSubstr("battery will not last"))));
+  EXPECT_THAT(found, Contains(Field(&SetupFinding::says, HasSubstr("off by -3600 s"))));
 }
 
 TEST(Doctor, CountsTheSessionsThatFitOnTheDisk) {
   Machine machine("disk");
   machine.rig().scan.sessions = machine.root() / "scans";
   const auto fits = examine_folders(machine.rig(), 1);
-  EXPECT_THAT(fits, Contains(AllOf(Field(&Finding::part, "disk"), Field(&Finding::verdict, Verdict::kFine))));
+  EXPECT_THAT(fits, Contains(AllOf(Field(&SetupFinding::part, "disk"),
+                                   Field(&SetupFinding::verdict, Verdict::kFine))));
   const auto full = examine_folders(machine.rig(), std::uint64_t{1} << 56);
   EXPECT_THAT(full, Contains(faults("disk", "room for 0 sessions", "free some")));
 }
@@ -202,10 +204,10 @@ TEST(Doctor, WarnsOfASecondCopyOnTheDiskOfTheSessions) {
   Machine machine("one_disk");
   machine.rig().scan.sessions = machine.root() / "scans";
   machine.rig().scan.copy = machine.root() / "copies";
-  EXPECT_THAT(
-      examine_folders(machine.rig(), 1),
-      Contains(AllOf(Field(&Finding::part, "second disk"), Field(&Finding::verdict, Verdict::kWarning),
-                     Field(&Finding::says, HasSubstr("is on the disk of the sessions")))));
+  EXPECT_THAT(examine_folders(machine.rig(), 1),
+              Contains(AllOf(Field(&SetupFinding::part, "second disk"),
+                             Field(&SetupFinding::verdict, Verdict::kWarning),
+                             Field(&SetupFinding::says, HasSubstr("is on the disk of the sessions")))));
 }
 
 TEST(Doctor, RefusesTheCalibrationOfAnotherApertureOrNone) {
@@ -227,7 +229,7 @@ TEST(Doctor, KnowsACameraByItsNumberHoweverManyZerosItBeginsWith) {
   ASSERT_TRUE(write_calibration(rig.scan.calibration, calibration));
   rig.camera.serial.clear();
   EXPECT_EQ(capture::camera_serial(rig), "0006004711");
-  const auto other_camera = Field("says", &Finding::says, HasSubstr("it is of camera 0006004711"));
+  const auto other_camera = Field("says", &SetupFinding::says, HasSubstr("it is of camera 0006004711"));
   rig.camera.serial = "6004711";
   EXPECT_THAT(examine_folders(rig, 1), Not(Contains(other_camera)));
   EXPECT_EQ(capture::camera_serial(rig), "6004711");

@@ -238,7 +238,7 @@ TEST(Rectify, MakesThePitchOfARenderedRulerTrueAnywhere) {
   scene.effects.near_light = scene.effects.distortion = scene.effects.defocus = true;
   const Result<simulator::Rendering> picture = simulator::render_readings(scene, {0, 0, 640, 420});
   ASSERT_TRUE(picture) << picture.error().message();
-  const Result<simulator::Rig> rig = simulator::rig_of(scene);
+  const Result<simulator::SceneRig> rig = simulator::rig_of(scene);
   ASSERT_TRUE(rig);
   Image<float> map(rig->camera.size);
   for (int y = 0; y < 420; ++y) {

@@ -203,12 +203,12 @@ TEST(CapturesLayout, KeepsEveryBoardAndSheetInsideTheFrame) {
   Scene scene = small_rig();
   scene.effects.distortion = true;
   scene.camera.pose = {.tilt_deg = 3, .azimuth_deg = 50, .x_mm = 4};
-  const Result<Rig> rig = rig_of(scene);
+  const Result<SceneRig> rig = rig_of(scene);
   ASSERT_TRUE(rig) << rig.error().message();
   const SheetLayout sheet = sheet_layout(scene, rig->camera, five_poses());
   EXPECT_GT(sheet.width_mm, 150);
   std::vector<TargetSettings> all = board_poses(scene, rig->camera, board_pattern(scene), 15, 1);
-  for (const SheetPose& pose : five_poses()) {
+  for (const CapturePose& pose : five_poses()) {
     const std::vector<TargetSettings> targets = laid(sheet, pose, TargetSettings());
     all.insert(all.end(), targets.begin(), targets.end());
   }
@@ -228,7 +228,7 @@ TEST(CapturesLayout, KeepsEveryBoardAndSheetInsideTheFrame) {
 
 TEST(CapturesLayout, SpreadsBoardsOverFrameAndTilts) {
   const Scene scene = small_rig();
-  const Result<Rig> rig = rig_of(scene);
+  const Result<SceneRig> rig = rig_of(scene);
   const std::vector<TargetSettings> boards = board_poses(scene, rig->camera, board_pattern(scene), 15, 1);
   double left = 0, right = 0, lower = 0, upper = 0, least = 90, most = 0;
   for (const TargetSettings& board : boards) {

@@ -86,7 +86,7 @@ TEST(Effects, ASphereUnderANearLedIsTheFormulaEverywhere) {
   scene.camera.mm_per_pixel = 0.2;
   const Rect across = {1130, 805, 1330, 825};
   const Rendering r = render(scene, across);
-  const Rig rig = *rig_of(scene);
+  const SceneRig rig = *rig_of(scene);
   double worst = 0;
   for (int y = 0; y < across.height(); ++y) {
     for (int x = 0; x < across.width(); ++x) {
@@ -113,7 +113,7 @@ TEST(Effects, ADistortedPixelSeesThePointThatItsBentRayMeets) {
   scene.effects.distortion = true;
   scene.camera.lens = {.k1 = -0.4, .p1 = 0.01};
   const Rendering r = render(scene, {0, 0, 8, 8});
-  const Rig rig = *rig_of(scene);
+  const SceneRig rig = *rig_of(scene);
   const Vec3 seen = point_on_plane(rig.camera, 5, 3, 0);  // core's own inverse
   EXPECT_GT(length(seen - point_of_pixel(scene, 5, 3)), 0.3) << "the corner is bent by many pixels";
   const double expected = 0.5 * 2e7 * shading(incidence(rig.leds.leds[0], seen), {0, 0, 1});
@@ -126,7 +126,7 @@ TEST(Effects, VignettingIsInTheExactCalibration) {
   scene.effects.vignetting = true;
   scene.camera.vignette.corner_loss = 0.2;
   const Rendering with = render(scene, {0, 0, 4, 4});
-  const Rig rig = *rig_of(scene);
+  const SceneRig rig = *rig_of(scene);
   const NearLights lights = std::get<NearLights>(*exact_calibration(scene, rig).lights);
   const double u = 2 * 2.0 / 2463 - 1, v = 2 * 2.0 / 1631 - 1;
   const double calibrated =
@@ -157,7 +157,7 @@ TEST(Effects, StrayLightIsAShareOfWhatTheLedGivesToWhite) {
   scene.effects.stray = true;
   scene.lights.stray = 0.02;
   const Rendering r = render(scene, kCentre);
-  const Rig rig = *rig_of(scene);
+  const SceneRig rig = *rig_of(scene);
   const Incidence light = incidence(rig.leds.leds[2], {0, 0, 0});
   EXPECT_NEAR(r.readings(5, 5, 3 * 2 + 1) / (0.5 * 0.02 * 2e7 * light.strength), 1, 1e-12)
       << "LED 3 is behind the plane: all light is stray";

@@ -222,7 +222,7 @@ TEST_F(CalibrateCamera, RefusesPhotographsOfAnotherSizeThanTheCalibratedCameras)
   photograph_boards(6);
   simulator::Scene before = rig_scene();
   before.camera.width = 600;
-  const Result<simulator::Rig> rig = simulator::rig_of(before);
+  const Result<simulator::SceneRig> rig = simulator::rig_of(before);
   ASSERT_TRUE(rig);
   ASSERT_TRUE(write_calibration(work_ / "old", simulator::exact_calibration(before, *rig)));
   CalibrateCameraOptions with_old = options();
@@ -260,7 +260,7 @@ TEST_F(CalibrateCamera, KeepsTheOtherPartsAndSaysThatTheLightsAreOfAnotherFrame)
   photograph_boards(8);
   simulator::Scene before = rig_scene();
   before.camera.pose = {.tilt_deg = 1.5, .azimuth_deg = 35};
-  const Result<simulator::Rig> rig = simulator::rig_of(before);
+  const Result<simulator::SceneRig> rig = simulator::rig_of(before);
   ASSERT_TRUE(rig);
   const auto old = write_calibration(work_ / "old", simulator::exact_calibration(before, *rig));
   ASSERT_TRUE(old) << old.error().message();
@@ -285,7 +285,7 @@ TEST_F(CalibrateCamera, LeavesOutWhatIsNotTrueOfItsOwnTable) {
   simulator::Scene moved = photograph_scene(0);
   moved.targets[0].centre_mm.y -= 5;
   photograph("table02.dng", moved);
-  const Result<simulator::Rig> rig = simulator::rig_of(rig_scene());
+  const Result<simulator::SceneRig> rig = simulator::rig_of(rig_scene());
   ASSERT_TRUE(rig);
   Calibration before = simulator::exact_calibration(rig_scene(), *rig);
   before.patches = {{{{10, 10}, {30, 10}, {30, 30}}, {0.88, 0.88, 0.88}}};

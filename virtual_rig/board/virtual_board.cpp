@@ -62,7 +62,7 @@ class SimulatedBoard final : public VirtualBoard {
     return {};
   }
 
-  void inject(BoardFault fault) override {
+  void inject(VirtualBoardFault fault) override {
     std::unique_lock lock(mutex_);
     faults_.push_back(fault);
     wake();
@@ -91,41 +91,41 @@ class SimulatedBoard final : public VirtualBoard {
 
   void suffer_faults() {
     const std::lock_guard lock(mutex_);
-    for (const BoardFault fault : faults_) suffer(fault);
+    for (const VirtualBoardFault fault : faults_) suffer(fault);
     faults_.clear();
     happened_.notify_all();
   }
 
-  void suffer(BoardFault fault) {
+  void suffer(VirtualBoardFault fault) {
     switch (fault) {
-      case BoardFault::kUnplug:
+      case VirtualBoardFault::kUnplug:
         return lose_power();
-      case BoardFault::kReplug:
+      case VirtualBoardFault::kReplug:
         lose_power();
         static_cast<void>(get_power());
         return;
-      case BoardFault::kElsewhere:
+      case VirtualBoardFault::kElsewhere:
         lose_power();
         ++usb_number_;
         static_cast<void>(get_power());
         return;
-      case BoardFault::kReset:
+      case VirtualBoardFault::kReset:
         return reset();
-      case BoardFault::kHang:
+      case VirtualBoardFault::kHang:
         return avr_->hang();
-      case BoardFault::kGarbage:
+      case VirtualBoardFault::kGarbage:
         noise_until_ = RigClock::now() + kNoise;
         return;
-      case BoardFault::kDeaf:
+      case VirtualBoardFault::kDeaf:
         deaf_ = true;
         return;
-      case BoardFault::kSlow:
+      case VirtualBoardFault::kSlow:
         slow_ = true;
         return;
-      case BoardFault::kWrongBaud:
+      case VirtualBoardFault::kWrongBaud:
         garbled_ = true;
         return;
-      case BoardFault::kHear:
+      case VirtualBoardFault::kHear:
         deaf_ = slow_ = garbled_ = false;
         return;
     }
@@ -263,7 +263,7 @@ class SimulatedBoard final : public VirtualBoard {
   std::minstd_rand noise_;
   std::mutex mutex_;
   std::condition_variable happened_;
-  std::vector<BoardFault> faults_;
+  std::vector<VirtualBoardFault> faults_;
   std::jthread thread_;
 };
 

@@ -26,7 +26,7 @@ struct VirtualBoardOptions {
 };
 
 /// What may befall a board.
-enum class BoardFault {
+enum class VirtualBoardFault {
   kUnplug,     ///< the terminal goes, as a pulled cable takes it; all dark (no power)
   kReplug,     ///< and comes back under the same link, the firmware from power-on
   kElsewhere,  ///< the same, but as the next ttyACM, as a board comes back whose terminal is still held open
@@ -45,7 +45,7 @@ class VirtualBoard {
  public:
   static Result<std::unique_ptr<VirtualBoard>> start(const VirtualBoardOptions& options, LitLog& pins);
   virtual ~VirtualBoard() = default;  ///< stops it; all dark
-  virtual void inject(BoardFault fault) = 0;
+  virtual void inject(VirtualBoardFault fault) = 0;
 };
 
 }  // namespace weft::simulator

@@ -89,7 +89,7 @@ class ReadOut {
     const Rect rect = grown_in_rows_by_bloom(tile);
     const auto width = static_cast<std::size_t>(tile.width());
     std::vector<double> samples(static_cast<std::size_t>(rect.pixels()));
-    std::vector<Photosite> photosites(frames_.has_photosites() ? width : 0);
+    std::vector<PhotositeDefect> photosites(frames_.has_photosites() ? width : 0);
     for (int y = rect.y0; y < rect.y1; ++y) {
       const std::span row = row_of(samples, rect, y);
       fill_signal(y, tile.x0, row);
@@ -127,7 +127,7 @@ class ReadOut {
     return std::span(samples).subspan(static_cast<std::size_t>(y - rect.y0) * width, width);
   }
 
-  void fill_photosites(int y, int x0, std::span<Photosite> photosites) const {
+  void fill_photosites(int y, int x0, std::span<PhotositeDefect> photosites) const {
     const float* response = frames_.response().row(y) + x0;
     const float* dark_per_s = frames_.dark_per_s().row(y) + x0;
     const float* offset_counts = frames_.offset_counts().row(y) + x0;

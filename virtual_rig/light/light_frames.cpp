@@ -120,12 +120,12 @@ class Planes {
 
   void draw_photosites() const {
     const SensorPattern pattern(defects_of(plan_.scene), random_key(plan_.scene));
-    std::vector<Photosite> row(static_cast<std::size_t>(size_.width));
+    std::vector<PhotositeDefect> row(static_cast<std::size_t>(size_.width));
     const int first = static_cast<int>(plan_.rig.leds.leds.size()) + 1;
     for (int y = 0; y < size_.height; ++y) {
       pattern.fill({0, y, size_.width, y + 1}, row);
       for (int x = 0; x < size_.width; ++x) {
-        const Photosite& site = row[static_cast<std::size_t>(x)];
+        const PhotositeDefect& site = row[static_cast<std::size_t>(x)];
         *at(first, x, y) = static_cast<float>(site.response);
         *at(first + 1, x, y) = static_cast<float>(site.dark_electrons_per_s);
         *at(first + 2, x, y) = static_cast<float>(site.offset_counts);
@@ -258,7 +258,7 @@ std::vector<std::string> LightFrames::left_out() const {
   if (s.effects.movement) left_out.emplace_back("movement: the cloth lies still between exposures");
   if (s.effects.led_drift) left_out.emplace_back("led_drift: LEDs stay as bright as they are");
   if (!s.damage.empty()) left_out.emplace_back("damage: frames are whole");
-  if (s.frames == FrameFile::kExr) left_out.emplace_back("frames = \"exr\": a camera delivers raw files");
+  if (s.frames == FrameFormat::kExr) left_out.emplace_back("frames = \"exr\": a camera delivers raw files");
   return left_out;
 }
 

@@ -61,7 +61,7 @@ class LightFrames {
                                   const RenderLightOptions& options = {});
 
   const Scene& scene() const { return plan_.scene; }
-  const Rig& rig() const { return plan_.rig; }
+  const SceneRig& rig() const { return plan_.rig; }
   Size size() const { return plan_.rig.camera.size; }
   int leds() const { return static_cast<int>(plan_.rig.leds.leds.size()); }
   /// Its folder of the cache.

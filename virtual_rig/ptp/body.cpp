@@ -22,17 +22,17 @@ Answer with_array(const std::vector<std::uint32_t>& values) {
 
 constexpr double kHalfSent_s = 0.02;  // half of a picture is on its way by then
 
-Delivery delivery_of(Fault in_transfer) {
+Delivery delivery_of(PtpFault in_transfer) {
   switch (in_transfer) {
-    case Fault::kDropInData:
+    case PtpFault::kDropInData:
       return Delivery::kHalfThenHangUp;
-    case Fault::kDataStalls:
-    case Fault::kPowerOffInData:
-    case Fault::kUsbUnplugInData:
+    case PtpFault::kDataStalls:
+    case PtpFault::kPowerOffInData:
+    case PtpFault::kUsbUnplugInData:
       return Delivery::kHalfThenNothing;
-    case Fault::kDataEndsEarly:
+    case PtpFault::kDataEndsEarly:
       return Delivery::kHalfAsWhole;
-    case Fault::kUsbTimeout:
+    case PtpFault::kUsbTimeout:
       return Delivery::kTimeOut;
     default:
       return Delivery::kWhole;
@@ -41,7 +41,7 @@ Delivery delivery_of(Fault in_transfer) {
 
 }  // namespace
 
-Body::Body(const VirtualCameraOptions& options, DevelopExposure develop)
+PtpBody::PtpBody(const VirtualCameraOptions& options, DevelopExposure develop)
     : options_(options),
       facts_(facts_of(options.body)),
       develop_(std::move(develop)),
@@ -54,62 +54,62 @@ Body::Body(const VirtualCameraOptions& options, DevelopExposure develop)
   folder(kPicturesFolder, kDcimFolder, "100D5100");
 }
 
-void Body::attach(Link* network, Link* usb) {
+void PtpBody::attach(Link* network, Link* usb) {
   const std::lock_guard lock(mutex_);
   network_ = network;
   usb_ = usb;
   update_presence();
 }
 
-Answer Body::transact(const Request& request, BytesView data) {
+Answer PtpBody::transact(const Request& request, BytesView data) {
   const std::lock_guard lock(mutex_);
   if (!powered_) return {.delivery = Delivery::kHangUp};
   return serve(request, data);
 }
 
-bool Body::admit_to_network() {
+bool PtpBody::admit_to_network() {
   const std::lock_guard lock(mutex_);
   ++connections_;
-  session_silent_ = faults_.take(Fault::kOpenSessionSilent, connections_);
-  card_full_ = faults_.take(Fault::kCardFull, connections_);
-  return powered_ && !faults_.take(Fault::kInitFail, connections_);
+  session_silent_ = faults_.take(PtpFault::kOpenSessionSilent, connections_);
+  card_full_ = faults_.take(PtpFault::kCardFull, connections_);
+  return powered_ && !faults_.take(PtpFault::kInitFail, connections_);
 }
 
-bool Body::admit_to_usb() {
+bool PtpBody::admit_to_usb() {
   const std::lock_guard lock(mutex_);
   if (RigClock::now() < claimed_until_) return false;
   ++connections_;
   stuck_ = false;
-  session_silent_ = faults_.take(Fault::kOpenSessionSilent, connections_);
-  card_full_ = faults_.take(Fault::kCardFull, connections_);
-  if (faults_.take(Fault::kUsbStaleSession, connections_)) session_open_ = true;
-  if (!faults_.take(Fault::kUsbClaimed, connections_)) return true;
+  session_silent_ = faults_.take(PtpFault::kOpenSessionSilent, connections_);
+  card_full_ = faults_.take(PtpFault::kCardFull, connections_);
+  if (faults_.take(PtpFault::kUsbStaleSession, connections_)) session_open_ = true;
+  if (!faults_.take(PtpFault::kUsbClaimed, connections_)) return true;
   claimed_until_ = RigClock::now() + std::chrono::duration_cast<RigClock::duration>(
                                          std::chrono::duration<double>(options_.away_s));
   return false;
 }
 
-void Body::end_session() {
+void PtpBody::end_session() {
   const std::lock_guard lock(mutex_);
   session_open_ = stuck_ = false;
 }
 
-void Body::reset() {
+void PtpBody::reset() {
   const std::lock_guard lock(mutex_);
   session_open_ = session_silent_ = stuck_ = false;
 }
 
-void Body::pull_cable() {
+void PtpBody::pull_cable() {
   const std::lock_guard lock(mutex_);
   break_link();
 }
 
-int Body::shots() const {
+int PtpBody::shots() const {
   const std::lock_guard lock(mutex_);
   return static_cast<int>(image_number_ - options_.shots_before);
 }
 
-Answer Body::serve(const Request& request, BytesView data) {
+Answer PtpBody::serve(const Request& request, BytesView data) {
   const auto [first, second, third, fourth, fifth] = request.parameters;
   const std::uint16_t operation = request.operation;
   const auto& operations = facts_.operations;
@@ -167,14 +167,14 @@ Answer Body::serve(const Request& request, BytesView data) {
   }
 }
 
-Answer Body::open_session() {
+Answer PtpBody::open_session() {
   if (session_silent_) return {.delivery = Delivery::kNothing};
   if (session_open_) return {.code = kSessionAlreadyOpen};
   session_open_ = true;
   return {};
 }
 
-Answer Body::object_handles(const Request& request) const {
+Answer PtpBody::object_handles(const Request& request) const {
   if (card_full_) return {.delivery = Delivery::kNothing};
   const auto [store, format, parent, unused, unused_too] = request.parameters;
   if (store != kStore && store != kAnyStore) return {.code = kInvalidStorage};
@@ -187,11 +187,11 @@ Answer Body::object_handles(const Request& request) const {
   return {.parameters = {static_cast<std::uint32_t>(handles.size())}};
 }
 
-Answer Body::object_info(std::uint32_t handle) {
+Answer PtpBody::object_info(std::uint32_t handle) {
   const auto found = objects_.find(handle);
   if (found == objects_.end()) return {.code = kInvalidObject};
   Picture& picture = found->second;
-  if (picture.in_transfer == Fault::kDropBeforeObject) {
+  if (picture.in_transfer == PtpFault::kDropBeforeObject) {
     picture.in_transfer.reset();
     break_link();
     return {.delivery = Delivery::kHangUp};
@@ -199,7 +199,7 @@ Answer Body::object_info(std::uint32_t handle) {
   return with_data(ptp::object_info(picture.facts));
 }
 
-Answer Body::object(std::uint32_t handle, std::uint64_t offset, std::uint64_t most) {
+Answer PtpBody::object(std::uint32_t handle, std::uint64_t offset, std::uint64_t most) {
   const auto found = objects_.find(handle);
   if (found == objects_.end() || !found->second.bytes) return {.code = kInvalidObject};
   Picture& picture = found->second;
@@ -210,15 +210,15 @@ Answer Body::object(std::uint32_t handle, std::uint64_t offset, std::uint64_t mo
                    .data = Payload{picture.bytes, part}};
   if (const auto fault = std::exchange(picture.in_transfer, std::nullopt)) {
     answer.delivery = delivery_of(*fault);
-    if (fault == Fault::kPowerOffInData) after(kHalfSent_s, [this] { set_power(false); });
-    if (fault == Fault::kUsbUnplugInData) after(kHalfSent_s, [this] { unplug(); });
+    if (fault == PtpFault::kPowerOffInData) after(kHalfSent_s, [this] { set_power(false); });
+    if (fault == PtpFault::kUsbUnplugInData) after(kHalfSent_s, [this] { unplug(); });
   }
   const bool in_memory = picture.facts.storage == kMemory;
   if (in_memory) objects_.erase(found);  // what has been fetched makes room
   return answer;
 }
 
-Answer Body::delete_object(std::uint32_t handle) {
+Answer PtpBody::delete_object(std::uint32_t handle) {
   const auto found = objects_.find(handle);
   if (found == objects_.end()) return {.code = kInvalidObject};
   if (found->second.facts.format == kFolder) return {.code = kAccessDenied};
@@ -226,10 +226,10 @@ Answer Body::delete_object(std::uint32_t handle) {
   return {};
 }
 
-Answer Body::property(const Request& request, BytesView data) {
+Answer PtpBody::property(const Request& request, BytesView data) {
   const auto code = static_cast<std::uint16_t>(request.parameters[0]);
   if (request.operation == kSetDevicePropValue) {
-    const Response response = properties_.set(code, data);
+    const ResponseCode response = properties_.set(code, data);
     if (response == kOk && code == kShutterSpeed) tell_changes({kExposureTime});
     if (response == kOk && code == kExposureTime) tell_changes({kShutterSpeed});
     return {.code = response};
@@ -239,7 +239,7 @@ Answer Body::property(const Request& request, BytesView data) {
   return bytes ? with_data(*std::move(bytes)) : Answer{.code = kPropertyNotSupported};
 }
 
-Answer Body::events() {
+Answer PtpBody::events() {
   ByteWriter writer;
   writer.put(static_cast<std::uint16_t>(notices_.size()));
   for (const Notice& notice : notices_)
@@ -248,23 +248,23 @@ Answer Body::events() {
   return with_data(writer.take());
 }
 
-Answer Body::ready() {
+Answer PtpBody::ready() {
   if (std::exchange(undeveloped_, false)) return {.code = kGeneralError};
   return {.code = busy() ? kDeviceBusy : kOk};
 }
 
-bool Body::busy() const {
+bool PtpBody::busy() const {
   return exposing_ || stuck_ || RigClock::now() < busy_until_;
 }
 
-Answer Body::capture(bool to_memory) {
+Answer PtpBody::capture(bool to_memory) {
   if (busy()) return {.code = kDeviceBusy};
   ++captures_;
-  if (faults_.take(Fault::kNoAnswer, captures_)) {
+  if (faults_.take(PtpFault::kNoAnswer, captures_)) {
     befall_before_next();
     return {.delivery = Delivery::kNothing};
   }
-  if (faults_.take(Fault::kCaptureBusy, captures_)) {
+  if (faults_.take(PtpFault::kCaptureBusy, captures_)) {
     busy_until_ = RigClock::now() + std::chrono::seconds(2);
     befall_before_next();
     return {.code = kDeviceBusy};

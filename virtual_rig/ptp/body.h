@@ -22,9 +22,9 @@ namespace weft::simulator::ptp {
 
 /// A body behind its sockets: session, properties, pictures and exposures in real time. Links bring it
 /// operations; it does not know which. Safe from any thread.
-class Body {
+class PtpBody {
  public:
-  Body(const VirtualCameraOptions& options, DevelopExposure develop);
+  PtpBody(const VirtualCameraOptions& options, DevelopExposure develop);
 
   /// The ways to it, from now on; either may be missing.
   void attach(Link* network, Link* usb);
@@ -44,14 +44,14 @@ class Body {
   /// The cable is out, and in again after a while.
   void pull_cable();
 
-  void inject(const FaultKind& kind, int shot);
+  void inject(const PtpFaultKind& kind, int shot);
   int shots() const;
 
  private:
   struct Picture {
     ObjectFacts facts;
     std::shared_ptr<const Bytes> bytes = {};
-    std::optional<Fault> in_transfer = {};
+    std::optional<PtpFault> in_transfer = {};
   };
   struct Exposure {
     int shot = 0;  ///< by the count that faults go by
@@ -86,7 +86,7 @@ class Body {
   void announce_later(const std::vector<Notice>& notices);
 
   void befall_before_next();
-  void befall(Fault fault);
+  void befall(PtpFault fault);
   void tell_changes(std::initializer_list<PropertyCode> codes);
   void break_link();
   void unplug();

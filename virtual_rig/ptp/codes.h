@@ -35,7 +35,7 @@ enum Operation : std::uint16_t {
   kInitiateCaptureRecInMedia = 0x9207,
 };
 
-enum Response : std::uint16_t {
+enum ResponseCode : std::uint16_t {
   kOk = 0x2001,
   kGeneralError = 0x2002,
   kSessionNotOpen = 0x2003,

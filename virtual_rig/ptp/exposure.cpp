@@ -25,7 +25,7 @@ Bytes jpeg() {
 
 }  // namespace
 
-Body::Exposure Body::expose(bool to_memory) {
+PtpBody::Exposure PtpBody::expose(bool to_memory) {
   exposing_ = true;
   Exposure exposure = {.shot = captures_, .to_memory = to_memory, .power_cycle = power_cycles_};
   CameraExposure& camera = exposure.camera;
@@ -43,24 +43,24 @@ Body::Exposure Body::expose(bool to_memory) {
   return exposure;
 }
 
-void Body::half_exposed(const Exposure& exposure) {
+void PtpBody::half_exposed(const Exposure& exposure) {
   const std::lock_guard lock(mutex_);
-  if (faults_.take(Fault::kOldShot, exposure.shot)) break_link();
-  if (faults_.waits(Fault::kDropInExposure, exposure.shot)) break_link();
-  if (faults_.take(Fault::kUsbUnplug, exposure.shot)) unplug();
-  if (faults_.take(Fault::kPowerOff, exposure.shot)) set_power(false);
-  if (faults_.take(Fault::kPowerCycle, exposure.shot)) {
+  if (faults_.take(PtpFault::kOldShot, exposure.shot)) break_link();
+  if (faults_.waits(PtpFault::kDropInExposure, exposure.shot)) break_link();
+  if (faults_.take(PtpFault::kUsbUnplug, exposure.shot)) unplug();
+  if (faults_.take(PtpFault::kPowerOff, exposure.shot)) set_power(false);
+  if (faults_.take(PtpFault::kPowerCycle, exposure.shot)) {
     set_power(false);
     after(options_.away_s, [this] { set_power(true); });
   }
 }
 
-void Body::close_shutter(const Exposure& exposure) {
+void PtpBody::close_shutter(const Exposure& exposure) {
   std::unique_lock lock(mutex_);
   if (exposure.power_cycle != power_cycles_) return;
-  const bool dropped = faults_.take(Fault::kDropInExposure, exposure.shot);
-  const bool lost = faults_.take(Fault::kNoObject, exposure.shot) || dropped;
-  if (faults_.take(Fault::kBusyForEver, exposure.shot)) {
+  const bool dropped = faults_.take(PtpFault::kDropInExposure, exposure.shot);
+  const bool lost = faults_.take(PtpFault::kNoObject, exposure.shot) || dropped;
+  if (faults_.take(PtpFault::kBusyForEver, exposure.shot)) {
     stuck_ = true;
   } else if (!lost) {
     lock.unlock();
@@ -76,7 +76,7 @@ void Body::close_shutter(const Exposure& exposure) {
   befall_before_next();
 }
 
-Result<Bytes> Body::develop(const Exposure& exposure) {
+Result<Bytes> PtpBody::develop(const Exposure& exposure) {
   bool raw = false;
   {
     const std::lock_guard lock(mutex_);
@@ -87,22 +87,22 @@ Result<Bytes> Body::develop(const Exposure& exposure) {
 }
 
 /// Puts the picture where the host looks for it and says so, or whatever else befalls it.
-void Body::keep(const Exposure& exposure, Bytes file) {
-  const auto befalls = [&](Fault fault) { return faults_.take(fault, exposure.shot); };
-  if (befalls(Fault::kShortData)) file.resize(file.size() / 2);
+void PtpBody::keep(const Exposure& exposure, Bytes file) {
+  const auto befalls = [&](PtpFault fault) { return faults_.take(fault, exposure.shot); };
+  if (befalls(PtpFault::kShortData)) file.resize(file.size() / 2);
   const bool raw = properties_.number(kImageQuality) == kRawQuality;
 
   Picture picture;
   picture.bytes = std::make_shared<const Bytes>(std::move(file));
   const std::shared_ptr<const Bytes> before = std::exchange(last_file_, nullptr);
-  if (befalls(Fault::kDuplicateFrame) && before) picture.bytes = before;
-  if (faults_.waits(Fault::kDuplicateFrame, exposure.shot + 1)) last_file_ = picture.bytes;
-  for (const Fault fault :
-       {Fault::kDropBeforeObject, Fault::kDropInData, Fault::kDataStalls, Fault::kDataEndsEarly,
-        Fault::kUsbTimeout, Fault::kPowerOffInData, Fault::kUsbUnplugInData})
+  if (befalls(PtpFault::kDuplicateFrame) && before) picture.bytes = before;
+  if (faults_.waits(PtpFault::kDuplicateFrame, exposure.shot + 1)) last_file_ = picture.bytes;
+  for (const PtpFault fault :
+       {PtpFault::kDropBeforeObject, PtpFault::kDropInData, PtpFault::kDataStalls, PtpFault::kDataEndsEarly,
+        PtpFault::kUsbTimeout, PtpFault::kPowerOffInData, PtpFault::kUsbUnplugInData})
     if (befalls(fault)) picture.in_transfer = fault;
 
-  const std::size_t said_bytes = picture.bytes->size() * (befalls(Fault::kObjectSizeLie) ? 2 : 1);
+  const std::size_t said_bytes = picture.bytes->size() * (befalls(PtpFault::kObjectSizeLie) ? 2 : 1);
   picture.facts = {
       .storage = exposure.to_memory ? kMemory : kStore,
       .format = raw ? kUndefinedFormat : kExifJpeg,
@@ -115,65 +115,65 @@ void Body::keep(const Exposure& exposure, Bytes file) {
   objects_[handle] = std::move(picture);
 
   std::vector<Notice> notices = {{exposure.to_memory ? kObjectAddedInSdram : kObjectAdded, handle}};
-  if (!befalls(Fault::kNoCaptureComplete))
+  if (!befalls(PtpFault::kNoCaptureComplete))
     notices.push_back({exposure.to_memory ? kCaptureCompleteInSdram : kCaptureComplete, 0});
-  if (befalls(Fault::kPropertyNoise)) {
+  if (befalls(PtpFault::kPropertyNoise)) {
     notices.insert(notices.begin(), 5, {kDevicePropChanged, kRecordingMedia});
     notices.insert(notices.end(), 5, {kDevicePropChanged, kExternalPower});
   }
   constexpr std::uint32_t kNoSuchProperty = 0xd1ff;
-  if (befalls(Fault::kUnsupportedProperty))
+  if (befalls(PtpFault::kUnsupportedProperty))
     notices.insert(notices.begin(), {kDevicePropChanged, kNoSuchProperty});
 
   const auto tell = [this, notices, power_cycle = power_cycles_] {
     if (power_cycle == power_cycles_) notices_.insert(notices_.end(), notices.begin(), notices.end());
   };
-  befalls(Fault::kFileLate) ? after(options_.late_s, tell) : tell();
+  befalls(PtpFault::kFileLate) ? after(options_.late_s, tell) : tell();
 }
 
 /// The first free one.
-std::uint32_t Body::new_handle(bool to_memory) const {
+std::uint32_t PtpBody::new_handle(bool to_memory) const {
   std::uint32_t handle = to_memory ? kFirstSdramHandle : kFirstCardHandle;
   while (objects_.contains(handle)) ++handle;
   return handle;
 }
 
-void Body::inject(const FaultKind& kind, int shot) {
+void PtpBody::inject(const PtpFaultKind& kind, int shot) {
   const std::lock_guard lock(mutex_);
   faults_.add(kind.fault, (kind.befalls == Befalls::kConnection ? connections_ : captures_) + shot);
   if (!exposing_) befall_before_next();
 }
 
-void Body::befall_before_next() {
-  for (const FaultKind& kind : fault_kinds())
+void PtpBody::befall_before_next() {
+  for (const PtpFaultKind& kind : fault_kinds())
     if (kind.befalls == Befalls::kBefore && faults_.take(kind.fault, captures_ + 1)) befall(kind.fault);
 }
 
-void Body::befall(Fault fault) {
+void PtpBody::befall(PtpFault fault) {
   switch (fault) {
-    case Fault::kRefused:
+    case PtpFault::kRefused:
       port_open_ = false;
       after(options_.away_s, [this] {
         port_open_ = true;
         update_presence();
       });
       break;
-    case Fault::kPowerOn:
+    case PtpFault::kPowerOn:
       return set_power(true);
-    case Fault::kPowerOffNow:
+    case PtpFault::kPowerOffNow:
       return set_power(false);
-    case Fault::kUsbUnplugNow:
+    case PtpFault::kUsbUnplugNow:
       return unplug();
-    case Fault::kBatteryLow:
+    case PtpFault::kBatteryLow:
       properties_.turn(kBatteryLevel, 5);
       return tell_changes({kBatteryLevel});
-    case Fault::kDialTurned:
+    case PtpFault::kDialTurned:
       properties_.turn_dial(false);
       return tell_changes({kExposureProgram, kShutterSpeed, kExposureTime, kFNumber});
-    case Fault::kRawOff:
+    case PtpFault::kRawOff:
       properties_.turn(kImageQuality, 2);
       return tell_changes({kImageQuality});
-    case Fault::kWell:
+    case PtpFault::kWell:
       faults_.forget();
       properties_.turn(kBatteryLevel, static_cast<int>(std::lround(100 * options_.battery)));
       properties_.turn(kImageQuality, 4);
@@ -181,10 +181,10 @@ void Body::befall(Fault fault) {
       cable_in_ = port_open_ = true;
       set_power(true);
       break;
-    case Fault::kExposureChanged:
+    case PtpFault::kExposureChanged:
       properties_.change_exposure();
       return tell_changes({kShutterSpeed, kExposureTime});
-    case Fault::kUsbReplug:
+    case PtpFault::kUsbReplug:
       if (cable_in_) return break_link();
       cable_in_ = true;
       break;
@@ -194,7 +194,7 @@ void Body::befall(Fault fault) {
   update_presence();
 }
 
-void Body::tell_changes(std::initializer_list<PropertyCode> codes) {
+void PtpBody::tell_changes(std::initializer_list<PropertyCode> codes) {
   for (const PropertyCode code : codes) {
     notices_.push_back({kDevicePropChanged, code});
     for (Link* const link : {network_, usb_})
@@ -203,7 +203,7 @@ void Body::tell_changes(std::initializer_list<PropertyCode> codes) {
 }
 
 /// A network's connection can be made again at once; a cable is out for a while.
-void Body::break_link() {
+void PtpBody::break_link() {
   session_open_ = stuck_ = cable_in_ = false;
   update_presence();
   if (network_) network_->hang_up();
@@ -213,12 +213,12 @@ void Body::break_link() {
   });
 }
 
-void Body::unplug() {
+void PtpBody::unplug() {
   cable_in_ = session_open_ = false;
   update_presence();
 }
 
-void Body::set_power(bool on) {
+void PtpBody::set_power(bool on) {
   if (on == powered_) return;
   powered_ = on;
   update_presence();
@@ -230,13 +230,13 @@ void Body::set_power(bool on) {
   if (network_) network_->hang_up();
 }
 
-void Body::update_presence() {
+void PtpBody::update_presence() {
   if (network_) network_->set_present(powered_ && port_open_);
   if (usb_) usb_->set_present(powered_ && cable_in_);
 }
 
 /// The action has the lock.
-void Body::after(double seconds, std::function<void()> action) {
+void PtpBody::after(double seconds, std::function<void()> action) {
   timeline_.at(RigClock::now() + duration(seconds), [this, action = std::move(action)] {
     const std::lock_guard lock(mutex_);
     action();

@@ -5,10 +5,10 @@
 
 namespace weft::simulator::ptp {
 
-const std::vector<FaultKind>& fault_kinds() {
-  using enum Fault;
+const std::vector<PtpFaultKind>& fault_kinds() {
+  using enum PtpFault;
   using enum Befalls;
-  static const std::vector<FaultKind> kinds = {
+  static const std::vector<PtpFaultKind> kinds = {
       {kDropInExposure, kShot, "drop_in_exposure",
        "The link breaks while the shutter is open and the picture is lost; over USB the cable is back after "
        "a while."},
@@ -79,16 +79,16 @@ const std::vector<FaultKind>& fault_kinds() {
   return kinds;
 }
 
-const FaultKind* find_fault(std::string_view name) {
-  const auto found = std::ranges::find(fault_kinds(), name, &FaultKind::name);
+const PtpFaultKind* find_fault(std::string_view name) {
+  const auto found = std::ranges::find(fault_kinds(), name, &PtpFaultKind::name);
   return found == fault_kinds().end() ? nullptr : &*found;
 }
 
-bool FaultSchedule::take(Fault fault, int now) {
+bool FaultSchedule::take(PtpFault fault, int now) {
   return std::erase_if(waiting_, [=](const Waiting& one) { return one.fault == fault && one.at == now; }) > 0;
 }
 
-bool FaultSchedule::waits(Fault fault, int at) const {
+bool FaultSchedule::waits(PtpFault fault, int at) const {
   return std::ranges::any_of(waiting_,
                              [=](const Waiting& one) { return one.fault == fault && one.at == at; });
 }

@@ -9,7 +9,7 @@
 
 namespace weft::simulator::ptp {
 
-enum class Fault : std::uint8_t {
+enum class PtpFault : std::uint8_t {
   kDropInExposure,
   kDropBeforeObject,
   kDropInData,
@@ -57,28 +57,28 @@ enum class Befalls {
   kBefore,      ///< the end of the exposure before; at once for the first
 };
 
-struct FaultKind {
-  Fault fault;
+struct PtpFaultKind {
+  PtpFault fault;
   Befalls befalls;
   const char* name;
   const char* sentence;
 };
 
-const std::vector<FaultKind>& fault_kinds();
-const FaultKind* find_fault(std::string_view name);
+const std::vector<PtpFaultKind>& fault_kinds();
+const PtpFaultKind* find_fault(std::string_view name);
 
 /// Faults that wait for their turn. Not safe from several threads.
 class FaultSchedule {
  public:
-  void add(Fault fault, int at) { waiting_.push_back({fault, at}); }
+  void add(PtpFault fault, int at) { waiting_.push_back({fault, at}); }
   /// Whether it befalls turn `now`; if so, it has.
-  bool take(Fault fault, int now);
-  bool waits(Fault fault, int at) const;
+  bool take(PtpFault fault, int now);
+  bool waits(PtpFault fault, int at) const;
   void forget() { waiting_.clear(); }
 
  private:
   struct Waiting {
-    Fault fault;
+    PtpFault fault;
     int at;
   };
   std::vector<Waiting> waiting_;

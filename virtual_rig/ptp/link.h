@@ -42,7 +42,7 @@ struct Payload {
 };
 
 struct Answer {
-  Response code = kOk;
+  ResponseCode code = kOk;
   std::vector<std::uint32_t> parameters = {};
   std::optional<Payload> data = {};  ///< none: no data phase
   Delivery delivery = Delivery::kWhole;

@@ -62,7 +62,7 @@ Bytes command_ack() {
 
 }  // namespace
 
-Result<std::unique_ptr<NetworkLink>> NetworkLink::make(Body& body, std::uint16_t port) {
+Result<std::unique_ptr<NetworkLink>> NetworkLink::make(PtpBody& body, std::uint16_t port) {
   Descriptor bound = bound_to(port);
   if (bound.get() < 0 || listening_at(port_of(bound.get())).get() < 0)
     return Error{ErrorKind::kTryAgain, "virtual camera cannot have its port",
@@ -72,7 +72,7 @@ Result<std::unique_ptr<NetworkLink>> NetworkLink::make(Body& body, std::uint16_t
   return std::unique_ptr<NetworkLink>(new NetworkLink(body, std::move(bound), port));
 }
 
-NetworkLink::NetworkLink(Body& body, Descriptor bound, std::uint16_t port)
+NetworkLink::NetworkLink(PtpBody& body, Descriptor bound, std::uint16_t port)
     : body_(body),
       bound_(std::move(bound)),
       port_(port),

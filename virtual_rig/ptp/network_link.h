@@ -17,7 +17,7 @@ namespace weft::simulator::ptp {
 class NetworkLink : public Link {
  public:
   /// Keeps the port from now on, free or not free to connect to. 0: any. kTryAgain if another program has it.
-  static Result<std::unique_ptr<NetworkLink>> make(Body& body, std::uint16_t port);
+  static Result<std::unique_ptr<NetworkLink>> make(PtpBody& body, std::uint16_t port);
 
   std::uint16_t port() const { return port_; }
 
@@ -26,14 +26,14 @@ class NetworkLink : public Link {
   void announce(Event event, std::uint32_t parameter) override;
 
  private:
-  NetworkLink(Body& body, Descriptor bound, std::uint16_t port);
+  NetworkLink(PtpBody& body, Descriptor bound, std::uint16_t port);
   void serve(int fd);
   void serve_host(int fd);
   void serve_events(int fd);
   bool take_seat();
   void leave_seat();
 
-  Body& body_;
+  PtpBody& body_;
   const Descriptor bound_;  ///< never listens: it keeps the port while the camera is off
   const std::uint16_t port_;
   std::mutex mutex_;

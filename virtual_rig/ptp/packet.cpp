@@ -108,7 +108,7 @@ bool write_packet(const WriteBytes& write, std::uint32_t type, BytesView body) {
   return write(std::array{BytesView(bytes)});
 }
 
-void serve_operations(const ReadBytes& read, const WriteBytes& write, Body& body) {
+void serve_operations(const ReadBytes& read, const WriteBytes& write, PtpBody& body) {
   for (;;) {
     const std::optional<Packet> packet = read_packet(read);
     if (!packet) return;

@@ -45,6 +45,6 @@ std::optional<Packet> read_packet(const ReadBytes& read);
 bool write_packet(const WriteBytes& write, std::uint32_t type, BytesView body);
 
 /// Serves operations until the stream ends or breaks its rules, or a fault of the body breaks it.
-void serve_operations(const ReadBytes& read, const WriteBytes& write, Body& body);
+void serve_operations(const ReadBytes& read, const WriteBytes& write, PtpBody& body);
 
 }  // namespace weft::simulator::ptp

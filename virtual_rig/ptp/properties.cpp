@@ -205,7 +205,7 @@ std::optional<Bytes> PropertyTable::value(std::uint16_t code) const {
   return writer.take();
 }
 
-Response PropertyTable::set(std::uint16_t code, BytesView bytes) {
+ResponseCode PropertyTable::set(std::uint16_t code, BytesView bytes) {
   Property* const property = find(code);
   if (!property) return kPropertyNotSupported;
   if (!property->writable) return kAccessDenied;

@@ -44,7 +44,7 @@ class PropertyTable {
   std::optional<Bytes> description(std::uint16_t code) const;
   std::optional<Bytes> value(std::uint16_t code) const;
   /// A value off the wire. Shutter time and aperture move with the dial on M alone.
-  Response set(std::uint16_t code, BytesView value);
+  ResponseCode set(std::uint16_t code, BytesView value);
 
   std::int64_t number(PropertyCode code) const;
   /// As by a hand on the body.

@@ -17,9 +17,9 @@
 namespace weft::simulator::ptp {
 namespace {
 
-using usb::Call;
 using usb::CallHead;
-using usb::Status;
+using usb::UsbCall;
+using usb::UsbStatus;
 
 constexpr std::size_t kContainerHead = 12, kLongestContainer = 65536;
 enum ContainerType : std::uint16_t {
@@ -83,7 +83,7 @@ Descriptor listening_at(const sockaddr_un& address) {
 
 }  // namespace
 
-Result<std::unique_ptr<UsbLink>> UsbLink::make(Body& body, const std::filesystem::path& path,
+Result<std::unique_ptr<UsbLink>> UsbLink::make(PtpBody& body, const std::filesystem::path& path,
                                                std::uint16_t product) {
   const Result<sockaddr_un> address = address_of(path);
   if (!address) return address.error();
@@ -93,7 +93,7 @@ Result<std::unique_ptr<UsbLink>> UsbLink::make(Body& body, const std::filesystem
   return std::unique_ptr<UsbLink>(new UsbLink(body, path, *address, product));
 }
 
-UsbLink::UsbLink(Body& body, std::filesystem::path path, const sockaddr_un& address, std::uint16_t product)
+UsbLink::UsbLink(PtpBody& body, std::filesystem::path path, const sockaddr_un& address, std::uint16_t product)
     : body_(body),
       path_(std::move(path)),
       product_(product),

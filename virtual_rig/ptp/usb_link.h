@@ -23,7 +23,7 @@ namespace weft::simulator::ptp {
 class UsbLink : public Link {
  public:
   /// The cable's socket. kCannotCreate.
-  static Result<std::unique_ptr<UsbLink>> make(Body& body, const std::filesystem::path& socket,
+  static Result<std::unique_ptr<UsbLink>> make(PtpBody& body, const std::filesystem::path& socket,
                                                std::uint16_t product);
   ~UsbLink() override;
 
@@ -42,7 +42,7 @@ class UsbLink : public Link {
     std::size_t left() const { return most - sent; }
   };
   struct Piece {
-    usb::Status status = usb::Status::kDone;
+    usb::UsbStatus status = usb::UsbStatus::kDone;
     Bytes head = {};
     Payload payload = {};
     bool breaks = false;
@@ -52,18 +52,18 @@ class UsbLink : public Link {
     Request request;
   };
 
-  UsbLink(Body& body, std::filesystem::path path, const sockaddr_un& address, std::uint16_t product);
+  UsbLink(PtpBody& body, std::filesystem::path path, const sockaddr_un& address, std::uint16_t product);
   void serve(int fd);
   bool answer(int fd, const usb::CallHead& call, BytesView data, bool& admitted);
   bool claim(int fd, bool& admitted);
   bool claimed_by(int fd);
   void clear();
-  usb::Status take_out(BytesView bytes);
+  usb::UsbStatus take_out(BytesView bytes);
   void take_container(BytesView bytes);
   void send(const Command& command, const Answer& answer);
   Piece next_piece(int fd, std::size_t most, std::uint32_t timeout_ms);
 
-  Body& body_;
+  PtpBody& body_;
   const std::filesystem::path path_;
   const std::uint16_t product_;
   std::mutex mutex_;

@@ -37,7 +37,7 @@ class PtpCamera : public VirtualCamera {
   int shots() const override { return body_.shots(); }
 
   Result<void> inject(const CameraFault& fault) override {
-    const ptp::FaultKind* const kind = ptp::find_fault(fault.name);
+    const ptp::PtpFaultKind* const kind = ptp::find_fault(fault.name);
     if (!kind)
       return Error{ErrorKind::kUsage, "no such fault of a camera", fault.name,
                    "it is none of those it can have", "choose one of its list of faults"};
@@ -50,7 +50,7 @@ class PtpCamera : public VirtualCamera {
   }
 
  private:
-  ptp::Body body_;
+  ptp::PtpBody body_;
   std::unique_ptr<ptp::NetworkLink> network_;
   std::unique_ptr<ptp::UsbLink> usb_;
 };
@@ -60,7 +60,7 @@ class PtpCamera : public VirtualCamera {
 const std::vector<std::pair<std::string, std::string>>& camera_faults() {
   static const auto faults = [] {
     std::vector<std::pair<std::string, std::string>> named;
-    for (const ptp::FaultKind& kind : ptp::fault_kinds()) named.emplace_back(kind.name, kind.sentence);
+    for (const ptp::PtpFaultKind& kind : ptp::fault_kinds()) named.emplace_back(kind.name, kind.sentence);
     return named;
   }();
   return faults;

@@ -33,18 +33,18 @@ Cable::~Cable() {
   if (fd_ >= 0) close(fd_);
 }
 
-std::optional<Cable::Answer> Cable::call(Call call, std::span<const std::uint8_t> out,
+std::optional<Cable::Answer> Cable::call(UsbCall call, std::span<const std::uint8_t> out,
                                          std::span<std::uint8_t> in, std::uint32_t timeout_ms,
                                          std::uint32_t value) {
   const std::lock_guard lock(mutex_);
-  const std::size_t length = call == Call::kBulkOut ? out.size() : in.size();
+  const std::size_t length = call == UsbCall::kBulkOut ? out.size() : in.size();
   CallHead head = {call, static_cast<std::uint32_t>(length), timeout_ms, value};
   if (!write(bytes_of(head)) || !write(out)) return std::nullopt;
   return event(in);
 }
 
 bool Cable::listen() {
-  CallHead head = {Call::kEvents, 0, 0, 0};
+  CallHead head = {UsbCall::kEvents, 0, 0, 0};
   return write(bytes_of(head));
 }
 

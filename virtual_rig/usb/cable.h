@@ -25,11 +25,11 @@ class Cable {
   int fd() const { return fd_; }
 
   struct Answer {
-    Status status = Status::kDone;
+    UsbStatus status = UsbStatus::kDone;
     std::uint32_t length = 0;  ///< bytes of `in` that were filled
   };
   /// Nothing: the device is gone.
-  std::optional<Answer> call(Call call, std::span<const std::uint8_t> out, std::span<std::uint8_t> in,
+  std::optional<Answer> call(UsbCall call, std::span<const std::uint8_t> out, std::span<std::uint8_t> in,
                              std::uint32_t timeout_ms = 0, std::uint32_t value = 0);
   /// From now on the other end sends events by itself.
   bool listen();

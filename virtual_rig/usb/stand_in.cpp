@@ -21,9 +21,9 @@
 #include "virtual_rig/usb/wire.h"
 
 using weft::simulator::usb::Cable;
-using weft::simulator::usb::Call;
 using weft::simulator::usb::Description;
-using weft::simulator::usb::Status;
+using weft::simulator::usb::UsbCall;
+using weft::simulator::usb::UsbStatus;
 
 namespace {
 
@@ -74,7 +74,7 @@ std::vector<std::string> sockets() {
 std::optional<Description> camera_at(Cable& cable) {
   Description camera = {};
   const std::span<std::uint8_t> bytes(reinterpret_cast<std::uint8_t*>(&camera), sizeof camera);
-  if (!cable.connected() || !cable.call(Call::kDescribe, {}, bytes)) return std::nullopt;
+  if (!cable.connected() || !cable.call(UsbCall::kDescribe, {}, bytes)) return std::nullopt;
   return camera;
 }
 
@@ -85,20 +85,20 @@ void let_go(libusb_device* device) {
 int result_of(const std::optional<Cable::Answer>& answer) {
   if (!answer) return LIBUSB_ERROR_NO_DEVICE;
   switch (answer->status) {
-    case Status::kDone:
+    case UsbStatus::kDone:
       return LIBUSB_SUCCESS;
-    case Status::kBusy:
+    case UsbStatus::kBusy:
       return LIBUSB_ERROR_BUSY;
-    case Status::kTimeOut:
+    case UsbStatus::kTimeOut:
       return LIBUSB_ERROR_TIMEOUT;
-    case Status::kStall:
+    case UsbStatus::kStall:
       return LIBUSB_ERROR_PIPE;
   }
   return LIBUSB_ERROR_OTHER;
 }
 
 /// A call without data. The driver makes its message from errno.
-int call(libusb_device_handle* handle, Call what) {
+int call(libusb_device_handle* handle, UsbCall what) {
   const int result = result_of(handle->calls.call(what, {}, {}));
   if (result == LIBUSB_ERROR_BUSY) errno = EBUSY;
   if (result == LIBUSB_ERROR_NO_DEVICE) errno = ENODEV;
@@ -281,27 +281,27 @@ int libusb_attach_kernel_driver(libusb_device_handle*, int) {
 }
 
 int libusb_claim_interface(libusb_device_handle* handle, int) {
-  return call(handle, Call::kClaim);
+  return call(handle, UsbCall::kClaim);
 }
 
 int libusb_release_interface(libusb_device_handle* handle, int) {
-  return call(handle, Call::kRelease);
+  return call(handle, UsbCall::kRelease);
 }
 
 int libusb_set_configuration(libusb_device_handle* handle, int) {
-  return call(handle, Call::kConfigure);
+  return call(handle, UsbCall::kConfigure);
 }
 
 int libusb_set_interface_alt_setting(libusb_device_handle* handle, int, int) {
-  return call(handle, Call::kConfigure);
+  return call(handle, UsbCall::kConfigure);
 }
 
 int libusb_clear_halt(libusb_device_handle* handle, unsigned char) {
-  return call(handle, Call::kConfigure);
+  return call(handle, UsbCall::kConfigure);
 }
 
 int libusb_reset_device(libusb_device_handle* handle) {
-  return call(handle, Call::kReset);
+  return call(handle, UsbCall::kReset);
 }
 
 int libusb_control_transfer(libusb_device_handle* handle, std::uint8_t type, std::uint8_t request,
@@ -313,7 +313,7 @@ int libusb_control_transfer(libusb_device_handle* handle, std::uint8_t type, std
     return in ? length : 0;
   }
   std::array<std::uint8_t, 64> answer;
-  const auto called = handle->calls.call(Call::kControl, {}, answer, timeout_ms, request);
+  const auto called = handle->calls.call(UsbCall::kControl, {}, answer, timeout_ms, request);
   if (const int result = result_of(called); result != LIBUSB_SUCCESS) return result;
   const auto count = in ? std::min<std::uint32_t>(called->length, length) : length;
   if (in) std::copy_n(answer.begin(), count, data);
@@ -324,8 +324,8 @@ int libusb_bulk_transfer(libusb_device_handle* handle, unsigned char address, un
                          int* transferred, unsigned int timeout_ms) {
   const std::span<std::uint8_t> bytes(data, static_cast<std::size_t>(length));
   const bool in = address & LIBUSB_ENDPOINT_IN;
-  const auto called = in ? handle->calls.call(Call::kBulkIn, {}, bytes, timeout_ms)
-                         : handle->calls.call(Call::kBulkOut, bytes, {}, timeout_ms);
+  const auto called = in ? handle->calls.call(UsbCall::kBulkIn, {}, bytes, timeout_ms)
+                         : handle->calls.call(UsbCall::kBulkOut, bytes, {}, timeout_ms);
   const int result = result_of(called);
   const bool done = result == LIBUSB_SUCCESS;
   if (transferred) *transferred = !done ? 0 : in ? static_cast<int>(called->length) : length;

@@ -7,7 +7,7 @@
 /// a Unix socket on one machine, one at a time a connection. A connection that ends is a device that is gone.
 namespace weft::simulator::usb {
 
-enum class Call : std::uint32_t {
+enum class UsbCall : std::uint32_t {
   kDescribe,   ///< replies with a Description
   kConfigure,  ///< set configuration, clear halt: what waits to be read is thrown away
   kClaim,      ///< needed for all below but events; ends with the connection
@@ -20,7 +20,7 @@ enum class Call : std::uint32_t {
 };
 
 struct CallHead {
-  Call call;
+  UsbCall call;
   std::uint32_t length;
   std::uint32_t timeout_ms;  ///< 0: none
   std::uint32_t value;
@@ -32,10 +32,10 @@ struct Description {
   std::uint8_t address;
 };
 
-enum class Status : std::int32_t { kDone, kBusy, kTimeOut, kStall };
+enum class UsbStatus : std::int32_t { kDone, kBusy, kTimeOut, kStall };
 
 struct ReplyHead {
-  Status status;
+  UsbStatus status;
   std::uint32_t length;  ///< of the data that follow
 };
 

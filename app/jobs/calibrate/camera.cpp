@@ -158,7 +158,7 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
     change.light_covariance = from->light_covariance;
     outcome.warnings.push_back(patches_left_out("camera"));
   }
-  const CameraFacts facts = {*all, *viewed, views, *fit, change.fiducials, from, change.subject.rig};
+  const CameraFitFacts facts = {*all, *viewed, views, *fit, change.fiducials, from, change.subject.rig};
   outcome.report = camera_report(facts);
   for (std::string& warning : left_out(facts)) outcome.warnings.push_back(std::move(warning));
   Result<Calibration> written =

@@ -51,7 +51,7 @@ double mm_per_pixel(const CameraModel& c) {
 }
 
 /// Predicted standard deviation of where a pixel is on the table, in mm, over the frame.
-report::FrameMap table_sigma(const CameraFacts& facts) {
+report::FrameMap table_sigma(const CameraFitFacts& facts) {
   report::FrameMap map = {kColumns, kRows, {}, "mm"};
   const Size size = facts.fit.camera.size;
   for (int j = 0; j < kRows; ++j) {
@@ -81,7 +81,7 @@ struct Figures {
   double coverage = 0;
 };
 
-Figures figures_of(const CameraFacts& facts) {
+Figures figures_of(const CameraFitFacts& facts) {
   const CameraModel& camera = facts.fit.camera;
   const auto measured = [&](const std::function<double(const CameraModel&)>& value) {
     return Measured{value(camera), propagated(camera, facts.fit.covariance, value)};
@@ -123,7 +123,7 @@ double moved_mm(const CameraModel& before, const CameraModel& now) {
   return std::max(most, length(centre_of(now) - centre_of(before)));
 }
 
-std::vector<report::Verdict> verdicts_of(const CameraFacts& facts, const Figures& f) {
+std::vector<report::Verdict> verdicts_of(const CameraFitFacts& facts, const Figures& f) {
   std::vector<report::Verdict> verdicts;
   if (f.coverage < kLeastCoverage) {
     verdicts.push_back(
@@ -163,7 +163,7 @@ std::vector<report::Verdict> verdicts_of(const CameraFacts& facts, const Figures
   return verdicts;
 }
 
-report::Table board_table(const CameraFacts& facts) {
+report::Table board_table(const CameraFitFacts& facts) {
   report::Table table = {{"photograph", "corners", "edges, pixels", "tilt, degrees", "residual, pixels", ""},
                          {}};
   for (std::size_t p = 0; p < facts.photographs.photographs.size(); ++p) {
@@ -210,7 +210,7 @@ report::Table trial_table(const std::vector<LensTrial>& trials) {
   return table;
 }
 
-report::Figure residual_arrows(const CameraFacts& facts) {
+report::Figure residual_arrows(const CameraFitFacts& facts) {
   std::vector<report::Arrow> arrows;
   for (std::size_t i = 0; i < facts.views.size(); ++i) {
     if (!facts.fit.boards[i].used) continue;
@@ -230,7 +230,7 @@ report::Figure residual_arrows(const CameraFacts& facts) {
       report::arrows_svg(facts.fit.camera.size, arrows, magnification)};
 }
 
-Json numbers_of(const CameraFacts& facts, const Figures& f) {
+Json numbers_of(const CameraFitFacts& facts, const Figures& f) {
   const CameraModel& c = facts.fit.camera;
   Json boards = Json::array(), trials = Json::array();
   for (std::size_t p = 0; p < facts.photographs.photographs.size(); ++p) {
@@ -275,7 +275,7 @@ Json numbers_of(const CameraFacts& facts, const Figures& f) {
 
 }  // namespace
 
-std::vector<std::string> left_out(const CameraFacts& facts) {
+std::vector<std::string> left_out(const CameraFitFacts& facts) {
   std::vector<std::string> sentences;
   for (const BoardPhotograph& p : facts.photographs.photographs) {
     if (!p.left_out.empty()) sentences.push_back(fmt::format("{} is left out: {}", p.name, p.left_out));
@@ -289,7 +289,7 @@ std::vector<std::string> left_out(const CameraFacts& facts) {
   return sentences;
 }
 
-CalibrationReport camera_report(const CameraFacts& facts) {
+CalibrationReport camera_report(const CameraFitFacts& facts) {
   const Figures f = figures_of(facts);
   const CameraModel& c = facts.fit.camera;
   const auto used =

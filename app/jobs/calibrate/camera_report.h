@@ -14,7 +14,7 @@
 namespace weft::app {
 
 /// What is known once the lens is fitted.
-struct CameraFacts {
+struct CameraFitFacts {
   const BoardPhotographs& photographs;
   std::span<const std::size_t> viewed;            ///< the photograph of each view
   std::span<const calibration::BoardView> views;  ///< as fitted
@@ -25,9 +25,9 @@ struct CameraFacts {
 };
 
 /// A sentence for each photograph that is not used, without a full stop.
-std::vector<std::string> left_out(const CameraFacts& facts);
+std::vector<std::string> left_out(const CameraFitFacts& facts);
 
 /// The report of `weft calibrate camera`. Its verdicts are of the calibration, not of photographs left out.
-CalibrationReport camera_report(const CameraFacts& facts);
+CalibrationReport camera_report(const CameraFitFacts& facts);
 
 }  // namespace weft::app

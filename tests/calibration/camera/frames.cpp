@@ -42,7 +42,7 @@ RawFrame photographed(const simulator::Scene& scene) {
 }
 
 CameraModel camera_of(const simulator::Scene& scene) {
-  const Result<simulator::Rig> rig = simulator::rig_of(scene);
+  const Result<simulator::SceneRig> rig = simulator::rig_of(scene);
   EXPECT_TRUE(rig) << rig.error().message();
   return rig ? rig->camera : CameraModel();
 }

@@ -29,7 +29,7 @@ class Desk {
 
   simulator::VirtualBoard& board() { return *board_; }
   simulator::LitLog& pins() { return pins_; }
-  void inject(simulator::BoardFault fault) { board_->inject(fault); }
+  void inject(simulator::VirtualBoardFault fault) { board_->inject(fault); }
   std::filesystem::path folder() const { return folder_; }
   std::filesystem::path terminal() const { return folder_ / "led"; }
   std::string port() const;

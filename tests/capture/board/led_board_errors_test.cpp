@@ -126,7 +126,7 @@ TEST(OpeningALedBoard, RefusesAnOlderAndANewerFirmware) {
 
 TEST(OpeningALedBoard, GivesUpOnABoardThatIsSilent) {
   Desk desk;
-  desk.inject(simulator::BoardFault::kDeaf);
+  desk.inject(simulator::VirtualBoardFault::kDeaf);
   const Error error = error_of({desk.port(), 0.5});
   EXPECT_EQ(error.kind, ErrorKind::kTryAgain) << error.message();
   EXPECT_THAT(error.message(), HasSubstr("does not answer"));

@@ -15,8 +15,8 @@
 namespace weft::capture {
 namespace {
 
-using simulator::BoardFault;
 using simulator::RigClock;
+using simulator::VirtualBoardFault;
 using test::comes_true;
 using test::Desk;
 using test::LightHolder;
@@ -76,7 +76,7 @@ TEST(LedBoardFaults, AHungFirmwareIsDarkWithin300MsAndSaysThatItsWatchdogResetIt
   const auto board = desk.open();
   ASSERT_TRUE(light(*board, {3}));
   const auto hung = RigClock::now();
-  desk.inject(BoardFault::kHang);
+  desk.inject(VirtualBoardFault::kHang);
   ASSERT_TRUE(desk.comes_to_light({}, 2));
   EXPECT_LE(desk.lit_s_since(hung), 0.3);
   const Error error = next_error(*board);
@@ -93,7 +93,7 @@ TEST(LedBoardFaults, AResetInTheMiddleOfAnExposureIsNotMissed) {
   const auto board = desk.open();
   for (int i = 0; i < 5; ++i) {
     ASSERT_TRUE(light(*board, {3}));
-    desk.inject(BoardFault::kReset);
+    desk.inject(VirtualBoardFault::kReset);
     EXPECT_EQ(desk.pins().now(), 0);
     // At once, long before the keep-alive would see it.
     const auto lit = light(*board, {4});
@@ -110,14 +110,14 @@ TEST(LedBoardFaults, TellsAPulledCableFromASlowReply) {
   Desk desk;
   const auto board = desk.open();
   ASSERT_TRUE(light(*board, {3}));
-  desk.inject(BoardFault::kDeaf);
+  desk.inject(VirtualBoardFault::kDeaf);
   const auto slow = light(*board, {4});
   ASSERT_FALSE(slow);
   EXPECT_EQ(slow.error().kind, ErrorKind::kTryAgain) << slow.error().message();
-  desk.inject(BoardFault::kHear);
+  desk.inject(VirtualBoardFault::kHear);
   expect_recovers(desk, *board);
 
-  desk.inject(BoardFault::kUnplug);
+  desk.inject(VirtualBoardFault::kUnplug);
   const Error gone = next_error(*board);
   EXPECT_EQ(gone.kind, ErrorKind::kNoDevice) << gone.message();
   const auto lost = board->recover();
@@ -125,20 +125,20 @@ TEST(LedBoardFaults, TellsAPulledCableFromASlowReply) {
   EXPECT_EQ(lost.error().kind, ErrorKind::kNoDevice) << lost.error().message();
   EXPECT_EQ(next_error(*board).kind, ErrorKind::kNoDevice);
 
-  desk.inject(BoardFault::kReplug);
+  desk.inject(VirtualBoardFault::kReplug);
   expect_recovers(desk, *board);
 }
 
 TEST(LedBoardFaults, AReplyThatComesLateIsTakenAndActedOnOnce) {
   Desk desk;
   const auto board = desk.open();
-  desk.inject(BoardFault::kSlow);
+  desk.inject(VirtualBoardFault::kSlow);
   for (int led = 1; led <= 5; ++led) {
     const auto lit = light(*board, {led});
     ASSERT_TRUE(lit) << lit.error().message();
     EXPECT_EQ(desk.pins().now(), 1 << (led - 1));
   }
-  desk.inject(BoardFault::kHear);
+  desk.inject(VirtualBoardFault::kHear);
   for (int led = 6; led <= 10; ++led) {
     const auto lit = light(*board, {led});
     ASSERT_TRUE(lit) << lit.error().message();
@@ -149,10 +149,10 @@ TEST(LedBoardFaults, AReplyThatComesLateIsTakenAndActedOnOnce) {
 TEST(LedBoardFaults, ADeafMomentLosesNoCommand) {
   Desk desk;
   const auto board = desk.open();
-  desk.inject(BoardFault::kDeaf);
+  desk.inject(VirtualBoardFault::kDeaf);
   std::jthread mender([&] {
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
-    desk.inject(BoardFault::kHear);
+    desk.inject(VirtualBoardFault::kHear);
   });
   const auto lit = light(*board, {4});
   ASSERT_TRUE(lit) << lit.error().message();
@@ -164,12 +164,12 @@ TEST(LedBoardFaults, NoiseOnTheCableLightsNothingAndPasses) {
   const auto board = desk.open();
   for (int i = 0; i < 5; ++i) {
     const auto begin = RigClock::now();
-    desk.inject(BoardFault::kGarbage);
+    desk.inject(VirtualBoardFault::kGarbage);
     std::this_thread::sleep_for(std::chrono::milliseconds(130));
     EXPECT_EQ(desk.lit_s_since(begin), 0);
     expect_works(desk, *board);
     ASSERT_TRUE(light(*board, {}));
-    desk.inject(BoardFault::kGarbage);
+    desk.inject(VirtualBoardFault::kGarbage);
     const auto lit = light(*board, {3});
     if (!lit) {
       EXPECT_EQ(lit.error().kind, ErrorKind::kTryAgain) << lit.error().message();
@@ -183,11 +183,11 @@ TEST(LedBoardFaults, AWrongSpeedIsSilenceAndEndsInDarkness) {
   Desk desk;
   const auto board = desk.open();
   ASSERT_TRUE(light(*board, {3}));
-  desk.inject(BoardFault::kWrongBaud);
+  desk.inject(VirtualBoardFault::kWrongBaud);
   ASSERT_TRUE(desk.comes_to_light({}, 1.5)) << "nobody it understands keeps it alight";
   const Error error = next_error(*board);
   EXPECT_EQ(error.kind, ErrorKind::kTryAgain) << error.message();
-  desk.inject(BoardFault::kHear);
+  desk.inject(VirtualBoardFault::kHear);
   expect_recovers(desk, *board);
 }
 
@@ -195,8 +195,8 @@ TEST(LedBoardFaults, ABoardThatWasPulledAndPutBackBetweenTwoShotsIsNotTakenForTh
   Desk desk;
   const auto board = desk.open();
   ASSERT_TRUE(light(*board, {3}));
-  desk.inject(BoardFault::kUnplug);
-  desk.inject(BoardFault::kReplug);
+  desk.inject(VirtualBoardFault::kUnplug);
+  desk.inject(VirtualBoardFault::kReplug);
   EXPECT_EQ(next_error(*board).kind, ErrorKind::kNoDevice);
   expect_recovers(desk, *board);
 }
@@ -204,8 +204,9 @@ TEST(LedBoardFaults, ABoardThatWasPulledAndPutBackBetweenTwoShotsIsNotTakenForTh
 TEST(LedBoardFaults, TwentyFaultsInARowLeaveItWorking) {
   Desk desk("firmware", 0.01);
   const auto board = desk.open();
-  constexpr std::array kFaults = {BoardFault::kReset, BoardFault::kReplug, BoardFault::kGarbage,
-                                  BoardFault::kHang, BoardFault::kReset};
+  constexpr std::array kFaults = {VirtualBoardFault::kReset, VirtualBoardFault::kReplug,
+                                  VirtualBoardFault::kGarbage, VirtualBoardFault::kHang,
+                                  VirtualBoardFault::kReset};
   const auto descriptors = [] {
     return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
   };

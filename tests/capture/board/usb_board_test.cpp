@@ -19,8 +19,8 @@ namespace weft::capture {
 namespace {
 
 namespace fs = std::filesystem;
-using simulator::BoardFault;
 using simulator::UsbTerminal;
+using simulator::VirtualBoardFault;
 using test::comes_true;
 using test::Desk;
 using testing::HasSubstr;
@@ -81,7 +81,7 @@ TEST(UsbBoard, IsLetGoOnceItIsUnpluggedLitOrDark) {
     if (lit) expect_lights(desk, *board);
     const std::string terminal = fs::read_symlink(desk.terminal());
     EXPECT_GT(holders_of(terminal), 0);
-    desk.inject(BoardFault::kUnplug);
+    desk.inject(VirtualBoardFault::kUnplug);
     EXPECT_TRUE(comes_true(1, [&] { return holders_of(terminal) == 0; }))
         << (lit ? "lit: " : "dark: ") << holders_of(terminal) << " descriptors keep its number in use";
   }
@@ -93,7 +93,7 @@ TEST(UsbBoard, IsFoundAgainUnderAnotherName) {
   ASSERT_TRUE(board);
   expect_lights(desk, *board);
   for (int i = 1; i <= 3; ++i) {
-    desk.inject(BoardFault::kElsewhere);
+    desk.inject(VirtualBoardFault::kElsewhere);
     EXPECT_TRUE(fs::is_symlink("/dev/ttyACM" + std::to_string(i)));
     const auto found = board->recover();
     ASSERT_TRUE(found) << found.error().message();
@@ -105,7 +105,7 @@ TEST(UsbBoard, IsNotTakenForAnotherThatCameUnderItsName) {
   Desk desk = Desk::with_usb();
   const auto board = opened(kNode);
   ASSERT_TRUE(board);
-  desk.inject(BoardFault::kElsewhere);
+  desk.inject(VirtualBoardFault::kElsewhere);
   const auto other = UsbTerminal::make(desk.folder(), 0, "another", "/dev/null");
   ASSERT_TRUE(other) << other.error().message();
   const auto found = board->recover();
@@ -117,14 +117,14 @@ TEST(UsbBoard, IsSaidToBeGoneWhereOnlyAnotherIsThere) {
   Desk desk = Desk::with_usb();
   const auto board = opened(kNode);
   ASSERT_TRUE(board);
-  desk.inject(BoardFault::kUnplug);
+  desk.inject(VirtualBoardFault::kUnplug);
   const auto other = UsbTerminal::make(desk.folder(), 0, "another", "/dev/null");
   ASSERT_TRUE(other) << other.error().message();
   const auto found = board->recover();
   ASSERT_FALSE(found) << "another device was opened, which resets it";
   EXPECT_EQ(found.error().kind, ErrorKind::kNoDevice);
   EXPECT_THAT(found.error().message(), HasSubstr("no port is USB device 2341:0043 5573"));
-  desk.inject(BoardFault::kElsewhere);
+  desk.inject(VirtualBoardFault::kElsewhere);
   EXPECT_TRUE(board->recover());
 }
 

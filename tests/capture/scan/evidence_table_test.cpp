@@ -45,7 +45,7 @@ struct Told {
 /// sum.
 class Glances {
  public:
-  Glances(const SimulatedCloth& cloth, const LightEvidence& evidence) {
+  Glances(const SimulatedCloth& cloth, const ScanEvidence& evidence) {
     const auto glance = [&](const Lighting& lighting) {
       return evidence.glance(cloth.photograph(lighting, cloth.scene_exposure_us(), take_++));
     };
@@ -78,15 +78,15 @@ class Glances {
 };
 
 /// A session as scan() takes it.
-Told told(const SimulatedCloth& cloth, const LightModel& model, const Glances& glances, const Story& story) {
-  LightEvidence evidence(model.grid, model);
+Told told(const SimulatedCloth& cloth, const PatchLights& model, const Glances& glances, const Story& story) {
+  ScanEvidence evidence(model.grid, model);
   Told told;
   std::vector<int> leds(static_cast<std::size_t>(cloth.leds()));
   for (std::size_t i = 0; i < leds.size(); ++i) leds[i] = static_cast<int>(i) + 1;
   for (const PlannedShot& shot : plan_shots({leds, true, {}}, {cloth.scene_exposure_us(), 100, 8}, 0)) {
     const bool is_repeat = shot.role == ShotRole::kRepeat;
     std::vector<double> light = glances.at(story(is_repeat ? -1 : shot.led), is_repeat);
-    const Verdict verdict = evidence.judge(shot, light);
+    const ShotVerdict verdict = evidence.judge(shot, light);
     if (shot.role == ShotRole::kLit && verdict.level) {
       told.least_level = std::min(told.least_level, *verdict.level);
       told.most_level = std::max(told.most_level, *verdict.level);
@@ -119,9 +119,9 @@ TEST(LightEvidenceTable, SpeaksWhereItShouldAndNowhereElse) {
   int false_alarms = 0, false_warnings = 0;
   for (const std::string& name : scenes) {
     const SimulatedCloth cloth = cloth_of(name);
-    const Result<LightModel> model = LightModel::make(cloth.calibration(), 0);
+    const Result<PatchLights> model = PatchLights::make(cloth.calibration(), 0);
     ASSERT_TRUE(model) << model.error().message();
-    const Glances glances(cloth, LightEvidence(model->grid, *model));
+    const Glances glances(cloth, ScanEvidence(model->grid, *model));
     const int n = cloth.leds();
     const Told right = told(cloth, *model, glances, plain);
     false_alarms += right.finding != Finding::kAgrees;

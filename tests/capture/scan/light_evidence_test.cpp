@@ -20,7 +20,7 @@ using Story = std::function<Lighting(int led)>;  // 0: dark, kRepeat: LED 1 agai
 
 /// A session under a story of what really lit each shot; the first verdict that speaks, with its shot.
 struct Told {
-  Verdict verdict;
+  ShotVerdict verdict;
   int at = -1;
   std::vector<std::string> warnings;
 };
@@ -28,10 +28,10 @@ struct Told {
 Told told(const simulator::Scene& scene, const Story& story, bool with_model = true,
           double brightness = 0.8) {
   const test::SimulatedCloth cloth(scene);
-  Result<LightModel> model = LightModel::make(cloth.calibration(), 0);
+  Result<PatchLights> model = PatchLights::make(cloth.calibration(), 0);
   EXPECT_TRUE(model) << model.error().message();
   const PatchGrid grid = model->grid;
-  LightEvidence evidence(grid, with_model ? std::optional(std::move(*model)) : std::nullopt);
+  ScanEvidence evidence(grid, with_model ? std::optional(std::move(*model)) : std::nullopt);
   const ExposureSettings exposure = {brightness * cloth.scene_exposure_us(), 100, 8};
   Told told;
   for (const PlannedShot& shot : plan_shots({{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}}, exposure, 0)) {

@@ -32,7 +32,7 @@ struct TestTable {
   }
 
   void expect_flat_cloth() {
-    const Result<LightModel> model = LightModel::make(cloth.calibration(), 0);
+    const Result<PatchLights> model = PatchLights::make(cloth.calibration(), 0);
     ASSERT_TRUE(model) << model.error().message();
     for (const auto& led : model->leds) {
       input.expected.push_back(0);

@@ -39,7 +39,7 @@ class SimulatedCloth {
 
  private:
   simulator::Scene scene_;
-  simulator::Rig rig_;
+  simulator::SceneRig rig_;
   simulator::Rendering rendering_;
   Calibration calibration_;
 };

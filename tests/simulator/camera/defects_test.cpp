@@ -19,8 +19,8 @@ std::size_t index(int i) {
   return static_cast<std::size_t>(i);
 }
 
-std::vector<Photosite> photosites(const DefectSettings& settings, Rect rect) {
-  std::vector<Photosite> sites(static_cast<std::size_t>(rect.pixels()));
+std::vector<PhotositeDefect> photosites(const DefectSettings& settings, Rect rect) {
+  std::vector<PhotositeDefect> sites(static_cast<std::size_t>(rect.pixels()));
   SensorPattern(settings, kKey).fill(rect, sites);
   return sites;
 }
@@ -46,7 +46,7 @@ DefectSettings everything() {
 }
 
 TEST(SensorPattern, OfAnIdealSensorIsNone) {
-  for (const Photosite& site : photosites({}, {0, 0, 50, 50})) {
+  for (const PhotositeDefect& site : photosites({}, {0, 0, 50, 50})) {
     ASSERT_EQ(site.response, 1);
     ASSERT_EQ(site.dark_electrons_per_s, 0);
     ASSERT_EQ(site.offset_counts, 0);
@@ -56,13 +56,13 @@ TEST(SensorPattern, OfAnIdealSensorIsNone) {
 
 TEST(SensorPattern, IsTheSameInEveryTile) {
   const Rect whole = {0, 0, 64, 48};
-  const std::vector<Photosite> all = photosites(everything(), whole);
+  const std::vector<PhotositeDefect> all = photosites(everything(), whole);
   for (const Rect& part : {Rect{0, 0, 7, 5}, Rect{31, 11, 64, 48}}) {
-    const std::vector<Photosite> some = photosites(everything(), part);
+    const std::vector<PhotositeDefect> some = photosites(everything(), part);
     std::size_t i = 0;
     for (int y = part.y0; y < part.y1; ++y)
       for (int x = part.x0; x < part.x1; ++x, ++i) {
-        const Photosite& same = all[index(y * whole.width() + x)];
+        const PhotositeDefect& same = all[index(y * whole.width() + x)];
         ASSERT_EQ(some[i].response, same.response);
         ASSERT_EQ(some[i].dark_electrons_per_s, same.dark_electrons_per_s);
         ASSERT_EQ(some[i].offset_counts, same.offset_counts);
@@ -74,7 +74,7 @@ TEST(SensorPattern, ScattersResponseAndBlackLevelAsItsSettingsSay) {
   const Rect rect = {0, 0, 200, 100};
   const double four_errors = 4 / std::sqrt(2.0 * 20000);
   std::vector<double> response, offset;
-  for (const Photosite& site : photosites({.response_percent = 2, .photosite_counts = 5}, rect)) {
+  for (const PhotositeDefect& site : photosites({.response_percent = 2, .photosite_counts = 5}, rect)) {
     response.push_back(site.response);
     offset.push_back(site.offset_counts);
   }
@@ -108,7 +108,7 @@ TEST(SensorPattern, ListsTheDefectsThatItsPhotositesShow) {
   std::vector<DefectivePhotosite> shown;
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {
-      const Photosite& site = sites[index(y * size.width + x)];
+      const PhotositeDefect& site = sites[index(y * size.width + x)];
       if (site.dark_electrons_per_s > 5) {
         shown.push_back({x, y, DefectKind::kHot});
         EXPECT_GT(site.dark_electrons_per_s, 5000);
@@ -124,7 +124,7 @@ TEST(SensorPattern, ListsTheDefectsThatItsPhotositesShow) {
 }
 
 TEST(Expose, AddsTheDarkChargeOfTheExposureToTheLight) {
-  const std::vector<Photosite> sites = {{1, 0, 0}, {0.5, 100, 0}, {0, 4000, 0}};
+  const std::vector<PhotositeDefect> sites = {{1, 0, 0}, {0.5, 100, 0}, {0, 4000, 0}};
   std::vector<double> samples = {0.2, 0.4, 0.6};
   expose(sites, 0.25, 10000, samples);
   EXPECT_DOUBLE_EQ(samples[0], 0.2);
@@ -133,7 +133,7 @@ TEST(Expose, AddsTheDarkChargeOfTheExposureToTheLight) {
 }
 
 TEST(BlackPattern, ShiftsSamplesByCounts) {
-  const std::vector<Photosite> sites = {{1, 0, 0}, {1, 0, 3}, {1, 0, -6}};
+  const std::vector<PhotositeDefect> sites = {{1, 0, 0}, {1, 0, 3}, {1, 0, -6}};
   std::vector<double> samples = {0.5, 0.5, 0};
   add_black_pattern(sites, 3000, samples);
   EXPECT_DOUBLE_EQ(samples[0], 0.5);

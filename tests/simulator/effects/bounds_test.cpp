@@ -28,7 +28,7 @@ std::size_t number_of(const std::string& effect) {
 }
 
 EffectBound bound_of(const Scene& scene, const std::string& effect) {
-  const Result<Rig> rig = rig_of(scene);
+  const Result<SceneRig> rig = rig_of(scene);
   EXPECT_TRUE(rig) << rig.error().message();
   return bounds_of(scene, *rig)[number_of(effect)];
 }
@@ -78,7 +78,7 @@ TEST(Bounds, AnIdealSceneNeedsNoEffectButItsLights) {
 
 TEST(Bounds, OfWhatIsLeftOutAddUpToNoMoreThanAsked) {
   const Scene scene = family(Family::kPlain);
-  const Rig rig = *rig_of(scene);
+  const SceneRig rig = *rig_of(scene);
   const EffectBounds bounds = bounds_of(scene, rig);
   std::size_t before = 0;
   for (const double to_sigma : {0.0, 0.1, 1.0, 10.0, 100.0, 1e9}) {
@@ -158,7 +158,7 @@ TEST(Bounds, OfASphereOnTheHorizonAreItsFormFactor) {
 TEST(Bounds, OfStrayLightAreTheLightItself) {
   Scene scene;
   scene.camera.defects = {};
-  const Rig rig = *rig_of(scene);
+  const SceneRig rig = *rig_of(scene);
   double brightest = 0;
   for (const DistantLight& led : distant_lights(rig, 0).lights)
     brightest = std::max(brightest, led.irradiance_rgb[1] * rig.exposure(100));
@@ -296,7 +296,7 @@ Scene random_scene(Random& r) {
 
 /// Nothing for a scene that cannot be simulated: a lens that folds, or shadows that are too long.
 std::optional<Picture> picture_of(const Scene& scene) {
-  const Result<Rig> rig = rig_of(scene);
+  const Result<SceneRig> rig = rig_of(scene);
   if (!rig) return std::nullopt;
   Result<PassList> list = build_passes(scene, *rig, Output::kCounts);
   if (!list || list->halo > 60) return std::nullopt;
@@ -351,7 +351,7 @@ TEST(Bounds, HoldForEveryEffectOf200RandomScenes) {
     const std::optional<Picture> picture = picture_of(with);
     if (!picture) continue;
     ++scenes;
-    const Rig rig = *rig_of(with);
+    const SceneRig rig = *rig_of(with);
     const EffectBounds bounds = bounds_of(with, rig);
     ASSERT_EQ(bounds.size(), effect_keys().size());
     for (std::size_t i = 0; i < bounds.size(); ++i) {

@@ -111,7 +111,7 @@ TEST(Rendering, OfAFlatClothIsTheFormulaAtEveryPixel) {
   scene.material.albedo = {0.2, 0.3, 0.4};
   scene.lights.mu = 1.7;
   const Rendering r = render(scene, kPatch);
-  const Rig rig = *rig_of(scene);
+  const SceneRig rig = *rig_of(scene);
   ASSERT_EQ(r.readings.planes(), 30);
   for (int y = 0; y < kPatch.height(); ++y) {
     for (int x = 0; x < kPatch.width(); ++x) {

@@ -61,7 +61,7 @@ TEST(Plane, LeansTowardsItsAzimuth) {
   g.kind = GeometryKind::kTilted;
   g.tilt_deg = 20;
   g.azimuth_deg = 90;
-  const Plane plane = std::get<Plane>(surface_of(g));
+  const TablePlane plane = std::get<TablePlane>(surface_of(g));
   const SurfacePoint p = plane.at(5, 10);
   EXPECT_NEAR(p.normal.x, 0, 1e-15);
   EXPECT_NEAR(p.normal.y, std::sin(radians(20)), 1e-15);
@@ -71,7 +71,7 @@ TEST(Plane, LeansTowardsItsAzimuth) {
 }
 
 TEST(Plane, IsLevelForAFlatCloth) {
-  const SurfacePoint p = std::get<Plane>(surface_of(GeometrySettings())).at(31, -7);
+  const SurfacePoint p = std::get<TablePlane>(surface_of(GeometrySettings())).at(31, -7);
   EXPECT_EQ(p.normal, (Vec3{0, 0, 1}));
   EXPECT_EQ(p.height_mm, 0);
 }

@@ -178,7 +178,7 @@ TEST_F(SceneFiles, OfTheExamplesAreValidScenes) {
     if (entry.path().extension() != ".toml") continue;
     const Result<Scene> scene = read_scene(entry.path());
     ASSERT_TRUE(scene) << scene.error().message();
-    const Result<Rig> rig = rig_of(*scene);
+    const Result<SceneRig> rig = rig_of(*scene);
     EXPECT_TRUE(rig) << entry.path() << rig.error().message();
     EXPECT_EQ(parsed(to_toml(*scene)), *scene) << entry.path();
     ++examples;

@@ -13,21 +13,21 @@ namespace {
 
 using testing::HasSubstr;
 
-Rig rig(const Scene& scene) {
-  Result<Rig> made = rig_of(scene);
+SceneRig rig(const Scene& scene) {
+  Result<SceneRig> made = rig_of(scene);
   EXPECT_TRUE(made) << made.error().message();
   return std::move(made).value();
 }
 
 /// Share of full scale that an albedo facing LED 1 at the table's centre gives in green.
 double signal_facing_led(const Scene& scene, double albedo) {
-  const Rig r = rig(scene);
+  const SceneRig r = rig(scene);
   const Incidence light = incidence(r.leds.leds[0], {0, 0, scene.geometry.cloth_height_mm});
   return albedo * r.leds.leds[0].flux_rgb[1] * shading(light, light.direction) * r.exposure(scene.camera.iso);
 }
 
 TEST(Rig, HasTenLedsInTwoRingsByDefault) {
-  const Rig r = rig(Scene());
+  const SceneRig r = rig(Scene());
   ASSERT_EQ(r.leds.leds.size(), 10U);
   for (std::size_t i = 0; i < 10; ++i) {
     const NearLight& led = r.leds.leds[i];
@@ -72,7 +72,7 @@ TEST(Rig, PlacesRingsFirstAndSingleLedsAfterThem) {
   Scene scene;
   scene.lights.rings = {{3, 50, 10, 400}};
   scene.lights.leds = {{{100, 0, 500}, Vec3{0, 0, -2}, 3.0, Rgb{1e7, 2e7, 3e7}}, {{0, 0, 450}, {}, {}, {}}};
-  const Rig r = rig(scene);
+  const SceneRig r = rig(scene);
   ASSERT_EQ(r.leds.leds.size(), 5U);
   EXPECT_NEAR(length(r.leds.leds[2].position_mm), 400, 1e-9);
   EXPECT_EQ(r.leds.leds[3].aim, (Vec3{0, 0, -1}));
@@ -123,7 +123,7 @@ TEST(Rig, MapsPixelsAsTheCalibrationItWrites) {
 TEST(Rig, WritesNearLightsOnlyWhereLightIsNear) {
   Scene scene;
   scene.effects.near_light = true;
-  const Rig r = rig(scene);
+  const SceneRig r = rig(scene);
   const Calibration near = exact_calibration(scene, r);
   EXPECT_EQ(near.subject.albedo_scale, "absolute");
   EXPECT_EQ(std::get<NearLights>(*near.lights).leds.size(), 10U);

@@ -62,7 +62,7 @@ TEST(Scene, IsWrittenWithoutASettingLeftOut) {
 
 TEST(Scene, OfDevelopedFramesIsTheSameAfterWritingAndReading) {
   const Scene scene = parsed("frames = \"exr\"\n[[damage]]\nkind = \"missing\"\nlast_led = 3\ntop = 0.5\n");
-  EXPECT_EQ(scene.frames, FrameFile::kExr);
+  EXPECT_EQ(scene.frames, FrameFormat::kExr);
   ASSERT_EQ(scene.damage.size(), 1U);
   EXPECT_EQ(scene.damage[0], (DamageSettings{DamageKind::kMissing, 1, 3, 0, 1, 0.5, 1, 12}));
   EXPECT_EQ(parsed(to_toml(scene)), scene);

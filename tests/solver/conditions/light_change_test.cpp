@@ -16,7 +16,7 @@ constexpr float kFull = std::numeric_limits<float>::infinity();
 TEST(LightRatio, OfTwoShotsIsFoundTo1e4UnderPhotonNoise) {
   // 40 x 40 blocks of 1024 readings of 4000 electrons with their photon noise: 0.0007 percent is possible.
   test::Random random(1);
-  std::vector<BlockLight> blocks;
+  std::vector<BlockChange> blocks;
   const double ratio = 0.9873;
   for (int i = 0; i < 1600; ++i) {
     const double light = 1024 * 4000 * (0.2 + random.uniform());
@@ -27,7 +27,7 @@ TEST(LightRatio, OfTwoShotsIsFoundTo1e4UnderPhotonNoise) {
 }
 
 TEST(LightRatio, IsNotMovedByAHandInATenthOfTheFrame) {
-  std::vector<BlockLight> blocks(100, {1000, 980});
+  std::vector<BlockChange> blocks(100, {1000, 980});
   for (std::size_t i = 0; i < 10; ++i) blocks[10 * i].later = 50;
   EXPECT_DOUBLE_EQ(light_ratio(blocks).value(), 0.98);
 }
@@ -45,8 +45,8 @@ TEST(BlockLight, SumsOnlyReadingsThatBothShotsHave) {
   earlier(0, 0) = kFull;
   later(1, 0) = kFull;
   later(2, 1) = std::numeric_limits<float>::quiet_NaN();
-  const BlockLight light = block_light(std::vector<View<const float>>{earlier.plane()},
-                                       std::vector<View<const float>>{later.plane()});
+  const BlockChange light = block_light(std::vector<View<const float>>{earlier.plane()},
+                                        std::vector<View<const float>>{later.plane()});
   EXPECT_EQ(light.earlier, 10);
   EXPECT_EQ(light.later, 5);
 }

@@ -123,7 +123,7 @@ TEST(VirtualBoard, AHangEndsByTheWatchdogAndTheProgramIsWholeAfterwards) {
     ASSERT_TRUE(desk.comes_to_light({3}));
     terminal.hear();
     const auto hung = RigClock::now();
-    desk.inject(BoardFault::kHang);
+    desk.inject(VirtualBoardFault::kHang);
     ASSERT_TRUE(desk.comes_to_light({}));
     EXPECT_LE(desk.lit_s_since(hung), 0.3);
     EXPECT_GT(desk.lit_s_since(hung), 0.1) << "that was no watchdog";
@@ -140,7 +140,7 @@ TEST(VirtualBoard, IsDarkAndDeafInItsBootloader) {
   terminal.send(light_request(1, 3, 400));
   ASSERT_TRUE(desk.comes_to_light({3}));
   terminal.hear();
-  desk.inject(BoardFault::kReset);
+  desk.inject(VirtualBoardFault::kReset);
   EXPECT_EQ(desk.pins().now(), 0);
   terminal.send(request(2, kWeftHello));
   EXPECT_THAT(terminal.hear(150), testing::IsEmpty());
@@ -155,11 +155,11 @@ TEST(VirtualBoard, TakesItsTerminalAlongWhenItIsUnplugged) {
   const Terminal terminal(desk);
   terminal.send(light_request(1, 3, 400));
   ASSERT_TRUE(desk.comes_to_light({3}));
-  desk.inject(BoardFault::kUnplug);
+  desk.inject(VirtualBoardFault::kUnplug);
   EXPECT_EQ(desk.pins().now(), 0);
   EXPECT_FALSE(std::filesystem::exists(desk.terminal()));
   EXPECT_FALSE(terminal.send(request(2, kWeftHello)));
-  desk.inject(BoardFault::kReplug);
+  desk.inject(VirtualBoardFault::kReplug);
   const Terminal another(desk);
   another.send(request(2, kWeftHello));
   const Bytes reply = another.hear();
@@ -174,7 +174,7 @@ TEST(VirtualBoard, RemembersThroughAResetHowHotItsLedsAre) {
   ASSERT_TRUE(desk.comes_to_light({3}));
   terminal.hear();
   ASSERT_TRUE(desk.comes_to_light({}));  // half a second of heat, by the dead-man timer
-  desk.inject(BoardFault::kReset);
+  desk.inject(VirtualBoardFault::kReset);
   Bytes reply;
   ASSERT_TRUE(test::comes_true(2, [&] {
     terminal.send(light_request(2, 3, kWeftMostOn_cs));

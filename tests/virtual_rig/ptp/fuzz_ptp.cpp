@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (parts.empty() || parts[0].size() < 8) std::abort();
     return true;
   };
-  ptp::Body body({}, [](const CameraExposure&) -> weft::Result<ptp::Bytes> { return ptp::Bytes(100); });
+  ptp::PtpBody body({}, [](const CameraExposure&) -> weft::Result<ptp::Bytes> { return ptp::Bytes(100); });
   ptp::serve_operations(read, write, body);
   return 0;
 }

@@ -49,7 +49,7 @@ struct Talk {
 
 /// All that a body says to these bytes.
 Talk talk(BytesView bytes) {
-  ptp::Body body({}, [](const CameraExposure&) -> Result<Bytes> { return Bytes(100); });
+  ptp::PtpBody body({}, [](const CameraExposure&) -> Result<Bytes> { return Bytes(100); });
   Bytes said;
   const ptp::WriteBytes write = [&said](std::span<const BytesView> parts) {
     for (const BytesView part : parts) said.insert(said.end(), part.begin(), part.end());

@@ -173,7 +173,7 @@ TEST(UsbStandIn, OutlivesNoiseOnTheCable) {
   for (int round = 0; round < 200; ++round) {
     usb::Cable cable(on_usb().usb);
     ASSERT_TRUE(cable.connected()) << round;
-    if (round % 4) cable.call(usb::Call::kClaim, {}, {});
+    if (round % 4) cable.call(usb::UsbCall::kClaim, {}, {});
     Bytes bytes(random() % 64);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     if (round % 2 && bytes.size() >= 8) {
@@ -182,10 +182,10 @@ TEST(UsbStandIn, OutlivesNoiseOnTheCable) {
           bytes.begin());
       bytes[6] = static_cast<std::uint8_t>(random() % 32);
     }
-    cable.call(usb::Call::kBulkOut, bytes, {});
+    cable.call(usb::UsbCall::kBulkOut, bytes, {});
     Bytes in(512);
-    const auto any = static_cast<usb::Call>(random() % 16);
-    if (any != usb::Call::kEvents) cable.call(any, {}, in, 1);  // which is not answered
+    const auto any = static_cast<usb::UsbCall>(random() % 16);
+    if (any != usb::UsbCall::kEvents) cable.call(any, {}, in, 1);  // which is not answered
   }
   OpenedCamera camera(on_usb().usb);
   libusb_set_configuration(camera.handle(), 1);  // as the driver does, to begin anew
