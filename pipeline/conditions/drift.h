@@ -23,11 +23,11 @@ struct Repeat {
 };
 
 struct DriftEvidence {
-  std::vector<WhitePatch> patches;
-  Frames again;  ///< the repeats' frames
-  std::vector<Repeat> repeats;
-  std::vector<double> times;  ///< of each photograph
-  double first_time = 0;      ///< when the session began: all lights are as calibrated
+  std::vector<WhitePatch> patches = {};
+  Frames again = {};  ///< the repeats' frames
+  std::vector<Repeat> repeats = {};
+  std::vector<double> times = {};  ///< of each photograph
+  double first_time = 0;           ///< when the session began: all lights are as calibrated
 };
 
 struct Drift {
