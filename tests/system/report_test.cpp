@@ -212,7 +212,7 @@ TEST(MapSummary, FindsQuantilesOfNoiseAndOfCalibrationWhereTheNormalIsKnown) {
   }
   for (int x = 800; x < kWidth; ++x) noise(x, 0) = 180;  // without a normal
   app::MapSummary with({kWidth, 1}), without({kWidth, 1});
-  app::MapBand band;
+  pipeline::MapBand band;
   band.albedo_rows = {0, 0, kWidth, 1};
   band.sigma_normal_deg = noise.plane();
   with.add(band, calibration.plane());
