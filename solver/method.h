@@ -97,9 +97,6 @@ std::unique_ptr<Method> trimmed_method();
 /// both in double by reweighting, of every valid reading.
 std::unique_ptr<Method> least_absolute_method();
 std::unique_ptr<Method> sparse_method();
-/// Huber's loss, the same way; for measurements only.
-std::unique_ptr<Method> huber_method();
-
 /// What a level solves: tiles as they come, tiles of a picture of half the size, or tiles of a whole frame
 /// several times, with what the frame says of the light over it (pipeline/reference.h).
 enum class Extent { kTiles, kHalfSize, kWholeFrame };
@@ -114,10 +111,6 @@ struct MethodName {
   bool keeps_clipped = false;
   std::unique_ptr<Method> (*make)() = nullptr;
   Extent extent = Extent::kTiles;
-  bool is_quality = false;  ///< a level of --quality; else a method of --method
-  /// Takes the clipped values of developed photographs at their word, so that it can be held against
-  /// published figures. Saturated raw counts enter no method.
-  bool keeps_clipped = false;
 };
 /// The levels from the cheapest to the dearest, then the methods.
 std::span<const MethodName> method_names();

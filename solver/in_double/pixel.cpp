@@ -264,19 +264,6 @@ struct PixelSolver::Work {
     return true;
   }
 
-  bool solve_huber() {
-    for (int i = 0; i < kReweightings; ++i) {
-      sorted.clear();
-      for (const Reading& r : readings) sorted.push_back(std::abs(residual(r)));
-      const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-      std::nth_element(sorted.begin(), middle, sorted.end());
-      const double bend = std::max(1.345 * 1.4826 * *middle, 1e-6 * fit.b.stableNorm());
-      for (Reading& r : readings) r.variance = std::max(1.0, std::abs(residual(r)) / bend);
-      if (!solve_fitted()) return false;
-    }
-    return true;
-  }
-
   // Each reading has a sparse error of variance gamma_k beside noise of variance lambda, in units of the
   // albedo: gamma_k <- (gamma w r)^2 + gamma - gamma^2 (w - w^2 l^T (L^T W L)^-1 l), w = 1 / (lambda +
   // gamma).
@@ -299,7 +286,6 @@ struct PixelSolver::Work {
   bool estimate() {
     if (!solve_fitted()) return false;
     if (options.estimator == Estimator::kLeastSquares) return true;
-    if (options.estimator == Estimator::kHuber) return solve_huber();
     if (options.estimator == Estimator::kLeastAbsolute) return solve_least_absolute();
     if (options.estimator == Estimator::kSparse) return solve_sparse();
     if (!solve_weighted()) return false;

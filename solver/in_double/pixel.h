@@ -24,7 +24,6 @@ struct PixelRow {
 /// What is minimised, each over what the one before leaves of the readings.
 enum class Estimator {
   kLeastSquares,   ///< sum of (x_k - l_k . b)^2 with x = r / e
-  kHuber,          ///< Huber's loss, by reweighting; from 1.345 times the median residual
   kLeastAbsolute,  ///< sum of |x_k - l_k . b|, by reweighting (L1)
   kSparse,         ///< least squares plus a sparse error a reading (Ikehata et al., CVPR 2012: SBL)
   kWeighted,       ///< the same over the variances that a first solution predicts; shadowed readings that

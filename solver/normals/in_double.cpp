@@ -30,8 +30,5 @@ std::unique_ptr<Method> least_absolute_method() {
 std::unique_ptr<Method> sparse_method() {
   return std::make_unique<InDouble>(Estimator::kSparse, false);
 }
-std::unique_ptr<Method> huber_method() {
-  return std::make_unique<InDouble>(Estimator::kHuber, false);
-}
 
 }  // namespace weft::solver

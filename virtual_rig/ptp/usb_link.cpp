@@ -52,7 +52,7 @@ BytesView bytes_of(const T& value) {
   return {reinterpret_cast<const std::uint8_t*>(&value), sizeof value};
 }
 
-bool reply(int fd, Status status, BytesView data = {}, BytesView more = {}) {
+bool reply(int fd, UsbStatus status, BytesView data = {}, BytesView more = {}) {
   const usb::ReplyHead head = {status, static_cast<std::uint32_t>(data.size() + more.size())};
   return write_all(fd, std::array{bytes_of(head), data, more});
 }
@@ -122,7 +122,7 @@ void UsbLink::set_present(bool present) {
 
 void UsbLink::announce(Event event, std::uint32_t parameter) {
   const Bytes bytes = container(kEventContainer, event, 0, {parameter});
-  const usb::ReplyHead head = {Status::kDone, static_cast<std::uint32_t>(bytes.size())};
+  const usb::ReplyHead head = {UsbStatus::kDone, static_cast<std::uint32_t>(bytes.size())};
   const std::lock_guard lock(mutex_);
   if (events_fd_ >= 0) write_now(events_fd_, ByteWriter().put(bytes_of(head)).put(bytes).take());
 }
@@ -132,7 +132,7 @@ void UsbLink::serve(int fd) {
   CallHead call = {};
   Bytes data;
   while (read_all(fd, {reinterpret_cast<std::uint8_t*>(&call), sizeof call})) {
-    data.resize(call.call == Call::kBulkOut ? std::min<std::size_t>(call.length, kLongestContainer) : 0);
+    data.resize(call.call == UsbCall::kBulkOut ? std::min<std::size_t>(call.length, kLongestContainer) : 0);
     if (!read_all(fd, data) || !answer(fd, call, data, admitted)) break;
   }
   const std::lock_guard lock(mutex_);
@@ -142,48 +142,49 @@ void UsbLink::serve(int fd) {
 
 /// False: the connection ends here.
 bool UsbLink::answer(int fd, const CallHead& call, BytesView data, bool& admitted) {
-  if (call.call == Call::kDescribe) {
+  if (call.call == UsbCall::kDescribe) {
     const std::lock_guard lock(mutex_);
-    return reply(fd, Status::kDone, bytes_of(usb::Description{product_, address_}));
+    return reply(fd, UsbStatus::kDone, bytes_of(usb::Description{product_, address_}));
   }
-  if (call.call == Call::kEvents) {
+  if (call.call == UsbCall::kEvents) {
     const std::lock_guard lock(mutex_);
     events_fd_ = fd;
     return true;
   }
-  if (call.call == Call::kConfigure) {  // which the kernel wants without a claim, of whomever
+  if (call.call == UsbCall::kConfigure) {  // which the kernel wants without a claim, of whomever
     const std::lock_guard lock(mutex_);
-    if (claimant_ >= 0 && claimant_ != fd) return reply(fd, Status::kBusy);
+    if (claimant_ >= 0 && claimant_ != fd) return reply(fd, UsbStatus::kBusy);
     clear();
-    return reply(fd, Status::kDone);
+    return reply(fd, UsbStatus::kDone);
   }
-  if (call.call == Call::kClaim) return reply(fd, claim(fd, admitted) ? Status::kDone : Status::kBusy);
-  if (!claimed_by(fd)) return reply(fd, Status::kBusy);
+  if (call.call == UsbCall::kClaim)
+    return reply(fd, claim(fd, admitted) ? UsbStatus::kDone : UsbStatus::kBusy);
+  if (!claimed_by(fd)) return reply(fd, UsbStatus::kBusy);
   switch (call.call) {
-    case Call::kRelease: {
+    case UsbCall::kRelease: {
       const std::lock_guard lock(mutex_);
       claimant_ = -1;
-      return reply(fd, Status::kDone);
+      return reply(fd, UsbStatus::kDone);
     }
-    case Call::kReset: {
+    case UsbCall::kReset: {
       body_.reset();
       const std::lock_guard lock(mutex_);
       clear();
-      return reply(fd, Status::kDone);
+      return reply(fd, UsbStatus::kDone);
     }
-    case Call::kControl: {
+    case UsbCall::kControl: {
       if (call.value == kGetDeviceStatus)
-        return reply(fd, Status::kDone,
+        return reply(fd, UsbStatus::kDone,
                      ByteWriter().put(std::uint16_t{4}).put(static_cast<std::uint16_t>(kOk)).take());
       if (call.value == kDeviceReset) body_.reset();
-      if (call.value != kDeviceReset && call.value != kCancelRequest) return reply(fd, Status::kStall);
+      if (call.value != kDeviceReset && call.value != kCancelRequest) return reply(fd, UsbStatus::kStall);
       const std::lock_guard lock(mutex_);
       clear();
-      return reply(fd, Status::kDone);
+      return reply(fd, UsbStatus::kDone);
     }
-    case Call::kBulkOut:
+    case UsbCall::kBulkOut:
       return reply(fd, take_out(data));
-    case Call::kBulkIn: {
+    case UsbCall::kBulkIn: {
       const Piece piece = next_piece(fd, call.length, call.timeout_ms);
       if (piece.breaks) body_.pull_cable();
       return reply(fd, piece.status, piece.head, piece.payload.bytes);
@@ -224,17 +225,17 @@ Status UsbLink::take_out(BytesView bytes) {
   {
     const std::lock_guard lock(mutex_);
     out_.insert(out_.end(), bytes.begin(), bytes.end());
-    if (out_.empty()) return Status::kDone;
+    if (out_.empty()) return UsbStatus::kDone;
     const auto length = ByteReader(out_).get<std::uint32_t>();
     if (!length || *length < kContainerHead || *length > kLongestContainer || out_.size() > *length) {
       out_.clear();
-      return Status::kStall;
+      return UsbStatus::kStall;
     }
-    if (out_.size() < *length) return Status::kDone;
+    if (out_.size() < *length) return UsbStatus::kDone;
     whole = std::exchange(out_, {});
   }
   take_container(whole);
-  return Status::kDone;
+  return UsbStatus::kDone;
 }
 
 void UsbLink::take_container(BytesView bytes) {
@@ -294,12 +295,12 @@ UsbLink::Piece UsbLink::next_piece(int fd, std::size_t most, std::uint32_t timeo
   while (in_.empty() || stalled(in_.front())) {
     changed_.wait_for(lock, kLook);
     if (!present_ || hung_up(fd) || (timeout_ms && RigClock::now() >= end))
-      return {.status = Status::kTimeOut};
+      return {.status = UsbStatus::kTimeOut};
   }
   Transfer& transfer = in_.front();
   if (transfer.delivery == kTimeOut) {
     in_.pop_front();
-    return {.status = Status::kTimeOut};
+    return {.status = UsbStatus::kTimeOut};
   }
   const std::size_t length = std::min(most, transfer.left());
   const std::size_t head_sent = std::min(transfer.sent, transfer.head.size());
