@@ -117,7 +117,7 @@ simulator::Scene scene_of(const Spectra& spectra) {
 std::string chart_toml(const Spectra& spectra) {
   std::string toml = "rec709 = [\n";
   for (const Spectrum& patch : spectra.chart) {
-    const simulator::Rgb rgb = simulator::rec709_albedo(patch);
+    const Rgb rgb = simulator::rec709_albedo(patch);
     toml += fmt::format("  [{}, {}, {}],\n", rgb[0], rgb[1], rgb[2]);
   }
   return toml + "]\n";

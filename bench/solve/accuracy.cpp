@@ -315,14 +315,14 @@ Result<Rows> solve_order(const AccuracyOptions& options) {
     if (!plan) return plan.error();
     JobContext context;
     context.threads = options.threads;
-    const auto photographs = app::load_session(*plan, context);
-    if (!photographs) return photographs.error();
+    const auto loaded = app::load_session(*plan, context);
+    if (!loaded) return loaded.error();
     const auto truth = read_truth(folder);
     if (!truth) return truth.error();
     for (const bool after : {true, false}) {
       const std::unique_ptr<solver::Method> method =
           after ? solver::fast_method() : std::unique_ptr<solver::Method>(new FastOnRgb);
-      Result<Json> row = order_row(*photographs, *method, *truth, context);
+      Result<Json> row = order_row(loaded->photographs, *method, *truth, context);
       if (!row) return std::move(row).error();
       Json named = {
           {"quality", "fast"}, {"cloth", name}, {"demosaicing", after ? "after solving" : "before solving"}};

@@ -239,7 +239,7 @@ TEST(Sha256, OfAFileIsThatOfItsBytesAroundTheBlockSize) {
 }
 
 TEST(LookFor, TellsWhatIsNotThereFromWhatCannotBeSeen) {
-  const fs::path folder = fresh_folder();
+  const ScratchFolder folder;
   fs::create_symlink("/nowhere", folder / "link");
   EXPECT_TRUE(look_for(folder / "link").value()) << "a link that leads nowhere is there";
   EXPECT_FALSE(look_for(folder / "nothing").value());
@@ -250,9 +250,9 @@ TEST(LookFor, TellsWhatIsNotThereFromWhatCannotBeSeen) {
 }
 
 TEST(AreOnOneDisk, LooksAtTheNearestParentsThatAreThere) {
-  const fs::path folder = fresh_folder();
+  const ScratchFolder folder;
   EXPECT_TRUE(are_on_one_disk(folder / "a", folder / "b" / "c"));
-  EXPECT_FALSE(are_on_one_disk(folder, "/proc/self"));
+  EXPECT_FALSE(are_on_one_disk(folder / "", "/proc/self"));
 }
 
 TEST(FreeDiskBytes, OfAPathThatIsNotThereYetAreThoseOfItsParent) {

@@ -230,7 +230,7 @@ void simulate_chart(const fs::path& folder) {
   test::simulate(scene, folder / "chart.weft");
   std::string toml = "rec709 = [";
   for (const simulator::Spectrum& patch : scene.spectra.chart) {
-    const simulator::Rgb rgb = simulator::rec709_albedo(patch);
+    const Rgb rgb = simulator::rec709_albedo(patch);
     toml += fmt::format("[{}, {}, {}], ", rgb[0], rgb[1], rgb[2]);
   }
   ASSERT_TRUE(write_file(folder / "chart.toml", toml + "]\n"));

@@ -56,8 +56,8 @@ Result<std::vector<WhitePatch>> patches_in(const ScaleSettings& scale, const fs:
   return patches;
 }
 
-Result<GreyChartFit> fit(Calibration calibration, const Photographs& photographs, const ScaleSettings& scale,
-                         std::vector<WhitePatch> patches) {
+Result<GreyChartFit> fit(Calibration calibration, const pipeline::Photographs& photographs,
+                         const ScaleSettings& scale, std::vector<WhitePatch> patches) {
   calibration.patches = std::move(patches);
   const auto evidence = rig_evidence(calibration, photographs);
   if (!evidence) return evidence.error();
@@ -69,7 +69,7 @@ Result<GreyChartFit> fit(Calibration calibration, const Photographs& photographs
   const NearLights& lights = std::get<NearLights>(*calibration.lights);
   std::vector<double> full_reading(lights.leds.size(), 1);
   for (std::size_t k = 0; k < photographs.count(); ++k) {
-    const ShotMetadata& shot = photographs.mosaics[k].shot;
+    const ShotMetadata& shot = photographs.mosaics()->frames[k].shot;
     full_reading[static_cast<std::size_t>(photographs.leds[k] - 1)] =
         1 / (1e-6 * shot.exposure_us * shot.iso / 100);
   }
@@ -100,15 +100,16 @@ std::optional<ParameterCovariance> with_chart(std::optional<ParameterCovariance>
   return covariance;
 }
 
-ReportSection led_section(const GreyChartFit& fit, const NearLights& before, Json& numbers) {
-  ReportSection section = {"LEDs",
-                           {"Flux in green, and red and blue over it: the white balance. Sigmas are for LEDs "
-                            "at the places that the calibration has."},
-                           ReportTable{{"LED", "flux, green", "sigma, %", "red / green", "sigma, %",
-                                        "blue / green", "sigma, %", "green over before, %"},
-                                       {}},
-                           {},
-                           true};
+report::Section led_section(const GreyChartFit& fit, const NearLights& before, Json& numbers) {
+  report::Section section = {
+      "LEDs",
+      {"Flux in green, and red and blue over it: the white balance. Sigmas are for LEDs "
+       "at the places that the calibration has."},
+      report::Table{{"LED", "flux, green", "sigma, %", "red / green", "sigma, %", "blue / green", "sigma, %",
+                     "green over before, %"},
+                    {}},
+      {},
+      true};
   for (std::size_t k = 0; k < fit.lights.leds.size(); ++k) {
     const auto& flux = fit.lights.leds[k].flux_rgb;
     const double over = flux[1] / before.leds[k].flux_rgb[1] - 1;
@@ -127,14 +128,14 @@ ReportSection led_section(const GreyChartFit& fit, const NearLights& before, Jso
   return section;
 }
 
-ReportSection patch_section(const GreyChartFit& fit, const ScaleSettings& scale) {
-  ReportSection section = {
+report::Section patch_section(const GreyChartFit& fit, const ScaleSettings& scale) {
+  report::Section section = {
       "Patches",
       {fmt::format(
           "How far each patch is from its reflectance. Linear light would be v (1 {:+.4f} v) of what "
           "was read, with a sigma of {:.4f}; chi-square a degree of freedom is {:.2f}.",
           fit.bend, fit.bend_sigma, fit.chi_square)},
-      ReportTable{{"patch", "reflectance", "off, %"}, {}}};
+      report::Table{{"patch", "reflectance", "off, %"}, {}}};
   for (std::size_t i = 0; i < fit.off_percent.size(); ++i) {
     section.table->rows.push_back({std::to_string(i + 1), fmt::format("{:.4f}", scale.reflectances[i]),
                                    fmt::format("{:+.2f}", fit.off_percent[i])});
@@ -191,9 +192,9 @@ Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, con
   if (!scale) return scale.error();
   Result<std::vector<WhitePatch>> patches = patches_in(*scale, file, plan->size);
   if (!patches) return std::move(patches).error();
-  const Result<Photographs> photographs = load_session(*plan, context);
-  if (!photographs) return photographs.error();
-  const Result<GreyChartFit> found = fit(before, *photographs, *scale, std::move(*patches));
+  const Result<LoadedSession> loaded = load_session(*plan, context);
+  if (!loaded) return loaded.error();
+  const Result<GreyChartFit> found = fit(before, loaded->photographs, *scale, std::move(*patches));
   if (!found) return found.error();
 
   CalibrateOutcome outcome;

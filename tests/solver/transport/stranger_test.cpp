@@ -75,7 +75,7 @@ TEST(Transport, FindsTheBouncesOfTheSimulatorInWhatAPictureMeasures) {
   const std::vector<Vec3> normals = normals_in(cloth);
   const simulator::HeightMesh mesh = mesh_of(cloth);
   const Vec3 light = direction_of(55, 40);
-  std::vector<simulator::Rgb> direct, albedo(normals.size(), {kAlbedo, kAlbedo, kAlbedo});
+  std::vector<Rgb> direct, albedo(normals.size(), {kAlbedo, kAlbedo, kAlbedo});
   for (const Vec3 n : normals) {
     const double cosine = std::max(dot(n, light), 0.0);
     direct.push_back({cosine, cosine, cosine});
