@@ -152,11 +152,11 @@ class CalibrateLights : public testing::Test {
     return outcome ? std::string() : outcome.error().message();
   }
   /// The verdict that says this; one without a name where none does.
-  static Verdict verdict_of(const CalibrateOutcome& outcome, const std::string& part) {
-    const std::vector<Verdict>& all = outcome.report.verdicts;
-    const auto found = std::find_if(all.begin(), all.end(),
-                                    [&](const Verdict& v) { return v.text.find(part) != v.text.npos; });
-    return found == all.end() ? Verdict() : *found;
+  static report::Verdict verdict_of(const CalibrateOutcome& outcome, const std::string& part) {
+    const std::vector<report::Verdict>& all = outcome.report.verdicts;
+    const auto found = std::find_if(
+        all.begin(), all.end(), [&](const report::Verdict& v) { return v.text.find(part) != v.text.npos; });
+    return found == all.end() ? report::Verdict() : *found;
   }
 
   fs::path work_;
@@ -262,7 +262,7 @@ TEST_F(CalibrateLights, AreNotAcceptedOnASessionThatTheyWereFittedTo) {
     EXPECT_TRUE(checked) << checked.error().message();
     std::vector<std::string> names;
     if (!checked) return names;
-    for (const Verdict& verdict : checked->report.verdicts) names.push_back(verdict.name);
+    for (const report::Verdict& verdict : checked->report.verdicts) names.push_back(verdict.name);
     return names;
   };
   for (const char* fitted : {"sheet1.weft", "sheet3.weft"})
@@ -302,7 +302,7 @@ TEST_F(CalibrateLights, NamesTwoCapturesOfOnePose) {
   const CalibrateOutcome outcome = done();
   EXPECT_THAT(verdict_of(outcome, "sheet4.weft and sheet5.weft show the sheet in one pose").remedy,
               HasSubstr("turn the sheet"));
-  for (const Verdict& verdict : outcome.report.verdicts) {
+  for (const report::Verdict& verdict : outcome.report.verdicts) {
     EXPECT_FALSE(verdict.remedy.empty()) << verdict.text;
     EXPECT_THAT(outcome.warnings, Not(testing::Contains(HasSubstr(verdict.text)))) << "said twice";
   }
