@@ -260,7 +260,7 @@ std::vector<std::string> circle_from(const std::string& at, const Arrows& arrows
   way.push_back(at);
   if (done.contains(at) || !arrows.contains(at)) return {};
   for (const std::string& next : arrows.at(at)) {
-    if (auto circle = circle_from(next, arrows, way, done); !circle.empty()) return circle;
+    if (auto found = circle_from(next, arrows, way, done); !found.empty()) return found;
   }
   done.insert(at);
   return {};
