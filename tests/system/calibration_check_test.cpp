@@ -80,9 +80,9 @@ class CalibrationCheck : public testing::Test {
   static void calibrate() {
     const auto plan = plan_session({root_ / "cloth.weft", {}, {}});
     ASSERT_TRUE(plan) << plan.error().message();
-    const auto photographs = load_session(*plan, {});
-    ASSERT_TRUE(photographs) << photographs.error().message();
-    const auto tags = tags_in(*photographs, {simulator::TagSettings().dictionary});
+    const auto loaded = load_session(*plan, {});
+    ASSERT_TRUE(loaded) << loaded.error().message();
+    const auto tags = tags_in(loaded->photographs, {simulator::TagSettings().dictionary});
     ASSERT_TRUE(tags) << tags.error().message();
     ASSERT_EQ(tags->size(), 4U);
     Calibration rig = plan->calibration;

@@ -220,7 +220,7 @@ void UsbLink::clear() {
 }
 
 /// A host may send a container in several transfers.
-Status UsbLink::take_out(BytesView bytes) {
+UsbStatus UsbLink::take_out(BytesView bytes) {
   Bytes whole;
   {
     const std::lock_guard lock(mutex_);
