@@ -79,10 +79,10 @@ TEST_F(CaptureSoak, TwentyScansOfSixteenMegapixelsAreAlikeAndLeaveNothingBehind)
 // after one that was truncated, asks for more than that.
 TEST_F(CaptureSoak, ExposuresOf25SecondsWaitForTheLedToCool) {
   const auto rig =
-      bench::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
-                                .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
-                                .folder = folder_ / "rig",
-                                .megapixels = 0.05});
+      simulator::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
+                                    .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
+                                    .folder = folder_ / "rig",
+                                    .megapixels = 0.05});
   ASSERT_TRUE(rig) << rig.error().message();
   ASSERT_TRUE((*rig)->say("camera short_data 2"));
   const auto weft = (*rig)->weft(
