@@ -130,7 +130,7 @@ Result<std::string> token_of_owner(const capture::Rig& rig) {
   if (!rig.daemon.token.empty()) return read_token(rig.daemon.token);
   const std::filesystem::path token = state_folder(rig) / kToken;
   if (!is_there(token)) return std::string();
-  if (access(token.c_str(), R_OK) == 0) return read_token(token);
+  if (::faccessat(AT_FDCWD, token.c_str(), R_OK, AT_EACCESS) == 0) return read_token(token);
   return Error{ErrorKind::kTryAgain, "the rig is in use", rig.name,
                fmt::format("a scan of {} runs on it", owner_of(token)), "wait for its end"};
 }

@@ -24,7 +24,7 @@ using Steady = std::chrono::steady_clock;
 
 // Detection, session, the card's list, settings, 1.5 s of watching a clock. On USB a silent body is reset
 // twice, after 1.5 s each; over the network a new connection does more than libgphoto2's third try.
-constexpr double kOpenUsbS = 12, kOpenNetworkS = 6;
+constexpr double kOpenUsbS = 12, kOpenNetworkS = 5;
 constexpr const char* kNotOpenedRemedy =
     "switch the camera off and on; if its card holds thousands of pictures, format it or take it out";
 constexpr double kSetS = 5;       // libgphoto2 gives up on a packet after 2.5 s

@@ -27,18 +27,18 @@ class OpenedCamera {
   explicit OpenedCamera(const std::string& socket) {
     setenv("WEFT_USB_CAMERAS", socket.c_str(), 1);
     libusb_init(&context_);
-    libusb_device** devices = nullptr;
-    const ssize_t count = libusb_get_device_list(context_, &devices);
+    const ssize_t count = libusb_get_device_list(context_, &devices_);
     EXPECT_EQ(count, 1);
     if (count == 1) {
-      EXPECT_EQ(libusb_open(devices[0], &handle_), LIBUSB_SUCCESS);
+      EXPECT_EQ(libusb_open(device(), &handle_), LIBUSB_SUCCESS);
     }
-    libusb_free_device_list(devices, 1);
   }
   ~OpenedCamera() {
     libusb_close(handle_);
+    libusb_free_device_list(devices_, 1);
     libusb_exit(context_);
   }
+  libusb_device* device() { return devices_[0]; }
   libusb_device_handle* handle() { return handle_; }
   libusb_context* context() { return context_; }
 
@@ -58,6 +58,7 @@ class OpenedCamera {
 
  private:
   libusb_context* context_ = nullptr;
+  libusb_device** devices_ = nullptr;
   libusb_device_handle* handle_ = nullptr;
   int result_ = LIBUSB_SUCCESS;
 };
@@ -74,7 +75,7 @@ TEST(UsbStandIn, DescribesAStillImageDevice) {
   Studio studio(on_usb());
   OpenedCamera camera(on_usb().usb);
   libusb_device_descriptor device = {};
-  ASSERT_EQ(libusb_get_device_descriptor(nullptr, &device), LIBUSB_SUCCESS);
+  ASSERT_EQ(libusb_get_device_descriptor(camera.device(), &device), LIBUSB_SUCCESS);
   EXPECT_EQ(device.idVendor, 0x04b0);
   EXPECT_EQ(device.idProduct, 0x0429);
   libusb_config_descriptor* configuration = nullptr;
