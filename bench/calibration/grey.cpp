@@ -6,11 +6,11 @@
 #include <cmath>
 #include <vector>
 
+#include "bench/oracles/grey_oracle.h"
 #include "calibration/lights/grey_chart.h"
 #include "calibration/lights/physical.h"
 #include "calibration/response/neutral_scale.h"
 #include "core/parallel.h"
-#include "bench/oracles/grey_oracle.h"
 
 namespace weft::bench {
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "calibration/lights/grey_chart.h"
 #include "bench/oracles/paper_oracle.h"
+#include "calibration/lights/grey_chart.h"
 
 namespace weft::test {
 

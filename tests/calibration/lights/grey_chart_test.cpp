@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "calibration/lights/physical.h"
 #include "bench/oracles/grey_oracle.h"
+#include "calibration/lights/physical.h"
 
 namespace weft::calibration {
 namespace {
