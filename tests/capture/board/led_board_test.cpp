@@ -116,10 +116,17 @@ TEST(LedBoard, SaysForHowLongALedMustCoolAndLightsItThen) {
       << "it waited for that itself";
   EXPECT_NEAR(*cools_s, 0.4, 0.1);
   EXPECT_EQ(desk.pins().now(), 0) << "it cools while it is dark";
-  std::this_thread::sleep_for(std::chrono::duration<double>(*cools_s));
-  const auto lit = light(*board, {3}, 40);
-  ASSERT_TRUE(lit) << lit.error().message();
-  EXPECT_EQ(*lit, 0);
+  // The simulated board's time stands still where this machine has none for it, so it may ask for a little
+  // more.
+  double rest_s = *cools_s, rested_s = 0;
+  while (rest_s > 0 && rested_s < 2) {
+    std::this_thread::sleep_for(std::chrono::duration<double>(rest_s));
+    rested_s += rest_s;
+    const auto asked = light(*board, {3}, 40);
+    ASSERT_TRUE(asked) << asked.error().message();
+    rest_s = *asked;
+  }
+  EXPECT_EQ(rest_s, 0) << "after " << rested_s << " s of rest, where " << *cools_s << " s were said";
   EXPECT_EQ(desk.pins().now(), 1 << 2);
 }
 
