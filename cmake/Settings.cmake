@@ -33,8 +33,8 @@ if(WEFT_SANITIZE)
   target_link_options(weft_settings INTERFACE -fsanitize=${WEFT_SANITIZE})
 endif()
 
-# Headers that most units read, compiled once: they were a third of the time of a build. Libraries are optimised
-# for what they measure, tests for the time that they take to compile.
+# Headers that most units read, compiled once. Libraries are optimised for what they measure, tests for the time that
+# they take to compile.
 set(WEFT_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
 function(weft_precompile name)
   cmake_parse_arguments(ARG "" "" "HEADERS;DEPENDS;OPTIONS" ${ARGN})

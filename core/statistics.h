@@ -2,9 +2,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 #include <vector>
 
 // Order statistics. Each is one of the values: nothing is interpolated.
@@ -12,7 +12,7 @@
 namespace weft {
 
 /// The value of rank `share` * (n - 1), rounded, of n values; `share` is 0 to 1. NaN where there are none.
-/// The values are finite (finite_of).
+/// The values are finite.
 template <typename T>
 T quantile(std::vector<T> values, double share) {
   if (values.empty()) return std::numeric_limits<T>::quiet_NaN();
@@ -25,13 +25,6 @@ T quantile(std::vector<T> values, double share) {
 template <typename T>
 T median(std::vector<T> values) {
   return quantile(std::move(values), 0.5);
-}
-
-/// The values that are finite, in their order.
-template <typename T>
-std::vector<T> finite_of(std::vector<T> values) {
-  std::erase_if(values, [](T value) { return !std::isfinite(value); });
-  return values;
 }
 
 }  // namespace weft

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 namespace weft {
 namespace {
 
@@ -23,7 +26,7 @@ TEST(Statistics, GivesOneOfTheValuesForAnyShare) {
 
 TEST(Statistics, HasNoValueOfNothing) {
   EXPECT_TRUE(std::isnan(quantile(std::vector<double>(), 0.5)));
-  EXPECT_TRUE(std::isnan(median(finite_of(std::vector<float>{NAN, INFINITY}))));
+  EXPECT_TRUE(std::isnan(median(std::vector<float>())));
 }
 
 }  // namespace
