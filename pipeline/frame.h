@@ -13,11 +13,11 @@
 
 namespace weft::pipeline {
 
-/// What solving a frame said of itself.
+/// What solving a frame said.
 struct FrameFacts {
-  double waited_seconds = 0;  ///< for the sink
+  double waited_seconds = 0;  ///< seconds that bands waited for the sink
   solver::SolveTally tally;
-  std::optional<ReferenceFacts> reference = {};  ///< of that level alone
+  std::optional<ReferenceFacts> reference = {};  ///< where the level is reference
 };
 
 /// Solves a frame by a level or method, whatever it extends over.
