@@ -65,9 +65,10 @@ function(weft_library name)
 endfunction()
 
 # weft_test(NAME DEPENDS ... SOURCES ...): one test program, one CTest entry.
-# One entry a program: loading OpenImageIO costs 0.2 s a process.
+# One entry a program: loading OpenImageIO costs 0.2 s a process. SERIAL: it runs with no other beside it, since what it
+# proves needs the machine's time.
 function(weft_test name)
-  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL" "TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE weft_settings ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
   target_compile_options(${name} PRIVATE ${WEFT_TEST_OPTIONS})
@@ -76,7 +77,7 @@ function(weft_test name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}")
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" RUN_SERIAL ${ARG_SERIAL})
 endfunction()
 
 # weft_fuzzer(NAME DEPENDS ... SOURCES ... SEEDS ...): one libFuzzer program, one CTest entry. It goes on from where it
