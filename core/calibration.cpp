@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kSchema = "weft.calibration";
+constexpr const char* kCalibrationSchema = "weft.calibration";
 constexpr const char* kCameraFile = "camera.json";
 constexpr const char* kResponseFile = "response.json";
 constexpr const char* kColorFile = "color.json";
@@ -126,7 +126,7 @@ Result<void> write_reports(const fs::path& from, const fs::path& folder, std::sp
 Result<void> write_subject(const fs::path& folder, const CalibrationSubject& subject, const Digests& digests,
                            const Json& before) {
   const char* minor = subject.focal_length_mm > 0 ? ".2" : subject.measured.empty() ? "" : ".1";
-  Json document = {{"schema", fmt::format("{}/1{}", kSchema, minor)},
+  Json document = {{"schema", fmt::format("{}/1{}", kCalibrationSchema, minor)},
                    {"rig", subject.rig},
                    {"camera_model", subject.camera_model},
                    {"camera_serial", subject.camera_serial},
@@ -163,7 +163,7 @@ std::optional<double> Response::exposure_ratio(double exposure_us, double to_exp
 
 Result<Calibration> read_calibration(const fs::path& folder) {
   const fs::path file = folder / "calibration.json";
-  const Result<Json> document = read_json(file, kSchema, 1);
+  const Result<Json> document = read_json(file, kCalibrationSchema, 1);
   if (!document) return document.error();
   JsonFields fields(*document, file.string());
   Calibration calibration;
@@ -241,7 +241,7 @@ Result<Calibration> derive_calibration(const fs::path& from, Calibration change,
   if (is_there(folder)) return there_is_one(folder);
   Json before = Json::object();
   if (!from.empty()) {
-    Result<Json> document = read_json(from / "calibration.json", kSchema, 1);
+    Result<Json> document = read_json(from / "calibration.json", kCalibrationSchema, 1);
     if (!document) return std::move(document).error();
     before = std::move(*document);
   }

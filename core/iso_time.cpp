@@ -3,6 +3,7 @@
 
 #include <fmt/chrono.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
@@ -26,6 +27,10 @@ std::string iso_time(double since_1970_s) {
   const double whole_s = std::floor(since_1970_s);
   return fmt::format("{:%Y-%m-%dT%H:%M:%S}.{:03}Z", fmt::gmtime(static_cast<std::time_t>(whole_s)),
                      static_cast<int>(1000 * (since_1970_s - whole_s)));
+}
+
+double seconds_since_1970() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 std::string iso_time_now() {

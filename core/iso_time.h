@@ -11,6 +11,9 @@ namespace weft {
 /// "2026-11-21T14:25:01.250Z", of seconds since 1970.
 std::string iso_time(double since_1970_s);
 
+/// Now, by the clock of this computer.
+double seconds_since_1970();
+
 /// "2026-11-21T14:25:01Z": now, to the second.
 std::string iso_time_now();
 

@@ -11,7 +11,7 @@
 namespace weft {
 namespace {
 
-constexpr const char* kSchema = "weft.session";
+constexpr const char* kSessionSchema = "weft.session";
 constexpr std::array<std::pair<ShotRole, const char*>, 4> kRoles = {{{ShotRole::kLit, "lit"},
                                                                      {ShotRole::kDark, "dark"},
                                                                      {ShotRole::kRepeat, "repeat"},
@@ -115,7 +115,7 @@ std::vector<const Shot*> Session::lit() const {
 
 Result<Session> read_session(const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / "session.json";
-  Result<Json> document = read_json(file, kSchema, 1);
+  Result<Json> document = read_json(file, kSessionSchema, 1);
   if (!document) return std::move(document).error();
   JsonFields fields(*document, file.string());
   Session session;
@@ -139,7 +139,7 @@ Result<Session> read_session(const std::filesystem::path& folder) {
 
 Result<void> write_session(const Session& session) {
   Json document = session.document.is_object() ? session.document : Json::object();
-  if (!document.contains("schema")) document["schema"] = std::string(kSchema) + "/1";
+  if (!document.contains("schema")) document["schema"] = std::string(kSessionSchema) + "/1";
   document["fabric"] = session.fabric;
   document["cloth_height_mm"] = session.cloth_height_mm;
   document["rig"] = session.rig;

@@ -17,11 +17,12 @@
 namespace weft::pipeline {
 namespace {
 
+using solver::kDemosaicReach;
+
 constexpr int kBandRows = 64;
-constexpr int kReach = solver::kDemosaicReach;
 // Rows kept from the band above: what demosaicing looks back on, and the rows it could not do for want of a
 // look ahead.
-constexpr int kKept = 2 * kReach;
+constexpr int kKept = 2 * kDemosaicReach;
 static_assert(kBandRows % 2 == 0 && kKept % 2 == 0, "bands begin with the filter phase of the image");
 
 template <typename T>
@@ -41,10 +42,10 @@ struct BandMaps {
 
   explicit BandMaps(int width)
       : normal({width, kBandRows}, 3),
-        sigma_normal_deg({width, kBandRows + kReach}),
+        sigma_normal_deg({width, kBandRows + kDemosaicReach}),
         residual({width, kBandRows}),
-        albedo({width, kBandRows + kReach}, 3),
-        sigma_albedo({width, kBandRows + kReach}, 3),
+        albedo({width, kBandRows + kDemosaicReach}, 3),
+        sigma_albedo({width, kBandRows + kDemosaicReach}, 3),
         status({width, kBandRows}) {}
 };
 
@@ -63,8 +64,8 @@ class Photosites {
     const bool first = band.y0 == 0, last = band.y1 == image_height;
     const int top = first ? kKept : 0;  // of the buffer: the image begins here
     const int bottom = kKept + band.height();
-    const Rect rows = {0, first ? 0 : band.y0 - kReach, band.x1,
-                       last ? band.y1 : std::max(band.y1 - kReach, 0)};
+    const Rect rows = {0, first ? 0 : band.y0 - kDemosaicReach, band.x1,
+                       last ? band.y1 : std::max(band.y1 - kDemosaicReach, 0)};
     const Rect seen = {0, top, band.x1, bottom};
     const View<const float> rho = planes_.plane(0).crop(seen), sigma = planes_.plane(1).crop(seen),
                             angle = planes_.plane(2).crop(seen);

@@ -9,12 +9,8 @@
 #include "solver/kernels/demosaic.h"
 
 namespace weft::pipeline {
-namespace {
 
-// What is read around a tile to be demosaiced.
-constexpr int kReach = solver::kDemosaicReach;
-
-}  // namespace
+using solver::kDemosaicReach;  // what is read around a tile
 
 TileReader::TileReader(const Photographs& photographs, const TileOptions& tile, ReadAs as)
     : TileReader(photographs, tile, as, photographs.shifts) {}
@@ -31,7 +27,7 @@ TileReader::TileReader(const Photographs& photographs, const TileOptions& tile, 
       std::min(std::max(tile.height, 1), photographs.size.height)};
   readings_ = Image<float>(size, static_cast<int>(photographs.count()) * planes_.count);
   if (planes_.count != taken_.count)
-    mosaic_ = Image<float>({size.width + 2 * kReach, size.height + 2 * kReach});
+    mosaic_ = Image<float>({size.width + 2 * kDemosaicReach, size.height + 2 * kDemosaicReach});
 }
 
 solver::TileInput TileReader::read(Rect tile) {
@@ -77,8 +73,9 @@ std::vector<View<const float>> TileReader::read_taken(std::size_t k, Rect tile,
 // Demosaics frame k before solving, white-balanced by the flux of its light as the filters expect.
 void TileReader::read_rgb(std::size_t k, Rect tile, std::span<const View<float>> rgb) {
   const Size size = photographs_->size;
-  const Rect around = {std::max(tile.x0 - kReach, 0), std::max(tile.y0 - kReach, 0),
-                       std::min(tile.x1 + kReach, size.width), std::min(tile.y1 + kReach, size.height)};
+  const Rect around = {std::max(tile.x0 - kDemosaicReach, 0), std::max(tile.y0 - kDemosaicReach, 0),
+                       std::min(tile.x1 + kDemosaicReach, size.width),
+                       std::min(tile.y1 + kDemosaicReach, size.height)};
   const View<float> mosaic = mosaic_.plane().crop({0, 0, around.width(), around.height()});
   read_taken(k, around, {&mosaic, 1});
   const CfaPattern& cfa = taken_.cfa;

@@ -47,7 +47,7 @@ Result<int> compare(const CompareArguments& a, const CommonArguments& common) {
   return kDone;
 }
 
-Run add(Options& options) {
+Run add_compare(Options& options) {
   const auto a = std::make_shared<CompareArguments>();
   options.add("tested", &a->tested, "Map to test (EXR, TIFF, PNG)").required();
   options.add("truth", &a->truth, "Map that is right").required();
@@ -61,7 +61,7 @@ Run add(Options& options) {
 }  // namespace
 
 Verb compare_verb() {
-  return {"compare", "Compare a map with the truth: degrees, or relative albedo", add};
+  return {"compare", "Compare a map with the truth: degrees, or relative albedo", add_compare};
 }
 
 }  // namespace weft::app

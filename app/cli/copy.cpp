@@ -29,7 +29,7 @@ Result<int> copy(const CopyArguments& arguments, const CommonArguments& common) 
   return kDone;
 }
 
-Run add(Options& options) {
+Run add_copy(Options& options) {
   const auto a = std::make_shared<CopyArguments>();
   options.add("session", &a->session, "Session folder, NAME.weft").required();
   options.add("--to", &a->to, "Folder on another disk; default the one it was scanned with");
@@ -39,7 +39,7 @@ Run add(Options& options) {
 }  // namespace
 
 Verb copy_verb() {
-  return {"copy", "Make or verify the second copy of a finished session", add};
+  return {"copy", "Make or verify the second copy of a finished session", add_copy};
 }
 
 }  // namespace weft::app

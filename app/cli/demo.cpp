@@ -162,7 +162,7 @@ Result<int> demo(const DemoArguments& arguments, const CommonArguments& common) 
   return kDone;
 }
 
-Run add(Options& options) {
+Run add_demo(Options& options) {
   const auto a = std::make_shared<DemoArguments>();
   options.add("scene", &a->scene, "Scene file (TOML)").required();
   options.add("-o,--output", &a->output, "Folder for the session and its maps").shows_default();
@@ -174,7 +174,7 @@ Run add(Options& options) {
 }  // namespace
 
 Verb demo_verb() {
-  return {"demo", "Scan a simulated cloth, solve it and show the result", add};
+  return {"demo", "Scan a simulated cloth, solve it and show the result", add_demo};
 }
 
 }  // namespace weft::app

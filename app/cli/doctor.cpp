@@ -105,7 +105,7 @@ Result<int> examine_and_print(const std::filesystem::path& rig_file, const Commo
   return first == found.end() ? kDone : exit_code_of(first->kind);
 }
 
-Run add(Options& options) {
+Run add_doctor(Options& options) {
   const auto rig_file = std::make_shared<std::filesystem::path>();
   add_rig_file(options, *rig_file);
   return [rig_file](const CommonArguments& common) { return examine_and_print(*rig_file, common); };
@@ -114,7 +114,8 @@ Run add(Options& options) {
 }  // namespace
 
 Verb doctor_verb() {
-  return {"doctor", "What is wrong with this machine's set-up for a rig, and the command that mends it", add};
+  return {"doctor", "What is wrong with this machine's set-up for a rig, and the command that mends it",
+          add_doctor};
 }
 
 }  // namespace weft::app

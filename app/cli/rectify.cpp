@@ -34,7 +34,7 @@ Result<int> rectify(const RectifyOptions& options, const CommonArguments& common
   return kDone;
 }
 
-Run add(Options& options) {
+Run add_rectify(Options& options) {
   const auto a = std::make_shared<RectifyOptions>();
   options.add("session", &a->session, "Session folder, NAME.weft").required();
   options.add("--solve", &a->solve, "Id of the solve; default the newest complete one");
@@ -53,7 +53,7 @@ Run add(Options& options) {
 }  // namespace
 
 Verb rectify_verb() {
-  return {"rectify", "Put the maps of a solve on a square grid of the table, lens removed", add};
+  return {"rectify", "Put the maps of a solve on a square grid of the table, lens removed", add_rectify};
 }
 
 }  // namespace weft::app

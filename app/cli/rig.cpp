@@ -159,13 +159,13 @@ Run run_alone(Trial trial, const std::shared_ptr<RigArguments>& a) {
   };
 }
 
-Run add_status(Options& options) {
+Run add_rig_status(Options& options) {
   const auto a = std::make_shared<RigArguments>();
   add_rig_file(options, a->rig);
   return run_alone(show_status, a);
 }
 
-Run add_lights(Options& options) {
+Run add_rig_lights(Options& options) {
   const auto a = std::make_shared<RigArguments>();
   add_rig_file(options, a->rig);
   add_leds(options, a->leds);
@@ -173,7 +173,7 @@ Run add_lights(Options& options) {
   return run_alone(light_in_turn, a);
 }
 
-Run add_test(Options& options) {
+Run add_rig_test(Options& options) {
   const auto a = std::make_shared<RigArguments>();
   add_rig_file(options, a->rig);
   add_leds(options, a->leds);
@@ -183,11 +183,12 @@ Run add_test(Options& options) {
 }  // namespace
 
 Verb rig_verb() {
-  return {.name = "rig",
-          .help = "Try the parts of a rig",
-          .verbs = {{"status", "What board and camera say of themselves", add_status},
-                    {"lights", "Light the LEDs one after another", add_lights},
-                    {"test", "Photograph the table under each LED: is each where it should be?", add_test}}};
+  return {
+      .name = "rig",
+      .help = "Try the parts of a rig",
+      .verbs = {{"status", "What board and camera say of themselves", add_rig_status},
+                {"lights", "Light the LEDs one after another", add_rig_lights},
+                {"test", "Photograph the table under each LED: is each where it should be?", add_rig_test}}};
 }
 
 }  // namespace weft::app

@@ -273,7 +273,7 @@ Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
   return kDone;
 }
 
-Run add(Options& options) {
+Run add_scan(Options& options) {
   const auto a = std::make_shared<ScanArguments>();
   add_rig_file(options, a->rig);
   options.add("-o,--output", &a->output,
@@ -303,7 +303,8 @@ Run add(Options& options) {
 }  // namespace
 
 Verb scan_verb() {
-  return {"scan", "Photograph a cloth under each LED; run again, it finishes a scan that was cut short", add};
+  return {"scan", "Photograph a cloth under each LED; run again, it finishes a scan that was cut short",
+          add_scan};
 }
 
 }  // namespace weft::app

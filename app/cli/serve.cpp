@@ -90,7 +90,7 @@ Result<int> serve(const ServeArguments& arguments, const CommonArguments& common
   std::_Exit(kDone);
 }
 
-Run add(Options& options) {
+Run add_serve(Options& options) {
   const auto a = std::make_shared<ServeArguments>();
   add_rig_file(options, a->rig);
   options.add("--host", &a->host,
@@ -103,7 +103,7 @@ Run add(Options& options) {
 }  // namespace
 
 Verb serve_verb() {
-  return {"serve", "Own a rig and answer over HTTP (docs/http.md)", add};
+  return {"serve", "Own a rig and answer over HTTP (docs/http.md)", add_serve};
 }
 
 }  // namespace weft::app

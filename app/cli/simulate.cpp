@@ -188,7 +188,7 @@ Result<int> simulate(const SimulateArguments& arguments, const CommonArguments& 
   return run_session(*scene, arguments, common, options);
 }
 
-Run add(Options& options) {
+Run add_simulate(Options& options) {
   const auto a = std::make_shared<SimulateArguments>();
   options.add("scene", &a->scene, "Scene file; docs/scenes.md lists its keys and units").required();
   options
@@ -221,7 +221,7 @@ Run add(Options& options) {
 }  // namespace
 
 Verb simulate_verb() {
-  return {"simulate", "Render a scene (TOML) into a session of raw DNG frames with its truth", add};
+  return {"simulate", "Render a scene (TOML) into a session of raw DNG frames with its truth", add_simulate};
 }
 
 }  // namespace weft::app

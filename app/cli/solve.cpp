@@ -208,7 +208,7 @@ void add_maps(Options& options, const Level& level, SolveArguments& a) {
   options.add_flag("--strict", &a.strict, "Exit with 2 where pixels have no solution");
 }
 
-Run add(Options& options) {
+Run add_solve(Options& options) {
   struct Said {
     SolveArguments arguments;
     std::string transfer = "auto";
@@ -232,7 +232,7 @@ Run add(Options& options) {
 }  // namespace
 
 Verb solve_verb() {
-  return {"solve", "Turn a session, or photographs under known lights, into albedo and normals", add};
+  return {"solve", "Turn a session, or photographs under known lights, into albedo and normals", add_solve};
 }
 
 }  // namespace weft::app

@@ -21,10 +21,10 @@ constexpr const char* kAddress = "address";
 constexpr const char* kToken = "token";
 constexpr std::filesystem::perms kForAll = static_cast<std::filesystem::perms>(0755);
 constexpr mode_t kReadByAll = 0644;
-constexpr std::size_t kMostBytes = 4096;
+constexpr std::size_t kMostLockBytes = 4096;
 
 std::string first_line(const std::filesystem::path& file) {
-  const Result<std::string> text = read_text(file, kMostBytes);
+  const Result<std::string> text = read_text(file, kMostLockBytes);
   return text ? text->substr(0, text->find('\n')) : "";
 }
 

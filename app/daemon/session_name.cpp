@@ -15,7 +15,7 @@ namespace weft::app {
 namespace {
 
 constexpr std::size_t kMostBytes = 100;
-constexpr std::size_t kMostFabricBytes = 40;
+constexpr std::size_t kMostNameBytes = 40;
 constexpr int kMostCount = 99999;
 
 std::string local_time(std::chrono::system_clock::time_point time, const char* format) {
@@ -80,8 +80,8 @@ Result<std::string> next_session_name(const std::string& name_template, const st
                                       std::chrono::system_clock::time_point now) {
   std::map<std::string, std::string> values = {{"date", local_time(now, "%Y-%m-%d")},
                                                {"time", local_time(now, "%H%M%S")},
-                                               {"fabric", plain_name(fabric).substr(0, kMostFabricBytes)},
-                                               {"rig", plain_name(rig).substr(0, kMostFabricBytes)}};
+                                               {"fabric", plain_name(fabric).substr(0, kMostNameBytes)},
+                                               {"rig", plain_name(rig).substr(0, kMostNameBytes)}};
   const bool counts = name_template.find("{count}") != std::string::npos;
   for (int count = 1; count <= kMostCount; ++count) {
     values["count"] = fmt::format("{:03}", count);

@@ -22,7 +22,7 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using Verdict = SetupFinding::Verdict;
+using SetupVerdict = SetupFinding::Verdict;
 
 constexpr double kLowBattery = 0.2;
 constexpr double kMegabyte = 1e6;
@@ -70,7 +70,7 @@ void for_each_process(const SystemPlaces& places, const Visit& visit) {
 
 SetupFinding fault(std::string part, std::string says, std::string remedy,
                    ErrorKind kind = ErrorKind::kNoDevice) {
-  return {Verdict::kFault, std::move(part), std::move(says), std::move(remedy), kind};
+  return {SetupVerdict::kFault, std::move(part), std::move(says), std::move(remedy), kind};
 }
 
 /// A known thief keeps the device from us; another program may only be looking. A virtual rig is the other
@@ -82,7 +82,7 @@ void report_holders(const std::vector<Holder>& holders, const std::string& part,
     const auto* const thief =
         std::find_if(kThieves.begin(), kThieves.end(), [&](const Thief& t) { return t.name == holder.name; });
     const bool known = thief != kThieves.end();
-    found.push_back({known ? Verdict::kFault : Verdict::kWarning, part,
+    found.push_back({known ? SetupVerdict::kFault : SetupVerdict::kWarning, part,
                      fmt::format("{} (process {}) holds {}", holder.name, holder.pid, file.string()),
                      known ? std::string(thief->remedy) : fmt::format("kill {}", holder.pid)});
   }
@@ -98,7 +98,7 @@ void report_thieves(std::string_view part, bool seems_taken, const SystemPlaces&
     const std::string name = first_line(folder / "comm");
     for (const Thief& thief : kThieves) {
       if (thief.takes != part || thief.name != name) continue;
-      found.push_back({seems_taken ? Verdict::kFault : Verdict::kWarning, std::string(part),
+      found.push_back({seems_taken ? SetupVerdict::kFault : SetupVerdict::kWarning, std::string(part),
                        fmt::format("{} (process {}) runs and {}", name, pid, thief.does),
                        std::string(thief.remedy)});
     }
@@ -107,7 +107,7 @@ void report_thieves(std::string_view part, bool seems_taken, const SystemPlaces&
 
 bool has_fault(const std::vector<SetupFinding>& found, std::size_t from) {
   return std::any_of(found.begin() + static_cast<std::ptrdiff_t>(from), found.end(),
-                     [](const SetupFinding& f) { return f.verdict == Verdict::kFault; });
+                     [](const SetupFinding& f) { return f.verdict == SetupVerdict::kFault; });
 }
 
 void examine_board_port(const capture::Rig& rig, const SystemPlaces& places,
@@ -135,7 +135,7 @@ void examine_board(const capture::Rig& rig, const Opened& open, const SystemPlac
   const bool seems_taken = !greeting && (greeting.error().kind == ErrorKind::kTryAgain ||  // silent
                                          greeting.error().kind == ErrorKind::kNoDevice);   // busy
   report_thieves("board", seems_taken, places, found);
-  found.push_back(greeting ? SetupFinding{Verdict::kFine, "board", *greeting, ""}
+  found.push_back(greeting ? SetupFinding{SetupVerdict::kFine, "board", *greeting, ""}
                            : fault_of("board", greeting.error()));
 }
 
@@ -172,7 +172,7 @@ void examine_usb(const SystemPlaces& places, std::vector<SetupFinding>& found) {
     }
     report_holders(holders_of(camera.node, places), "camera", camera.node, found);
     if (camera.megabits > 0 && camera.megabits < 480) {
-      found.push_back({Verdict::kWarning, "camera",
+      found.push_back({SetupVerdict::kWarning, "camera",
                        fmt::format("{} runs at {} Mbit/s", camera.name, camera.megabits),
                        "use a port and cable of USB 2 or better"});
     }
@@ -190,18 +190,18 @@ void examine_camera(const capture::Rig& rig, const Opened& open, const SystemPla
     found.push_back(fault_of("camera", facts.error()));
     return;
   }
-  found.push_back({Verdict::kFine, "camera",
+  found.push_back({SetupVerdict::kFine, "camera",
                    fmt::format("{} {} at {}, battery {:.0f} %", facts->model, facts->serial, facts->port,
                                100 * facts->battery),
                    ""});
   if (facts->battery < kLowBattery)
     found.push_back(
-        {Verdict::kWarning, "camera", "its battery will not last", "charge it, or use mains power"});
+        {SetupVerdict::kWarning, "camera", "its battery will not last", "charge it, or use mains power"});
   if (capture::camera_serial(rig).empty())
-    found.push_back({Verdict::kWarning, "camera", "the rig file takes any camera",
+    found.push_back({SetupVerdict::kWarning, "camera", "the rig file takes any camera",
                      fmt::format("write serial = \"{}\" under [camera]", facts->serial)});
   if (std::abs(facts->clock_offset_s) > 60 + facts->clock_uncertainty_s)
-    found.push_back({Verdict::kWarning, "camera",
+    found.push_back({SetupVerdict::kWarning, "camera",
                      fmt::format("its clock is off by {:.0f} s", facts->clock_offset_s),
                      "set date and time in the camera's menu"});
 }
@@ -220,15 +220,15 @@ void examine_room(const std::string& part, const fs::path& folder, std::uint64_t
     found.push_back(
         fault(part, room, "free some, or name another disk in the rig file", ErrorKind::kInputOutput));
   } else if (free < 20 * session) {
-    found.push_back({Verdict::kWarning, part, room, "free some before the night"});
+    found.push_back({SetupVerdict::kWarning, part, room, "free some before the night"});
   } else {
-    found.push_back({Verdict::kFine, part, room, ""});
+    found.push_back({SetupVerdict::kFine, part, room, ""});
   }
 }
 
 void examine_calibration(const capture::Rig& rig, std::vector<SetupFinding>& found) {
   if (rig.scan.calibration.empty()) {
-    found.push_back({Verdict::kWarning, "calibration",
+    found.push_back({SetupVerdict::kWarning, "calibration",
                      "the rig file names none: frames are not compared with it",
                      "calibrate the rig (docs/calibration.md) and name the folder under [scan]"});
     return;
@@ -253,7 +253,7 @@ void examine_calibration(const capture::Rig& rig, std::vector<SetupFinding>& fou
     wrong(fmt::format("it is of camera {}, this one is {}", subject.camera_serial, rig.camera.serial));
   if (!calibration->lights) wrong("it has no lights");
   if (!has_fault(found, before)) {
-    found.push_back({Verdict::kFine, "calibration",
+    found.push_back({SetupVerdict::kFine, "calibration",
                      fmt::format("{}{}", calibration->id.substr(0, 12),
                                  subject.measured.empty() ? "" : ", measured " + subject.measured),
                      ""});
@@ -263,8 +263,8 @@ void examine_calibration(const capture::Rig& rig, std::vector<SetupFinding>& fou
 void examine_clock(std::vector<SetupFinding>& found) {
   struct timex clock = {};
   const bool synchronised = ::adjtimex(&clock) != TIME_ERROR && (clock.status & STA_UNSYNC) == 0;
-  found.push_back(synchronised ? SetupFinding{Verdict::kFine, "clock", "it is set by the network", ""}
-                               : SetupFinding{Verdict::kWarning, "clock", "nothing sets it",
+  found.push_back(synchronised ? SetupFinding{SetupVerdict::kFine, "clock", "it is set by the network", ""}
+                               : SetupFinding{SetupVerdict::kWarning, "clock", "nothing sets it",
                                               "sudo timedatectl set-ntp true"});
 }
 
@@ -306,7 +306,7 @@ std::vector<SetupFinding> examine_folders(const capture::Rig& rig, std::uint64_t
     examine_room("second disk", rig.scan.copy, frame_bytes, found);
     if (const auto one_disk = capture::warning_of_one_disk(rig.scan.sessions, rig.scan.copy)) {
       found.push_back(
-          {Verdict::kWarning, "second disk", *one_disk, "mount it, or name a folder on another disk"});
+          {SetupVerdict::kWarning, "second disk", *one_disk, "mount it, or name a folder on another disk"});
     }
   }
   examine_clock(found);

@@ -27,7 +27,7 @@ using pipeline::Photographs;
 constexpr Size kCut = {512, 256};
 
 // The middle of a frame, on whole cells of the colour filter.
-Rect middle_of(Size size) {
+Rect timed_area(Size size) {
   const Size cut = {std::min(size.width, kCut.width), std::min(size.height, kCut.height)};
   const int x0 = (size.width - cut.width) / 2 / 2 * 2, y0 = (size.height - cut.height) / 2 / 2 * 2;
   return {x0, y0, x0 + cut.width, y0 + cut.height};
@@ -180,7 +180,7 @@ Result<Ladder> explain(Photographs photographs, double read, const SolveOptions&
   if (!shifts) return std::move(shifts).error();
   photographs.shifts = std::move(shifts->corrections);
   const double prepare = watch.lap();
-  const Result<Photographs> part = cut(photographs, middle_of(photographs.size));
+  const Result<Photographs> part = cut(photographs, timed_area(photographs.size));
   if (!part) return part.error();
   return price(photographs, *part, read, prepare, options, context);
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <utility>
 
+#include "app/jobs/pictures.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/vec.h"
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 
 constexpr int kSide = 128, kEnlarged = 2;
 
-Rect middle_of(Size size) {
+Rect shown_area(Size size) {
   const int width = std::min(size.width, kSide), height = std::min(size.height, kSide);
   const int x0 = (size.width - width) / 2 / 2 * 2, y0 = (size.height - height) / 2 / 2 * 2;
   return {x0, y0, x0 + width, y0 + height};
@@ -69,18 +70,13 @@ report::Picture enlarged(const report::Picture& picture) {
   return large;
 }
 
-Result<void> write_png(const fs::path& file, const report::Picture& picture) {
-  const std::array<View<const float>, 3> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};
-  return write_image(file, planes, {"R", "G", "B"}, {.type = SampleType::kUint8});
-}
-
 }  // namespace
 
 Result<std::vector<LadderStep>> draw_ladder(const SessionOptions& input, const SolveOptions& options,
                                             const fs::path& file, const JobContext& context) {
   const Result<SessionPlan> plan = plan_session(input);
   if (!plan) return plan.error();
-  const Rect area = middle_of(plan->size);
+  const Rect area = shown_area(plan->size);
   const fs::path truth_file = plan->session.folder / "truth" / "normal.exr";
   std::optional<Image<float>> truth;
   if (is_there(truth_file)) {

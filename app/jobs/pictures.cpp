@@ -10,7 +10,6 @@
 #include "core/image_io/image_io.h"
 
 namespace weft::app {
-namespace {
 
 namespace fs = std::filesystem;
 
@@ -18,8 +17,6 @@ Result<void> write_png(const fs::path& file, const report::Picture& picture) {
   const std::array<View<const float>, 3> planes = {picture.plane(0), picture.plane(1), picture.plane(2)};
   return write_image(file, planes, {"R", "G", "B"}, {.type = SampleType::kUint8});
 }
-
-}  // namespace
 
 Result<TruthError> error_against(const fs::path& truth, const fs::path& normal) {
   const Result<LoadedImage> real = read_image(truth);

@@ -23,6 +23,9 @@ struct TruthError {
 /// Compares two normal maps on disk.
 Result<TruthError> error_against(const std::filesystem::path& truth, const std::filesystem::path& normal);
 
+/// A picture as PNG with 8 bits a channel.
+Result<void> write_png(const std::filesystem::path& file, const report::Picture& picture);
+
 /// The pictures a person opens first, reduced from the maps while they are solved.
 class Pictures {
  public:

@@ -131,7 +131,7 @@ Result<Calibration> calibration_with_camera(const fs::path& folder) {
 }
 
 // Room that the maps take at most: normal 12, sigma 16, albedo 6, status 2 bytes a pixel.
-std::uint64_t bytes_of(Size size) {
+std::uint64_t bytes_of_rectified(Size size) {
   return 36 * static_cast<std::uint64_t>(size.pixels());
 }
 
@@ -178,7 +178,7 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   Result<Image<std::uint16_t>> status = maps->status();
   if (!status) return std::move(status).error();
   PartialFolder partial(product.folder);
-  if (const Result<void> begun = begin(partial, bytes_of(grid->size)); !begun) return begun.error();
+  if (const Result<void> begun = begin(partial, bytes_of_rectified(grid->size)); !begun) return begun.error();
   const Rectification r = {*camera, *grid, std::move(*status), partial.path(), options, context};
   std::int64_t solved = 0;
   if (const Result<void> ok = rectify_status(r, solved); !ok) return ok.error();

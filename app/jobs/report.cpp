@@ -140,7 +140,7 @@ const char* name_of(FaultKind kind) {
   return "";
 }
 
-Json json_of(const Fault& fault, const Speaker& say) {
+Json fault_json(const Fault& fault, const Speaker& say) {
   Json json = {{"kind", name_of(fault.kind)}, {"lights", say.numbers(fault.lights)}};
   if (fault.kind == FaultKind::kExchanged) json["shown_by"] = say.numbers(fault.shown_by);
   if (fault.kind != FaultKind::kExchanged) json["value"] = number(fault.value);
@@ -154,7 +154,7 @@ Json json_of(const Fault& fault, const Speaker& say) {
   return json;
 }
 
-Json json_of(const solver::LightEvidence& light, int number_of_light) {
+Json light_json(const solver::LightEvidence& light, int number_of_light) {
   return {{"light", number_of_light},
           {"residual_rms", number(light.residual_rms)},
           {"residual_median", number(light.residual_median)},
@@ -321,9 +321,9 @@ Json report_document(const std::string& title, const Json& solve, const Photogra
   Json shares = Json::object(), lights = Json::array(), faults = Json::array();
   for (const auto& [name, count] : solve.at("status").items()) shares[name] = count.get<double>() / pixels;
   for (std::size_t k = 0; k < diagnosis.lights.size(); ++k) {
-    lights.push_back(json_of(diagnosis.lights[k], photographs.numbers[k]));
+    lights.push_back(light_json(diagnosis.lights[k], photographs.numbers[k]));
   }
-  for (const Fault& fault : diagnosis.faults) faults.push_back(json_of(fault, say));
+  for (const Fault& fault : diagnosis.faults) faults.push_back(fault_json(fault, say));
 
   Json report = {{"schema", "weft.solve-report/1"},
                  {"title", title},

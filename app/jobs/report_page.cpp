@@ -39,7 +39,7 @@ double number(const Json& object, const char* key, double otherwise = 0) {
   return found != object.end() && found->is_number() ? found->get<double>() : otherwise;
 }
 
-std::string percent(double share) {
+std::string percent_text(double share) {
   const double p = 100 * share;
   if (p == 0) return "0 %";
   if (p < 0.01) return "< 0.01 %";
@@ -84,7 +84,7 @@ std::string verdict(const Json& report) {
     otherwise = fmt::format(
         "Nothing stands out: half of the pixels agree with the model to {} of the albedo or better, and no "
         "light contradicts its calibration.",
-        percent(number(report, "residual_explained")));
+        percent_text(number(report, "residual_explained")));
   }
   return report::verdict_box(warnings, otherwise);
 }
@@ -120,7 +120,7 @@ std::string residual_chart(const Json& report) {
           "<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"{}\">{} {}</text>"
           "<text x=\"{:.1f}\" y=\"{}\" fill=\"#77736b\">{}</text>\n",
           left - 8, y + 15, alarm.count(n) != 0 ? "#b3261e" : "#22211f", light_noun(report), n,
-          left + size / most * width + 6, y + 15, escape_markup(percent(size)));
+          left + size / most * width + 6, y + 15, escape_markup(percent_text(size)));
     } else if (n % 8 == 0 || alarm.count(n) != 0) {
       bars += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"end\" fill=\"{}\">{}</text>\n", left - 8,
                           y + 9, alarm.count(n) != 0 ? "#b3261e" : "#22211f", n);
@@ -139,7 +139,7 @@ std::string status_chart(const Json& report) {
         "<tr><td>{}</td><td style=\"width:45%\"><svg viewBox=\"0 0 200 12\" preserveAspectRatio=\"none\" "
         "style=\"height:12px;margin-top:4px\"><rect width=\"200\" height=\"12\" fill=\"#eeebe3\"/>"
         "<rect width=\"{:.1f}\" height=\"12\" fill=\"#8f8a7e\"/></svg></td><td class=\"n\">{}</td></tr>\n",
-        escape_markup(name), 200 * std::clamp(s, 0.0, 1.0), escape_markup(percent(s)));
+        escape_markup(name), 200 * std::clamp(s, 0.0, 1.0), escape_markup(percent_text(s)));
   }
   return "<table>\n" + rows +
          "</table>\n<p class=\"note\">Share of pixels with each bit of status.png; a pixel may have "
@@ -153,8 +153,8 @@ std::string sigma_map(const Json& report) {
   report::FrameMap map = {sigma.value("columns", 0), sigma.value("rows", 0), {}, "°"};
   for (const Json& v : sigma["grid"]) map.values.push_back(v.is_number() ? v.get<double>() : NAN);
   const Json condition = report.value("condition", Json::object());
-  std::string note =
-      fmt::format("Median {:.3g}°, 95 percent below {:.3g}°.", number(sigma, "median"), number(sigma, "p95"));
+  std::string note = fmt::format("Median {:.3g}°, 95 percent_text below {:.3g}°.", number(sigma, "median"),
+                                 number(sigma, "p95"));
   if (condition.contains("median") && condition["median"].is_number()) {
     note += fmt::format(" Condition number of all lights {:.2f}, at worst {:.2f}.",
                         number(condition, "median"), number(condition, "worst", INFINITY));
@@ -170,11 +170,12 @@ std::string budget(const Json& report) {
     const double value = number(b, "value");
     rows += fmt::format("<tr><td>{}<br><span class=\"note\">{}</span></td><td class=\"n\">{}</td></tr>\n",
                         escape_markup(b.value("source", "")), escape_markup(b.value("what", "")),
-                        degrees ? fmt::format("{:.3g}°", value) : escape_markup(percent(value / 100)));
+                        degrees ? fmt::format("{:.3g}°", value) : escape_markup(percent_text(value / 100)));
   }
   if (const auto error = report.find("error"); error != report.end()) {
     rows += fmt::format(
-        "<tr><td>all of it<br><span class=\"note\">mean error against the truth; 95 percent below {:.2f}°"
+        "<tr><td>all of it<br><span class=\"note\">mean error against the truth; 95 percent_text below "
+        "{:.2f}°"
         "</span></td><td class=\"n\">{:.3g}°</td></tr>\n",
         number(*error, "p95_deg"), number(*error, "mean_deg"));
   }
@@ -191,11 +192,12 @@ std::string light_table(const Json& report) {
     // Very many lights are not listed but for those that are named.
     if (report["lights"].size() > 24 && !is_named) continue;
     if (is_named) table.alarms.insert(table.rows.size());
-    table.rows.push_back({fmt::format("{} {}", light_noun(report), n), percent(number(light, "residual_rms")),
+    table.rows.push_back({fmt::format("{} {}", light_noun(report), n),
+                          percent_text(number(light, "residual_rms")),
                           fmt::format("{:+.2f} %", 100 * number(light, "residual_mean")),
                           fmt::format("{:.1f} %", 100 * number(light, "gain", 1)),
-                          percent(number(light, "shadowed")), percent(number(light, "saturated")),
-                          percent(number(light, "missing")), percent(number(light, "outlier")),
+                          percent_text(number(light, "shadowed")), percent_text(number(light, "saturated")),
+                          percent_text(number(light, "missing")), percent_text(number(light, "outlier")),
                           fmt::format("{:.1f} % ({:.0f} %)", 100 * number(light, "gradient"),
                                       100 * number(light, "gradient_share"))});
   }

@@ -57,7 +57,7 @@ Json inputs_of(const Json& input, const SolveOptions& options) {
 }
 
 // Room for the maps: normal 12, albedo 6, sigma 8, residual 2, status and pictures 4 bytes a pixel.
-std::uint64_t bytes_of(Size size) {
+std::uint64_t bytes_of_maps(Size size) {
   return 32 * static_cast<std::uint64_t>(size.pixels());
 }
 
@@ -129,7 +129,7 @@ Json document_of(const Product& product, const Input& input, const SolveOptions&
   return document;
 }
 
-Json json_of(const SolveSeconds& seconds) {
+Json seconds_json(const SolveSeconds& seconds) {
   return {{"read", seconds.read},   {"prepare", seconds.prepare},   {"solve", seconds.solve},
           {"write", seconds.write}, {"pictures", seconds.pictures}, {"report", seconds.report}};
 }
@@ -201,7 +201,7 @@ class Run {
 
   // Reads the photographs, and does with them what does not need their normals.
   Result<void> prepare() {
-    if (Result<void> begun = begin(partial_, bytes_of(input_.size)); !begun) return begun;
+    if (Result<void> begun = begin(partial_, bytes_of_maps(input_.size)); !begun) return begun;
     Result<LoadedSession> loaded = input_.load();
     if (!loaded) return std::move(loaded).error();
     photographs_ = std::move(loaded->photographs);
@@ -288,7 +288,7 @@ class Run {
     report_.document = document_of(product_, input_, options_, facts_);
     if (Result<void> ok = write_json(partial_.path() / "solve.json", report_.document); !ok) return ok;
     const Json page =
-        report_document(input_.title, report_.document, summary_, *maps_, json_of(report_.seconds));
+        report_document(input_.title, report_.document, summary_, *maps_, seconds_json(report_.seconds));
     if (Result<void> ok = write_report(partial_.path(), page); !ok) return ok;
     report_.seconds.report += watch_.lap();
     return {};

@@ -19,7 +19,7 @@ namespace {
 constexpr double kLeastWindow_px = 2.5;  // around a corner, to either side
 constexpr double kMostWindow_px = 16;
 constexpr double kNearlyAll = 0.95;
-constexpr double kLeastContrast = 10;  // of 255
+constexpr double kLeastCornerContrast = 10;  // of 255
 
 // How wide the edge between two neighbouring corners is: contrast from the middle of one square to that of
 // the other over the steepest slope near the edge.
@@ -103,7 +103,7 @@ double chequer(View<const std::uint8_t> grey, PixelPoint at, PixelPoint along, P
   };
   const double a = quarter(-1, -1), b = quarter(1, -1), c = quarter(1, 1), d = quarter(-1, 1);
   const double contrast = std::max({a, b, c, d}) - std::min({a, b, c, d});
-  return contrast < kLeastContrast ? 0 : std::abs(a + c - b - d) / (2 * contrast);
+  return contrast < kLeastCornerContrast ? 0 : std::abs(a + c - b - d) / (2 * contrast);
 }
 
 std::optional<PixelPoint> saddle_near(View<const std::uint8_t> grey, PixelPoint rough,

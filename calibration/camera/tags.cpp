@@ -18,7 +18,7 @@ constexpr int kMostPlaces = 64;
 constexpr double kStep_px = 0.5;      // of a profile across an edge
 constexpr double kLeastReach_px = 2;  // of a profile to either side
 constexpr double kMostReach_px = 8;
-constexpr double kLeastContrast = 12;  // of 255
+constexpr double kLeastEdgeContrast = 12;  // of 255
 
 struct Line {
   PixelPoint at;
@@ -45,7 +45,7 @@ std::optional<double> edge_offset(View<const std::uint8_t> grey, PixelPoint at, 
     sum += r;
     moment += r * i * kStep_px;
   }
-  if (most < kLeastContrast * kStep_px || sum <= 0) return std::nullopt;
+  if (most < kLeastEdgeContrast * kStep_px || sum <= 0) return std::nullopt;
   return moment / sum;
 }
 

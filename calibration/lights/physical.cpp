@@ -37,13 +37,6 @@ struct Parameters {
   std::vector<std::array<double, 6>> sheets;  // turn and shift from the pose that the tags gave
 };
 
-std::array<double, 3> array_of(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-Vec3 vec_of(const double* p) {
-  return {p[0], p[1], p[2]};
-}
-
 NearLight led_of(const LedParameters& p) {
   NearLight led;
   led.position_mm = vec_of(p.position_mm.data());

@@ -8,13 +8,6 @@
 namespace weft::calibration {
 namespace {
 
-Vec3 vec_of(const double* p) {
-  return {p[0], p[1], p[2]};
-}
-std::array<double, 3> array_of(Vec3 v) {
-  return {v.x, v.y, v.z};
-}
-
 // Derivative by the rotation vector `at` itself of what changes by `g` with a small turn after it: the left
 // Jacobian of SO(3), to third order in an angle of a degree or two.
 Vec3 by_rotation_vector(const double* at, Vec3 g) {

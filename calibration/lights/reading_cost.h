@@ -22,6 +22,14 @@ using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::R
 /// Terms of a LED's own log gain that are fitted: the constant one is its flux.
 inline constexpr std::size_t kOwnGains = 5;
 
+/// Vectors as Ceres holds them.
+inline Vec3 vec_of(const double* p) {
+  return {p[0], p[1], p[2]};
+}
+inline std::array<double, 3> array_of(Vec3 v) {
+  return {v.x, v.y, v.z};
+}
+
 /// Where a sheet lies after a turn and a shift, six numbers.
 Pose pose_of(const Pose& start, const double* turn_and_shift);
 

@@ -13,8 +13,8 @@
 namespace weft::calibration {
 namespace {
 
-constexpr int kRounds = 4;
-constexpr int kBins = 40;
+constexpr int kLineRounds = 4;
+constexpr int kSignalBins = 40;
 
 // Two sums over a square, by the site of the filter cell: the greens differ in black level.
 struct PairSums {
@@ -68,12 +68,12 @@ std::vector<TransferBin> binned(const std::vector<LinePoint>& points, const Line
   struct Sum {
     double weight = 0, signal = 0, variance = 0;
   };
-  std::vector<Sum> sums(kBins);
+  std::vector<Sum> sums(kSignalBins);
   const double low = std::log(std::max(lowest, highest * 1e-4)), high = std::log(highest);
   for (const LinePoint& p : points) {
     if (p.signal <= 0) continue;
-    const double at = (std::log(p.signal) - low) / (high - low) * kBins;
-    Sum& s = sums[static_cast<std::size_t>(std::clamp(at, 0.0, kBins - 1.0))];
+    const double at = (std::log(p.signal) - low) / (high - low) * kSignalBins;
+    Sum& s = sums[static_cast<std::size_t>(std::clamp(at, 0.0, kSignalBins - 1.0))];
     s.weight += p.freedom;
     s.signal += p.freedom * p.signal;
     s.variance += p.freedom * p.variance;
@@ -149,7 +149,7 @@ Result<PhotonTransfer> fit_photon_transfer(std::span<const TransferPoint> points
                       "take pairs of frames at more exposures, from nearly dark to nearly full");
   }
   Line line = {1, 1, 0, 0};
-  for (int round = 0; round < kRounds; ++round) line = fitted(line_points, line);
+  for (int round = 0; round < kLineRounds; ++round) line = fitted(line_points, line);
   if (!(line.slope > 0)) {
     return cannot_fit("the variance of counts does not grow with light",
                       "use frames as the sensor gave them, without noise reduction");

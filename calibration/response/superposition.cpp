@@ -11,8 +11,8 @@
 namespace weft::calibration {
 namespace {
 
-constexpr int kRounds = 4;
-constexpr int kBins = 24;
+constexpr int kCurveRounds = 4;
+constexpr int kLevelBins = 24;
 constexpr double kPrior = 0.1;  // of a and b, all channels together
 
 // Parameters: offset, a and b by channel, then two gains a triple.
@@ -121,7 +121,7 @@ Fit solved(const std::vector<Square>& squares, std::size_t triples, const Superp
   const Eigen::MatrixXd prior = prior_of(n, noise, finds_offset);
   Fit fit = {Eigen::VectorXd::Zero(n), {}};
   Eigen::VectorXd slope(n);
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kCurveRounds; ++round) {
     Eigen::MatrixXd normal = prior;
     Eigen::VectorXd right = -prior * fit.parameters;
     for (const Square& s : squares) {
@@ -148,10 +148,10 @@ std::array<std::vector<SuperpositionBin>, 3> binned(const std::vector<Square>& s
   struct Sum {
     double weight = 0, v = 0, before = 0, after = 0;
   };
-  std::array<std::array<Sum, kBins>, 3> sums;
+  std::array<std::array<Sum, kLevelBins>, 3> sums;
   for (const Square& s : squares) {
     const double v = s.both.v - s.dark - p[kOffset];
-    const double at = std::clamp(v * kBins, 0.0, kBins - 1.0);
+    const double at = std::clamp(v * kLevelBins, 0.0, kLevelBins - 1.0);
     Sum& sum = sums[s.channel][static_cast<std::size_t>(at)];
     sum.weight += s.weight;
     sum.v += s.weight * v;

@@ -98,7 +98,7 @@ std::string usb_identity_of(const sp_port* port) {
   return fmt::format("{:04x}:{:04x} {}", vendor, product, serial ? serial : "");
 }
 
-unsigned int milliseconds(std::chrono::milliseconds time) {
+unsigned int count_ms(std::chrono::milliseconds time) {
   return static_cast<unsigned int>(std::max<std::int64_t>(1, time.count()));  // 0 would be for ever
 }
 
@@ -149,7 +149,7 @@ Result<void> SerialPort::pulse_dtr() {
 }
 
 Result<void> SerialPort::write(std::span<const std::uint8_t> bytes, std::chrono::milliseconds most) {
-  const int written = sp_blocking_write(port_.get(), bytes.data(), bytes.size(), milliseconds(most));
+  const int written = sp_blocking_write(port_.get(), bytes.data(), bytes.size(), count_ms(most));
   if (written < 0) return gone();
   if (static_cast<std::size_t>(written) < bytes.size()) {
     return Error{ErrorKind::kTryAgain, "the LED board's port takes no bytes", name_,
@@ -160,7 +160,7 @@ Result<void> SerialPort::write(std::span<const std::uint8_t> bytes, std::chrono:
 }
 
 Result<std::size_t> SerialPort::read(std::span<std::uint8_t> bytes, std::chrono::milliseconds most) {
-  const int count = sp_blocking_read_next(port_.get(), bytes.data(), bytes.size(), milliseconds(most));
+  const int count = sp_blocking_read_next(port_.get(), bytes.data(), bytes.size(), count_ms(most));
   // A port that has gone reads as one that is silent, until it is asked how much is waiting.
   if (count < 0 || (count == 0 && !is_there())) return gone();
   return static_cast<std::size_t>(count);

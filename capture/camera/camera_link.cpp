@@ -15,6 +15,7 @@
 #include "capture/camera/worker_lines.h"
 #include "core/error_json.h"
 #include "core/files.h"
+#include "core/iso_time.h"
 
 namespace weft::capture {
 namespace {
@@ -34,10 +35,6 @@ constexpr double kComeBackS = 1;  // a camera that just lost its link may refuse
 
 Steady::duration seconds(double s) {
   return std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(s));
-}
-
-double seconds_since_1970() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 /// Seconds that clocks on the wall are ahead of UTC here and now.

@@ -12,16 +12,13 @@
 
 #include "capture/camera/camera_values.h"
 #include "capture/camera/usb_serial.h"
+#include "core/iso_time.h"
 #include "core/same_camera.h"
 
 namespace weft::capture {
 namespace {
 
 using Steady = std::chrono::steady_clock;
-
-double seconds_since_1970() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
 
 /// What is plugged in and may be the camera, the wanted port first.
 Result<std::vector<CameraAddress>> candidates(const CameraProfile& profile, const WantedCamera& wanted) {

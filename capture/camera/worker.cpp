@@ -20,6 +20,7 @@
 #include "capture/camera/worker_lines.h"
 #include "core/error_json.h"
 #include "core/files.h"
+#include "core/iso_time.h"
 
 namespace weft::capture {
 namespace {
@@ -28,10 +29,6 @@ using Steady = std::chrono::steady_clock;
 
 double seconds_since(Steady::time_point begin) {
   return std::chrono::duration<double>(Steady::now() - begin).count();
-}
-
-double seconds_since_1970() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 Error bad_request(const std::string& why) {

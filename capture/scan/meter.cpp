@@ -18,7 +18,7 @@ constexpr double kReadableTo = 0.97;
 constexpr double kStepDown = 0.125, kMostStepUp = 32;
 constexpr double kMostOverStart = 100;  // where the light is known: no cloth reflects less than 1 percent
 constexpr double kAgree = 0.1;          // of two LEDs' brightness with what the lights let expect
-constexpr double kMostClipped = 1e-5;
+constexpr double kMostClippedByMeter = 1e-5;
 constexpr double kPoorRange = 0.5;  // 99.9 percent below less than this share of white
 constexpr double kLongestBracket = 100;
 
@@ -111,7 +111,7 @@ class Meter {
       Result<Brightness> shot = shoot_(led, exposure_us_);
       if (!shot) return shot.error();
       seen = *shot;
-      const bool is_full = seen.clipped > kMostClipped || seen.brightest > kReadableTo;
+      const bool is_full = seen.clipped > kMostClippedByMeter || seen.brightest > kReadableTo;
       if (!is_full && seen.bright >= kReadableFrom) return Rate{led, exposure_us_, seen};
       const double step =
           is_full ? kStepDown : std::min(kMostStepUp, 0.5 * kMeteredTo / std::max(seen.brightest, 1e-4));
@@ -119,7 +119,7 @@ class Meter {
       if (next_us == exposure_us_) break;
       exposure_us_ = next_us;
     }
-    const bool is_full = seen.clipped > kMostClipped;
+    const bool is_full = seen.clipped > kMostClippedByMeter;
     return Error{ErrorKind::kBadData, is_full ? "cloth is too bright" : "cloth is too dark",
                  fmt::format("LED {}", led),
                  fmt::format("at {:.6g} us its brightest photosites come to {:.3f} of white", exposure_us_,

@@ -31,7 +31,7 @@ std::vector<Ray> rays_of(const Lattice& lattice) {
 }
 
 /// Sixteen pixels of a row, aligned in the picture: where their rays start and the axes about which they go.
-struct Run {
+struct GatherRun {
   int x, y;
   int begin, end;  ///< lanes inside the tile
   alignas(64) float right_x[kPacket], right_y[kPacket], right_z[kPacket];
@@ -42,7 +42,7 @@ struct Run {
 
 /// Axes about the normal, without a jump as long as normals look up (Duff et al., "Building an orthonormal
 /// basis, revisited", JCGT 6(1), 2017, eq. 4), turned by the pixel's share of the shift.
-void set_axes(Vec3 n, TorusPoint shift, int lane, Run& run) {
+void set_axes(Vec3 n, TorusPoint shift, int lane, GatherRun& run) {
   const double a = -1 / (1 + n.z), b = n.x * n.y * a;
   const Vec3 right = {1 + n.x * n.x * a, b, -n.x}, up = {b, 1 + n.y * n.y * a, -n.y};
   const double turn = 2 * kPi * static_cast<double>(shift.v);
@@ -59,8 +59,8 @@ void set_axes(Vec3 n, TorusPoint shift, int lane, Run& run) {
   run.shift[lane] = shift.u;
 }
 
-void start_run(const HeightGrid& grid, Rect tile, const Normals& normals, const Lattice& lattice, Run& run,
-               RayPacket& rays) {
+void start_run(const HeightGrid& grid, Rect tile, const Normals& normals, const Lattice& lattice,
+               GatherRun& run, RayPacket& rays) {
   for (int lane = 0; lane < kPacket; ++lane) {
     // Lanes outside the tile take the nearest pixel inside, so that vectors are whole; they are not traced.
     const int x = std::clamp(run.x + lane, tile.x0, tile.x1 - 1);
@@ -75,7 +75,7 @@ void start_run(const HeightGrid& grid, Rect tile, const Normals& normals, const 
 
 /// By Malley's method: a point of the disc under the hemisphere (Pharr, Jakob and Humphreys, "Physically
 /// based rendering", 3rd edition, section 13.6.3). Rays end above the relief or at their reach.
-void aim_run(const Run& run, const Ray& ray, float top_px, float reach_px, RayPacket& rays) {
+void aim_run(const GatherRun& run, const Ray& ray, float top_px, float reach_px, RayPacket& rays) {
   for (int lane = 0; lane < kPacket; ++lane) {
     float squared_radius = ray.squared_radius + run.shift[lane];
     squared_radius += squared_radius < 0 ? 1.0f : 0.0f;
@@ -112,7 +112,7 @@ void trace(const HeightGrid& grid, Rect tile, const Normals& normals, const Gath
   const Rect pixels = grid.relief().pixels();
   const float top_px = grid.relief().top_px(), reach_px = static_cast<float>(settings.reach_px);
   const int step = settings.mosaic ? 2 : 1;
-  Run run;
+  GatherRun run;
   RayPacket rays;
   alignas(64) float distance[kPacket];
   for (int y = tile.y0; y < tile.y1; ++y) {
@@ -191,7 +191,7 @@ Result<void> gather_light(const HeightGrid& grid, Rect tile, const Normals& norm
         float* to = &sums[static_cast<std::size_t>(lane) * count];
         for (std::size_t k = 0; k < count; ++k) to[k] += from[k];
       },
-      [&](const Run& run) {
+      [&](const GatherRun& run) {
         for (std::size_t k = 0; k < count; ++k) {
           float* row = arriving[k].row(run.y - tile.y0) + (run.x - tile.x0);
           for (int lane = run.begin; lane < run.end; ++lane) {
@@ -219,7 +219,7 @@ Result<void> trace_openness(const HeightGrid& grid, Rect tile, const Normals& no
       grid, tile, normals, settings,
       [&](const RayPacket& rays, float* distance) { grid.intersect(rays, distance); },
       [&](int lane, int, int) { ++meetings[lane]; },
-      [&](const Run& run) {
+      [&](const GatherRun& run) {
         float* row = openness.row(run.y - tile.y0) + (run.x - tile.x0);
         for (int lane = run.begin; lane < run.end; ++lane) {
           row[lane] = 1 - static_cast<float>(meetings[lane]) / static_cast<float>(settings.rays);
@@ -238,7 +238,7 @@ std::vector<RayPacket> gather_packets(const HeightGrid& grid, Rect tile, const N
         packets.push_back(rays);
         std::fill_n(distance, kPacket, std::numeric_limits<float>::infinity());
       },
-      [](int, int, int) {}, [](const Run&) {});
+      [](int, int, int) {}, [](const GatherRun&) {});
   return packets;
 }
 

@@ -78,7 +78,7 @@ class CellCorners {
 };
 
 /// Sixteen pixels of a row, aligned in the picture, of which those inside the tile take part.
-struct Run {
+struct ShadowRun {
   int x, y;
   int begin, end;  ///< lanes inside the tile
 };
@@ -87,7 +87,7 @@ struct RunNormals {
   alignas(64) float x[kPacket], y[kPacket], z[kPacket];
 };
 
-void start_run(const HeightGrid& grid, Rect tile, const Normals& normals, const Run& run, RunNormals& n,
+void start_run(const HeightGrid& grid, Rect tile, const Normals& normals, const ShadowRun& run, RunNormals& n,
                RayPacket& rays) {
   for (int lane = run.begin; lane < run.end; ++lane) {
     const int column = run.x + lane - tile.x0, row = run.y - tile.y0;
@@ -102,7 +102,7 @@ void start_run(const HeightGrid& grid, Rect tile, const Normals& normals, const 
 
 /// Aims at one light. A ray ends above the relief or at its reach.
 /// @return the pixels that face the light, a bit each
-std::uint32_t aim_run(const Run& run, const RunNormals& n, const std::array<Direction, kCell>& to_light,
+std::uint32_t aim_run(const ShadowRun& run, const RunNormals& n, const std::array<Direction, kCell>& to_light,
                       float top_px, float reach_px, RayPacket& rays) {
   std::uint32_t facing = 0;
   for (int lane = 0; lane < kPacket; ++lane) {
@@ -134,7 +134,7 @@ void trace(const HeightGrid& grid, Rect tile, const Normals& normals, const Ligh
   std::array<Direction, kCell> to_light;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0 / kPacket * kPacket; x < tile.x1; x += kPacket) {
-      const Run run = {x, y, std::max(tile.x0 - x, 0), std::min(tile.x1 - x, kPacket)};
+      const ShadowRun run = {x, y, std::max(tile.x0 - x, 0), std::min(tile.x1 - x, kPacket)};
       start_run(grid, tile, normals, run, n, rays);
       for (std::size_t first = 0; first < lights.count; first += 32) {
         std::array<std::uint32_t, kPacket> bits = {};
@@ -189,7 +189,7 @@ Result<void> find_visible_lights(const HeightGrid& grid, Rect tile, const Normal
   if (auto checked = check(grid, tile, normals, lights, reach_px, visible); !checked) return checked;
   trace(
       grid, tile, normals, lights, reach_px, [&](const RayPacket& rays) { return grid.occlude(rays); },
-      [&](const Run& run, std::size_t word, const std::array<std::uint32_t, kPacket>& bits) {
+      [&](const ShadowRun& run, std::size_t word, const std::array<std::uint32_t, kPacket>& bits) {
         std::uint32_t* row = visible[word].row(run.y - tile.y0);
         for (int lane = run.begin; lane < run.end; ++lane) {
           row[run.x + lane - tile.x0] = bits[static_cast<std::size_t>(lane)];
@@ -207,7 +207,7 @@ std::vector<RayPacket> shadow_packets(const HeightGrid& grid, Rect tile, const N
         packets.push_back(rays);
         return 0U;
       },
-      [](const Run&, std::size_t, const std::array<std::uint32_t, kPacket>&) {});
+      [](const ShadowRun&, std::size_t, const std::array<std::uint32_t, kPacket>&) {});
   return packets;
 }
 

@@ -26,7 +26,7 @@ struct Measured {
   double value = 0, sigma = 0;
 };
 
-Json json_of(Measured m) {
+Json measured_json(Measured m) {
   return {{"value", m.value}, {"sigma", m.sigma}};
 }
 
@@ -256,12 +256,12 @@ Json numbers_of(const CameraFitFacts& facts, const Figures& f) {
                       {"better_by", t.better_by},
                       {"chosen", t.chosen}});
   }
-  return {{"focal_px", {json_of(f.fx), json_of(f.fy)}},
-          {"principal_point_px", {json_of(f.cx), json_of(f.cy)}},
+  return {{"focal_px", {measured_json(f.fx), measured_json(f.fy)}},
+          {"principal_point_px", {measured_json(f.cx), measured_json(f.cy)}},
           {"distortion", {{"k1", c.k1}, {"k2", c.k2}, {"k3", c.k3}, {"p1", c.p1}, {"p2", c.p2}}},
-          {"height_mm", json_of(f.height_mm)},
-          {"tilt_deg", json_of(f.tilt_deg)},
-          {"mm_per_pixel", json_of(f.scale_mm)},
+          {"height_mm", measured_json(f.height_mm)},
+          {"tilt_deg", measured_json(f.tilt_deg)},
+          {"mm_per_pixel", measured_json(f.scale_mm)},
           {"table_sigma_mm", rms(f.table_sigma_mm.values)},
           {"rms_px", facts.fit.rms_px},
           {"corner_sigma_px", facts.fit.corner_sigma_px},

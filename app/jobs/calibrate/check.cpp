@@ -27,8 +27,6 @@ namespace {
 namespace fs = std::filesystem;
 using calibration::SheetCheck;
 
-constexpr const char* kPage = "docs/calibration.md";
-
 struct CheckedSheet {
   std::string name;
   SheetCheck check;
@@ -65,12 +63,12 @@ Result<std::map<std::string, Vec3>> known_planes(const fs::path& input) {
   if (!is_there(file)) return planes;
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
-  TomlKeys keys(*table, file.string(), kPage);
+  TomlKeys keys(*table, file.string(), kCalibrationPage);
   keys.know({"plane"});
   const std::vector<const toml::table*> list = keys.tables("plane");
   if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
   for (std::size_t i = 0; i < list.size(); ++i) {
-    TomlKeys plane(*list[i], fmt::format("{}: plane {}", file.string(), i + 1), kPage);
+    TomlKeys plane(*list[i], fmt::format("{}: plane {}", file.string(), i + 1), kCalibrationPage);
     plane.know({"session", "tilt_deg", "azimuth_deg"});
     const std::string session = plane.text_or("session", "");
     const double t = radians(plane.number("tilt_deg", 0, 60)),

@@ -21,13 +21,13 @@ using calibration::ChartSample;
 using calibration::ChartSide;
 using calibration::PatchReading;
 
-constexpr double kFullShare = 0.01;  // of a patch's pixels
-constexpr double kUneven = 0.12;     // of a patch's light
-constexpr double kShaded = 0.8;      // of the light that a patch should have
-constexpr std::size_t kFewest = 18;  // patches
-constexpr double kDark = 0.03;       // of full scale: a photograph's white
-constexpr double kSloped = 0.5;      // of the light over the chart
-constexpr double kWhiteOff = 0.02;   // of the greys of solved albedo
+constexpr double kFullShareOfPatch = 0.01;  // of a patch's pixels
+constexpr double kUneven = 0.12;            // of a patch's light
+constexpr double kShaded = 0.8;             // of the light that a patch should have
+constexpr std::size_t kFewestPatches = 18;  // patches
+constexpr double kDark = 0.03;              // of full scale: a photograph's white
+constexpr double kSloped = 0.5;             // of the light over the chart
+constexpr double kWhiteOff = 0.02;          // of the greys of solved albedo
 constexpr double kScaleOff = 0.03;
 constexpr const char* kExposeWhite =
     "expose the chart so that its white patch is at 80 percent of full scale";
@@ -107,8 +107,8 @@ class ChartReader {
       return error;
     }
     const auto full = std::count_if(patches->begin(), patches->end(),
-                                    [](const PatchReading& p) { return p.full_share > kFullShare; });
-    if (full > calibration::kChartPatches - static_cast<int>(kFewest)) {
+                                    [](const PatchReading& p) { return p.full_share > kFullShareOfPatch; });
+    if (full > calibration::kChartPatches - static_cast<int>(kFewestPatches)) {
       return bad_chart(picture, "too many patches are full", fmt::format("{} of 24", full), kExposeWhite);
     }
     const ChartSide side = calibration::side_of(*patches, reference_);
@@ -147,8 +147,8 @@ class ChartReader {
       const auto at = static_cast<std::size_t>(i);
       const PatchReading& p = patches[at];
       chart.camera[at] = p.mean;
-      chart.is_good[at] = p.full_share <= kFullShare && p.mean[1] > 0;
-      if (p.full_share > kFullShare) full.push_back(i);
+      chart.is_good[at] = p.full_share <= kFullShareOfPatch && p.mean[1] > 0;
+      if (p.full_share > kFullShareOfPatch) full.push_back(i);
       const double noise = p.mean[1] > 0 ? p.sigma[1] / p.mean[1] : 0;
       if (p.unevenness > kUneven + 10 * noise) uneven.push_back(i);
     }
@@ -164,9 +164,9 @@ class ChartReader {
            "clean the chart and keep lamps and shadows off it");
     }
     const auto good = static_cast<std::size_t>(std::count(chart.is_good.begin(), chart.is_good.end(), true));
-    if (good >= kFewest) return {};
+    if (good >= kFewestPatches) return {};
     return bad_chart(picture, "too many patches are full or black",
-                     fmt::format("{} of 24 can be used, {} are needed", good, kFewest), kExposeWhite);
+                     fmt::format("{} of 24 can be used, {} are needed", good, kFewestPatches), kExposeWhite);
   }
 
   // Mean over the greys of a channel over green, against the reference.

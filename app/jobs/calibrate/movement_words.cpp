@@ -53,7 +53,7 @@ std::string plainly(const RigChange& change) {
   return "all LEDs are brighter or darker, or exposure or aperture are others";
 }
 
-Json json_of(Vec3 v) {
+Json vec_json(Vec3 v) {
   return {v.x, v.y, v.z};
 }
 
@@ -111,13 +111,13 @@ Json json_of(const RigChange& change) {
   if (change.led > 0) json["led"] = change.led;
   if (change.other_led > 0) json["other_led"] = change.other_led;
   if (change.kind == ChangeKind::kCamera || change.kind == ChangeKind::kTable) {
-    json["turn_deg"] = json_of(change.turn_deg);
-    json["turn_sigma_deg"] = json_of(change.turn_sigma_deg);
+    json["turn_deg"] = vec_json(change.turn_deg);
+    json["turn_sigma_deg"] = vec_json(change.turn_sigma_deg);
   }
   if (change.kind == ChangeKind::kCamera || change.kind == ChangeKind::kTable ||
       change.kind == ChangeKind::kLedMoved) {
-    json["shift_mm"] = json_of(change.shift_mm);
-    json["shift_sigma_mm"] = json_of(change.shift_sigma_mm);
+    json["shift_mm"] = vec_json(change.shift_mm);
+    json["shift_sigma_mm"] = vec_json(change.shift_sigma_mm);
   }
   if (change.kind == ChangeKind::kLedFaded || change.kind == ChangeKind::kAllFaded) {
     json["factor"] = change.factor;

@@ -18,7 +18,6 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr const char* kPage = "docs/calibration.md";
 constexpr double kMostSpread = 0.1;
 
 Error bad_patches(const std::string& where, std::string why) {
@@ -29,7 +28,7 @@ Error bad_patches(const std::string& where, std::string why) {
 Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame) {
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
-  TomlKeys keys(*table, file.string(), kPage);
+  TomlKeys keys(*table, file.string(), kCalibrationPage);
   keys.know({"patch"});
   const std::vector<const toml::table*> list = keys.tables("patch");
   if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
@@ -37,7 +36,7 @@ Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame) {
   for (const toml::table* entry : list) {
     WhitePatch& patch = patches.emplace_back();
     const auto where = fmt::format("{}: patch {}", file.string(), patches.size());
-    TomlKeys patch_keys(*entry, where, kPage);
+    TomlKeys patch_keys(*entry, where, kCalibrationPage);
     patch_keys.know({"polygon_px"});
     if (Result<void> ok = patch_keys.status(); !ok) return std::move(ok).error();
     const toml::array* corners = entry->get_as<toml::array>("polygon_px");

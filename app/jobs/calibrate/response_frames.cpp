@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFullShare = 0.9;
+constexpr double kFullShareOfFrame = 0.9;
 constexpr double kBrightShare = 0.01;  // of full photosites, at most, in frames searched for dead ones
 constexpr std::size_t kMostKept = 4;
 
@@ -157,7 +157,7 @@ class Reader {
         const calibration::BlockLight light = calibration::block_light(*frame, out_.bad.plane());
         const auto [least_full, most_full] =
             std::minmax_element(light.full_share.begin(), light.full_share.end());
-        if (*least_full > kFullShare) {
+        if (*least_full > kFullShareOfFrame) {
           out_.full.push_back(file.string());
           continue;
         }

@@ -19,7 +19,7 @@ using calibration::TagSighting;
 constexpr std::size_t kMostLooks = 3;
 constexpr double kInside = 0.8;       // of a patch: its border is shared with what lies beside it
 constexpr double kPatchSigma = 0.02;  // of a patch's reflectance since it was measured
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoReading = std::numeric_limits<double>::quiet_NaN();
 
 Image<std::uint8_t> grey_of(const pipeline::Photographs& photographs, std::size_t k) {
   if (const pipeline::Mosaics* mosaics = photographs.mosaics())
@@ -75,7 +75,7 @@ Rect box_of(const Polygon& polygon, Size frame) {
 std::array<double, 3> mean_in(const pipeline::Photographs& photographs, std::size_t k,
                               const Polygon& polygon) {
   const Rect box = box_of(polygon, photographs.size);
-  if (box.width() <= 0 || box.height() <= 0) return {kNaN, kNaN, kNaN};
+  if (box.width() <= 0 || box.height() <= 0) return {kNoReading, kNoReading, kNoReading};
   std::array<double, 3> sum = {};
   std::array<int, 3> count = {};
   const pipeline::Planes planes = photographs.planes();
@@ -92,7 +92,7 @@ std::array<double, 3> mean_in(const pipeline::Photographs& photographs, std::siz
     }
   }
   for (std::size_t c = 0; c < 3; ++c)
-    sum[c] = count[c] > 0 && std::isfinite(sum[c]) ? sum[c] / count[c] : kNaN;
+    sum[c] = count[c] > 0 && std::isfinite(sum[c]) ? sum[c] / count[c] : kNoReading;
   return sum;
 }
 
@@ -161,7 +161,7 @@ Result<calibration::RigEvidence> rig_evidence(const Calibration& calibration,
     place.surface = static_cast<int>(evidence.places.size());
     place.reflectance_sigma = kPatchSigma;
     place.reflectance_rgb = patch.reflectance_rgb;
-    place.reading_rgb.assign(light_count(*calibration.lights), {kNaN, kNaN, kNaN});
+    place.reading_rgb.assign(light_count(*calibration.lights), {kNoReading, kNoReading, kNoReading});
     for (std::size_t k = 0; k < photographs.count(); ++k) {
       place.reading_rgb[static_cast<std::size_t>(photographs.leds[k] - 1)] = mean_in(photographs, k, polygon);
     }

@@ -12,7 +12,7 @@
 namespace weft::app {
 namespace {
 
-constexpr std::size_t kFewest = 5;  // patches
+constexpr std::size_t kFewestOfScale = 5;  // patches
 constexpr std::size_t kMost = 100;
 
 std::optional<calibration::ChartCorners> corners_of(const toml::table& table, TomlKeys& keys) {
@@ -45,8 +45,8 @@ Result<ScaleSettings> read_scale_file(const std::filesystem::path& file) {
   keys.know({"reflectances", "corners_px", "height_mm", "reflectance_sigma", "delta"});
   if (keys.has("reflectances")) {
     settings.reflectances = keys.numbers("reflectances", 1, kMost);
-    if (settings.reflectances.size() < kFewest)
-      keys.reject("reflectances", fmt::format("a scale has {} patches or more", kFewest));
+    if (settings.reflectances.size() < kFewestOfScale)
+      keys.reject("reflectances", fmt::format("a scale has {} patches or more", kFewestOfScale));
     for (const double r : settings.reflectances) {
       if (!(r > 0 && r <= 1)) keys.reject("reflectances", "a reflectance is not above 0 and to 1");
     }

@@ -18,8 +18,6 @@ namespace fs = std::filesystem;
 // A tag is read by the white about it: a quarter of its side on each side is not paper.
 constexpr double kQuietShare = 1.5;
 
-constexpr const char* kPage = "docs/calibration.md";
-
 }  // namespace
 
 Result<TaggedSheet> read_sheet_file(const fs::path& file) {
@@ -27,7 +25,7 @@ Result<TaggedSheet> read_sheet_file(const fs::path& file) {
   if (!table) return table.error();
   TaggedSheet out;
   calibration::Sheet& sheet = out.sheet;
-  TomlKeys keys(*table, file.string(), kPage);
+  TomlKeys keys(*table, file.string(), kCalibrationPage);
   keys.know({"width_mm", "height_mm", "margin_mm", "reflectance", "tag"});
   sheet.width_mm = keys.number("width_mm", 1, 10000);
   sheet.height_mm = keys.number("height_mm", 1, 10000);
@@ -44,7 +42,7 @@ Result<TaggedSheet> read_sheet_file(const fs::path& file) {
   const std::vector<const toml::table*> tags = keys.tables("tag");
   if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
   for (std::size_t i = 0; i < tags.size(); ++i) {
-    TomlKeys tag_keys(*tags[i], fmt::format("{}: tag {}", file.string(), i + 1), kPage);
+    TomlKeys tag_keys(*tags[i], fmt::format("{}: tag {}", file.string(), i + 1), kCalibrationPage);
     tag_keys.know({"dictionary", "id", "side_mm", "centre_mm"});
     calibration::SheetTag& tag = out.tags.emplace_back();
     tag.dictionary = tag_keys.text_or("dictionary", "DICT_APRILTAG_36h11");
@@ -70,13 +68,13 @@ Result<TaggedSheet> read_sheet_file(const fs::path& file) {
 Result<NearLights> read_rig_file(const fs::path& file) {
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
-  TomlKeys keys(*table, file.string(), kPage);
+  TomlKeys keys(*table, file.string(), kCalibrationPage);
   keys.know({"led"});
   const std::vector<const toml::table*> leds = keys.tables("led");
   if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
   NearLights lights;
   for (std::size_t k = 0; k < leds.size(); ++k) {
-    TomlKeys led_keys(*leds[k], fmt::format("{}: LED {}", file.string(), k + 1), kPage);
+    TomlKeys led_keys(*leds[k], fmt::format("{}: LED {}", file.string(), k + 1), kCalibrationPage);
     led_keys.know({"position_mm", "aim", "mu"});
     NearLight& led = lights.leds.emplace_back();
     const std::vector<double> at = led_keys.numbers("position_mm", 3, 3);

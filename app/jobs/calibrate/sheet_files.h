@@ -13,6 +13,9 @@
 
 namespace weft::app {
 
+/// Where these files are described.
+inline constexpr const char* kCalibrationPage = "docs/calibration.md";
+
 /// A sheet with tags printed in its border.
 struct TaggedSheet {
   calibration::Sheet sheet;  ///< its printed squares are the tags with their quiet zone

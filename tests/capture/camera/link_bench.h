@@ -14,6 +14,7 @@
 
 #include "capture/camera/camera_link.h"
 #include "core/files.h"
+#include "core/iso_time.h"
 #include "simulator/camera/dng_writer.h"
 #include "tests/capture/raw/dng_bytes.h"
 #include "virtual_rig/ptp/virtual_camera.h"
@@ -31,10 +32,6 @@ inline Result<std::vector<std::uint8_t>> small_dng(const simulator::CameraExposu
   tags.milliseconds = exposure.milliseconds;
   tags.image_number = exposure.image_number;
   return simulator::dng_bytes(frame, tags);
-}
-
-inline double seconds_since_1970() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 inline double seconds_since(std::chrono::steady_clock::time_point begin) {
