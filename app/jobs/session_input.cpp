@@ -9,12 +9,12 @@
 
 #include "app/jobs/linear_image.h"
 #include "app/jobs/session_conditions.h"
-#include "calibration/suits.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/same_camera.h"
+#include "core/suits.h"
 
 namespace weft::app {
 namespace {
@@ -282,7 +282,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
     if (plan.size == Size()) {
       plan.size = info->size;
       cfa = info->cfa;
-      if (Result<void> ok = calibration::suits(plan.calibration, plan.session, info->shot); !ok) return ok;
+      if (Result<void> ok = suits(plan.calibration, plan.session, info->shot); !ok) return ok;
     }
     return check_alike(plan, shot, *info, cfa);
   };

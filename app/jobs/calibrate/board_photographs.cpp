@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "app/jobs/linear_image.h"
-#include "calibration/suits.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
 #include "core/files.h"
+#include "core/suits.h"
 
 namespace weft::app {
 namespace {
@@ -61,7 +61,7 @@ bool is_same_camera(const ShotMetadata& a, const ShotMetadata& b) {
 
 // Whether two photographs were taken with one setting.
 bool are_alike(const BoardPhotograph& a, const BoardPhotograph& b) {
-  return is_same_camera(a.shot, b.shot) && !calibration::focal_difference(a.shot.focal_mm, b.shot.focal_mm) &&
+  return is_same_camera(a.shot, b.shot) && !focal_difference(a.shot.focal_mm, b.shot.focal_mm) &&
          a.size == b.size;
 }
 
@@ -75,7 +75,7 @@ std::string words(const ShotMetadata& shot) {
 void keep_one_camera(const BoardFolderOptions& asked, BoardPhotographs& all) {
   // What was asked for counts before any number of others.
   const auto fits = [&](const BoardPhotograph& p) {
-    return !(asked.subject && calibration::difference(*asked.subject, p.shot)) &&
+    return !(asked.subject && subject_difference(*asked.subject, p.shot)) &&
            (!asked.size || p.size == *asked.size);
   };
   const BoardPhotograph* most = nullptr;
@@ -106,7 +106,7 @@ void keep_one_camera(const BoardFolderOptions& asked, BoardPhotographs& all) {
     if (!is_same_camera(p.shot, wanted.shot)) {
       p.left_out = fmt::format("it was taken with {}, and this calibration is for {}", words(p.shot),
                                words(wanted.shot));
-    } else if (const auto why = calibration::focal_difference(p.shot.focal_mm, wanted.shot.focal_mm)) {
+    } else if (const auto why = focal_difference(p.shot.focal_mm, wanted.shot.focal_mm)) {
       p.left_out = *why;
     } else {
       p.left_out = fmt::format("it has {} x {} pixels, the {} {} x {}", p.size.width, p.size.height,

@@ -9,8 +9,8 @@
 
 #include "app/jobs/calibrate/chart_pictures.h"
 #include "app/jobs/calibrate/color_report.h"
-#include "calibration/suits.h"
 #include "core/color_transform.h"
+#include "core/suits.h"
 
 namespace weft::app {
 namespace {
@@ -333,7 +333,7 @@ Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, c
     if (context.stop.stop_requested()) return interrupted();
     const Result<ChartPicture> picture = read_chart_picture(file, before, options.from, context);
     if (!picture) return picture.error();
-    if (const auto why = from ? calibration::difference(from->subject, picture->camera) : std::nullopt) {
+    if (const auto why = from ? subject_difference(from->subject, picture->camera) : std::nullopt) {
       return bad_chart(*picture, "frame does not belong to this calibration", *why,
                        "photograph the chart with the rig's own camera and aperture");
     }

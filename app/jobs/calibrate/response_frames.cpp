@@ -9,10 +9,10 @@
 #include <set>
 
 #include "app/jobs/linear_image.h"
-#include "calibration/suits.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
 #include "core/photosites.h"
+#include "core/suits.h"
 
 namespace weft::app {
 namespace {
@@ -66,7 +66,7 @@ class Body {
       first_ = info;
       first_file_ = file;
       if (from_ == nullptr) return {};
-      if (auto why = calibration::difference(from_->subject, info.shot)) return of_another(file, *why);
+      if (auto why = subject_difference(from_->subject, info.shot)) return of_another(file, *why);
       if (from_->camera && from_->camera->size != info.size) {
         return of_another(
             file, fmt::format("it has {} x {} pixels, the calibration's camera {} x {}", info.size.width,
@@ -88,7 +88,7 @@ class Body {
           differs("height", info.size.height, first_->size.height)}) {
       if (!ok) return ok;
     }
-    if (const auto why = calibration::focal_difference(b.focal_mm, a.focal_mm)) return of_another(file, *why);
+    if (const auto why = focal_difference(b.focal_mm, a.focal_mm)) return of_another(file, *why);
     if (info.cfa != first_->cfa) return of_another(file, "its colour filters are laid out differently");
     return {};
   }

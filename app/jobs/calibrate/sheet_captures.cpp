@@ -10,13 +10,13 @@
 #include <set>
 
 #include "app/jobs/linear_image.h"
-#include "calibration/suits.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/radiometry.h"
 #include "core/session.h"
+#include "core/suits.h"
 
 namespace weft::app {
 namespace {
@@ -145,7 +145,7 @@ Result<void> SessionReader::look() {
       if (!read) return read.error();
       info.size = read->size;
     }
-    if (Result<void> ok = calibration::suits(options_.calibration, session_, info.shot); !ok) {
+    if (Result<void> ok = suits(options_.calibration, session_, info.shot); !ok) {
       Error error = std::move(ok).error();
       error.where = file.string();
       error.remedy = "name the calibration of this rig with --from, or take the session out of the folder";

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/suits.h"
+#include "core/suits.h"
 
 #include <fmt/format.h>
 
 #include "core/same_camera.h"
 
-namespace weft::calibration {
+namespace weft {
 namespace {
 
 Error differs(const Session& session, std::string why) {
@@ -22,7 +22,7 @@ std::optional<std::string> focal_difference(double frame_mm, double other_mm) {
                      other_mm);
 }
 
-std::optional<std::string> difference(const CalibrationSubject& subject, const ShotMetadata& frame) {
+std::optional<std::string> subject_difference(const CalibrationSubject& subject, const ShotMetadata& frame) {
   if (!frame.model.empty() && !subject.camera_model.empty() && frame.model != subject.camera_model) {
     return fmt::format("the calibration is of a {}, the frame of a {}", subject.camera_model, frame.model);
   }
@@ -43,7 +43,7 @@ Result<void> suits(const Calibration& calibration, const Session& session, const
     return differs(session,
                    fmt::format("it is of rig \"{}\", the session of \"{}\"", subject.rig, session.rig));
   }
-  if (const auto why = difference(subject, frame)) return differs(session, *why);
+  if (const auto why = subject_difference(subject, frame)) return differs(session, *why);
   for (const Shot& shot : session.shots) {
     if (!same_setting(shot.f_number, subject.f_number)) {
       return differs(session, fmt::format("it holds at f/{:.3g}, {} was taken at f/{:.3g}", subject.f_number,
@@ -67,4 +67,4 @@ Result<void> suits(const Calibration& calibration, const Session& session, const
   return {};
 }
 
-}  // namespace weft::calibration
+}  // namespace weft

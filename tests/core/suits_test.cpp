@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "calibration/suits.h"
+#include "core/suits.h"
 #include "core/same_camera.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace weft::calibration {
+namespace weft {
 namespace {
 
 using testing::HasSubstr;
@@ -140,4 +140,4 @@ TEST(Suits, NotWithoutAllPartsThatASolveNeeds) {
 }
 
 }  // namespace
-}  // namespace weft::calibration
+}  // namespace weft
