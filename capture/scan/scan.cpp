@@ -21,7 +21,7 @@
 #include "capture/scan/request_check.h"
 #include "capture/scan/second_copy.h"
 #include "capture/scan/shooter.h"
-#include "core/same_camera.h"
+#include "core/suits.h"
 
 namespace weft::capture {
 namespace {
@@ -276,24 +276,13 @@ class Scan {
     return {};
   }
 
-  /// As the solver will ask: by the names that files have.
+  /// As the solver will ask.
   Result<void> check_body(const ShotMetadata& shot, const std::string& where) const {
     if (!calibration_) return {};
-    const CalibrationSubject& subject = calibration_->subject;
-    const bool is_same_model =
-        shot.model.empty() || subject.camera_model.empty() || shot.model == subject.camera_model;
-    if (shot.focal_mm > 0 && subject.focal_length_mm > 0 &&
-        !same_setting(shot.focal_mm, subject.focal_length_mm)) {
-      return Error{
-          ErrorKind::kBadData, "the lens is not set as it was calibrated", where,
-          fmt::format("its focal length is {:.3g} mm, not {:.3g}", shot.focal_mm, subject.focal_length_mm),
-          "turn the zoom back, or calibrate again"};
-    }
-    if (is_same_model && same_serial(shot.serial, subject.camera_serial)) return {};
-    return Error{ErrorKind::kBadData, "calibration is not of this camera", where,
-                 fmt::format("it is of a {} with serial number {}, the frame of a {} with {}",
-                             subject.camera_model, subject.camera_serial, shot.model, shot.serial),
-                 "name the calibration of this camera"};
+    const std::optional<std::string> why = subject_difference(calibration_->subject, shot);
+    if (!why) return {};
+    return Error{ErrorKind::kBadData, "calibration does not suit the frame", where, *why,
+                 "set the camera as it was calibrated, or name its calibration"};
   }
 
   /// While a shot is taken, the frame before it is decoded, checked and kept on another thread.
