@@ -18,7 +18,6 @@
 #include "core/session.h"
 #include "simulator/build_passes.h"
 #include "simulator/camera/dng_writer.h"
-#include "simulator/folder_aside.h"
 #include "simulator/map_files.h"
 #include "simulator/plan.h"
 
@@ -149,9 +148,8 @@ class SessionWriter {
 
   Result<SimulationReport> write(const fs::path& target) {
     if (Result<void> ok = check_room(target); !ok) return ok.error();
-    Result<FolderAside> aside = FolderAside::make(target);
-    if (!aside) return aside.error();
-    folder_ = aside->path();
+    PartialFolder aside(target);
+    folder_ = aside.path();
     for (const char* part : {"raw", "truth"}) {
       if (part == std::string_view("truth") && !options_.truth) continue;
       if (Result<void> ok = make_writable_folder(folder_ / part); !ok) return ok.error();
@@ -161,7 +159,7 @@ class SessionWriter {
                             &SessionWriter::write_frames, &SessionWriter::write_session_file}) {
       if (Result<void> ok = (this->*step)(); !ok) return ok.error();
     }
-    if (Result<void> ok = publish(*aside, target); !ok) return ok.error();
+    if (Result<void> ok = publish(aside); !ok) return ok.error();
     report_.frames = frames();
     report_.exposure_us = plan_.rig.exposure_us;
     report_.passes = frame_runner_.costs();
@@ -416,9 +414,9 @@ class SessionWriter {
     return write_session(session_);
   }
 
-  Result<void> publish(FolderAside& aside, const fs::path& target) {
+  Result<void> publish(PartialFolder& aside) {
     const Stopwatch timing(report_.write_seconds);
-    return aside.publish(target);
+    return aside.publish();
   }
 
   const Scene& given_;  ///< as it was asked for
@@ -444,8 +442,6 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
     return Error{ErrorKind::kUsage, "no session folder", "simulation", "its name is empty",
                  "name one with -o"};
   }
-  const bool ends_in_slash = !session_folder.has_filename() && session_folder.has_parent_path();
-  const fs::path target = ends_in_slash ? session_folder.parent_path() : session_folder;
   Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
   const Output output = plan->scene.frames == FrameFormat::kExr ? Output::kRgb : Output::kCounts;
   Result<PassList> frames = build_passes(plan->scene, plan->rig, output);
@@ -457,7 +453,7 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
   if (!brackets) return brackets.error();
   frames->takes_before = brackets->takes_before = options.takes_before;
   return SessionWriter(scene, *plan, std::move(*surface), std::move(*frames), std::move(*brackets), options)
-      .write(target);
+      .write(session_folder);
 } catch (const std::bad_alloc&) {
   return no_memory("the system refused some");
 }

@@ -45,9 +45,9 @@ struct SimulationReport {
 /// surface by light from the cloth alone. The same scene gives the same bytes. Memory holds a band of rows of
 /// everything.
 ///
-/// The folder is made aside (`.partial`) and renamed when complete: after an error or an interrupt there is
-/// nothing. Errors: kBadData (the scene), kCannotCreate (`session_folder` or a folder aside exists, or may
-/// not be made), kInputOutput (no room on the disk), kTryAgain (not enough memory free), kInterrupted.
+/// The folder is made aside, with its parents, and renamed when complete: after an error or an interrupt
+/// there is nothing. Errors: kBadData (the scene), kCannotCreate (`session_folder` exists or may not be
+/// made), kInputOutput (no room on the disk), kTryAgain (not enough memory free), kInterrupted.
 Result<SimulationReport> simulate_session(const Scene& scene, const std::filesystem::path& session_folder,
                                           const SimulateOptions& options);
 

@@ -9,6 +9,8 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <string>
+#include <vector>
 
 #include "capture/raw/decode.h"
 #include "core/calibration.h"
@@ -21,6 +23,7 @@ namespace weft::simulator {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ElementsAre;
 using testing::HasSubstr;
 
 /// An empty folder of this test's own.
@@ -53,6 +56,12 @@ SimulationReport simulated(const Scene& scene, const fs::path& folder, const Sim
 std::string bytes_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+  return names;
 }
 
 /// Every file below a folder with its bytes.
@@ -321,31 +330,31 @@ TEST(Simulate, NeverTouchesWhatIsThere) {
   ASSERT_FALSE(over);
   EXPECT_EQ(over.error().kind, ErrorKind::kCannotCreate);
   EXPECT_TRUE(fs::is_empty(folder / "a.weft"));
+}
 
-  fs::create_directory(folder / "b.weft.partial");
-  const Result<SimulationReport> aside = simulate_session(small_scene(), folder / "b.weft", {});
-  ASSERT_FALSE(aside);
-  EXPECT_EQ(aside.error().kind, ErrorKind::kCannotCreate);
-  EXPECT_THAT(aside.error().message(), HasSubstr("b.weft.partial"));
-  EXPECT_TRUE(fs::exists(folder / "b.weft.partial"));
+TEST(Simulate, MakesTheParentsOfItsFolder) {
+  const fs::path folder = fresh_folder();
+  simulated(small_scene(), folder / "new" / "a.weft");
+  EXPECT_TRUE(fs::exists(folder / "new" / "a.weft" / "session.json"));
 }
 
 TEST(Simulate, SaysWhereItCannotWrite) {
   const fs::path folder = fresh_folder();
-  const Result<SimulationReport> no_parent = simulate_session(small_scene(), folder / "none" / "a.weft", {});
-  ASSERT_FALSE(no_parent);
-  EXPECT_EQ(no_parent.error().kind, ErrorKind::kCannotCreate) << no_parent.error().message();
+  std::ofstream(folder / "file") << "not a folder";
+  const Result<SimulationReport> in_file = simulate_session(small_scene(), folder / "file" / "a.weft", {});
+  ASSERT_FALSE(in_file);
+  EXPECT_EQ(in_file.error().kind, ErrorKind::kCannotCreate) << in_file.error().message();
   const Result<SimulationReport> no_name = simulate_session(small_scene(), "", {});
   ASSERT_FALSE(no_name);
   EXPECT_EQ(no_name.error().kind, ErrorKind::kUsage) << no_name.error().message();
-  EXPECT_TRUE(fs::is_empty(folder));
+  EXPECT_THAT(names_in(folder), ElementsAre("file"));
 }
 
 TEST(Simulate, TakesAFolderNameWithASlashAtItsEnd) {
   const fs::path folder = fresh_folder();
   simulated(small_scene(), (folder / "a.weft").string() + "/");
   EXPECT_TRUE(fs::exists(folder / "a.weft" / "session.json"));
-  EXPECT_FALSE(fs::exists(folder / "a.weft.partial"));
+  EXPECT_THAT(names_in(folder), ElementsAre("a.weft"));
 }
 
 TEST(Simulate, RefusesASceneMadeInCodeThatBreaksItsRanges) {

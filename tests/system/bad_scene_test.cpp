@@ -63,13 +63,5 @@ TEST_F(BadScene, ASessionIsNeverOverwritten) {
                  73, {"session exists", "a.weft", "never overwritten", "another name"});
 }
 
-TEST_F(BadScene, AnotherSimulationOfTheSameSessionIsNotDisturbed) {
-  std::filesystem::create_directories(work_ / "a.weft.partial");
-  expect_refusal(work_,
-                 {"simulate", source_file("testdata/scenes/golden.toml").string(), "-o",
-                  (work_ / "a.weft").string(), "-q"},
-                 73, {"another simulation", "a.weft.partial", "exists", "wait for it"});
-}
-
 }  // namespace
 }  // namespace weft::test
