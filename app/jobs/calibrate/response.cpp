@@ -24,6 +24,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kBigHotShare = 1e-3;
+constexpr double kReachNeeded = 0.75;  // of full scale, for a curve to be trusted to the end
+constexpr double kPoorFit = 4;         // chi-square a degree of freedom
 constexpr double kScaleOff_percent = 3;
 constexpr std::array<const char*, 3> kChannels = {"red", "green", "blue"};
 
@@ -258,9 +260,41 @@ Json numbers_of(const ResponseFrames& frames, const ResponseMeasurement& m,
   return numbers;
 }
 
+// What could not be measured of linearity and black, and what looks wrong there.
+std::vector<report::Verdict> measurement_verdicts(const ResponseMeasurement& m) {
+  std::vector<report::Verdict> verdicts;
+  if (!m.superposition) {
+    verdicts.push_back({"LINEARITY_UNKNOWN",
+                        "linearity was not measured: no exposure has frames of two LEDs and of both",
+                        "take ledNN+ledMM at the exposures of ledNN and ledMM"});
+  } else {
+    const std::array<double, 3>& highest = m.superposition->highest_v;
+    const double reach = std::max({highest[0], highest[1], highest[2]});
+    if (reach < kReachNeeded) {
+      verdicts.push_back(
+          {"LINEARITY_SHORT",
+           fmt::format("linearity was seen up to {:.0f} percent of full scale only", 100 * reach),
+           "add longer exposures, until two LEDs together are nearly full"});
+    }
+    if (m.superposition->chi_square_per_freedom > kPoorFit) {
+      verdicts.push_back(
+          {"LIGHT_NOT_STEADY",
+           fmt::format("light adds up worse than its noise allows (chi-square {:.1f} a degree of freedom): "
+                       "something moved, or the room's light changed",
+                       m.superposition->chi_square_per_freedom),
+           "take the frames again in a dark room without touching the scene"});
+    }
+  }
+  if (m.black_from == BlackFrom::kFile) {
+    verdicts.push_back({"BLACK_UNKNOWN", "the black level was not measured, and is the file's",
+                        "add dark frames, or for a body that clips black frames of two LEDs and of both"});
+  }
+  return verdicts;
+}
+
 std::vector<report::Verdict> verdicts_of(const ResponseFrames& frames, const ResponseMeasurement& m,
                                          const std::optional<ScaleReading>& scale) {
-  std::vector<report::Verdict> verdicts = m.verdicts;
+  std::vector<report::Verdict> verdicts = measurement_verdicts(m);
   if (!frames.full.empty()) {
     verdicts.push_back({"FULL_FRAMES",
                         fmt::format("{} frames were full everywhere and left out, {} the first",

@@ -21,8 +21,6 @@ constexpr double kLeastLight = 0.05;    // of full scale, for sums to be looked 
 constexpr double kMostMissing = 0.05;   // of light that should add up
 constexpr double kUsualDrift = 0.001;   // of a LED, where no frame was repeated
 constexpr double kLeastDrift = 0.0003;  // warming that repeated frames, taken at once, do not show
-constexpr double kReachNeeded = 0.75;   // of full scale, for a curve to be trusted to the end
-constexpr double kPoorFit = 4;          // chi-square a degree of freedom
 
 using Channels = std::array<double, 3>;
 
@@ -90,10 +88,6 @@ class Measurement {
   }
 
  private:
-  void note(const char* name, std::string text, std::string remedy) {
-    out_.verdicts.push_back({name, std::move(text), std::move(remedy)});
-  }
-
   Result<void> look_at_dark() {
     const std::vector<ExposureFrames>* dark = frames_.of({});
     dark_ = DarkLine::of(dark);
@@ -192,11 +186,7 @@ class Measurement {
 
   Result<void> measure_linearity() {
     const std::vector<Triple> lights = triples();
-    if (lights.empty()) {
-      note("LINEARITY_UNKNOWN", "linearity was not measured: no exposure has frames of two LEDs and of both",
-           "take ledNN+ledMM at the exposures of ledNN and ledMM");
-      return {};
-    }
+    if (lights.empty()) return {};
     std::vector<calibration::SuperposedLight> superposed;
     double frames = 0;
     for (const Triple& t : lights) {
@@ -215,19 +205,6 @@ class Measurement {
     Result<calibration::Superposition> fit = calibration::fit_superposition(superposed, noise);
     if (!fit) return std::move(fit).error();
     curve_.linearity = fit->linearity;
-    const double reach = std::max({fit->highest_v[0], fit->highest_v[1], fit->highest_v[2]});
-    if (reach < kReachNeeded) {
-      note("LINEARITY_SHORT",
-           fmt::format("linearity was seen up to {:.0f} percent of full scale only", 100 * reach),
-           "add longer exposures, until two LEDs together are nearly full");
-    }
-    if (fit->chi_square_per_freedom > kPoorFit) {
-      note("LIGHT_NOT_STEADY",
-           fmt::format("light adds up worse than its noise allows (chi-square {:.1f} a degree of freedom): "
-                       "something moved, or the room's light changed",
-                       fit->chi_square_per_freedom),
-           "take the frames again in a dark room without touching the scene");
-    }
     out_.superposition = std::move(*fit);
     return {};
   }
@@ -259,9 +236,6 @@ class Measurement {
       out_.black_from = BlackFrom::kExposures;
       offset = level->v;
       sigma = level->sigma;
-    } else {
-      note("BLACK_UNKNOWN", "the black level was not measured, and is the file's",
-           "add dark frames, or for a body that clips black frames of two LEDs and of both");
     }
     curve_.offset = offset;
     out_.black_counts = frames_.mean_black() + full * offset;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "app/jobs/calibrate/response_frames.h"
-#include "app/jobs/report.h"
 #include "calibration/response/photon_transfer.h"
 #include "calibration/response/superposition.h"
 #include "core/calibration.h"
@@ -42,7 +41,6 @@ struct ResponseMeasurement {
   double drift = 0;              ///< of light from frame to frame, relative
   std::vector<LedBalance> balance;
   std::vector<MeasuredRatio> ratios;
-  std::vector<report::Verdict> verdicts;  ///< what could not be measured, and what looks wrong
 };
 
 /// Black level, noise, linearity, exposure ratios and white balance, in this order. Errors (kBadData): fewer
