@@ -8,11 +8,12 @@
 #include <cmath>
 #include <vector>
 
-#include "app/jobs/calibrate/response_measurement.h"
+#include "app/jobs/calibrate/response_reader.h"
 #include "app/jobs/calibrate/scale_file.h"
 #include "app/jobs/raw_picture.h"
 #include "calibration/color/chart.h"
 #include "calibration/response/neutral_scale.h"
+#include "calibration/response/response_measurement.h"
 #include "capture/raw/decode.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
@@ -22,6 +23,9 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+using calibration::BlackFrom;
+using calibration::ResponseFrames;
+using calibration::ResponseMeasurement;
 
 constexpr double kBigHotShare = 1e-3;
 constexpr double kReachNeeded = 0.75;  // of full scale, for a curve to be trusted to the end
@@ -167,7 +171,7 @@ report::Section balance_section(const ResponseMeasurement& m, const Calibration*
   report::Table table = {{"LED", "red / green", "blue / green", "in the calibration before"}, {}};
   const NearLights* lights =
       from != nullptr && from->lights ? std::get_if<NearLights>(&*from->lights) : nullptr;
-  for (const LedBalance& b : m.balance) {
+  for (const calibration::LedBalance& b : m.balance) {
     std::string before;
     const auto at = static_cast<std::size_t>(b.led - 1);
     if (lights != nullptr && at < lights->leds.size()) {
@@ -186,7 +190,7 @@ report::Section ratio_section(const ResponseMeasurement& m) {
   section.paragraphs = {
       "Light gathered by the longer over the shorter exposure, against what their times say."};
   report::Table table = {{"longer, us", "shorter, us", "measured", "by the times", "among LEDs"}, {}};
-  for (const MeasuredRatio& r : m.ratios) {
+  for (const calibration::MeasuredRatio& r : m.ratios) {
     table.rows.push_back({fmt::format("{:.0f}", r.ratio.exposure_us),
                           fmt::format("{:.0f}", r.ratio.to_exposure_us), fmt::format("{:.5f}", r.ratio.ratio),
                           fmt::format("{:.5f}", r.ratio.exposure_us / r.ratio.to_exposure_us),
@@ -240,11 +244,11 @@ Json numbers_of(const ResponseFrames& frames, const ResponseMeasurement& m,
     numbers["superposition_chi_square"] = s.chi_square_per_freedom;
   }
   numbers["white_balance"] = Json::array();
-  for (const LedBalance& b : m.balance) {
+  for (const calibration::LedBalance& b : m.balance) {
     numbers["white_balance"].push_back({{"led", b.led}, {"light_rgb", b.light}});
   }
   numbers["exposure_ratios"] = Json::array();
-  for (const MeasuredRatio& r : m.ratios) {
+  for (const calibration::MeasuredRatio& r : m.ratios) {
     numbers["exposure_ratios"].push_back({{"exposure_us", r.ratio.exposure_us},
                                           {"to_exposure_us", r.ratio.to_exposure_us},
                                           {"ratio", r.ratio.ratio},
@@ -362,7 +366,7 @@ Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& opti
   }
   const Result<ResponseFrames> frames = read_response_frames(options.input, from ? &*from : nullptr, context);
   if (!frames) return frames.error();
-  const Result<ResponseMeasurement> measured = measure_response(*frames);
+  const Result<ResponseMeasurement> measured = calibration::measure_response(*frames);
   if (!measured) return measured.error();
   CalibrateOutcome outcome;
   outcome.warnings = frames->warnings;

@@ -18,7 +18,7 @@ struct CalibrateResponseOptions {
 };
 
 /// Measures gain, read noise, black level, linearity, bad photosites, exposure ratios and the white balance
-/// of the LEDs from raw frames (app/jobs/calibrate/response_measurement.h), checks the patches of a grey
+/// of the LEDs from raw frames (calibration/response/response_measurement.h), checks the patches of a grey
 /// scale (scale/scale.toml, scale_file.h) where there is one, and writes a calibration with response.json,
 /// hot.png (where there are dark frames) and report/response.html. Nothing is written unless all went well.
 /// Errors as read_response_frames() and measure_response().

@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/calibrate/response_measurement.h"
+#include "calibration/response/response_measurement.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 
 #include "calibration/response/light_ratios.h"
 
-namespace weft::app {
+namespace weft::calibration {
 namespace {
-
-using calibration::BlockLight;
-using calibration::TransferCurve;
 
 constexpr double kClippedShare = 0.01;  // of dark photosites at 0: the body clips black
 constexpr double kUnlit = 0.05;         // of the light of the brightest LED
@@ -187,7 +185,7 @@ class Measurement {
   Result<void> measure_linearity() {
     const std::vector<Triple> lights = triples();
     if (lights.empty()) return {};
-    std::vector<calibration::SuperposedLight> superposed;
+    std::vector<SuperposedLight> superposed;
     double frames = 0;
     for (const Triple& t : lights) {
       superposed.push_back({&t.first->light, &t.second->light, &t.both->light, dark_ ? &t.dark : nullptr});
@@ -196,23 +194,23 @@ class Measurement {
     }
     // The weights need the noise, whose slope a slight curve changes by a percent or two.
     const double full = frames_.counts_at_full();
-    const auto first_guess = calibration::fit_photon_transfer(frames_.transfer, {}, full);
+    const auto first_guess = fit_photon_transfer(frames_.transfer, {}, full);
     if (!first_guess) return first_guess.error();
-    calibration::SuperpositionNoise noise;
+    SuperpositionNoise noise;
     noise.electrons_at_full = first_guess->electrons_per_count * full;
     noise.read_noise = first_guess->read_noise_counts / full;
     noise.drift = std::hypot(out_.drift * std::sqrt(2 / frames), kLeastDrift);
-    Result<calibration::Superposition> fit = calibration::fit_superposition(superposed, noise);
+    Result<Superposition> fit = fit_superposition(superposed, noise);
     if (!fit) return std::move(fit).error();
     curve_.linearity = fit->linearity;
     out_.superposition = std::move(*fit);
     return {};
   }
 
-  static Result<void> require_sum(const Triple& t, const calibration::SuperposedLight& light) {
+  static Result<void> require_sum(const Triple& t, const SuperposedLight& light) {
     // Of little light an unknown black level would be much.
     if (brightness(*t.both) < 3 * kLeastLight) return {};
-    const double ratio = calibration::sum_over_both(light);
+    const double ratio = sum_over_both(light);
     if (std::abs(ratio - 1) <= kMostMissing) return {};
     return Error{ErrorKind::kBadData, "light does not add up", t.both->files.front().string(),
                  fmt::format("{} gives {:.1f} percent of what its LEDs give one by one: one of them did not "
@@ -232,7 +230,7 @@ class Measurement {
       out_.black_from = BlackFrom::kSuperposition;
       offset = out_.superposition->offset;
       sigma = out_.superposition->sigma_offset;
-    } else if (const auto level = calibration::level_at_no_exposure(timed())) {
+    } else if (const auto level = level_at_no_exposure(timed())) {
       out_.black_from = BlackFrom::kExposures;
       offset = level->v;
       sigma = level->sigma;
@@ -243,19 +241,18 @@ class Measurement {
     return {};
   }
 
-  std::vector<std::vector<calibration::TimedLight>> timed() const {
-    std::vector<std::vector<calibration::TimedLight>> lists;
+  std::vector<std::vector<TimedLight>> timed() const {
+    std::vector<std::vector<TimedLight>> lists;
     for (const auto& [leds, exposures] : frames_.by_leds) {
       if (leds.empty()) continue;
-      std::vector<calibration::TimedLight>& list = lists.emplace_back();
+      std::vector<TimedLight>& list = lists.emplace_back();
       for (const ExposureFrames& e : exposures) list.push_back({&e.light, e.exposure_us});
     }
     return lists;
   }
 
   Result<void> measure_noise() {
-    Result<calibration::PhotonTransfer> transfer =
-        calibration::fit_photon_transfer(frames_.transfer, curve_, frames_.counts_at_full());
+    Result<PhotonTransfer> transfer = fit_photon_transfer(frames_.transfer, curve_, frames_.counts_at_full());
     if (!transfer) return std::move(transfer).error();
     out_.transfer = std::move(*transfer);
     out_.response.electrons_per_count = out_.transfer.electrons_per_count;
@@ -285,7 +282,7 @@ class Measurement {
       if (leds.empty()) continue;
       for (std::size_t i = 0; i < exposures.size(); ++i) {
         for (std::size_t j = i + 1; j < exposures.size(); ++j) {
-          const auto ratio = calibration::light_ratio(exposures[j].light, exposures[i].light, curve_);
+          const auto ratio = light_ratio(exposures[j].light, exposures[i].light, curve_);
           if (!ratio) continue;
           const double longer = exposures[j].exposure_us, shorter = exposures[i].exposure_us;
           auto found = std::find_if(pairs.begin(), pairs.end(), [&](const Pair& p) {
@@ -314,7 +311,7 @@ class Measurement {
       for (auto e = exposures.rbegin(); e != exposures.rend(); ++e) {
         const auto& full = e->light.full_share;
         if (std::max({full[0], full[1], full[2]}) > 1e-4 && std::next(e) != exposures.rend()) continue;
-        if (const auto light = calibration::light_by_channel(e->light, curve_)) {
+        if (const auto light = light_by_channel(e->light, curve_)) {
           const double seconds = e->exposure_us * 1e-6 * std::max(frames_.camera.iso, 1.0) / 100;
           out_.balance.push_back(
               {leds[0], {(*light)[0] / seconds, (*light)[1] / seconds, (*light)[2] / seconds}});
@@ -351,4 +348,4 @@ const char* name_of(BlackFrom from) {
   return "the file";
 }
 
-}  // namespace weft::app
+}  // namespace weft::calibration

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "app/jobs/calibrate/response_frames.h"
+#include "app/jobs/calibrate/response_reader.h"
 
 #include <fmt/format.h>
 
@@ -18,6 +18,8 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+using calibration::ExposureFrames;
+using calibration::ResponseFrames;
 
 constexpr double kFullShareOfFrame = 0.9;
 constexpr double kBrightShare = 0.01;  // of full photosites, at most, in frames searched for dead ones
@@ -253,17 +255,6 @@ Result<std::vector<ExposureFrames>> listed(const fs::path& folder, Body& body) {
 }
 
 }  // namespace
-
-double ResponseFrames::mean_black() const {
-  double mean = 0;
-  for (const auto& row : file_black) mean += static_cast<double>(row[0] + row[1]) / 4;
-  return mean;
-}
-
-const std::vector<ExposureFrames>* ResponseFrames::of(const std::vector<int>& leds) const {
-  const auto found = by_leds.find(leds);
-  return found == by_leds.end() ? nullptr : &found->second;
-}
 
 Result<ResponseFrames> read_response_frames(const fs::path& folder, const Calibration* from,
                                             const JobContext& context) {

@@ -3,16 +3,15 @@
 
 #include <array>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "app/jobs/calibrate/response_frames.h"
 #include "calibration/response/photon_transfer.h"
+#include "calibration/response/response_frames.h"
 #include "calibration/response/superposition.h"
 #include "core/calibration.h"
 #include "core/result.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// How the black level was found.
 enum class BlackFrom { kDarkFrames, kSuperposition, kExposures, kFile };
@@ -32,8 +31,8 @@ struct MeasuredRatio {
 /// What the frames of a response capture say.
 struct ResponseMeasurement {
   Response response;
-  calibration::PhotonTransfer transfer;
-  std::optional<calibration::Superposition> superposition;
+  PhotonTransfer transfer;
+  std::optional<Superposition> superposition;
   BlackFrom black_from = BlackFrom::kFile;
   double black_counts = 0, sigma_black_counts = 0;
   double dark_counts_per_s = 0;  ///< by warmth and stray light, from dark frames of several exposures
@@ -51,4 +50,4 @@ Result<ResponseMeasurement> measure_response(const ResponseFrames& frames);
 /// "dark frames" and so on.
 const char* name_of(BlackFrom from);
 
-}  // namespace weft::app
+}  // namespace weft::calibration

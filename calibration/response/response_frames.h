@@ -10,19 +10,16 @@
 
 #include "calibration/response/block_light.h"
 #include "calibration/response/photon_transfer.h"
-#include "core/calibration.h"
 #include "core/image.h"
-#include "core/job.h"
 #include "core/raw_frame.h"
-#include "core/result.h"
 
-namespace weft::app {
+namespace weft::calibration {
 
 /// Frames of the same light and exposure, as numbers.
 struct ExposureFrames {
   double exposure_us = 0;
   std::vector<std::filesystem::path> files;
-  calibration::BlockLight light;
+  BlockLight light;
   std::vector<double> brightness;  ///< of each frame that is not full: mean v of all channels
 };
 
@@ -35,7 +32,7 @@ struct ResponseFrames {
   double file_white = 0;
   std::map<std::vector<int>, std::vector<ExposureFrames>> by_leds;  ///< by rising exposure; {} is dark
   std::vector<std::filesystem::path> scale;                         ///< frames of the grey scale
-  std::vector<calibration::TransferPoint> transfer;                 ///< of all pairs of frames
+  std::vector<TransferPoint> transfer;                              ///< of all pairs of frames
   int pairs = 0;                                                    ///< of frames
   Image<std::uint8_t> bad;  ///< hot and dead photosites are 255; empty without dark frames
   int hot = 0, dead = 0;
@@ -47,12 +44,4 @@ struct ResponseFrames {
   const std::vector<ExposureFrames>* of(const std::vector<int>& leds) const;
 };
 
-/// Reads dark/, ledNN/, ledNN+ledMM/ of `folder` and lists scale/: raw frames of one body, ISO and aperture,
-/// in each folder sorted by their exposure. A frame more than nine tenths of which are full in every channel
-/// is left out. Memory: eight frames, and 100 bytes for 32 x 32 photosites a pair. Errors: kNoInput (no such
-/// folder, no frames), kBadData (a frame of another body, ISO, aperture or size, or not that of the
-/// calibration `from` where there is one; a developed picture; a frame that cannot be decoded).
-Result<ResponseFrames> read_response_frames(const std::filesystem::path& folder, const Calibration* from,
-                                            const JobContext& context);
-
-}  // namespace weft::app
+}  // namespace weft::calibration
