@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "core/parallel.h"
+#include "core/statistics.h"
 #include "pipeline/tile_reader.h"
 #include "solver/in_double/pixel.h"
 #include "solver/sample_tiles.h"
@@ -30,9 +30,7 @@ void count_shadowed(const solver::TileInput& input, SampleMaps& maps) {
       }
       const auto rank = static_cast<std::size_t>(solver::bright_rank(lights));
       if (x.size() < rank) continue;
-      std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(rank) - 1, x.end(),
-                       std::greater<>());
-      const double threshold = solver::kShadowShare * x[rank - 1];
+      const double threshold = solver::kShadowShare * value_of_rank<double>(x, x.size() - rank);
       maps.readings += static_cast<std::int64_t>(x.size());
       maps.shadowed += std::count_if(x.begin(), x.end(), [&](double v) { return v < threshold; });
     }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.h"
 #include "core/text.h"
 #include "report/html.h"
 #include "report/preview.h"
@@ -17,10 +18,8 @@ constexpr const char* kFaint = "#77736b";
 
 // Just over the 98th percentile of the finite values.
 double upper_end(std::vector<double> values) {
-  std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  if (values.empty()) return 1;
-  std::sort(values.begin(), values.end());
-  return std::max(1.1 * values[(values.size() - 1) * 98 / 100], 1e-9);
+  const double high = lower_quantile(finite(std::move(values)), 0.98);
+  return std::isnan(high) ? 1 : std::max(1.1 * high, 1e-9);
 }
 
 }  // namespace

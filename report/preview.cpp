@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/solve_record.h"
+#include "core/statistics.h"
 #include "core/vec.h"
 
 namespace weft::report {
@@ -51,15 +52,6 @@ Vec3 vector_at(const Image<float>& planes, int x, int y) {
 /// NaN stays NaN.
 float encoded(double linear) {
   return std::isfinite(linear) ? srgb_from_linear(static_cast<float>(linear)) : kNan;
-}
-
-/// The value below which `share` of the finite values lie, or 0 if there are none.
-double quantile(std::vector<float> values, double share) {
-  std::erase_if(values, [](float v) { return !std::isfinite(v); });
-  if (values.empty()) return 0;
-  const auto rank = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
 }
 
 /// The power of ten of a number's leading digit.
@@ -149,7 +141,7 @@ double display_scale(const Image<float>& albedo) {
       brightest.push_back(std::max({albedo(x, y, 0), albedo(x, y, 1), albedo(x, y, 2)}));
     }
   }
-  const double bright = quantile(std::move(brightest), 0.99);
+  const double bright = lower_quantile(finite(std::move(brightest)), 0.99);
   return bright > 0 ? 0.8 / bright : 1;
 }
 
@@ -211,8 +203,8 @@ double round_full_scale(View<const float> values) {
   std::vector<float> all;
   for (int y = 0; y < values.height(); ++y)
     all.insert(all.end(), values.row(y), values.row(y) + values.width());
-  const double wanted = quantile(std::move(all), 0.99);
-  if (wanted <= kLeastFullScale) return kLeastFullScale;
+  const double wanted = lower_quantile(finite(std::move(all)), 0.99);
+  if (!(wanted > kLeastFullScale)) return kLeastFullScale;
   const double decade = decade_of(wanted);
   return decade * std::ceil(wanted / decade * (1 - 1e-6));
 }

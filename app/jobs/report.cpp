@@ -10,6 +10,7 @@
 
 #include "app/jobs/report_page.h"
 #include "core/files.h"
+#include "core/statistics.h"
 #include "pipeline/evidence.h"
 #include "solver/method.h"
 
@@ -271,8 +272,8 @@ Json condition_over(const LightField& field, Size size) {
       conditions.push_back(condition_number(directions));
     }
   }
-  std::sort(conditions.begin(), conditions.end());
-  return {{"median", number(conditions[conditions.size() / 2])}, {"worst", number(conditions.back())}};
+  const double worst = *std::ranges::max_element(conditions);
+  return {{"median", number(median(std::move(conditions)))}, {"worst", number(worst)}};
 }
 
 PhotographsSummary summarize_photographs(const pipeline::Photographs& photographs,

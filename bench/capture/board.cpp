@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/capture/board.h"
 
-#include <algorithm>
 #include <chrono>
-#include <cstddef>
 #include <utility>
 #include <vector>
 
 #include "capture/board/led_board.h"
+#include "core/statistics.h"
 
 namespace weft::bench {
-namespace {
-
-/// Of sorted values.
-double percentile(const std::vector<double>& values, double share) {
-  if (values.empty()) return 0;
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
-}
-
-}  // namespace
 
 Result<Rows> capture_board_table(const CaptureBoardOptions& options) {
   auto board = capture::LedBoard::open({options.port});
@@ -38,12 +28,11 @@ Result<Rows> capture_board_table(const CaptureBoardOptions& options) {
   const auto after = (*board)->status();
   if (!after) return after.error();
 
-  std::ranges::sort(times_ms);
   const Json row = {{"commands", options.commands},
                     {"lost", options.commands - static_cast<int>(times_ms.size())},
-                    {"median_ms", percentile(times_ms, 0.5)},
-                    {"p99_ms", percentile(times_ms, 0.99)},
-                    {"most_ms", percentile(times_ms, 1)},
+                    {"median_ms", lower_quantile(times_ms, 0.5)},
+                    {"p99_ms", lower_quantile(times_ms, 0.99)},
+                    {"most_ms", lower_quantile(times_ms, 1)},
                     {"bad_frames", after->bad_frames - before->bad_frames},
                     {"overruns", after->overruns - before->overruns}};
   return Rows{row};

@@ -20,6 +20,7 @@
 #include "bench/capture/malformed_request.h"
 #include "core/descriptor.h"
 #include "core/files.h"
+#include "core/statistics.h"
 #include "core/temporary_folder.h"
 
 namespace weft::bench {
@@ -67,12 +68,11 @@ Result<Json> row_of(const app::RigClient& client, int requests, int malformed, i
     if (!answer) return answer.error();
     times_ms.push_back(time_ms.count());
   }
-  std::ranges::sort(times_ms);
   return Json{{"malformed", malformed},
               {"silent", silent},
               {"requests", requests},
-              {"median_ms", times_ms[times_ms.size() / 2]},
-              {"most_ms", times_ms.back()}};
+              {"median_ms", median(times_ms)},
+              {"most_ms", *std::ranges::max_element(times_ms)}};
 }
 
 Result<void> send_malformed(const CaptureHttpOptions& options, int port) {

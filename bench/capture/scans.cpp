@@ -14,6 +14,7 @@
 #include "capture/scan/scan.h"
 #include "core/files.h"
 #include "core/job.h"
+#include "core/statistics.h"
 #include "core/temporary_folder.h"
 
 namespace weft::bench {
@@ -105,20 +106,18 @@ Result<Rows> capture_scans_table(const ScansOptions& options) {
     if (failed) return cannot_write(session, failed.value());
     options.progress(i);
     if (i != 1 && i != options.scans && i % std::max(1, options.scans / kRows) != 0) continue;
-    std::vector<double> sorted = seconds;
-    std::sort(sorted.begin(), sorted.end());
+    const double middle = median(seconds);
     const ProcessSize size = size_of(::getpid()).value_or(ProcessSize{});
-    rows.push_back(
-        {{"scans", i},
-         {"frames", one->frames},
-         {"least_s", sorted.front()},
-         {"median_s", sorted[sorted.size() / 2]},
-         {"over_bare_loop", sorted[sorted.size() / 2] / (*bare * static_cast<double>(one->frames))},
-         {"resident_mb", static_cast<double>(size.resident_bytes) / 1e6},
-         {"descriptors", size.descriptors},
-         {"camera_resident_mb", static_cast<double>(one->camera.resident_bytes) / 1e6},
-         {"camera_descriptors", one->camera.descriptors},
-         {"frames_that_differ", differ}});
+    rows.push_back({{"scans", i},
+                    {"frames", one->frames},
+                    {"least_s", *std::ranges::min_element(seconds)},
+                    {"median_s", middle},
+                    {"over_bare_loop", middle / (*bare * static_cast<double>(one->frames))},
+                    {"resident_mb", static_cast<double>(size.resident_bytes) / 1e6},
+                    {"descriptors", size.descriptors},
+                    {"camera_resident_mb", static_cast<double>(one->camera.resident_bytes) / 1e6},
+                    {"camera_descriptors", one->camera.descriptors},
+                    {"frames_that_differ", differ}});
   }
   return rows;
 }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "calibration/camera/markers.h"
+#include "core/statistics.h"
 
 namespace weft::calibration {
 namespace {
@@ -12,12 +14,9 @@ constexpr double kBrightShare = 0.995;  // of the pixels are darker than kBright
 constexpr float kBright = 240;
 
 // What brings the 99.5th percentile of the values to kBright.
-float scale_of(std::vector<float>& values) {
-  if (values.empty()) return 1;
-  const auto bright =
-      values.begin() + static_cast<std::ptrdiff_t>(kBrightShare * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), bright, values.end());
-  return *bright > 0 ? kBright / *bright : 1;
+float scale_of(std::vector<float> values) {
+  const float bright = lower_quantile(std::move(values), kBrightShare);
+  return bright > 0 ? kBright / bright : 1;
 }
 
 std::uint8_t to_byte(float value) {
@@ -70,7 +69,7 @@ Image<std::uint8_t> grey_picture(const RawFrame& frame) {
     for (int x = 0; x + 1 < width; x += 8)
       cells.push_back((light(x, y) + light(x + 1, y) + light(x, y + 1) + light(x + 1, y + 1)) / 4);
   }
-  const float scale = scale_of(cells);
+  const float scale = scale_of(std::move(cells));
 
   Image<std::uint8_t> grey(frame.counts.size());
   std::vector<float> column(static_cast<std::size_t>(width));
@@ -94,7 +93,7 @@ Image<std::uint8_t> grey_picture(std::span<const View<const float>> rgb) {
   for (int y = 0; y < size.height; y += 4) {
     for (int x = 0; x < size.width; x += 4) samples.push_back(light(x, y));
   }
-  const float scale = scale_of(samples);
+  const float scale = scale_of(std::move(samples));
   Image<std::uint8_t> grey(size);
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) grey(x, y) = to_byte(scale * light(x, y));

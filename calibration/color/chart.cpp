@@ -7,6 +7,9 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/mcc.hpp>
+#include <utility>
+
+#include "core/statistics.h"
 
 namespace weft::calibration {
 namespace {
@@ -32,20 +35,16 @@ cv::Point2f point(const std::array<double, 2>& p) {
   return {static_cast<float>(p[0]), static_cast<float>(p[1])};
 }
 
-// Value that a share of the finite samples lies below.
-double quantile(const Image<float>& rgb, int channel, double share) {
+// NaN where no sample is finite.
+double white_of(const Image<float>& rgb, int channel) {
   std::vector<float> values;
   const int step = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(rgb.size().pixels()) / 4e5)));
   for (int y = 0; y < rgb.height(); y += step) {
     for (int x = 0; x < rgb.width(); x += step) {
-      if (std::isfinite(rgb(x, y, channel))) values.push_back(rgb(x, y, channel));
+      values.push_back(rgb(x, y, channel));
     }
   }
-  if (values.empty()) return 0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return static_cast<double>(*at);
+  return static_cast<double>(lower_quantile(finite(std::move(values)), kWhiteQuantile));
 }
 
 // 8-bit BGR with display values, every `step`th pixel as a mean of its square.
@@ -151,9 +150,8 @@ double correlation(std::span<const PatchReading> patches, const ChartReference& 
 
 Result<ChartCorners> find_chart(const Image<float>& rgb) {
   const int step = std::max(1, std::max(rgb.width(), rgb.height()) / kLargestSide);
-  const Rgb white = {quantile(rgb, 0, kWhiteQuantile), quantile(rgb, 1, kWhiteQuantile),
-                     quantile(rgb, 2, kWhiteQuantile)};
-  if (!(std::min({white[0], white[1], white[2]}) > 0))
+  const Rgb white = {white_of(rgb, 0), white_of(rgb, 1), white_of(rgb, 2)};
+  if (!std::ranges::all_of(white, [](double v) { return v > 0; }))
     return no_chart("the picture is black, or full everywhere");
   const cv::Mat picture = display_of(rgb, step, white);
   std::vector<cv::Point2f> box;

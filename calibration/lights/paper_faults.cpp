@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "core/statistics.h"
+
 namespace weft::calibration {
 namespace {
 
@@ -100,9 +102,7 @@ std::vector<PaperFault> find_faults(std::span<const PaperSpot> spots, double spa
   if (spots.empty()) return {};
   std::vector<double> departures;
   for (const PaperSpot& spot : spots) departures.push_back(departure_of(spot));
-  const auto middle = departures.begin() + static_cast<std::ptrdiff_t>(departures.size() / 2);
-  std::nth_element(departures.begin(), middle, departures.end());
-  const double limit = std::max(kFaultFrom * *middle, kFaultFromRelative);
+  const double limit = std::max(kFaultFrom * median(std::move(departures)), kFaultFromRelative);
   std::map<Cell, std::vector<std::size_t>> cells;
   const double cell_mm = 1.5 * spacing_mm;
   for (std::size_t i = 0; i < spots.size(); ++i) {

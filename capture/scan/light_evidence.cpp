@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/statistics.h"
+
 namespace weft::capture {
 namespace {
 
@@ -27,16 +29,6 @@ constexpr double kRepeatLevel = 0.08;    // beyond it a repeat is not the same l
 constexpr double kRepeatPattern = 0.05;  // scatter of a repeat over its first, beyond noise
 constexpr double kBracketLevel = 0.25;   // of a bracket's brightness over the ratio of its times
 
-/// The value that a share of the finite ones is below.
-double quantile(std::vector<double> values, double share) {
-  std::erase_if(values, [](double v) { return !std::isfinite(v); });
-  if (values.empty()) return 0;
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
 /// The share of patches that hold a full photosite.
 double full_share(const std::vector<double>& light) {
   const auto full = std::ranges::count_if(light, [](double v) { return std::isnan(v); });
@@ -57,15 +49,15 @@ struct Ratio {
 
 /// Nothing where one of the two is full everywhere.
 std::optional<Ratio> ratio_of(const std::vector<double>& light, const std::vector<double>& before) {
-  const double least = 0.2 * quantile(before, 0.5);
+  const double least = 0.2 * lower_quantile(finite(before), 0.5);
   std::vector<double> ratios;
   for (std::size_t i = 0; i < light.size(); ++i) {
     if (std::isfinite(light[i]) && before[i] > least) ratios.push_back(light[i] / before[i]);
   }
   if (ratios.empty()) return std::nullopt;
-  const double median = median_of(ratios);
-  for (double& ratio : ratios) ratio = std::abs(ratio / median - 1);
-  return Ratio{median, median_of(std::move(ratios))};
+  const double middle = median(ratios);
+  for (double& ratio : ratios) ratio = std::abs(ratio / middle - 1);
+  return Ratio{middle, median(std::move(ratios))};
 }
 
 std::vector<Vec3> together(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double times) {
@@ -141,7 +133,8 @@ ShotVerdict ScanEvidence::judge(const PlannedShot& shot, const std::vector<doubl
 }
 
 ShotVerdict ScanEvidence::judge_dark(const PlannedShot& shot, const std::vector<double>& light) const {
-  const double bright = quantile(light, 0.9);
+  const std::vector<double> readable = finite(light);
+  const double bright = readable.empty() ? 1 : lower_quantile(readable, 0.9);
   if (bright > kDarkTo || !std::isfinite(light.front())) {
     return {
         Finding::kRoomLight,
@@ -179,10 +172,10 @@ double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>
         albedo.push_back((seen->light[i] - (dark_ ? (*dark_)[i] : 0)) / z);
       }
     }
-    const double expected = median_of(std::move(albedo)) * of_flat_cloth(shot.led, i);
+    const double expected = median(std::move(albedo)) * of_flat_cloth(shot.led, i);
     if (expected > 0 && std::isfinite(light[i])) levels.push_back(light[i] / expected);
   }
-  return levels.empty() ? 1 : median_of(std::move(levels));
+  return levels.empty() ? 1 : median(std::move(levels));
 }
 
 ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<double>& light) const {
@@ -190,7 +183,7 @@ ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<d
   const auto found = [&](Finding finding, std::string sentence) {
     return ShotVerdict{finding, std::move(sentence), {shot.index}, {}, {}, {}};
   };
-  if (std::isfinite(quantile(own, 0.5)) && quantile(own, 0.99) < kLitFrom &&
+  if (lower_quantile(finite(own), 0.99) < kLitFrom &&
       std::count_if(own.begin(), own.end(), [](double v) { return std::isnan(v); }) == 0) {
     return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
   }

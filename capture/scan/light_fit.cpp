@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/light_field.h"
+#include "core/statistics.h"
 
 namespace weft::capture {
 namespace {
@@ -70,13 +71,6 @@ Patch patch_of(std::size_t i, const std::vector<const std::vector<double>*>& lig
 
 }  // namespace
 
-double median_of(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Result<PatchLights> PatchLights::make(const Calibration& calibration, double cloth_height_mm) {
   const Size size = calibration.camera->size;
   const auto field = LightField::make(*calibration.lights, calibration.camera, size, cloth_height_mm);
@@ -137,7 +131,7 @@ PatchFit fit_light(const std::vector<const std::vector<double>*>& light,
     fit.misfit = patches.empty() ? 0 : sum / static_cast<double>(patches.size());
     double log_sum = 0;
     for (std::size_t f = 0; f < frames; ++f) {
-      if (!ratios[f].empty()) fit.gain[f] *= std::max(median_of(std::move(ratios[f])), 1e-3);
+      if (!ratios[f].empty()) fit.gain[f] *= std::max(median(std::move(ratios[f])), 1e-3);
       log_sum += std::log(fit.gain[f]);
     }
     for (double& gain : fit.gain) gain *= std::exp(-log_sum / static_cast<double>(frames));

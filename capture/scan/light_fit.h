@@ -35,7 +35,4 @@ struct PatchFit {
 PatchFit fit_light(const std::vector<const std::vector<double>*>& light,
                    const std::vector<const std::vector<Vec3>*>& incident, std::size_t step = 1);
 
-/// The median; 0 of nothing.
-double median_of(std::vector<double> values);
-
 }  // namespace weft::capture

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numeric>
 
+#include "core/statistics.h"
 #include "solver/in_double/pixel.h"
 
 namespace weft::solver {
@@ -38,7 +38,7 @@ bool RobustFit::fit(const Evidence& evidence, std::size_t pixel, const LightMode
   l_.resize(lights);
   x_.resize(lights);
   usable_.assign(lights, 0);
-  sorted_.clear();
+  finite_.clear();
   double dimmest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < lights; ++k) {
     const EvidenceRow& row = evidence.at(pixel, k);
@@ -46,17 +46,17 @@ bool RobustFit::fit(const Evidence& evidence, std::size_t pixel, const LightMode
     x_[k] = evidence.at(pixel, model.frame[k]).reading / (row.strength * model.gain[k]);
     if (!std::isfinite(x_[k]) || !(model.gain[k] > 0) || !(row.strength > 0)) continue;
     usable_[k] = 1;
-    sorted_.push_back(x_[k]);
+    finite_.push_back(x_[k]);
     dimmest = std::min(dimmest, row.strength);
   }
-  if (sorted_.size() < kFewestReadings) return false;
-  const auto bright = sorted_.begin() + bright_rank(sorted_.size()) - 1;
-  std::nth_element(sorted_.begin(), bright, sorted_.end(), std::greater<>());
+  if (finite_.size() < kFewestReadings) return false;
+  const auto rank = static_cast<std::size_t>(bright_rank(finite_.size()));
+  const double bright = value_of_rank<double>(finite_, finite_.size() - rank);
   const double floor = evidence.noise ? std::sqrt(evidence.noise->floor + evidence.noise->shared) : 0;
-  if (!(*bright * dimmest > kLeastSignal * floor) || !(*bright > 0)) return false;
+  if (!(bright * dimmest > kLeastSignal * floor) || !(bright > 0)) return false;
   std::size_t used = 0;
   for (std::size_t k = 0; k < lights; ++k) {
-    usable_[k] = usable_[k] && x_[k] >= kShadowShare * *bright;
+    usable_[k] = usable_[k] && x_[k] >= kShadowShare * bright;
     used += usable_[k] && k != left_out;
   }
   if (used < kFewestReadings) return false;

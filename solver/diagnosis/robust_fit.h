@@ -44,7 +44,7 @@ class RobustFit {
 
  private:
   std::vector<Vec3> l_;
-  std::vector<double> x_, sorted_;
+  std::vector<double> x_, finite_;
   std::vector<char> usable_;
   Vec3 b_;
   double albedo_ = 0;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/gates/gates.h"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/solve_record.h"
+#include "core/statistics.h"
 #include "core/vec.h"
 #include "solver/height/height.h"
 #include "solver/transport/horizon.h"
@@ -61,13 +62,6 @@ Result<void> add_openness(const SolvedSample& sample, Totals& totals) {
   return {};
 }
 
-double percentile95(std::vector<float>& values) {
-  if (values.empty()) return 0;
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return static_cast<double>(*at);
-}
-
 Gate gate(const char* name, double value, double limit, const char* unit) {
   return {name, value, limit, unit, value > limit};
 }
@@ -88,9 +82,10 @@ Result<Gates> measure_gates(std::span<const SolvedSample> samples, const GateLim
     return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0.0;
   };
   const auto pixels = static_cast<double>(totals.pixels);
+  const auto slope_deg = static_cast<double>(lower_quantile(std::move(totals.slopes_deg), 0.95));
   const double indirect = totals.albedo / pixels * (1 - totals.openness / pixels);
   return Gates{
-      gate("slope", percentile95(totals.slopes_deg), limits.slope_deg, "degrees"),
+      gate("slope", slope_deg, limits.slope_deg, "degrees"),
       gate("shadowed", share(totals.shadowed, totals.readings), limits.shadowed_share, "of readings"),
       gate("indirect", indirect, limits.indirect_share, "of direct light"),
       gate("specular", share(totals.specular, totals.pixels), limits.specular_share, "of pixels")};

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "core/statistics.h"
 #include "solver/registration/tile_system.h"
 
 namespace weft::solver {
@@ -151,10 +152,8 @@ void measure_from_median(VectorXd& parameters) {
   for (Eigen::Index c = 0; c < 3; ++c) {
     std::vector<double> values;
     for (Eigen::Index k = 0; k < shots; ++k) values.push_back(parameters[3 * k + c]);
-    const auto middle = values.begin() + (shots - 1) / 2;
-    std::nth_element(values.begin(), middle, values.end());
-    const double median = *middle;
-    for (Eigen::Index k = 0; k < shots; ++k) parameters[3 * k + c] -= median;
+    const double middle = lower_quantile(std::move(values), 0.5);
+    for (Eigen::Index k = 0; k < shots; ++k) parameters[3 * k + c] -= middle;
   }
 }
 

@@ -4,8 +4,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
+#include "core/statistics.h"
 #include "solver/in_double/pixel.h"
 #include "solver/registration/smooth.h"
 
@@ -40,13 +40,12 @@ Matrix3d information_of(const std::vector<Row>& rows) {
 
 // Leaves out readings in attached shadow.
 void drop_shadowed(std::vector<Row>& rows, std::size_t lights) {
-  std::vector<double> sorted;
-  for (const Row& r : rows) sorted.push_back(r.x);
-  const std::size_t rank = std::min(static_cast<std::size_t>(bright_rank(lights)), sorted.size());
+  std::vector<double> x;
+  for (const Row& r : rows) x.push_back(r.x);
+  const std::size_t rank = std::min(static_cast<std::size_t>(bright_rank(lights)), x.size());
   if (rank == 0) return;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(rank) - 1, sorted.end(),
-                   std::greater<>());
-  std::erase_if(rows, [&, least = kShadowShare * sorted[rank - 1]](const Row& r) { return r.x < least; });
+  const double least = kShadowShare * value_of_rank<double>(x, x.size() - rank);
+  std::erase_if(rows, [&](const Row& r) { return r.x < least; });
 }
 
 // Weighted least squares, weights by noise and Huber's function, until they settle.

@@ -12,6 +12,7 @@
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
 #include "core/files.h"
+#include "core/statistics.h"
 #include "core/suits.h"
 
 namespace weft::app {
@@ -156,12 +157,11 @@ void leave_out_the_softest(std::vector<BoardPhotograph>& photographs) {
     if (p.left_out.empty()) widths.push_back(p.sighting.edge_px);
   }
   if (widths.empty()) return;
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::nth_element(widths.begin(), middle, widths.end());
+  const double middle = median(std::move(widths));
   for (BoardPhotograph& p : photographs) {
-    if (p.sighting.fault == BoardFault::kBlurred || p.sighting.edge_px <= kMostBlur * *middle) continue;
+    if (p.sighting.fault == BoardFault::kBlurred || p.sighting.edge_px <= kMostBlur * middle) continue;
     p.left_out = fmt::format("{}: its edges are {:.1f} pixels wide, the median of the photographs is {:.1f}",
-                             name_of(BoardFault::kBlurred), p.sighting.edge_px, *middle);
+                             name_of(BoardFault::kBlurred), p.sighting.edge_px, middle);
   }
 }
 
