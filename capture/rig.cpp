@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "capture/rig.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <vector>
+
 #include "core/calibration.h"
 #include "core/toml/toml_keys.h"
 
@@ -10,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPage = "docs/rig.md";
+constexpr int kMostLeds = 10;
 
 /// A path of the file, made absolute; empty stays empty.
 fs::path beside(const fs::path& file, const std::string& path) {
@@ -18,6 +24,41 @@ fs::path beside(const fs::path& file, const std::string& path) {
 
 std::string place(const fs::path& file, const char* table) {
   return file.string() + ": [" + table + "]";
+}
+
+Result<NearLight> read_led(const toml::table& table, std::string where) {
+  TomlKeys keys(table, std::move(where), kPage);
+  keys.know({"position_mm", "aim", "mu"});
+  NearLight led;
+  const std::vector<double> at = keys.numbers("position_mm", 3, 3);
+  const std::vector<double> aim = keys.has("aim") ? keys.numbers("aim", 3, 3) : std::vector<double>();
+  led.mu = keys.number_or("mu", 1, 0, 100);
+  if (!at.empty()) led.position_mm = {at[0], at[1], at[2]};
+  if (!at.empty() && !(at[2] >= 1 && length(led.position_mm) < 1e5))
+    keys.reject("position_mm", "it must be at least 1 mm above the table");
+  led.aim = aim.empty() ? -1.0 * led.position_mm : Vec3{aim[0], aim[1], aim[2]};
+  if (!(length(led.aim) > 0)) keys.reject("aim", "it has no length");
+  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
+  led.aim = normalized(led.aim);
+  return led;
+}
+
+Result<void> read_leds(TomlKeys& keys, Rig& rig) {
+  if (keys.has("led")) {
+    const std::vector<const toml::table*> leds = keys.tables("led");
+    if (Result<void> ok = keys.status(); !ok) return ok;
+    rig.lights.emplace();
+    for (std::size_t k = 0; k < leds.size(); ++k) {
+      Result<NearLight> led = read_led(*leds[k], fmt::format("{}: LED {}", rig.file.string(), k + 1));
+      if (!led) return std::move(led).error();
+      rig.lights->leds.push_back(*led);
+    }
+    rig.leds = std::min(static_cast<int>(leds.size()), kMostLeds);
+  }
+  rig.leds = keys.integer_or("leds", rig.leds, 1, kMostLeds);
+  if (rig.lights && keys.has("leds") && static_cast<std::size_t>(rig.leds) != rig.lights->leds.size())
+    keys.reject("leds", fmt::format("there are {} [[led]]", rig.lights->leds.size()));
+  return keys.status();
 }
 
 Result<void> read_board(const toml::table& table, Rig& rig) {
@@ -78,11 +119,11 @@ Result<Rig> read_rig(const fs::path& file) {
   Rig rig;
   rig.file = file;
   TomlKeys keys(*table, file.string(), kPage);
-  keys.know({"name", "leds", "board", "camera", "scan", "daemon"});
+  keys.know({"name", "leds", "led", "board", "camera", "scan", "daemon"});
   rig.name = keys.text_or("name", "rig");
   if (rig.name.empty() || rig.name.find('/') != std::string::npos)
     keys.reject("name", "it must be a plain name");
-  rig.leds = keys.integer_or("leds", rig.leds, 1, 10);
+  if (Result<void> ok = read_leds(keys, rig); !ok) return std::move(ok).error();
   const toml::table& board = keys.table("board");
   const toml::table& camera = keys.table("camera");
   const toml::table& scan = keys.table("scan");

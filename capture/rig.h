@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/lights.h"
 #include "core/result.h"
 
 namespace weft::capture {
@@ -13,7 +14,11 @@ namespace weft::capture {
 struct Rig {
   std::filesystem::path file;  ///< it was read from
   std::string name;            ///< in every session and calibration of it
-  int leds = 10;               ///< 1 to 10
+  int leds = 10;               ///< 1 to 10; where the file does not say, as many as `lights` has
+
+  /// [[led]], from LED 1: where a tape has them. Aims are unit vectors, by default at the table's centre;
+  /// fluxes are 1. None where nobody measured.
+  std::optional<NearLights> lights;
 
   struct Board {
     std::string port = "/dev/weft-led";  ///< any name that leads to it

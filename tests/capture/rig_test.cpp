@@ -40,6 +40,34 @@ TEST(RigFile, TakesPathsRelativeToItself) {
   EXPECT_EQ(rig->scan.exposure_us, 20000);
 }
 
+TEST(RigFile, HoldsWhereATapeHasItsLeds) {
+  const auto rig =
+      read_rig(rig_file("[[led]]\nposition_mm = [0, 300, 400]\n"
+                        "[[led]]\nposition_mm = [10, 0, 500]\naim = [0, 0, -2]\nmu = 1.5\n"
+                        "[board]\nport = \"/dev/north\"\n"));
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_EQ(rig->leds, 2);
+  EXPECT_EQ(rig->board.port, "/dev/north");
+  ASSERT_TRUE(rig->lights);
+  ASSERT_EQ(rig->lights->leds.size(), 2u);
+  const NearLight& first = rig->lights->leds[0];
+  const NearLight& second = rig->lights->leds[1];
+  EXPECT_EQ(first.position_mm, (Vec3{0, 300, 400}));
+  EXPECT_NEAR(length(first.aim - Vec3{0, -0.6, -0.8}), 0, 1e-15) << "at the table's centre";
+  EXPECT_EQ(first.mu, 1);
+  EXPECT_EQ(second.aim, (Vec3{0, 0, -1}));
+  EXPECT_EQ(second.mu, 1.5);
+}
+
+TEST(RigFile, MayHoldMoreLedsThanABoardHas) {
+  std::string text;
+  for (int led = 0; led < 12; ++led) text += "[[led]]\nposition_mm = [1, 2, 300]\n";
+  const auto rig = read_rig(rig_file(text));
+  ASSERT_TRUE(rig) << rig.error().message();
+  EXPECT_EQ(rig->lights->leds.size(), 12u);
+  EXPECT_EQ(rig->leds, 10);
+}
+
 TEST(RigFile, NamesTheKeyThatIsWrong) {
   const struct {
     const char* text;
@@ -48,6 +76,12 @@ TEST(RigFile, NamesTheKeyThatIsWrong) {
       {"lamps = 3", "lamps"},
       {"leds = 11", "leds"},
       {"leds = 2.5", "leds"},
+      {"leds = 2\n[[led]]\nposition_mm = [1, 2, 300]", "leds"},
+      {"led = 3", "led"},
+      {"[[led]]\nposition_mm = [1, 2]", "LED 1: position_mm"},
+      {"[[led]]\nposition_mm = [1, 2, -300]", "LED 1: position_mm"},
+      {"[[led]]\nposition_mm = [1, 2, 300]\naim = [0, 0, 0]", "LED 1: aim"},
+      {"[[led]]\nposition_mm = [1, 2, 300]\nflux = 1", "LED 1: flux"},
       {"name = \"a/b\"", "name"},
       {"board = 3", "board"},
       {"[board]\nport = \"\"", "[board]: port"},

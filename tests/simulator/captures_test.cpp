@@ -8,6 +8,7 @@
 #include <set>
 
 #include "capture/raw/decode.h"
+#include "capture/rig.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/session.h"
@@ -161,6 +162,11 @@ TEST(Captures, OfTheLightsAreFiveSheetsThatHoldTheStartingCalibration) {
   const Vec3 real = {600 * std::sin(zenith) * std::cos(azimuth), 600 * std::sin(zenith) * std::sin(azimuth),
                      600 * std::cos(zenith)};
   EXPECT_NEAR(length(leds[0].position_mm - real), 10, 1e-6);
+  const Result<capture::Rig> rig = capture::read_rig(folder / "lights" / "rig.toml");
+  ASSERT_TRUE(rig) << rig.error().message();
+  ASSERT_TRUE(rig->lights);
+  ASSERT_EQ(rig->lights->leds.size(), 4U);
+  EXPECT_NEAR(length(rig->lights->leds[0].position_mm - leds[0].position_mm), 0, 0.1);
 }
 
 TEST(Captures, ForChecksEndWithARepeat) {

@@ -15,6 +15,7 @@
 #include "app/jobs/calibrate/sheet_captures.h"
 #include "app/jobs/calibrate/sheet_files.h"
 #include "bench/oracles/paper_oracle.h"
+#include "capture/rig.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
@@ -205,7 +206,7 @@ TEST_F(CalibrateLights, AsTheSeedDoesSaysWhatItCannotDo) {
   const Json& steps = outcome.report.numbers["seed"];
   ASSERT_EQ(steps.size(), 6u);
   EXPECT_LT(steps[5]["paper_residual_deg"].get<double>(), steps[0]["paper_residual_deg"].get<double>());
-  const NearLights tape = *read_rig_file(options_.input / "rig.toml");
+  const NearLights tape = *capture::read_rig(options_.input / "rig.toml")->lights;
   EXPECT_EQ(std::get<NearLights>(*read_calibration(options_.output)->lights).leds[3].position_mm,
             tape.leds[3].position_mm);
 }
@@ -223,6 +224,15 @@ TEST_F(CalibrateLights, LeavesOutPatchesThatTheOldLightsMeasured) {
   const auto again = calibrate_lights(options_, {});
   ASSERT_FALSE(again);
   EXPECT_EQ(again.error().kind, ErrorKind::kCannotCreate) << "the output is looked at first";
+}
+
+TEST_F(CalibrateLights, TakesARigFileThatSaysNothingOfPositionsForNone) {
+  ASSERT_TRUE(write_file(options_.input / "rig.toml", "name = \"north\"\n[board]\nport = \"/dev/x\"\n"));
+  Calibration dark = *read_calibration(options_.from);
+  dark.lights.reset();
+  ASSERT_TRUE(write_calibration(work_ / "without lights", dark));
+  options_.from = work_ / "without lights";
+  EXPECT_THAT(refusal(), HasSubstr("it has no [[led]]"));
 }
 
 TEST(MergedBlocks, ReachAllEdgesOfTheFrame) {
@@ -434,16 +444,6 @@ TEST_F(CalibrateLights, NamesWhatIsWrongInItsDescriptions) {
   EXPECT_THAT(sheet("width_mm = 100\nheight_mm = 50\n" + tag + tag), HasSubstr("another tag"));
   EXPECT_THAT(sheet("width_mm = 100\nheight_mm = 50\n"), HasSubstr("[[tag]]"));
   EXPECT_THAT(sheet("width_mm = 100\nheight_mm\n"), HasSubstr("line"));
-  const auto rig = [&](const std::string& text) {
-    EXPECT_TRUE(write_file(options_.input / "rig.toml", text));
-    const auto read = read_rig_file(options_.input / "rig.toml");
-    return read ? std::string("accepted") : read.error().message();
-  };
-  EXPECT_EQ(rig("[[led]]\nposition_mm = [1, 2, 300]\n"), "accepted");
-  EXPECT_THAT(rig("[[led]]\nposition_mm = [1, 2]\n"), HasSubstr("position_mm"));
-  EXPECT_THAT(rig("[[led]]\nposition_mm = [1, 2, -300]\n"), HasSubstr("above the table"));
-  EXPECT_THAT(rig("[[led]]\nposition_mm = [1, 2, 300]\naim = [0, 0, 0]\n"), HasSubstr("aim"));
-  EXPECT_THAT(rig(""), HasSubstr("[[led]]"));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "app/jobs/calibrate/lights_report.h"
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/sheet_captures.h"
+#include "capture/rig.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/light_field.h"
@@ -109,13 +110,13 @@ Result<void> LightsJob::prepare() {
   sheet_ = std::move(*sheet);
   const fs::path rig_file = options_.input / "rig.toml";
   if (is_there(rig_file)) {
-    Result<NearLights> rig = read_rig_file(rig_file);
-    if (!rig) return std::move(rig).error();
-    calibration_.lights = std::move(*rig);
+    const Result<capture::Rig> rig = capture::read_rig(rig_file);
+    if (!rig) return rig.error();
+    if (rig->lights) calibration_.lights = *rig->lights;
   }
   if (!calibration_.lights || !std::holds_alternative<NearLights>(*calibration_.lights)) {
     return bad(ErrorKind::kBadData, "nothing says where the LEDs are", rig_file.string(),
-               "it is not there, and the calibration of --from has no near lights",
+               "it has no [[led]], and the calibration of --from has no near lights",
                "measure the LEDs with a tape and write their positions to rig.toml");
   }
   return {};

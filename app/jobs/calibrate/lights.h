@@ -16,7 +16,7 @@ enum class LightsMethod {
 };
 
 struct CalibrateLightsOptions {
-  std::filesystem::path input;   ///< *.weft, sheet.toml and, where the LEDs were measured anew, rig.toml
+  std::filesystem::path input;   ///< *.weft, sheet.toml and, where a tape measured the LEDs, rig.toml
   std::filesystem::path from;    ///< the calibration to change: camera and response are needed
   std::filesystem::path output;  ///< the new one; must not be there
   LightsMethod method = LightsMethod::kPhysical;

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 #include <string>
 
 #include "core/toml/toml_keys.h"
@@ -63,33 +61,6 @@ Result<TaggedSheet> read_sheet_file(const fs::path& file) {
     sheet.printed.push_back({tag.centre_u_mm, tag.centre_v_mm, kQuietShare * tag.side_mm});
   }
   return out;
-}
-
-Result<NearLights> read_rig_file(const fs::path& file) {
-  const Result<toml::table> table = read_toml(file);
-  if (!table) return table.error();
-  TomlKeys keys(*table, file.string(), kCalibrationPage);
-  keys.know({"led"});
-  const std::vector<const toml::table*> leds = keys.tables("led");
-  if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
-  NearLights lights;
-  for (std::size_t k = 0; k < leds.size(); ++k) {
-    TomlKeys led_keys(*leds[k], fmt::format("{}: LED {}", file.string(), k + 1), kCalibrationPage);
-    led_keys.know({"position_mm", "aim", "mu"});
-    NearLight& led = lights.leds.emplace_back();
-    const std::vector<double> at = led_keys.numbers("position_mm", 3, 3);
-    const std::vector<double> aim =
-        led_keys.has("aim") ? led_keys.numbers("aim", 3, 3) : std::vector<double>();
-    led.mu = led_keys.number_or("mu", 1, 0, 100);
-    if (!at.empty()) led.position_mm = {at[0], at[1], at[2]};
-    if (!at.empty() && !(at[2] >= 1 && length(led.position_mm) < 1e5))
-      led_keys.reject("position_mm", "it must be at least 1 mm above the table");
-    led.aim = aim.empty() ? -1.0 * led.position_mm : Vec3{aim[0], aim[1], aim[2]};
-    if (!(length(led.aim) > 0)) led_keys.reject("aim", "it has no length");
-    if (Result<void> ok = led_keys.status(); !ok) return std::move(ok).error();
-    led.aim = normalized(led.aim);
-  }
-  return lights;
 }
 
 }  // namespace weft::app

@@ -6,10 +6,9 @@
 
 #include "calibration/camera/markers.h"
 #include "calibration/lights/sheet.h"
-#include "core/lights.h"
 #include "core/result.h"
 
-// What people write beside photographs of a sheet of white paper.
+// What people write about a sheet of white paper.
 
 namespace weft::app {
 
@@ -27,9 +26,5 @@ struct TaggedSheet {
 /// DICT_APRILTAG_36h11), id, side_mm with its black border, centre_mm = [u, v] from the sheet's centre.
 /// kBadData names the key that is unknown, missing or wrong.
 Result<TaggedSheet> read_sheet_file(const std::filesystem::path& file);
-
-/// rig.toml: for each LED, from LED 1, a [[led]] of position_mm, and if known aim (default: at the table's
-/// centre) and mu (default 1). Fluxes are 1. Errors as above.
-Result<NearLights> read_rig_file(const std::filesystem::path& file);
 
 }  // namespace weft::app
