@@ -12,7 +12,6 @@ namespace {
 
 constexpr double kAlbedo = 0.5, kTilt_deg = 20;
 constexpr int kSides = 12;
-constexpr std::size_t kGreen = 1;
 
 std::vector<Vec3> test_normals() {
   std::vector<Vec3> normals = {{0, 0, 1}};
@@ -48,7 +47,7 @@ Result<std::vector<int>> leds_by_bound(int count) {
   const NoiseModel noise = {1 / full, std::pow(rig->sensor.read_noise_electrons / full, 2), 0};
   std::vector<LightField::Light> lights;
   for (const DistantLight& light : simulator::distant_lights(*rig, 0).lights) {
-    lights.push_back({light.direction, light.irradiance_rgb[kGreen]});
+    lights.push_back({light.direction, light.irradiance_rgb[1]});
   }
   const std::vector<Vec3> normals = test_normals();
   std::vector<int> best;

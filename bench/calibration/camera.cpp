@@ -39,13 +39,13 @@ Vec3 centre_of(const CameraModel& c) {
 }
 
 /// A number that a camera is measured by.
-struct Quantity {
+struct CameraQuantity {
   std::string name, unit;
   double asked;
   std::function<double(const CameraModel&)> of;
 };
 
-std::vector<Quantity> quantities(const CameraModel& truth) {
+std::vector<CameraQuantity> quantities(const CameraModel& truth) {
   const auto sight = [](const CameraModel& c, std::size_t axis) {
     return degrees(std::asin(c.camera_from_rig_rotation[2][axis]));
   };
@@ -100,7 +100,7 @@ Result<Rows> projected_rows(const CalibrationCameraBenchOptions& options) {
   const ParameterCovariance bound = calibration::lens_bound(rig.camera, poses, views_of(rig, poses, 0, 1), 0,
                                                             {"k1", "k2"}, options.sigma_px);
   Rows rows;
-  for (const Quantity& quantity : quantities(rig.camera)) {
+  for (const CameraQuantity& quantity : quantities(rig.camera)) {
     double mean = 0, variance = 0;
     for (const auto& fit : fits) mean += quantity.of(fit->camera) / n;
     for (const auto& fit : fits) variance += std::pow(quantity.of(fit->camera) - mean, 2) / (n - 1);
@@ -218,7 +218,7 @@ Result<Rows> rendered_rows(const CalibrationCameraBenchOptions& options) {
                row(name, "corner, mean along x", "px", {}, corners.x / corners.count),
                row(name, "corner, mean along y", "px", {}, corners.y / corners.count)};
   const CameraModel& camera = *outcome->calibration.camera;
-  for (const Quantity& q : quantities(rig->camera))
+  for (const CameraQuantity& q : quantities(rig->camera))
     rows.push_back(
         row(name, q.name + ", error", q.unit, q.asked, std::abs(q.of(camera) - q.of(rig->camera))));
   rows.push_back(row(name, "pixel to table, rms", "mm", 0.02, table_error_mm(camera, rig->camera)));

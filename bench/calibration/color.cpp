@@ -24,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using simulator::Spectrum;
 
-constexpr double kBar = 1;
+constexpr double kCiede2000Bar = 1;
 
 struct Spectra {
   Spectrum led;
@@ -181,7 +181,7 @@ Result<Rows> calibration_color_table(const CalibrationColorBenchOptions& options
                       {"before", n["mean_before"]},
                       {"fitted", n[curve ? "mean_by_curve" : "mean_after"]},
                       {"held_out", n[curve ? "mean_by_curve_held_out" : "mean_held_out"]},
-                      {"bar", kBar},
+                      {"bar", kCiede2000Bar},
                       {"dyes", *dyes}});
     }
   }

@@ -38,7 +38,7 @@ struct Outcome {
   }
 };
 
-struct Case {
+struct DegenerateCase {
   std::string name, kind, unit;
   std::function<std::optional<Outcome>(int seed)> run;  ///< nothing: refused
 };
@@ -105,7 +105,7 @@ std::optional<Outcome> sum(int seed) {
   return outcome;
 }
 
-std::vector<Case> all_cases() {
+std::vector<DegenerateCase> all_cases() {
   const PaperRig common = test::common_rig();
   PaperRig low = common, edge_on = common, on_axis = common, equal = common, one = common;
   low.sheets = test::lies(5, 1.5);
@@ -149,7 +149,7 @@ std::vector<Case> all_cases() {
       {"mean of 105 megapixels", "sum", "of white", sum}};
 }
 
-Json row_of(const Case& c, const std::vector<std::optional<Outcome>>& outcomes) {
+Json row_of(const DegenerateCase& c, const std::vector<std::optional<Outcome>>& outcomes) {
   double squares = 0, variances = 0, worst = 0, n = 0;
   int refused = 0;
   std::optional<double> least, most;
@@ -190,7 +190,7 @@ Result<Rows> calibration_degenerate_table(const CalibrationDegenerateBenchOption
                  "give a number in that range"};
   }
   Rows rows;
-  for (const Case& c : all_cases()) {
+  for (const DegenerateCase& c : all_cases()) {
     std::vector<std::optional<Outcome>> outcomes(static_cast<std::size_t>(options.seeds));
     parallel_for(outcomes.size(), options.threads,
                  [&](std::size_t i, int) { outcomes[i] = c.run(static_cast<int>(i) + 1); });

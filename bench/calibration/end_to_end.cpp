@@ -28,9 +28,9 @@ namespace {
 namespace fs = std::filesystem;
 using simulator::Scene;
 
-constexpr double kSlope_deg = 20, kGrey = 0.5;
+constexpr double kTilt_deg = 20, kGrey = 0.5;
 constexpr double kAzimuths_deg[] = {0, 90, 180, 270};
-constexpr int kSpot_px = 64, kSquare_px = 32;
+constexpr int kSpot_px = 64, kChartSquare_px = 32;
 
 /// The rig over a surface of its own, nothing else on the table.
 Scene bare(Scene scene) {
@@ -43,7 +43,7 @@ Scene sloped(Scene scene, double azimuth_deg) {
   scene = bare(std::move(scene));
   scene.geometry = {};
   scene.geometry.kind = simulator::GeometryKind::kTilted;
-  scene.geometry.tilt_deg = kSlope_deg;
+  scene.geometry.tilt_deg = kTilt_deg;
   scene.geometry.azimuth_deg = azimuth_deg;
   scene.material = {};
   scene.material.dye = simulator::flat_spectrum(kGrey);
@@ -52,7 +52,7 @@ Scene sloped(Scene scene, double azimuth_deg) {
 }
 
 Vec3 sloped_normal(double azimuth_deg) {
-  const double t = radians(kSlope_deg), a = radians(azimuth_deg);
+  const double t = radians(kTilt_deg), a = radians(azimuth_deg);
   return {std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)};
 }
 
@@ -110,9 +110,9 @@ template <typename TruthAt>
 ColorScore color_score_of(const Image<float>& albedo, const TruthAt& truth_at) {
   ColorScore score;
   int n = 0;
-  for (int y = 0; y + kSquare_px <= albedo.height(); y += kSquare_px) {
-    for (int x = 0; x + kSquare_px <= albedo.width(); x += kSquare_px, ++n) {
-      const Vec3 a = mean_of(albedo, x, y, kSquare_px), b = truth_at(x, y);
+  for (int y = 0; y + kChartSquare_px <= albedo.height(); y += kChartSquare_px) {
+    for (int x = 0; x + kChartSquare_px <= albedo.width(); x += kChartSquare_px, ++n) {
+      const Vec3 a = mean_of(albedo, x, y, kChartSquare_px), b = truth_at(x, y);
       score.relative += (std::abs(a.x / b.x - 1) + std::abs(a.y / b.y - 1) + std::abs(a.z / b.z - 1)) / 3;
       score.ciede2000 += calibration::ciede2000_of({a.x, a.y, a.z}, {b.x, b.y, b.z});
     }
@@ -241,8 +241,8 @@ class Walkthrough {
     if (!albedo) return albedo.error();
     const auto truth = read_image(at("cloth.weft") / "truth" / "albedo.exr");
     if (!truth) return truth.error();
-    const ColorScore color =
-        color_score_of(*albedo, [&](int x0, int y0) { return mean_of(truth->planes, x0, y0, kSquare_px); });
+    const ColorScore color = color_score_of(
+        *albedo, [&](int x0, int y0) { return mean_of(truth->planes, x0, y0, kChartSquare_px); });
     const auto grey = solved(plane_name(kAzimuths_deg[0]), calibration, "albedo.exr");
     if (!grey) return grey.error();
     return Json{{"calibration", name},

@@ -19,7 +19,7 @@ using calibration::GreyChartFit;
 using test::GreyErrors;
 using test::PaperRig;
 
-constexpr double kBar = 1.3;  // error over sigma
+constexpr double kErrorOverSigmaBar = 1.3;
 
 /// Sums of squares of one quantity.
 struct Score {
@@ -52,7 +52,7 @@ Json row_of(const std::string& name, const char* quantity, const Score& score) {
           {"rms_error", 100 * std::sqrt(score.error2 / score.count)},
           {"sigma", 100 * std::sqrt(score.sigma2 / score.count)},
           {"error_over_sigma", std::sqrt(score.ratio2 / score.count)},
-          {"bar", kBar},
+          {"bar", kErrorOverSigmaBar},
           {"free_parabola", Json()}};
 }
 
@@ -100,7 +100,7 @@ void add_bend(Rows& rows, const PaperRig& rig, const std::vector<GreyChartFit>& 
                   {"rms_error", 100 * mean},
                   {"sigma", 100 * std::sqrt(sigma2)},
                   {"error_over_sigma", std::sqrt(ratio2)},
-                  {"bar", bend == 0 ? Json(kBar) : Json()},
+                  {"bar", bend == 0 ? Json(kErrorOverSigmaBar) : Json()},
                   {"free_parabola", left_by_parabola(rig, bend)}});
 }
 

@@ -281,7 +281,7 @@ Result<void> methods(const CalibrationLightsBenchOptions& options, Rows& rows) {
 }
 
 constexpr std::array<std::array<double, 2>, 4> kTags_mm = {{{-70, 38}, {70, 38}, {-70, -38}, {70, -38}}};
-constexpr double kTag_mm = 15;
+constexpr double kSheetTag_mm = 15;
 
 // A sheet that is larger than the frame.
 simulator::Scene sheet_scene(const PaperRig::Lie& lie, double megapixels) {
@@ -304,8 +304,8 @@ simulator::Scene sheet_scene(const PaperRig::Lie& lie, double megapixels) {
                         above * std::cos(t) - along * std::sin(t)};
   };
   for (std::size_t i = 0; i < kTags_mm.size(); ++i)
-    add(simulator::TagSettings{.id = static_cast<int>(i), .side_mm = kTag_mm, .margin_mm = 3}, kTags_mm[i][0],
-        kTags_mm[i][1], 0.005);
+    add(simulator::TagSettings{.id = static_cast<int>(i), .side_mm = kSheetTag_mm, .margin_mm = 3},
+        kTags_mm[i][0], kTags_mm[i][1], 0.005);
   add(simulator::PaperSettings{300, 220}, 0, 0, 0);
   return scene;
 }
@@ -315,8 +315,8 @@ Result<void> time_job(const CalibrationLightsBenchOptions& options, Rows& rows) 
   const fs::path lights = scratch.path() / "lights";
   std::string text = "width_mm = 300\nheight_mm = 220\nreflectance = 0.9\n";
   for (std::size_t i = 0; i < kTags_mm.size(); ++i)
-    text += fmt::format("[[tag]]\nid = {}\nside_mm = {}\ncentre_mm = [{}, {}]\n", i, kTag_mm, kTags_mm[i][0],
-                        kTags_mm[i][1]);
+    text += fmt::format("[[tag]]\nid = {}\nside_mm = {}\ncentre_mm = [{}, {}]\n", i, kSheetTag_mm,
+                        kTags_mm[i][0], kTags_mm[i][1]);
   fs::create_directories(lights);
   if (Result<void> ok = write_file(lights / "sheet.toml", text); !ok) return ok;
   const std::vector<PaperRig::Lie> lies = test::lies(5);

@@ -25,18 +25,18 @@ using calibration::RigEvidence;
 using simulator::Scene;
 using simulator::TargetSettings;
 
-constexpr double kTag_mm = 9, kPatch_mm = 10, kOver_mm = 0.5, kDelta = 0.05, kWhite = 0.88;
+constexpr double kTableTag_mm = 9, kPatch_mm = 10, kOver_mm = 0.5, kDelta = 0.05, kWhite = 0.88;
 constexpr double kPosition_mm = 0.3, kAim_deg = 0.2, kFlux = 0.003;  // what the calibration is off by
 constexpr double kReflectance = 0.005;
 
 enum class Mishap { kNone, kTable, kCamera, kLed, kSwap, kDim };
-struct Case {
+struct MishapCase {
   const char* name;
   Mishap mishap;
   std::optional<ChangeKind> kind;
   bool with_sheet;
 };
-constexpr Case kCases[] = {
+constexpr MishapCase kMishapCases[] = {
     {"nothing moved", Mishap::kNone, std::nullopt, false},
     {"table 2 mm lower", Mishap::kTable, ChangeKind::kTable, false},
     {"camera tilted by 0.3 degrees", Mishap::kCamera, ChangeKind::kCamera, false},
@@ -67,7 +67,7 @@ class Draws {
 
 TargetSettings tag_at(int id, double x_mm, double y_mm) {
   TargetSettings target;
-  target.pattern = simulator::TagSettings{.id = id, .side_mm = kTag_mm, .margin_mm = 2};
+  target.pattern = simulator::TagSettings{.id = id, .side_mm = kTableTag_mm, .margin_mm = 2};
   target.centre_mm = {x_mm, y_mm, kOver_mm};
   return target;
 }
@@ -209,7 +209,7 @@ Result<std::vector<calibration::TagSighting>> tags_of(const Scene& scene, const 
   Image<float> picture(camera.size, 3);
   for (const TargetSettings& target : scene.targets) {
     if (kind_of(target.pattern) != simulator::TargetKind::kTag) continue;
-    const Rect area = around(camera, target.centre_mm, kTag_mm / 2 + 3);
+    const Rect area = around(camera, target.centre_mm, kTableTag_mm / 2 + 3);
     const auto rendered = simulator::render_readings(scene, area, {.threads = 1});
     if (!rendered) return rendered.error();
     for (int c = 0; c < 3; ++c) {
@@ -292,7 +292,7 @@ struct Session {
   double true_cost_deg = 0;  ///< mean, of LEDs that changed
 };
 
-Result<Session> run_session(const Case& c, int seed) {
+Result<Session> run_session(const MishapCase& c, int seed) {
   Draws draws(seed);
   const Scene plain = rig_scene(seed);
   const auto rig = rig_of(plain);
@@ -329,7 +329,7 @@ Result<Session> run_session(const Case& c, int seed) {
   return session;
 }
 
-bool is_truth(const calibration::RigChange& change, const Case& c, Truth truth) {
+bool is_truth(const calibration::RigChange& change, const MishapCase& c, Truth truth) {
   return change.kind == c.kind && change.led == truth.led && change.other_led == truth.other_led;
 }
 
@@ -341,7 +341,7 @@ Result<Rows> calibration_moved_table(const CalibrationMovedBenchOptions& options
                  "give a number in that range"};
   }
   Rows rows;
-  for (const Case& c : kCases) {
+  for (const MishapCase& c : kMishapCases) {
     std::vector<std::optional<Result<Session>>> sessions(static_cast<std::size_t>(options.seeds));
     parallel_for(sessions.size(), options.threads,
                  [&](std::size_t i, int) { sessions[i] = run_session(c, static_cast<int>(i) + 1); });

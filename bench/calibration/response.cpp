@@ -80,7 +80,7 @@ Result<void> capture(const simulator::Scene& scene, double scene_exposure_us, co
 }
 
 // One quantity over the seeds.
-struct Quantity {
+struct ResponseQuantity {
   const char* name;
   double truth;
   double per_percent;  // error_percent is rms_error over this
@@ -113,13 +113,14 @@ Result<void> measure(const char* name, simulator::Body body, const CalibrationRe
   const double full = rig->sensor.white - rig->sensor.black;
   const double noise_bar = body == simulator::Body::kOffset ? 1 : 5;
   const double departure = calibration::departure_from_line(kBend);
-  Quantity gain = {"electrons a count", truth.electrons_per_count, truth.electrons_per_count / 100,
-                   noise_bar};
-  Quantity read = {"read noise, counts", truth.read_noise_counts, truth.read_noise_counts / 100, noise_bar};
-  Quantity black = {"black level, counts", rig->sensor.black, full / 100, 0.01};
-  Quantity bend = {"non-linearity, of full scale", departure, 0.01, 0.1};
-  Quantity left = {"non-linearity left, of full scale", 0, 0.01, 0.1};
-  Quantity ratio = {"light at 1.8 over light at 0.45", 4, 0.04, 0};
+  ResponseQuantity gain = {"electrons a count", truth.electrons_per_count, truth.electrons_per_count / 100,
+                           noise_bar};
+  ResponseQuantity read = {"read noise, counts", truth.read_noise_counts, truth.read_noise_counts / 100,
+                           noise_bar};
+  ResponseQuantity black = {"black level, counts", rig->sensor.black, full / 100, 0.01};
+  ResponseQuantity bend = {"non-linearity, of full scale", departure, 0.01, 0.1};
+  ResponseQuantity left = {"non-linearity left, of full scale", 0, 0.01, 0.1};
+  ResponseQuantity ratio = {"light at 1.8 over light at 0.45", 4, 0.04, 0};
   JobContext context;
   context.threads = options.threads;
   for (int seed = 1; seed <= options.seeds; ++seed) {
@@ -152,7 +153,7 @@ Result<void> measure(const char* name, simulator::Body body, const CalibrationRe
     const double scene_us = rig->exposure_us;
     ratio.add(*measured.exposure_ratio(std::round(1.8 * scene_us), std::round(0.45 * scene_us)), 0);
   }
-  for (const Quantity* q : {&gain, &read, &black, &bend, &left, &ratio})
+  for (const ResponseQuantity* q : {&gain, &read, &black, &bend, &left, &ratio})
     rows.push_back(q->row(name, options.seeds));
   return {};
 }

@@ -20,7 +20,7 @@ namespace {
 using namespace simulator;
 using std::chrono::steady_clock;
 
-constexpr int kPatch = 96;
+constexpr int kTimedPatch = 96;
 constexpr int kRepeats = 5;
 constexpr std::size_t kPacket = 16;
 
@@ -166,7 +166,7 @@ double trace_seconds(Rect pixels, int rays_a_pixel, const std::function<RayBatch
 }  // namespace
 
 Result<Rows> effects_embree() {
-  const Result<TracedPatch> made = traced_patch(kPatch);
+  const Result<TracedPatch> made = traced_patch(kTimedPatch);
   if (!made) return made.error();
   const TracedPatch& patch = *made;
   const BareEmbree bare(patch.mesh);

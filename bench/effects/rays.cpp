@@ -18,7 +18,7 @@ using namespace simulator;
 
 constexpr int kMostBenchRays = 4096;
 constexpr int kReferenceRays = 64 * kMostBenchRays;
-constexpr int kPatch = 60;
+constexpr int kSampledPatch = 60;
 constexpr int kRepeat = 20;  // of the weave: two yarns of ten pixels
 constexpr Rect kRepeatPixels = {kRepeat, kRepeat, 2 * kRepeat, 2 * kRepeat};
 constexpr double kAlbedo = 0.5;
@@ -119,7 +119,7 @@ Result<Json> measured(const Sampled& sampled, int rays, std::span<const double> 
 }  // namespace
 
 Result<Rows> effects_rays(int threads) {
-  const Result<TracedPatch> patch = traced_patch(kPatch);
+  const Result<TracedPatch> patch = traced_patch(kSampledPatch);
   if (!patch) return patch.error();
   Rows rows;
   for (const Sampled& sampled : {Sampled{"soft shadow", kShadowRays, soft_shadow(*patch)},

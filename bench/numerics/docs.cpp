@@ -30,7 +30,7 @@ using report::Colour;
 using report::Picture;
 
 constexpr int kZoom = 2, kTextScale = 2, kGap = 8;
-constexpr Colour kWhite = {1, 1, 1}, kUnsolved = {0.45f, 0.45f, 0.45f};
+constexpr Colour kWhite = {1, 1, 1}, kUnsolvedGrey = {0.45f, 0.45f, 0.45f};
 
 /// What a pixel shows: a colour, or stripes where it has no place on the scale of colours.
 struct Paint {
@@ -39,7 +39,7 @@ struct Paint {
 
   Colour at(int x, int y) const { return striped && (x + y) / 4 % 2 == 0 ? kWhite : colour; }
 };
-constexpr Paint kNoNumber = {kUnsolved, true};
+constexpr Paint kNoNumber = {kUnsolvedGrey, true};
 
 /// A number on a scale of colours from `low` to `high` (log10).
 Paint paint_of(double log10_value, double low, double high) {
@@ -148,7 +148,8 @@ Picture legend_of(int width, const char* least, const char* most) {
   text(0, kLine + 2 * kGap, least);
   text(width - report::text_width(most, kTextScale), kLine + 2 * kGap, most);
   int left = 0;
-  for (const auto& [paint, words] : {std::pair{Paint{kUnsolved}, "no solution"}, {kNoNumber, "no number"}}) {
+  for (const auto& [paint, words] :
+       {std::pair{Paint{kUnsolvedGrey}, "no solution"}, {kNoNumber, "no number"}}) {
     for (int y = kSecond; y < kSecond + kLine; ++y) {
       for (int x = left; x < left + 2 * kLine; ++x)
         report::fill(legend, {x, y, x + 1, y + 1}, paint.at(x, y));
@@ -180,7 +181,7 @@ Picture with_legend(const Picture& picture, const char* least, const char* most)
 
 Result<void> write_pictures(const fs::path& folder, const Judged& judged) {
   const auto where_solved = [&](std::size_t i, Paint paint) {
-    return (judged.status[i] & kNoSolution) != 0 ? Paint{kUnsolved} : paint;
+    return (judged.status[i] & kNoSolution) != 0 ? Paint{kUnsolvedGrey} : paint;
   };
   const auto of_condition = [&](std::size_t i) {
     return where_solved(i, paint_of(std::log10(judged.condition[i]), 0, 8));

@@ -40,7 +40,7 @@ Result<Rows> measure(const AccuracyArguments& a, int threads) {
   return std::move(figures->table);
 }
 
-app::Run add(app::Options& options) {
+app::Run add_accuracy(app::Options& options) {
   const auto a = std::make_shared<AccuracyArguments>();
   options.add_flag("--quick", &a->table.quick, "One small patch a scene, no yardsticks");
   options.add("--set", &a->set, "Scenes: those that methods are tuned on, or those held out")
@@ -66,7 +66,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb accuracy_verb() {
-  return {"accuracy", "What each level and method gets right, and its price", add};
+  return {"accuracy", "What each level and method gets right, and its price", add_accuracy};
 }
 
 }  // namespace weft::bench

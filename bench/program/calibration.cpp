@@ -68,7 +68,7 @@ Result<Rows> measure(const CalibrationArguments& a, int threads) {
   return calibration_end_to_end_table(options);
 }
 
-app::Run add(app::Options& options) {
+app::Run add_calibration(app::Options& options) {
   const auto a = std::make_shared<CalibrationArguments>();
   options.add("--part", &a->part, "camera, response, color, lights, grey, degenerate, moved, end-to-end")
       .one_of({"camera", "response", "color", "lights", "grey", "degenerate", "moved", "end-to-end"})
@@ -83,7 +83,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb calibration_verb() {
-  return {"calibration", "What calibrating a simulated rig recovers", add};
+  return {"calibration", "What calibrating a simulated rig recovers", add_calibration};
 }
 
 }  // namespace weft::bench

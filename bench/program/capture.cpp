@@ -78,7 +78,7 @@ Result<Rows> measure(const CaptureArguments& a, bool quiet) {
   return a.part == "faults" ? measure_matrix(a, line) : measure_rig(a, line);
 }
 
-app::Run add(app::Options& options) {
+app::Run add_capture(app::Options& options) {
   const auto a = std::make_shared<CaptureArguments>();
   options
       .add("--part", &a->part,
@@ -105,7 +105,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb capture_verb() {
-  return {"capture", "Scans: their speed, and what faults do to them", add};
+  return {"capture", "Scans: their speed, and what faults do to them", add_capture};
 }
 
 }  // namespace weft::bench

@@ -30,7 +30,7 @@ Result<Rows> measure(const EffectsArguments& a, int threads) {
   return effects_cost({a.megapixels, threads});
 }
 
-app::Run add(app::Options& options) {
+app::Run add_effects(app::Options& options) {
   const auto a = std::make_shared<EffectsArguments>();
   const app::Option size = options.add("--megapixels", &a->megapixels, "Size of a frame, millions of pixels")
                                .in_range(0.01, 200.0)
@@ -53,7 +53,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb effects_verb() {
-  return {"effects", "Cost, error and pictures of the simulator's effects", add};
+  return {"effects", "Cost, error and pictures of the simulator's effects", add_effects};
 }
 
 }  // namespace weft::bench

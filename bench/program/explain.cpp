@@ -11,7 +11,7 @@
 namespace weft::bench {
 namespace {
 
-app::Run add(app::Options& options) {
+app::Run add_explain(app::Options& options) {
   struct Said {
     ExplainOptions options;
     std::string set = "held-out";
@@ -31,7 +31,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb explain_verb() {
-  return {"explain", "Errors that solve --explain predicts against true ones", add};
+  return {"explain", "Errors that solve --explain predicts against true ones", add_explain};
 }
 
 }  // namespace weft::bench

@@ -10,7 +10,7 @@
 namespace weft::bench {
 namespace {
 
-app::Run add(app::Options& options) {
+app::Run add_height(app::Options& options) {
   const auto megapixels = std::make_shared<double>(4);
   options.add("--megapixels", megapixels.get(), "Size of the normal map, millions of pixels")
       .in_range(0.01, 200.0)
@@ -23,7 +23,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb height_verb() {
-  return {"height", "Error, time and memory from normals to heights", add};
+  return {"height", "Error, time and memory from normals to heights", add_height};
 }
 
 }  // namespace weft::bench

@@ -24,7 +24,7 @@ Result<int> measure(const NumericsArguments& a, const app::CommonArguments& comm
   return app::kDone;
 }
 
-app::Run add(app::Options& options) {
+app::Run add_numerics(app::Options& options) {
   const auto a = std::make_shared<NumericsArguments>();
   const app::Option curve =
       options.add_flag("--curve", &a->curve, "Error against condition number instead of the cases");
@@ -38,7 +38,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb numerics_verb() {
-  return {"numerics", "Pixels that are numerically hard: errors, flags and what solved them", add};
+  return {"numerics", "Pixels that are numerically hard: errors, flags and what solved them", add_numerics};
 }
 
 }  // namespace weft::bench

@@ -22,7 +22,7 @@ struct PhotosArguments {
   std::vector<std::string> methods;
 };
 
-app::Run add(app::Options& options) {
+app::Run add_photos(app::Options& options) {
   const auto a = std::make_shared<PhotosArguments>();
   options.add("folder", &a->folder, "Photographs in the layout of the DiLiGenT benchmark, with normal_gt.exr")
       .required();
@@ -41,7 +41,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb photos_verb() {
-  return {"photos", "Errors on real photographs under known distant lights", add};
+  return {"photos", "Errors on real photographs under known distant lights", add_photos};
 }
 
 }  // namespace weft::bench

@@ -7,14 +7,15 @@
 namespace weft::bench {
 namespace {
 
-app::Run add(app::Options&) {
+app::Run add_registration(app::Options&) {
   return [](const app::CommonArguments& common) { return print_rows(registration(common.threads), common); };
 }
 
 }  // namespace
 
 app::Verb registration_verb() {
-  return {"registration", "Shots registered to each other: shift, error, cost and gain on three weaves", add};
+  return {"registration", "Shots registered to each other: shift, error, cost and gain on three weaves",
+          add_registration};
 }
 
 }  // namespace weft::bench

@@ -28,7 +28,7 @@ Result<Rows> measure(const SolveArguments& a, int threads) {
   return solve_speed({a.megapixels, threads});
 }
 
-app::Run add(app::Options& options) {
+app::Run add_solve(app::Options& options) {
   const auto a = std::make_shared<SolveArguments>();
   options.add("--megapixels", &a->megapixels, "Size of the photographs, millions of pixels")
       .in_range(0.01, 200.0)
@@ -50,7 +50,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb solve_verb() {
-  return {"solve", "Speed and exactness of the solver", add};
+  return {"solve", "Speed and exactness of the solver", add_solve};
 }
 
 }  // namespace weft::bench

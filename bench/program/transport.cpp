@@ -10,7 +10,7 @@
 namespace weft::bench {
 namespace {
 
-app::Run add(app::Options& options) {
+app::Run add_transport(app::Options& options) {
   const auto megapixels = std::make_shared<double>(1);
   options.add("--megapixels", megapixels.get(), "Size of the height map, millions of pixels")
       .in_range(0.01, 200.0)
@@ -23,7 +23,7 @@ app::Run add(app::Options& options) {
 }  // namespace
 
 app::Verb transport_verb() {
-  return {"transport", "Shadow and gather rays of the solver: time and error", add};
+  return {"transport", "Shadow and gather rays of the solver: time and error", add_transport};
 }
 
 }  // namespace weft::bench

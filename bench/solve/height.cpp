@@ -16,7 +16,7 @@
 namespace weft::bench {
 namespace {
 
-constexpr int kRepeats = 3;
+constexpr int kHeightRepeats = 3;
 constexpr double kBytesAPixel = 4 * sizeof(float);
 
 struct Point {
@@ -40,10 +40,10 @@ Point weave_with_folds(int x, int y) {
   return p;
 }
 
-struct Scene {
+struct FoldedWeave {
   Image<float> normals, truth;
 
-  Scene(Size size, int threads) : normals(size, 3), truth(size) {
+  FoldedWeave(Size size, int threads) : normals(size, 3), truth(size) {
     parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
       const int y = static_cast<int>(row);
       for (int x = 0; x < size.width; ++x) {
@@ -107,7 +107,7 @@ void forget_peak() {
 struct Run {
   std::string name;
   solver::HeightMethod method;
-  const Scene* scene;
+  const FoldedWeave* scene;
   View<const std::uint8_t> mask = {};
 };
 
@@ -118,7 +118,7 @@ Result<Json> measure(const Run& run, double copy_a_byte, int threads) {
   solver::Height height;
   forget_peak();
   const double before = memory_bytes("VmRSS:");
-  const double seconds = least_seconds(kRepeats, [&] {
+  const double seconds = least_seconds(kHeightRepeats, [&] {
     height = {};
     Result<solver::Height> done = solver::height_from_normals(
         {normals.plane(0), normals.plane(1), normals.plane(2)}, run.mask, options);
@@ -158,7 +158,7 @@ int prime_from(int n) {
 Result<Rows> height_speed(const HeightSpeedOptions& options) {
   const int threads = resolved_threads(options.threads);
   const Size size = bench_size(options.megapixels);
-  const Scene scene(size, threads), prime({prime_from(size.width), size.height}, threads);
+  const FoldedWeave scene(size, threads), prime({prime_from(size.width), size.height}, threads);
   const Image<std::uint8_t> mask = sieve(size);
   const double bytes = kBytesAPixel * static_cast<double>(size.pixels());
   const double copy_a_byte = copy_seconds(bytes, threads) / bytes;

@@ -18,7 +18,7 @@ namespace weft::bench {
 namespace {
 
 constexpr std::size_t kLights = 10;
-constexpr int kRepeats = 3;
+constexpr int kSolveRepeats = 3;
 
 struct Timing {
   double seconds = 0;
@@ -29,7 +29,7 @@ struct Timing {
 Result<Timing> time_method(const pipeline::Photographs& photographs, const solver::Method& method,
                            int threads) {
   std::optional<Error> failure;
-  const double seconds = least_seconds(kRepeats, [&] {
+  const double seconds = least_seconds(kSolveRepeats, [&] {
     const Result<double> done = pipeline::solve_bands(
         photographs, method, pipeline::kSolveTile, {threads, {}, [](std::string_view, double) {}},
         [](const pipeline::MapBand&) { return Result<void>(); });
@@ -55,7 +55,7 @@ Timing time_bare(Size size, int threads) {
       }
     }
   });
-  const double seconds = least_seconds(kRepeats, [&] {
+  const double seconds = least_seconds(kSolveRepeats, [&] {
     const TileOptions tiles = {.width = size.width, .height = 16, .threads = threads};
     const Result<void> done = for_each_tile({0, 0, size.width, size.height}, tiles, {}, [&](Rect tile, int) {
       std::vector<View<const float>> views;
@@ -74,7 +74,7 @@ Timing time_bare(Size size, int threads) {
 Timing time_seed(const LightField& field, Size size, int threads) {
   const int rows = std::clamp(100000 / size.width, 1, size.height);
   std::vector<double> sums(static_cast<std::size_t>(rows));
-  const double seconds = least_seconds(kRepeats, [&] {
+  const double seconds = least_seconds(kSolveRepeats, [&] {
     parallel_for(static_cast<std::size_t>(rows), threads, [&](std::size_t row, int) {
       const int y = static_cast<int>(row);
       std::vector<solver::PixelRow> pixel(kLights);

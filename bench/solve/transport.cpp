@@ -28,11 +28,11 @@ namespace {
 using namespace solver;
 using std::chrono::steady_clock;
 
-constexpr int kRepeats = 7;
+constexpr int kTransportRepeats = 7;
 constexpr Size kBlock = {1024, 512};
 constexpr double kAlbedo = 0.5;
 
-struct Cloth {
+struct DeepWeave {
   double mm_per_pixel;
   Image<float> height_mm, normal;
 
@@ -41,9 +41,9 @@ struct Cloth {
   }
 };
 
-Cloth deep_weave(Size size) {
+DeepWeave deep_weave(Size size) {
   const simulator::Scene scene = cloth_scene(simulator::Family::kDeep, size);
-  Cloth cloth = {scene.camera.mm_per_pixel, Image<float>(size), Image<float>(size, 3)};
+  DeepWeave cloth = {scene.camera.mm_per_pixel, Image<float>(size), Image<float>(size, 3)};
   const simulator::Surface surface = simulator::surface_of(scene.geometry);
   parallel_for(static_cast<std::size_t>(size.height), 0, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
@@ -59,7 +59,7 @@ Cloth deep_weave(Size size) {
 }
 
 /// Four LEDs 35 degrees and six 62 degrees from the vertical over the picture's centre.
-LightDirections leds_over(const Cloth& cloth) {
+LightDirections leds_over(const DeepWeave& cloth) {
   const Size size = cloth.height_mm.size();
   const double pitch_mm = cloth.mm_per_pixel;
   std::vector<Vec3> positions_mm;
@@ -173,7 +173,7 @@ class BareEmbree {
     std::vector<const int*> active;
     double least = std::numeric_limits<double>::infinity();
     std::int64_t traced = 0;
-    for (int repeat = 0; repeat < kRepeats; ++repeat) {
+    for (int repeat = 0; repeat < kTransportRepeats; ++repeat) {
       auto spent = steady_clock::duration::zero();
       traced = 0;
       for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
@@ -212,7 +212,7 @@ std::vector<View<T>> planes_of(Image<T>& image, Rect part) {
 }
 
 /// What an area would send back under each light by direct light alone.
-std::vector<float> direct_radiosity(const Cloth& cloth, const LightDirections& lights, Rect area) {
+std::vector<float> direct_radiosity(const DeepWeave& cloth, const LightDirections& lights, Rect area) {
   std::vector<float> values;
   values.reserve(static_cast<std::size_t>(area.pixels()) * lights.count);
   for (int y = area.y0; y < area.y1; ++y) {
@@ -257,7 +257,7 @@ double rays_in(std::span<const RayPacket> packets) {
 
 /// A block of cloth, ready for rays, and the tiles of it that are measured.
 struct Measured {
-  const Cloth& cloth;
+  const DeepWeave& cloth;
   const LightDirections& lights;
   const HeightGrid& grid;
   Rect timed, compared;
@@ -280,8 +280,9 @@ Result<void> add_shadows(const Measured& m, const BareEmbree& bare, int reach_px
   const std::array<View<std::uint32_t>, 1> planes = {bits.plane()};
   const Normals normals = m.cloth.normals_of(m.timed);
   Result<void> found;
-  const double seconds = least_seconds(
-      kRepeats, [&] { found = find_visible_lights(m.grid, m.timed, normals, m.lights, reach_px, planes); });
+  const double seconds = least_seconds(kTransportRepeats, [&] {
+    found = find_visible_lights(m.grid, m.timed, normals, m.lights, reach_px, planes);
+  });
   if (!found) return found;
   const auto packets = shadow_packets(m.grid, m.timed, normals, m.lights, reach_px);
   rows.push_back(traced_row("shadows", static_cast<int>(m.lights.count), seconds, packets,
@@ -303,7 +304,7 @@ Result<void> add_gathers(const Measured& m, const BareEmbree& bare, Rows& rows) 
   const auto truth = gathered(m.compared, kMostRays);
   if (!truth) return truth.error();
   for (const int rays : {8, 16, 32, 64, 128}) {
-    const double seconds = least_seconds(kRepeats, [&] { (void)gathered(m.timed, rays); });
+    const double seconds = least_seconds(kTransportRepeats, [&] { (void)gathered(m.timed, rays); });
     const auto packets = gather_packets(m.grid, m.timed, m.cloth.normals_of(m.timed), {.rays = rays});
     Json row = traced_row("gather", rays, seconds, packets, bare.intersect_ns(packets), m.timed);
     const auto found = gathered(m.compared, rays);
@@ -322,7 +323,7 @@ Result<void> add_horizons(const Measured& m, Rows& rows) {
   auto done = trace_openness(m.grid, m.compared, normals, {.rays = kMostRays}, truth.plane());
   if (!done) return done;
   for (const auto& [slices, steps] : {std::pair{4, 8}, {8, 16}}) {
-    const double seconds = least_seconds(kRepeats, [&] {
+    const double seconds = least_seconds(kTransportRepeats, [&] {
       done = scan_openness(m.grid.relief(), m.compared, normals, {slices, steps}, found.plane());
     });
     if (!done) return done;
@@ -337,7 +338,7 @@ Result<void> add_horizons(const Measured& m, Rows& rows) {
 }
 
 /// Grid, shadows and arriving light of one block; Embree's memory for it.
-Result<std::int64_t> round_of(const Cloth& cloth, const Relief& relief, const LightDirections& lights,
+Result<std::int64_t> round_of(const DeepWeave& cloth, const Relief& relief, const LightDirections& lights,
                               Rect block, int reach_px) {
   const GatherSettings settings;
   const auto grid = HeightGrid::build(relief, block, std::max(reach_px, settings.reach_px) + 1);
@@ -357,7 +358,7 @@ Result<std::int64_t> round_of(const Cloth& cloth, const Relief& relief, const Li
   return bytes;
 }
 
-Result<void> add_round(const TransportOptions& options, const Cloth& cloth, const Relief& relief,
+Result<void> add_round(const TransportOptions& options, const DeepWeave& cloth, const Relief& relief,
                        const LightDirections& lights, int reach_px, Rows& rows) {
   const auto blocks = tiles_of(relief.pixels(), {.width = kBlock.width, .height = kBlock.height / 4});
   std::vector<Result<std::int64_t>> bytes(blocks.size(), std::int64_t{0});
@@ -384,7 +385,7 @@ Result<void> add_round(const TransportOptions& options, const Cloth& cloth, cons
 Result<Rows> transport(const TransportOptions& options) {
   const int side = std::max(static_cast<int>(std::sqrt(options.megapixels * 1e6 / 1.5)), 256);
   const Size size = {side * 3 / 2, side};
-  const Cloth cloth = deep_weave(size);
+  const DeepWeave cloth = deep_weave(size);
   const LightDirections lights = leds_over(cloth);
   const auto relief = Relief::of(cloth.height_mm.plane(), cloth.mm_per_pixel);
   if (!relief) return relief.error();
@@ -394,7 +395,7 @@ Result<Rows> transport(const TransportOptions& options) {
 
   std::optional<Result<HeightGrid>> grid;
   const std::int64_t bytes_before = HeightGrid::bytes_in_use();
-  const double build_seconds = least_seconds(kRepeats, [&] {
+  const double build_seconds = least_seconds(kTransportRepeats, [&] {
     grid.reset();
     grid = HeightGrid::build(*relief, block, halo_px);
   });

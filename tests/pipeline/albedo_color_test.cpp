@@ -10,7 +10,7 @@
 namespace weft::pipeline {
 namespace {
 
-constexpr std::array<float, 3> kAlbedo = {0.2F, 0.5F, 0.3F}, kSigma = {0.01F, 0.02F, 0.03F};
+constexpr std::array<float, 3> kDyeAlbedo = {0.2F, 0.5F, 0.3F}, kDyeSigma = {0.01F, 0.02F, 0.03F};
 const Mat3 kMatrix = {{{1.6, -0.5, -0.1}, {-0.3, 1.5, -0.2}, {0.1, -0.7, 1.6}}};
 
 // A band of one row of even albedo, with the share of the calibration in each channel.
@@ -19,9 +19,9 @@ class Band {
   Band() : albedo_({4, 1}, 3), sigma_({4, 1}, 3), shares_({4, 1}, 4) {
     for (int x = 0; x < 4; ++x) {
       for (int c = 0; c < 3; ++c) {
-        albedo_(x, 0, c) = kAlbedo[static_cast<std::size_t>(c)];
-        sigma_(x, 0, c) = kSigma[static_cast<std::size_t>(c)];
-        shares_(x, 0, c) = 0.1F * kAlbedo[static_cast<std::size_t>(c)];
+        albedo_(x, 0, c) = kDyeAlbedo[static_cast<std::size_t>(c)];
+        sigma_(x, 0, c) = kDyeSigma[static_cast<std::size_t>(c)];
+        shares_(x, 0, c) = 0.1F * kDyeAlbedo[static_cast<std::size_t>(c)];
       }
     }
     band_.albedo_rows = {0, 0, 4, 1};
@@ -46,11 +46,11 @@ TEST(AlbedoColor, OfAMatrixIsTheMatrixAndItsSigmaTheRootOfTheSquares) {
   EXPECT_TRUE(none.empty()) << "nothing is known of the calibration";
   for (std::size_t c = 0; c < 3; ++c) {
     const auto& row = kMatrix[c];
-    EXPECT_FLOAT_EQ(band.albedo[c](3, 0),
-                    static_cast<float>(row[0] * kAlbedo[0] + row[1] * kAlbedo[1] + row[2] * kAlbedo[2]));
+    EXPECT_FLOAT_EQ(band.albedo[c](3, 0), static_cast<float>(row[0] * kDyeAlbedo[0] + row[1] * kDyeAlbedo[1] +
+                                                             row[2] * kDyeAlbedo[2]));
     EXPECT_FLOAT_EQ(
         band.sigma_albedo[c](3, 0),
-        static_cast<float>(std::hypot(row[0] * kSigma[0], row[1] * kSigma[1], row[2] * kSigma[2])));
+        static_cast<float>(std::hypot(row[0] * kDyeSigma[0], row[1] * kDyeSigma[1], row[2] * kDyeSigma[2])));
   }
 }
 
@@ -75,13 +75,14 @@ TEST(AlbedoColor, OfAMatrixWithACovarianceHasThatVarianceToo) {
   covariance[1] = covariance[9] = 5e-5;                           // the first two of red go together
   AlbedoColor color({.rec709_from_camera = kMatrix, .covariance = covariance, .curve = {}}, 4, 1);
   EXPECT_TRUE(color.has_covariance());
-  const double length = std::hypot(kAlbedo[0], kAlbedo[1], kAlbedo[2]);
+  const double length = std::hypot(kDyeAlbedo[0], kDyeAlbedo[1], kDyeAlbedo[2]);
 
   std::vector<View<const float>> alone;
   color.of(camera.band(), alone);
   ASSERT_EQ(alone.size(), 3U);
   EXPECT_NEAR(alone[1](0, 0), 0.01 * length, 1e-8);
-  EXPECT_NEAR(alone[0](0, 0), std::sqrt(1e-4 * length * length + 2 * 5e-5 * kAlbedo[0] * kAlbedo[1]), 1e-8);
+  EXPECT_NEAR(alone[0](0, 0), std::sqrt(1e-4 * length * length + 2 * 5e-5 * kDyeAlbedo[0] * kDyeAlbedo[1]),
+              1e-8);
 
   std::vector<View<const float>> with_lights = camera.shares();
   const MapBand band = color.of(camera.band(), with_lights);
@@ -98,13 +99,14 @@ TEST(AlbedoColor, OfACurveHasTheSlopeOfTheCurve) {
   std::vector<View<const float>> none;
   const MapBand band = color.of(camera.band(), none);
   constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722};
-  const double y = kLuminance[0] * kAlbedo[0] + kLuminance[1] * kAlbedo[1] + kLuminance[2] * kAlbedo[2];
+  const double y =
+      kLuminance[0] * kDyeAlbedo[0] + kLuminance[1] * kDyeAlbedo[1] + kLuminance[2] * kDyeAlbedo[2];
   for (std::size_t c = 0; c < 3; ++c) {
-    EXPECT_NEAR(band.albedo[c](2, 0), kAlbedo[c] * y, 1e-4);
+    EXPECT_NEAR(band.albedo[c](2, 0), kDyeAlbedo[c] * y, 1e-4);
     double square_sum = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double slope = (k == c ? y : 0) + kAlbedo[c] * kLuminance[k];
-      square_sum += slope * slope * kSigma[k] * kSigma[k];
+      const double slope = (k == c ? y : 0) + kDyeAlbedo[c] * kLuminance[k];
+      square_sum += slope * slope * kDyeSigma[k] * kDyeSigma[k];
     }
     EXPECT_NEAR(band.sigma_albedo[c](2, 0), std::sqrt(square_sum), 1e-4 * std::sqrt(square_sum) + 1e-6)
         << "channel " << c;

@@ -12,7 +12,7 @@
 namespace weft::pipeline {
 namespace {
 
-constexpr Size kSize = {96, 150};  // two whole bands and a part of one
+constexpr Size kBandedSize = {96, 150};  // two whole bands and a part of one
 const Cloth kWaves = {.normal = wave, .albedo = {0.3, 0.5, 0.4}};
 
 WholeMaps solved(const Photographs& photographs, const TileOptions& tile = kSolveTile, int threads = 1) {
@@ -24,10 +24,10 @@ WholeMaps solved(const Photographs& photographs, const TileOptions& tile = kSolv
 }
 
 void expect_waves(const WholeMaps& maps, double most_deg) {
-  EXPECT_EQ(maps.rows, kSize.height);
-  EXPECT_EQ(maps.albedo_rows, kSize.height);
-  for (int y = 0; y < kSize.height; ++y) {
-    for (int x = 0; x < kSize.width; ++x) {
+  EXPECT_EQ(maps.rows, kBandedSize.height);
+  EXPECT_EQ(maps.albedo_rows, kBandedSize.height);
+  for (int y = 0; y < kBandedSize.height; ++y) {
+    for (int x = 0; x < kBandedSize.width; ++x) {
       ASSERT_LT(angle_deg(maps.normal_at(x, y), wave(x, y)), most_deg) << x << ' ' << y;
       for (int c = 0; c < 3; ++c) {
         ASSERT_NEAR(maps.albedo(x, y, c), kWaves.albedo[static_cast<std::size_t>(c)], 1e-3)
@@ -38,18 +38,18 @@ void expect_waves(const WholeMaps& maps, double most_deg) {
 }
 
 TEST(SolveBands, OfMosaicsGiveNormalsAndDemosaicedAlbedoOfTheWholeFrame) {
-  expect_waves(solved(mosaics(kSize, kWaves)), 0.01);
+  expect_waves(solved(mosaics(kBandedSize, kWaves)), 0.01);
 }
 
 TEST(SolveBands, OfDevelopedPhotographsGiveTheSame) {
-  expect_waves(solved(developed(kSize, kWaves)), 1e-3);
+  expect_waves(solved(developed(kBandedSize, kWaves)), 1e-3);
 }
 
 TEST(SolveBands, DoNotDependOnTilesOrThreads) {
-  const Photographs photographs = mosaics(kSize, kWaves);
+  const Photographs photographs = mosaics(kBandedSize, kWaves);
   const WholeMaps whole = solved(photographs), tiled = solved(photographs, {.width = 64, .height = 7}, 2);
-  for (int y = 0; y < kSize.height; ++y) {
-    for (int x = 0; x < kSize.width; ++x) {
+  for (int y = 0; y < kBandedSize.height; ++y) {
+    for (int x = 0; x < kBandedSize.width; ++x) {
       for (int c = 0; c < 3; ++c) {
         ASSERT_EQ(whole.normal(x, y, c), tiled.normal(x, y, c)) << x << ' ' << y;
         ASSERT_EQ(whole.albedo(x, y, c), tiled.albedo(x, y, c)) << x << ' ' << y;
@@ -59,7 +59,7 @@ TEST(SolveBands, DoNotDependOnTilesOrThreads) {
 }
 
 TEST(SolveBands, MarkThePhotositesThatWereReplaced) {
-  Photographs photographs = mosaics(kSize, kWaves);
+  Photographs photographs = mosaics(kBandedSize, kWaves);
   photographs.mosaics()->replaced = {{3, 17}, {149, 95}};
   const WholeMaps maps = solved(photographs);
   EXPECT_TRUE(maps.status(17, 3) & kInvalidReading);
@@ -70,9 +70,9 @@ TEST(SolveBands, MarkThePhotositesThatWereReplaced) {
 TEST(SolveBands, CountEveryPixel) {
   solver::SolveTally tally;
   const auto nowhere = [](const MapBand&) { return Result<void>(); };
-  ASSERT_TRUE(solve_bands(mosaics(kSize, kWaves), *solver::fast_method(), kSolveTile, {.threads = 2}, nowhere,
-                          {.tally = &tally}));
-  EXPECT_EQ(tally.by_kernel + tally.by_normal_equations + tally.by_qr + tally.by_svd, kSize.pixels());
+  ASSERT_TRUE(solve_bands(mosaics(kBandedSize, kWaves), *solver::fast_method(), kSolveTile, {.threads = 2},
+                          nowhere, {.tally = &tally}));
+  EXPECT_EQ(tally.by_kernel + tally.by_normal_equations + tally.by_qr + tally.by_svd, kBandedSize.pixels());
 }
 
 TEST(SolveBands, EndWithTheErrorOfTheirSink) {
@@ -82,7 +82,7 @@ TEST(SolveBands, EndWithTheErrorOfTheirSink) {
     return Error{ErrorKind::kInputOutput, "disk is full", "", "", ""};
   };
   const auto ok =
-      solve_bands(mosaics(kSize, kWaves), *solver::fast_method(), kSolveTile, {.threads = 1}, full);
+      solve_bands(mosaics(kBandedSize, kWaves), *solver::fast_method(), kSolveTile, {.threads = 1}, full);
   ASSERT_FALSE(ok);
   EXPECT_EQ(ok.error().kind, ErrorKind::kInputOutput);
   EXPECT_EQ(bands, 1) << "nothing is asked of a sink that failed";
@@ -91,8 +91,8 @@ TEST(SolveBands, EndWithTheErrorOfTheirSink) {
 TEST(SolveBands, StopOnRequest) {
   std::stop_source stop;
   stop.request_stop();
-  WholeMaps maps(kSize);
-  const auto ok = solve_bands(mosaics(kSize, kWaves), *solver::fast_method(), kSolveTile,
+  WholeMaps maps(kBandedSize);
+  const auto ok = solve_bands(mosaics(kBandedSize, kWaves), *solver::fast_method(), kSolveTile,
                               {.threads = 1, .stop = stop.get_token()}, std::ref(maps));
   ASSERT_FALSE(ok);
   EXPECT_EQ(ok.error().kind, ErrorKind::kInterrupted);

@@ -17,7 +17,7 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr Size kSize = {64, 48};
+constexpr Size kShotSize = {64, 48};
 
 Photographs numbered(Photographs photographs) {
   photographs.leds.resize(photographs.count());
@@ -28,18 +28,18 @@ Photographs numbered(Photographs photographs) {
 // Photograph k as if its light were so many times as bright.
 void brighten(Photographs& photographs, std::size_t k, double factor) {
   Image<std::uint16_t>& counts = photographs.mosaics()->frames[k].counts;
-  for (int y = 0; y < kSize.height; ++y) {
-    for (int x = 0; x < kSize.width; ++x) {
+  for (int y = 0; y < kShotSize.height; ++y) {
+    for (int x = 0; x < kShotSize.width; ++x) {
       counts(x, y) = static_cast<std::uint16_t>(std::lround(kBlack + factor * (counts(x, y) - kBlack)));
     }
   }
 }
 
 TEST(BadPhotosites, AreTheDeadTheHotAndTheKnown) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   Mosaics& all = *photographs.mosaics();
   for (RawFrame& frame : all.frames) frame.counts(20, 10) = kBlack;
-  RawFrame dark = frame_of(kSize, [](int, int) { return 0.0; });
+  RawFrame dark = frame_of(kShotSize, [](int, int) { return 0.0; });
   dark.counts(31, 7) = 20000;
   all.dark = std::move(dark);
   EXPECT_THAT(find_bad_photosites(all, {{5, 9}, {10, 20}}, 2),
@@ -47,9 +47,9 @@ TEST(BadPhotosites, AreTheDeadTheHotAndTheKnown) {
 }
 
 TEST(BadPhotosites, GetWhatTheirNeighboursSayInEveryFrame) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   Mosaics& all = *photographs.mosaics();
-  RawFrame repeat = frame_of(kSize, [](int, int) { return 0.25; });
+  RawFrame repeat = frame_of(kShotSize, [](int, int) { return 0.25; });
   repeat.counts(20, 10) = all.frames[2].counts(20, 10) = kBlack;
   replace_bad_photosites({{10, 20}}, all, {&repeat}, 1);
   EXPECT_EQ(all.frames[2].counts(20, 10), all.frames[2].counts(22, 10));
@@ -58,12 +58,12 @@ TEST(BadPhotosites, GetWhatTheirNeighboursSayInEveryFrame) {
 }
 
 TEST(Brackets, GiveAllReadingsTheNoiseOfTheShortest) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   Mosaics& all = *photographs.mosaics();
   const NoiseModel before = all.noise;
   std::vector<BracketShot> shots;
-  shots.push_back({.light = 3, .ratio = 0.25, .frame = frame_of(kSize, [](int, int) { return 0.2; })});
-  shots.push_back({.light = 3, .ratio = 2, .frame = frame_of(kSize, [](int, int) { return 0.9; })});
+  shots.push_back({.light = 3, .ratio = 0.25, .frame = frame_of(kShotSize, [](int, int) { return 0.2; })});
+  shots.push_back({.light = 3, .ratio = 2, .frame = frame_of(kShotSize, [](int, int) { return 0.9; })});
   join_brackets(std::move(shots), all);
   EXPECT_DOUBLE_EQ(all.noise.per_reading, 4 * before.per_reading);
   EXPECT_DOUBLE_EQ(all.noise.floor, 16 * before.floor);
@@ -75,7 +75,7 @@ TEST(Brackets, GiveAllReadingsTheNoiseOfTheShortest) {
 }
 
 TEST(Brackets, ThatAreNoneChangeNothing) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   const NoiseModel before = photographs.mosaics()->noise;
   join_brackets({}, *photographs.mosaics());
   EXPECT_TRUE(photographs.mosaics()->brackets.empty());
@@ -83,9 +83,9 @@ TEST(Brackets, ThatAreNoneChangeNothing) {
 }
 
 TEST(UselessLights, AreThoseThatAreFullAndThoseThatDidNotLight) {
-  Photographs photographs = numbered(mosaics(kSize, {}));
+  Photographs photographs = numbered(mosaics(kShotSize, {}));
   Mosaics& all = *photographs.mosaics();
-  all.frames[2] = frame_of(kSize, [](int, int) { return 1.0; });
+  all.frames[2] = frame_of(kShotSize, [](int, int) { return 1.0; });
   brighten(photographs, 8, 0.005);
   const auto useless = find_useless_lights(photographs);
   ASSERT_EQ(useless.size(), 2U);
@@ -105,20 +105,20 @@ TEST(UselessLights, AreThoseThatAreFullAndThoseThatDidNotLight) {
 }
 
 TEST(UselessLights, AreNoneOfADimmedRing) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   for (std::size_t k = 4; k < 10; ++k) brighten(photographs, k, 0.02);
   EXPECT_TRUE(find_useless_lights(photographs).empty());
 }
 
 TEST(UselessLights, AreNoneWhereEveryFrameIsDark) {
-  Photographs photographs = mosaics(kSize, {.albedo = {0, 0, 0}});
+  Photographs photographs = mosaics(kShotSize, {.albedo = {0, 0, 0}});
   EXPECT_TRUE(find_useless_lights(photographs).empty()) << "none looks darker than the others";
 }
 
 const WhitePatch kPatch = {{{8, 8}, {40, 8}, {40, 40}, {8, 40}}, {0.5, 0.5, 0.5}};
 
 TEST(Drift, OfEachLightIsWhatAWhitePatchGives) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   for (std::size_t k = 0; k < 10; ++k) brighten(photographs, k, 1 + 0.01 * static_cast<double>(k));
   const Drift drift = find_drift(photographs, {.patches = {kPatch}}, 2);
   EXPECT_EQ(drift.source, Drift::Source::kPatches);
@@ -131,7 +131,7 @@ TEST(Drift, OfEachLightIsWhatAWhitePatchGives) {
 }
 
 TEST(Drift, BeyondAFifthIsMeasuredAndNotFollowed) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   brighten(photographs, 4, 0.5);
   const Drift drift = find_drift(photographs, {.patches = {kPatch}}, 1);
   EXPECT_NEAR(drift.measured[4], 0.5, 1e-4);
@@ -149,14 +149,14 @@ DriftEvidence repeated(Photographs& photographs, double ratio) {
   }
   std::vector<RawFrame> again;
   const double first = 0.5 * std::cos(radians(35)) * 1.02;
-  again.push_back(frame_of(kSize, [&](int, int) { return first * ratio; }));
+  again.push_back(frame_of(kShotSize, [&](int, int) { return first * ratio; }));
   evidence.again = photographs.mosaics()->alike(std::move(again));
   evidence.repeats = {{.light = 2, .frame = 0, .earlier_time = 2, .later_time = 12}};
   return evidence;
 }
 
 TEST(Drift, OfAllLightsIsTheLineThroughARepeat) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   const Drift drift = find_drift(photographs, repeated(photographs, 1.1), 2);
   EXPECT_EQ(drift.source, Drift::Source::kRepeats);
   ASSERT_EQ(drift.ratios.size(), 1U);
@@ -167,7 +167,7 @@ TEST(Drift, OfAllLightsIsTheLineThroughARepeat) {
 }
 
 TEST(Drift, IsNotToldByARepeatOfACoveredLight) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   const Drift drift = find_drift(photographs, repeated(photographs, 0.5), 1);
   EXPECT_EQ(drift.source, Drift::Source::kNone);
   EXPECT_NEAR(*drift.ratios[0], 0.5, 1e-3);
@@ -177,7 +177,7 @@ TEST(Drift, IsNotToldByARepeatOfACoveredLight) {
 }
 
 TEST(Drift, IsAskedOfRepeatsWhereNoPatchCanBeRead) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kShotSize, {});
   DriftEvidence evidence = repeated(photographs, 1.1);
   evidence.patches = {{{{100, 100}, {120, 100}, {120, 120}}, {0.5, 0.5, 0.5}}};
   const Drift drift = find_drift(photographs, evidence, 1);

@@ -13,7 +13,7 @@
 namespace weft::pipeline {
 namespace {
 
-constexpr Size kSize = {192, 160};
+constexpr Size kReliefSize = {192, 160};
 constexpr int kEdge = 39;  // the last column of the high side
 constexpr float kShadow = -std::numeric_limits<float>::infinity();
 
@@ -21,23 +21,23 @@ constexpr float kShadow = -std::numeric_limits<float>::infinity();
 class Step {
  public:
   Step(double height_px, const LightCorrectionOptions& options)
-      : photographs_(developed(kSize, {})),
-        height_(kSize),
-        solved_{Image<float>(kSize, 3), Image<float>(kSize, 3)},
+      : photographs_(developed(kReliefSize, {})),
+        height_(kReliefSize),
+        solved_{Image<float>(kReliefSize, 3), Image<float>(kReliefSize, 3)},
         readings_({64, 1}, 30) {
-    for (int y = 0; y < kSize.height; ++y) {
+    for (int y = 0; y < kReliefSize.height; ++y) {
       std::fill_n(height_.plane().row(y), kEdge + 1, static_cast<float>(height_px));
-      std::fill_n(solved_.normal.plane(2).row(y), kSize.width, 1.0F);
-      for (int c = 0; c < 3; ++c) std::fill_n(solved_.albedo.plane(c).row(y), kSize.width, 0.5F);
+      std::fill_n(solved_.normal.plane(2).row(y), kReliefSize.width, 1.0F);
+      for (int c = 0; c < 3; ++c) std::fill_n(solved_.albedo.plane(c).row(y), kReliefSize.width, 0.5F);
     }
     relief_ = *solver::Relief::of(height_.plane(), 1);
     correction_.emplace(photographs_, solved_, relief_, options, 2);
-    EXPECT_TRUE(correction_->prepare({0, 0, kSize.width, kSize.height}));
+    EXPECT_TRUE(correction_->prepare({0, 0, kReliefSize.width, kReliefSize.height}));
   }
 
   // The corrected reading of light k at a pixel, over the reading as it was.
   double share_left(std::size_t k, int x, int y) {
-    const Rect tile = {x / 64 * 64, y, std::min(x / 64 * 64 + 64, kSize.width), y + 1};
+    const Rect tile = {x / 64 * 64, y, std::min(x / 64 * 64 + 64, kReliefSize.width), y + 1};
     TileReader reader(photographs_, {.width = 64, .height = 1});
     const auto as_read = reader.read(tile).readings;
     std::vector<View<float>> views;

@@ -9,14 +9,14 @@
 namespace weft::pipeline {
 namespace {
 
-constexpr Size kSize = {300, 140};  // two sample tiles beside each other
+constexpr Size kSampledSize = {300, 140};  // two sample tiles beside each other
 
 TEST(Samples, AreWhatAMethodMakesOfTheSampleTiles) {
   const Cloth cloth = {.normal = wave, .albedo = {0.2, 0.4, 0.8}};
-  const Photographs counts = mosaics(kSize, cloth), rgb = developed(kSize, cloth);
+  const Photographs counts = mosaics(kSampledSize, cloth), rgb = developed(kSampledSize, cloth);
   for (const Photographs* photographs : {&counts, &rgb}) {
     const std::vector<SampleMaps> samples = solve_samples(*photographs, *solver::fast_method(), 2);
-    const std::vector<Rect> tiles = solver::sample_tiles(kSize);
+    const std::vector<Rect> tiles = solver::sample_tiles(kSampledSize);
     ASSERT_EQ(samples.size(), tiles.size());
     ASSERT_EQ(samples.size(), 2U);
     const Planes planes = photographs->planes();

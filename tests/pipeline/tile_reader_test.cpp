@@ -10,12 +10,12 @@
 namespace weft::pipeline {
 namespace {
 
-constexpr Size kSize = {128, 16};
+constexpr Size kReadSize = {128, 16};
 constexpr Rect kTile = {64, 4, 128, 12};
 constexpr TileOptions kTiles = {.width = 64, .height = 8};
 
 TEST(TileReader, ShowsDevelopedPhotographsWhereTheyAre) {
-  const Photographs photographs = developed(kSize, {});
+  const Photographs photographs = developed(kReadSize, {});
   TileReader reader(photographs, kTiles);
   const solver::TileInput input = reader.read(kTile);
   EXPECT_EQ(input.planes, 3);
@@ -26,7 +26,7 @@ TEST(TileReader, ShowsDevelopedPhotographsWhereTheyAre) {
 }
 
 TEST(TileReader, ReadsAMosaicAsItsLightAndAlbedoPredict) {
-  const Photographs photographs = mosaics(kSize, {.albedo = {0.2, 0.4, 0.8}});
+  const Photographs photographs = mosaics(kReadSize, {.albedo = {0.2, 0.4, 0.8}});
   TileReader reader(photographs, kTiles);
   const solver::TileInput input = reader.read(kTile);
   EXPECT_EQ(input.planes, 1);
@@ -39,7 +39,7 @@ TEST(TileReader, ReadsAMosaicAsItsLightAndAlbedoPredict) {
 
 TEST(TileReader, DemosaicsAnEvenClothUnderColouredLightToItsOwnReadings) {
   const DistantLights lights = ten_lights({0.5, 1, 0.25});
-  const Photographs photographs = mosaics(kSize, {.albedo = {0.6, 0.6, 0.6}}, lights);
+  const Photographs photographs = mosaics(kReadSize, {.albedo = {0.6, 0.6, 0.6}}, lights);
   TileReader reader(photographs, kTiles, ReadAs::kRgb);
   const solver::TileInput input = reader.read(kTile);
   EXPECT_EQ(input.planes, 3);
@@ -59,8 +59,8 @@ double place(int x, int y) {
 }
 
 TEST(TileReader, TakesAShiftedShotFromWhereTheClothWent) {
-  Photographs photographs = mosaics(kSize, {});
-  photographs.mosaics()->frames[3] = frame_of(kSize, place);
+  Photographs photographs = mosaics(kReadSize, {});
+  photographs.mosaics()->frames[3] = frame_of(kReadSize, place);
   std::vector<solver::ClothShift> shifts(10);
   shifts[3] = {.dx_px = 4, .dy_px = -2, .turn = 0};
   TileReader reader(photographs, kTiles, ReadAs::kTaken, shifts);
@@ -73,10 +73,10 @@ TEST(TileReader, TakesAShiftedShotFromWhereTheClothWent) {
 }
 
 TEST(TileReader, ShiftsDevelopedPhotographsByOddPixelsToo) {
-  Photographs photographs = developed(kSize, {});
+  Photographs photographs = developed(kReadSize, {});
   Image<float>& image = std::get<Developed>(photographs.frames).rgb[3];
-  for (int y = 0; y < kSize.height; ++y) {
-    for (int x = 0; x < kSize.width; ++x) image(x, y, 1) = static_cast<float>(place(x, y));
+  for (int y = 0; y < kReadSize.height; ++y) {
+    for (int x = 0; x < kReadSize.width; ++x) image(x, y, 1) = static_cast<float>(place(x, y));
   }
   photographs.shifts.resize(10);
   photographs.shifts[3] = {.dx_px = -3, .dy_px = 1, .turn = 0};
@@ -87,10 +87,10 @@ TEST(TileReader, ShiftsDevelopedPhotographsByOddPixelsToo) {
 }
 
 TEST(Mosaics, JoinABracketWhereTheLitShotIsFull) {
-  Photographs photographs = mosaics(kSize, {});
+  Photographs photographs = mosaics(kReadSize, {});
   Mosaics& all = *photographs.mosaics();
-  all.frames[0] = frame_of(kSize, [](int x, int) { return x < 70 ? 1 : 0.4; });
-  RawFrame shorter = frame_of(kSize, [](int x, int) { return x < 70 ? 0.25 * 1.6 : 0.25 * 0.4; });
+  all.frames[0] = frame_of(kReadSize, [](int x, int) { return x < 70 ? 1 : 0.4; });
+  RawFrame shorter = frame_of(kReadSize, [](int x, int) { return x < 70 ? 0.25 * 1.6 : 0.25 * 0.4; });
   const Radiometry radiometry(shorter, nullptr, all.response, {0.25e6, 100});
   all.brackets.resize(10);
   all.brackets[0].push_back({std::move(shorter), radiometry});

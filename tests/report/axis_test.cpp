@@ -41,16 +41,16 @@ TEST(Axis, LeavesSixPercentAroundTheValues) {
 }
 
 TEST(Axis, TakesOnlyWhatItCanShow) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
-  const std::vector<double> values = {kNan, -5, 0, 1, 100, kInfinite};
+  const std::vector<double> values = {kNoNumber, -5, 0, 1, 100, kInfinite};
   const Axis linear = Axis::around(values, false, 0, 1), log = Axis::around(values, true, 0, 1);
   EXPECT_LT(linear.low, -5);
   EXPECT_GT(linear.high, 100);
   EXPECT_LT(linear.high, 110);
   EXPECT_NEAR(log.low, std::pow(10, -0.12), 1e-12) << "0 and below have no logarithm";
   EXPECT_TRUE(linear.takes(-5));
-  EXPECT_FALSE(linear.takes(kNan));
+  EXPECT_FALSE(linear.takes(kNoNumber));
   EXPECT_FALSE(log.takes(0));
   EXPECT_FALSE(log.takes(kInfinite));
 }

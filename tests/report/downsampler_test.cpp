@@ -7,16 +7,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "core/solve_record.h"
+#include "tests/report/not_finite.h"
 
 namespace weft::report {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 Image<float> noise(Size size) {
   std::mt19937 random(11);

@@ -14,8 +14,6 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
 std::string square(int x, int y, double t) {
   return "<rect x=\"" + std::to_string(x) + "\" y=\"" + std::to_string(y) +
          "\" width=\"10.3\" height=\"10.3\" fill=\"" + css_colour(heat_colour(t)) + "\"/>";
@@ -38,7 +36,7 @@ TEST(FrameMap, WithoutEndsGoesFromZeroToATenthOverThe98thPercentile) {
 }
 
 TEST(FrameMap, LeavesWhatIsUnknownWhiteAndEscapesItsUnit) {
-  const std::string svg = frame_map_svg({2, 1, {1, kNan}, "<deg>"});
+  const std::string svg = frame_map_svg({2, 1, {1, std::numeric_limits<double>::quiet_NaN()}, "<deg>"});
   EXPECT_THAT(svg, HasSubstr("<rect x=\"10\" y=\"0\" width=\"10.3\" height=\"10.3\" fill=\"#ffffff\"/>"));
   EXPECT_THAT(svg, HasSubstr("&lt;deg&gt;</text>"));
   EXPECT_THAT(svg, Not(HasSubstr("nan")));

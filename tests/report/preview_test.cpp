@@ -4,16 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "core/solve_record.h"
 #include "core/vec.h"
+#include "tests/report/not_finite.h"
 
 namespace weft::report {
 namespace {
-
-constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInf = std::numeric_limits<float>::infinity();
 
 Image<float> vectors(Size size, Vec3 v) {
   Image<float> image(size, 3);

@@ -7,13 +7,13 @@
 #include <cmath>
 #include <set>
 
-#include "capture/raw/decode.h"
 #include "capture/rig.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/session.h"
 #include "simulator/captures_layout.h"
 #include "simulator/targets/target.h"
+#include "tests/simulator/output.h"
 
 namespace weft::simulator {
 namespace {
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;
 
-fs::path fresh_folder() {
+fs::path absent_folder() {
   const fs::path folder = fs::path(testing::TempDir()) / "weft_captures" /
                           testing::UnitTest::GetInstance()->current_test_info()->name();
   fs::remove_all(folder);
@@ -40,18 +40,6 @@ Scene small_rig() {
   return scene;
 }
 
-RawFrame decoded(const fs::path& file) {
-  Result<RawFrame> frame = capture::decode_raw(file);
-  EXPECT_TRUE(frame) << frame.error().message();
-  return frame ? std::move(*frame) : RawFrame();
-}
-
-std::vector<std::string> names_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
-  return names;
-}
-
 CapturesReport taken(const Scene& rig, const fs::path& folder, const std::vector<std::string>& parts) {
   CapturesOptions options;
   options.parts = parts;
@@ -62,7 +50,7 @@ CapturesReport taken(const Scene& rig, const fs::path& folder, const std::vector
 }
 
 TEST(Photograph, UnderTwoLedsIsTheSumOfBoth) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = absent_folder();
   fs::create_directories(folder);
   const Scene scene = small_rig();
   const std::vector<int> kLit[] = {{1}, {2}, {1, 2}};
@@ -82,7 +70,7 @@ TEST(Photograph, UnderTwoLedsIsTheSumOfBoth) {
 }
 
 TEST(Photograph, TakenLaterHasOtherNoiseOnTheSameSensor) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = absent_folder();
   fs::create_directories(folder);
   Scene scene = small_rig();
   scene.effects.noise = scene.effects.uneven_response = true;
@@ -106,7 +94,7 @@ TEST(Photograph, TakenLaterHasOtherNoiseOnTheSameSensor) {
 }
 
 TEST(Photograph, RefusesALedThatIsNotThereOrTwice) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = absent_folder();
   fs::create_directories(folder);
   for (const std::vector<int>& leds : {std::vector{1, 1}, std::vector{5}, std::vector{0, 1}}) {
     const Result<void> refused = simulate_photograph(small_rig(), {leds, {}}, folder / "a.dng", {});
@@ -116,7 +104,7 @@ TEST(Photograph, RefusesALedThatIsNotThereOrTwice) {
 }
 
 TEST(Captures, OfTheCameraAreBoardsAndATable) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = absent_folder();
   const CapturesReport report = taken(small_rig(), folder, {"camera"});
   EXPECT_THAT(names_in(folder / "camera"),
               UnorderedElementsAre("board01.dng", "board02.dng", "table01.dng", "board.toml"));
@@ -131,7 +119,7 @@ TEST(Captures, OfTheCameraAreBoardsAndATable) {
 }
 
 TEST(Captures, OfTheResponseArePairsAtFourExposures) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = absent_folder();
   taken(small_rig(), folder, {"response"});
   EXPECT_THAT(names_in(folder / "response"),
               UnorderedElementsAre("dark", "led01", "led02", "led01+led02", "scale"));
@@ -145,7 +133,7 @@ TEST(Captures, OfTheResponseArePairsAtFourExposures) {
 }
 
 TEST(Captures, OfTheLightsAreFiveSheetsThatHoldTheStartingCalibration) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = absent_folder();
   taken(small_rig(), folder, {"start", "lights"});
   EXPECT_THAT(names_in(folder / "lights"),
               UnorderedElementsAre("sheet01.weft", "sheet02.weft", "sheet03.weft", "sheet04.weft",
@@ -170,7 +158,7 @@ TEST(Captures, OfTheLightsAreFiveSheetsThatHoldTheStartingCalibration) {
 }
 
 TEST(Captures, ForChecksEndWithARepeat) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = absent_folder();
   const CapturesReport report = taken(small_rig(), folder, {"check"});
   EXPECT_EQ(report.sessions, 3);
   for (const char* name : {"turned.weft", "other.weft", "plane.weft"}) {
@@ -183,7 +171,7 @@ TEST(Captures, ForChecksEndWithARepeat) {
 }
 
 TEST(Captures, OfASceneWithoutAChartHaveNoColour) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = absent_folder();
   CapturesOptions options;
   options.parts = {"color"};
   const Result<CapturesReport> refused = simulate_captures(small_rig(), folder, options);
@@ -192,7 +180,7 @@ TEST(Captures, OfASceneWithoutAChartHaveNoColour) {
 }
 
 TEST(Captures, AreRefusedForAnUnknownPartAndNeverOverwritten) {
-  const fs::path folder = fresh_folder();
+  const fs::path folder = absent_folder();
   CapturesOptions options;
   options.parts = {"lens"};
   const Result<CapturesReport> unknown = simulate_captures(small_rig(), folder, options);

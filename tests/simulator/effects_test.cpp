@@ -10,24 +10,12 @@
 #include "simulator/light/incidence.h"
 #include "simulator/plan.h"
 #include "simulator/simulate.h"
+#include "tests/simulator/output.h"
 
 namespace weft::simulator {
 namespace {
 
 constexpr Rect kCentre = {1216, 800, 1248, 832};
-
-Scene near_lit(GeometryKind kind) {
-  Scene scene;
-  scene.geometry.kind = kind;
-  scene.effects.near_light = true;
-  return scene;
-}
-
-Rendering render(const Scene& scene, Rect area) {
-  Result<Rendering> rendering = render_readings(scene, area);
-  EXPECT_TRUE(rendering) << rendering.error().message();
-  return rendering ? std::move(*rendering) : Rendering();
-}
 
 double sum_of(const Image<double>& image, int plane) {
   double sum = 0;

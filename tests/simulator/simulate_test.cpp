@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "capture/raw/decode.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/session.h"
 #include "simulator/camera/sensor.h"
+#include "tests/simulator/output.h"
 
 namespace weft::simulator {
 namespace {
@@ -58,12 +58,6 @@ std::string bytes_of(const fs::path& file) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-std::vector<std::string> names_in(const fs::path& folder) {
-  std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
-  return names;
-}
-
 /// Every file below a folder with its bytes.
 std::map<std::string, std::string> contents_of(const fs::path& folder) {
   std::map<std::string, std::string> files;
@@ -71,12 +65,6 @@ std::map<std::string, std::string> contents_of(const fs::path& folder) {
     if (entry.is_regular_file()) files[fs::relative(entry.path(), folder).string()] = bytes_of(entry.path());
   }
   return files;
-}
-
-RawFrame decoded(const fs::path& file) {
-  Result<RawFrame> frame = capture::decode_raw(file);
-  EXPECT_TRUE(frame) << frame.error().message();
-  return frame ? std::move(*frame) : RawFrame();
 }
 
 std::vector<std::uint16_t> counts_of(const fs::path& file) {

@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <hwy/targets.h>
 #include <cmath>
 
 #include "bench/oracles/rig.h"
+#include "tests/simd_targets.h"
 
 namespace weft {
 namespace {
@@ -28,20 +28,17 @@ TEST(Demosaic, ReproducesALinearGreyExactlyAwayFromTheEdges) {
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) mosaic(x, y) = static_cast<float>(plane_at(x, y));
   }
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
+  test::on_every_target([&] {
     Rgb rgb(size);
     solver::demosaic(mosaic.plane(), {}, {0, 0, size.width, size.height}, rgb.views());
     for (int y = 2; y < size.height - 2; ++y) {
       for (int x = 2; x < size.width - 2; ++x) {
         for (int c = 0; c < 3; ++c) {
-          ASSERT_NEAR(rgb.planes(x, y, c), plane_at(x, y), 1e-6)
-              << x << ", " << y << " channel " << c << " on " << hwy::TargetName(target);
+          ASSERT_NEAR(rgb.planes(x, y, c), plane_at(x, y), 1e-6) << x << ", " << y << " channel " << c;
         }
       }
     }
-  }
-  hwy::SetSupportedTargetsForTest(0);
+  });
 }
 
 TEST(Demosaic, KeepsAFlatColourForEveryFilterPhase) {

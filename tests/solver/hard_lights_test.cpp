@@ -4,29 +4,26 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "bench/oracles/hard_lights.h"
 #include "bench/oracles/quad_oracle.h"
 #include "bench/oracles/rig.h"
 #include "solver/in_double/pixel.h"
+#include "tests/solver/tiles.h"
 
 namespace weft {
 namespace {
 
+using test::hard_field;
+using test::kHardSize;
+using test::kHardTile;
+using test::kNaN;
+using test::oracle_of;
 using test::OracleRow;
 using test::OracleSolution;
 using test::Random;
 using test::Trial;
 using test::Truth;
-
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-const Size kSize = {256, 8};
-const Rect kTile = {0, 0, 131, 2};
-
-LightField field_of(DistantLights lights) {
-  return *LightField::make(std::move(lights), std::nullopt, kSize, 0);
-}
 
 // Normals up to `most_deg` from where a cluster of lights points.
 std::function<Truth(int, int)> facing_the_cluster(double most_deg) {
@@ -38,10 +35,6 @@ std::function<Truth(int, int)> facing_the_cluster(double most_deg) {
   };
 }
 
-OracleSolution oracle_of(const Trial& trial, int planes, int x, int y) {
-  return test::solve_in_quad(test::oracle_rows(trial.rows(x, y), planes));
-}
-
 // What float32 may be wrong by. Above a condition number of 30 nothing is left to it.
 double bar_deg(double condition) {
   return condition <= 3 ? 1e-4 : condition <= 20 ? 5e-3 : condition <= solver::kFloatCondition ? 1e-2 : 1e-4;
@@ -51,13 +44,13 @@ constexpr std::array kConditions = {1.5, 3.0, 10.0, 20.0, 29.0, 100.0, 1e3, 1e4,
 
 TEST(HardCase01ClosingUpLights, ThreeOfThemAreSolvedWithinTheBarByEveryMethod) {
   for (const double condition : kConditions) {
-    const LightField field = field_of(test::clustered_lights(3, condition));
+    const LightField field = hard_field(test::clustered_lights(3, condition));
     test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
       SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes, condition " << condition);
-      Trial trial(field, kTile, planes, facing_the_cluster(10));
+      Trial trial(field, kHardTile, planes, facing_the_cluster(10));
       trial.solve(method);
       double worst_deg = 0;
-      for (int x = 0; x < kTile.width(); x += 3) {
+      for (int x = 0; x < kHardTile.width(); x += 3) {
         const OracleSolution exact = oracle_of(trial, planes, x, 1);
         worst_deg = std::max(worst_deg, angle_deg(trial.normal(x, 1), exact.normal));
         ASSERT_EQ(trial.status(x, 1), kZeroDof) << x;
@@ -69,14 +62,14 @@ TEST(HardCase01ClosingUpLights, ThreeOfThemAreSolvedWithinTheBarByEveryMethod) {
 
 TEST(HardCase01ClosingUpLights, SixOfThemAreSolvedWithinTheBarByEveryPlainSumOfSquares) {
   for (const double condition : kConditions) {
-    const LightField field = field_of(test::clustered_lights(6, condition));
+    const LightField field = hard_field(test::clustered_lights(6, condition));
     test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
       if (!test::promise_of(name).one_weight) return;
       SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes, condition " << condition);
-      Trial trial(field, kTile, planes, facing_the_cluster(10));
+      Trial trial(field, kHardTile, planes, facing_the_cluster(10));
       trial.solve(method);
       double worst_deg = 0;
-      for (int x = 0; x < kTile.width(); x += 3) {
+      for (int x = 0; x < kHardTile.width(); x += 3) {
         const OracleSolution exact = oracle_of(trial, planes, x, 1);
         worst_deg = std::max(worst_deg, angle_deg(trial.normal(x, 1), exact.normal));
         ASSERT_EQ(trial.status(x, 1), 0) << x;
@@ -153,17 +146,17 @@ DistantLights four_and_a_double() {
 }
 
 TEST(HardCase02DoubledLights, CountTwice) {
-  const LightField field = field_of(four_and_a_double());
+  const LightField field = hard_field(four_and_a_double());
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     if (!test::promise_of(name).one_weight) return;
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial trial(field, kTile, planes, facing_the_cluster(10));
+    Trial trial(field, kHardTile, planes, facing_the_cluster(10));
     trial.add_noise({1e-4, 0, 0}, 5);  // else no weight would matter
     for (int p = 0; p < planes; ++p) {
-      for (int x = 0; x < kTile.width(); ++x) trial.reading(4, p)(x, 0) = trial.reading(1, p)(x, 0);
+      for (int x = 0; x < kHardTile.width(); ++x) trial.reading(4, p)(x, 0) = trial.reading(1, p)(x, 0);
     }
     trial.solve(method);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       std::vector<OracleRow> rows = test::oracle_rows(trial.rows(x, 0), planes);
       rows.pop_back();
       rows[1].weight = 2;
@@ -178,7 +171,7 @@ TEST(HardCase02DoubledLights, CountTwice) {
 TEST(HardCase02DoubledLights, TenOfThemAreRefusedByName) {
   DistantLights lights;
   for (int k = 0; k < 10; ++k) lights.lights.push_back({test::cluster_axis(), {1, 1, 1}});
-  const Result<LightField> field = LightField::make(lights, std::nullopt, kSize, 0);
+  const Result<LightField> field = LightField::make(lights, std::nullopt, kHardSize, 0);
   ASSERT_FALSE(field);
   EXPECT_EQ(field.error().kind, ErrorKind::kBadData);
   EXPECT_THAT(field.error().message(),
@@ -188,16 +181,16 @@ TEST(HardCase02DoubledLights, TenOfThemAreRefusedByName) {
 TEST(HardCase02DoubledLights, WithoutOtherReadingsLeaveNoSolution) {
   DistantLights lights = test::clustered_lights(3, 2);
   for (int k = 0; k < 7; ++k) lights.lights.push_back(lights.lights[0]);
-  const LightField field = field_of(lights);
+  const LightField field = hard_field(lights);
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial trial(field, kTile, planes, facing_the_cluster(10));
-    for (int x = 0; x < kTile.width(); ++x) {
+    Trial trial(field, kHardTile, planes, facing_the_cluster(10));
+    for (int x = 0; x < kHardTile.width(); ++x) {
       trial.reading(1)(x, 0) = trial.reading(2)(x, 0) = kNaN;  // eight copies of one light
       trial.reading(1)(x, 1) = kNaN;                           // and one other: rank two
     }
     trial.solve(method);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       for (int y = 0; y < 2; ++y) {
         ASSERT_EQ(trial.status(x, y), kInvalidReading | kNoSolution) << x << ", " << y;
         ASSERT_EQ(trial.normal(x, y), (Vec3{0, 0, 1}));
@@ -208,16 +201,16 @@ TEST(HardCase02DoubledLights, WithoutOtherReadingsLeaveNoSolution) {
 }
 
 TEST(HardCase03FewerThanThreeLights, GiveTheBestAlbedoOfALevelCloth) {
-  const LightField field = field_of(test::clustered_lights(5, 2));
+  const LightField field = hard_field(test::clustered_lights(5, 2));
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     for (std::size_t left = 0; left < 3; ++left) {
       SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes, " << left << " lights");
-      Trial trial(field, kTile, planes, facing_the_cluster(10));
+      Trial trial(field, kHardTile, planes, facing_the_cluster(10));
       for (std::size_t k = left; k < 5; ++k) {
-        for (int x = 0; x < kTile.width(); ++x) trial.reading(k, planes - 1)(x, 0) = kNaN;
+        for (int x = 0; x < kHardTile.width(); ++x) trial.reading(k, planes - 1)(x, 0) = kNaN;
       }
       trial.solve(method);
-      for (int x = 0; x < kTile.width(); ++x) {
+      for (int x = 0; x < kHardTile.width(); ++x) {
         ASSERT_EQ(trial.status(x, 0), kInvalidReading | kNoSolution) << x;
         ASSERT_EQ(trial.normal(x, 0), (Vec3{0, 0, 1})) << x;
         ASSERT_EQ(trial.sigma_normal_deg(x, 0), solver::kUnknownAngleDeg) << x;
@@ -245,15 +238,15 @@ TEST(HardCase04ThreeLights, GiveWhatCramersRuleGives) {
       if (std::count(numbers.begin(), numbers.end(), number) == 0) numbers.push_back(number);
     }
     const LightField field =
-        *LightField::make(*select_lights(leds, numbers), overhead_camera(kSize, 600, 0.3), kSize, 0);
+        *LightField::make(*select_lights(leds, numbers), overhead_camera(kHardSize, 600, 0.3), kHardSize, 0);
     test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
       SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes, LEDs " << numbers[0] << ' '
                                       << numbers[1] << ' ' << numbers[2]);
-      Trial trial(field, kTile, planes, [](int, int) {
+      Trial trial(field, kHardTile, planes, [](int, int) {
         return Truth{normalized({0.1, -0.05, 1}), {0.3, 0.5, 0.2}};
       });
       trial.solve(method);
-      for (int x = 0; x < kTile.width(); x += 7) {
+      for (int x = 0; x < kHardTile.width(); x += 7) {
         const std::vector<OracleRow> rows = test::oracle_rows(trial.rows(x, 0), planes);
         const OracleSolution exact = test::solve_by_cramer(std::span<const OracleRow, 3>(rows));
         ASSERT_LE(exact.condition, 16.5);
@@ -268,14 +261,14 @@ TEST(HardCase04ThreeLights, GiveWhatCramersRuleGives) {
 }
 
 TEST(HardCase04ThreeLights, HaveTheSigmaOfTheNoiseModel) {
-  const LightField field = field_of(test::clustered_lights(3, 2));
+  const LightField field = hard_field(test::clustered_lights(3, 2));
   const NoiseModel noise = {0, 1e-6, 0};
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     if (planes == 3) return;
     SCOPED_TRACE(name);
-    Trial trial(field, kTile, 1, facing_the_cluster(10));
+    Trial trial(field, kHardTile, 1, facing_the_cluster(10));
     trial.solve(method, noise);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       // Columns of A^-1 by cross products; the noise of each reading goes through one of them.
       const std::vector<solver::PixelRow> rows = trial.rows(x, 0);
       const Vec3 a = rows[0].direction, b = rows[1].direction, c = rows[2].direction;
@@ -298,7 +291,8 @@ TEST(HardCase13LedsInTheCloth, AreRefusedByName) {
   for (const double height_mm : {5.9, 5.0, 0.0, -3.0}) {
     NearLights leds = test::ten_leds();
     leds.leds[6].position_mm.z = height_mm;
-    const Result<LightField> field = LightField::make(leds, overhead_camera(kSize, 600, 0.3), kSize, 5);
+    const Result<LightField> field =
+        LightField::make(leds, overhead_camera(kHardSize, 600, 0.3), kHardSize, 5);
     ASSERT_FALSE(field) << height_mm;
     EXPECT_THAT(field.error().message(),
                 testing::AllOf(testing::HasSubstr("LED 7"), testing::HasSubstr("the cloth 5.0 mm")));
@@ -309,7 +303,7 @@ TEST(HardCase13LedsInTheCloth, AHandBreadthOfAirIsEnough) {
   NearLights leds = test::ten_leds();
   leds.leds[6].position_mm = {0.1, 0.1, 6.1};  // 1.1 mm above a pixel, ten thousand times as bright there
   leds.leds[6].aim = {0, 0, -1};
-  const LightField field = *LightField::make(leds, overhead_camera(kSize, 600, 0.3), kSize, 5);
+  const LightField field = *LightField::make(leds, overhead_camera(kHardSize, 600, 0.3), kHardSize, 5);
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     const Rect tile = {64, 0, 64 + 128, 8};
     Trial trial(field, tile, planes, [](int, int) { return Truth{{0, 0, 1}, {0.3, 0.5, 0.2}}; });

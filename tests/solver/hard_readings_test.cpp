@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include "bench/oracles/hard_lights.h"
@@ -12,26 +11,21 @@
 #include "bench/oracles/rig.h"
 #include "core/tiles.h"
 #include "solver/in_double/pixel.h"
+#include "tests/solver/tiles.h"
 
 namespace weft {
 namespace {
 
+using test::hard_field;
+using test::kHardSize;
+using test::kHardTile;
+using test::kInfinity;
+using test::kNaN;
+using test::oracle_of;
 using test::OracleSolution;
 using test::Random;
 using test::Trial;
 using test::Truth;
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-const Size kSize = {256, 16};
-const Rect kTile = {0, 0, 131, 2};
-
-LightField field_of(DistantLights lights) {
-  return *LightField::make(std::move(lights), std::nullopt, kSize, 0);
-}
-LightField field_of(const NearLights& lights) {
-  return *LightField::make(lights, overhead_camera(kSize, 600, 0.3), kSize, 0);
-}
 
 // Distant lights at the places of the ten LEDs.
 DistantLights ten_distant() {
@@ -41,15 +35,11 @@ DistantLights ten_distant() {
   return lights;
 }
 
-std::function<Truth(int, int)> cloth(double most_deg) {
+std::function<Truth(int, int)> even_cloth(double most_deg) {
   return [most_deg](int x, int y) {
     Random random(static_cast<std::uint64_t>(y) * 1000 + static_cast<std::uint64_t>(x));
     return Truth{test::random_normal(random, most_deg), {0.3, 0.5, 0.2}};
   };
-}
-
-OracleSolution oracle_of(const Trial& trial, int planes, int x, int y) {
-  return test::solve_in_quad(test::oracle_rows(trial.rows(x, y), planes));
 }
 
 void expect_sound(const Trial& trial, int planes, int x, int y) {
@@ -64,21 +54,21 @@ void expect_sound(const Trial& trial, int planes, int x, int y) {
 }
 
 TEST(HardCase05AllInShadow, IsDarkWithAnAlbedoOfZeroWithinItsSigma) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = hard_field(test::ten_leds());
   const NoiseModel noise = {0, 1e-6, 0};
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     if (planes == 3) return;
     SCOPED_TRACE(name);
-    Trial trial(field, kTile, planes, cloth(20));
+    Trial trial(field, kHardTile, planes, even_cloth(20));
     Random random(9);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       for (std::size_t k = 0; k < field.count(); ++k) {
         trial.reading(k)(x, 0) = 0;
         trial.reading(k)(x, 1) = static_cast<float>(1e-3 * std::clamp(random.normal(), -2.9, 2.9));
       }
     }
     trial.solve(method, noise);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       ASSERT_EQ(trial.status(x, 0), kDark | kNoSolution) << x;
       ASSERT_EQ(trial.albedo(x, 0), 0) << x;
       ASSERT_EQ(trial.status(x, 1) & ~(kShadowed | kZeroDof), kDark) << x;
@@ -90,17 +80,17 @@ TEST(HardCase05AllInShadow, IsDarkWithAnAlbedoOfZeroWithinItsSigma) {
 }
 
 TEST(HardCase06SaturatedReadings, AreLeftOutBeforeAnythingElse) {
-  const LightField field = field_of(ten_distant());
+  const LightField field = hard_field(ten_distant());
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial trial(field, kTile, planes, cloth(15));
+    Trial trial(field, kHardTile, planes, even_cloth(15));
     // One more light is saturated from pixel to pixel, each in one channel.
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       for (int k = 0; k < x % 11; ++k)
         trial.reading(static_cast<std::size_t>((k * 3 + x) % 10), k % planes)(x, 0) = kInfinity;
     }
     trial.solve(method);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       const int left = 10 - x % 11;
       const int expected =
           (left < 10 ? kSaturated : 0) | (left == 3 ? kZeroDof : 0) | (left < 3 ? kNoSolution : 0);
@@ -114,28 +104,28 @@ TEST(HardCase06SaturatedReadings, AreLeftOutBeforeAnythingElse) {
 }
 
 TEST(HardCase07ZeroAlbedo, GivesSoundValuesAndSaysHowLittleTheyMean) {
-  const LightField field = field_of(ten_distant());
+  const LightField field = hard_field(ten_distant());
   const NoiseModel noise = {1e-5, 1e-6, 0};
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial trial(field, kTile, planes, [](int, int) { return Truth{{0, 0, 1}, {0, 0, 0}}; });
+    Trial trial(field, kHardTile, planes, [](int, int) { return Truth{{0, 0, 1}, {0, 0, 0}}; });
     trial.add_noise(noise, 3);
     trial.solve(method, planes == 1 ? std::optional(noise) : std::nullopt);
     int sure = 0;
-    for (int y = 0; y < kTile.height(); ++y) {
-      for (int x = 0; x < kTile.width(); ++x) {
+    for (int y = 0; y < kHardTile.height(); ++y) {
+      for (int x = 0; x < kHardTile.width(); ++x) {
         expect_sound(trial, planes, x, y);
         sure += planes == 1 && trial.sigma_normal_deg(x, y) < 15;  // RGB knows no noise but its own scatter
       }
     }
-    EXPECT_LT(sure, kTile.pixels() / 10) << "of " << kTile.pixels();
+    EXPECT_LT(sure, kHardTile.pixels() / 10) << "of " << kHardTile.pixels();
   });
 }
 
 // E|b|^2 = |b_true|^2 + tr C: the bias of a dark albedo is the one that its covariance predicts.
 TEST(HardCase07ZeroAlbedo, HasABiasThatItsCovariancePredicts) {
   const DistantLights lights = ten_distant();
-  const LightField field = field_of(lights);
+  const LightField field = hard_field(lights);
   const NoiseModel noise = {0, 1e-6, 0};
   const Rect tile = {0, 0, 256, 16};
   Trial trial(field, tile, 1, [](int, int) { return Truth{{0, 0, 1}, {0, 0, 0}}; });
@@ -165,12 +155,12 @@ TEST(HardCase08DynamicRange, TwelveDecadesOfIntensityLeaveNoTrace) {
   DistantLights lights = ten_distant();
   for (std::size_t k = 0; k < 10; ++k)
     lights.lights[k].irradiance_rgb.fill(std::pow(10, -6 + 12.0 * static_cast<double>((k * 7) % 10) / 9));
-  const LightField field = field_of(lights);
+  const LightField field = hard_field(lights);
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial trial(field, kTile, planes, cloth(15));
+    Trial trial(field, kHardTile, planes, even_cloth(15));
     trial.solve(method);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       ASSERT_LT(angle_deg(trial.normal(x, 0), oracle_of(trial, planes, x, 0).normal), 1e-4) << x;
       ASSERT_EQ(trial.status(x, 0), 0) << x;
     }
@@ -178,17 +168,17 @@ TEST(HardCase08DynamicRange, TwelveDecadesOfIntensityLeaveNoTrace) {
 }
 
 TEST(HardCase08DynamicRange, TwelveDecadesOfAlbedoLeaveNoTrace) {
-  const LightField field = field_of(ten_distant());
+  const LightField field = hard_field(ten_distant());
   const auto albedo_of = [](int x) { return std::pow(10, -6 + 12.0 * x / 130); };
   const auto truth = [&](int x, int y) {
     const double a = albedo_of(x);
-    return Truth{cloth(15)(x, y).normal, {a, a, a}};
+    return Truth{even_cloth(15)(x, y).normal, {a, a, a}};
   };
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial trial(field, kTile, planes, truth);
+    Trial trial(field, kHardTile, planes, truth);
     trial.solve(method);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       ASSERT_LT(angle_deg(trial.normal(x, 0), oracle_of(trial, planes, x, 0).normal), 1e-4) << x;
       ASSERT_NEAR(trial.albedo(x, 0) / albedo_of(x), 1, 1e-5) << x;
       ASSERT_EQ(trial.status(x, 0), 0) << x;
@@ -197,17 +187,17 @@ TEST(HardCase08DynamicRange, TwelveDecadesOfAlbedoLeaveNoTrace) {
 }
 
 TEST(HardCase09StrangeReadings, AreCountedOutOrKeptAsTheyDeserve) {
-  const LightField field = field_of(ten_distant());
+  const LightField field = hard_field(ten_distant());
   const std::vector<std::pair<float, int>> kinds = {
       {kNaN, kInvalidReading}, {-kNaN, kInvalidReading}, {kInfinity, kSaturated}, {-kInfinity, kShadowed}};
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial trial(field, kTile, planes, cloth(15));
-    for (int x = 0; x < kTile.width(); ++x)
+    Trial trial(field, kHardTile, planes, even_cloth(15));
+    for (int x = 0; x < kHardTile.width(); ++x)
       trial.reading(static_cast<std::size_t>(x % 10), x % planes)(x, 0) =
           kinds[static_cast<std::size_t>(x) % 4].first;
     trial.solve(method);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       ASSERT_EQ(trial.status(x, 0), kinds[static_cast<std::size_t>(x) % 4].second) << x;
       ASSERT_LT(angle_deg(trial.normal(x, 0), oracle_of(trial, planes, x, 0).normal), 1e-4) << x;
     }
@@ -216,25 +206,25 @@ TEST(HardCase09StrangeReadings, AreCountedOutOrKeptAsTheyDeserve) {
 
 // The mean of dark-subtracted noise is zero only if its lower half is kept.
 TEST(HardCase09StrangeReadings, NegativeOnesStayWhereNothingSpeaksAgainstThem) {
-  const LightField field = field_of(ten_distant());
-  Trial trial(field, kTile, 1, cloth(15));
-  for (int x = 0; x < kTile.width(); ++x) trial.reading(3)(x, 0) = -0.01f;
+  const LightField field = hard_field(ten_distant());
+  Trial trial(field, kHardTile, 1, even_cloth(15));
+  for (int x = 0; x < kHardTile.width(); ++x) trial.reading(3)(x, 0) = -0.01f;
   trial.solve(*solver::least_squares_method());
-  for (int x = 0; x < kTile.width(); ++x) {
+  for (int x = 0; x < kHardTile.width(); ++x) {
     ASSERT_EQ(trial.status(x, 0) & kInvalidReading, 0) << x;
     ASSERT_LT(angle_deg(trial.normal(x, 0), oracle_of(trial, 1, x, 0).normal), 1e-4) << x;
   }
 }
 
 TEST(HardCase09StrangeReadings, DenormalOnesAreSolvedForWhatTheyAre) {
-  const LightField field = field_of(ten_distant());
+  const LightField field = hard_field(ten_distant());
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial trial(field, kTile, planes, [&](int x, int y) {
-      return Truth{cloth(15)(x, y).normal, {2e-42, 2e-42, 2e-42}};
+    Trial trial(field, kHardTile, planes, [&](int x, int y) {
+      return Truth{even_cloth(15)(x, y).normal, {2e-42, 2e-42, 2e-42}};
     });
     trial.solve(method);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       expect_sound(trial, planes, x, 0);
       ASSERT_EQ(trial.status(x, 0) & kNoSolution, 0) << x;
       ASSERT_LT(trial.error_deg(x, 0), 0.2) << x << ": as coarse as the readings themselves";
@@ -253,7 +243,7 @@ TEST(HardCase10GrazingNormals, AreSolvedWhereThreeLightsSeeThem) {
            {1, 1, 1}});
     }
   }
-  const LightField field = field_of(lights);
+  const LightField field = hard_field(lights);
   // From 60 degrees to 95, past the horizon.
   const auto truth = [](int x, int) {
     const double tilt = radians(60 + 35.0 * x / 130), azimuth = 0.7 * x;
@@ -262,8 +252,8 @@ TEST(HardCase10GrazingNormals, AreSolvedWhereThreeLightsSeeThem) {
   };
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial told(field, kTile, planes, truth), seen(field, kTile, planes, truth);
-    for (int x = 0; x < kTile.width(); ++x) {
+    Trial told(field, kHardTile, planes, truth), seen(field, kHardTile, planes, truth);
+    for (int x = 0; x < kHardTile.width(); ++x) {
       for (std::size_t k = 0; k < field.count(); ++k) {
         if (dot(truth(x, 0).normal, lights.lights[k].direction) > 0) continue;
         for (int p = 0; p < planes; ++p) told.reading(k, p)(x, 0) = -kInfinity;
@@ -271,7 +261,7 @@ TEST(HardCase10GrazingNormals, AreSolvedWhereThreeLightsSeeThem) {
     }
     told.solve(method);
     seen.solve(method);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       ASSERT_EQ(told.status(x, 0) & (kShadowed | kNoSolution | kIllConditioned), kShadowed) << x;
       ASSERT_LT(told.error_deg(x, 0), 1e-3) << "told which lights see it, pixel " << x;
       if (!test::promise_of(name).masks_shadow) continue;
@@ -281,14 +271,14 @@ TEST(HardCase10GrazingNormals, AreSolvedWhereThreeLightsSeeThem) {
 }
 
 TEST(HardCase11And12OddTiles, GiveTheBytesOfAPaddedRunForAnyThreads) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = hard_field(test::ten_leds());
   const Rect whole_area = {0, 0, 256, 13};
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial whole(field, whole_area, planes, cloth(60));
+    Trial whole(field, whole_area, planes, even_cloth(60));
     whole.add_noise({1e-3, 1e-4, 0}, 3);
-    Image<float> maps(kSize, 11);
-    Image<std::uint16_t> status(kSize);
+    Image<float> maps(kHardSize, 11);
+    Image<std::uint16_t> status(kHardSize);
     const auto solve = [&](Rect tile, int) {
       std::vector<View<const float>> views;
       for (std::size_t i = 0; i < field.count(); ++i) {
@@ -340,22 +330,22 @@ TEST(HardCase11And12OddTiles, NoPixelsAreNoWork) {
 TEST(HardCase14Gauge, OfIntensitiesMovesTheAlbedoAlone) {
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     const DistantLights lights = ten_distant();
-    const LightField field = field_of(lights);
-    Trial plain(field, kTile, planes, cloth(15));
+    const LightField field = hard_field(lights);
+    Trial plain(field, kHardTile, planes, even_cloth(15));
     plain.solve(method);
     for (const int power : {-30, -12, -3, 1, 6, 12, 30}) {
       SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes, 10^" << power);
       DistantLights brighter = lights;
       for (DistantLight& light : brighter.lights) light.irradiance_rgb.fill(std::pow(10, power));
-      const LightField bright = field_of(brighter);
-      Trial gauged(bright, kTile, planes, cloth(15));
+      const LightField bright = hard_field(brighter);
+      Trial gauged(bright, kHardTile, planes, even_cloth(15));
       for (std::size_t k = 0; k < 10; ++k) {
         for (int p = 0; p < planes; ++p) {
-          for (int x = 0; x < kTile.width(); ++x) gauged.reading(k, p)(x, 0) = plain.reading(k, p)(x, 0);
+          for (int x = 0; x < kHardTile.width(); ++x) gauged.reading(k, p)(x, 0) = plain.reading(k, p)(x, 0);
         }
       }
       gauged.solve(method);
-      for (int x = 0; x < kTile.width(); ++x) {
+      for (int x = 0; x < kHardTile.width(); ++x) {
         ASSERT_LT(angle_deg(gauged.normal(x, 0), plain.normal(x, 0)), 5e-5) << x;
         ASSERT_NEAR(gauged.albedo(x, 0) * std::pow(10, power) / plain.albedo(x, 0), 1, 2e-6) << x;
         ASSERT_EQ(gauged.status(x, 0), plain.status(x, 0)) << x;
@@ -378,19 +368,20 @@ TEST(HardCase15Rotation, OfTheLightsTurnsTheNormals) {
   const DistantLights lights = ten_distant();
   DistantLights turned_lights = lights;
   for (DistantLight& light : turned_lights.lights) light.direction = turned(light.direction);
-  const LightField field = field_of(lights), turned_field = field_of(turned_lights);
+  const LightField field = hard_field(lights), turned_field = hard_field(turned_lights);
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     SCOPED_TRACE(testing::Message() << name << ", " << planes << " planes");
-    Trial still(field, kTile, planes, cloth(15)), moved(turned_field, kTile, planes, cloth(15));
+    Trial still(field, kHardTile, planes, even_cloth(15)),
+        moved(turned_field, kHardTile, planes, even_cloth(15));
     still.add_noise({1e-5, 1e-6, 0}, 21);
     for (std::size_t k = 0; k < 10; ++k) {
       for (int p = 0; p < planes; ++p) {
-        for (int x = 0; x < kTile.width(); ++x) moved.reading(k, p)(x, 0) = still.reading(k, p)(x, 0);
+        for (int x = 0; x < kHardTile.width(); ++x) moved.reading(k, p)(x, 0) = still.reading(k, p)(x, 0);
       }
     }
     still.solve(method);
     moved.solve(method);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kHardTile.width(); ++x) {
       ASSERT_LT(angle_deg(moved.normal(x, 0), turned(still.normal(x, 0))), 1e-4) << x;
       ASSERT_EQ(moved.status(x, 0), still.status(x, 0)) << x;
       for (const solver::Estimator estimator :

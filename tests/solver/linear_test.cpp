@@ -3,64 +3,40 @@
 
 #include <gtest/gtest.h>
 
-#include <hwy/targets.h>
 #include <cmath>
 #include <limits>
 
 #include "bench/oracles/rig.h"
 #include "solver/in_double/pixel.h"
+#include "tests/simd_targets.h"
+#include "tests/solver/tiles.h"
 
 namespace weft {
 namespace {
 
+using test::cloth;
+using test::cloth_field;
+using test::kClothTile;
+using test::kInfinity;
+using test::kNaN;
+using test::on_every_target;
 using test::Random;
 using test::Trial;
 using test::Truth;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-const Size kSize = {640, 480};
-const Rect kTile = {64, 33, 64 + 131, 33 + 5};
-
-LightField field_of(const NearLights& lights) {
-  return *LightField::make(lights, overhead_camera(kSize, 600, 0.3), kSize, 2);
-}
-
-// Pixels of all kinds: normals up to `most_deg`, albedo from 0.02 to 0.9.
-std::function<Truth(int, int)> cloth(double most_deg) {
-  return [most_deg](int x, int y) {
-    Random random(static_cast<std::uint64_t>(y) * 1000 + static_cast<std::uint64_t>(x));
-    const Vec3 n = test::random_normal(random, most_deg);
-    return Truth{
-        n, {0.02 + 0.9 * random.uniform(), 0.02 + 0.9 * random.uniform(), 0.02 + 0.9 * random.uniform()}};
-  };
-}
-
-// Runs `check` once for every SIMD target this machine and this build have.
-template <typename Check>
-void on_every_target(Check check) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-}
-
 double worst_error_deg(const Trial& trial) {
   double worst = 0;
-  for (int y = 0; y < kTile.height(); ++y) {
-    for (int x = 0; x < kTile.width(); ++x) worst = std::max(worst, trial.error_deg(x, y));
+  for (int y = 0; y < kClothTile.height(); ++y) {
+    for (int x = 0; x < kClothTile.width(); ++x) worst = std::max(worst, trial.error_deg(x, y));
   }
   return worst;
 }
 
 TEST(Fast, RecoversEveryNormalFromMosaicAndRgbOnEveryTarget) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = cloth_field(test::ten_leds());
   on_every_target([&] {
     for (const int planes : {1, 3}) {
-      Trial trial(field, kTile, planes, cloth(50));
+      Trial trial(field, kClothTile, planes, cloth(50));
       trial.solve(*solver::fast_method());
       EXPECT_LT(worst_error_deg(trial), 1e-3) << planes << " planes";
     }
@@ -68,10 +44,10 @@ TEST(Fast, RecoversEveryNormalFromMosaicAndRgbOnEveryTarget) {
 }
 
 TEST(LeastSquares, RecoversEveryNormalThatAllLightsReach) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = cloth_field(test::ten_leds());
   on_every_target([&] {
     for (const int planes : {1, 3}) {
-      Trial trial(field, kTile, planes, cloth(18));
+      Trial trial(field, kClothTile, planes, cloth(18));
       trial.solve(*solver::least_squares_method());
       EXPECT_LT(worst_error_deg(trial), 1e-3) << planes << " planes";
     }
@@ -88,10 +64,10 @@ TEST(Fast, HandlesAnyLobeAndGain) {
         lights.log_gain_rgb[c].coefficients.push_back(0.3 * random.uniform() - 0.15);
     }
     lights.leds[4].log_gain_quadratic = {0.01, -0.02, 0.03, 0.01, 0.02, -0.01};
-    const LightField field = field_of(lights);
+    const LightField field = cloth_field(lights);
     on_every_target([&] {
       for (const int planes : {1, 3}) {
-        Trial trial(field, kTile, planes, cloth(50));
+        Trial trial(field, kClothTile, planes, cloth(50));
         trial.solve(*solver::fast_method());
         EXPECT_LT(worst_error_deg(trial), 1e-3) << "mu " << mu << ", " << planes << " planes";
       }
@@ -100,10 +76,10 @@ TEST(Fast, HandlesAnyLobeAndGain) {
 }
 
 TEST(Fast, KeepsAbsoluteAlbedo) {
-  const LightField field = field_of(test::ten_leds());
-  Trial trial(field, kTile, 3, cloth(50));
+  const LightField field = cloth_field(test::ten_leds());
+  Trial trial(field, kClothTile, 3, cloth(50));
   trial.solve(*solver::fast_method());
-  for (int x = 0; x < kTile.width(); ++x) {
+  for (int x = 0; x < kClothTile.width(); ++x) {
     for (int c = 0; c < 3; ++c) {
       const double truth = cloth(50)(x, 2).albedo[static_cast<std::size_t>(c)];
       EXPECT_NEAR(trial.albedo(x, 2, c) / truth, 1, 1e-5) << x << ' ' << c;
@@ -114,22 +90,22 @@ TEST(Fast, KeepsAbsoluteAlbedo) {
 // Everything a method returns, next to the double-precision reference of the same pixel.
 void expect_as_reference(const LightField& field, int planes, bool mask,
                          const std::optional<NoiseModel>& noise) {
-  Trial trial(field, kTile, planes, cloth(70));
+  Trial trial(field, kClothTile, planes, cloth(70));
   trial.add_noise({2e-4, 1e-7, noise ? 1e-7 : 0}, 7);
   Random random(3);
   for (int i = 0; i < 400; ++i) {
     const auto light = static_cast<std::size_t>(random.uniform() * 10);
-    const int x = static_cast<int>(random.uniform() * kTile.width()),
+    const int x = static_cast<int>(random.uniform() * kClothTile.width()),
               y = static_cast<int>(random.uniform() * 5);
     trial.reading(light)(x, y) = i % 2 == 0 ? kInfinity : kNaN;
   }
   trial.solve(mask ? *solver::fast_method() : *solver::least_squares_method(), noise);
   std::vector<solver::PixelRow> rows(field.count());
-  for (int y = 0; y < kTile.height(); ++y) {
-    for (int x = 0; x < kTile.width(); ++x) {
+  for (int y = 0; y < kClothTile.height(); ++y) {
+    for (int x = 0; x < kClothTile.width(); ++x) {
       for (std::size_t k = 0; k < rows.size(); ++k) {
         for (int p = 0; p < planes; ++p) {
-          const int px = kTile.x0 + x, py = kTile.y0 + y;
+          const int px = kClothTile.x0 + x, py = kClothTile.y0 + y;
           const LightField::Light light = field.at(k, planes == 1 ? trial.cfa.channel_at(px, py) : p, px, py);
           rows[k].direction = light.direction;
           rows[k].strength[static_cast<std::size_t>(p)] = light.strength;
@@ -152,7 +128,7 @@ void expect_as_reference(const LightField& field, int planes, bool mask,
 }
 
 TEST(LinearKernel, AgreesWithItsReferenceOnEveryTarget) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = cloth_field(test::ten_leds());
   on_every_target([&] {
     for (const bool mask : {false, true}) {
       expect_as_reference(field, 1, mask, NoiseModel{2e-4, 1e-7, 1e-7});
@@ -163,7 +139,7 @@ TEST(LinearKernel, AgreesWithItsReferenceOnEveryTarget) {
 }
 
 TEST(LinearKernel, GivesTheSameBytesWhereverTheTileBegins) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = cloth_field(test::ten_leds());
   const auto truth = [](int x, int y) { return cloth(50)(x + 64, y + 1); };
   Trial whole(field, {0, 0, 259, 3}, 1, cloth(50));
   Trial part(field, {64, 1, 131, 3}, 1, truth);
@@ -176,15 +152,15 @@ TEST(LinearKernel, GivesTheSameBytesWhereverTheTileBegins) {
 }
 
 TEST(LinearKernel, GivesTheSameBitsWhateverThePixelBeside) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = cloth_field(test::ten_leds());
   const NoiseModel noise = {2e-4, 1e-7, 1e-7};
   on_every_target([&] {
     for (const int planes : {1, 3}) {
-      Trial alone(field, kTile, planes, cloth(15)), beside(field, kTile, planes, cloth(15));
-      for (int x = 0; x < kTile.width(); x += 7) beside.reading(3)(x, 0) = x % 2 == 0 ? kNaN : 0;
+      Trial alone(field, kClothTile, planes, cloth(15)), beside(field, kClothTile, planes, cloth(15));
+      for (int x = 0; x < kClothTile.width(); x += 7) beside.reading(3)(x, 0) = x % 2 == 0 ? kNaN : 0;
       alone.solve(*solver::fast_method(), noise);
       beside.solve(*solver::fast_method(), noise);
-      for (int x = 0; x < kTile.width(); ++x) {
+      for (int x = 0; x < kClothTile.width(); ++x) {
         if (x % 7 == 0) continue;
         ASSERT_EQ(alone.normal(x, 0), beside.normal(x, 0)) << planes << " planes, pixel " << x;
         ASSERT_EQ(alone.sigma_normal_deg(x, 0), beside.sigma_normal_deg(x, 0))
@@ -198,8 +174,8 @@ TEST(LinearKernel, GivesTheSameBitsWhateverThePixelBeside) {
 }
 
 TEST(LinearKernel, SaysWhyAPixelHasNoSolution) {
-  const LightField field = field_of(test::ten_leds());
-  Trial trial(field, kTile, 1, [](int, int) { return Truth{{0, 0, 1}, {0.5, 0.5, 0.5}}; });
+  const LightField field = cloth_field(test::ten_leds());
+  Trial trial(field, kClothTile, 1, [](int, int) { return Truth{{0, 0, 1}, {0.5, 0.5, 0.5}}; });
   for (std::size_t k = 0; k < 10; ++k) {
     trial.reading(k)(0, 0) = kNaN;
     trial.reading(k)(1, 0) = kInfinity;
@@ -234,10 +210,10 @@ TEST(LinearKernel, SaysWhyAPixelHasNoSolution) {
 }
 
 TEST(Fast, LeavesOutAttachedShadowWhereLeastSquaresIsBent) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = cloth_field(test::ten_leds());
   const Vec3 steep = normalized({std::sin(radians(50)), 0, std::cos(radians(50))});
   const auto truth = [&](int, int) { return Truth{steep, {0.5, 0.5, 0.5}}; };
-  Trial plain(field, kTile, 1, truth), masked(field, kTile, 1, truth);
+  Trial plain(field, kClothTile, 1, truth), masked(field, kClothTile, 1, truth);
   plain.solve(*solver::least_squares_method());
   masked.solve(*solver::fast_method());
   EXPECT_GT(plain.error_deg(60, 2), 3);
@@ -246,8 +222,8 @@ TEST(Fast, LeavesOutAttachedShadowWhereLeastSquaresIsBent) {
 }
 
 TEST(Fast, FlagsAHighlight) {
-  const LightField field = field_of(test::ten_leds());
-  Trial trial(field, kTile, 1, [](int, int) { return Truth{{0, 0, 1}, {0.05, 0.05, 0.05}}; });
+  const LightField field = cloth_field(test::ten_leds());
+  Trial trial(field, kClothTile, 1, [](int, int) { return Truth{{0, 0, 1}, {0.05, 0.05, 0.05}}; });
   trial.reading(2)(9, 1) *= 30;
   trial.solve(*solver::fast_method());
   EXPECT_TRUE(trial.status(9, 1) & kSpecular);
@@ -255,7 +231,7 @@ TEST(Fast, FlagsAHighlight) {
 }
 
 TEST(LeastSquares, PredictsItsOwnScatter) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = cloth_field(test::ten_leds());
   const Vec3 n = normalized({0.1, 0.05, 1});
   const NoiseModel noise = {5e-5, 1e-8, 4e-8};
   const Rect tile = {256, 200, 256 + 256, 200 + 80};
@@ -276,7 +252,7 @@ TEST(LeastSquares, PredictsItsOwnScatter) {
 }
 
 TEST(Bare, SolvesTheSameEquations) {
-  const LightField field = field_of(test::ten_leds(0));
+  const LightField field = cloth_field(test::ten_leds(0));
   const Rect tile = {0, 0, 640, 4};
   Image<float> readings({640, 4}, 30), normal({640, 4}, 3), albedo({640, 4}, 3);
   std::vector<View<const float>> views;

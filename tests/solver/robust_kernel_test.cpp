@@ -1,34 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
-#include <hwy/targets.h>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "bench/oracles/rig.h"
 #include "solver/in_double/pixel.h"
 #include "solver/kernels/weighted.h"
+#include "tests/simd_targets.h"
+#include "tests/solver/tiles.h"
 
 namespace weft {
 namespace {
 
 using solver::Estimator;
+using test::cloth;
+using test::cloth_field;
+using test::kClothTile;
+using test::kInfinity;
+using test::kNaN;
+using test::on_every_target;
 using test::Random;
 using test::Trial;
 using test::Truth;
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-
-const Size kSize = {640, 480};
-const Rect kTile = {64, 33, 64 + 131, 33 + 16};
 const NoiseModel kNoise = {2e-5, 1e-8, 1e-8};
-
-LightField field_of(const NearLights& lights) {
-  return *LightField::make(lights, overhead_camera(kSize, 600, 0.3), kSize, 2);
-}
 
 // The first of ten LEDs, or all and some of a ring between.
 NearLights leds(std::size_t count) {
@@ -43,15 +40,6 @@ NearLights leds(std::size_t count) {
     lights.leds.push_back(led);
   }
   return lights;
-}
-
-std::function<Truth(int, int)> cloth(double most_deg) {
-  return [most_deg](int x, int y) {
-    Random random(static_cast<std::uint64_t>(y) * 1000 + static_cast<std::uint64_t>(x));
-    const Vec3 n = test::random_normal(random, most_deg);
-    return Truth{
-        n, {0.05 + 0.9 * random.uniform(), 0.05 + 0.9 * random.uniform(), 0.05 + 0.9 * random.uniform()}};
-  };
 }
 
 Truth flat_grey(int, int) {
@@ -79,16 +67,6 @@ void spoil(Trial& trial, Rect tile, int lights, int planes, std::uint64_t seed) 
       }
     }
   }
-}
-
-template <typename Check>
-void on_every_target(Check check) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
 }
 
 class Kernel : public solver::Method {
@@ -133,14 +111,14 @@ constexpr double kShareThatDecidesOtherwise = 1.0 / 2000;
 
 void expect_as_reference(const NearLights& lights, const Kernel& kernel, int planes,
                          const std::optional<NoiseModel>& noise) {
-  const LightField field = field_of(lights);
-  Trial trial(field, kTile, planes, cloth(60));
+  const LightField field = cloth_field(lights);
+  Trial trial(field, kClothTile, planes, cloth(60));
   trial.add_noise(kNoise, 7);
-  spoil(trial, kTile, static_cast<int>(field.count()), planes, 3);
+  spoil(trial, kClothTile, static_cast<int>(field.count()), planes, 3);
   solver::PixelSolver reference(kernel.options(planes, noise));
   std::vector<solver::PixelSolution> truth;
-  for (int y = 0; y < kTile.height(); ++y) {
-    for (int x = 0; x < kTile.width(); ++x) truth.push_back(reference.solve(trial.rows(x, y)));
+  for (int y = 0; y < kClothTile.height(); ++y) {
+    for (int x = 0; x < kClothTile.width(); ++x) truth.push_back(reference.solve(trial.rows(x, y)));
   }
   std::int64_t rejected = 0;
   for (const solver::PixelSolution& s : truth) rejected += s.rejected;
@@ -148,12 +126,12 @@ void expect_as_reference(const NearLights& lights, const Kernel& kernel, int pla
     trial.solve(kernel, noise);
     int otherwise = 0;
     std::size_t i = 0;
-    for (int y = 0; y < kTile.height(); ++y) {
-      for (int x = 0; x < kTile.width(); ++x, ++i) {
+    for (int y = 0; y < kClothTile.height(); ++y) {
+      for (int x = 0; x < kClothTile.width(); ++x, ++i) {
         if (!is_as(trial, truth[i], planes, x, y)) ++otherwise;
       }
     }
-    const auto pixels = static_cast<double>(kTile.pixels());
+    const auto pixels = static_cast<double>(kClothTile.pixels());
     EXPECT_LE(otherwise, std::max(1.0, kShareThatDecidesOtherwise * pixels));
     EXPECT_NEAR(static_cast<double>(kernel.tally.rejected_readings), static_cast<double>(rejected),
                 5.0 * otherwise);
@@ -189,20 +167,20 @@ TEST(WeightedKernel, AgreesWithItsReferenceForAnyNumberOfLights) {
 
 double rms_error_deg(const Trial& trial) {
   double square = 0;
-  for (int y = 0; y < kTile.height(); ++y) {
-    for (int x = 0; x < kTile.width(); ++x) square += std::pow(trial.error_deg(x, y), 2);
+  for (int y = 0; y < kClothTile.height(); ++y) {
+    for (int x = 0; x < kClothTile.width(); ++x) square += std::pow(trial.error_deg(x, y), 2);
   }
-  return std::sqrt(square / static_cast<double>(kTile.pixels()));
+  return std::sqrt(square / static_cast<double>(kClothTile.pixels()));
 }
 
 // The rms error of flat cloth where every pixel's readings were changed by `spoil_pixel(trial, x, y)`.
 template <typename Spoil>
 double error_deg_after(Spoil spoil_pixel, const Kernel& kernel) {
-  const LightField field = field_of(test::ten_leds());
-  Trial trial(field, kTile, 1, flat_grey);
+  const LightField field = cloth_field(test::ten_leds());
+  Trial trial(field, kClothTile, 1, flat_grey);
   trial.add_noise(kNoise, 11);
-  for (int y = 0; y < kTile.height(); ++y) {
-    for (int x = 0; x < kTile.width(); ++x) spoil_pixel(trial, x, y);
+  for (int y = 0; y < kClothTile.height(); ++y) {
+    for (int x = 0; x < kClothTile.width(); ++x) spoil_pixel(trial, x, y);
   }
   trial.solve(kernel, kNoise);
   return rms_error_deg(trial);
@@ -216,7 +194,7 @@ TEST(Standard, LeavesOutOneHighlightOfTen) {
   const double clean = error_deg_after(nothing, Kernel(Estimator::kRejecting));
   const Kernel rejecting(Estimator::kRejecting);
   EXPECT_LT(error_deg_after(highlight, rejecting), 1.15 * clean) << "of nine readings instead of ten";
-  EXPECT_GE(rejecting.tally.rejected_readings, kTile.pixels());
+  EXPECT_GE(rejecting.tally.rejected_readings, kClothTile.pixels());
   EXPECT_GT(error_deg_after(highlight, Kernel(Estimator::kWeighted)), 5 * clean);
 }
 
@@ -236,7 +214,7 @@ TEST(Standard, KeepsAllReadingsOfMostCleanPixels) {
   const Kernel kernel(Estimator::kRejecting);
   error_deg_after([](Trial&, int, int) {}, kernel);
   const double rejecting =
-      static_cast<double>(kernel.tally.rejected_readings) / static_cast<double>(kTile.pixels());
+      static_cast<double>(kernel.tally.rejected_readings) / static_cast<double>(kClothTile.pixels());
   EXPECT_GT(rejecting, 0.003);
   EXPECT_LT(rejecting, 0.035);
 }
@@ -262,12 +240,12 @@ void expect_same_bits(const Trial& a, int ax, int ay, const Trial& b, int bx, in
 
 // Every seventh pixel asks for what the six beside it do not.
 void expect_same_bits_beside(const Kernel& kernel, int planes) {
-  const LightField field = field_of(test::ten_leds());
-  Trial alone(field, kTile, planes, cloth(30)), beside(field, kTile, planes, cloth(30));
+  const LightField field = cloth_field(test::ten_leds());
+  Trial alone(field, kClothTile, planes, cloth(30)), beside(field, kClothTile, planes, cloth(30));
   alone.add_noise(kNoise, 5);
   beside.add_noise(kNoise, 5);
-  for (int x = 0; x < kTile.width(); x += 7) {
-    for (int y = 0; y < kTile.height(); ++y) {
+  for (int x = 0; x < kClothTile.width(); x += 7) {
+    for (int y = 0; y < kClothTile.height(); ++y) {
       beside.reading(3)(x, y) *= y % 4 == 0 ? 3.0f : 1.0f;
       beside.reading(5)(x, y) *= y % 4 <= 1 ? 4.0f : 1.0f;
       beside.reading(7)(x, y) = y % 4 == 2 ? kNaN : 0;
@@ -276,8 +254,8 @@ void expect_same_bits_beside(const Kernel& kernel, int planes) {
   on_every_target([&] {
     alone.solve(kernel, kNoise);
     beside.solve(kernel, kNoise);
-    for (int y = 0; y < kTile.height(); ++y) {
-      for (int x = 0; x < kTile.width(); ++x) {
+    for (int y = 0; y < kClothTile.height(); ++y) {
+      for (int x = 0; x < kClothTile.width(); ++x) {
         SCOPED_TRACE(testing::Message() << planes << " planes, pixel " << x << ", " << y);
         if (x % 7 != 0) expect_same_bits(alone, x, y, beside, x, y);
       }
@@ -295,15 +273,15 @@ TEST(WeightedKernel, GivesTheSameBitsWhateverThePixelBeside) {
 }
 
 TEST(TrimmedKernel, IsStandardToTheBitWhereNothingAsks) {
-  const LightField field = field_of(test::ten_leds());
-  Trial standard(field, kTile, 1, cloth(30)), robust(field, kTile, 1, cloth(30));
+  const LightField field = cloth_field(test::ten_leds());
+  Trial standard(field, kClothTile, 1, cloth(30)), robust(field, kClothTile, 1, cloth(30));
   standard.add_noise(kNoise, 5);
   robust.add_noise(kNoise, 5);
-  for (int x = 0; x < kTile.width(); x += 7) robust.reading(5)(x, 3) *= 5;
+  for (int x = 0; x < kClothTile.width(); x += 7) robust.reading(5)(x, 3) *= 5;
   on_every_target([&] {
     standard.solve(Kernel(Estimator::kRejecting), kNoise);
     robust.solve(Kernel(Estimator::kTrimmed, 6.0), kNoise);
-    for (int x = 0; x < kTile.width(); ++x) {
+    for (int x = 0; x < kClothTile.width(); ++x) {
       SCOPED_TRACE(x);
       if (x % 7 != 0) expect_same_bits(standard, x, 3, robust, x, 3);
     }
@@ -311,9 +289,9 @@ TEST(TrimmedKernel, IsStandardToTheBitWhereNothingAsks) {
 }
 
 TEST(WeightedKernel, GivesTheSameBitsAtAnyWidth) {
-  const LightField field = field_of(test::ten_leds());
+  const LightField field = cloth_field(test::ten_leds());
   const auto solved = [&](int width) {
-    const Rect tile = {kTile.x0, kTile.y0, kTile.x0 + width, kTile.y0 + 2};
+    const Rect tile = {kClothTile.x0, kClothTile.y0, kClothTile.x0 + width, kClothTile.y0 + 2};
     Trial trial(field, tile, 1, cloth(45));
     for (int x = 0; x < width; ++x)
       trial.reading(static_cast<std::size_t>(x % 9))(x, 1) *= x % 3 == 0 ? 3.0f : 1.0f;
@@ -345,15 +323,15 @@ TEST(WeightedKernel, ForgetsTheFieldOfTheTileBefore) {
   NearLights near = test::ten_leds(1.3);
   near.leds[2].log_gain_quadratic = {0.1, 0.2, 0.1, 0, 0, 0};
   near.log_gain_rgb[0] = near.log_gain_rgb[1] = near.log_gain_rgb[2] = {4, 4, std::vector<double>(16, 0.1)};
-  const LightField far_field = *LightField::make(distant, std::nullopt, kSize, 0),
-                   near_field = field_of(near);
-  Trial first(far_field, kTile, 1, cloth(45)), between(near_field, kTile, 1, cloth(45)),
-      after(far_field, kTile, 1, cloth(45));
+  const LightField far_field = *LightField::make(distant, std::nullopt, test::kClothSize, 0),
+                   near_field = cloth_field(near);
+  Trial first(far_field, kClothTile, 1, cloth(45)), between(near_field, kClothTile, 1, cloth(45)),
+      after(far_field, kClothTile, 1, cloth(45));
   const Kernel kernel(Estimator::kRejecting);
   first.solve(kernel, kNoise);
   between.solve(kernel, kNoise);
   after.solve(kernel, kNoise);
-  for (int x = 0; x < kTile.width(); ++x) {
+  for (int x = 0; x < kClothTile.width(); ++x) {
     SCOPED_TRACE(x);
     expect_same_bits(first, x, 3, after, x, 3);
     ASSERT_LT(first.error_deg(x, 3), 1e-3);
@@ -362,8 +340,8 @@ TEST(WeightedKernel, ForgetsTheFieldOfTheTileBefore) {
 }
 
 TEST(WeightedKernel, CountsEveryPixelOnce) {
-  const LightField field = field_of(test::ten_leds());
-  Trial trial(field, kTile, 1, flat_grey);
+  const LightField field = cloth_field(test::ten_leds());
+  Trial trial(field, kClothTile, 1, flat_grey);
   for (std::size_t k = 0; k < 10; ++k) {
     if (k > 0) trial.reading(k)(3, 4) = kNaN;
     if (k > 2) trial.reading(k)(5, 4) = kInfinity;
@@ -374,8 +352,8 @@ TEST(WeightedKernel, CountsEveryPixelOnce) {
   trial.solve(kernel, kNoise);
   const solver::SolveTally& t = kernel.tally;
   EXPECT_EQ(t.unsolved, 2);
-  EXPECT_EQ(t.by_kernel + t.by_normal_equations + t.by_qr + t.by_svd + t.unsolved, kTile.pixels());
-  EXPECT_EQ(t.by_kernel, kTile.pixels() - 2);
+  EXPECT_EQ(t.by_kernel + t.by_normal_equations + t.by_qr + t.by_svd + t.unsolved, kClothTile.pixels());
+  EXPECT_EQ(t.by_kernel, kClothTile.pixels() - 2);
   EXPECT_EQ(t.rejected_readings, 1);
   EXPECT_EQ(trial.status(3, 4), kInvalidReading | kNoSolution);
   EXPECT_EQ(trial.status(5, 4), kSaturated | kZeroDof);
@@ -389,19 +367,19 @@ TEST(WeightedKernel, WeighsReadingsOverTwelveDecadesOfIntensity) {
     for (NearLight& led : lights.leds) {
       for (double& flux : led.flux_rgb) flux *= factor;
     }
-    const LightField field = field_of(lights), usual = field_of(test::ten_leds());
+    const LightField field = cloth_field(lights), usual = cloth_field(test::ten_leds());
     const NoiseModel noise = {kNoise.per_reading * factor, kNoise.floor * factor * factor,
                               kNoise.shared * factor * factor};
     for (const Estimator estimator : {Estimator::kWeighted, Estimator::kRejecting, Estimator::kTrimmed}) {
-      Trial scaled(field, kTile, 1, cloth(45)), unscaled(usual, kTile, 1, cloth(45));
+      Trial scaled(field, kClothTile, 1, cloth(45)), unscaled(usual, kClothTile, 1, cloth(45));
       for (Trial* trial : {&scaled, &unscaled}) {
-        for (int x = 0; x < kTile.width(); x += 2) trial->reading(3)(x, 2) *= 3;
+        for (int x = 0; x < kClothTile.width(); x += 2) trial->reading(3)(x, 2) *= 3;
       }
       const Kernel kernel(estimator);
       unscaled.solve(kernel, kNoise);
       scaled.solve(kernel, noise);
-      EXPECT_EQ(kernel.tally.by_kernel, kTile.pixels()) << "decade " << decade;
-      for (int x = 0; x < kTile.width(); ++x) {
+      EXPECT_EQ(kernel.tally.by_kernel, kClothTile.pixels()) << "decade " << decade;
+      for (int x = 0; x < kClothTile.width(); ++x) {
         ASSERT_LT(angle_deg(scaled.normal(x, 2), unscaled.normal(x, 2)), 1e-4) << "decade " << decade;
         ASSERT_NEAR(scaled.sigma_normal_deg(x, 2) / unscaled.sigma_normal_deg(x, 2), 1, 1e-4);
       }

@@ -6,11 +6,10 @@
 #include <limits>
 
 #include "bench/oracles/rig.h"
+#include "tests/solver/tiles.h"
 
 namespace weft {
 namespace {
-
-const Size kSize = {640, 480};
 
 std::vector<solver::PixelRow> rows_of(const LightField& field, int x, int y, Vec3 normal,
                                       std::array<double, 3> albedo) {
@@ -29,7 +28,8 @@ std::vector<solver::PixelRow> rows_of(const LightField& field, int x, int y, Vec
 }
 
 LightField field() {
-  return *LightField::make(test::ten_leds(), overhead_camera(kSize, 600, 0.3), kSize, 0);
+  return *LightField::make(test::ten_leds(), overhead_camera(test::kClothSize, 600, 0.3), test::kClothSize,
+                           0);
 }
 
 TEST(SeedMethod, RecoversATiltedPlaneInDouble) {

@@ -31,16 +31,16 @@ constexpr double kPlainBound = bound_of(3), kRejectingBound = bound_of(16.5);
 // doubted, what one round rounds goes into the weights of the next.
 constexpr double kSigmaRelativeBound = 5e-4, kDoubtedSigmaRelativeBound = 1e-3;
 // A reading exactly on a threshold falls to one side or the other.
-constexpr double kShareThatDecidesOtherwise = 1e-3;
+constexpr double kShareOnAThreshold = 1e-3;
 
-const Size kSize = {320, 200};
-const Rect kTile = {64, 33, 64 + 131, 33 + 6};
+const Size kSimdSize = {320, 200};
+const Rect kSimdTile = {64, 33, 64 + 131, 33 + 6};
 
 void expect_within_bound(const Trial& here, const Trial& there, int planes, double bound) {
   int otherwise = 0;
   double normal_deg = 0, albedo = 0, sigma = 0;
-  for (int y = 0; y < kTile.height(); ++y) {
-    for (int x = 0; x < kTile.width(); ++x) {
+  for (int y = 0; y < kSimdTile.height(); ++y) {
+    for (int x = 0; x < kSimdTile.width(); ++x) {
       if (here.status(x, y) != there.status(x, y)) {
         ++otherwise;
         continue;
@@ -57,21 +57,22 @@ void expect_within_bound(const Trial& here, const Trial& there, int planes, doub
   EXPECT_LE(radians(normal_deg), bound);
   EXPECT_LE(albedo, bound);
   EXPECT_LE(sigma, bound == kPlainBound ? kSigmaRelativeBound : kDoubtedSigmaRelativeBound);
-  EXPECT_LE(otherwise, kShareThatDecidesOtherwise * static_cast<double>(kTile.pixels()));
+  EXPECT_LE(otherwise, kShareOnAThreshold * static_cast<double>(kSimdTile.pixels()));
 }
 
 TEST(SimdTargets, AgreeWithinTheStatedBoundForEveryMethod) {
-  const LightField field = *LightField::make(test::ten_leds(1.3), overhead_camera(kSize, 600, 0.3), kSize, 2);
+  const LightField field =
+      *LightField::make(test::ten_leds(1.3), overhead_camera(kSimdSize, 600, 0.3), kSimdSize, 2);
   const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   test::for_each_method([&](const solver::Method& method, const std::string& name, int planes) {
     const auto solved_on = [&](std::int64_t target) {
-      Trial trial(field, kTile, planes, [](int x, int y) {
+      Trial trial(field, kSimdTile, planes, [](int x, int y) {
         Random random(static_cast<std::uint64_t>(y) * 1000 + static_cast<std::uint64_t>(x));
         const Vec3 n = test::random_normal(random, 45);
         return Truth{n, {0.02 + 0.9 * random.uniform(), 0.3, 0.2}};
       });
       trial.add_noise({2e-5, 1e-8, 0}, 7);
-      for (int x = 0; x < kTile.width(); x += 3)
+      for (int x = 0; x < kSimdTile.width(); x += 3)
         trial.reading(static_cast<std::size_t>(x) % 10)(x, 1) = std::numeric_limits<float>::infinity();
       hwy::SetSupportedTargetsForTest(target);
       trial.solve(method, planes == 1 ? std::optional(NoiseModel{2e-5, 1e-8, 0}) : std::nullopt);

@@ -30,7 +30,7 @@ using simulator::Scene;
 using simulator::TargetSettings;
 using testing::HasSubstr;
 
-Scene rig_scene() {
+Scene checked_rig() {
   Scene scene;
   scene.fabric = "grey card";
   scene.camera.width = 600;
@@ -60,10 +60,10 @@ class CalibrationCheck : public testing::Test {
     root_ = fs::path(testing::TempDir()) / "weft_calibration_check";
     fs::remove_all(root_);
     fs::create_directories(root_);
-    simulate(rig_scene(), "cloth.weft");
+    simulate(checked_rig(), "cloth.weft");
     simulator::CapturesOptions options;
     options.parts = {"start", "check"};
-    const auto captures = simulator::simulate_captures(rig_scene(), root_, options);
+    const auto captures = simulator::simulate_captures(checked_rig(), root_, options);
     ASSERT_TRUE(captures) << captures.error().message();
     calibrate();
   }
@@ -91,7 +91,7 @@ class CalibrationCheck : public testing::Test {
       for (std::size_t i = 0; i < 4; ++i)
         fiducial.corners_mm[i] = point_on_plane(*rig.camera, tag.corners_px[i].x, tag.corners_px[i].y, 0.3);
     }
-    for (const TargetSettings& target : rig_scene().targets) {
+    for (const TargetSettings& target : checked_rig().targets) {
       if (kind_of(target.pattern) != simulator::TargetKind::kPaper) continue;
       WhitePatch& patch = rig.patches.emplace_back();
       patch.reflectance_rgb.fill(0.88);
@@ -107,7 +107,7 @@ class CalibrationCheck : public testing::Test {
   }
 
   static Scene with_table_lower() {
-    Scene scene = rig_scene();
+    Scene scene = checked_rig();
     for (TargetSettings& target : scene.targets) target.centre_mm.z -= 2;
     scene.geometry.cloth_height_mm = -2;
     return scene;
@@ -295,7 +295,7 @@ TEST_F(CalibrationCheck, WhatIsKnownOfLedsGoesWithThemWhereTheyAreExchanged) {
   known.light_covariance->matrix[1] = known.light_covariance->matrix[3] = 5e-7;
   known.camera_covariance = ParameterCovariance{{"fx"}, {0.04}};
   ASSERT_TRUE(write_calibration(root_ / "known", known));
-  Scene scene = rig_scene();
+  Scene scene = checked_rig();
   const NearLights lights = simulator::rig_of(scene)->leds;
   scene.camera.exposure_us = simulator::rig_of(scene)->exposure_us;
   scene.lights.rings.clear();
@@ -383,7 +383,7 @@ TEST_F(CalibrationCheck, PatchesAreMeasuredByTheLightThatIsKnown) {
 }
 
 TEST_F(CalibrationCheck, ADimmedLedIsFoundInTheLightOfThePatches) {
-  Scene scene = rig_scene();
+  Scene scene = checked_rig();
   const NearLights lights = simulator::rig_of(scene)->leds;
   scene.camera.exposure_us = simulator::rig_of(scene)->exposure_us;
   scene.lights.rings.clear();

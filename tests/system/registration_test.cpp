@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Size kSize = {256, 192};
+constexpr Size kClothSize = {256, 192};
 
 class Registration : public testing::Test {
  protected:
@@ -38,7 +38,7 @@ class Registration : public testing::Test {
         photographs, *solver::fast_method(), {.width = 64, .height = tile_height}, context,
         [&](const pipeline::MapBand& band) -> Result<void> {
           for (int y = band.rows.y0; y < band.rows.y1; ++y) {
-            for (int x = 0; x < kSize.width; ++x) {
+            for (int x = 0; x < kClothSize.width; ++x) {
               const int row = y - band.rows.y0;
               sum += angle_deg({band.normal[0](x, row), band.normal[1](x, row), band.normal[2](x, row)},
                                {truth.planes(x, y, 0), truth.planes(x, y, 1), truth.planes(x, y, 2)});
@@ -46,12 +46,12 @@ class Registration : public testing::Test {
           }
           return {};
         });
-    return sum / static_cast<double>(kSize.pixels());
+    return sum / static_cast<double>(kClothSize.pixels());
   }
 
   Workspace work_;
   simulator::Scene still_ = [] {
-    simulator::Scene scene = scene_named("movement", kSize);
+    simulator::Scene scene = scene_named("movement", kClothSize);
     scene.effects.movement = false;
     scene.effects.defocus = true;
     return scene;

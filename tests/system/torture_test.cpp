@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Size kSize = {256, 192};
+constexpr Size kTortureSize = {256, 192};
 constexpr int kLineColumn = 252;  // where the plane of the LEDs meets the cloth
 
 /// What the comments of the scene say of a pixel.
@@ -41,7 +41,7 @@ Image<float> map(const fs::path& file) {
 
 TEST(Torture, HasTheStatusMapThatItsSceneDescribesByEveryMethod) {
   const Workspace work;
-  simulate(scene_named("torture", kSize), work / "torture.weft");
+  simulate(scene_named("torture", kTortureSize), work / "torture.weft");
   for (const solver::MethodName& method : solver::method_names()) {
     if (method.extent == solver::Extent::kHalfSize) continue;
     SCOPED_TRACE(method.name);
@@ -55,11 +55,11 @@ TEST(Torture, HasTheStatusMapThatItsSceneDescribesByEveryMethod) {
     ASSERT_TRUE(report) << report.error().message();
     const Image<float> status = map(maps / "status.png"), normal = map(maps / "normal.exr"),
                        truth = map(work / "torture.weft" / "truth" / "normal.exr");
-    ASSERT_EQ(status.size(), kSize);
+    ASSERT_EQ(status.size(), kTortureSize);
     int wrong = 0;
     double worst_deg = 0;
-    for (int y = 0; y < kSize.height; ++y) {
-      for (int x = 0; x < kSize.width; ++x) {
+    for (int y = 0; y < kTortureSize.height; ++y) {
+      for (int x = 0; x < kTortureSize.width; ++x) {
         const int is = static_cast<int>(std::lround(65535.0 * status(x, y))), should = expected_status(x, y);
         if (is != should && wrong++ < 5)
           ADD_FAILURE() << "pixel " << x << ", " << y << ": status " << is << ", not " << should;

@@ -34,11 +34,11 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kPatience = seconds(20);  // for a process that loads 260 shared objects on a busy machine
+constexpr auto kStartPatience = seconds(20);  // for a process that loads 260 shared objects on a busy machine
 
 template <typename Condition>
 bool comes_true(const Condition& condition) {
-  const Clock::time_point deadline = Clock::now() + kPatience;
+  const Clock::time_point deadline = Clock::now() + kStartPatience;
   while (!condition()) {
     if (Clock::now() > deadline) return false;
     std::this_thread::sleep_for(milliseconds(5));
@@ -234,7 +234,7 @@ TEST_F(Serve, TellsTheServiceManagerThatItIsReadyAliveAndEnding) {
   address.sun_family = AF_UNIX;
   path.copy(address.sun_path, sizeof address.sun_path - 1);
   ASSERT_EQ(bind(manager.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  const timeval patience = {std::chrono::seconds(kPatience).count(), 0};
+  const timeval patience = {std::chrono::seconds(kStartPatience).count(), 0};
   setsockopt(manager.get(), SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
   setenv("NOTIFY_SOCKET", path.c_str(), 1);
   setenv("WATCHDOG_USEC", "200000", 1);

@@ -14,8 +14,8 @@ namespace {
 
 using testing::ElementsAre;
 
-constexpr int kColumns = 40, kRows = 26;
-constexpr double kSpacing_mm = 2464 * 0.08 / kColumns;
+constexpr int kBlockColumns = 40, kBlockRows = 26;
+constexpr double kSpacing_mm = 2464 * 0.08 / kBlockColumns;
 
 // The rig's own numbers as the fit, captures of two sheets, by block with all LEDs side by side.
 struct Captured {
@@ -27,7 +27,7 @@ struct Captured {
     rig.vignette = 0;
     rig.sheets = {{}, {20, 90, 0, {}}};
     auto captures = test::captures_of(rig, {.noise = 0.0005, .tape_mm = 0, .turn_deg = 0, .shift_mm = 0},
-                                      kColumns, kRows);
+                                      kBlockColumns, kBlockRows);
     scene = captures.start;
     scene.lights = rig.lights;
     scene.paper.log_albedo = rig.log_albedo;

@@ -17,7 +17,7 @@ using test::PaperErrors;
 using test::PaperRig;
 using testing::HasSubstr;
 
-constexpr int kColumns = 20, kRows = 13;
+constexpr int kCellColumns = 20, kCellRows = 13;
 
 // Poses and paper are known, as after a fit; LEDs are `off_mm` from where they are.
 PaperCaptures captures_of(const PaperRig& rig, double off_mm, double noise) {
@@ -25,7 +25,7 @@ PaperCaptures captures_of(const PaperRig& rig, double off_mm, double noise) {
   errors.turn_deg = errors.shift_mm = 0;
   errors.tape_mm = off_mm;
   errors.noise = noise;
-  PaperCaptures captures = test::captures_of(rig, errors, kColumns, kRows);
+  PaperCaptures captures = test::captures_of(rig, errors, kCellColumns, kCellRows);
   captures.start.paper.log_albedo = rig.log_albedo;
   captures.start.paper.delta = rig.delta;
   return captures;
@@ -55,7 +55,7 @@ double worst_deg(const PerPixelLights& lights, const PaperRig& rig, const Camera
 TEST(PerPixelLights, FindDirectionsAndIntensitiesFromATapeTenMillimetresWrong) {
   const PaperRig rig = point_lights();
   const PaperCaptures captures = captures_of(rig, 10, 0);
-  const CellGrid grid = {captures.start.camera.size, kColumns, kRows};
+  const CellGrid grid = {captures.start.camera.size, kCellColumns, kCellRows};
   const auto lights = solve_per_pixel(captures.start, captures.readings, grid);
   ASSERT_TRUE(lights) << lights.error().message();
   EXPECT_LT(worst_deg(*lights, rig, captures.start.camera), 0.03);
@@ -72,8 +72,8 @@ TEST(PerPixelLights, FindDirectionsAndIntensitiesFromATapeTenMillimetresWrong) {
 TEST(PerPixelLights, SmoothNoiseAway) {
   const PaperRig rig = point_lights();
   const PaperCaptures captures = captures_of(rig, 10, 0.002);
-  const auto lights =
-      solve_per_pixel(captures.start, captures.readings, {captures.start.camera.size, kColumns, kRows});
+  const auto lights = solve_per_pixel(captures.start, captures.readings,
+                                      {captures.start.camera.size, kCellColumns, kCellRows});
   ASSERT_TRUE(lights) << lights.error().message();
   // One cell alone: 0.002 / (sqrt(2 * 3) sin 20 degrees), or 0.14 degrees an axis.
   EXPECT_LT(worst_deg(*lights, rig, captures.start.camera), 0.25);
@@ -93,8 +93,8 @@ TEST(PerPixelLights, SayWhereALedIsNoPointLight) {
           (1 - share) * r.reading_rgb[c] + share * other.reading(r.sheet, 3, c, r.x_px, r.y_px);
   }
   captures.start.lights = rig.lights;
-  const auto lights =
-      solve_per_pixel(captures.start, captures.readings, {captures.start.camera.size, kColumns, kRows});
+  const auto lights = solve_per_pixel(captures.start, captures.readings,
+                                      {captures.start.camera.size, kCellColumns, kCellRows});
   ASSERT_TRUE(lights) << lights.error().message();
   EXPECT_EQ(lights->parted(), std::vector<std::size_t>{3});
 }
@@ -104,7 +104,7 @@ TEST(PerPixelLights, NeedSheetsThatLieInThreeDirections) {
   rig.sheets.resize(3);
   rig.sheets[2] = {20, 180, 0, {}};  // flat and tilted about one axis: nothing about the other
   const PaperCaptures captures = captures_of(rig, 0, 0);
-  const CellGrid grid = {captures.start.camera.size, kColumns, kRows};
+  const CellGrid grid = {captures.start.camera.size, kCellColumns, kCellRows};
   const auto lights = solve_per_pixel(captures.start, captures.readings, grid);
   ASSERT_FALSE(lights);
   EXPECT_THAT(lights.error().message(), HasSubstr("three unknowns"));

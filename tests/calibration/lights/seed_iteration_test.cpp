@@ -10,7 +10,7 @@
 namespace weft::calibration {
 namespace {
 
-constexpr int kColumns = 26, kRows = 17;
+constexpr int kSeedColumns = 26, kSeedRows = 17;
 
 struct SeedTrial {
   SeedLights lights;
@@ -20,8 +20,8 @@ struct SeedTrial {
 SeedTrial run(const SeedOptions& options) {
   test::PaperRig rig = test::common_rig();
   rig.sheets = test::lies(1);
-  const auto captures = test::captures_of(rig, {.noise = 0.002}, kColumns, kRows);
-  const CellGrid grid = {captures.start.camera.size, kColumns, kRows};
+  const auto captures = test::captures_of(rig, {.noise = 0.002}, kSeedColumns, kSeedRows);
+  const CellGrid grid = {captures.start.camera.size, kSeedColumns, kSeedRows};
   SeedTrial result;
   for (const int iterations : {0, options.iterations}) {
     SeedOptions some = options;

@@ -8,12 +8,13 @@
 namespace weft::calibration {
 namespace {
 
-constexpr Size kSize = {128, 96};
+constexpr Size kRatioFrame = {128, 96};
 
 BlockLight light_of(const test::VirtualSensor& sensor, int take, double level) {
-  return block_light(sensor.frame(kSize, take, 1000,
+  return block_light(sensor.frame(kRatioFrame, take, 1000,
                                   [&](int x, int, int c) {
-                                    return level * (0.5 + 0.5 * (x | 1) / kSize.width) * (c == 1 ? 1.0 : 0.6);
+                                    return level * (0.5 + 0.5 * (x | 1) / kRatioFrame.width) *
+                                           (c == 1 ? 1.0 : 0.6);
                                   }),
                      {});
 }

@@ -14,15 +14,15 @@ namespace {
 using test::VirtualSensor;
 using testing::HasSubstr;
 
-constexpr Size kSize = {128, 96};
+constexpr Size kTransferFrame = {128, 96};
 
 std::vector<TransferPoint> points_of(const VirtualSensor& sensor, const std::vector<double>& levels) {
   std::vector<TransferPoint> points;
   int take = 0;
   for (const double level : levels) {
-    const auto signal = [&](int x, int, int) { return level * (0.5 + 0.5 * x / kSize.width); };
-    const RawFrame first = sensor.frame(kSize, take++, 1000, signal);
-    const RawFrame second = sensor.frame(kSize, take++, 1000, signal);
+    const auto signal = [&](int x, int, int) { return level * (0.5 + 0.5 * x / kTransferFrame.width); };
+    const RawFrame first = sensor.frame(kTransferFrame, take++, 1000, signal);
+    const RawFrame second = sensor.frame(kTransferFrame, take++, 1000, signal);
     for (const TransferPoint& p : transfer_points(first, second, {})) points.push_back(p);
   }
   return points;
@@ -76,8 +76,8 @@ TEST(PhotonTransfer, TakesABentResponseOutBeforeItLooksAtVariance) {
 TEST(PhotonTransfer, SeesNeitherSceneNorFixedPattern) {
   const VirtualSensor sensor = VirtualSensor::of(simulator::Body::kOffset);
   const auto stripes = [](int x, int y, int) { return 0.2 + 0.15 * ((x / 3 + y / 5) % 2); };
-  const auto points =
-      transfer_points(sensor.frame(kSize, 0, 1000, stripes), sensor.frame(kSize, 1, 1000, stripes), {});
+  const auto points = transfer_points(sensor.frame(kTransferFrame, 0, 1000, stripes),
+                                      sensor.frame(kTransferFrame, 1, 1000, stripes), {});
   ASSERT_EQ(points.size(), 4U * 3 * 4);
   const Response truth = response_of(sensor.sensor);
   double ratio = 0;
@@ -93,10 +93,10 @@ TEST(PhotonTransfer, SeesNeitherSceneNorFixedPattern) {
 TEST(PhotonTransfer, IgnoresAChangeOfBrightnessBetweenTheTwoFrames) {
   const VirtualSensor sensor = VirtualSensor::of(simulator::Body::kOffset);
   const auto light = [](double gain) { return [gain](int, int, int) { return 0.5 * gain; }; };
-  const auto alike =
-      transfer_points(sensor.frame(kSize, 0, 1000, light(1)), sensor.frame(kSize, 1, 1000, light(1)), {});
-  const auto drifted =
-      transfer_points(sensor.frame(kSize, 0, 1000, light(1)), sensor.frame(kSize, 1, 1000, light(1.01)), {});
+  const auto alike = transfer_points(sensor.frame(kTransferFrame, 0, 1000, light(1)),
+                                     sensor.frame(kTransferFrame, 1, 1000, light(1)), {});
+  const auto drifted = transfer_points(sensor.frame(kTransferFrame, 0, 1000, light(1)),
+                                       sensor.frame(kTransferFrame, 1, 1000, light(1.01)), {});
   double a = 0, b = 0;
   for (const TransferPoint& p : alike) a += p.variance_counts2;
   for (const TransferPoint& p : drifted) b += p.variance_counts2;

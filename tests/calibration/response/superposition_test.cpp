@@ -15,7 +15,7 @@ namespace {
 using test::VirtualSensor;
 using testing::HasSubstr;
 
-constexpr Size kSize = {160, 128};
+constexpr Size kSumFrame = {160, 128};
 
 // Two LEDs over a scene of stripes, by themselves and together, at several exposures.
 struct Capture {
@@ -32,7 +32,7 @@ struct Capture {
       const auto light = [&](double first, double second) {
         return [=, this](int x, int y, int c) {
           const double albedo = (y / 32) % 2 != 0 ? 0.9 : 0.3;
-          const double shade = 0.7 + 0.3 * x / kSize.width;
+          const double shade = 0.7 + 0.3 * x / kSumFrame.width;
           const double channel = c == 1 ? 1.0 : c == 0 ? 0.5 : 0.68;
           return exposure * (0.5 * channel * albedo * (first * shade + second * (1.7 - shade)) + ambient);
         };
@@ -40,7 +40,7 @@ struct Capture {
       const auto mean = [&](double first, double second) {
         BlockLight& sum = lights.emplace_back();
         for (int i = 0; i < 2; ++i) {
-          join(sum, block_light(sensor.frame(kSize, take++, 1000, light(first, second)), {}));
+          join(sum, block_light(sensor.frame(kSumFrame, take++, 1000, light(first, second)), {}));
         }
         return &sum;
       };

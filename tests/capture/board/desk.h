@@ -50,6 +50,11 @@ class Desk {
   std::unique_ptr<simulator::VirtualBoard> board_;
 };
 
+/// Lights these LEDs and no other, for at most `most_s`.
+inline Result<double> light(capture::LedBoard& board, const std::vector<int>& leds, double most_s = 10) {
+  return board.light(leds, most_s);
+}
+
 /// Whether it becomes true within `most_s`.
 bool comes_true(double most_s, const std::function<bool()>& condition);
 

@@ -19,11 +19,8 @@ using simulator::RigClock;
 using simulator::VirtualBoardFault;
 using test::comes_true;
 using test::Desk;
+using test::light;
 using test::LightHolder;
-
-Result<double> light(LedBoard& board, const std::vector<int>& leds, double most_s = 10) {
-  return board.light(leds, most_s);
-}
 
 /// The error of lights asked for in turn, until one is refused.
 Error next_error(LedBoard& board) {

@@ -16,10 +16,7 @@ namespace {
 
 using simulator::RigClock;
 using test::Desk;
-
-Result<double> light(LedBoard& board, const std::vector<int>& leds, double most_s = 5) {
-  return board.light(leds, most_s);
-}
+using test::light;
 
 TEST(LedBoard, IsGreetedWithWhatItIs) {
   Desk desk;

@@ -12,11 +12,13 @@
 #include <set>
 
 #include "core/files.h"
+#include "tests/capture/scan/files_under.h"
 
 namespace weft::capture {
 namespace {
 
 namespace fs = std::filesystem;
+using test::files_under;
 using testing::HasSubstr;
 
 const ShotList kList = {{1, 2}, true, {}};
@@ -81,14 +83,6 @@ Result<void> scanned(
 std::string bytes_of(const fs::path& file) {
   const Result<std::string> text = read_text(file);
   return text ? *text : "not there";
-}
-
-std::set<std::string> files_under(const fs::path& folder) {
-  std::set<std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) files.insert(fs::relative(entry.path(), folder).string());
-  }
-  return files;
 }
 
 TEST(Journal, StoresOneExposureTimeForASetting) {

@@ -8,11 +8,13 @@
 #include <set>
 
 #include "core/files.h"
+#include "tests/capture/scan/files_under.h"
 
 namespace weft::capture {
 namespace {
 
 namespace fs = std::filesystem;
+using test::files_under;
 using testing::HasSubstr;
 
 /// A finished session of two frames, in a fresh folder of the running test.
@@ -45,14 +47,6 @@ Session finished_session() {
 
 fs::path other_disk(const Session& session) {
   return session.folder.parent_path() / "other disk";
-}
-
-std::set<std::string> files_under(const fs::path& folder) {
-  std::set<std::string> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) files.insert(fs::relative(entry.path(), folder).string());
-  }
-  return files;
 }
 
 Json copy_in(const Session& session) {

@@ -15,18 +15,18 @@ using namespace std::string_view_literals;
 using testing::HasSubstr;
 using enum SampleType;
 
-struct Case {
+struct WholeFile {
   const char* name;
   SampleType type;
   const char* compression;
 };
 
-const std::vector<Case> kCases = {{"a.exr", kFloat, "none"}, {"a.exr", kHalf, "zip"},
-                                  {"a.exr", kHalf, "piz"},   {"a.tif", kUint16, "none"},
-                                  {"a.tif", kUint16, "zip"}, {"a.tif", kFloat, "none"},
-                                  {"a.png", kUint8, "none"}, {"a.png", kUint16, "none"}};
+const std::vector<WholeFile> kWholeFiles = {{"a.exr", kFloat, "none"}, {"a.exr", kHalf, "zip"},
+                                            {"a.exr", kHalf, "piz"},   {"a.tif", kUint16, "none"},
+                                            {"a.tif", kUint16, "zip"}, {"a.tif", kFloat, "none"},
+                                            {"a.png", kUint8, "none"}, {"a.png", kUint16, "none"}};
 
-std::string written(const ScratchFolder& folder, const Case& c) {
+std::string written(const ScratchFolder& folder, const WholeFile& c) {
   const Image<float> image = exact_noise({97, 89}, 3, kUint16);
   const Result<void> wrote =
       write_image(folder / c.name, views_of(image), {"R", "G", "B"}, {c.type, c.compression});
@@ -36,7 +36,7 @@ std::string written(const ScratchFolder& folder, const Case& c) {
 
 TEST(BrokenImageFile, CutAnywhereIsRefused) {
   const ScratchFolder folder;
-  for (const Case& c : kCases) {
+  for (const WholeFile& c : kWholeFiles) {
     const std::string bytes = written(folder, c);
     for (const std::size_t kept : {std::size_t{1}, std::size_t{8}, bytes.size() / 100, bytes.size() / 4,
                                    bytes.size() / 2, bytes.size() * 9 / 10, bytes.size() - 1}) {
@@ -54,7 +54,7 @@ TEST(BrokenImageFile, WithAnyBytesDamagedIsReadOrRefused) {
   const ScratchFolder folder;
   std::mt19937 random(5);
   int refused = 0;
-  for (const Case& c : kCases) {
+  for (const WholeFile& c : kWholeFiles) {
     const std::string bytes = written(folder, c);
     for (int round = 0; round < 20; ++round) {
       std::string damaged = bytes;
@@ -67,7 +67,7 @@ TEST(BrokenImageFile, WithAnyBytesDamagedIsReadOrRefused) {
       if (!read) ++refused;
     }
   }
-  EXPECT_GT(refused, 20) << "of " << 20 * kCases.size();
+  EXPECT_GT(refused, 20) << "of " << 20 * kWholeFiles.size();
 }
 
 TEST(BrokenImageFile, ThatIsEmptyTextOrMissingIsRefusedInWords) {

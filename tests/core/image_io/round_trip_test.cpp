@@ -18,23 +18,24 @@ namespace {
 using testing::ElementsAre;
 using enum SampleType;
 
-struct Case {
+struct StoredAs {
   const char* ending;
   const char* format;
   SampleType type;
   const char* compression;
 };
 
-const std::vector<Case> kCases = {{".exr", "openexr", kHalf, "none"}, {".exr", "openexr", kHalf, "zip"},
-                                  {".exr", "openexr", kHalf, "piz"},  {".exr", "openexr", kFloat, "none"},
-                                  {".exr", "openexr", kFloat, "zip"}, {".exr", "openexr", kFloat, "piz"},
-                                  {".tif", "tiff", kUint8, "none"},   {".tif", "tiff", kUint8, "zip"},
-                                  {".tif", "tiff", kUint16, "none"},  {".tif", "tiff", kUint16, "zip"},
-                                  {".tif", "tiff", kHalf, "none"},    {".tif", "tiff", kHalf, "zip"},
-                                  {".tif", "tiff", kFloat, "none"},   {".tif", "tiff", kFloat, "zip"},
-                                  {".png", "png", kUint8, "none"},    {".png", "png", kUint16, "none"}};
+const std::vector<StoredAs> kStoredAs = {
+    {".exr", "openexr", kHalf, "none"}, {".exr", "openexr", kHalf, "zip"},
+    {".exr", "openexr", kHalf, "piz"},  {".exr", "openexr", kFloat, "none"},
+    {".exr", "openexr", kFloat, "zip"}, {".exr", "openexr", kFloat, "piz"},
+    {".tif", "tiff", kUint8, "none"},   {".tif", "tiff", kUint8, "zip"},
+    {".tif", "tiff", kUint16, "none"},  {".tif", "tiff", kUint16, "zip"},
+    {".tif", "tiff", kHalf, "none"},    {".tif", "tiff", kHalf, "zip"},
+    {".tif", "tiff", kFloat, "none"},   {".tif", "tiff", kFloat, "zip"},
+    {".png", "png", kUint8, "none"},    {".png", "png", kUint16, "none"}};
 
-std::string describe(const Case& c) {
+std::string describe(const StoredAs& c) {
   return fmt::format("{} of type {}, {}", c.ending, static_cast<int>(c.type), c.compression);
 }
 
@@ -67,7 +68,7 @@ void round_to_counts(Image<float>& image, SampleType type) {
 
 TEST(ImageRoundTrip, KeepsEveryValueOfEveryFormatTypeAndSize) {
   const ScratchFolder folder;
-  for (const Case& c : kCases) {
+  for (const StoredAs& c : kStoredAs) {
     for (const Size size : {Size{1, 1}, Size{1, 131}, Size{131, 1}, Size{61, 53}, Size{64, 32}}) {
       for (const int channels : {1, 2, 3, 4}) {
         SCOPED_TRACE(
@@ -112,19 +113,19 @@ TEST(ImageRoundTrip, KeepsEverySixteenBitCountOfAPng) {
 
 TEST(ImageRoundTrip, KeepsNanAndInfinityInFloatAndHalf) {
   const ScratchFolder folder;
-  constexpr float kInf = std::numeric_limits<float>::infinity();
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
   Image<float> written({3, 1});
   written(0, 0) = std::numeric_limits<float>::quiet_NaN();
-  written(1, 0) = kInf;
-  written(2, 0) = -kInf;
+  written(1, 0) = kInfinite;
+  written(2, 0) = -kInfinite;
   for (const SampleType type : {kHalf, kFloat}) {
     for (const char* name : {"a.exr", "a.tif"}) {
       ASSERT_TRUE(write_image(folder / name, views_of(written), {"Y"}, {.type = type}));
       const Result<LoadedImage> read = read_image(folder / name);
       ASSERT_TRUE(read) << read.error().message();
       EXPECT_TRUE(std::isnan(read->planes(0, 0))) << name << " " << read->planes(0, 0);
-      EXPECT_EQ(read->planes(1, 0), kInf) << name;
-      EXPECT_EQ(read->planes(2, 0), -kInf) << name;
+      EXPECT_EQ(read->planes(1, 0), kInfinite) << name;
+      EXPECT_EQ(read->planes(2, 0), -kInfinite) << name;
     }
   }
 }
@@ -166,7 +167,7 @@ TEST(ImageRoundTrip, KeepsAttributesInEveryFormat) {
                                       {"weft.frame", "rig"},
                                       {"weft.note", "line one\nline two, \"quoted\" \\ {braces}"}};
   const Image<float> image({5, 4});
-  for (const Case& c : kCases) {
+  for (const StoredAs& c : kStoredAs) {
     const std::filesystem::path file = folder / (std::string("a") + c.ending);
     ASSERT_TRUE(write_image(file, views_of(image), {"Y"}, {c.type, c.compression, attributes}));
     const Result<ImageFileInfo> info = read_image_info(file);
@@ -178,7 +179,7 @@ TEST(ImageRoundTrip, KeepsAttributesInEveryFormat) {
 TEST(ImageRoundTrip, HasNoAttributesWhereNoneWereGiven) {
   const ScratchFolder folder;
   const Image<float> image({5, 4});
-  for (const Case& c : kCases) {
+  for (const StoredAs& c : kStoredAs) {
     const std::filesystem::path file = folder / (std::string("a") + c.ending);
     ASSERT_TRUE(write_image(file, views_of(image), {"Y"}, {c.type, c.compression}));
     EXPECT_THAT(read_image_info(file)->attributes, testing::IsEmpty()) << describe(c);

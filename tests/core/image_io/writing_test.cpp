@@ -18,18 +18,18 @@ using testing::HasSubstr;
 using testing::Not;
 using enum SampleType;
 
-struct Case {
+struct NamedFile {
   const char* name;
   SampleType type;
   const char* compression;
 };
 
-const std::vector<Case> kCases = {
+const std::vector<NamedFile> kNamedFiles = {
     {"a.exr", kFloat, "none"}, {"a.exr", kHalf, "none"},   {"a.exr", kHalf, "zip"},
     {"a.exr", kHalf, "piz"},   {"a.tif", kUint16, "none"}, {"a.tif", kUint16, "zip"},
     {"a.tif", kFloat, "zip"},  {"a.png", kUint8, "none"},  {"a.png", kUint16, "none"}};
 
-std::string describe(const Case& c) {
+std::string describe(const NamedFile& c) {
   return fmt::format("{} of type {}, {}", c.name, static_cast<int>(c.type), c.compression);
 }
 
@@ -38,7 +38,7 @@ TEST(ImageWriter, WritesTheSameBytesForAnyBands) {
   const Size size{331, 211};
   const Image<float> image = exact_noise(size, 3, kUint8);
   const std::vector<View<const float>> views = views_of(image);
-  for (const Case& c : kCases) {
+  for (const NamedFile& c : kNamedFiles) {
     std::string whole;
     for (const int band : {211, 128, 32, 7, 1}) {
       Result<ImageWriter> writer = ImageWriter::open(folder / c.name, size, {"R", "G", "B"},
@@ -60,7 +60,7 @@ TEST(ImageWriter, PutsNoDateHostOrSoftwareIntoAFile) {
   const Image<float> image({40, 30}, 3);
   char host[256] = {};
   ASSERT_EQ(gethostname(host, sizeof host - 1), 0);
-  for (const Case& c : kCases) {
+  for (const NamedFile& c : kNamedFiles) {
     ASSERT_TRUE(write_image(folder / c.name, views_of(image), {"R", "G", "B"},
                             {c.type, c.compression, {{"weft.units", "mm"}}}));
     const std::string bytes = bytes_of(folder / c.name);
@@ -75,7 +75,7 @@ TEST(ImageWriter, PutsNoDateHostOrSoftwareIntoAFile) {
 TEST(ImageWriter, LeavesNothingBehindWhenDroppedUnfinished) {
   const ScratchFolder folder;
   const Image<float> image = exact_noise({300, 200}, 3, kUint8);
-  for (const Case& c : kCases) {
+  for (const NamedFile& c : kNamedFiles) {
     {
       Result<ImageWriter> writer =
           ImageWriter::open(folder / c.name, image.size(), {"R", "G", "B"}, {c.type});
@@ -175,7 +175,7 @@ class FileSizeLimit {
 
 TEST(ImageWriter, ReportsAFileThatMayNotGrowAndKeepsTheOneThatWasThere) {
   const Image<float> image = exact_noise({600, 400}, 3, kUint16);
-  for (const Case& c : kCases) {
+  for (const NamedFile& c : kNamedFiles) {
     for (const rlim_t limit : {rlim_t{100}, rlim_t{100'000}}) {
       const ScratchFolder folder;
       put_bytes(folder / c.name, "of before");
@@ -194,7 +194,7 @@ TEST(ImageWriter, ReportsAFileThatMayNotGrowAndKeepsTheOneThatWasThere) {
 }
 
 TEST(ImageWriter, ReportsAFullDisk) {
-  for (const Case& c : kCases) {
+  for (const NamedFile& c : kNamedFiles) {
     const ScratchFolder folder;
     std::filesystem::create_symlink("/dev/full", folder / (std::string(c.name) + ".partial"));
     const Image<float> image({40, 30}, 3);

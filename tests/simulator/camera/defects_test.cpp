@@ -10,14 +10,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "tests/simulator/camera/frame.h"
+
 namespace weft::simulator {
 namespace {
 
 constexpr std::array<std::uint32_t, 2> kKey = {11, 0};
-
-std::size_t index(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::vector<PhotositeDefect> photosites(const DefectSettings& settings, Rect rect) {
   std::vector<PhotositeDefect> sites(static_cast<std::size_t>(rect.pixels()));

@@ -8,13 +8,13 @@
 #include <cmath>
 
 #include "simulator/sampling/random.h"
+#include "tests/simulator/camera/frame.h"
 
 namespace weft::simulator {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr Size kFrame = {2464, 1632};
 constexpr double kDistance_mm = 600, kMmPerPixel = 0.08;
 
 CameraModel camera_with(const LensSettings& lens, const PoseSettings& pose = {},

@@ -10,15 +10,10 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "tests/simulator/camera/frame.h"
 
 namespace weft::simulator {
 namespace {
-
-constexpr Size kFrame = {2464, 1632};
-
-std::size_t index(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 CameraModel camera() {
   return overhead_camera(kFrame, 600, 0.08);

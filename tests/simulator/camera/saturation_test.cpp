@@ -10,12 +10,10 @@
 #include <numeric>
 #include <vector>
 
+#include "tests/simulator/camera/frame.h"
+
 namespace weft::simulator {
 namespace {
-
-std::size_t index(int i) {
-  return static_cast<std::size_t>(i);
-}
 
 TEST(NonLinearity, IsUndoneByTheLinearityOfACalibration) {
   for (const auto& [a, b] : {std::array{0.0, 0.0},

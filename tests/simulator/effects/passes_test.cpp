@@ -11,6 +11,7 @@
 #include "simulator/geometry/surface.h"
 #include "simulator/light/incidence.h"
 #include "simulator/simulate.h"
+#include "tests/simulator/output.h"
 
 namespace weft::simulator {
 namespace {
@@ -18,19 +19,6 @@ namespace {
 using testing::ElementsAre;
 
 constexpr Rect kPatch = {100, 60, 140, 90};
-
-Scene near_lit(GeometryKind kind) {
-  Scene scene;
-  scene.geometry.kind = kind;
-  scene.effects.near_light = true;
-  return scene;
-}
-
-Rendering render(const Scene& scene, Rect area, const TileOptions& tiles = {}) {
-  Result<Rendering> rendering = render_readings(scene, area, tiles);
-  EXPECT_TRUE(rendering) << rendering.error().message();
-  return std::move(rendering).value();
-}
 
 std::vector<std::string> names_of(const Scene& scene, Output output) {
   const Result<PassList> list = build_passes(scene, *rig_of(scene), output);

@@ -69,7 +69,7 @@ const std::vector<Named>& surfaces() {
 }
 
 template <typename Body>
-void for_each_point(std::uint32_t count, const Body& body) {
+void for_each_point_of_table(std::uint32_t count, const Body& body) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto bits = philox({i, 0, 0, 0}, {11, 0});
     body(kTable.x1_mm * (2 * uniform(bits[0], bits[1]) - 1),
@@ -83,7 +83,7 @@ TEST(Surface, NormalIsTheCentralDifferenceOfTheHeightButAtCreases) {
     const Surface s = surface_of(each.settings);
     int creases = 0;
     double worst = 0;
-    for_each_point(2000, [&](double x, double y) {
+    for_each_point_of_table(2000, [&](double x, double y) {
       const SurfacePoint here = point_at(s, x, y);
       const SurfacePoint east = point_at(s, x + kStep_mm, y), west = point_at(s, x - kStep_mm, y);
       const SurfacePoint north = point_at(s, x, y + kStep_mm), south = point_at(s, x, y - kStep_mm);
@@ -108,7 +108,7 @@ TEST(Surface, StaysWithinItsBounds) {
     const Surface s = surface_of(each.settings);
     const HeightRange range = heights_mm(s, kTable);
     double lowest = 1e30, highest = -1e30;
-    for_each_point(100000, [&](double x, double y) {
+    for_each_point_of_table(100000, [&](double x, double y) {
       const double height = point_at(s, x, y).height_mm;
       lowest = std::min(lowest, height);
       highest = std::max(highest, height);
@@ -125,7 +125,7 @@ TEST(Surface, JumpsNowhereAndIsNoSteeperThanItSays) {
     const Surface s = surface_of(each.settings);
     const double steepest = steepest_slope(s);
     double steepest_seen = 0;
-    for_each_point(20000, [&](double x, double y) {
+    for_each_point_of_table(20000, [&](double x, double y) {
       for (const double step_mm : {1e-5, 1e-3}) {
         const double rise =
             point_at(s, x + 0.6 * step_mm, y + 0.8 * step_mm).height_mm - point_at(s, x, y).height_mm;
@@ -144,7 +144,7 @@ TEST(Surface, RepeatsAfterItsPeriod) {
     const std::optional<Period> period = period_mm(s);
     if (!period) continue;
     ++periodic;
-    for_each_point(1000, [&](double x, double y) {
+    for_each_point_of_table(1000, [&](double x, double y) {
       const double here = point_at(s, x, y).height_mm;
       ASSERT_NEAR(point_at(s, x + 2 * period->x_mm, y - period->y_mm).height_mm, here, 1e-9) << each.name;
     });
@@ -155,7 +155,7 @@ TEST(Surface, RepeatsAfterItsPeriod) {
 TEST(Surface, TangentLiesInTheSurfaceAlongTheYarn) {
   for (const Named& each : surfaces()) {
     const Surface s = surface_of(each.settings);
-    for_each_point(500, [&](double x, double y) {
+    for_each_point_of_table(500, [&](double x, double y) {
       const SurfacePoint p = point_at(s, x, y);
       const Vec3 tangent = tangent_of(p);
       ASSERT_NEAR(length(tangent), 1, 1e-12) << each.name;

@@ -31,7 +31,7 @@ const std::vector<GeometrySettings>& cloths() {
 
 /// Points all over a few periods, on both sides of the origin.
 template <typename Body>
-void for_each_point(std::uint32_t count, const Body& body) {
+void for_each_point_of_periods(std::uint32_t count, const Body& body) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto bits = philox({i, 0, 0, 0}, {7, 0});
     body(20 * uniform(bits[0], bits[1]) - 10, 20 * uniform(bits[2], bits[3]) - 10);
@@ -82,7 +82,7 @@ TEST(Weave, NormalIsTheCentralDifferenceOfTheHeight) {
     const Weave weave(g);
     int compared = 0;
     double worst = 0;
-    for_each_point(2000, [&](double x, double y) {
+    for_each_point_of_periods(2000, [&](double x, double y) {
       const SurfacePoint here = weave.at(x, y);
       const SurfacePoint east = weave.at(x + kStep_mm, y), west = weave.at(x - kStep_mm, y);
       const SurfacePoint north = weave.at(x, y + kStep_mm), south = weave.at(x, y - kStep_mm);
@@ -102,7 +102,7 @@ TEST(Weave, NormalIsTheCentralDifferenceOfTheHeight) {
 TEST(Weave, RepeatsAfterItsPeriod) {
   for (const GeometrySettings& g : cloths()) {
     const Weave weave(g);
-    for_each_point(500, [&](double x, double y) {
+    for_each_point_of_periods(500, [&](double x, double y) {
       const SurfacePoint a = weave.at(x, y);
       const SurfacePoint b = weave.at(x + 3 * weave.period_x_mm(), y - 2 * weave.period_y_mm());
       ASSERT_NEAR(a.height_mm, b.height_mm, 1e-12) << x << ", " << y;

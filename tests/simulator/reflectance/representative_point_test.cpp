@@ -11,11 +11,11 @@
 namespace weft::simulator {
 namespace {
 
-constexpr Rgb kFibre = {0.05, 0.05, 0.05};
+constexpr Rgb kGloss = {0.05, 0.05, 0.05};
 constexpr double kDistance_mm = 600;
 
 double point(double alpha, Vec3 l, Vec3 v) {
-  return evaluate(Ggx{alpha, kFibre, Beneath::kLambert}, kBlack, l, v)[1] * l.z;
+  return evaluate(Ggx{alpha, kGloss, Beneath::kLambert}, kBlack, l, v)[1] * l.z;
 }
 
 /// The mean of f (n.l) over the ball, by stratified Monte Carlo over its solid angle, relative to the
@@ -56,7 +56,7 @@ Errors errors(double alpha, double radius_mm) {
       e.as_point = std::max(e.as_point, std::abs(point(alpha, l, v) - truth));
       e.widened = std::max(e.widened, std::abs(point(wide, l, v) - truth));
       e.by_representative_point = std::max(
-          e.by_representative_point, std::abs(representative_point(light, v, alpha, kFibre)[1] - truth));
+          e.by_representative_point, std::abs(representative_point(light, v, alpha, kGloss)[1] - truth));
     }
   }
   const double percent = 100 / highlight;
@@ -87,7 +87,7 @@ TEST(RepresentativePoint, IsThisFarFromMonteCarloAndSoAreAPointAndAWidenedLobe) 
 TEST(RepresentativePoint, OfALightWithoutRadiusIsThePointItself) {
   const Vec3 v = at_angles(45, 180);
   for (const Vec3 l : {at_angles(45), at_angles(20, 70), at_angles(80, 180)}) {
-    EXPECT_NEAR(representative_point({kDistance_mm * l, 0}, v, 0.3, kFibre)[1] / point(0.3, l, v), 1, 1e-12);
+    EXPECT_NEAR(representative_point({kDistance_mm * l, 0}, v, 0.3, kGloss)[1] / point(0.3, l, v), 1, 1e-12);
     EXPECT_EQ(widened_alpha(0.3, 0, kDistance_mm), 0.3);
   }
 }
@@ -95,14 +95,14 @@ TEST(RepresentativePoint, OfALightWithoutRadiusIsThePointItself) {
 TEST(RepresentativePoint, LiesTowardsTheMirroredView) {
   // Half-way off the ray by its radius: the printed sign would move the point away from the highlight.
   const Vec3 v = at_angles(45, 180), l = at_angles(35);
-  EXPECT_GT(representative_point({kDistance_mm * l, 60}, v, 0.1, kFibre)[1], point(0.1, l, v));
+  EXPECT_GT(representative_point({kDistance_mm * l, 60}, v, 0.1, kGloss)[1], point(0.1, l, v));
 }
 
 TEST(RepresentativePoint, MirrorsNineQuartersOfASharpLightAndAWidenedLobeAllOfIt) {
   const Vec3 up = {0, 0, 1};
   const double sine = 0.05, mirrored_ball = 0.05 / (kPi * sine * sine);  // f0 over the ball's solid angle
   const double radius_mm = sine * kDistance_mm;
-  EXPECT_NEAR(representative_point({kDistance_mm * up, radius_mm}, up, 0, kFibre)[1] / mirrored_ball, 2.25,
+  EXPECT_NEAR(representative_point({kDistance_mm * up, radius_mm}, up, 0, kGloss)[1] / mirrored_ball, 2.25,
               0.3);
   EXPECT_NEAR(point(widened_alpha(0, radius_mm, kDistance_mm), up, up) / mirrored_ball, 1, 0.01);
 }
@@ -110,7 +110,7 @@ TEST(RepresentativePoint, MirrorsNineQuartersOfASharpLightAndAWidenedLobeAllOfIt
 TEST(RepresentativePoint, IsFiniteForEveryLight) {
   const Vec3 up = {0, 0, 1};
   const auto green = [&](Vec3 centre_mm, double radius_mm, Vec3 v, double alpha) {
-    return representative_point({centre_mm, radius_mm}, v, alpha, kFibre)[1];
+    return representative_point({centre_mm, radius_mm}, v, alpha, kGloss)[1];
   };
   EXPECT_EQ(green({0, 0, 5}, 5, up, 0.3), 0) << "the ball reaches the surface";
   EXPECT_EQ(green({0, 0, 0}, 0, up, 0.3), 0);

@@ -12,13 +12,12 @@
 #include <vector>
 
 #include "core/vec.h"
+#include "tests/simulator/spectra/tables.h"
 
 namespace weft::simulator {
 namespace {
 
 using Table = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-
-const std::filesystem::path kTables = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/spectra";
 
 Spectrum table(const std::string& name) {
   const auto spectrum = read_spectrum(kTables / name);

@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "tests/simulator/spectra/tables.h"
+
 namespace weft::simulator {
 namespace {
 
 using testing::HasSubstr;
-
-const std::filesystem::path kTables = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/spectra";
 
 std::string table_of(double value, std::size_t lines = Spectrum::kSamples) {
   std::string table = "# made here\n";

@@ -15,7 +15,7 @@
 namespace weft::solver {
 namespace {
 
-constexpr Size kFrame = {384, 256};
+constexpr Size kShotSize = {384, 256};
 const NoiseModel kNoise = {4e-5, 1e-9, 0};
 
 // Cloth in closed form: height slopes and albedo at a point in pixels from the frame's centre.
@@ -46,15 +46,15 @@ struct Scan {
       if (distant.lights.size() == static_cast<std::size_t>(lights)) break;
       distant.lights.push_back({normalized(led.position_mm), {0.5, 1, 0.7}});
     }
-    const LightField field = *LightField::make(distant, std::nullopt, kFrame, 0);
+    const LightField field = *LightField::make(distant, std::nullopt, kShotSize, 0);
     const CfaPattern cfa;
     test::Random random(11);
-    Image<float> readings(kFrame, lights * planes);
+    Image<float> readings(kShotSize, lights * planes);
     for (int k = 0; k < lights; ++k) {
       const ClothShift shift = shifts.empty() ? ClothShift() : shifts[static_cast<std::size_t>(k)];
-      for (int y = 0; y < kFrame.height; ++y) {
-        for (int x = 0; x < kFrame.width; ++x) {
-          const double px = x - kFrame.width / 2.0, py = y - kFrame.height / 2.0;
+      for (int y = 0; y < kShotSize.height; ++y) {
+        for (int x = 0; x < kShotSize.width; ++x) {
+          const double px = x - kShotSize.width / 2.0, py = y - kShotSize.height / 2.0;
           const ClothShift::Displacement d = shift.at(px, py);
           const test::Truth t = truth_of(cloth, px - d.x, py - d.y);
           for (int p = 0; p < planes; ++p) {
@@ -69,15 +69,15 @@ struct Scan {
     }
     std::vector<std::vector<View<const float>>> views;
     std::vector<TileInput> tiles;
-    for (const Rect& tile : sample_tiles(kFrame)) {
+    for (const Rect& tile : sample_tiles(kShotSize)) {
       views.emplace_back();
       for (int i = 0; i < readings.planes(); ++i) views.back().push_back(readings.plane(i).crop(tile));
     }
     for (std::size_t i = 0; i < views.size(); ++i) {
-      tiles.push_back({sample_tiles(kFrame)[i], planes, cfa, views[i], &field,
+      tiles.push_back({sample_tiles(kShotSize)[i], planes, cfa, views[i], &field,
                        planes == 1 ? std::optional(noise) : std::nullopt});
     }
-    return register_shots(tiles, kFrame, threads);
+    return register_shots(tiles, kShotSize, threads);
   }
 };
 

@@ -63,7 +63,7 @@ class OpenedCamera {
   int result_ = LIBUSB_SUCCESS;
 };
 
-VirtualCameraOptions on_usb() {
+VirtualCameraOptions on_stand_in() {
   return {.usb = private_home() + "/stand_in", .away_s = 0.3};
 }
 
@@ -72,8 +72,8 @@ Bytes command(std::uint16_t operation, std::uint32_t parameter) {
 }
 
 TEST(UsbStandIn, DescribesAStillImageDevice) {
-  Studio studio(on_usb());
-  OpenedCamera camera(on_usb().usb);
+  Studio studio(on_stand_in());
+  OpenedCamera camera(on_stand_in().usb);
   libusb_device_descriptor device = {};
   ASSERT_EQ(libusb_get_device_descriptor(camera.device(), &device), LIBUSB_SUCCESS);
   EXPECT_EQ(device.idVendor, 0x04b0);
@@ -88,8 +88,8 @@ TEST(UsbStandIn, DescribesAStillImageDevice) {
 }
 
 TEST(UsbStandIn, CarriesContainersAndTellsATimeOut) {
-  Studio studio(on_usb());
-  OpenedCamera camera(on_usb().usb);
+  Studio studio(on_stand_in());
+  OpenedCamera camera(on_stand_in().usb);
   EXPECT_EQ(camera.write(command(0x1002, 1)), LIBUSB_ERROR_BUSY) << "without a claim";
   ASSERT_EQ(libusb_claim_interface(camera.handle(), 0), LIBUSB_SUCCESS);
   ASSERT_EQ(camera.write(command(0x1002, 1)), LIBUSB_SUCCESS);
@@ -100,8 +100,8 @@ TEST(UsbStandIn, CarriesContainersAndTellsATimeOut) {
 }
 
 TEST(UsbStandIn, ThrowsAwayWhatWaitsWhenTheEndpointIsCleared) {
-  Studio studio(on_usb());
-  OpenedCamera camera(on_usb().usb);
+  Studio studio(on_stand_in());
+  OpenedCamera camera(on_stand_in().usb);
   ASSERT_EQ(libusb_claim_interface(camera.handle(), 0), LIBUSB_SUCCESS);
   ASSERT_EQ(camera.write(command(0x1001, 0)), LIBUSB_SUCCESS);
   EXPECT_EQ(camera.read(20).size(), 20u);
@@ -131,8 +131,8 @@ void count(libusb_transfer* transfer) {
 }
 
 TEST(UsbStandIn, BringsEventsToTransfersThatWaitForThem) {
-  Studio studio(on_usb());
-  OpenedCamera camera(on_usb().usb);
+  Studio studio(on_stand_in());
+  OpenedCamera camera(on_stand_in().usb);
   Interrupts interrupts;
   std::array<unsigned char, 64> buffers[3];
   std::array<libusb_transfer*, 3> transfers;
@@ -169,10 +169,10 @@ TEST(UsbStandIn, BringsEventsToTransfersThatWaitForThem) {
 }
 
 TEST(UsbStandIn, OutlivesNoiseOnTheCable) {
-  Studio studio(on_usb());
+  Studio studio(on_stand_in());
   std::mt19937 random(3);
   for (int round = 0; round < 200; ++round) {
-    usb::Cable cable(on_usb().usb);
+    usb::Cable cable(on_stand_in().usb);
     ASSERT_TRUE(cable.connected()) << round;
     if (round % 4) cable.call(usb::UsbCall::kClaim, {}, {});
     Bytes bytes(random() % 64);
@@ -188,7 +188,7 @@ TEST(UsbStandIn, OutlivesNoiseOnTheCable) {
     const auto any = static_cast<usb::UsbCall>(random() % 16);
     if (any != usb::UsbCall::kEvents) cable.call(any, {}, in, 1);  // which is not answered
   }
-  OpenedCamera camera(on_usb().usb);
+  OpenedCamera camera(on_stand_in().usb);
   libusb_set_configuration(camera.handle(), 1);  // as the driver does, to begin anew
   int claimed = LIBUSB_ERROR_BUSY;
   for (int tries = 0; tries < 1000 && claimed == LIBUSB_ERROR_BUSY; ++tries)
