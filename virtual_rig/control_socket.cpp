@@ -20,7 +20,7 @@
 
 #include "core/files.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ Result<std::string> send_command(const fs::path& socket, const std::string& line
   return answered;
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

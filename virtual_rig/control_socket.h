@@ -9,7 +9,7 @@
 
 #include "core/result.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// A Unix socket that takes one command a line and answers each with one line. Any number of clients; one
 /// that says nothing is dropped after ten seconds, one whose line is over 1000 bytes at once.
@@ -41,4 +41,4 @@ class ControlSocket {
 Result<std::string> send_command(const std::filesystem::path& socket, const std::string& line,
                                  double deadline_s = 10);
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

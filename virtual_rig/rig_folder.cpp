@@ -15,7 +15,7 @@
 #include "core/files.h"
 #include "simulator/scene/rig.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -60,11 +60,11 @@ std::string quoted(const std::string& text) {
 }
 
 bool is_d80(const LightFrames& frames) {
-  return frames.scene().camera.body == Body::kD80;
+  return frames.scene().camera.body == simulator::Body::kD80;
 }
 
 std::string rig_toml(const LightFrames& frames, const RigFiles& files) {
-  const Scene& scene = frames.scene();
+  const simulator::Scene& scene = frames.scene();
   return fmt::format(R"(# A virtual rig: what a host is told of it. It ends with the program that made it.
 name = "virtual rig"
 leds = {}
@@ -156,4 +156,4 @@ Result<void> RigFolder::write(const LightFrames& frames, const RigFiles& files) 
   return write_file(path_ / "rig.toml", rig_toml(frames, files));
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

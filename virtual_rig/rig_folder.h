@@ -9,7 +9,7 @@
 #include "core/result.h"
 #include "virtual_rig/light/light_frames.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// What the files of a virtual rig say.
 struct RigFiles {
@@ -48,4 +48,4 @@ class RigFolder {
   bool keep_log_;
 };
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -11,7 +11,7 @@
 #include "core/files.h"
 #include "virtual_rig/control_socket.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,4 +78,4 @@ Result<std::unique_ptr<ChildProcess>> RigProcess::weft(std::vector<std::string> 
   return run(arguments, log);
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -13,7 +13,7 @@
 #include "core/process.h"
 #include "core/result.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 struct RigProcessOptions {
   std::filesystem::path programs;  ///< folder with weft, weft-camera and weft-virtual-rig
@@ -51,4 +51,4 @@ class RigProcess {
   std::unique_ptr<ChildProcess> process_;
 };
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -26,7 +26,7 @@
 #include "virtual_rig/rig_folder.h"
 #include "virtual_rig/terminal/port_name.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -150,7 +150,7 @@ class RunningRig : public VirtualRig {
 
   Result<void> start_camera() {
     VirtualCameraOptions camera;
-    camera.body = options_.body == Body::kD80 ? CameraBody::kD80 : CameraBody::kD5100;
+    camera.body = options_.body == simulator::Body::kD80 ? CameraBody::kD80 : CameraBody::kD5100;
     camera.serial = options_.serial;
     camera.size = frames_.size();
     camera.clock_offset_s = options_.clock_offset_s;
@@ -296,7 +296,7 @@ class RunningRig : public VirtualRig {
 }  // namespace
 
 Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& options) {
-  Scene scene = options.scene;
+  simulator::Scene scene = options.scene;
   scene.camera.body = options.body;
   Result<RigFolder> folder = RigFolder::take(options.folder, options.keep_log);
   if (!folder) return folder.error();
@@ -321,4 +321,4 @@ std::vector<std::string> virtual_rig_commands() {
   return lines;
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -12,11 +12,11 @@
 #include "simulator/scene/scene.h"
 #include "virtual_rig/light/light_frames.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 struct VirtualRigOptions {
-  Scene scene;                   ///< its camera's body becomes `body`
-  Body body = Body::kD5100;      ///< or Body::kD80: what the virtual camera says it is
+  simulator::Scene scene;                          ///< its camera's body becomes `body`
+  simulator::Body body = simulator::Body::kD5100;  ///< or Body::kD80: what the virtual camera says it is
   std::filesystem::path folder;  ///< everything of the rig is in it; made where it is not there
   std::filesystem::path cache = default_light_cache();
   std::filesystem::path firmware;               ///< the ELF on the board
@@ -64,4 +64,4 @@ class VirtualRig {
 /// Every command with a sentence, a line each.
 std::vector<std::string> virtual_rig_commands();
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -49,10 +49,10 @@ struct Outcome {
 /// `weft scan` on a virtual rig that lasts for it, and the truth beside what it photographed.
 Result<void> scan(const DemoArguments& arguments, const simulator::Scene& scene, const fs::path& session,
                   const CommonArguments& common) {
-  const auto rig = simulator::RigProcess::start({.programs = program_beside("weft").parent_path(),
-                                                 .scene = arguments.scene,
-                                                 .folder = arguments.output / "rig",
-                                                 .megapixels = arguments.megapixels});
+  const auto rig = virtual_rig::RigProcess::start({.programs = program_beside("weft").parent_path(),
+                                                   .scene = arguments.scene,
+                                                   .folder = arguments.output / "rig",
+                                                   .megapixels = arguments.megapixels});
   if (!rig) return rig.error();
   std::vector<std::string> command = {"scan",     "-o",         session.string(),
                                       "--fabric", scene.fabric, "--no-preview"};

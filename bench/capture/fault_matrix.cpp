@@ -274,12 +274,12 @@ class Bench {
   Result<void> start(bool usb) {
     rig_ = &rigs_[usb ? 1 : 0];
     if (*rig_) return {};
-    auto rig = simulator::RigProcess::start({.programs = options_.programs,
-                                             .scene = options_.scene,
-                                             .folder = folder_ / (usb ? "usb" : "network"),
-                                             .megapixels = options_.megapixels,
-                                             .usb = usb,
-                                             .same_noise = true});
+    auto rig = virtual_rig::RigProcess::start({.programs = options_.programs,
+                                               .scene = options_.scene,
+                                               .folder = folder_ / (usb ? "usb" : "network"),
+                                               .megapixels = options_.megapixels,
+                                               .usb = usb,
+                                               .same_noise = true});
     if (!rig) return std::move(rig).error();
     *rig_ = std::move(*rig);
     return {};
@@ -454,8 +454,8 @@ class Bench {
 
   const FaultMatrixOptions& options_;
   fs::path folder_;
-  std::array<std::unique_ptr<simulator::RigProcess>, 2> rigs_;  ///< made when first needed
-  std::unique_ptr<simulator::RigProcess>* rig_ = nullptr;       ///< the one that a run is at
+  std::array<std::unique_ptr<virtual_rig::RigProcess>, 2> rigs_;  ///< made when first needed
+  std::unique_ptr<virtual_rig::RigProcess>* rig_ = nullptr;       ///< the one that a run is at
   std::unique_ptr<ChildProcess> daemon_;
   std::string said_;
   bool has_befallen_ = false;

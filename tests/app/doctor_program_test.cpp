@@ -16,26 +16,26 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using simulator::ProgramRun;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
+using virtual_rig::ProgramRun;
 
 class DoctorProgram : public testing::Test {
  protected:
-  DoctorProgram() : folder_(simulator::fresh_folder()) {
-    std::ofstream(folder_ / "scene.toml") << to_toml(simulator::small_scene());
+  DoctorProgram() : folder_(virtual_rig::fresh_folder()) {
+    std::ofstream(folder_ / "scene.toml") << to_toml(virtual_rig::small_scene());
   }
   ~DoctorProgram() override { rig({"--folder", "rig", "--inject", "end"}); }
 
   ProgramRun rig(std::vector<std::string> arguments) const {
     arguments.insert(arguments.begin(), WEFT_VIRTUAL_RIG);
-    return simulator::run_program(arguments, {"XDG_CACHE_HOME=" + (folder_ / "cache").string()},
-                                  folder_.string(), 60);
+    return virtual_rig::run_program(arguments, {"XDG_CACHE_HOME=" + (folder_ / "cache").string()},
+                                    folder_.string(), 60);
   }
   /// weft doctor as a person asks it of the rig in the background.
   ProgramRun doctor() const {
-    return simulator::run_program(
+    return virtual_rig::run_program(
         {"/bin/sh", "-c", std::string("exec env $(cat rig/environment) ") + WEFT_PROGRAM + " doctor"}, {},
         folder_.string(), 60);
   }

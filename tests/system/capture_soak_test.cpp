@@ -28,11 +28,11 @@ class CaptureSoak : public testing::Test {
   /// The rows of `weft bench capture --part PART --runs N`.
   Json rows(const std::string& part, int runs, double megapixels, double most_s) {
     const auto rig =
-        simulator::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
-                                      .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
-                                      .folder = folder_ / "rig",
-                                      .megapixels = megapixels,
-                                      .same_noise = true});
+        virtual_rig::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
+                                        .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
+                                        .folder = folder_ / "rig",
+                                        .megapixels = megapixels,
+                                        .same_noise = true});
     EXPECT_TRUE(rig) << rig.error().message();
     if (!rig) return Json::array();
     const auto weft = (*rig)->weft(
@@ -79,10 +79,10 @@ TEST_F(CaptureSoak, TwentyScansOfSixteenMegapixelsAreAlikeAndLeaveNothingBehind)
 // after one that was truncated, asks for more than that.
 TEST_F(CaptureSoak, ExposuresOf25SecondsWaitForTheLedToCool) {
   const auto rig =
-      simulator::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
-                                    .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
-                                    .folder = folder_ / "rig",
-                                    .megapixels = 0.05});
+      virtual_rig::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
+                                      .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
+                                      .folder = folder_ / "rig",
+                                      .megapixels = 0.05});
   ASSERT_TRUE(rig) << rig.error().message();
   ASSERT_TRUE((*rig)->say("camera short_data 2"));
   const auto weft = (*rig)->weft(

@@ -32,19 +32,19 @@ namespace fs = std::filesystem;
 class ScanWithABody : public testing::Test {
  protected:
   void start(simulator::Body body) {
-    simulator::VirtualRigOptions options;
-    options.scene = simulator::small_scene();
+    virtual_rig::VirtualRigOptions options;
+    options.scene = virtual_rig::small_scene();
     options.body = body;
     options.folder = folder_ / "rig";
     options.cache = folder_ / "cache";
     options.firmware = WEFT_FIRMWARE;
     options.bootloader_s = 0.02;
-    auto rig = simulator::VirtualRig::start(options);
+    auto rig = virtual_rig::VirtualRig::start(options);
     ASSERT_TRUE(rig) << rig.error().message();
     rig_ = std::move(*rig);
-    setenv(simulator::kModemVariable, (options.folder / "modem").c_str(), 1);
+    setenv(virtual_rig::kModemVariable, (options.folder / "modem").c_str(), 1);
   }
-  void TearDown() override { unsetenv(simulator::kModemVariable); }
+  void TearDown() override { unsetenv(virtual_rig::kModemVariable); }
 
   /// A session of the rig's file; `profile` in place of its own.
   Result<capture::ScanOutcome> scan(double exposure_us, const std::string& profile = "") {
@@ -85,8 +85,8 @@ class ScanWithABody : public testing::Test {
     return both / std::sqrt(own * taken);
   }
 
-  const fs::path folder_ = simulator::fresh_folder();
-  std::unique_ptr<simulator::VirtualRig> rig_;
+  const fs::path folder_ = virtual_rig::fresh_folder();
+  std::unique_ptr<virtual_rig::VirtualRig> rig_;
 };
 
 /// Shares of an exposure that the pins were on for, a line an exposure.

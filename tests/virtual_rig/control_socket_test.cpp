@@ -16,7 +16,7 @@
 #include "core/files.h"
 #include "tests/virtual_rig/small_scene.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -152,4 +152,4 @@ TEST(ControlSocket, TellsAHostThatGetsNoAnswerInTime) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -9,9 +9,9 @@
 #include "virtual_rig/light/light_frames.h"
 
 int main(int argc, char** argv) {
-  using namespace weft::simulator;
+  using namespace weft::virtual_rig;
   if (argc < 3) return 64;
-  Scene scene;
+  weft::simulator::Scene scene;
   scene.camera.width = std::atoi(argv[2]);
   scene.camera.height = 600;  // several bands of rows
   scene.effects.near_light = true;

@@ -11,7 +11,7 @@
 #include "core/files.h"
 #include "tests/virtual_rig/small_scene.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ RigFolder taken(const fs::path& folder, bool keep_log = false) {
 
 TEST(RigFolder, TellsAHostWhereItsDevicesAre) {
   const fs::path folder = fresh_folder() / "rig";
-  Scene scene = small_scene();
+  simulator::Scene scene = small_scene();
   scene.geometry.cloth_height_mm = 1.5;
   const Result<LightFrames> frames = LightFrames::open(scene, folder.parent_path() / "cache");
   ASSERT_TRUE(frames) << frames.error().message();
@@ -100,4 +100,4 @@ TEST(RigFolder, LeavesAFolderAloneThatNoRigMade) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -7,16 +7,16 @@
 #include <string>
 #include <system_error>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 namespace fs = std::filesystem;
 
-Scene small_scene(int width) {
-  Scene scene;
+simulator::Scene small_scene(int width) {
+  simulator::Scene scene;
   scene.camera.width = width;
   scene.camera.height = 96;
-  scene.camera.body = Body::kD5100;
-  scene.geometry.kind = GeometryKind::kSatin;
+  scene.camera.body = simulator::Body::kD5100;
+  scene.geometry.kind = simulator::GeometryKind::kSatin;
   scene.material.albedo = {0.45, 0.3, 0.2};
   scene.lights.rings = {{3, 45, 10, 500}};
   scene.effects.near_light = true;
@@ -41,4 +41,4 @@ fs::path fresh_folder() {
   return folder;
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

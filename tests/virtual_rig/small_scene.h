@@ -5,12 +5,12 @@
 
 #include "simulator/scene/scene.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// A noisy satin under three near LEDs, of `width` x 96 pixels.
-Scene small_scene(int width = 128);
+simulator::Scene small_scene(int width = 128);
 
 /// An empty folder of the running test's own.
 std::filesystem::path fresh_folder();
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

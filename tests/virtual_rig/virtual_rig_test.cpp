@@ -23,7 +23,7 @@
 #include "virtual_rig/terminal/modem_lines.h"
 #include "virtual_rig/terminal/port_name.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -249,4 +249,4 @@ TEST(VirtualRig, RefusesMoreLedsThanABoardHas) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <utility>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 constexpr std::uint8_t kPowerOn = 1, kExternal = 2, kWatchdog = 8;  // bits of MCUSR
@@ -174,4 +174,4 @@ void Avr::on_full(avr_irq_t*, std::uint32_t value, void* parameter) {
   if (value != 0) static_cast<Avr*>(parameter)->listens_ = false;
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -13,7 +13,7 @@
 struct avr_t;
 struct avr_irq_t;
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// An ATmega328P at 16 MHz in simavr, with a LED board's wiring: LEDs 1 to 6 on PD2 to PD7, 7 to 10 on PB0 to
 /// PB3. For one thread.
@@ -81,4 +81,4 @@ class Avr {
   bool listens_ = true;
 };
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

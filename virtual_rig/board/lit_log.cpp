@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <iterator>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 void LitLog::record(RigClock::time_point when, std::uint16_t mask) {
   constexpr auto kKept = std::chrono::seconds(1000);
@@ -37,4 +37,4 @@ std::vector<double> LitLog::lit_seconds(RigClock::time_point from, RigClock::tim
   return seconds;
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 using RigClock = std::chrono::steady_clock;
 
@@ -30,4 +30,4 @@ class LitLog {
   std::deque<Edge> edges_;
 };
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -12,7 +12,7 @@
 #include <string>
 #include <system_error>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 Error cannot_make(const std::filesystem::path& link, int error_number) {
@@ -75,4 +75,4 @@ void PseudoTerminal::write(std::span<const std::uint8_t> bytes) const {
   [[maybe_unused]] const ssize_t written = ::write(board_end_, bytes.data(), bytes.size());
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -11,7 +11,7 @@
 
 #include "core/result.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// The board's end of a pseudo-terminal, and a link to the host's end. Both go with it, as they do when a
 /// cable is pulled.
@@ -42,4 +42,4 @@ class PseudoTerminal {
   dev_t device_;
 };
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -21,7 +21,7 @@
 #include "virtual_rig/terminal/modem_lines.h"
 #include "virtual_rig/terminal/usb_terminal.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using namespace std::chrono_literals;
@@ -278,4 +278,4 @@ Result<std::unique_ptr<VirtualBoard>> VirtualBoard::start(const VirtualBoardOpti
   return std::unique_ptr<VirtualBoard>(std::move(board));
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

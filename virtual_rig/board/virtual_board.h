@@ -9,7 +9,7 @@
 #include "core/result.h"
 #include "virtual_rig/board/lit_log.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// The USB device that a board is to its host (virtual_rig/terminal/usb_terminal.h).
 struct VirtualUsb {
@@ -48,4 +48,4 @@ class VirtualBoard {
   virtual void inject(VirtualBoardFault fault) = 0;
 };
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -16,8 +16,10 @@
 #include "simulator/effects/random_key.h"
 #include "simulator/sampling/random.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
+
+using simulator::PhotositeDefect;
 
 constexpr double kThroughout = 1 - 1e-9;  // a sum of several pieces may fall short by rounding
 
@@ -45,8 +47,8 @@ int moved_from(int at, int by, int length) {
   return from < length ? from : length - 2 + (from & 1);
 }
 
-Sensor sensor_at(const LightFrames& frames, double iso) {
-  CameraSettings camera = frames.scene().camera;
+simulator::Sensor sensor_at(const LightFrames& frames, double iso) {
+  simulator::CameraSettings camera = frames.scene().camera;
   camera.iso = iso;
   return sensor_of(camera);
 }
@@ -63,7 +65,7 @@ class ReadOut {
         key_(random_key(frames.scene())) {
     if (effects_.bloom) bloom_ = bloom_kernel(frames.scene().camera.bloom);
     if (effects_.nonlinearity) {
-      bend_ = *NonLinearity::of(frames.scene().camera.linearity);  // plan_of() has proved it
+      bend_ = *simulator::NonLinearity::of(frames.scene().camera.linearity);  // plan_of() has proved it
     }
     for (int x = 0; x < frames.size().width; ++x) {
       column_.push_back(static_cast<std::size_t>(moved_from(x, light.move_x, frames.size().width)));
@@ -140,33 +142,39 @@ class ReadOut {
   void add_noise(int y, int x0, std::span<double> row) const {
     for (std::size_t i = 0; i < row.size(); ++i) {
       const auto x = static_cast<std::uint32_t>(x0) + static_cast<std::uint32_t>(i);
-      row[i] = noisy(sensor_, row[i], philox({x, static_cast<std::uint32_t>(y), light_.noise_key, 0}, key_));
+      row[i] = noisy(sensor_, row[i],
+                     simulator::philox({x, static_cast<std::uint32_t>(y), light_.noise_key, 0}, key_));
     }
   }
 
   const LightFrames& frames_;
   const GatheredLight& light_;
   std::vector<WeightedPlane> planes_;
-  Sensor sensor_;
-  EffectSettings effects_;
+  simulator::Sensor sensor_;
+  simulator::EffectSettings effects_;
   std::array<std::uint32_t, 2> key_;
-  BloomKernel bloom_;
-  std::optional<NonLinearity> bend_;
+  simulator::BloomKernel bloom_;
+  std::optional<simulator::NonLinearity> bend_;
   std::vector<std::size_t> column_;  ///< of the planes, by column of the picture
 };
 
 RawFrame frame_head(const LightFrames& frames, const CameraExposure& exposure, const std::string& serial) {
   RawFrame frame;
-  const Sensor& sensor = frames.rig().sensor;
-  const DefectSettings defects = defects_of(frames.scene());
+  const simulator::Sensor& sensor = frames.rig().sensor;
+  const simulator::DefectSettings defects = defects_of(frames.scene());
   for (std::size_t y = 0; y < 2; ++y) {
     for (std::size_t x = 0; x < 2; ++x) {
       frame.black[y][x] = static_cast<float>(sensor.black + defects.cell_counts[y][x]);
     }
   }
   frame.white = static_cast<float>(sensor.white);
-  frame.shot = {sensor.make,  sensor.model,      serial,         exposure.exposure_us,
-                exposure.iso, exposure.f_number, kFocalLength_mm};
+  frame.shot = {sensor.make,
+                sensor.model,
+                serial,
+                exposure.exposure_us,
+                exposure.iso,
+                exposure.f_number,
+                simulator::kFocalLength_mm};
   return frame;
 }
 
@@ -185,7 +193,7 @@ std::vector<double> lit_shares(const LitLog& pins, RigClock::time_point from, Ri
 
 GatheredLight gathered_light(const LightFrames& frames, const std::vector<double>& pin_shares,
                              const LightFaults& faults, const CameraExposure& exposure) {
-  const Scene& scene = frames.scene();
+  const simulator::Scene& scene = frames.scene();
   // Another time than the scene's gathers what its shutter makes of it, as in simulate_photograph().
   const bool is_nominal = exposure.exposure_us == frames.rig().exposure_us;
   const double exposure_s =
@@ -196,8 +204,8 @@ GatheredLight gathered_light(const LightFrames& frames, const std::vector<double
     light.leds_s[k] *= exposure_s;
     if (faults.flicker == 0) continue;
     const auto led = static_cast<std::uint32_t>(k);
-    const NormalPair normal =
-        normal_pair(philox({exposure.image_number, led, kFlickerStream, 1}, random_key(scene)));
+    const simulator::NormalPair normal = simulator::normal_pair(
+        simulator::philox({exposure.image_number, led, simulator::kFlickerStream, 1}, random_key(scene)));
     light.leds_s[k] *= std::max(1 + faults.flicker * normal.first, 0.0);
   }
   light.ambient_s = exposure_s * ((scene.effects.ambient ? scene.lights.ambient : 0) + faults.ambient);
@@ -236,7 +244,7 @@ Result<std::vector<std::uint8_t>> develop(const LightFrames& frames, const Gathe
                                           int threads) {
   RawFrame frame = frame_head(frames, exposure, serial);
   frame.counts = read_out(frames, light, threads);
-  DngTags tags;
+  simulator::DngTags tags;
   for (std::size_t c = 0; c < 3; ++c) {
     const Rgb& balance = frames.scene().lights.white_balance;
     tags.as_shot_neutral[c] = balance[c] / balance[1];
@@ -247,4 +255,4 @@ Result<std::vector<std::uint8_t>> develop(const LightFrames& frames, const Gathe
   return dng_bytes(frame, tags);
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

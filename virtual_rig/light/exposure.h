@@ -12,7 +12,7 @@
 #include "virtual_rig/light/light_frames.h"
 #include "virtual_rig/ptp/virtual_camera.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// What a sensor is exposed to, and what it draws its noise by.
 struct GatheredLight {
@@ -48,4 +48,4 @@ Result<std::vector<std::uint8_t>> develop(const LightFrames& frames, const Gathe
                                           const CameraExposure& exposure, const std::string& serial,
                                           int threads = 0);
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

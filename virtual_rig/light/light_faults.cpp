@@ -10,7 +10,7 @@
 #include <optional>
 #include <string_view>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 constexpr double kMostLight = 100;
@@ -131,4 +131,4 @@ std::vector<double> with_faults(const LightFaults& faults, std::vector<double> p
   return pins;
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

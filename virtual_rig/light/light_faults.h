@@ -10,7 +10,7 @@
 #include "core/json_document.h"
 #include "core/result.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// What is wrong between the board's pins and the light on the cloth. LEDs count from 1.
 struct LightFaults {
@@ -38,4 +38,4 @@ Json json_of(const LightFaults& faults);
 /// Share of an exposure that each LED shines for, and how brightly, from the share that its pin was on for.
 std::vector<double> with_faults(const LightFaults& faults, std::vector<double> pins);
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -25,10 +25,13 @@
 #include "simulator/camera/defects.h"
 #include "simulator/effects/random_key.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
+using simulator::EffectSettings;
+using simulator::Plan;
+using simulator::Scene;
 
 // Part of a cache folder's name: raised whenever the same scene gives other planes.
 constexpr int kVersion = 1;
@@ -97,19 +100,20 @@ class Planes {
     Scene room = light;
     room.effects.ambient = true;
     room.lights.ambient = 1;
-    Result<PassList> of_leds = build_passes(light, plan_.rig, Output::kRgb);
-    Result<PassList> of_room = build_passes(room, plan_.rig, Output::kRgb);
+    Result<simulator::PassList> of_leds = build_passes(light, plan_.rig, simulator::Output::kRgb);
+    Result<simulator::PassList> of_room = build_passes(room, plan_.rig, simulator::Output::kRgb);
     if (!of_leds) return of_leds.error();
     if (!of_room) return of_room.error();
-    PassRunner lit(std::move(*of_leds), options.tiles), dark(std::move(*of_room), options.tiles);
+    simulator::PassRunner lit(std::move(*of_leds), options.tiles), dark(std::move(*of_room), options.tiles);
     std::vector<int> shots(plan_.rig.leds.leds.size());
     std::iota(shots.begin(), shots.end(), 1);
     const std::vector<int> none = {0};
     for (int y0 = 0; y0 < size_.height; y0 += kBandRows) {
       const Rect band = {0, y0, size_.width, std::min(y0 + kBandRows, size_.height)};
-      const auto run = [&](PassRunner& runner, const std::vector<int>& which) {
+      const auto run = [&](simulator::PassRunner& runner, const std::vector<int>& which) {
         return runner.run(
-            band, which, options.stop, [](const Tile&) {}, [&](const Tile& t) { put(t); });
+            band, which, options.stop, [](const simulator::Tile&) {},
+            [&](const simulator::Tile& t) { put(t); });
       };
       if (Result<void> ok = run(lit, shots); !ok) return ok;
       if (Result<void> ok = run(dark, none); !ok) return ok;
@@ -119,13 +123,13 @@ class Planes {
   }
 
   void draw_photosites() const {
-    const SensorPattern pattern(defects_of(plan_.scene), random_key(plan_.scene));
-    std::vector<PhotositeDefect> row(static_cast<std::size_t>(size_.width));
+    const simulator::SensorPattern pattern(defects_of(plan_.scene), random_key(plan_.scene));
+    std::vector<simulator::PhotositeDefect> row(static_cast<std::size_t>(size_.width));
     const int first = static_cast<int>(plan_.rig.leds.leds.size()) + 1;
     for (int y = 0; y < size_.height; ++y) {
       pattern.fill({0, y, size_.width, y + 1}, row);
       for (int x = 0; x < size_.width; ++x) {
-        const PhotositeDefect& site = row[static_cast<std::size_t>(x)];
+        const simulator::PhotositeDefect& site = row[static_cast<std::size_t>(x)];
         *at(first, x, y) = static_cast<float>(site.response);
         *at(first + 1, x, y) = static_cast<float>(site.dark_electrons_per_s);
         *at(first + 2, x, y) = static_cast<float>(site.offset_counts);
@@ -139,11 +143,11 @@ class Planes {
   }
 
   /// What the filter of each photosite passes, per second at ISO 100.
-  void put(const Tile& tile) const {
+  void put(const simulator::Tile& tile) const {
     constexpr CfaPattern kCfa;
     const double exposure = plan_.rig.exposure(plan_.scene.camera.iso);
     const int plane = tile.shot == 0 ? static_cast<int>(plan_.rig.leds.leds.size()) : tile.shot - 1;
-    for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {
+    simulator::for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {
       const auto channel = static_cast<std::size_t>(kCfa.channel_at(x, y));
       *at(plane, x, y) = static_cast<float>(tile.samples[3 * i + channel] / exposure);
     });
@@ -258,7 +262,8 @@ std::vector<std::string> LightFrames::left_out() const {
   if (s.effects.movement) left_out.emplace_back("movement: the cloth lies still between exposures");
   if (s.effects.led_drift) left_out.emplace_back("led_drift: LEDs stay as bright as they are");
   if (!s.damage.empty()) left_out.emplace_back("damage: frames are whole");
-  if (s.frames == FrameFormat::kExr) left_out.emplace_back("frames = \"exr\": a camera delivers raw files");
+  if (s.frames == simulator::FrameFormat::kExr)
+    left_out.emplace_back("frames = \"exr\": a camera delivers raw files");
   return left_out;
 }
 
@@ -273,4 +278,4 @@ fs::path default_light_cache() {
   return fs::temp_directory_path(ignored) / "weft-virtual-rig";
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -14,7 +14,7 @@
 #include "core/tiles.h"
 #include "simulator/plan.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// A file that is read in place; programs that map the same file share its memory.
 class MappedFloats {
@@ -57,11 +57,11 @@ class LightFrames {
  public:
   /// `cache` is a folder; nothing of it need be there. Errors: those of plan_of() and render passes;
   /// kCannotCreate, kInputOutput of the cache; kInterrupted.
-  static Result<LightFrames> open(const Scene& scene, const std::filesystem::path& cache,
+  static Result<LightFrames> open(const simulator::Scene& scene, const std::filesystem::path& cache,
                                   const RenderLightOptions& options = {});
 
-  const Scene& scene() const { return plan_.scene; }
-  const SceneRig& rig() const { return plan_.rig; }
+  const simulator::Scene& scene() const { return plan_.scene; }
+  const simulator::SceneRig& rig() const { return plan_.rig; }
   Size size() const { return plan_.rig.camera.size; }
   int leds() const { return static_cast<int>(plan_.rig.leds.leds.size()); }
   /// Its folder of the cache.
@@ -79,14 +79,15 @@ class LightFrames {
   std::vector<std::string> left_out() const;
 
  private:
-  LightFrames(Plan plan, std::filesystem::path folder) : plan_(std::move(plan)), folder_(std::move(folder)) {}
+  LightFrames(simulator::Plan plan, std::filesystem::path folder)
+      : plan_(std::move(plan)), folder_(std::move(folder)) {}
   int planes() const { return leds() + 1 + (has_photosites() ? 3 : 0); }
   View<const float> plane(int number) const;
   std::size_t floats() const;
   Result<void> map();
   Result<void> render(const RenderLightOptions& options) const;
 
-  Plan plan_;
+  simulator::Plan plan_;
   std::filesystem::path folder_;
   MappedFloats file_;
 };
@@ -95,4 +96,4 @@ class LightFrames {
 /// temporary files.
 std::filesystem::path default_light_cache();
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -32,7 +32,7 @@ struct Arguments {
   bool background = false, keep = false;
   int ready = -1;
   std::vector<std::string> command;
-  simulator::VirtualRigOptions rig;
+  virtual_rig::VirtualRigOptions rig;
 };
 
 void define(CLI::App& app, Arguments& a) {
@@ -79,7 +79,7 @@ void define(CLI::App& app, Arguments& a) {
   app.add_option("--ready", a.ready)->group("");  // run_in_background()
   app.add_option("--inject", a.inject, "send one command to the rig that lives in --folder, and end");
   std::string footer = "Commands for --inject, or a line each on the socket FOLDER/control:\n";
-  for (const std::string& line : simulator::virtual_rig_commands()) footer += "  " + line + '\n';
+  for (const std::string& line : virtual_rig::virtual_rig_commands()) footer += "  " + line + '\n';
   app.footer(footer +
              "\nA fault of the camera befalls the SHOT that is given, counted from 1, the next one.\n"
              "Exit codes: that of COMMAND; 0 done, 64 usage, 65 bad scene, 66 no scene, 69 no rig in the\n"
@@ -96,7 +96,7 @@ int inject(const Arguments& a) {
     return complain({ErrorKind::kUsage, "no rig is named", "--inject", "there may be several",
                      "name its folder with --folder"});
   }
-  const Result<std::string> answer = simulator::send_command(a.folder / "control", a.inject);
+  const Result<std::string> answer = virtual_rig::send_command(a.folder / "control", a.inject);
   if (!answer) return complain(answer.error());
   const bool is_refused = answer->starts_with("error");
   fmt::print(is_refused ? stderr : stdout, "{}\n", *answer);

@@ -25,8 +25,8 @@
 namespace weft::app {
 namespace {
 
-using simulator::VirtualRig;
 using std::chrono::steady_clock;
+using virtual_rig::VirtualRig;
 
 constexpr int kPoll_ms = 100;
 constexpr std::chrono::seconds kGrace(10);
@@ -129,7 +129,8 @@ class Child {
 };
 
 /// VirtualRig::start() that a signal ends.
-Result<std::unique_ptr<VirtualRig>> start_rig(simulator::VirtualRigOptions options, const Signals& signals) {
+Result<std::unique_ptr<VirtualRig>> start_rig(virtual_rig::VirtualRigOptions options,
+                                              const Signals& signals) {
   std::stop_source stop;
   options.render.stop = stop.get_token();
   options.render.progress = [last = -1](int done, int rows) mutable {
@@ -176,7 +177,7 @@ Result<int> wait_for_end(const VirtualRig& rig, Child* child, const Signals& sig
 
 }  // namespace
 
-Result<int> run_virtual_rig(const simulator::VirtualRigOptions& options,
+Result<int> run_virtual_rig(const virtual_rig::VirtualRigOptions& options,
                             const std::vector<std::string>& command, int ready) {
   const Signals signals;
   const pid_t parent = ::getppid();

@@ -7,7 +7,7 @@
 
 #include "virtual_rig/ptp/codes.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 constexpr std::uint32_t kAnyStore = 0xffffffff, kAtRoot = 0xffffffff;
@@ -276,4 +276,4 @@ Answer PtpBody::capture(bool to_memory) {
   return {};
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -18,7 +18,7 @@
 #include "virtual_rig/ptp/timeline.h"
 #include "virtual_rig/ptp/virtual_camera.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 /// A body behind its sockets: session, properties, pictures and exposures in real time. Links bring it
 /// operations; it does not know which. Safe from any thread.
@@ -117,4 +117,4 @@ class PtpBody {
   Timeline timeline_;  // last: ends before what it uses
 };
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -5,7 +5,7 @@
 
 #include "virtual_rig/ptp/codes.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 // What both serve, and last what a body with live view does: libgphoto2 takes that for a body's kind.
@@ -33,4 +33,4 @@ const BodyFacts& facts_of(CameraBody body) {
   return body == CameraBody::kD80 ? kD80 : kD5100;
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -7,7 +7,7 @@
 
 #include "virtual_rig/ptp/virtual_camera.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 /// Where the bodies differ.
 struct BodyFacts {
@@ -19,4 +19,4 @@ struct BodyFacts {
 
 const BodyFacts& facts_of(CameraBody body);
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 using Bytes = std::vector<std::uint8_t>;
 using BytesView = std::span<const std::uint8_t>;
@@ -59,4 +59,4 @@ class ByteReader {
   BytesView bytes_;
 };
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

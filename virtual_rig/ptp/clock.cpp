@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 std::string formatted(const ClockReading& reading, const char* format) {
@@ -59,4 +59,4 @@ std::optional<double> offset_when_set_to(std::string_view ptp_time) {
   return static_cast<double>(std::mktime(&time)) - seconds_since_1970(std::chrono::system_clock::now());
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

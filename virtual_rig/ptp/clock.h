@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 /// What a camera's clock shows: local time, as this machine's zone has it.
 struct ClockReading {
@@ -22,4 +22,4 @@ std::string exif_time(const ClockReading& reading);  ///< "2026:01:31 23:59:58"
 /// The offset of a clock that is set to this time now; nothing if it is no PTP time.
 std::optional<double> offset_when_set_to(std::string_view ptp_time);
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

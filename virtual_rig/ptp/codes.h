@@ -4,7 +4,7 @@
 #include <cstdint>
 
 /// Numbers of PTP (ISO 15740) and of Nikon's extension to it, as far as a D5100 serves them here.
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 enum Operation : std::uint16_t {
   kGetDeviceInfo = 0x1001,
@@ -103,4 +103,4 @@ constexpr std::uint32_t kMemory = 0, kStore = 0x00010001;  // where an object is
 constexpr std::uint32_t kDcimFolder = 0x10000001, kPicturesFolder = 0x10000002;
 constexpr std::uint32_t kFirstCardHandle = 0x10010001, kFirstSdramHandle = 0xffff0001;
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -5,7 +5,7 @@
 
 #include "virtual_rig/ptp/codes.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 constexpr std::size_t kLongestString = 254;
@@ -74,4 +74,4 @@ Bytes storage_info() {
   return writer.take();
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

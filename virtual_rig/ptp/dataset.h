@@ -11,7 +11,7 @@
 #include "virtual_rig/ptp/bytes.h"
 
 /// The datasets of PTP (ISO 15740, clause 5) that a camera hands out.
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 /// A count of characters with their NUL, then UTF-16; text is ASCII here, at most 254 characters.
 void put_string(ByteWriter& writer, std::string_view text);
@@ -38,4 +38,4 @@ Bytes object_info(const ObjectFacts& facts);
 /// Of the one card.
 Bytes storage_info();
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -9,7 +9,7 @@
 #include "virtual_rig/ptp/body.h"
 #include "virtual_rig/ptp/clock.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 constexpr std::int64_t kRawQuality = 4;
@@ -243,4 +243,4 @@ void PtpBody::after(double seconds, std::function<void()> action) {
   });
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 const std::vector<PtpFaultKind>& fault_kinds() {
   using enum PtpFault;
@@ -93,4 +93,4 @@ bool FaultSchedule::waits(PtpFault fault, int at) const {
                              [=](const Waiting& one) { return one.fault == fault && one.at == at; });
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 enum class PtpFault : std::uint8_t {
   kDropInExposure,
@@ -84,4 +84,4 @@ class FaultSchedule {
   std::vector<Waiting> waiting_;
 };
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -12,7 +12,7 @@
 #include "virtual_rig/ptp/codes.h"
 
 /// What passes between a camera's body and the links that carry PTP to it.
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 struct Request {
   std::uint16_t operation = 0;
@@ -59,4 +59,4 @@ class Link {
   virtual void announce(Event event, std::uint32_t parameter) = 0;
 };
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -14,7 +14,7 @@
 
 #include "virtual_rig/ptp/packet.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 constexpr std::uint32_t kVersion = 0x00010000, kRejected = 1, kConnectionNumber = 1;
@@ -144,4 +144,4 @@ void NetworkLink::leave_seat() {
   left_.notify_one();
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -11,7 +11,7 @@
 #include "virtual_rig/ptp/link.h"
 #include "virtual_rig/ptp/socket.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 /// PTP/IP on 127.0.0.1: one host at a time, operations and events on a connection each.
 class NetworkLink : public Link {
@@ -44,4 +44,4 @@ class NetworkLink : public Link {
   Acceptor acceptor_;  // last: ends first
 };
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 constexpr std::size_t kHead = 8, kLongestPacket = 65536, kDataPacket = 1 << 20;
@@ -121,4 +121,4 @@ void serve_operations(const ReadBytes& read, const WriteBytes& write, PtpBody& b
   }
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

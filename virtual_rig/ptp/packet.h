@@ -10,7 +10,7 @@
 #include "virtual_rig/ptp/bytes.h"
 
 /// PTP/IP (CIPA DC-005) as packets on streams, whatever carries these.
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 enum PacketType : std::uint32_t {
   kInitCommandRequest = 1,
@@ -47,4 +47,4 @@ bool write_packet(const WriteBytes& write, std::uint32_t type, BytesView body);
 /// Serves operations until the stream ends or breaks its rules, or a fault of the body breaks it.
 void serve_operations(const ReadBytes& read, const WriteBytes& write, PtpBody& body);
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -9,7 +9,7 @@
 #include "virtual_rig/ptp/clock.h"
 #include "virtual_rig/ptp/dataset.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 using enum PropertyType;
@@ -257,4 +257,4 @@ double PropertyTable::f_number() const {
   return static_cast<double>(number(kFNumber)) / 100;
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

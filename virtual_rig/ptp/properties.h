@@ -10,7 +10,7 @@
 #include "virtual_rig/ptp/bytes.h"
 #include "virtual_rig/ptp/codes.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 using PropertyValue = std::variant<std::int64_t, std::string>;
 
@@ -68,4 +68,4 @@ class PropertyTable {
   double clock_offset_s_;
 };
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -16,7 +16,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 constexpr int kPatienceMs = 5000;
@@ -153,4 +153,4 @@ void Acceptor::run() {
   }
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

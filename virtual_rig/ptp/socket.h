@@ -12,7 +12,7 @@
 #include "core/descriptor.h"
 #include "virtual_rig/ptp/bytes.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 /// Fills the bytes from a stream; false if it ends, or rests for 5 s in the middle. Waits for the first byte
 /// as long as it takes: whoever wants that to end shuts the socket down.
@@ -71,4 +71,4 @@ class Acceptor {
   std::thread thread_;
 };
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

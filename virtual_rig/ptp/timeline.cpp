@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 void Timeline::at(RigClock::time_point when, std::function<void()> action) {
   {
@@ -37,4 +37,4 @@ void Timeline::run(const std::stop_token& stop) {
   }
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -9,7 +9,7 @@
 
 #include "virtual_rig/board/lit_log.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 /// A thread that does things when their time has come, one after the other. What has not begun when it ends
 /// is not done.
@@ -30,4 +30,4 @@ class Timeline {
   std::jthread thread_;  // last: ends before what it uses
 };
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

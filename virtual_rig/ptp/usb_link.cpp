@@ -14,7 +14,7 @@
 #include <cstring>
 #include <utility>
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 using usb::CallHead;
@@ -316,4 +316,4 @@ UsbLink::Piece UsbLink::next_piece(int fd, std::size_t most, std::uint32_t timeo
   return piece;
 }
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -17,7 +17,7 @@
 #include "virtual_rig/ptp/socket.h"
 #include "virtual_rig/usb/wire.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 
 /// PTP over USB (USB still image class): the containers of its bulk pipes, for the stand-in of libusb.
 class UsbLink : public Link {
@@ -78,4 +78,4 @@ class UsbLink : public Link {
   Acceptor acceptor_;  // last: ends first
 };
 
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -7,7 +7,7 @@
 #include "virtual_rig/ptp/network_link.h"
 #include "virtual_rig/ptp/usb_link.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 class PtpCamera : public VirtualCamera {
@@ -73,4 +73,4 @@ Result<std::unique_ptr<VirtualCamera>> VirtualCamera::start(const VirtualCameraO
   return std::unique_ptr<VirtualCamera>(std::move(camera));
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

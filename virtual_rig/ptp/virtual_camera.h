@@ -13,7 +13,7 @@
 #include "core/result.h"
 #include "virtual_rig/board/lit_log.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// One exposure that the camera has just ended.
 struct CameraExposure {
@@ -74,4 +74,4 @@ class VirtualCamera {
   virtual Result<void> inject(const CameraFault& fault) = 0;
 };
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

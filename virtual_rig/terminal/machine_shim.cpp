@@ -28,7 +28,7 @@ constexpr std::array<std::string_view, 5> kOfTerminals = {"/dev/ttyACM", "/dev/w
 class Path {
  public:
   explicit Path(const char* path) : path_(path) {
-    const char* const machine = std::getenv(weft::simulator::kMachineVariable);
+    const char* const machine = std::getenv(weft::virtual_rig::kMachineVariable);
     if (machine == nullptr || path == nullptr) return;
     for (const std::string_view prefix : kOfTerminals) {
       if (std::string_view(path).starts_with(prefix))

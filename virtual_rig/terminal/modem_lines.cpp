@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <system_error>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 void unmap(ModemLines* lines) {
@@ -46,4 +46,4 @@ SharedModemLines open_modem_lines(const std::filesystem::path& path) {
   return lines;
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -10,7 +10,7 @@
 
 #include "core/result.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// What a virtual board and the terminal shim in the host's process share through a file: a pseudo-terminal
 /// has no modem lines of its own.
@@ -32,4 +32,4 @@ Result<SharedModemLines> make_modem_lines(const std::filesystem::path& file);
 /// Opens it where it is there; null if not.
 SharedModemLines open_modem_lines(const std::filesystem::path& file);
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

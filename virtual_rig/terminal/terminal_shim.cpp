@@ -17,8 +17,8 @@
 
 namespace {
 
-using weft::simulator::ModemLines;
-using weft::simulator::SharedModemLines;
+using weft::virtual_rig::ModemLines;
+using weft::virtual_rig::SharedModemLines;
 
 bool is_modem_request(unsigned long request) {
   return request == TIOCMGET || request == TIOCMSET || request == TIOCMBIS || request == TIOCMBIC;
@@ -26,8 +26,8 @@ bool is_modem_request(unsigned long request) {
 
 /// The lines of this terminal; null where it is no terminal of ours.
 SharedModemLines lines_of(int descriptor) {
-  const char* file = std::getenv(weft::simulator::kModemVariable);
-  SharedModemLines lines = weft::simulator::open_modem_lines(file ? file : "");
+  const char* file = std::getenv(weft::virtual_rig::kModemVariable);
+  SharedModemLines lines = weft::virtual_rig::open_modem_lines(file ? file : "");
   struct stat facts {};
   const bool ours = lines && fstat(descriptor, &facts) == 0 && S_ISCHR(facts.st_mode) &&
                     lines->terminal.load() == facts.st_rdev;

@@ -9,7 +9,7 @@
 
 #include "core/files.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -74,4 +74,4 @@ UsbTerminal::~UsbTerminal() {
   fs::remove_all(device_, ignored);
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -7,7 +7,7 @@
 
 #include "core/result.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// What /dev and /sys of a machine hold of a terminal that is a USB device, as files in a folder:
 /// /dev/ttyACM0, udev's link /dev/weft-led to it, and what libserialport reads below /sys. Goes with its
@@ -32,4 +32,4 @@ class UsbTerminal {
 /// the machine itself has of USB terminals.
 inline constexpr const char* kMachineVariable = "WEFT_TERMINAL_MACHINE";
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -8,7 +8,7 @@
 #include <cerrno>
 #include <cstddef>
 
-namespace weft::simulator::usb {
+namespace weft::virtual_rig::usb {
 namespace {
 
 template <typename T>
@@ -74,4 +74,4 @@ bool Cable::read(std::span<std::uint8_t> bytes) const {
   return true;
 }
 
-}  // namespace weft::simulator::usb
+}  // namespace weft::virtual_rig::usb

@@ -11,7 +11,7 @@
 
 #include "virtual_rig/usb/wire.h"
 
-namespace weft::simulator::usb {
+namespace weft::virtual_rig::usb {
 
 /// The host's end of a cable: one connection to a virtual camera's socket. Safe from several threads.
 class Cable {
@@ -44,4 +44,4 @@ class Cable {
   int fd_ = -1;
 };
 
-}  // namespace weft::simulator::usb
+}  // namespace weft::virtual_rig::usb

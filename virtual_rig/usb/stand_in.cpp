@@ -20,10 +20,10 @@
 #include "virtual_rig/usb/cable.h"
 #include "virtual_rig/usb/wire.h"
 
-using weft::simulator::usb::Cable;
-using weft::simulator::usb::Description;
-using weft::simulator::usb::UsbCall;
-using weft::simulator::usb::UsbStatus;
+using weft::virtual_rig::usb::Cable;
+using weft::virtual_rig::usb::Description;
+using weft::virtual_rig::usb::UsbCall;
+using weft::virtual_rig::usb::UsbStatus;
 
 namespace {
 
@@ -118,8 +118,8 @@ libusb_endpoint_descriptor endpoint(std::uint8_t address, std::uint8_t type, std
 /// All cameras are of one kind.
 struct Configuration {
   std::array<libusb_endpoint_descriptor, 3> endpoints = {
-      endpoint(kBulkIn, LIBUSB_TRANSFER_TYPE_BULK, weft::simulator::usb::kPacket),
-      endpoint(kBulkOut, LIBUSB_TRANSFER_TYPE_BULK, weft::simulator::usb::kPacket),
+      endpoint(kBulkIn, LIBUSB_TRANSFER_TYPE_BULK, weft::virtual_rig::usb::kPacket),
+      endpoint(kBulkOut, LIBUSB_TRANSFER_TYPE_BULK, weft::virtual_rig::usb::kPacket),
       endpoint(kInterruptIn, LIBUSB_TRANSFER_TYPE_INTERRUPT, kInterruptPacket)};
   libusb_interface_descriptor setting = {};
   libusb_interface interface = {};
@@ -231,7 +231,7 @@ int libusb_get_device_descriptor(libusb_device* device, libusb_device_descriptor
   descriptor->bDescriptorType = LIBUSB_DT_DEVICE;
   descriptor->bcdUSB = 0x0200;
   descriptor->bMaxPacketSize0 = 64;
-  descriptor->idVendor = weft::simulator::usb::kNikon;
+  descriptor->idVendor = weft::virtual_rig::usb::kNikon;
   descriptor->idProduct = device->is.product;
   descriptor->bcdDevice = 0x0100;
   descriptor->bNumConfigurations = 1;
@@ -247,7 +247,7 @@ int libusb_get_config_descriptor(libusb_device*, std::uint8_t index, libusb_conf
 void libusb_free_config_descriptor(libusb_config_descriptor*) {}
 
 int libusb_get_max_packet_size(libusb_device*, unsigned char address) {
-  return address == kInterruptIn ? kInterruptPacket : weft::simulator::usb::kPacket;
+  return address == kInterruptIn ? kInterruptPacket : weft::virtual_rig::usb::kPacket;
 }
 
 int libusb_open(libusb_device* device, libusb_device_handle** handle) {

@@ -5,7 +5,7 @@
 
 /// The cable between the stand-in for libusb in a host's process and a virtual camera: calls and replies over
 /// a Unix socket on one machine, one at a time a connection. A connection that ends is a device that is gone.
-namespace weft::simulator::usb {
+namespace weft::virtual_rig::usb {
 
 enum class UsbCall : std::uint32_t {
   kDescribe,   ///< replies with a Description
@@ -42,4 +42,4 @@ struct ReplyHead {
 constexpr std::uint16_t kNikon = 0x04b0;
 constexpr std::uint16_t kPacket = 512;  ///< bytes, of the bulk endpoints; a shorter one ends a transfer
 
-}  // namespace weft::simulator::usb
+}  // namespace weft::virtual_rig::usb

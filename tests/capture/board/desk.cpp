@@ -40,25 +40,25 @@ T valid(Result<T> result) {
 }  // namespace
 
 Desk::Desk(const std::string& firmware, double bootloader_s, bool usb) : folder_(new_folder()) {
-  simulator::VirtualBoardOptions options = {firmware_file(firmware), terminal(), folder_ / "modem",
-                                            bootloader_s};
+  virtual_rig::VirtualBoardOptions options = {firmware_file(firmware), terminal(), folder_ / "modem",
+                                              bootloader_s};
   if (usb) {
     options.usb = {.machine = folder_};
-    setenv(simulator::kMachineVariable, folder_.c_str(), 1);
+    setenv(virtual_rig::kMachineVariable, folder_.c_str(), 1);
   }
-  board_ = valid(simulator::VirtualBoard::start(options, pins_));
-  setenv(simulator::kModemVariable, (folder_ / "modem").c_str(), 1);
+  board_ = valid(virtual_rig::VirtualBoard::start(options, pins_));
+  setenv(virtual_rig::kModemVariable, (folder_ / "modem").c_str(), 1);
 }
 
 Desk::~Desk() {
   board_.reset();
-  unsetenv(simulator::kModemVariable);
-  unsetenv(simulator::kMachineVariable);
+  unsetenv(virtual_rig::kModemVariable);
+  unsetenv(virtual_rig::kMachineVariable);
   std::filesystem::remove_all(folder_);
 }
 
 std::string Desk::port() const {
-  return simulator::terminal_port_name(terminal());
+  return virtual_rig::terminal_port_name(terminal());
 }
 
 std::unique_ptr<capture::LedBoard> Desk::open() const {
@@ -71,15 +71,15 @@ bool Desk::comes_to_light(const std::vector<int>& leds, double most_s) const {
   return comes_true(most_s, [&] { return pins_.now() == mask; });
 }
 
-double Desk::lit_s_since(simulator::RigClock::time_point then) const {
-  const auto seconds = pins_.lit_seconds(then, simulator::RigClock::now(), 10);
+double Desk::lit_s_since(virtual_rig::RigClock::time_point then) const {
+  const auto seconds = pins_.lit_seconds(then, virtual_rig::RigClock::now(), 10);
   return std::accumulate(seconds.begin(), seconds.end(), 0.0);
 }
 
 bool comes_true(double most_s, const std::function<bool()>& condition) {
-  const auto end = simulator::RigClock::now() + std::chrono::duration<double>(most_s);
+  const auto end = virtual_rig::RigClock::now() + std::chrono::duration<double>(most_s);
   while (!condition()) {
-    if (simulator::RigClock::now() > end) return false;
+    if (virtual_rig::RigClock::now() > end) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;

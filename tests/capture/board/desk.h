@@ -27,9 +27,9 @@ class Desk {
   Desk(const Desk&) = delete;
   Desk& operator=(const Desk&) = delete;
 
-  simulator::VirtualBoard& board() { return *board_; }
-  simulator::LitLog& pins() { return pins_; }
-  void inject(simulator::VirtualBoardFault fault) { board_->inject(fault); }
+  virtual_rig::VirtualBoard& board() { return *board_; }
+  virtual_rig::LitLog& pins() { return pins_; }
+  void inject(virtual_rig::VirtualBoardFault fault) { board_->inject(fault); }
   std::filesystem::path folder() const { return folder_; }
   std::filesystem::path terminal() const { return folder_ / "led"; }
   std::string port() const;
@@ -40,14 +40,14 @@ class Desk {
   /// Whether these LEDs and no other are lit, now or within `most_s`.
   bool comes_to_light(const std::vector<int>& leds, double most_s = 2) const;
   /// Seconds that any LED was lit from then until now.
-  double lit_s_since(simulator::RigClock::time_point then) const;
+  double lit_s_since(virtual_rig::RigClock::time_point then) const;
 
  private:
   Desk(const std::string& firmware, double bootloader_s, bool usb);
 
   std::filesystem::path folder_;
-  simulator::LitLog pins_;
-  std::unique_ptr<simulator::VirtualBoard> board_;
+  virtual_rig::LitLog pins_;
+  std::unique_ptr<virtual_rig::VirtualBoard> board_;
 };
 
 /// Lights these LEDs and no other, for at most `most_s`.

@@ -67,7 +67,7 @@ TEST(OpeningALedBoard, SaysWhichProcessHoldsIt) {
 
 TEST(OpeningALedBoard, KeepsOtherProgramsOut) {
   Desk desk;
-  const auto lines = simulator::open_modem_lines(desk.folder() / "modem");
+  const auto lines = virtual_rig::open_modem_lines(desk.folder() / "modem");
   ASSERT_TRUE(lines);
   EXPECT_EQ(lines->exclusive.load(), 0U);
   const auto board = desk.open();
@@ -126,7 +126,7 @@ TEST(OpeningALedBoard, RefusesAnOlderAndANewerFirmware) {
 
 TEST(OpeningALedBoard, GivesUpOnABoardThatIsSilent) {
   Desk desk;
-  desk.inject(simulator::VirtualBoardFault::kDeaf);
+  desk.inject(virtual_rig::VirtualBoardFault::kDeaf);
   const Error error = error_of({desk.port(), 0.5});
   EXPECT_EQ(error.kind, ErrorKind::kTryAgain) << error.message();
   EXPECT_THAT(error.message(), HasSubstr("does not answer"));

@@ -15,12 +15,12 @@
 namespace weft::capture {
 namespace {
 
-using simulator::RigClock;
-using simulator::VirtualBoardFault;
 using test::comes_true;
 using test::Desk;
 using test::light;
 using test::LightHolder;
+using virtual_rig::RigClock;
+using virtual_rig::VirtualBoardFault;
 
 /// The error of lights asked for in turn, until one is refused.
 Error next_error(LedBoard& board) {

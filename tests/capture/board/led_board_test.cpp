@@ -14,9 +14,9 @@
 namespace weft::capture {
 namespace {
 
-using simulator::RigClock;
 using test::Desk;
 using test::light;
+using virtual_rig::RigClock;
 
 TEST(LedBoard, IsGreetedWithWhatItIs) {
   Desk desk;

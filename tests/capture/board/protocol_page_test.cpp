@@ -19,7 +19,7 @@
 namespace weft::capture {
 namespace {
 
-using simulator::RigClock;
+using virtual_rig::RigClock;
 
 /// The script of the page's chapter "Lighting LED 3 from a shell".
 std::string script_of_page() {

@@ -19,11 +19,11 @@ namespace weft::capture {
 namespace {
 
 namespace fs = std::filesystem;
-using simulator::UsbTerminal;
-using simulator::VirtualBoardFault;
 using test::comes_true;
 using test::Desk;
 using testing::HasSubstr;
+using virtual_rig::UsbTerminal;
+using virtual_rig::VirtualBoardFault;
 
 constexpr const char* kNode = "/dev/ttyACM0";
 constexpr std::array kLed4 = {4};

@@ -27,7 +27,7 @@ std::ostream& operator<<(std::ostream& out, const Befallen& befallen) {
 class CameraFaults : public testing::TestWithParam<Befallen> {};
 
 TEST_P(CameraFaults, CostOnePhotographAndUnderTenSeconds) {
-  simulator::VirtualCameraOptions options;
+  virtual_rig::VirtualCameraOptions options;
   options.away_s = 1.5;
   LinkBench bench(options);
   bench.ready();
@@ -68,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(OfAShot, CameraFaults, testing::ValuesIn(of_shots()), [
 /// The hurried profile gives up before the file is there, which then comes in the middle of another shot.
 TEST(CameraFaults, DoNotLetALateFilePassForAnother) {
   for (const double late_s : {1.7, 2.0, 2.4, 3.0}) {
-    simulator::VirtualCameraOptions options;
+    virtual_rig::VirtualCameraOptions options;
     options.late_s = late_s;
     LinkBench bench(options);
     bench.hurry(1);

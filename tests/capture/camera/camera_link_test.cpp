@@ -14,8 +14,8 @@
 namespace weft::capture {
 namespace {
 
-using simulator::VirtualCameraOptions;
 using testing::HasSubstr;
+using virtual_rig::VirtualCameraOptions;
 
 TEST(CameraLink, KnowsTheCameraOnceItIsConnected) {
   VirtualCameraOptions options;
@@ -159,7 +159,7 @@ double told_after_s(LinkBench& bench, Result<Photograph>& taken) {
 constexpr double kD80Closes_s = 0.48;  // its lag and the exposure
 
 TEST(CameraLink, TellsThatTheShutterHasClosedWhereTheTriggerReturnsAtOnce) {
-  LinkBench bench({.body = simulator::CameraBody::kD80});
+  LinkBench bench({.body = virtual_rig::CameraBody::kD80});
   use_d80(bench, "returns_at_once");
   Result<Photograph> taken = Photograph();
   const double told_s = told_after_s(bench, taken);
@@ -170,14 +170,14 @@ TEST(CameraLink, TellsThatTheShutterHasClosedWhereTheTriggerReturnsAtOnce) {
 }
 
 TEST(CameraLink, TellsSoTooEarlyWhereAProfileWronglySaysThatTheTriggerBlocks) {
-  LinkBench bench({.body = simulator::CameraBody::kD80});
+  LinkBench bench({.body = virtual_rig::CameraBody::kD80});
   use_d80(bench, "blocks");
   Result<Photograph> taken = Photograph();
   EXPECT_LT(told_after_s(bench, taken), kD80Closes_s) << "then no test here tells the two kinds apart";
 }
 
 TEST(CameraLink, TellsSoWhenTheTimeIsOverWhereNoPhotographComes) {
-  LinkBench bench({.body = simulator::CameraBody::kD80});
+  LinkBench bench({.body = virtual_rig::CameraBody::kD80});
   use_d80(bench, "returns_at_once", 2.5);
   ASSERT_TRUE(bench.camera().inject({"no_object", 1}));
   Result<Photograph> taken = Photograph();

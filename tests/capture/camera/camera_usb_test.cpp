@@ -11,9 +11,9 @@
 namespace weft::capture {
 namespace {
 
-using simulator::VirtualCameraOptions;
 using testing::HasSubstr;
 using testing::StartsWith;
+using virtual_rig::VirtualCameraOptions;
 
 /// A socket's path may have 107 characters, fewer than a test's folder.
 std::string socket_path(const std::string& name) {

@@ -22,7 +22,7 @@
 namespace weft::capture {
 
 /// The file of an exposure: small, and true in all that it says of itself.
-inline Result<std::vector<std::uint8_t>> small_dng(const simulator::CameraExposure& exposure) {
+inline Result<std::vector<std::uint8_t>> small_dng(const virtual_rig::CameraExposure& exposure) {
   RawFrame frame = sample_frame({64, 48});
   frame.shot.exposure_us = exposure.exposure_us;
   frame.shot.iso = exposure.iso;
@@ -41,13 +41,13 @@ inline double seconds_since(std::chrono::steady_clock::time_point begin) {
 /// A virtual camera and a link to it through the real weft-camera, in a folder of their own.
 class LinkBench {
  public:
-  explicit LinkBench(simulator::VirtualCameraOptions options = {}) {
+  explicit LinkBench(virtual_rig::VirtualCameraOptions options = {}) {
     static int count = 0;
     folder_ = std::filesystem::path(testing::TempDir()) /
               ("weft_link_" + std::to_string(getpid()) + "_" + std::to_string(count++));
     std::filesystem::create_directories(folder_ / "raw");
     options.size = {64, 48};
-    auto started = simulator::VirtualCamera::start(options, &small_dng);
+    auto started = virtual_rig::VirtualCamera::start(options, &small_dng);
     if (!started) throw std::runtime_error(started.error().message());
     camera_ = std::move(*started);
     link_options_.port =
@@ -72,7 +72,7 @@ class LinkBench {
   }
 
   CameraLinkOptions& options() { return link_options_; }
-  simulator::VirtualCamera& camera() { return *camera_; }
+  virtual_rig::VirtualCamera& camera() { return *camera_; }
   void switch_off() { camera_.reset(); }
   const std::filesystem::path& folder() const { return folder_; }
   std::filesystem::path raw(int index) const {
@@ -130,7 +130,7 @@ class LinkBench {
 
  private:
   std::filesystem::path folder_;
-  std::unique_ptr<simulator::VirtualCamera> camera_;
+  std::unique_ptr<virtual_rig::VirtualCamera> camera_;
   CameraLinkOptions link_options_;
   std::unique_ptr<CameraLink> link_;
   int retakes_ = 0;

@@ -13,7 +13,7 @@
 #include "virtual_rig/terminal/modem_lines.h"
 #include "virtual_rig/terminal/port_name.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 class OpenFile {
@@ -94,4 +94,4 @@ TEST(TerminalPortName, NamesTheSameFileFromBelowDevAndBelowSys) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

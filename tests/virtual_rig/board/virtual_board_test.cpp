@@ -15,7 +15,7 @@
 #include "tests/capture/board/desk.h"
 #include "tests/firmware/requests.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using test::Bytes;
@@ -197,4 +197,4 @@ TEST(VirtualBoard, RefusesAFileThatIsNoFirmware) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

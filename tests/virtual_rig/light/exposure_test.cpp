@@ -20,10 +20,11 @@
 #include "simulator/simulate.h"
 #include "tests/virtual_rig/small_scene.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
+using simulator::Scene;
 using std::chrono::microseconds;
 using testing::ElementsAre;
 
@@ -77,7 +78,7 @@ Difference difference_of(const Image<std::uint16_t>& a, const Image<std::uint16_
 /// What the simulator itself photographs; its noise is that of the take `image_number`.
 Image<std::uint16_t> simulated(const Scene& scene, const std::vector<int>& leds, int image_number) {
   const fs::path file = fresh_folder() / "simulated.dng";
-  SimulateOptions options;
+  simulator::SimulateOptions options;
   options.takes_before = image_number - (leds.empty() ? 0 : leds.front());
   const Result<void> done = simulate_photograph(scene, {leds, {}}, file, options);
   if (!done) throw std::runtime_error(done.error().message());
@@ -119,7 +120,7 @@ TEST(Exposure, HasTheSignalOfItsLedsWithinTheRoundingOfAFloat) {
   Scene scene = small_scene();
   const LightFrames frames = opened(scene);
   scene.effects.noise = false;
-  const Rendering truth = render_readings(scene, {0, 0, 128, 96}).value();
+  const simulator::Rendering truth = render_readings(scene, {0, 0, 128, 96}).value();
   const Image<double> signal = signal_of(frames, gathered(frames, {0, 0, 1}));
   const double exposure = frames.rig().exposure(scene.camera.iso);
   constexpr CfaPattern kCfa;
@@ -150,7 +151,7 @@ TEST(Exposure, OfTwoLedsIsTheSumOfTheirLight) {
 
 TEST(Exposure, InTheDarkHoldsTheBlackLevelAndReadNoise) {
   Scene scene = small_scene();
-  scene.camera.body = Body::kOffset;
+  scene.camera.body = simulator::Body::kOffset;
   const LightFrames frames = opened(scene);
   const Image<std::uint16_t> dark = read_out(frames, gathered(frames, {0, 0, 0}));
   const double epc = frames.rig().sensor.electrons_per_count();
@@ -171,7 +172,7 @@ TEST(Exposure, OfTooMuchLightIsWhite) {
 
 TEST(Exposure, DrawsPhotonsAsOftenAsTheyCome) {
   const LightFrames frames = opened(small_scene());
-  const Sensor& sensor = frames.rig().sensor;
+  const simulator::Sensor& sensor = frames.rig().sensor;
   const Image<std::uint16_t> a = read_out(frames, gathered(frames, {1, 0, 0}, {}, 1));
   const Image<std::uint16_t> b = read_out(frames, gathered(frames, {1, 0, 0}, {}, 2));
   const Image<double> signal = signal_of(frames, gathered(frames, {1, 0, 0}));
@@ -320,4 +321,4 @@ TEST(Exposure, IsAFileThatSaysWhatTookItAndWhen) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

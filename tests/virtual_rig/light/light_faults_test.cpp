@@ -6,7 +6,7 @@
 
 #include <sstream>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using testing::ElementsAre;
@@ -80,4 +80,4 @@ TEST(LightFaults, RefuseWhatNoRigHas) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -19,10 +19,11 @@
 #include "simulator/simulate.h"
 #include "tests/virtual_rig/small_scene.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
+using simulator::Scene;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
@@ -42,7 +43,7 @@ std::vector<std::string> names_in(const fs::path& folder) {
 }
 
 /// Largest difference of a plane from the simulator's own numbers, relative to the brightest.
-double error_of(View<const float> plane, const Rendering& truth, int first_plane) {
+double error_of(View<const float> plane, const simulator::Rendering& truth, int first_plane) {
   constexpr CfaPattern kCfa;
   double worst = 0, brightest = 0;
   for (int y = 0; y < plane.height(); ++y) {
@@ -61,7 +62,7 @@ TEST(LightFrames, HoldWhatEachLedPutsOnEachPhotosite) {
   scene.effects.vignetting = scene.effects.defocus = scene.effects.relief = scene.effects.stray = true;
   const LightFrames frames = opened(scene, fresh_folder());
   scene.effects.noise = false;
-  const Result<Rendering> truth = render_readings(scene, {0, 0, 128, 96});
+  const Result<simulator::Rendering> truth = render_readings(scene, {0, 0, 128, 96});
   ASSERT_TRUE(truth) << truth.error().message();
   ASSERT_EQ(frames.leds(), 3);
   for (int led = 1; led <= 3; ++led) {
@@ -174,7 +175,7 @@ TEST(LightFrames, OfScenesThatDifferAreKeptApart) {
   auto heights = std::make_shared<Image<float>>(Size{8, 8});
   (*heights)(3, 3) = 1;
   Scene map = small_scene();
-  map.geometry.kind = GeometryKind::kHeightMap;
+  map.geometry.kind = simulator::GeometryKind::kHeightMap;
   map.geometry.heights_mm = heights;
   const fs::path before = opened(map, cache).folder();
   auto changed = std::make_shared<Image<float>>(Size{8, 8});
@@ -188,7 +189,7 @@ TEST(LightFrames, SayWhatOfTheSceneTheyLeaveOut) {
   const fs::path cache = fresh_folder();
   EXPECT_THAT(opened(scene, cache).left_out(), SizeIs(0));
   scene.effects.movement = scene.effects.led_drift = true;
-  scene.damage.push_back({.kind = DamageKind::kBlack});
+  scene.damage.push_back({.kind = simulator::DamageKind::kBlack});
   EXPECT_THAT(opened(scene, cache).left_out(),
               ElementsAre(HasSubstr("movement"), HasSubstr("led_drift"), HasSubstr("damage")));
 }
@@ -203,4 +204,4 @@ TEST(LightFrames, SayThatTheirCacheCannotBeMade) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

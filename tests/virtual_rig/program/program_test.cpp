@@ -16,7 +16,7 @@
 #include "tests/virtual_rig/small_scene.h"
 #include "virtual_rig/control_socket.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,4 +120,4 @@ TEST_F(Program, ExplainsItselfAndWhatItRefuses) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -13,7 +13,7 @@
 #include "tests/virtual_rig/ptp/gphoto_client.h"
 #include "tests/virtual_rig/ptp/studio.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using testing::HasSubstr;
@@ -181,4 +181,4 @@ TEST(VirtualCamera, HoldsNoAcknowledgementBack) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -11,7 +11,7 @@
 #include <csignal>
 #include <cstdlib>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -105,4 +105,4 @@ ProgramRun run_program(const std::vector<std::string>& command, const std::vecto
   return run;
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

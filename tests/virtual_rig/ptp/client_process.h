@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// A child that is a client of its own, for what kills or blocks one. Made before any thread of this process;
 /// it begins when it is told the camera's port.
@@ -44,4 +44,4 @@ struct ProgramRun {
 ProgramRun run_program(const std::vector<std::string>& command, const std::vector<std::string>& environment,
                        const std::string& folder, double deadline_s);
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -13,7 +13,7 @@
 #include "tests/virtual_rig/ptp/studio.h"
 #include "virtual_rig/ptp/faults.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 /// libgphoto2 gives up a read after 2.5 s.
@@ -290,4 +290,4 @@ TEST(CameraFaults, HaveNamesOfTheirOwnAndASentenceEach) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

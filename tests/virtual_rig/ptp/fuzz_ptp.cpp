@@ -8,7 +8,7 @@
 #include "virtual_rig/ptp/packet.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  using namespace weft::simulator;
+  using namespace weft::virtual_rig;
   ptp::BytesView rest(data, size);
   const ptp::ReadBytes read = [&rest](std::span<std::uint8_t> into) {
     if (rest.size() < into.size()) return false;

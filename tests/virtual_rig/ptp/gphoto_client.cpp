@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -212,4 +212,4 @@ GphotoClient::Shot GphotoClient::next_file(double deadline_s) {
   return shot;
 }
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

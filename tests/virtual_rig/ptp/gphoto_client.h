@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// The real libgphoto2 at a camera, a line a call. Its settings are in a HOME of this process's own.
 class GphotoClient {
@@ -70,4 +70,4 @@ class GphotoClient {
 /// A folder made for this process alone, which is HOME from then on.
 const std::string& private_home();
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -14,7 +14,7 @@
 #include "tests/virtual_rig/ptp/gphoto_client.h"
 #include "tests/virtual_rig/ptp/studio.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using ptp::Bytes;
@@ -149,4 +149,4 @@ TEST(VirtualCamera, OutlivesStrangersAtItsPort) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

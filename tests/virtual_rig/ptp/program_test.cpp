@@ -11,7 +11,7 @@
 #include "tests/virtual_rig/ptp/gphoto_client.h"
 #include "tests/virtual_rig/ptp/studio.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using testing::HasSubstr;
@@ -59,4 +59,4 @@ TEST_F(StockGphoto2, SummarizesTheCamera) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -8,7 +8,7 @@
 #include "virtual_rig/ptp/clock.h"
 #include "virtual_rig/ptp/dataset.h"
 
-namespace weft::simulator::ptp {
+namespace weft::virtual_rig::ptp {
 namespace {
 
 PropertyTable table() {
@@ -116,4 +116,4 @@ TEST(CameraClock, CountsMillisecondsWithinTheSecond) {
 }
 
 }  // namespace
-}  // namespace weft::simulator::ptp
+}  // namespace weft::virtual_rig::ptp

@@ -12,7 +12,7 @@
 
 #include "virtual_rig/ptp/virtual_camera.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 
 /// A virtual camera whose pictures are noise that begins with the picture's number, and what it developed.
 class Studio {
@@ -75,4 +75,4 @@ class Studio {
   std::unique_ptr<VirtualCamera> camera_;
 };
 
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

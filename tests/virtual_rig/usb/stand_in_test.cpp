@@ -13,7 +13,7 @@
 #include "virtual_rig/ptp/bytes.h"
 #include "virtual_rig/usb/cable.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using ptp::Bytes;
@@ -199,4 +199,4 @@ TEST(UsbStandIn, OutlivesNoiseOnTheCable) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig

@@ -14,7 +14,7 @@
 #include "tests/virtual_rig/ptp/gphoto_client.h"
 #include "tests/virtual_rig/ptp/studio.h"
 
-namespace weft::simulator {
+namespace weft::virtual_rig {
 namespace {
 
 using testing::HasSubstr;
@@ -245,4 +245,4 @@ TEST_F(UsbCamera, IsWhatTheStockGphoto2FindsAndTakesAPictureWith) {
 }
 
 }  // namespace
-}  // namespace weft::simulator
+}  // namespace weft::virtual_rig
