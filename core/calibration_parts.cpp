@@ -57,14 +57,7 @@ Result<CameraModel> model_from_json(const Json& json, const std::string& where) 
   c.k3 = fields.number("k3");
   c.p1 = fields.number("p1");
   c.p2 = fields.number("p2");
-  const Json& rotation = fields.list("camera_from_rig_rotation");
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const Json row = {{"row", i < rotation.size() ? rotation[i] : Json()}};
-    JsonFields row_fields(row, where + ": camera_from_rig_rotation");
-    c.camera_from_rig_rotation[i] = row_fields.rgb("row");
-    if (Result<void> ok = row_fields.status(); !ok) return std::move(ok).error();
-  }
+  c.camera_from_rig_rotation = fields.mat3("camera_from_rig_rotation");
   if (!is_rotation(c.camera_from_rig_rotation))
     fields.reject("camera_from_rig_rotation", "must be a rotation");
   c.camera_from_rig_translation_mm = fields.vec3("camera_from_rig_translation_mm");
@@ -412,16 +405,10 @@ Json json_of(const ColorTransform& color) {
 Result<ColorTransform> color_from_json(const Json& json, const std::string& where) {
   JsonFields fields(json, where);
   ColorTransform color;
-  const Json& rows = fields.list("rec709_from_camera");
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const bool good = rows.size() == 3 && is_numbers(rows[i], 3);
-    if (good) color.rec709_from_camera[i] = rows[i].get<std::array<double, 3>>();
-    const auto& row = color.rec709_from_camera[i];
-    if (!good || std::abs(row[0] + row[1] + row[2] - 1) > 1e-6) {
+  color.rec709_from_camera = fields.mat3("rec709_from_camera");
+  for (const auto& row : color.rec709_from_camera) {
+    if (std::abs(row[0] + row[1] + row[2] - 1) > 1e-6)
       fields.reject("rec709_from_camera", "must be three rows of three numbers that sum to 1");
-      break;
-    }
   }
   const Json& covariance = fields.list("covariance");
   if (!covariance.empty() && !is_numbers(covariance, 81))

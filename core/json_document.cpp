@@ -2,11 +2,13 @@
 #include "core/json_document.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "core/files.h"
 
@@ -27,6 +29,12 @@ std::string beginning_of(const Json& value) {
   std::size_t end = std::min<std::size_t>(text.size(), 40);
   while (end < text.size() && (text[end] & 0xc0) == 0x80) --end;
   return text.substr(0, end);
+}
+
+bool is_triple(const Json& list) {
+  return list.is_array() && list.size() == 3 && std::ranges::all_of(list, [](const Json& v) {
+           return v.is_number() && std::isfinite(v.get<double>());
+         });
 }
 
 }  // namespace
@@ -116,13 +124,6 @@ int JsonFields::integer(const char* key) {
 }
 
 std::array<double, 3> JsonFields::rgb(const char* key) {
-  const auto is_triple = [](const Json& v) {
-    if (!v.is_array() || v.size() != 3) return false;
-    for (const Json& item : v) {
-      if (!item.is_number() || !std::isfinite(item.get<double>())) return false;
-    }
-    return true;
-  };
   const Json* value = find(key, is_triple, "a list of three numbers");
   return value ? value->get<std::array<double, 3>>() : std::array<double, 3>{};
 }
@@ -130,6 +131,22 @@ std::array<double, 3> JsonFields::rgb(const char* key) {
 Vec3 JsonFields::vec3(const char* key) {
   const std::array<double, 3> v = rgb(key);
   return {v[0], v[1], v[2]};
+}
+
+Mat3 JsonFields::mat3(const char* key) {
+  const auto is_matrix = [](const Json& rows) {
+    return rows.is_array() && rows.size() == 3 && std::ranges::all_of(rows, is_triple);
+  };
+  const Json* value = find(key, is_matrix, "a list of three rows of three numbers");
+  return value ? value->get<Mat3>() : Mat3{};
+}
+
+std::size_t JsonFields::place_of(const char* key, std::span<const char* const> names) {
+  const std::string name = text(key);
+  const auto found = std::ranges::find(names, std::string_view(name));
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  reject(key, fmt::format("is {}; {} was expected", beginning_of(name), fmt::join(names, " or ")));
+  return 0;
 }
 
 const Json& JsonFields::list(const char* key) {

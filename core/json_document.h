@@ -2,9 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/result.h"
@@ -35,12 +37,18 @@ class JsonFields {
   int integer(const char* key);
   Vec3 vec3(const char* key);
   std::array<double, 3> rgb(const char* key);
+  Mat3 mat3(const char* key);  ///< a list of its rows
   std::optional<double> optional_number(const char* key);
   std::string text_or(const char* key, std::string fallback);
   /// The list under `key`, or an empty one once something is wrong.
   const Json& list(const char* key);
   const Json& object(const char* key);
   bool has(const char* key) const;
+  /// The value of an enum by its name; `names` has one a value, in their order.
+  template <typename Enum, std::size_t N>
+  Enum one_of(const char* key, const std::array<const char*, N>& names) {
+    return static_cast<Enum>(place_of(key, names));
+  }
 
   /// Remembers that the value of `key` breaks a rule: "must be above 0".
   void reject(const char* key, const std::string& rule);
@@ -49,6 +57,7 @@ class JsonFields {
 
  private:
   const Json* find(const char* key, bool (*is_kind)(const Json&), const char* kind);
+  std::size_t place_of(const char* key, std::span<const char* const> names);
 
   const Json* object_;
   std::string where_;

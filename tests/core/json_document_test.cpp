@@ -92,9 +92,13 @@ TEST(WriteJson, MendsATextThatIsNotUtf8) {
   EXPECT_EQ((*read)["name"], "caf\xef\xbf\xbd");
 }
 
-const Json kObject = {{"text", "twill"},        {"number", 2.5},      {"whole", -7},
-                      {"vector", {1, 2.5, -3}}, {"list", {1, "two"}}, {"object", {{"a", 1}}},
-                      {"nothing", nullptr}};
+const Json kObject = {
+    {"text", "twill"},        {"number", 2.5},      {"whole", -7},
+    {"vector", {1, 2.5, -3}}, {"list", {1, "two"}}, {"object", {{"a", 1}}},
+    {"nothing", nullptr},     {"color", "green"},   {"matrix", {{1, 2, 3}, {4, 5, 6}, {7, 8, 9.5}}}};
+
+enum class Color { kRed, kGreen };
+constexpr std::array<const char*, 2> kColorNames = {"red", "green"};
 
 TEST(JsonFields, ReadsEveryKind) {
   JsonFields fields(kObject, "a.json");
@@ -104,6 +108,8 @@ TEST(JsonFields, ReadsEveryKind) {
   EXPECT_EQ(fields.integer("whole"), -7);
   EXPECT_EQ(fields.vec3("vector"), (Vec3{1, 2.5, -3}));
   EXPECT_EQ(fields.rgb("vector"), (std::array<double, 3>{1, 2.5, -3}));
+  EXPECT_EQ(fields.mat3("matrix"), (Mat3{{{1, 2, 3}, {4, 5, 6}, {7, 8, 9.5}}}));
+  EXPECT_EQ(fields.one_of<Color>("color", kColorNames), Color::kGreen);
   EXPECT_EQ(fields.list("list").size(), 2U);
   EXPECT_EQ(fields.object("object")["a"], 1);
   EXPECT_EQ(fields.optional_number("number"), 2.5);
@@ -122,6 +128,8 @@ TEST(JsonFields, RemembersTheFirstErrorWithItsPathAndReturnsDefaultsAfterIt) {
   EXPECT_EQ(fields.text("text"), "") << "after an error there are only defaults";
   EXPECT_EQ(fields.integer("text"), 0);
   EXPECT_EQ(fields.vec3("vector"), Vec3());
+  EXPECT_EQ(fields.mat3("matrix"), Mat3());
+  EXPECT_EQ(fields.one_of<Color>("color", kColorNames), Color::kRed);
   EXPECT_TRUE(fields.list("list").empty());
   EXPECT_TRUE(fields.object("object").empty());
   fields.reject("number", "must be odd");
@@ -148,6 +156,14 @@ TEST(JsonFields, NamesAWrongKindAndTheOneExpected) {
             "\"number\" is 2.5; a whole number was expected");
   EXPECT_EQ(why([](JsonFields& f) { f.vec3("list"); }),
             "\"list\" is [1,\"two\"]; a list of three numbers was expected");
+  EXPECT_EQ(why([](JsonFields& f) { f.mat3("vector"); }),
+            "\"vector\" is [1,2.5,-3]; a list of three rows of three numbers was expected");
+  EXPECT_EQ(why([](JsonFields& f) { f.mat3("matrix"); }, {{"matrix", {{1, 0, 0}, {0, 1, 0}}}}),
+            "\"matrix\" is [[1,0,0],[0,1,0]]; a list of three rows of three numbers was expected");
+  EXPECT_EQ(why([](JsonFields& f) { f.one_of<Color>("text", kColorNames); }),
+            "\"text\" is \"twill\"; red or green was expected");
+  EXPECT_EQ(why([](JsonFields& f) { f.one_of<Color>("whole", kColorNames); }),
+            "\"whole\" is -7; a text was expected");
   EXPECT_EQ(why([](JsonFields& f) { f.list("object"); }), "\"object\" is {\"a\":1}; a list was expected");
   EXPECT_EQ(why([](JsonFields& f) { f.object("list"); }), "\"list\" is [1,\"two\"]; an object was expected");
   EXPECT_EQ(why([](JsonFields& f) { f.number("a"); }, Json::array({1})), "\"a\" is missing");
