@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "report/verdict.h"
+#include "core/verdict.h"
 
 // A page as data, and what it becomes (report/html.h). All text is plain; it is escaped on its way into the
 // page.

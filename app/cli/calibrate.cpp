@@ -63,7 +63,7 @@ void print_outcome(const CalibrateOutcome& outcome, const CommonArguments& commo
 }
 
 void print_notes(const CalibrateOutcome& outcome) {
-  for (const report::Verdict& verdict : outcome.report.verdicts) {
+  for (const Verdict& verdict : outcome.report.verdicts) {
     note(fmt::format("{}.{}", verdict.text, verdict.remedy.empty() ? "" : " To do: " + verdict.remedy + "."));
   }
   for (const std::string& warning : outcome.warnings) note(warning);

@@ -18,7 +18,6 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using report::Verdict;
 using solver::Fault;
 using solver::FaultKind;
 

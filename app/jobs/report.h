@@ -10,10 +10,10 @@
 
 #include "core/json_document.h"
 #include "core/result.h"
+#include "core/verdict.h"
 #include "pipeline/bands.h"
 #include "pipeline/photographs.h"
 #include "report/downsampler.h"
-#include "report/verdict.h"
 #include "solver/diagnosis/diagnosis.h"
 
 // The report of a solve: what went wrong, and where its error comes from. report.json (weft.solve-report/1,
@@ -77,7 +77,7 @@ inline constexpr double kSpecularDominated = 0.2;
 
 /// Everything to be warned of, the gravest first: LEDS_EXCHANGED, LED_DEAD, LED_GAIN, SPECULAR_DOMINATED,
 /// CONDITIONS. `specular` is the share of pixels with that bit.
-std::vector<report::Verdict> verdicts_of(const PhotographsSummary& photographs, double specular);
+std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular);
 
 /// report.json from solve.json (`solve`, where "gates", "conditions", "registration" and "error" may be
 /// absent) and seconds by phase. Nothing but "seconds" differs from run to run.

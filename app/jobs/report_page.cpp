@@ -69,7 +69,7 @@ std::string head(const Json& report) {
 }
 
 std::string verdict(const Json& report) {
-  std::vector<report::Verdict> warnings;
+  std::vector<Verdict> warnings;
   for (const Json& warning : report["warnings"]) {
     warnings.push_back({warning.value("name", ""), warning.value("text", ""), warning.value("remedy", "")});
   }

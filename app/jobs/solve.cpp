@@ -90,7 +90,7 @@ struct Facts {
   StatusCounts counts;
   std::vector<std::string> pictures;
   std::optional<NormalComparison> error;  // against the truth, where there is one
-  std::vector<report::Verdict> verdicts;
+  std::vector<Verdict> verdicts;
 };
 
 Json document_of(const Product& product, const Input& input, const SolveOptions& options,

@@ -66,12 +66,6 @@ TEST(VerdictBox, WithoutVerdictsIsGood) {
   EXPECT_EQ(verdict_box({}, "all < well"), "<div class=\"verdict\">\n<p>all &lt; well</p>\n</div>\n");
 }
 
-TEST(Verdict, AsJsonHasItsThreeFields) {
-  EXPECT_EQ(json_of({{"LED_DEAD", "LED 3 looks dead", "check it"}}),
-            Json::parse(R"([{"name": "LED_DEAD", "text": "LED 3 looks dead", "remedy": "check it"}])"));
-  EXPECT_EQ(json_of(std::vector<Verdict>{}), Json::array());
-}
-
 TEST(Section, PutsFiguresSideBySideOnlyWhereThereAreTwo) {
   Section section = {.title = "Coverage", .paragraphs = {"5 < 6"}, .figures = {{"seen & counted", "<svg/>"}}};
   EXPECT_EQ(html_of(section),

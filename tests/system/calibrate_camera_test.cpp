@@ -272,7 +272,7 @@ TEST_F(CalibrateCamera, KeepsTheOtherPartsAndSaysThatTheLightsAreOfAnotherFrame)
   EXPECT_TRUE(outcome->calibration.lights && outcome->calibration.response);
   EXPECT_EQ(bytes_of(output_ / "lights.json"), bytes_of(work_ / "old" / "lights.json"));
   EXPECT_THAT(outcome->report.verdicts,
-              testing::Contains(testing::Field(&report::Verdict::name, "LIGHTS_OF_ANOTHER_FRAME")));
+              testing::Contains(testing::Field(&Verdict::name, "LIGHTS_OF_ANOTHER_FRAME")));
   EXPECT_EQ(contents_of(work_ / "old"), contents);
   const auto again = calibrate_camera(with_old, {});
   ASSERT_FALSE(again);

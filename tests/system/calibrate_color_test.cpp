@@ -185,7 +185,7 @@ TEST(CalibrateColor, WarnsOfLightThatFallsOffAndOfAChartThatIsDark) {
   const auto outcome = calibrate_color(options_of(work), {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   std::vector<std::string> names;
-  for (const report::Verdict& v : outcome->report.verdicts) names.push_back(v.name);
+  for (const Verdict& v : outcome->report.verdicts) names.push_back(v.name);
   EXPECT_THAT(names, testing::ElementsAre("CHART_DARK", "CHART_UNEVENLY_LIT"));
 }
 

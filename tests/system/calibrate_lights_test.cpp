@@ -153,11 +153,11 @@ class CalibrateLights : public testing::Test {
     return outcome ? std::string() : outcome.error().message();
   }
   /// The verdict that says this; one without a name where none does.
-  static report::Verdict verdict_of(const CalibrateOutcome& outcome, const std::string& part) {
-    const std::vector<report::Verdict>& all = outcome.report.verdicts;
-    const auto found = std::find_if(
-        all.begin(), all.end(), [&](const report::Verdict& v) { return v.text.find(part) != v.text.npos; });
-    return found == all.end() ? report::Verdict() : *found;
+  static Verdict verdict_of(const CalibrateOutcome& outcome, const std::string& part) {
+    const std::vector<Verdict>& all = outcome.report.verdicts;
+    const auto found = std::find_if(all.begin(), all.end(),
+                                    [&](const Verdict& v) { return v.text.find(part) != v.text.npos; });
+    return found == all.end() ? Verdict() : *found;
   }
 
   fs::path work_;
@@ -272,7 +272,7 @@ TEST_F(CalibrateLights, AreNotAcceptedOnASessionThatTheyWereFittedTo) {
     EXPECT_TRUE(checked) << checked.error().message();
     std::vector<std::string> names;
     if (!checked) return names;
-    for (const report::Verdict& verdict : checked->report.verdicts) names.push_back(verdict.name);
+    for (const Verdict& verdict : checked->report.verdicts) names.push_back(verdict.name);
     return names;
   };
   for (const char* fitted : {"sheet1.weft", "sheet3.weft"})
@@ -312,7 +312,7 @@ TEST_F(CalibrateLights, NamesTwoCapturesOfOnePose) {
   const CalibrateOutcome outcome = done();
   EXPECT_THAT(verdict_of(outcome, "sheet4.weft and sheet5.weft show the sheet in one pose").remedy,
               HasSubstr("turn the sheet"));
-  for (const report::Verdict& verdict : outcome.report.verdicts) {
+  for (const Verdict& verdict : outcome.report.verdicts) {
     EXPECT_FALSE(verdict.remedy.empty()) << verdict.text;
     EXPECT_THAT(outcome.warnings, Not(testing::Contains(HasSubstr(verdict.text)))) << "said twice";
   }

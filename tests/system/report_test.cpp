@@ -258,7 +258,7 @@ TEST(Budget, NamesTheCalibrationWhereItHasACovariance) {
 
 TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
   EXPECT_THAT(app::verdicts_of({}, 0.2), IsEmpty());
-  const std::vector<report::Verdict> verdicts = app::verdicts_of({}, 0.21);
+  const std::vector<Verdict> verdicts = app::verdicts_of({}, 0.21);
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "SPECULAR_DOMINATED");
   EXPECT_THAT(verdicts[0].text, HasSubstr("21 percent"));

@@ -123,8 +123,8 @@ double moved_mm(const CameraModel& before, const CameraModel& now) {
   return std::max(most, length(centre_of(now) - centre_of(before)));
 }
 
-std::vector<report::Verdict> verdicts_of(const CameraFitFacts& facts, const Figures& f) {
-  std::vector<report::Verdict> verdicts;
+std::vector<Verdict> verdicts_of(const CameraFitFacts& facts, const Figures& f) {
+  std::vector<Verdict> verdicts;
   if (f.coverage < kLeastCoverage) {
     verdicts.push_back(
         {"WEAK_COVERAGE",

@@ -133,9 +133,9 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
 }
 
 /// What a sheet says against the calibration.
-std::vector<report::Verdict> verdicts_of(const CheckedSheet& sheet, const calibration::CheckLimits& limits) {
+std::vector<Verdict> verdicts_of(const CheckedSheet& sheet, const calibration::CheckLimits& limits) {
   constexpr const char* kRemedy = "calibrate the lights again, and camera and response before them";
-  std::vector<report::Verdict> verdicts;
+  std::vector<Verdict> verdicts;
   const SheetCheck& check = sheet.check;
   if (sheet.was_fitted) {
     verdicts.push_back(
@@ -234,8 +234,7 @@ CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const C
     }
     if (sheet.drift) json["drift"] = *sheet.drift;
     report.numbers["sheets"].push_back(std::move(json));
-    for (report::Verdict& verdict : verdicts_of(sheet, options.limits))
-      report.verdicts.push_back(std::move(verdict));
+    for (Verdict& verdict : verdicts_of(sheet, options.limits)) report.verdicts.push_back(std::move(verdict));
   }
   std::vector<std::string> not_checked;
   std::string found = fmt::format("{} sheet{}", sheets.size(), sheets.size() == 1 ? "" : "s");

@@ -23,7 +23,7 @@ struct ColorMeasurement {
   double albedo_scale = 1;    ///< chart over solved albedo; of sessions
   bool has_albedo = false;    ///< a session is among the sources
   double slope_of_light = 0;  ///< brightest over darkest place of the chart less 1, of photographs
-  std::vector<report::Verdict> verdicts;
+  std::vector<Verdict> verdicts;
 };
 
 /// Its report: patches as they should be beside what came out, and CIEDE2000 of each.

@@ -78,7 +78,7 @@ class LightsJob {
   SheetCaptures captures_;
   std::vector<std::vector<char>> left_out_;
   LightsEvidence evidence_;
-  std::vector<report::Verdict> verdicts_;
+  std::vector<Verdict> verdicts_;
 };
 
 Result<void> LightsJob::prepare() {

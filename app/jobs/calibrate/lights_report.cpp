@@ -276,7 +276,7 @@ std::string lax_gate(const LightsEvidence& e) {
   return text;
 }
 
-CalibrationReport lights_report(const LightsEvidence& e, std::vector<report::Verdict> verdicts) {
+CalibrationReport lights_report(const LightsEvidence& e, std::vector<Verdict> verdicts) {
   CalibrationReport report;
   report.part = "lights";
   report.title = fmt::format("Lights of {}", e.rig);

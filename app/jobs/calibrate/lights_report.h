@@ -43,7 +43,7 @@ struct LightsEvidence {
   std::optional<calibration::SeedLights> seed;
 };
 
-CalibrationReport lights_report(const LightsEvidence& evidence, std::vector<report::Verdict> verdicts);
+CalibrationReport lights_report(const LightsEvidence& evidence, std::vector<Verdict> verdicts);
 
 /// Chi-square below this says that readings are better than they were taken to be.
 inline constexpr double kLaxBelow = 0.5;

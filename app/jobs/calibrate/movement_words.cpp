@@ -133,7 +133,7 @@ Json json_of(const RigChange& change) {
   return json;
 }
 
-report::Verdict verdict_of(const RigChange& change) {
+Verdict verdict_of(const RigChange& change) {
   std::string text = sentence(change);
   text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
   const bool is_wiring = change.kind == ChangeKind::kLedsSwapped;

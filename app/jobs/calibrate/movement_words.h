@@ -23,6 +23,6 @@ std::string sentence(const calibration::RigChange& change);
 Json json_of(const calibration::RigChange& change);
 
 /// The change as a verdict, with what to do.
-report::Verdict verdict_of(const calibration::RigChange& change);
+Verdict verdict_of(const calibration::RigChange& change);
 
 }  // namespace weft::app

@@ -265,8 +265,8 @@ Json numbers_of(const ResponseFrames& frames, const ResponseMeasurement& m,
 }
 
 // What could not be measured of linearity and black, and what looks wrong there.
-std::vector<report::Verdict> measurement_verdicts(const ResponseMeasurement& m) {
-  std::vector<report::Verdict> verdicts;
+std::vector<Verdict> measurement_verdicts(const ResponseMeasurement& m) {
+  std::vector<Verdict> verdicts;
   if (!m.superposition) {
     verdicts.push_back({"LINEARITY_UNKNOWN",
                         "linearity was not measured: no exposure has frames of two LEDs and of both",
@@ -296,9 +296,9 @@ std::vector<report::Verdict> measurement_verdicts(const ResponseMeasurement& m) 
   return verdicts;
 }
 
-std::vector<report::Verdict> verdicts_of(const ResponseFrames& frames, const ResponseMeasurement& m,
-                                         const std::optional<ScaleReading>& scale) {
-  std::vector<report::Verdict> verdicts = measurement_verdicts(m);
+std::vector<Verdict> verdicts_of(const ResponseFrames& frames, const ResponseMeasurement& m,
+                                 const std::optional<ScaleReading>& scale) {
+  std::vector<Verdict> verdicts = measurement_verdicts(m);
   if (!frames.full.empty()) {
     verdicts.push_back({"FULL_FRAMES",
                         fmt::format("{} frames were full everywhere and left out, {} the first",

@@ -77,7 +77,7 @@ class SessionReader {
   SessionReader(const SheetCapturesOptions& options, const JobContext& context, fs::path folder)
       : options_(options), context_(context), folder_(std::move(folder)) {}
 
-  Result<SheetCapture> read(int block_px, std::vector<report::Verdict>& warnings) {
+  Result<SheetCapture> read(int block_px, std::vector<Verdict>& warnings) {
     block_px_ = block_px;
     if (Result<void> ok = look(); !ok) return std::move(ok).error();
     SheetCapture capture;
@@ -102,7 +102,7 @@ class SessionReader {
   Result<Image<std::uint8_t>> read_developed(std::vector<BlockGrid>& leds);
   Result<void> find_pose(const Image<std::uint8_t>& grey, SheetCapture& capture) const;
   void mark_paper(SheetCapture& capture) const;
-  Result<void> check_light(const SheetCapture& capture, std::vector<report::Verdict>& warnings) const;
+  Result<void> check_light(const SheetCapture& capture, std::vector<Verdict>& warnings) const;
 
   Size size() const { return options_.calibration.camera->size; }
   double seconds(const Shot& shot) const { return shot.exposure_us * 1e-6 * shot.iso / 100; }
@@ -262,8 +262,7 @@ void SessionReader::mark_paper(SheetCapture& capture) const {
 }
 
 // LEDs that gave no light, and paper that is full.
-Result<void> SessionReader::check_light(const SheetCapture& capture,
-                                        std::vector<report::Verdict>& warnings) const {
+Result<void> SessionReader::check_light(const SheetCapture& capture, std::vector<Verdict>& warnings) const {
   std::vector<double> level(capture.leds.size());
   std::vector<double> full(capture.leds.size());
   double brightest = 0;

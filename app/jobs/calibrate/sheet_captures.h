@@ -32,7 +32,7 @@ struct SheetCaptures {
   int block_px = 16;
   int columns = 0, rows = 0;  ///< of blocks
   std::vector<SheetCapture> captures;
-  std::vector<report::Verdict> warnings;
+  std::vector<Verdict> warnings;
 };
 
 struct SheetCapturesOptions {

@@ -5,17 +5,23 @@
 #include <vector>
 
 #include "core/json_document.h"
+#include "core/result.h"
 
-namespace weft::report {
+namespace weft {
 
-/// What a report says of a work to the person who did it, and what to do about it.
+/// What a document says of a work to the person who did it, and what to do about it.
 struct Verdict {
   std::string name;    ///< for programs: LED_DEAD, WEAK_COVERAGE
   std::string text;    ///< one sentence with its numbers, without a full stop
   std::string remedy;  ///< an imperative phrase without a full stop; may be empty
+
+  friend bool operator==(const Verdict&, const Verdict&) = default;
 };
 
 /// A list of {"name", "text", "remedy"}.
 Json json_of(const std::vector<Verdict>& verdicts);
 
-}  // namespace weft::report
+/// What json_of() made. kBadData of `where` for anything else.
+Result<std::vector<Verdict>> verdicts_from_json(const Json& list, const std::string& where);
+
+}  // namespace weft
