@@ -131,7 +131,7 @@ Result<void> write_subject(const fs::path& folder, const CalibrationSubject& sub
                    {"camera_model", subject.camera_model},
                    {"camera_serial", subject.camera_serial},
                    {"f_number", subject.f_number},
-                   {"albedo_scale", subject.albedo_scale}};
+                   {"albedo_scale", name_of(subject.albedo_scale)}};
   if (!subject.measured.empty()) document["measured"] = subject.measured;
   if (subject.focal_length_mm > 0) document["focal_length_mm"] = subject.focal_length_mm;
   document["parts"] = digests;
@@ -172,7 +172,7 @@ Result<Calibration> read_calibration(const fs::path& folder) {
   subject.camera_model = fields.text("camera_model");
   subject.camera_serial = fields.text("camera_serial");
   subject.f_number = fields.number("f_number");
-  subject.albedo_scale = fields.text("albedo_scale");
+  subject.albedo_scale = fields.one_of<AlbedoScale>("albedo_scale", kAlbedoScaleNames);
   subject.measured = fields.text_or("measured", "");
   if (const auto focal_mm = fields.optional_number("focal_length_mm")) {
     subject.focal_length_mm = *focal_mm;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/albedo_scale.h"
 #include "core/camera.h"
 #include "core/json_document.h"
 #include "core/lights.h"
@@ -46,8 +47,7 @@ struct CalibrationSubject {
   std::string camera_model;
   std::string camera_serial;
   double f_number = 0;
-  /// "absolute" where a patch of measured reflectance fixed the scale, else "relative".
-  std::string albedo_scale = "relative";
+  AlbedoScale albedo_scale = AlbedoScale::kRelative;
   std::string measured = {};   ///< when, ISO 8601; empty where nobody said
   double focal_length_mm = 0;  ///< that the lens was set to; 0 where nobody said
 };

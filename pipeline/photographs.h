@@ -2,10 +2,10 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <variant>
 #include <vector>
 
+#include "core/albedo_scale.h"
 #include "core/camera.h"
 #include "core/image.h"
 #include "core/light_field.h"
@@ -90,8 +90,8 @@ struct Photographs {
   std::optional<CameraModel> camera;                    ///< where the lights are near
   std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
   std::vector<solver::ClothShift> shifts;               ///< put right as tiles are read (pipeline/shifts.h)
-  std::string albedo_scale = "relative";                ///< "absolute" where a measured patch fixed it
-  std::optional<ColorTransform> color;                  ///< of solved albedo, where the calibration has one
+  AlbedoScale albedo_scale = AlbedoScale::kRelative;
+  std::optional<ColorTransform> color;  ///< of solved albedo, where the calibration has one
 
   std::size_t count() const;
   Planes planes() const;

@@ -80,7 +80,7 @@ std::vector<Vec3> taped(const NearLights& lights, double error_mm, std::int64_t 
 Calibration start_of(const Scene& scene, const SceneRig& rig, const std::vector<Vec3>& positions_mm) {
   Calibration start;
   start.subject = exact_calibration(scene, rig).subject;
-  start.subject.albedo_scale = "relative";
+  start.subject.albedo_scale = AlbedoScale::kRelative;
   start.camera = overhead_camera(rig.camera.size, scene.camera.distance_mm, scene.camera.mm_per_pixel);
   start.response = response_of(rig.sensor);
   NearLights lights;

@@ -2,6 +2,7 @@
 #include "app/cli/options.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 namespace weft::app {
 
@@ -70,6 +71,17 @@ Option Options::add(const std::string& names, Value value, const std::string& he
 
 Option Options::add_flag(const std::string& names, bool* value, const std::string& help) {
   return Option(verb_.add_flag(names, *value, help));
+}
+
+Option Options::add_word(const std::string& names, const std::vector<std::string>& words,
+                         std::size_t otherwise, const std::function<void(std::size_t)>& choose,
+                         const std::string& help) {
+  const auto take = [words, choose](const std::string& word) {
+    choose(static_cast<std::size_t>(std::ranges::find(words, word) - words.begin()));
+  };
+  return Option(verb_.add_option_function<std::string>(names, take, help)
+                    ->check(CLI::IsMember(words))
+                    ->default_str(words[otherwise]));
 }
 
 }  // namespace weft::app

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <variant>
@@ -58,10 +61,21 @@ class Options {
   explicit Options(CLI::App& verb) : verb_(verb) {}
 
   Option add(const std::string& names, Value value, const std::string& help);
+  /// An enum by the name of its value; `words` has one a value, in their order. Its help says its default.
+  template <typename Enum, std::size_t N>
+  Option add_choice(const std::string& names, Enum* value, const std::array<const char*, N>& words,
+                    const std::string& help) {
+    return add_word(
+        names, {words.begin(), words.end()}, static_cast<std::size_t>(*value),
+        [value](std::size_t chosen) { *value = static_cast<Enum>(chosen); }, help);
+  }
   /// Turns `value` on; "!--no-previews" turns it off.
   Option add_flag(const std::string& names, bool* value, const std::string& help);
 
  private:
+  Option add_word(const std::string& names, const std::vector<std::string>& words, std::size_t otherwise,
+                  const std::function<void(std::size_t)>& choose, const std::string& help);
+
   CLI::App& verb_;
 };
 

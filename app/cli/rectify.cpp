@@ -44,9 +44,7 @@ Run add_rectify(Options& options) {
   options.add("--turn", &a->turn_deg, "Degrees that the grid is turned, counterclockwise from above")
       .in_range(-360.0, 360.0)
       .shows_default();
-  options.add("--compress", &a->compression, "Of EXR files: none, zip, piz")
-      .one_of({"none", "zip", "piz"})
-      .shows_default();
+  options.add_choice("--compress", &a->compression, kCompressionNames, "Of EXR files: none, zip, piz");
   return [a](const CommonArguments& common) { return rectify(*a, common); };
 }
 

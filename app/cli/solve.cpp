@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -175,7 +174,7 @@ Level add_level(Options& options, const Option& session, SolveArguments& a) {
   return {explain, ladder};
 }
 
-void add_readings(Options& options, const Option& session, SolveArguments& a, std::string& transfer) {
+void add_readings(Options& options, const Option& session, SolveArguments& a) {
   options
       .add("--lights", &a.session.leds,
            "LEDs or photographs to solve from, numbered from 1: 1,4,7; default all")
@@ -183,11 +182,9 @@ void add_readings(Options& options, const Option& session, SolveArguments& a, st
       .above_zero();
   options.add("--calibration", &a.session.calibration, "Calibration folder; default the session's own")
       .needs(session);
-  options
-      .add("--transfer", &transfer,
-           "How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb")
-      .one_of({"auto", "linear", "srgb"})
-      .shows_default();
+  options.add_choice(
+      "--transfer", &a.photos.transfer, kTransferNames,
+      "How photographs follow light: auto (16-bit and float linear, 8-bit and JPEG sRGB), linear, srgb");
 }
 
 void add_maps(Options& options, const Level& level, SolveArguments& a) {
@@ -195,9 +192,7 @@ void add_maps(Options& options, const Level& level, SolveArguments& a) {
       options.add("-o,--output", &a.options.output,
                   "Folder for the maps; default SESSION/solve/ID, or ./NAME-solve/ID for photographs");
   for (const Option& unsaved : {level.explain, level.ladder}) unsaved.excludes(output);
-  options.add("--compress", &a.options.compression, "Of EXR files: none, zip, piz")
-      .one_of({"none", "zip", "piz"})
-      .shows_default();
+  options.add_choice("--compress", &a.options.compression, kCompressionNames, "Of EXR files: none, zip, piz");
   options.add("--tile-width", &a.options.tile.width, "Columns a tile (changes no byte of the result)")
       .in_range(1, 1 << 20)
       .shows_default();
@@ -209,23 +204,14 @@ void add_maps(Options& options, const Level& level, SolveArguments& a) {
 }
 
 Run add_solve(Options& options) {
-  struct Said {
-    SolveArguments arguments;
-    std::string transfer = "auto";
-  };
-  const auto said = std::make_shared<Said>();
-  SolveArguments& a = said->arguments;
-  const Input input = add_input(options, a);
-  const Level level = add_level(options, input.session, a);
-  add_readings(options, input.session, a, said->transfer);
-  add_maps(options, level, a);
-  return [said](const CommonArguments& common) {
-    static const std::map<std::string, Transfer> transfers = {
-        {"auto", Transfer::kAuto}, {"linear", Transfer::kLinear}, {"srgb", Transfer::kSrgb}};
-    PhotoOptions& photos = said->arguments.photos;
-    photos.transfer = transfers.at(said->transfer);
-    photos.lights = said->arguments.session.leds;
-    return solve(said->arguments, common);
+  const auto a = std::make_shared<SolveArguments>();
+  const Input input = add_input(options, *a);
+  const Level level = add_level(options, input.session, *a);
+  add_readings(options, input.session, *a);
+  add_maps(options, level, *a);
+  return [a](const CommonArguments& common) {
+    a->photos.lights = a->session.leds;
+    return solve(*a, common);
   };
 }
 

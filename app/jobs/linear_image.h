@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <filesystem>
 
 #include "core/image.h"
@@ -15,6 +17,11 @@ enum class Transfer {
   kLinear,  ///< proportional to light
   kSrgb,    ///< IEC 61966-2-1
 };
+/// As the command line and documents have them.
+inline constexpr std::array<const char*, 3> kTransferNames = {"auto", "linear", "srgb"};
+constexpr const char* name_of(Transfer transfer) {
+  return kTransferNames[static_cast<std::size_t>(transfer)];
+}
 
 /// What becomes of the full-scale values of integer files, which stand for anything brighter too.
 enum class Clipped {

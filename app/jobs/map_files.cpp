@@ -5,8 +5,8 @@
 
 namespace weft::app {
 
-Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size,
-                                const std::string& compression, const std::vector<std::string>& calibration) {
+Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size, Compression compression,
+                                const std::vector<std::string>& calibration) {
   struct Spec {
     std::optional<ImageWriter>* writer;
     const char* name;

@@ -19,7 +19,7 @@ class MapFiles {
  public:
   /// `calibration` names what sigma.exr has beside the noise: "R", "G", "B", "normal_deg", as
   /// "R.calibration" and so on.
-  static Result<MapFiles> open(const std::filesystem::path& folder, Size size, const std::string& compression,
+  static Result<MapFiles> open(const std::filesystem::path& folder, Size size, Compression compression,
                                const std::vector<std::string>& calibration);
   /// `calibration` has a view over band.albedo_rows for each of those names.
   Result<void> write(const pipeline::MapBand& band, std::span<const View<const float>> calibration);

@@ -170,8 +170,7 @@ Result<PhotoPlan> plan_photos(const PhotoOptions& options) {
                       {"direction", {light.direction.x, light.direction.y, light.direction.z}},
                       {"irradiance_rgb", light.irradiance_rgb}});
   }
-  plan.description = {{"photographs", std::move(inputs)},
-                      {"transfer", plan.transfer == Transfer::kSrgb ? "srgb" : "linear"}};
+  plan.description = {{"photographs", std::move(inputs)}, {"transfer", name_of(plan.transfer)}};
   if (!plan.mask.empty()) {
     const Result<ImageFileInfo> info = read_image_info(plan.mask);
     if (!info) return info.error();

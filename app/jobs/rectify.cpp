@@ -119,7 +119,7 @@ Json document_of(const std::string& id, const Product& solve, const Calibration&
           {"first_pixel_mm", {corner.x, corner.y}},
           {"normals", "in the grid's axes: x along its rows, y up its columns, z to the camera"},
           {"filter", kFilter},
-          {"compression", r.options.compression},
+          {"compression", name_of(r.options.compression)},
           {"pixels", solved}};
 }
 
@@ -169,7 +169,7 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
                        {"mm_per_pixel", grid->mm_per_pixel},
                        {"height_mm", grid->height_mm},
                        {"turn_deg", grid->turn_deg},
-                       {"compression", options.compression}};
+                       {"compression", name_of(options.compression)}};
   const Product product = product_of(kRectified, inputs, session->folder / "rectified", options.output);
   Result<std::optional<Json>> finished = find_finished(product);
   if (!finished) return std::move(finished).error();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "core/compression.h"
 #include "core/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
@@ -17,8 +18,8 @@ struct RectifyOptions {
   std::filesystem::path output;       ///< empty: <session>/rectified/<id>
   double mm_per_pixel = 0;            ///< 0: what the camera sees at the grid's centre; else above 0
   double turn_deg = 0;  ///< of the grid's columns against the rig's x axis, counterclockwise; -360 to 360
-  std::string compression = "none";  ///< of EXR files: none, zip, piz
-  int band_rows = 64;                ///< changes no byte; from 1
+  Compression compression = Compression::kNone;  ///< of EXR files
+  int band_rows = 64;                            ///< changes no byte; from 1
 };
 
 /// What a rectification left behind.

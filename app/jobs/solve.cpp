@@ -52,7 +52,7 @@ class StatusCounts {
 Json inputs_of(const Json& input, const SolveOptions& options) {
   return {{"input", input},
           {"method", options.method},
-          {"compression", options.compression},
+          {"compression", name_of(options.compression)},
           {"solver_version", kSolverVersion}};
 }
 
@@ -82,7 +82,7 @@ struct Facts {
   Size size;
   std::size_t lights = 0;
   std::vector<int> leds;
-  std::string albedo_scale;
+  AlbedoScale albedo_scale = AlbedoScale::kRelative;
   bool is_rec709 = false;  // else albedo has the camera's colours
   SessionConditions conditions;
   pipeline::SessionShifts registration;
@@ -102,12 +102,12 @@ Json document_of(const Product& product, const Input& input, const SolveOptions&
                    {"id", product.id},
                    {"solver_version", kSolverVersion},
                    {"method", options.method},
-                   {"compression", options.compression},
+                   {"compression", name_of(options.compression)},
                    {"input", input.description},
                    {"lights", facts.lights},
                    {"width", size.width},
                    {"height", size.height},
-                   {"albedo_scale", facts.albedo_scale},
+                   {"albedo_scale", name_of(facts.albedo_scale)},
                    {"color", facts.is_rec709 ? "rec709" : "camera"},
                    {"pixels", size.pixels() - facts.counts.with(kNoSolution)},
                    {"status", std::move(status)},
@@ -267,8 +267,9 @@ class Run {
       error = std::move(*measured);
       facts_.error = error->normal;
     }
-    Result<std::vector<std::string>> names = pictures_->write(
-        partial_.path(), input_.title, facts_.albedo_scale == "absolute", error ? &*error : nullptr);
+    Result<std::vector<std::string>> names =
+        pictures_->write(partial_.path(), input_.title, facts_.albedo_scale == AlbedoScale::kAbsolute,
+                         error ? &*error : nullptr);
     if (!names) return std::move(names).error();
     facts_.pictures = std::move(*names);
     return {};

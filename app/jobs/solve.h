@@ -8,6 +8,7 @@
 
 #include "app/jobs/photo_input.h"
 #include "app/jobs/session_input.h"
+#include "core/compression.h"
 #include "core/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
@@ -17,9 +18,9 @@
 namespace weft::app {
 
 struct SolveOptions {
-  std::string method = "standard";   ///< a name of solver::method_names()
-  std::filesystem::path output;      ///< empty: <session>/solve/<id>, or ./<photographs>-solve/<id>
-  std::string compression = "none";  ///< of EXR files: none, zip, piz
+  std::string method = "standard";  ///< a name of solver::method_names()
+  std::filesystem::path output;     ///< empty: <session>/solve/<id>, or ./<photographs>-solve/<id>
+  Compression compression = Compression::kNone;  ///< of EXR files
   TileOptions tile = pipeline::kSolveTile;
   bool previews = true;
 };

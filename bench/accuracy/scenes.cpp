@@ -194,7 +194,7 @@ Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
   pipeline::Photographs& photographs = patch.photographs;
   photographs.size = size;
   photographs.field = std::move(*field);
-  photographs.albedo_scale = "absolute";
+  photographs.albedo_scale = AlbedoScale::kAbsolute;
   std::vector<RawFrame> frames;
   for (int k = 0; k < lights; ++k) frames.push_back(frame_of(*plan, size));
   photographs.frames =

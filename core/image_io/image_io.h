@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/compression.h"
 #include "core/image.h"
 #include "core/result.h"
 
@@ -52,7 +53,7 @@ Result<LoadedImage> read_image(const std::filesystem::path& file);
 
 struct WriteOptions {
   SampleType type = SampleType::kFloat;
-  std::string compression = "none";  ///< EXR: none, zip, piz; TIFF: none, zip; PNG is always deflated
+  Compression compression = Compression::kNone;
   ImageAttributes attributes = {};
 };
 

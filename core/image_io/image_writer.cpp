@@ -23,16 +23,17 @@ struct Format {
   std::string name;
   std::vector<std::string> extensions;
   std::vector<SampleType> types;
-  std::vector<std::string> compressions;
+  std::vector<Compression> compressions;
   std::size_t most_channels;
 };
 
 const std::vector<Format>& formats() {
   using enum SampleType;
+  using enum Compression;
   static const std::vector<Format> all = {
-      {"openexr", {".exr"}, {kHalf, kFloat}, {"none", "zip", "piz"}, 1024},
-      {"tiff", {".tif", ".tiff"}, {kUint8, kUint16, kHalf, kFloat}, {"none", "zip"}, 1024},
-      {"png", {".png"}, {kUint8, kUint16}, {"none", "zip"}, 4}};
+      {"openexr", {".exr"}, {kHalf, kFloat}, {kNone, kZip, kPiz}, 1024},
+      {"tiff", {".tif", ".tiff"}, {kUint8, kUint16, kHalf, kFloat}, {kNone, kZip}, 1024},
+      {"png", {".png"}, {kUint8, kUint16}, {kNone, kZip}, 4}};
   return all;
 }
 
@@ -80,7 +81,7 @@ Result<const Format*> format_for(const fs::path& file, Size size, const std::vec
   }
   if (!has(format->types, options.type) || !has(format->compressions, options.compression)) {
     return refuse(fmt::format("{} cannot hold {} samples with compression {}", format->name,
-                              oiio_type(options.type).c_str(), options.compression),
+                              oiio_type(options.type).c_str(), name_of(options.compression)),
                   "choose another type, compression or ending");
   }
   return &*format;
@@ -99,7 +100,7 @@ OIIO::ImageSpec spec_of(const std::string& format, Size size, const std::vector<
     spec.attribute("ImageDescription",
                    nlohmann::json(options.attributes).dump(-1, ' ', /*ensure_ascii=*/true, kReplaceBadUtf8));
   }
-  spec.attribute("compression", options.compression);
+  spec.attribute("compression", name_of(options.compression));
   spec.attribute("oiio:UnassociatedAlpha", 1);
   spec.attribute("png:compressionLevel", 2);  // three times as fast as the default, for a file a third larger
   spec.attribute("tiff:half", 1);

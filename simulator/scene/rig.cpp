@@ -194,7 +194,7 @@ Calibration exact_calibration(const Scene& scene, const SceneRig& rig) {
   calibration.subject.camera_serial = "virtual";
   calibration.subject.f_number = scene.camera.f_number;
   calibration.subject.focal_length_mm = kFocalLength_mm;
-  calibration.subject.albedo_scale = "absolute";
+  calibration.subject.albedo_scale = AlbedoScale::kAbsolute;
   calibration.camera = rig.camera;
   calibration.response = response_of(rig.sensor);
   if (scene.effects.nonlinearity) calibration.response->linearity.fill(scene.camera.linearity);

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 // Every field away from its default, by numbers that no short decimal holds.
 Calibration full_calibration() {
   Calibration calibration;
-  calibration.subject = {"rig A", "D5100", "6 012 345", 5.6, "absolute"};
+  calibration.subject = {"rig A", "D5100", "6 012 345", 5.6, AlbedoScale::kAbsolute};
   CameraModel camera;
   camera.size = {4928, 3264};
   camera.fx = 7322.1 / 3, camera.fy = 7322.7 / 3, camera.cx = 2463.4, camera.cy = 1631.9;
@@ -46,7 +46,7 @@ Calibration full_calibration() {
 
 Calibration distant_calibration() {
   Calibration calibration;
-  calibration.subject = {"dome", "a camera", "", 8, "relative"};
+  calibration.subject = {"dome", "a camera", "", 8, AlbedoScale::kRelative};
   calibration.lights = DistantLights{{{normalized({1, 2, 3}), {0.1, 0.2, 0.3}}, {{0, 0, 1}, {1, 2, 3}}}};
   return calibration;
 }
@@ -93,7 +93,7 @@ TEST(Calibration, ReturnsEveryFieldThatWasWritten) {
   EXPECT_EQ(read.subject.camera_model, "D5100");
   EXPECT_EQ(read.subject.camera_serial, "6 012 345");
   EXPECT_EQ(read.subject.f_number, 5.6);
-  EXPECT_EQ(read.subject.albedo_scale, "absolute");
+  EXPECT_EQ(read.subject.albedo_scale, AlbedoScale::kAbsolute);
   EXPECT_TRUE(read.camera == written.camera) << bytes_of(folder / "c/camera.json");
   EXPECT_TRUE(read.response == written.response) << bytes_of(folder / "c/response.json");
   ASSERT_TRUE(read.lights && std::holds_alternative<NearLights>(*read.lights));
@@ -181,6 +181,16 @@ TEST(Calibration, SaysTheFocalLengthInItsNewestSchemaAndElseKeepsToTheOldest) {
   document["focal_length_mm"] = -35;
   put_bytes(folder / "c/calibration.json", document.dump());
   EXPECT_THAT(why_refused(folder / "c"), HasSubstr("focal_length_mm"));
+}
+
+TEST(Calibration, RefusesAnAlbedoScaleOfAnotherName) {
+  const ScratchFolder folder;
+  must_write(folder / "c", full_calibration());
+  Json document = json_of(folder / "c/calibration.json");
+  document["albedo_scale"] = "absolut";
+  put_bytes(folder / "c/calibration.json", document.dump());
+  EXPECT_THAT(why_refused(folder / "c"),
+              HasSubstr("\"albedo_scale\" is \"absolut\"; relative or absolute was expected"));
 }
 
 TEST(Calibration, RefusesColorsThatDoNotKeepWhite) {

@@ -59,7 +59,7 @@ TEST(Schemas, Calibration1WithCameraResponseAndNearLights) {
   EXPECT_EQ(calibration->subject.camera_model, "NIKON D5100");
   EXPECT_EQ(calibration->subject.camera_serial, "6012345");
   EXPECT_EQ(calibration->subject.f_number, 8);
-  EXPECT_EQ(calibration->subject.albedo_scale, "absolute");
+  EXPECT_EQ(calibration->subject.albedo_scale, AlbedoScale::kAbsolute);
 
   ASSERT_TRUE(calibration->camera);
   const CameraModel& camera = *calibration->camera;

@@ -17,7 +17,7 @@ struct Match {
   ShotMetadata frame;
 
   Match() {
-    calibration.subject = {"rig A", "NIKON D5100", "6012345", 8, "absolute"};
+    calibration.subject = {"rig A", "NIKON D5100", "6012345", 8, AlbedoScale::kAbsolute};
     calibration.camera = CameraModel();
     calibration.response = Response();
     NearLights lights;

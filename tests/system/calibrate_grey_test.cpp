@@ -78,7 +78,7 @@ class CalibrateGrey : public testing::Test {
     ASSERT_TRUE(exact) << exact.error().message();
     exact_ = *exact;
     Calibration before = exact_;
-    before.subject.albedo_scale = "relative";
+    before.subject.albedo_scale = AlbedoScale::kRelative;
     NearLights& lights = std::get<NearLights>(*before.lights);
     for (NearLight& led : lights.leds) led.flux_rgb = {1, 1, 1};
     before.patches = {{{{{1, 1}}, {{30, 1}}, {{30, 30}}}, {0.9, 0.9, 0.9}}};
@@ -128,7 +128,7 @@ TEST_F(CalibrateGrey, TellsFluxAndWhiteBalanceOfEachLedWithinTheirSigma) {
 
   const auto after = read_calibration(work_ / "after");
   ASSERT_TRUE(after) << after.error().message();
-  EXPECT_EQ(after->subject.albedo_scale, "absolute");
+  EXPECT_EQ(after->subject.albedo_scale, AlbedoScale::kAbsolute);
   EXPECT_THAT(after->patches, IsEmpty());
   EXPECT_THAT(outcome->warnings, SizeIs(1)) << "the white patches are left out";
   const auto& found = std::get<NearLights>(*after->lights).leds[2];

@@ -178,7 +178,7 @@ TEST_F(CalibrateLights, FindsTheRigFromFiveSessionsOfASheet) {
     EXPECT_NEAR(ours / (truth.leds[k].flux_rgb[1] * std::exp(truth.log_gain(k, 1, 0, 0))), 1, 0.01)
         << "LED " << k + 1;
   }
-  EXPECT_EQ(written->subject.albedo_scale, "absolute");
+  EXPECT_EQ(written->subject.albedo_scale, AlbedoScale::kAbsolute);
   ASSERT_TRUE(written->light_covariance);
   EXPECT_EQ(written->camera, read_calibration(options_.from)->camera);
   EXPECT_TRUE(fs::exists(options_.output / "report" / "lights.html"));

@@ -165,7 +165,7 @@ TEST(CalibrateResponse, FindsTheBlackLevelOfABodyThatClipsIt) {
 TEST(CalibrateResponse, KeepsTheOtherPartsOfTheCalibrationBefore) {
   const Workspace work;
   Calibration before;
-  before.subject = {"rig B", "virtual camera", "virtual", 8, "absolute"};
+  before.subject = {"rig B", "virtual camera", "virtual", 8, AlbedoScale::kAbsolute};
   before.camera = overhead_camera(kSize, 600, 0.1);
   ASSERT_TRUE(write_calibration(work / "old", before));
   const auto old = contents_of(work / "old");
@@ -256,7 +256,7 @@ TEST(CalibrateResponse, RefusesFramesOfAnotherBodyIsoApertureOrFocalLength) {
   const Workspace work;
   Frames().add(work / "response", "led01", 1, 0, 1000);
   Calibration before;
-  before.subject = {"rig B", "virtual camera", "another", 8, "absolute"};
+  before.subject = {"rig B", "virtual camera", "another", 8, AlbedoScale::kAbsolute};
   before.response = Response();
   ASSERT_TRUE(write_calibration(work / "old", before));
   EXPECT_THAT(refusal(work, work / "old"), HasSubstr("serial number another, the frame of virtual"));

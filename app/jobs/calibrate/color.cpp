@@ -299,7 +299,7 @@ Result<void> fit_curve(ColorMeasurement& color) {
 }
 
 void note_scale(ColorMeasurement& color, const Calibration* from) {
-  const bool is_absolute = from != nullptr && from->subject.albedo_scale == "absolute";
+  const bool is_absolute = from != nullptr && from->subject.albedo_scale == AlbedoScale::kAbsolute;
   if (!color.has_albedo || !is_absolute || std::abs(color.albedo_scale - 1) <= kScaleOff) return;
   color.verdicts.push_back({"ALBEDO_SCALE",
                             fmt::format("solved albedo of the chart is {:+.1f} percent off its reflectances",
@@ -367,7 +367,7 @@ Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, c
   Calibration change;
   change.subject = from ? from->subject
                         : CalibrationSubject{rig_name(options.rig, options.input), camera.model,
-                                             camera.serial, camera.f_number, "relative"};
+                                             camera.serial, camera.f_number, AlbedoScale::kRelative};
   change.subject.measured.clear();
   change.color = color.transform;
   outcome.report = report_of(color, change.subject.rig);

@@ -203,7 +203,7 @@ Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, con
   Calibration change;
   change.subject = before.subject;
   change.subject.measured.clear();
-  change.subject.albedo_scale = "absolute";
+  change.subject.albedo_scale = AlbedoScale::kAbsolute;
   change.lights = found->lights;
   change.light_covariance = with_chart(before.light_covariance, *found);
   const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;

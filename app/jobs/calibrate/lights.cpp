@@ -402,7 +402,8 @@ Result<CalibrateOutcome> LightsJob::write() {
   Calibration change;
   change.subject = calibration_.subject;
   change.subject.measured.clear();
-  change.subject.albedo_scale = sheet_.sheet.reflectance_rgb ? "absolute" : "relative";
+  change.subject.albedo_scale =
+      sheet_.sheet.reflectance_rgb ? AlbedoScale::kAbsolute : AlbedoScale::kRelative;
   if (evidence_.seed) {
     change.lights = lights_of(*evidence_.seed, evidence_.start);
   } else if (evidence_.per_pixel) {

@@ -378,9 +378,10 @@ Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& opti
   if (!scale) return scale.error();
 
   Calibration change;
-  change.subject = from ? from->subject
-                        : CalibrationSubject{rig_name(options.rig, options.input), frames->camera.model,
-                                             frames->camera.serial, frames->camera.f_number, "relative"};
+  change.subject =
+      from ? from->subject
+           : CalibrationSubject{rig_name(options.rig, options.input), frames->camera.model,
+                                frames->camera.serial, frames->camera.f_number, AlbedoScale::kRelative};
   change.subject.measured.clear();
   change.response = measured->response;
   if (frames->camera.iso > 0) change.response->iso = frames->camera.iso;

@@ -14,17 +14,17 @@ namespace {
 using namespace std::string_view_literals;
 using testing::HasSubstr;
 using enum SampleType;
+using enum Compression;
 
 struct WholeFile {
   const char* name;
   SampleType type;
-  const char* compression;
+  Compression compression;
 };
 
-const std::vector<WholeFile> kWholeFiles = {{"a.exr", kFloat, "none"}, {"a.exr", kHalf, "zip"},
-                                            {"a.exr", kHalf, "piz"},   {"a.tif", kUint16, "none"},
-                                            {"a.tif", kUint16, "zip"}, {"a.tif", kFloat, "none"},
-                                            {"a.png", kUint8, "none"}, {"a.png", kUint16, "none"}};
+const std::vector<WholeFile> kWholeFiles = {
+    {"a.exr", kFloat, kNone}, {"a.exr", kHalf, kZip},   {"a.exr", kHalf, kPiz},   {"a.tif", kUint16, kNone},
+    {"a.tif", kUint16, kZip}, {"a.tif", kFloat, kNone}, {"a.png", kUint8, kNone}, {"a.png", kUint16, kNone}};
 
 std::string written(const ScratchFolder& folder, const WholeFile& c) {
   const Image<float> image = exact_noise({97, 89}, 3, kUint16);
@@ -42,7 +42,7 @@ TEST(BrokenImageFile, CutAnywhereIsRefused) {
                                    bytes.size() / 2, bytes.size() * 9 / 10, bytes.size() - 1}) {
       put_bytes(folder / c.name, bytes.substr(0, kept));
       const Result<LoadedImage> read = read_image(folder / c.name);
-      ASSERT_FALSE(read) << c.name << " " << c.compression << ": " << kept << " of " << bytes.size()
+      ASSERT_FALSE(read) << c.name << " " << name_of(c.compression) << ": " << kept << " of " << bytes.size()
                          << " bytes";
       EXPECT_EQ(read.error().kind, ErrorKind::kBadData) << read.error().message();
       EXPECT_EQ(read.error().where, (folder / c.name).string());
@@ -91,7 +91,7 @@ TEST(BrokenImageFile, ThatIsEmptyTextOrMissingIsRefusedInWords) {
 
 TEST(BrokenImageFile, IsKnownByItsContentNotItsName) {
   const ScratchFolder folder;
-  put_bytes(folder / "really_png.exr", written(folder, {"a.png", kUint8, "none"}));
+  put_bytes(folder / "really_png.exr", written(folder, {"a.png", kUint8, kNone}));
   const Result<ImageFileInfo> info = read_image_info(folder / "really_png.exr");
   ASSERT_TRUE(info) << info.error().message();
   EXPECT_EQ(info->format, "png");
@@ -112,7 +112,7 @@ std::uint32_t crc32(std::string_view bytes) {
 
 TEST(BrokenImageFile, ThatClaimsMorePixelsThanMemoryOrFileHoldIsRefusedBeforeAnyIsTaken) {
   const ScratchFolder folder;
-  std::string png = written(folder, {"a.png", kUint16, "none"});
+  std::string png = written(folder, {"a.png", kUint16, kNone});
   put_big_endian(png, 16, 1'000'000);  // width and height in IHDR
   put_big_endian(png, 20, 1'000'000);
   put_big_endian(png, 29, crc32(std::string_view(png).substr(12, 17)));
@@ -120,7 +120,7 @@ TEST(BrokenImageFile, ThatClaimsMorePixelsThanMemoryOrFileHoldIsRefusedBeforeAny
   const Result<LoadedImage> huge = read_image(folder / "huge.png");
   ASSERT_FALSE(huge);
 
-  std::string exr = written(folder, {"a.exr", kFloat, "none"});
+  std::string exr = written(folder, {"a.exr", kFloat, kNone});
   const std::size_t window = exr.find("dataWindow\0box2i\0"sv) + "dataWindow\0box2i\0"sv.size() + 4;
   exr[window + 14] = 0x10;  // y max, little-endian: a million rows more
   put_bytes(folder / "huge.exr", exr);

@@ -17,26 +17,25 @@ namespace {
 
 using testing::ElementsAre;
 using enum SampleType;
+using enum Compression;
 
 struct StoredAs {
   const char* ending;
   const char* format;
   SampleType type;
-  const char* compression;
+  Compression compression;
 };
 
 const std::vector<StoredAs> kStoredAs = {
-    {".exr", "openexr", kHalf, "none"}, {".exr", "openexr", kHalf, "zip"},
-    {".exr", "openexr", kHalf, "piz"},  {".exr", "openexr", kFloat, "none"},
-    {".exr", "openexr", kFloat, "zip"}, {".exr", "openexr", kFloat, "piz"},
-    {".tif", "tiff", kUint8, "none"},   {".tif", "tiff", kUint8, "zip"},
-    {".tif", "tiff", kUint16, "none"},  {".tif", "tiff", kUint16, "zip"},
-    {".tif", "tiff", kHalf, "none"},    {".tif", "tiff", kHalf, "zip"},
-    {".tif", "tiff", kFloat, "none"},   {".tif", "tiff", kFloat, "zip"},
-    {".png", "png", kUint8, "none"},    {".png", "png", kUint16, "none"}};
+    {".exr", "openexr", kHalf, kNone},  {".exr", "openexr", kHalf, kZip},  {".exr", "openexr", kHalf, kPiz},
+    {".exr", "openexr", kFloat, kNone}, {".exr", "openexr", kFloat, kZip}, {".exr", "openexr", kFloat, kPiz},
+    {".tif", "tiff", kUint8, kNone},    {".tif", "tiff", kUint8, kZip},    {".tif", "tiff", kUint16, kNone},
+    {".tif", "tiff", kUint16, kZip},    {".tif", "tiff", kHalf, kNone},    {".tif", "tiff", kHalf, kZip},
+    {".tif", "tiff", kFloat, kNone},    {".tif", "tiff", kFloat, kZip},    {".png", "png", kUint8, kNone},
+    {".png", "png", kUint16, kNone}};
 
 std::string describe(const StoredAs& c) {
-  return fmt::format("{} of type {}, {}", c.ending, static_cast<int>(c.type), c.compression);
+  return fmt::format("{} of type {}, {}", c.ending, static_cast<int>(c.type), name_of(c.compression));
 }
 
 /// The first pixel at which two images differ in any bit, or nothing.

@@ -125,7 +125,7 @@ TEST(Rig, WritesNearLightsOnlyWhereLightIsNear) {
   scene.effects.near_light = true;
   const SceneRig r = rig(scene);
   const Calibration near = exact_calibration(scene, r);
-  EXPECT_EQ(near.subject.albedo_scale, "absolute");
+  EXPECT_EQ(near.subject.albedo_scale, AlbedoScale::kAbsolute);
   EXPECT_EQ(std::get<NearLights>(*near.lights).leds.size(), 10U);
   scene.effects.near_light = false;
   const auto distant = std::get<DistantLights>(*exact_calibration(scene, r).lights);
