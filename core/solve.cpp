@@ -3,27 +3,46 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace weft {
 namespace {
 
-Result<SolveError> error_of(const Json& json, const std::string& where) {
-  JsonFields fields(json, where + ": error");
+constexpr const char* kCamera = "camera";
+constexpr const char* kRec709 = "rec709";
+
+Result<SolveError> error_from_json(const Json& json, const std::string& where) {
+  JsonFields fields(json, where);
   const SolveError error = {fields.number("mean_deg"), fields.number("median_deg"), fields.number("p95_deg"),
                             fields.number("max_deg")};
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   return error;
 }
 
-Result<std::vector<SolveWarning>> warnings_of(const Json& list, const std::string& where) {
-  std::vector<SolveWarning> warnings;
-  for (const Json& json : list) {
-    JsonFields fields(json, where + ": warnings");
-    warnings.push_back({fields.text("name"), fields.text("text"), fields.text_or("remedy", "")});
-    if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+// Documents of early versions do not have every bit.
+Result<StatusCounts> status_from_json(const Json& json, const std::string& where) {
+  JsonFields fields(json, where);
+  StatusCounts counts;
+  for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
+    if (fields.has(kStatusNames[i].name)) counts.pixels[i] = fields.integer(kStatusNames[i].name);
   }
-  return warnings;
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  return counts;
+}
+
+std::vector<std::string> pictures_of(JsonFields& fields) {
+  std::vector<std::string> names;
+  if (!fields.has("pictures")) return names;
+  for (const Json& name : fields.list("pictures")) {
+    if (name.is_string()) {
+      names.push_back(name.get<std::string>());
+    } else {
+      fields.reject("pictures", "must be names of files");
+    }
+  }
+  return names;
 }
 
 }  // namespace
@@ -36,79 +55,90 @@ std::vector<Product> list_solves(const std::filesystem::path& session) {
   return list_products(kSolveProduct, session / "solve");
 }
 
-std::int64_t SolveFacts::with(StatusBit bit) const {
-  for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
-    if (kStatusNames[i].bit == bit) return status[i];
-  }
-  return 0;
+std::int64_t StatusCounts::with(StatusBit bit) const {
+  const auto named = std::ranges::find(kStatusNames, bit, &StatusName::bit);
+  return pixels.at(static_cast<std::size_t>(named - kStatusNames.begin()));
 }
 
-Result<SolveFacts> solve_facts_of(const Json& document, const std::string& where) {
+Json json_of(const StatusCounts& counts) {
+  Json json = Json::object();
+  for (std::size_t i = 0; i < kStatusNames.size(); ++i) json[kStatusNames[i].name] = counts.pixels[i];
+  return json;
+}
+
+Json json_of(const SolveError& error) {
+  return {{"mean_deg", error.mean_deg},
+          {"median_deg", error.median_deg},
+          {"p95_deg", error.p95_deg},
+          {"max_deg", error.max_deg}};
+}
+
+Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string& where) {
   JsonFields fields(document, where);
   SolveFacts facts;
   facts.id = fields.text("id");
   facts.solver_version = fields.integer("solver_version");
   facts.method = fields.text("method");
-  facts.compression = fields.text("compression");
-  facts.size = {fields.integer("width"), fields.integer("height")};
+  facts.compression = fields.one_of<Compression>("compression", kCompressionNames);
   facts.lights = fields.integer("lights");
-  facts.albedo_scale = fields.text("albedo_scale");
-  facts.color = fields.text_or("color", facts.color);
+  facts.size = {fields.integer("width"), fields.integer("height")};
+  facts.albedo_scale = fields.one_of<AlbedoScale>("albedo_scale", kAlbedoScaleNames);
+  const std::string color = fields.text_or("color", kCamera);
+  if (color != kCamera && color != kRec709) fields.reject("color", "must be \"camera\" or \"rec709\"");
+  facts.is_rec709 = color == kRec709;
   facts.pixels = fields.integer("pixels");
-  JsonFields status(fields.object("status"), where + ": status");
-  for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
-    if (status.has(kStatusNames[i].name)) facts.status[i] = status.integer(kStatusNames[i].name);
-  }
-  if (fields.has("pictures")) {
-    for (const Json& name : fields.list("pictures")) {
-      if (name.is_string())
-        facts.pictures.push_back(name.get<std::string>());
-      else
-        fields.reject("pictures", "must be names of files");
-    }
-  }
-  if (fields.has("warnings")) {
-    Result<std::vector<SolveWarning>> warnings = warnings_of(fields.list("warnings"), where);
-    if (!warnings) return std::move(warnings).error();
-    facts.warnings = std::move(*warnings);
-  }
+  facts.pictures = pictures_of(fields);
+  const Json& status = fields.object("status");
+  const Json none = Json::array();
+  const Json& warnings = fields.has("warnings") ? fields.list("warnings") : none;
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+
+  Result<StatusCounts> counts = status_from_json(status, where + ": status");
+  if (!counts) return std::move(counts).error();
+  facts.status = *counts;
+  Result<std::vector<Verdict>> verdicts = verdicts_from_json(warnings, where + ": warnings");
+  if (!verdicts) return std::move(verdicts).error();
+  facts.warnings = std::move(*verdicts);
   if (fields.has("error")) {
-    const Result<SolveError> error = error_of(document["error"], where);
+    const Result<SolveError> error = error_from_json(document["error"], where + ": error");
     if (!error) return error.error();
     facts.error = *error;
   }
-  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  if (Result<void> ok = status.status(); !ok) return std::move(ok).error();
-  facts.document = document;
+  for (const auto& [part, name] : {std::pair{&facts.input, "input"},
+                                   {&facts.solved_by, "solved_by"},
+                                   {&facts.conditions, "conditions"},
+                                   {&facts.registration, "registration"},
+                                   {&facts.gates, "gates"},
+                                   {&facts.reference, "reference"}}) {
+    if (fields.has(name)) *part = document[name];
+  }
   return facts;
 }
 
 Json json_of(const SolveFacts& facts) {
-  Json json = facts.document.is_object() ? facts.document : Json::object();
-  if (!json.contains("schema")) json["schema"] = fmt::format("{}/1", kSolveProduct.schema);
-  json["id"] = facts.id;
-  json["solver_version"] = facts.solver_version;
-  json["method"] = facts.method;
-  json["compression"] = facts.compression;
-  json["lights"] = facts.lights;
-  json["width"] = facts.size.width;
-  json["height"] = facts.size.height;
-  json["albedo_scale"] = facts.albedo_scale;
-  json["color"] = facts.color;
-  json["pixels"] = facts.pixels;
-  for (std::size_t i = 0; i < kStatusNames.size(); ++i)
-    json["status"][kStatusNames[i].name] = facts.status[i];
-  json["warnings"] = Json::array();
-  for (const SolveWarning& w : facts.warnings) {
-    json["warnings"].push_back({{"name", w.name}, {"text", w.text}, {"remedy", w.remedy}});
-  }
-  json["pictures"] = facts.pictures;
-  json.erase("error");
-  if (facts.error) {
-    json["error"] = {{"mean_deg", facts.error->mean_deg},
-                     {"median_deg", facts.error->median_deg},
-                     {"p95_deg", facts.error->p95_deg},
-                     {"max_deg", facts.error->max_deg}};
+  Json json = {{"schema", fmt::format("{}/1", kSolveProduct.schema)},
+               {"id", facts.id},
+               {"solver_version", facts.solver_version},
+               {"method", facts.method},
+               {"compression", name_of(facts.compression)},
+               {"input", facts.input},
+               {"lights", facts.lights},
+               {"width", facts.size.width},
+               {"height", facts.size.height},
+               {"albedo_scale", name_of(facts.albedo_scale)},
+               {"color", facts.is_rec709 ? kRec709 : kCamera},
+               {"pixels", facts.pixels},
+               {"status", json_of(facts.status)},
+               {"solved_by", facts.solved_by},
+               {"conditions", facts.conditions},
+               {"registration", facts.registration},
+               {"warnings", json_of(facts.warnings)},
+               {"pictures", facts.pictures},
+               {"gates", facts.gates},
+               {"reference", facts.reference},
+               {"error", facts.error ? json_of(*facts.error) : Json()}};
+  for (auto field = json.begin(); field != json.end();) {
+    field = field->is_null() ? json.erase(field) : std::next(field);
   }
   return json;
 }

@@ -8,11 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "core/albedo_scale.h"
+#include "core/compression.h"
 #include "core/image.h"
 #include "core/json_document.h"
 #include "core/product.h"
 #include "core/result.h"
 #include "core/solve_record.h"
+#include "core/verdict.h"
 
 // A solve: the maps that one run of the solver left in <session>/solve/<id>/ (docs/formats.md).
 
@@ -27,14 +30,15 @@ Result<Product> find_solve(const std::filesystem::path& session, const std::stri
 /// The complete solves of a session, the oldest first.
 std::vector<Product> list_solves(const std::filesystem::path& session);
 
-/// A sentence for the person at the rig, and what to do.
-struct SolveWarning {
-  std::string name;    ///< LEDS_EXCHANGED, CONDITIONS ...
-  std::string text;    ///< one sentence without a full stop
-  std::string remedy;  ///< an imperative phrase without a full stop; may be empty
+/// How many pixels have which status.
+struct StatusCounts {
+  std::array<std::int64_t, kStatusNames.size()> pixels = {};  ///< with each bit, as kStatusNames has them
 
-  friend bool operator==(const SolveWarning&, const SolveWarning&) = default;
+  std::int64_t with(StatusBit bit) const;
+  friend bool operator==(const StatusCounts&, const StatusCounts&) = default;
 };
+/// {"SATURATED": 0, "SHADOWED": 21550, ...}
+Json json_of(const StatusCounts& counts);
 
 /// Angles between the normals and those of a truth.
 struct SolveError {
@@ -42,32 +46,34 @@ struct SolveError {
 
   friend bool operator==(const SolveError&, const SolveError&) = default;
 };
+Json json_of(const SolveError& error);
 
 /// What solve.json says of a solve.
 struct SolveFacts {
   std::string id;
   int solver_version = 0;
   std::string method;
-  std::string compression = "none";  ///< of EXR files: none, zip, piz
-  Size size;                         ///< of the maps
+  Compression compression = Compression::kNone;  ///< of EXR files
   int lights = 0;
-  std::string albedo_scale = "relative";  ///< or "absolute"
-  std::string color = "camera";           ///< whose channels albedo is in; or "rec709"
-  std::int64_t pixels = 0;                ///< with a solution
-  std::array<std::int64_t, kStatusNames.size()> status =
-      {};  ///< pixels with each bit, as kStatusNames has them
-  std::vector<SolveWarning> warnings;
+  Size size;  ///< of the maps
+  AlbedoScale albedo_scale = AlbedoScale::kRelative;
+  bool is_rec709 = false;   ///< albedo is in linear Rec.709; else in the camera's channels
+  std::int64_t pixels = 0;  ///< with a solution
+  StatusCounts status;
+  std::vector<Verdict> warnings;
   std::vector<std::string> pictures;  ///< files in its folder
   std::optional<SolveError> error;    ///< where there is a truth
-  Json document;                      ///< all of solve.json, which json_of() keeps but for what stands above
 
-  /// Pixels whose status has `bit`.
-  std::int64_t with(StatusBit bit) const;
+  // Kept for people and passed on to the report; no program looks into them. Null where there is none.
+  Json input;                                ///< all that the id depends on besides method and compression
+  Json solved_by, conditions, registration;  ///< docs/formats.md
+  Json gates, reference;                     ///< of the level `reference`
 };
 
 /// Reads solve.json, `where` being its name for messages. Documents of early versions have no color, warnings
 /// or pictures. kBadData.
-Result<SolveFacts> solve_facts_of(const Json& document, const std::string& where = kSolveProduct.document);
+Result<SolveFacts> solve_facts_from_json(const Json& document,
+                                         const std::string& where = kSolveProduct.document);
 Json json_of(const SolveFacts& facts);
 
 }  // namespace weft

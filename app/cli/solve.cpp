@@ -18,27 +18,22 @@
 namespace weft::app {
 namespace {
 
-std::string status_words(const Json& status) {
+std::string status_words(const StatusCounts& status) {
   std::string words;
-  for (const auto& [name, count] : status.items()) {
-    if (count.get<std::int64_t>() > 0) words += fmt::format(" {} {}", name, count.get<std::int64_t>());
+  for (const StatusName& s : kStatusNames) {
+    if (status.with(s.bit) > 0) words += fmt::format(" {} {}", s.name, status.with(s.bit));
   }
   return words.empty() ? " none" : words;
 }
 
-// A solve of an older version says nothing of warnings.
-Json warnings_of(const SolveReport& report) {
-  return report.document.value("warnings", Json::array());
-}
-
 Json json_of(const SolveReport& report) {
-  const Json& d = report.document;
+  const SolveFacts& facts = report.facts;
   return {{"normal", (report.folder / "normal.exr").string()},
           {"albedo", (report.folder / "albedo.exr").string()},
           {"folder", report.folder.string()},
-          {"id", d["id"]},
+          {"id", facts.id},
           {"was_there", report.was_there},
-          {"albedo_scale", d["albedo_scale"]},
+          {"albedo_scale", name_of(facts.albedo_scale)},
           {"seconds",
            {{"read", report.seconds.read},
             {"solve", report.seconds.solve},
@@ -48,36 +43,33 @@ Json json_of(const SolveReport& report) {
             {"sync", report.seconds.sync},
             {"total", report.seconds.total}}},
           {"peak_bytes", peak_memory_bytes()},
-          {"pixels", d["pixels"]},
-          {"status", d["status"]},
-          {"warnings", warnings_of(report)},
-          {"pictures", d["pictures"]}};
+          {"pixels", facts.pixels},
+          {"status", json_of(facts.status)},
+          {"warnings", json_of(facts.warnings)},
+          {"pictures", facts.pictures}};
 }
 
 void print_words(const SolveReport& report) {
-  const Json& d = report.document;
+  const SolveFacts& facts = report.facts;
   if (report.was_there) {
     print(fmt::format("{} is there already: same inputs, same options", report.folder.string()));
     return;
   }
   print(report.folder.string());
-  print(fmt::format("  {} of {} pixels solved from {} lights; albedo is {}", d["pixels"].get<std::int64_t>(),
-                    d["width"].get<std::int64_t>() * d["height"].get<std::int64_t>(), d["lights"].get<int>(),
-                    d["albedo_scale"].get<std::string>()));
-  print("  pixels by status:" + status_words(d["status"]));
+  print(fmt::format("  {} of {} pixels solved from {} lights; albedo is {}", facts.pixels,
+                    facts.size.pixels(), facts.lights, name_of(facts.albedo_scale)));
+  print("  pixels by status:" + status_words(facts.status));
   const SolveSeconds& s = report.seconds;
   print(fmt::format(
       "  {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, report {:.2f}, sync {:.2f}; "
-      "peak {} "
-      "MB",
+      "peak {} MB",
       s.total, s.read, s.solve, s.write, s.pictures, s.report, s.sync, peak_memory_bytes() >> 20));
   print(fmt::format("  look at {}", (report.folder / "report.html").string()));
 }
 
-void print_warnings(const Json& warnings) {
-  for (const Json& warning : warnings) {
-    const std::string remedy = warning.value("remedy", "");
-    note(fmt::format("{}.{}", warning.value("text", ""), remedy.empty() ? "" : " To do: " + remedy + "."));
+void print_warnings(const std::vector<Verdict>& warnings) {
+  for (const Verdict& warning : warnings) {
+    note(fmt::format("{}.{}", warning.text, warning.remedy.empty() ? "" : " To do: " + warning.remedy + "."));
   }
 }
 
@@ -100,19 +92,17 @@ Result<int> solve(const SolveArguments& arguments, const CommonArguments& common
                       : solve_photos(arguments.photos, options, context);
   }();
   if (!report) return std::move(report).error();
-  if (!is_session && !common.quiet) {
-    note("photographs are taken as " + report->document["input"]["transfer"].get<std::string>() +
-         "; --transfer overrides");
-  }
+  if (report->transfer && !common.quiet)
+    note(fmt::format("photographs are taken as {}; --transfer overrides", name_of(*report->transfer)));
   if (common.json) {
     print_json(json_of(*report));
   } else {
     print_words(*report);
   }
-  const Json warnings = warnings_of(*report);
-  print_warnings(warnings);
-  const bool unsolved = report->document["status"]["NO_SOLUTION"].get<std::int64_t>() > 0;
-  return arguments.strict && (unsolved || !warnings.empty()) ? kDoneWithWarnings : kDone;
+  const SolveFacts& facts = report->facts;
+  print_warnings(facts.warnings);
+  const bool is_flawed = facts.status.with(kNoSolution) > 0 || !facts.warnings.empty();
+  return arguments.strict && is_flawed ? kDoneWithWarnings : kDone;
 }
 
 // An option for the levels, or for the methods that they are compared with.

@@ -169,8 +169,13 @@ Json light_json(const solver::LightEvidence& light, int number_of_light) {
           {"gradient_share", number(light.gradient_share)}};
 }
 
+// Of the maps' pixels.
+double share_with(const SolveFacts& solve, StatusBit bit) {
+  return static_cast<double>(solve.status.with(bit)) / static_cast<double>(solve.size.pixels());
+}
+
 // Where the error comes from: what is known of each source, in its own unit.
-Json budget_of(const PhotographsSummary& photographs, const MapSummary& maps, const Json& shares) {
+Json budget_of(const PhotographsSummary& photographs, const MapSummary& maps, const SolveFacts& solve) {
   Json budget = Json::array();
   const auto add = [&](const char* source, const std::string& what, const Json& value, const char* unit) {
     if (value.is_number()) {
@@ -191,12 +196,12 @@ Json budget_of(const PhotographsSummary& photographs, const MapSummary& maps, co
   }
   add("cloth unlike the model", "median deviation of the readings, over the albedo",
       number(percent(photographs.diagnosis.left)), "percent");
-  const auto share = [&](const char* source, const char* what, const char* bit) {
-    if (shares.contains(bit)) add(source, what, percent(shares[bit].get<double>()), "percent");
+  const auto share = [&](const char* source, const char* what, StatusBit bit) {
+    add(source, what, percent(share_with(solve, bit)), "percent");
   };
-  share("shadows", "pixels with a reading left out for shadow", "SHADOWED");
-  share("highlights", "pixels with a reading over three times the prediction", "SPECULAR");
-  share("saturation", "pixels with a reading left out as saturated", "SATURATED");
+  share("shadows", "pixels with a reading left out for shadow", kShadowed);
+  share("highlights", "pixels with a reading over three times the prediction", kSpecular);
+  share("saturation", "pixels with a reading left out as saturated", kSaturated);
   return budget;
 }
 
@@ -257,7 +262,7 @@ Json MapSummary::sigma_normal_deg() const {
           {"grid", std::move(grid)}};
 }
 
-Json condition_over(const LightField& field, Size size) {
+LightCondition condition_over(const LightField& field, Size size) {
   constexpr int kPoints = 9;  // a side
   std::vector<double> conditions;
   for (int j = 0; j < kPoints; ++j) {
@@ -272,7 +277,11 @@ Json condition_over(const LightField& field, Size size) {
     }
   }
   const double worst = *std::ranges::max_element(conditions);
-  return {{"median", number(median(std::move(conditions)))}, {"worst", number(worst)}};
+  return {median(std::move(conditions)), worst};
+}
+
+Json json_of(const LightCondition& condition) {
+  return {{"median", number(condition.median)}, {"worst", number(condition.worst)}};
 }
 
 PhotographsSummary summarize_photographs(const pipeline::Photographs& photographs,
@@ -313,13 +322,12 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
   return verdicts;
 }
 
-Json report_document(const std::string& title, const Json& solve, const PhotographsSummary& photographs,
+Json report_document(const std::string& title, const SolveFacts& solve, const PhotographsSummary& photographs,
                      const MapSummary& maps, const Json& seconds) {
   const solver::Diagnosis& diagnosis = photographs.diagnosis;
   const Speaker say = {photographs};
-  const double pixels = std::max(1.0, solve.value("width", 1.0) * solve.value("height", 1.0));
   Json shares = Json::object(), lights = Json::array(), faults = Json::array();
-  for (const auto& [name, count] : solve.at("status").items()) shares[name] = count.get<double>() / pixels;
+  for (const StatusName& s : kStatusNames) shares[s.name] = share_with(solve, s.bit);
   for (std::size_t k = 0; k < diagnosis.lights.size(); ++k) {
     lights.push_back(light_json(diagnosis.lights[k], photographs.numbers[k]));
   }
@@ -327,26 +335,30 @@ Json report_document(const std::string& title, const Json& solve, const Photogra
 
   Json report = {{"schema", "weft.solve-report/1"},
                  {"title", title},
-                 {"of", photographs.of_session ? "session" : "photographs"}};
-  for (const char* key : {"id", "method", "width", "height", "albedo_scale", "pixels"}) {
-    if (solve.contains(key)) report[key] = solve[key];
-  }
-  report["warnings"] = solve.value("warnings", Json::array());
-  report["status"] = shares;
-  report["looked_at"] = diagnosis.pixels;
-  report["residual"] = number(diagnosis.residual);
-  report["residual_explained"] = number(diagnosis.left);
-  report["lights"] = std::move(lights);
-  report["faults"] = std::move(faults);
-  report["budget"] = budget_of(photographs, maps, shares);
-  report["condition"] = photographs.condition;
-  report["sigma_normal_deg"] = maps.sigma_normal_deg();
+                 {"of", photographs.of_session ? "session" : "photographs"},
+                 {"id", solve.id},
+                 {"method", solve.method},
+                 {"width", solve.size.width},
+                 {"height", solve.size.height},
+                 {"albedo_scale", name_of(solve.albedo_scale)},
+                 {"pixels", solve.pixels},
+                 {"warnings", json_of(solve.warnings)},
+                 {"status", std::move(shares)},
+                 {"looked_at", diagnosis.pixels},
+                 {"residual", number(diagnosis.residual)},
+                 {"residual_explained", number(diagnosis.left)},
+                 {"lights", std::move(lights)},
+                 {"faults", std::move(faults)},
+                 {"budget", budget_of(photographs, maps, solve)},
+                 {"condition", json_of(photographs.condition)},
+                 {"sigma_normal_deg", maps.sigma_normal_deg()}};
   if (Json sigma = maps.sigma_calibration_deg(); !sigma.is_null()) {
     report["sigma_calibration_deg"] = std::move(sigma);
   }
-  for (const char* key : {"error", "gates", "registration", "conditions"}) {
-    if (solve.contains(key) && !solve[key].empty()) report[key] = solve[key];
-  }
+  if (solve.error) report["error"] = json_of(*solve.error);
+  if (!solve.gates.empty()) report["gates"] = solve.gates;
+  if (!solve.registration.empty()) report["registration"] = solve.registration;
+  if (!solve.conditions.empty()) report["conditions"] = solve.conditions;
   report["seconds"] = seconds;
   return report;
 }

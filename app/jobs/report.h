@@ -10,6 +10,7 @@
 
 #include "core/json_document.h"
 #include "core/result.h"
+#include "core/solve.h"
 #include "core/verdict.h"
 #include "pipeline/bands.h"
 #include "pipeline/photographs.h"
@@ -54,16 +55,21 @@ class MapSummary {
   AngleHistogram noise_, calibration_;
 };
 
-/// Condition number of the lights over the frame: {"median", "worst"}.
-Json condition_over(const LightField& field, Size size);
+/// Condition number of the lights over the frame; infinite where they do not span three directions.
+struct LightCondition {
+  double median = 0, worst = 0;
+};
+LightCondition condition_over(const LightField& field, Size size);
+/// {"median", "worst"}; null where it is infinite.
+Json json_of(const LightCondition& condition);
 
 /// What the report says of the photographs, gathered while they are in memory.
 struct PhotographsSummary {
-  solver::Diagnosis diagnosis;        ///< lights by their index in the photographs
-  std::vector<int> numbers;           ///< the number of each light, as a person knows it
-  bool of_session = true;             ///< lights are LEDs of a rig; else photographs in a list
-  bool noise_is_known = false;        ///< the camera's noise was calibrated
-  Json condition;                     ///< condition_over()
+  solver::Diagnosis diagnosis;  ///< lights by their index in the photographs
+  std::vector<int> numbers;     ///< the number of each light, as a person knows it
+  bool of_session = true;       ///< lights are LEDs of a rig; else photographs in a list
+  bool noise_is_known = false;  ///< the camera's noise was calibrated
+  LightCondition condition;
   std::vector<std::string> warnings;  ///< a sentence each, said when the photographs were read
 };
 /// `picked` are the numbers of the lights where photographs were picked from a list; else empty. `warnings`
@@ -79,9 +85,8 @@ inline constexpr double kSpecularDominated = 0.2;
 /// CONDITIONS. `specular` is the share of pixels with that bit.
 std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular);
 
-/// report.json from solve.json (`solve`, where "gates", "conditions", "registration" and "error" may be
-/// absent) and seconds by phase. Nothing but "seconds" differs from run to run.
-Json report_document(const std::string& title, const Json& solve, const PhotographsSummary& photographs,
+/// report.json from solve.json and seconds by phase. Nothing but "seconds" differs from run to run.
+Json report_document(const std::string& title, const SolveFacts& solve, const PhotographsSummary& photographs,
                      const MapSummary& maps, const Json& seconds);
 
 /// Writes report.json and report.html into the folder of a solve, with the previews that are there.

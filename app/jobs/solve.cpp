@@ -27,8 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Counts of pixels by status, gathered band by band.
-class StatusCounts {
+// Pixels by status, gathered band by band.
+class StatusTally {
  public:
   void add(View<const std::uint16_t> status) {
     for (int y = 0; y < status.height(); ++y) {
@@ -36,12 +36,14 @@ class StatusCounts {
       for (int x = 0; x < status.width(); ++x) ++seen_[row[x] & 0xff];
     }
   }
-  std::int64_t with(StatusBit bit) const {
-    std::int64_t sum = 0;
-    for (std::size_t s = 0; s < seen_.size(); ++s) {
-      if (s & bit) sum += seen_[s];
+  StatusCounts counts() const {
+    StatusCounts counts;
+    for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
+      for (std::size_t status = 0; status < seen_.size(); ++status) {
+        if (status & kStatusNames[i].bit) counts.pixels[i] += seen_[status];
+      }
     }
-    return sum;
+    return counts;
   }
 
  private:
@@ -76,58 +78,6 @@ struct Input {
   std::vector<int> picked;  // numbers of photographs picked from a list
   std::function<Result<LoadedSession>()> load;
 };
-
-// What solve.json says besides the options and the input.
-struct Facts {
-  Size size;
-  std::size_t lights = 0;
-  std::vector<int> leds;
-  AlbedoScale albedo_scale = AlbedoScale::kRelative;
-  bool is_rec709 = false;  // else albedo has the camera's colours
-  SessionConditions conditions;
-  pipeline::SessionShifts registration;
-  pipeline::FrameFacts frame;
-  StatusCounts counts;
-  std::vector<std::string> pictures;
-  std::optional<NormalComparison> error;  // against the truth, where there is one
-  std::vector<Verdict> verdicts;
-};
-
-Json document_of(const Product& product, const Input& input, const SolveOptions& options,
-                 const Facts& facts) {
-  Json status = Json::object();
-  for (const StatusName& s : kStatusNames) status[s.name] = facts.counts.with(s.bit);
-  const Size size = facts.size;
-  Json document = {{"schema", std::string(product.kind.schema) + "/1"},
-                   {"id", product.id},
-                   {"solver_version", kSolverVersion},
-                   {"method", options.method},
-                   {"compression", name_of(options.compression)},
-                   {"input", input.description},
-                   {"lights", facts.lights},
-                   {"width", size.width},
-                   {"height", size.height},
-                   {"albedo_scale", name_of(facts.albedo_scale)},
-                   {"color", facts.is_rec709 ? "rec709" : "camera"},
-                   {"pixels", size.pixels() - facts.counts.with(kNoSolution)},
-                   {"status", std::move(status)},
-                   {"solved_by", json_of(facts.frame.tally)},
-                   {"conditions", json_of(facts.conditions)},
-                   {"registration", json_of(facts.registration, facts.leds)},
-                   {"warnings", json_of(facts.verdicts)},
-                   {"pictures", facts.pictures}};
-  if (facts.frame.reference) {
-    document["gates"] = json_of(facts.frame.reference->gates);
-    document["reference"] = json_of(*facts.frame.reference);
-  }
-  if (facts.error) {
-    document["error"] = {{"mean_deg", facts.error->mean_deg},
-                         {"median_deg", facts.error->median_deg},
-                         {"p95_deg", facts.error->p95_deg},
-                         {"max_deg", facts.error->max_deg}};
-  }
-  return document;
-}
 
 Json seconds_json(const SolveSeconds& seconds) {
   return {{"read", seconds.read},   {"prepare", seconds.prepare},   {"solve", seconds.solve},
@@ -184,7 +134,13 @@ class Run {
         options_(options),
         context_(context),
         product_(product),
-        partial_(product.folder) {}
+        partial_(product.folder) {
+    facts_.id = product.id;
+    facts_.solver_version = kSolverVersion;
+    facts_.method = options.method;
+    facts_.compression = options.compression;
+    facts_.input = input.description;
+  }
 
   Result<SolveReport> run() {
     Stopwatch total;
@@ -192,8 +148,8 @@ class Run {
     if (Result<void> ok = solve_into_files(); !ok) return std::move(ok).error();
     if (Result<void> ok = describe(); !ok) return std::move(ok).error();
     if (Result<void> ok = publish(); !ok) return std::move(ok).error();
-    report_.seconds.total = total.lap();
-    return std::move(report_);
+    seconds_.total = total.lap();
+    return SolveReport{product_.folder, false, std::move(facts_), {}, seconds_};
   }
 
  private:
@@ -205,23 +161,24 @@ class Run {
     Result<LoadedSession> loaded = input_.load();
     if (!loaded) return std::move(loaded).error();
     photographs_ = std::move(loaded->photographs);
-    facts_.conditions = std::move(loaded->conditions);
+    facts_.conditions = json_of(loaded->conditions);
     warnings_ = std::move(loaded->warnings);
-    report_.seconds.read = watch_.lap();
+    seconds_.read = watch_.lap();
 
+    pipeline::SessionShifts shifts;
     if (is_half()) {
       Result<pipeline::Photographs> half = half_size(photographs_, context_.threads);
       if (!half) return std::move(half).error();
       photographs_ = std::move(*half);
     } else {
-      Result<pipeline::SessionShifts> shifts = register_shots(photographs_, context_);
-      if (!shifts) return std::move(shifts).error();
-      photographs_.shifts = shifts->corrections;
-      facts_.registration = std::move(*shifts);
+      Result<pipeline::SessionShifts> found = register_shots(photographs_, context_);
+      if (!found) return std::move(found).error();
+      shifts = std::move(*found);
+      photographs_.shifts = shifts.corrections;
     }
+    facts_.registration = json_of(shifts, photographs_.leds);
     facts_.size = photographs_.size;
-    facts_.lights = photographs_.count();
-    facts_.leds = photographs_.leds;
+    facts_.lights = static_cast<int>(photographs_.count());
     facts_.albedo_scale = photographs_.albedo_scale;
     facts_.is_rec709 = photographs_.color.has_value();
     return {};
@@ -233,28 +190,35 @@ class Run {
     Result<MapFiles> files =
         MapFiles::open(partial_.path(), facts_.size, options_.compression, finish->share_names());
     if (!files) return std::move(files).error();
-    report_.seconds.prepare = watch_.lap();
+    seconds_.prepare = watch_.lap();
 
     pictures_.emplace(facts_.size);
     maps_.emplace(facts_.size);
+    StatusTally tally;
     std::vector<View<const float>> shares;
     const auto keep = [&](const pipeline::MapBand& solved) -> Result<void> {
       const pipeline::MapBand band = finish->of(solved, shares);
-      facts_.counts.add(band.status);
+      tally.add(band.status);
       maps_->add(band, finish->has_calibration() ? shares.back() : View<const float>());
       if (options_.previews) pictures_->add(band);
       return files->write(band, shares);
     };
     Result<pipeline::FrameFacts> frame = solve_frame(photographs_, method_, options_.tile, context_, keep);
     if (!frame) return std::move(frame).error();
-    facts_.frame = std::move(*frame);
-    report_.seconds.solve = watch_.lap() - facts_.frame.waited_seconds;
+    seconds_.solve = watch_.lap() - frame->waited_seconds;
+    facts_.status = tally.counts();
+    facts_.pixels = facts_.size.pixels() - facts_.status.with(kNoSolution);
+    facts_.solved_by = json_of(frame->tally);
+    if (frame->reference) {
+      facts_.gates = json_of(frame->reference->gates);
+      facts_.reference = json_of(*frame->reference);
+    }
     summary_ = summarize_photographs(photographs_, input_.picked, warnings_, context_);
-    report_.seconds.report = watch_.lap();
+    seconds_.report = watch_.lap();
     photographs_ = {};  // their memory is needed for nothing more
 
     if (Result<void> ok = files->finish(); !ok) return ok;
-    report_.seconds.write = facts_.frame.waited_seconds + watch_.lap();
+    seconds_.write = frame->waited_seconds + watch_.lap();
     return {};
   }
 
@@ -265,7 +229,8 @@ class Run {
       Result<TruthError> measured = error_against(input_.truth, partial_.path() / "normal.exr");
       if (!measured) return std::move(measured).error();
       error = std::move(*measured);
-      facts_.error = error->normal;
+      const NormalComparison& normal = error->normal;
+      facts_.error = {normal.mean_deg, normal.median_deg, normal.p95_deg, normal.max_deg};
     }
     Result<std::vector<std::string>> names =
         pictures_->write(partial_.path(), input_.title, facts_.albedo_scale == AlbedoScale::kAbsolute,
@@ -280,26 +245,24 @@ class Run {
     if (options_.previews) {
       if (Result<void> drawn = draw(); !drawn) return drawn;
     }
-    report_.seconds.pictures = watch_.lap();
+    seconds_.pictures = watch_.lap();
     // What leaves no shadow out takes much for a highlight.
     const bool tells_highlights = method_.is_quality && !is_half();
     const double specular =
-        static_cast<double>(facts_.counts.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
-    facts_.verdicts = verdicts_of(summary_, tells_highlights ? specular : 0);
-    report_.document = document_of(product_, input_, options_, facts_);
-    if (Result<void> ok = write_json(partial_.path() / "solve.json", report_.document); !ok) return ok;
-    const Json page =
-        report_document(input_.title, report_.document, summary_, *maps_, seconds_json(report_.seconds));
+        static_cast<double>(facts_.status.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
+    facts_.warnings = verdicts_of(summary_, tells_highlights ? specular : 0);
+    const fs::path document = partial_.path() / kSolveProduct.document;
+    if (Result<void> ok = write_json(document, json_of(facts_)); !ok) return ok;
+    const Json page = report_document(input_.title, facts_, summary_, *maps_, seconds_json(seconds_));
     if (Result<void> ok = write_report(partial_.path(), page); !ok) return ok;
-    report_.seconds.report += watch_.lap();
+    seconds_.report += watch_.lap();
     return {};
   }
 
   Result<void> publish() {
     if (context_.stop.stop_requested()) return interrupted();
     if (Result<void> ok = partial_.publish(); !ok) return ok;
-    report_.folder = product_.folder;
-    report_.seconds.sync = watch_.lap();
+    seconds_.sync = watch_.lap();
     return {};
   }
 
@@ -312,11 +275,11 @@ class Run {
   Stopwatch watch_;
   pipeline::Photographs photographs_;
   std::vector<std::string> warnings_;
-  Facts facts_;
+  SolveFacts facts_;
+  SolveSeconds seconds_;
   std::optional<Pictures> pictures_;
   std::optional<MapSummary> maps_;
   PhotographsSummary summary_;
-  SolveReport report_;
 };
 
 Result<SolveReport> solve(const solver::MethodName& method, const Input& input, const SolveOptions& options,
@@ -325,7 +288,12 @@ Result<SolveReport> solve(const solver::MethodName& method, const Input& input, 
       product_of(kSolveProduct, inputs_of(input.description, options), input.default_parent, options.output);
   Result<std::optional<Json>> finished = find_finished(product);
   if (!finished) return std::move(finished).error();
-  if (*finished) return SolveReport{product.folder, true, std::move(**finished), {}};
+  if (*finished) {
+    Result<SolveFacts> facts =
+        solve_facts_from_json(**finished, (product.folder / kSolveProduct.document).string());
+    if (!facts) return std::move(facts).error();
+    return SolveReport{product.folder, true, std::move(*facts), {}, {}};
+  }
   return Run(method, input, options, context, product).run();
 }
 
@@ -360,19 +328,22 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
   const fs::path source =
       fs::absolute(input.light_file.empty() ? input.folder : input.light_file).lexically_normal();
   const fs::path name = source.has_filename() ? source.stem() : source.parent_path().filename();
-  return solve(*method,
-               {.title = name.string(),
-                .description = plan->description,
-                .size = plan->size,
-                .default_parent = fs::current_path() / (name.string() + "-solve"),
-                .truth = {},
-                .picked = input.lights,
-                .load = [&]() -> Result<LoadedSession> {
-                  Result<pipeline::Photographs> photographs = load_photos(*plan, context);
-                  if (!photographs) return std::move(photographs).error();
-                  return LoadedSession{std::move(*photographs), {}, {}};
-                }},
-               options, context);
+  Result<SolveReport> report = solve(*method,
+                                     {.title = name.string(),
+                                      .description = plan->description,
+                                      .size = plan->size,
+                                      .default_parent = fs::current_path() / (name.string() + "-solve"),
+                                      .truth = {},
+                                      .picked = input.lights,
+                                      .load = [&]() -> Result<LoadedSession> {
+                                        Result<pipeline::Photographs> photographs =
+                                            load_photos(*plan, context);
+                                        if (!photographs) return std::move(photographs).error();
+                                        return LoadedSession{std::move(*photographs), {}, {}};
+                                      }},
+                                     options, context);
+  if (report) report->transfer = plan->transfer;
+  return report;
 }
 
 }  // namespace weft::app

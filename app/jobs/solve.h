@@ -10,8 +10,8 @@
 #include "app/jobs/session_input.h"
 #include "core/compression.h"
 #include "core/job.h"
-#include "core/json_document.h"
 #include "core/result.h"
+#include "core/solve.h"
 #include "core/tiles.h"
 #include "pipeline/bands.h"
 
@@ -33,8 +33,9 @@ struct SolveSeconds {
 struct SolveReport {
   std::filesystem::path folder;
   bool was_there = false;  ///< a complete solve of the same inputs and options was found
-  Json document;           ///< solve.json
-  SolveSeconds seconds;    ///< of this run: zero if was_there
+  SolveFacts facts;
+  std::optional<Transfer> transfer;  ///< of photographs: kLinear or kSrgb
+  SolveSeconds seconds;              ///< of this run: zero if was_there
 };
 
 /// Solves a session into its maps (docs/formats.md): normal.exr, albedo.exr, sigma.exr, residual.exr,

@@ -263,9 +263,9 @@ TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   const auto before = solve(session, {}, work / "before"),
              after = solve(session, work / "new", work / "after");
   ASSERT_TRUE(before && after);
-  EXPECT_EQ(before->document["color"], "camera");
-  EXPECT_EQ(after->document["color"], "rec709");
-  EXPECT_NE(before->document["id"], after->document["id"]);
+  EXPECT_FALSE(before->facts.is_rec709);
+  EXPECT_TRUE(after->facts.is_rec709);
+  EXPECT_NE(before->facts.id, after->facts.id);
   EXPECT_EQ(bytes_of(work / "before" / "normal.exr"), bytes_of(work / "after" / "normal.exr"));
 
   const auto camera = read_image(work / "before" / "albedo.exr"),

@@ -44,8 +44,8 @@ TEST_F(Levels, ReferenceHalvesTheErrorOfADeepWeave) {
   solve("standard");
   EXPECT_LT(error_deg("reference"), 0.5 * error_deg("standard"))
       << error_deg("standard") << " degrees by standard";
-  EXPECT_EQ(report.document["reference"]["stages"], Json({"shadows", "interreflection"}));
-  EXPECT_EQ(report.document["pixels"], kSize.pixels());
+  EXPECT_EQ(report.facts.reference["stages"], Json({"shadows", "interreflection"}));
+  EXPECT_EQ(report.facts.pixels, kSize.pixels());
 }
 
 TEST_F(Levels, ReferenceIsTheSameForAnyThreads) {
@@ -60,18 +60,17 @@ TEST_F(Levels, ReferenceIsTheSameForAnyThreads) {
 TEST_F(Levels, ReferenceRunsNoStageOnAFlatCardAndSaysWhy) {
   simulate(scene_named("flat", kSize), session_);
   const app::SolveReport report = solve("reference");
-  EXPECT_TRUE(report.document["reference"]["stages"].empty());
-  EXPECT_TRUE(report.document["reference"]["rounds"].empty());
-  ASSERT_EQ(report.document["gates"].size(), 4U);
-  for (const Json& gate : report.document["gates"]) EXPECT_EQ(gate["verdict"], "under") << gate;
-  EXPECT_EQ(report.document["solved_by"]["double"], kSize.pixels());
+  EXPECT_TRUE(report.facts.reference["stages"].empty());
+  EXPECT_TRUE(report.facts.reference["rounds"].empty());
+  ASSERT_EQ(report.facts.gates.size(), 4U);
+  for (const Json& gate : report.facts.gates) EXPECT_EQ(gate["verdict"], "under") << gate;
+  EXPECT_EQ(report.facts.solved_by["double"], kSize.pixels());
 }
 
 TEST_F(Levels, PreviewIsHalfTheSizeAndRightOnACard) {
   simulate(scene_named("flat", kSize), session_);
   const app::SolveReport report = solve("preview");
-  EXPECT_EQ(report.document["width"], kSize.width / 2);
-  EXPECT_EQ(report.document["height"], kSize.height / 2);
+  EXPECT_EQ(report.facts.size, (Size{kSize.width / 2, kSize.height / 2}));
   const auto normal = read_image(work_ / "preview" / "normal.exr");
   ASSERT_TRUE(normal) << normal.error().message();
   EXPECT_NEAR(normal->planes(kSize.width / 4, kSize.height / 4, 2), 1, 1e-5);
@@ -79,7 +78,7 @@ TEST_F(Levels, PreviewIsHalfTheSizeAndRightOnACard) {
 
 TEST_F(Levels, StandardCountsHowItsPixelsWereSolved) {
   simulate(scene_named("twill", kSize), session_);
-  const Json solved = solve("standard").document["solved_by"];
+  const Json solved = solve("standard").facts.solved_by;
   EXPECT_EQ(solved["float32"].get<std::int64_t>() + solved["double"].get<std::int64_t>() +
                 solved["qr"].get<std::int64_t>() + solved["svd"].get<std::int64_t>() +
                 solved["unsolved"].get<std::int64_t>(),
