@@ -153,8 +153,8 @@ std::string sigma_map(const Json& report) {
   report::FrameMap map = {sigma.value("columns", 0), sigma.value("rows", 0), {}, "°"};
   for (const Json& v : sigma["grid"]) map.values.push_back(v.is_number() ? v.get<double>() : NAN);
   const Json condition = report.value("condition", Json::object());
-  std::string note = fmt::format("Median {:.3g}°, 95 percent_text below {:.3g}°.", number(sigma, "median"),
-                                 number(sigma, "p95"));
+  std::string note =
+      fmt::format("Median {:.3g}°, 95 percent below {:.3g}°.", number(sigma, "median"), number(sigma, "p95"));
   if (condition.contains("median") && condition["median"].is_number()) {
     note += fmt::format(" Condition number of all lights {:.2f}, at worst {:.2f}.",
                         number(condition, "median"), number(condition, "worst", INFINITY));
@@ -174,8 +174,7 @@ std::string budget(const Json& report) {
   }
   if (const auto error = report.find("error"); error != report.end()) {
     rows += fmt::format(
-        "<tr><td>all of it<br><span class=\"note\">mean error against the truth; 95 percent_text below "
-        "{:.2f}°"
+        "<tr><td>all of it<br><span class=\"note\">mean error against the truth; 95 percent below {:.2f}°"
         "</span></td><td class=\"n\">{:.3g}°</td></tr>\n",
         number(*error, "p95_deg"), number(*error, "mean_deg"));
   }

@@ -265,6 +265,22 @@ TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
   EXPECT_THAT(verdicts[0].remedy, HasSubstr("crossed polarisers"));
 }
 
+TEST(ReportPage, SaysBelowWhichAnglesNinetyFivePercentAre) {
+  const Json report = {
+      {"title", "twill"},
+      {"warnings", Json::array()},
+      {"status", Json::object()},
+      {"lights", Json::array()},
+      {"faults", Json::array()},
+      {"budget", Json::array()},
+      {"sigma_normal_deg", {{"median", 0.25}, {"p95", 0.5}, {"columns", 1}, {"rows", 1}, {"grid", {0.25}}}},
+      {"seconds", Json::object()},
+      {"error", {{"mean_deg", 1.5}, {"p95_deg", 3.25}}}};
+  const std::string page = app::report_page(report, {});
+  EXPECT_THAT(page, HasSubstr("Median 0.25°, 95 percent below 0.5°."));
+  EXPECT_THAT(page, HasSubstr("mean error against the truth; 95 percent below 3.25°"));
+}
+
 TEST(ReportPage, LeavesOutWhatIsNotThereAndEscapesWhatIs) {
   const Json report = {{"schema", "weft.solve-report/1"}, {"title", "wool & <b>silk</b>"},
                        {"warnings", Json::array()},       {"status", {{"SHADOWED", 0.25}}},
