@@ -35,6 +35,16 @@ struct Reading {
   double variance = 1;  // of `light`, as the last solution predicts it, and what else it is doubted for
 };
 
+// What the fitted readings say of a solution.
+struct Residuals {
+  std::array<Vector3d, 3> b = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};  // of each plane
+  std::array<double, 3> plane_square = {};  // sums of the squared residuals
+  double square = 0;                        // the same of `light`
+  double weights = 0;
+  Matrix3d noise = Matrix3d::Zero();   // sum of w^2 v l l^T over the variances v of the noise model
+  Vector3d shared = Vector3d::Zero();  // sum of w / e l: what noise that all readings share changes
+};
+
 }  // namespace
 
 struct PixelSolver::Work {
@@ -47,6 +57,8 @@ struct PixelSolver::Work {
   std::uint16_t status = 0;
   Factor fit;
 
+  double rho() const { return fit.b.stableNorm(); }
+  Vector3d normal() const { return fit.b / rho(); }
   std::size_t planes() const { return static_cast<std::size_t>(options.planes); }
   bool has_noise() const { return planes() == 1 && options.noise.has_value(); }
 
@@ -81,7 +93,7 @@ struct PixelSolver::Work {
   bool all_dark() const {
     const double sigma = has_noise() ? std::sqrt(options.noise->floor + options.noise->shared) : 0.0;
     return !readings.empty() && std::none_of(readings.begin(), readings.end(), [&](const Reading& r) {
-      return r.light > 3 * sigma * r.inverse_strength;
+      return r.light > kDarkSigmas * sigma * r.inverse_strength;
     });
   }
 
@@ -111,11 +123,11 @@ struct PixelSolver::Work {
       if (r.use == Use::kFitted) system.push_back({r.l, 1 / r.variance, r.light});
     }
     fit = factorise(system);
-    const double rho = fit.path == SolvedBy::kNothing ? 0 : fit.b.stableNorm();
-    return rho > 0 && std::isfinite(rho);
+    const double solved = fit.path == SolvedBy::kNothing ? 0 : rho();
+    return solved > 0 && std::isfinite(solved);
   }
   void predict_variances() {
-    const double model = std::pow(model_share(has_noise()) * fit.b.stableNorm(), 2);
+    const double model = std::pow(model_share(has_noise()) * rho(), 2);
     for (Reading& r : readings) r.variance = noise_variance(r) + model;
   }
   double noise_variance(const Reading& r) const {
@@ -160,7 +172,7 @@ struct PixelSolver::Work {
     for (Reading& r : readings) {
       if (r.use != Use::kFitted) continue;
       const double freedom = 1 - r.l.dot(fit.inverse * r.l) / r.variance;
-      if (!(freedom > 1e-6)) continue;
+      if (!(freedom > kLeastFreedom)) continue;
       const double t2 = squared_misfit(r) / freedom;
       const double others = std::max(0.0, scatter - t2) / (n - 4);
       if (t2 > kRejectFrom * std::max(1.0, others) && t2 > most) {
@@ -257,7 +269,7 @@ struct PixelSolver::Work {
   // Weights 1 / |r|, smoothed where |r| is under a ten thousandth of the albedo.
   bool solve_least_absolute() {
     for (int i = 0; i < kReweightings; ++i) {
-      const double least = 1e-4 * fit.b.stableNorm();
+      const double least = 1e-4 * rho();
       for (Reading& r : readings) r.variance = std::max(std::abs(residual(r)), least);
       if (!solve_fitted()) return false;
     }
@@ -269,14 +281,14 @@ struct PixelSolver::Work {
   // gamma).
   bool solve_sparse() {
     constexpr double kLambda = 1e-6;
-    const double rho = fit.b.stableNorm();
+    const double albedo = rho();
     for (Reading& r : readings) r.variance = kLambda + 1;
     for (int i = 0; i < kReweightings; ++i) {
       if (!solve_fitted()) return false;
       for (Reading& r : readings) {
         const double w = 1 / r.variance, gamma = r.variance - kLambda;
         const double leverage = w * w * r.l.dot(fit.inverse * r.l);
-        r.variance = kLambda + std::max(0.0, std::pow(gamma * w * residual(r) / rho, 2) + gamma -
+        r.variance = kLambda + std::max(0.0, std::pow(gamma * w * residual(r) / albedo, 2) + gamma -
                                                  gamma * gamma * (w - leverage));
       }
     }
@@ -298,6 +310,10 @@ struct PixelSolver::Work {
 
   PixelSolution unsolved() const;
   PixelSolution solution();
+  Residuals residuals() const;
+  void add_sigmas_of_noise(const Residuals& sums, PixelSolution& s) const;
+  void add_sigmas_of_scatter(const Residuals& sums, PixelSolution& s) const;
+  int mark_readings();
 };
 
 // The best albedo for a normal of (0, 0, 1).
@@ -322,74 +338,82 @@ PixelSolution PixelSolver::Work::unsolved() const {
   return s;
 }
 
-// Normal, albedo and their covariance C = G^-1 (sum w^2 v l l^T) G^-1, from the noise model or else from the
-// scatter of the residuals.
-PixelSolution PixelSolver::Work::solution() {
-  const Vector3d& b = fit.b;
-  const double rho = b.stableNorm();
-  const Vector3d n = b / rho;
+Residuals PixelSolver::Work::residuals() const {
   const bool weighted = options.estimator != Estimator::kLeastSquares;
-  std::array<Vector3d, 3> b_of_plane = {Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()};
-  double residual2 = 0, weights = 0;
-  std::array<double, 3> plane_residual2 = {};
-  Matrix3d m = Matrix3d::Zero();
-  Vector3d shared = Vector3d::Zero();
+  Residuals sums;
   for (const Reading& r : readings) {
     if (r.use != Use::kFitted) continue;
     const double w = weighted ? 1 / r.variance : 1;
-    weights += w;
-    residual2 += std::pow(r.light - r.l.dot(b), 2);
+    sums.weights += w;
+    sums.square += std::pow(r.light - r.l.dot(fit.b), 2);
     if (has_noise()) {
-      m += w * w * noise_variance(r) * r.l * r.l.transpose();
-      shared += w * r.inverse_strength * r.l;
+      sums.noise += w * w * noise_variance(r) * r.l * r.l.transpose();
+      sums.shared += w * r.inverse_strength * r.l;
     }
-    for (std::size_t p = 0; p < planes(); ++p) b_of_plane[p] += w * r.x[p] * (fit.inverse * r.l);
+    for (std::size_t p = 0; p < planes(); ++p) sums.b[p] += w * r.x[p] * (fit.inverse * r.l);
   }
   for (const Reading& r : readings) {
     if (r.use != Use::kFitted) continue;
-    for (std::size_t p = 0; p < planes(); ++p) {
-      plane_residual2[p] += std::pow(r.x[p] - r.l.dot(b_of_plane[p]), 2);
-    }
+    for (std::size_t p = 0; p < planes(); ++p)
+      sums.plane_square[p] += std::pow(r.x[p] - r.l.dot(sums.b[p]), 2);
   }
+  return sums;
+}
 
+// From the covariance C = G^-1 (sum w^2 v l l^T) G^-1.
+void PixelSolver::Work::add_sigmas_of_noise(const Residuals& sums, PixelSolution& s) const {
+  const Vector3d n = normal();
+  Matrix3d m = sums.noise;
+  m += options.noise->shared * sums.shared * sums.shared.transpose();
+  const Matrix3d c = fit.inverse * m * fit.inverse;
+  const double along = std::max(0.0, n.dot(c * n)), across = std::max(0.0, c.trace() - n.dot(c * n));
+  s.sigma_normal_deg = degrees(std::sqrt(across) / rho());
+  s.sigma_albedo[0] = std::sqrt(along);
+}
+
+void PixelSolver::Work::add_sigmas_of_scatter(const Residuals& sums, PixelSolution& s) const {
+  const Vector3d n = normal();
   const auto count = static_cast<double>(fitted_count());
   const double freedom = count - 3;
-  PixelSolution s;
-  s.path = fit.path;
-  s.normal = {n.x(), n.y(), n.z()};
-  s.residual = std::sqrt(residual2 / count) / rho;
-  if (has_noise()) {
-    m += options.noise->shared * shared * shared.transpose();
-    const Matrix3d c = fit.inverse * m * fit.inverse;
-    const double along = std::max(0.0, n.dot(c * n)), across = std::max(0.0, c.trace() - n.dot(c * n));
-    s.sigma_normal_deg = degrees(std::sqrt(across) / rho);
-    s.sigma_albedo[0] = std::sqrt(along);
-    s.albedo[0] = rho;
-  } else {
-    // Without a noise model all weights are alike, and the inverse is that of their sum.
-    const Matrix3d unit = fit.inverse * (weights / count);
-    const double along = std::max(0.0, n.dot(unit * n)),
-                 across = std::max(0.0, unit.trace() - n.dot(unit * n));
-    s.sigma_normal_deg =
-        freedom > 0 ? degrees(std::sqrt(residual2 / freedom * across) / rho) : kUnknownAngleDeg;
-    for (std::size_t p = 0; p < planes(); ++p) {
-      s.albedo[p] = planes() == 1 ? rho : std::max(0.0, n.dot(b_of_plane[p]));
-      s.sigma_albedo[p] = freedom > 0 ? std::sqrt(plane_residual2[p] / freedom * along) : s.albedo[p];
-    }
-  }
-  s.sigma_normal_deg = std::min(s.sigma_normal_deg, double{kUnknownAngleDeg});
+  // Without a noise model all weights are alike, and the inverse is that of their sum.
+  const Matrix3d unit = fit.inverse * (sums.weights / count);
+  const double along = std::max(0.0, n.dot(unit * n)), across = std::max(0.0, unit.trace() - n.dot(unit * n));
+  s.sigma_normal_deg =
+      freedom > 0 ? degrees(std::sqrt(sums.square / freedom * across) / rho()) : kUnknownAngleDeg;
+  for (std::size_t p = 0; p < planes(); ++p)
+    s.sigma_albedo[p] = freedom > 0 ? std::sqrt(sums.plane_square[p] / freedom * along) : s.albedo[p];
+}
 
+// Says in `status` what became of the readings. Returns how many were rejected.
+int PixelSolver::Work::mark_readings() {
+  const double margin = kSpecularMargin * rho();
+  int rejected = 0;
   for (const Reading& r : readings) {
     if (r.use == Use::kShadowed) {
       status |= kShadowed;
       continue;
     }
-    s.rejected += r.use == Use::kRejected;
-    const double predicted = std::max(0.0, r.l.dot(b));
+    rejected += r.use == Use::kRejected;
+    const double predicted = std::max(0.0, r.l.dot(fit.b));
     const double sigma = std::sqrt(noise_variance(r));
-    if (r.light > kSpecularTimes * predicted + 3 * sigma + kSpecularMargin * rho) status |= kSpecular;
+    if (r.light > kSpecularTimes * predicted + kSpecularSigmas * sigma + margin) status |= kSpecular;
   }
   if (fitted_count() == 3) status |= kZeroDof;
+  return rejected;
+}
+
+PixelSolution PixelSolver::Work::solution() {
+  const Vector3d n = normal();
+  const Residuals sums = residuals();
+  PixelSolution s;
+  s.path = fit.path;
+  s.normal = {n.x(), n.y(), n.z()};
+  s.residual = std::sqrt(sums.square / static_cast<double>(fitted_count())) / rho();
+  for (std::size_t p = 0; p < planes(); ++p)
+    s.albedo[p] = planes() == 1 ? rho() : std::max(0.0, n.dot(sums.b[p]));
+  has_noise() ? add_sigmas_of_noise(sums, s) : add_sigmas_of_scatter(sums, s);
+  s.sigma_normal_deg = std::min(s.sigma_normal_deg, double{kUnknownAngleDeg});
+  s.rejected = mark_readings();
   s.status = status;
   return s;
 }

@@ -21,16 +21,16 @@ struct PixelRow {
   std::array<double, 3> reading = {};
 };
 
-/// What is minimised, each over what the one before leaves of the readings.
+/// What is minimised.
 enum class Estimator {
   kLeastSquares,   ///< sum of (x_k - l_k . b)^2 with x = r / e
   kLeastAbsolute,  ///< sum of |x_k - l_k . b|, by reweighting (L1)
   kSparse,         ///< least squares plus a sparse error a reading (Ikehata et al., CVPR 2012: SBL)
-  kWeighted,       ///< the same over the variances that a first solution predicts; shadowed readings that
-                   ///< fit are taken back
-  kRejecting,      ///< weighted, without the readings that do not fit the others
-  kTrimmed         ///< where they scatter, from a start that most readings agree on, highlights doubted; else
-                   ///< rejecting
+  kWeighted,   ///< least squares over the variances that a first solution predicts; shadowed readings that
+               ///< fit are taken back
+  kRejecting,  ///< kWeighted without the readings that do not fit the others
+  kTrimmed     ///< where readings scatter, kWeighted from a start that most of them agree on, with
+               ///< highlights doubted; elsewhere kRejecting
 };
 
 /// Readings are trimmed where their scatter is over this many times what noise explains.
@@ -97,10 +97,14 @@ inline int bright_rank(std::size_t lights) {
   return 1 + static_cast<int>(0.3 * static_cast<double>(lights - 1) + 1e-9);
 }
 
-/// A reading is called specular above kSpecularTimes the prediction, plus 3 sigma, plus this share of the
-/// albedo.
+/// A reading is called specular where it is over the sum of kSpecularTimes its prediction, kSpecularSigmas
+/// standard deviations of its noise, and kSpecularMargin of the albedo.
 inline constexpr double kSpecularTimes = 3;
+inline constexpr double kSpecularSigmas = 3;
 inline constexpr double kSpecularMargin = 0.08;
+
+/// A reading stands out of the noise from so many standard deviations of a dark one.
+inline constexpr double kDarkSigmas = 3;
 
 /// Departures from Lambert's law that no noise model knows, as a share of the albedo: added to the noise
 /// wherever readings are weighed and judged. Without a noise model it stands for the noise as well, and for
@@ -115,6 +119,9 @@ inline constexpr double kTakenBackFrom = 1;
 /// others.
 inline constexpr double kRejectFrom = 9;
 inline constexpr int kMostRejected = 4;
+/// A reading whose freedom is below this pulls the solution to itself altogether. Freedom is 1 minus
+/// leverage.
+inline constexpr double kLeastFreedom = 1e-6;
 
 /// Where readings are trimmed, what exceeds its prediction by more than kDoubtFrom sigma has kDoubt times
 /// the square of the rest added to its variance, in so many rounds.

@@ -18,9 +18,6 @@ namespace weft::solver {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A reading pulls the solution to itself altogether below this freedom.
-inline constexpr float kLeastFreedom = 1e-6f;
-
 // Doubt carries the rounding of one round into the weights of the next, and grows it: it is left to double
 // from here.
 inline constexpr double kDoubtedCondition = 5;
@@ -83,7 +80,7 @@ HWY_NOINLINE void fit_again(D d, const RowTask& task, const Scratch& scratch, M 
   const Vector3 b = e.fit.b;
   const Variance variance(d, task, b);
   Symmetric g = zero_matrix(d);
-  Vector3 rhs = {zero, zero, zero};
+  Vector3 rhs = zero_vector(d);
   for (std::size_t k = 0; k < task.light_count; ++k) {
     const Vector3 l = scratch.direction(k);
     const V light = scratch.light(k);
@@ -98,14 +95,14 @@ HWY_NOINLINE void fit_again(D d, const RowTask& task, const Scratch& scratch, M 
       w = hn::IfThenElse(hn::And(active, hn::Gt(w, zero)), reciprocal(d, v), w);
       scratch.store_weight(k, w);
     }
-    const Vector3 wl = {hn::Mul(w, l.x), hn::Mul(w, l.y), hn::Mul(w, l.z)};
+    const Vector3 wl = scaled(l, w);
     add_outer(g, wl, l);
     add_scaled(rhs, light, wl);
   }
   Fit fit = solved(d, g, rhs, kWeights == Weights::kDoubted ? kDoubtedCondition : kFloatCondition);
   if constexpr (kWeights != Weights::kPredicted) {
     // Few or unequal readings: the solution once more, of its residuals, which know b to more digits than G.
-    Vector3 gradient = {zero, zero, zero};
+    Vector3 gradient = zero_vector(d);
     for (std::size_t k = 0; k < task.light_count; ++k) {
       const Vector3 l = scratch.direction(k);
       add_scaled(gradient, hn::Mul(scratch.weight(k), hn::Sub(scratch.light(k), dot(l, fit.b))), l);

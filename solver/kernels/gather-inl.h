@@ -58,7 +58,7 @@ HWY_INLINE LightHere light_here(D d, const RowLight& light, V x_mm, V y_mm, V ga
   const V d2 = dot(to_led, to_led);
   const V inverse_d = reciprocal_sqrt(d, d2);
   LightHere here;
-  here.l = {hn::Mul(to_led.x, inverse_d), hn::Mul(to_led.y, inverse_d), hn::Mul(to_led.z, inverse_d)};
+  here.l = scaled(to_led, inverse_d);
   if (light.mu == 0) {
     here.cosine = one;
     here.inverse_shape = hn::Div(d2, gain);
@@ -182,11 +182,7 @@ struct Sums {
   Vector3 plane_rhs[3];
   V count;
 
-  explicit Sums(D d)
-      : g(zero_matrix(d)),
-        rhs{hn::Zero(d), hn::Zero(d), hn::Zero(d)},
-        plane_rhs{rhs, rhs, rhs},
-        count(hn::Zero(d)) {}
+  explicit Sums(D d) : g(zero_matrix(d)), rhs(zero_vector(d)), plane_rhs{rhs, rhs, rhs}, count(hn::Zero(d)) {}
 };
 
 // What a vector of columns has in common, whichever way it is solved.
@@ -202,34 +198,66 @@ struct Columns {
         y_mm(task.points->x_mm.value != nullptr ? along.at(d, task.points->y_mm) : hn::Zero(d)) {}
 };
 
+// 1 / gain of each plane of a vector of columns; ones where the calibration has no gains.
+template <std::size_t kPlanes>
+struct InverseGains {
+  V of_plane[kPlanes];
+
+  HWY_INLINE InverseGains(D d, const RowTask& task, const Columns& columns) {
+    const RowPoints& points = *task.points;
+    const auto gain_of = [&](std::size_t channel) { return columns.along.at(d, points.gain_rgb[channel]); };
+    for (std::size_t p = 0; p < kPlanes; ++p) {
+      if (points.led_gain.empty()) {
+        of_plane[p] = hn::Set(d, 1.0f);
+      } else if constexpr (kPlanes == 3) {
+        of_plane[p] = reciprocal(d, gain_of(p));
+      } else {
+        of_plane[p] = reciprocal(d, hn::Lanes(d) == 1
+                                        ? gain_of(task.channel[columns.x & 1])
+                                        : hn::OddEven(gain_of(task.channel[1]), gain_of(task.channel[0])));
+      }
+    }
+  }
+};
+
+// Over all lights.
+struct Extremes {
+  V darkest, brightest, least_cosine;
+
+  HWY_INLINE explicit Extremes(D d)
+      : darkest(hn::Inf(d)), brightest(hn::Neg(darkest)), least_cosine(hn::Set(d, 1.0f)) {}
+};
+
+// Whether every reading of every lane counts: none is missing, saturated or behind a LED, none is dark enough
+// to be taken for a shadow, the first stands out of the noise. A value that is not finite shows in the sums.
+template <std::size_t kPlanes>
+HWY_INLINE bool all_count(D d, const RowTask& task, const Columns& columns, const Sums<kPlanes>& sums,
+                          const Extremes& extremes) {
+  M all = hn::Lt(hn::Abs(hn::Add(sums.rhs.x, hn::Add(sums.rhs.y, sums.rhs.z))), hn::Inf(d));
+  all = hn::And(all, hn::Gt(extremes.least_cosine, hn::Zero(d)));
+  const V first_reading = hn::LoadU(d, task.readings[0] + columns.x);
+  all = hn::And(all, kPlanes == 1 ? hn::Gt(first_reading, hn::Set(d, task.dark_reading))
+                                  : hn::Gt(extremes.brightest, hn::Zero(d)));
+  if (task.shadow_mask) {
+    const V shadow_share = hn::Set(d, static_cast<float>(kShadowShare));
+    all = hn::And(all, hn::Ge(extremes.darkest, hn::Mul(shadow_share, extremes.brightest)));
+  }
+  return hn::AllTrue(d, all);
+}
+
 // Readings over strength of all lights, kept in `scratch`, and their normal equations as if every one
-// counted. Returns whether that holds for every lane: no reading is missing, saturated or behind a LED, none
-// is dark enough to be taken for a shadow, the first stands out of the noise. A value that is not finite
-// shows in the sums.
+// counted. Returns whether that is so.
 template <std::size_t kPlanes>
 HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const Columns& columns,
                        Sums<kPlanes>& sums) {
-  const V one = hn::Set(d, 1.0f), infinity = hn::Inf(d);
   const RowPoints& points = *task.points;
-  const bool gains = !points.led_gain.empty();
-  V inverse_gain[kPlanes];  // of each plane
-  for (std::size_t p = 0; p < kPlanes; ++p) {
-    inverse_gain[p] = one;
-    if (!gains) continue;
-    const auto gain_of = [&](std::size_t channel) { return columns.along.at(d, points.gain_rgb[channel]); };
-    if constexpr (kPlanes == 1) {
-      const V gain = hn::Lanes(d) == 1 ? gain_of(task.channel[columns.x & 1])
-                                       : hn::OddEven(gain_of(task.channel[1]), gain_of(task.channel[0]));
-      inverse_gain[p] = reciprocal(d, gain);
-    } else {
-      inverse_gain[p] = reciprocal(d, gain_of(p));
-    }
-  }
-  V darkest = infinity, brightest = hn::Neg(infinity), least_cosine = one;
+  const bool has_gains = !points.led_gain.empty();  // read once: no store of a vector can change it
+  const InverseGains<kPlanes> inverse_gain(d, task, columns);
+  Extremes extremes(d);
   for (std::size_t k = 0; k < task.light_count; ++k) {
     const RowLight& light = task.lights[k];
-    const LightHere here = light_here(d, light, columns.x_mm, columns.y_mm,
-                                      gains ? columns.along.at(d, points.led_gain[k]) : one);
+    const V led_gain = has_gains ? columns.along.at(d, points.led_gain[k]) : hn::Set(d, 1.0f);
+    const LightHere here = light_here(d, light, columns.x_mm, columns.y_mm, led_gain);
     V light_sum = hn::Zero(d), inverse_e = light_sum;
     for (std::size_t p = 0; p < kPlanes; ++p) {
       const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + columns.x);
@@ -240,7 +268,7 @@ HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const C
       } else {
         inverse_flux = hn::Set(d, light.inverse_flux[p]);
       }
-      inverse_e = hn::Mul(here.inverse_shape, hn::Mul(inverse_flux, inverse_gain[p]));
+      inverse_e = hn::Mul(here.inverse_shape, hn::Mul(inverse_flux, inverse_gain.of_plane[p]));
       const V ratio = hn::Mul(r, inverse_e);
       if constexpr (kPlanes == 1) {
         light_sum = ratio;
@@ -251,22 +279,14 @@ HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const C
       }
     }
     scratch.store(k, here.l, light_sum, inverse_e);
-    darkest = hn::Min(darkest, light_sum);
-    brightest = hn::Max(brightest, light_sum);
-    least_cosine = hn::Min(least_cosine, here.cosine);
+    extremes.darkest = hn::Min(extremes.darkest, light_sum);
+    extremes.brightest = hn::Max(extremes.brightest, light_sum);
+    extremes.least_cosine = hn::Min(extremes.least_cosine, here.cosine);
     add_outer(sums.g, here.l, here.l);
     add_scaled(sums.rhs, light_sum, here.l);
   }
   sums.count = hn::Set(d, static_cast<float>(task.light_count));
-  M all = hn::Lt(hn::Abs(hn::Add(sums.rhs.x, hn::Add(sums.rhs.y, sums.rhs.z))), infinity);
-  all = hn::And(all, hn::Gt(least_cosine, hn::Zero(d)));
-  const V first_reading = hn::LoadU(d, task.readings[0] + columns.x);
-  all = hn::And(all, kPlanes == 1 ? hn::Gt(first_reading, hn::Set(d, task.dark_reading))
-                                  : hn::Gt(brightest, hn::Zero(d)));
-  if (task.shadow_mask) {
-    all = hn::And(all, hn::Ge(darkest, hn::Mul(hn::Set(d, static_cast<float>(kShadowShare)), brightest)));
-  }
-  return hn::AllTrue(d, all);
+  return all_count(d, task, columns, sums, extremes);
 }
 
 using Status = hn::Vec<hn::RebindToSigned<D>>;
@@ -276,21 +296,15 @@ HWY_INLINE void mark(Status& status, M where, std::uint16_t bit) {
   status = hn::Or(status, hn::IfThenElseZero(hn::RebindMask(di, where), hn::Set(di, bit)));
 }
 
-struct Selection {
-  M again;     // lanes that must be solved again in double
-  M shadowed;  // the mask left something out
-};
-
-// The normal equations again, of the readings that can be used and that the shadow mask keeps. In `scratch`,
-// readings that were left out become minus infinity, and what the mask left out is put beside.
+// Leaves only readings that can be used in `scratch`, the others become minus infinity, and marks in `status`
+// why. Returns the lanes that have a reading which stands out of the noise.
 template <std::size_t kPlanes>
-HWY_INLINE Selection select(D d, const RowTask& task, const Scratch& scratch, const Columns& columns,
-                            Sums<kPlanes>& sums, Status& status) {
+HWY_INLINE M leave_out_unusable(D d, const RowTask& task, const Scratch& scratch, const Columns& columns,
+                                Brightest& brightest, Status& status) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), infinity = hn::Inf(d),
           minus_infinity = hn::Neg(infinity);
-  const M no = hn::Lt(one, zero);
+  const M no = no_lane(d);
   M saturated = no, invalid = no, unlit = no, bright = no;
-  Brightest brightest(d, scratch, task.bright_rank);
   for (std::size_t k = 0; k < task.light_count; ++k) {
     M missing = no, full = no, in_shadow = no, stands_out = no;
     for (std::size_t p = 0; p < kPlanes; ++p) {
@@ -315,41 +329,65 @@ HWY_INLINE Selection select(D d, const RowTask& task, const Scratch& scratch, co
     scratch.store_light(k, kept);
     if (task.shadow_mask) brightest.add(kept);
   }
-  V threshold = minus_infinity;
-  if (task.shadow_mask) {
-    threshold =
-        hn::Min(hn::Mul(hn::Set(d, static_cast<float>(kShadowShare)), brightest.ranked(task.bright_index)),
-                brightest.ranked(kLeastKept - 1));
-  }
+  mark(status, invalid, kInvalidReading);
+  mark(status, saturated, kSaturated);
+  mark(status, unlit, kShadowed);
+  return bright;
+}
+
+// Readings below this are in shadow. The kLeastKept brightest never are.
+HWY_INLINE V shadow_threshold(D d, const RowTask& task, const Brightest& brightest) {
+  if (!task.shadow_mask) return hn::Neg(hn::Inf(d));
+  const V shadow_share = hn::Set(d, static_cast<float>(kShadowShare));
+  return hn::Min(hn::Mul(shadow_share, brightest.ranked(task.bright_index)),
+                 brightest.ranked(kLeastKept - 1));
+}
+
+// The normal equations of the readings from `threshold` on. The others become minus infinity and are put
+// beside. Returns the lanes that have others.
+template <std::size_t kPlanes>
+HWY_INLINE M leave_out_shadow(D d, const RowTask& task, const Scratch& scratch, V threshold,
+                              Sums<kPlanes>& sums) {
+  const V one = hn::Set(d, 1.0f), minus_infinity = hn::Neg(hn::Inf(d));
   sums = Sums<kPlanes>(d);
-  M any_dropped = no;
+  M any = no_lane(d);
   for (std::size_t k = 0; k < task.light_count; ++k) {
     const V light_sum = scratch.light(k);
     const M usable = hn::Gt(light_sum, minus_infinity);
     const M keep = hn::And(usable, hn::Ge(light_sum, threshold));
-    any_dropped = hn::Or(any_dropped, hn::AndNot(keep, usable));
+    any = hn::Or(any, hn::AndNot(keep, usable));
     sums.count = hn::Add(sums.count, hn::IfThenElseZero(keep, one));
     scratch.store_light(k, hn::IfThenElse(keep, light_sum, minus_infinity));
     scratch.store_shadowed(k, hn::IfThenElse(keep, minus_infinity, light_sum));
     const Vector3 l = scratch.direction(k);
-    add_outer(sums.g,
-              {hn::IfThenElseZero(keep, l.x), hn::IfThenElseZero(keep, l.y), hn::IfThenElseZero(keep, l.z)},
-              l);
+    add_outer(sums.g, masked(keep, l), l);
     add_scaled(sums.rhs, hn::IfThenElseZero(keep, light_sum), l);
     if constexpr (kPlanes == 3) {
-      for (std::size_t p = 0; p < 3; ++p) {
+      for (std::size_t p = 0; p < 3; ++p)
         add_scaled(sums.plane_rhs[p], hn::IfThenElseZero(keep, scratch.plane(k, p)), l);
-      }
     }
   }
-  mark(status, invalid, kInvalidReading);
-  mark(status, saturated, kSaturated);
-  mark(status, unlit, kShadowed);
+  return any;
+}
+
+struct Selection {
+  M again;     // lanes that must be solved again in double
+  M shadowed;  // the mask left something out
+};
+
+// The normal equations again, of the readings that can be used and that the shadow mask keeps.
+template <std::size_t kPlanes>
+HWY_INLINE Selection select(D d, const RowTask& task, const Scratch& scratch, const Columns& columns,
+                            Sums<kPlanes>& sums, Status& status) {
+  Brightest brightest(d, scratch, task.bright_rank);
+  const M bright = leave_out_unusable<kPlanes>(d, task, scratch, columns, brightest, status);
+  const V threshold = shadow_threshold(d, task, brightest);
+  const M shadowed = leave_out_shadow(d, task, scratch, threshold, sums);
   // The mask stands only while enough is left; without anything bright there is nothing to tell shadow by.
   const V determinant = inverted(d, sums.g).determinant;
   const M too_little = hn::Not(hn::Gt(determinant, hn::Set(d, static_cast<float>(kLeastMaskedDeterminant))));
   const M too_few = hn::Lt(sums.count, hn::Set(d, 3.0f));
-  return {hn::Or(hn::Not(bright), hn::Or(hn::And(any_dropped, too_little), too_few)), any_dropped};
+  return {hn::Or(hn::Not(bright), hn::Or(hn::And(shadowed, too_little), too_few)), shadowed};
 }
 
 }  // namespace HWY_NAMESPACE

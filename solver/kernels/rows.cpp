@@ -45,7 +45,8 @@ RowTask task_of(const TileInput& input, const PixelOptions& options) {
     task.noise_per_reading = static_cast<float>(options.noise->per_reading);
     task.noise_floor = static_cast<float>(options.noise->floor);
     task.noise_shared = static_cast<float>(options.noise->shared);
-    task.dark_reading = static_cast<float>(3 * std::sqrt(options.noise->floor + options.noise->shared));
+    task.dark_reading =
+        static_cast<float>(kDarkSigmas * std::sqrt(options.noise->floor + options.noise->shared));
   }
   return task;
 }

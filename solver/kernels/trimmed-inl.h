@@ -100,7 +100,7 @@ HWY_INLINE Start best_triple(D d, const RowTask& task, const Scratch& scratch, M
         const V inverse = reciprocal(d, determinant);
         Vector3 b = cross(m, lk);
         add_scaled(b, xk, c);
-        b = {hn::Mul(b.x, inverse), hn::Mul(b.y, inverse), hn::Mul(b.z, inverse)};
+        b = scaled(b, inverse);
         Largest<kMostLeftOut> misfits(d);
         for (std::size_t q = 0; q < n; ++q) misfits.add(squared_misfit(scratch, q, b));
         const V scatter = misfits.sum_of_others(d, left_out);
@@ -146,8 +146,7 @@ HWY_INLINE void keep_what_agrees(D d, const RowTask& task, const Scratch& scratc
 template <std::size_t kMostLeftOut>
 HWY_NOINLINE void trim(D d, const RowTask& task, const Scratch& scratch, M active, V scatter, Estimate& e) {
   const V left_out = trimmed_off(d, task, e.count);
-  Start start = {e.fit.b, hn::Mul(hn::Set(d, static_cast<float>(kTrimmedShare)), scatter),
-                 hn::Lt(hn::Set(d, 1.0f), hn::Zero(d))};
+  Start start = {e.fit.b, hn::Mul(hn::Set(d, static_cast<float>(kTrimmedShare)), scatter), no_lane(d)};
   start = best_triple<kMostLeftOut>(d, task, scratch, active, left_out, start);
   if (hn::AllFalse(d, start.found)) return;
   keep_what_agrees<kMostLeftOut>(d, task, scratch, left_out, start, e);

@@ -40,9 +40,27 @@ HWY_INLINE V reciprocal(D d, V v) {
 #endif
 }
 
+HWY_INLINE M no_lane(D d) {
+  return hn::Lt(hn::Set(d, 1.0f), hn::Zero(d));
+}
+
 struct Vector3 {
   V x, y, z;
 };
+
+HWY_INLINE Vector3 zero_vector(D d) {
+  const V z = hn::Zero(d);
+  return {z, z, z};
+}
+
+HWY_INLINE Vector3 scaled(Vector3 a, V w) {
+  return {hn::Mul(a.x, w), hn::Mul(a.y, w), hn::Mul(a.z, w)};
+}
+
+// Zero in the other lanes.
+HWY_INLINE Vector3 masked(M where, Vector3 a) {
+  return {hn::IfThenElseZero(where, a.x), hn::IfThenElseZero(where, a.y), hn::IfThenElseZero(where, a.z)};
+}
 
 HWY_INLINE V dot(Vector3 a, Vector3 b) {
   return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));

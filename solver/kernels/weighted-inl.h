@@ -20,7 +20,7 @@ HWY_NOINLINE M take_back_what_fits(D d, const RowTask& task, const Scratch& scra
   const V least_lit = hn::Set(d, static_cast<float>(kTakenBackFrom * kTakenBackFrom)),
           reject_from = hn::Set(d, static_cast<float>(kRejectFrom));
   const Variance variance(d, task, e.predictor);
-  M any = hn::Lt(one, zero), left_out = any;
+  M any = no_lane(d), left_out = any;
   for (std::size_t k = 0; k < task.light_count; ++k) {
     const V light = scratch.shadowed(k);
     const M shadowed = hn::Gt(light, minus_infinity);
@@ -55,7 +55,8 @@ HWY_INLINE Misfit misfit_of(D d, const Scratch& scratch, std::size_t k, const Es
   const V freedom = hn::NegMulAdd(w, quadratic(d, e.fit.inverse, l), hn::Set(d, 1.0f));
   const V reject_from = hn::Set(d, static_cast<float>(kRejectFrom));
   return {t2, freedom,
-          hn::And(hn::Gt(t2, hn::Mul(reject_from, freedom)), hn::Gt(freedom, hn::Set(d, kLeastFreedom)))};
+          hn::And(hn::Gt(t2, hn::Mul(reject_from, freedom)),
+                  hn::Gt(freedom, hn::Set(d, static_cast<float>(kLeastFreedom))))};
 }
 
 // Leaves out of each lane the reading that the others contradict most. Returns the lanes that had one.
@@ -86,7 +87,7 @@ HWY_NOINLINE M drop_worst_misfit(D d, const RowTask& task, const Scratch& scratc
 HWY_INLINE void reject_misfits(D d, const RowTask& task, const Scratch& scratch, M active, Estimate& e) {
   for (int i = 0; i < kMostRejected; ++i) {
     active = hn::And(active, hn::Gt(e.count, hn::Set(d, static_cast<float>(kLeastKept))));
-    M suspect = hn::Lt(hn::Set(d, 1.0f), hn::Zero(d));
+    M suspect = no_lane(d);
     for (std::size_t k = 0; k < task.light_count; ++k)
       suspect = hn::Or(suspect, misfit_of(d, scratch, k, e).suspect);
     active = hn::And(active, suspect);
@@ -103,8 +104,7 @@ HWY_INLINE Estimate first_estimate(D d, const RowTask& task, const Scratch& scra
                                    const Fit& fit, V count, M again, V& scale) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), minus_infinity = hn::Neg(hn::Inf(d));
   const V rho2 = dot(fit.b, fit.b);
-  again = hn::Or(again, fit.poor);
-  again = hn::Or(again, hn::Not(hn::And(hn::Gt(rho2, hn::Set(d, 1e-24f)), hn::Lt(rho2, hn::Set(d, 1e24f)))));
+  again = hn::Or(again, hn::Or(fit.poor, leaves_float(d, rho2)));
   scale = hn::Sqrt(rho2);
   const V per_scale = hn::Div(one, scale);
   for (std::size_t k = 0; k < task.light_count; ++k) {
@@ -120,17 +120,16 @@ HWY_INLINE Estimate first_estimate(D d, const RowTask& task, const Scratch& scra
     scratch.store_inverse_e(k, hn::IfThenElseZero(readable, hn::Mul(scratch.inverse_e(k), per_scale)));
     scratch.store_weight(k, hn::IfThenElseZero(keep, one));
   }
-  const Vector3 b = {hn::Mul(fit.b.x, per_scale), hn::Mul(fit.b.y, per_scale), hn::Mul(fit.b.z, per_scale)};
+  const Vector3 b = scaled(fit.b, per_scale);
   return {{fit.inverse, b, fit.poor}, b, count, zero, again};
 }
 
 // Right-hand sides of the planes under the last weights.
 HWY_INLINE void weigh_planes(D d, const RowTask& task, const Scratch& scratch, Vector3* plane_rhs) {
-  const V zero = hn::Zero(d);
-  for (std::size_t p = 0; p < 3; ++p) plane_rhs[p] = {zero, zero, zero};
+  for (std::size_t p = 0; p < 3; ++p) plane_rhs[p] = zero_vector(d);
   for (std::size_t k = 0; k < task.light_count; ++k) {
     const V w = scratch.weight(k);
-    const M keep = hn::Gt(w, zero);
+    const M keep = hn::Gt(w, hn::Zero(d));
     const Vector3 l = scratch.direction(k);
     for (std::size_t p = 0; p < 3; ++p)
       add_scaled(plane_rhs[p], hn::IfThenElseZero(keep, hn::Mul(w, scratch.plane(k, p))), l);
@@ -147,7 +146,7 @@ HWY_NOINLINE std::int64_t count_rejected(D d, const RowTask& task, std::size_t x
 template <std::size_t kPlanes>
 HWY_INLINE bool solve_weighted_columns(D d, RowTask& task, const Scratch& scratch, std::size_t x) {
   const Columns columns(d, task, x);
-  const M none = hn::Lt(hn::Set(d, 1.0f), hn::Zero(d)), all = hn::Not(none);
+  const M none = no_lane(d), all = hn::Not(none);
   Sums<kPlanes> sums(d);
   Status status = hn::Zero(hn::RebindToSigned<D>());
   Selection selection = {none, none};
@@ -172,8 +171,8 @@ HWY_INLINE bool solve_weighted_columns(D d, RowTask& task, const Scratch& scratc
   }
   mark(status, shadowed, kShadowed);
   if constexpr (kPlanes == 3) weigh_planes(d, task, scratch, sums.plane_rhs);
-  return finish<kPlanes, InUse::kWeighted>(d, task, scratch, x, e.fit, sums.plane_rhs, e.count, scale,
-                                           e.again, status);
+  return finish<kPlanes, InUse::kWeighted>(d, task, scratch, x,
+                                           {e.fit, sums.plane_rhs, e.count, scale, e.again, status});
 }
 
 template <std::size_t kPlanes>
