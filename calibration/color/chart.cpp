@@ -7,6 +7,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/mcc.hpp>
+#include <optional>
 #include <utility>
 
 #include "core/statistics.h"
@@ -119,6 +120,74 @@ PatchReading reading_of(const PatchSums& s) {
   return reading;
 }
 
+Error bad_corners(std::string why) {
+  return {ErrorKind::kUsage, "these are not the corners of a chart", "corners", std::move(why),
+          "name the outer corners of the first and the last patch of the first row and of the last and the "
+          "first of the last, in pixels"};
+}
+
+// Why these are not the corners of a chart with `fewest` patches along its shorter side.
+std::optional<std::string> fault_of(const ChartCorners& corners, Size picture, int fewest) {
+  double turn = 0;  // of the outline: the sign of every corner must agree
+  for (std::size_t i = 0; i < 4; ++i) {
+    const auto &a = corners[i], &b = corners[(i + 1) % 4], &c = corners[(i + 2) % 4];
+    const bool inside = a[0] >= 0 && a[1] >= 0 && a[0] <= picture.width - 1 && a[1] <= picture.height - 1;
+    if (!inside) {  // nor is NaN
+      return fmt::format("({:.0f}, {:.0f}) is outside the picture of {} x {} pixels", a[0], a[1],
+                         picture.width, picture.height);
+    }
+    const double cross = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
+    if (cross == 0 || (i > 0 && (cross > 0) != (turn > 0))) return "their outline is not convex";
+    turn = cross;
+    if (std::hypot(b[0] - a[0], b[1] - a[1]) < 4.0 * fewest) return "they are too close";
+  }
+  return std::nullopt;
+}
+
+// Chart units: a patch and its gap are 1; the outer edges of the patches are the outline.
+cv::Matx33d chart_from_picture(const ChartCorners& corners, int columns, int rows) {
+  const float w = static_cast<float>(columns - 1 + kPatchShare);
+  const float h = static_cast<float>(rows - 1 + kPatchShare);
+  return homography({point(corners[0]), point(corners[1]), point(corners[2]), point(corners[3])},
+                    {cv::Point2f(0, 0), cv::Point2f(w, 0), cv::Point2f(w, h), cv::Point2f(0, h)});
+}
+
+void add_pixel(const Rgb& pixel, std::size_t quarter, PatchSums& s) {
+  if (!std::all_of(pixel.begin(), pixel.end(), [](double p) { return std::isfinite(p); })) {
+    ++s.full;
+    return;
+  }
+  ++s.count;
+  for (std::size_t c = 0; c < 3; ++c) {
+    s.sum[c] += pixel[c];
+    s.square[c] += pixel[c] * pixel[c];
+  }
+  s.quarter[quarter] += pixel[1];
+  ++s.quarter_count[quarter];
+}
+
+// Over the middles of the patches.
+std::vector<PatchSums> sums_of_patches(const Image<float>& rgb, const ChartCorners& corners,
+                                       const cv::Matx33d& to_chart, int columns, int rows) {
+  std::vector<PatchSums> sums(static_cast<std::size_t>(columns * rows));
+  const auto [x0, x1] = std::minmax({corners[0][0], corners[1][0], corners[2][0], corners[3][0]});
+  const auto [y0, y1] = std::minmax({corners[0][1], corners[1][1], corners[2][1], corners[3][1]});
+  for (int y = static_cast<int>(y0); y <= static_cast<int>(y1); ++y) {
+    for (int x = static_cast<int>(x0); x <= static_cast<int>(x1); ++x) {
+      const auto [u, v] = mapped(to_chart, x, y);
+      const int column = static_cast<int>(std::floor(u)), row = static_cast<int>(std::floor(v));
+      if (column < 0 || row < 0 || column >= columns || row >= rows) continue;
+      const double du = (u - column) / kPatchShare - 0.5, dv = (v - row) / kPatchShare - 0.5;
+      if (std::max(std::abs(du), std::abs(dv)) > kMiddle / 2) continue;
+      const auto quarter = static_cast<std::size_t>((du > 0 ? 1 : 0) + (dv > 0 ? 2 : 0));
+      add_pixel({static_cast<double>(rgb(x, y, 0)), static_cast<double>(rgb(x, y, 1)),
+                 static_cast<double>(rgb(x, y, 2))},
+                quarter, sums[static_cast<std::size_t>(row * columns + column)]);
+    }
+  }
+  return sums;
+}
+
 // Correlation over patches and channels of the logarithm of light, each channel about its mean.
 double correlation(std::span<const PatchReading> patches, const ChartReference& reference,
                    int (*place)(int column, int row)) {
@@ -177,71 +246,16 @@ Result<ChartCorners> find_chart(const Image<float>& rgb) {
 
 Result<std::vector<PatchReading>> read_patches(const Image<float>& rgb, const ChartCorners& corners,
                                                int columns, int rows) {
-  const auto refuse = [](std::string why) {
-    return Error{ErrorKind::kUsage, "these are not the corners of a chart", "corners", std::move(why),
-                 "name the outer corners of the first and the last patch of the first row and of the last "
-                 "and the first of the last, in pixels"};
-  };
-  double turn = 0;  // of the outline: the sign of every corner must agree
-  for (std::size_t i = 0; i < 4; ++i) {
-    const auto &a = corners[i], &b = corners[(i + 1) % 4], &c = corners[(i + 2) % 4];
-    const bool inside = a[0] >= 0 && a[1] >= 0 && a[0] <= rgb.width() - 1 && a[1] <= rgb.height() - 1;
-    if (!inside) {  // nor is NaN
-      return refuse(fmt::format("({:.0f}, {:.0f}) is outside the picture of {} x {} pixels", a[0], a[1],
-                                rgb.width(), rgb.height()));
-    }
-    const double cross = (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]);
-    if (cross == 0 || (i > 0 && (cross > 0) != (turn > 0))) return refuse("their outline is not convex");
-    turn = cross;
-    if (std::hypot(b[0] - a[0], b[1] - a[1]) < 4.0 * std::min(columns, rows))
-      return refuse("they are too close");
-  }
-  // Chart units: a patch and its gap are 1; the outer edges of the patches are the outline.
-  const float w = static_cast<float>(columns - 1 + kPatchShare);
-  const float h = static_cast<float>(rows - 1 + kPatchShare);
-  const cv::Matx33d to_chart =
-      homography({point(corners[0]), point(corners[1]), point(corners[2]), point(corners[3])},
-                 {cv::Point2f(0, 0), cv::Point2f(w, 0), cv::Point2f(w, h), cv::Point2f(0, h)});
-  const cv::Matx33d to_picture = to_chart.inv();
-
-  std::vector<PatchSums> sums(static_cast<std::size_t>(columns * rows));
-  double x0 = rgb.width(), x1 = 0, y0 = rgb.height(), y1 = 0;
-  for (const auto& c : corners) {
-    x0 = std::min(x0, c[0]);
-    x1 = std::max(x1, c[0]);
-    y0 = std::min(y0, c[1]);
-    y1 = std::max(y1, c[1]);
-  }
-  for (int y = static_cast<int>(y0); y <= static_cast<int>(y1); ++y) {
-    for (int x = static_cast<int>(x0); x <= static_cast<int>(x1); ++x) {
-      const auto [u, v] = mapped(to_chart, x, y);
-      const int column = static_cast<int>(std::floor(u)), row = static_cast<int>(std::floor(v));
-      if (column < 0 || row < 0 || column >= columns || row >= rows) continue;
-      const double du = (u - column) / kPatchShare - 0.5, dv = (v - row) / kPatchShare - 0.5;
-      if (std::max(std::abs(du), std::abs(dv)) > kMiddle / 2) continue;
-      PatchSums& s = sums[static_cast<std::size_t>(row * columns + column)];
-      const Rgb pixel = {static_cast<double>(rgb(x, y, 0)), static_cast<double>(rgb(x, y, 1)),
-                         static_cast<double>(rgb(x, y, 2))};
-      if (!std::all_of(pixel.begin(), pixel.end(), [](double p) { return std::isfinite(p); })) {
-        ++s.full;
-        continue;
-      }
-      ++s.count;
-      for (std::size_t c = 0; c < 3; ++c) {
-        s.sum[c] += pixel[c];
-        s.square[c] += pixel[c] * pixel[c];
-      }
-      const auto quarter = static_cast<std::size_t>((du > 0 ? 1 : 0) + (dv > 0 ? 2 : 0));
-      s.quarter[quarter] += pixel[1];
-      ++s.quarter_count[quarter];
-    }
-  }
+  if (const auto fault = fault_of(corners, rgb.size(), std::min(columns, rows))) return bad_corners(*fault);
+  const cv::Matx33d to_chart = chart_from_picture(corners, columns, rows), to_picture = to_chart.inv();
+  const std::vector<PatchSums> sums = sums_of_patches(rgb, corners, to_chart, columns, rows);
   std::vector<PatchReading> patches(sums.size());
   for (int i = 0; i < columns * rows; ++i) {
     const auto at = static_cast<std::size_t>(i);
     patches[at] = reading_of(sums[at]);
     patches[at].centre_px = mapped(to_picture, i % columns + kPatchShare / 2, i / columns + kPatchShare / 2);
-    if (sums[at].count + sums[at].full < 4) return refuse(fmt::format("patch {} is under 4 pixels", i + 1));
+    if (sums[at].count + sums[at].full < 4)
+      return bad_corners(fmt::format("patch {} is under 4 pixels", i + 1));
   }
   return patches;
 }

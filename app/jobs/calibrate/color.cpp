@@ -307,6 +307,63 @@ void note_scale(ColorMeasurement& color, const Calibration* from) {
                             "check the reflectance of the white sheet that the lights were calibrated with"});
 }
 
+struct ReadCharts {
+  std::vector<FlatChart> charts;
+  ShotMetadata camera;  // of the last photograph
+};
+
+Result<ReadCharts> read_charts(const CalibrateColorOptions& options, const Calibration* from,
+                               ChartReader& reader, ColorMeasurement& color, const JobContext& context) {
+  const Result<std::vector<fs::path>> files = list_chart_pictures(options.input);
+  if (!files) return files.error();
+  ReadCharts read;
+  for (const fs::path& file : *files) {
+    if (context.stop.stop_requested()) return interrupted();
+    const Result<ChartPicture> picture = read_chart_picture(file, from, options.from, context);
+    if (!picture) return picture.error();
+    if (const auto why = from ? subject_difference(from->subject, picture->camera) : std::nullopt) {
+      return bad_chart(*picture, "frame does not belong to this calibration", *why,
+                       "photograph the chart with the rig's own camera and aperture");
+    }
+    Result<FlatChart> chart = reader.read(*picture);
+    if (!chart) return std::move(chart).error();
+    if (picture->is_albedo) {
+      color.albedo_scale = chart->scale;
+      color.has_albedo = true;
+    } else {
+      read.camera = picture->camera;
+    }
+    color.slope_of_light = std::max(color.slope_of_light, chart->slope_of_light);
+    color.sources.push_back(file.string());
+    read.charts.push_back(*chart);
+    context.progress("read", static_cast<double>(read.charts.size()) / static_cast<double>(files->size()));
+  }
+  return read;
+}
+
+Result<void> fit_matrix(const FlatChart& chart, const calibration::ChartReference& reference,
+                        ColorMeasurement& color) {
+  color.samples = ChartReader::samples_of(chart, reference, color.patches);
+  Result<calibration::ColorFit> fit = calibration::fit_color(color.samples, ChartLight::kEven, true);
+  if (!fit) return std::move(fit).error();
+  for (ChartSample& sample : color.samples) {
+    for (double& v : sample.camera) v *= fit->scale;
+  }
+  color.fit = std::move(*fit);
+  color.transform = {color.fit.rec709_from_camera, color.fit.covariance, {}};
+  return {};
+}
+
+CalibrationSubject subject_of(const CalibrateColorOptions& options, const Calibration* from,
+                              const ShotMetadata& camera) {
+  CalibrationSubject subject =
+      from ? from->subject
+           : CalibrationSubject{rig_name(options.rig, options.input), camera.model, camera.serial,
+                                camera.f_number, AlbedoScale::kRelative};
+  subject.measured.clear();
+  return subject;
+}
+
 }  // namespace
 
 Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, const JobContext& context) {
@@ -320,55 +377,22 @@ Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, c
   const Calibration* before = from ? &*from : nullptr;
   const Result<ChartColors> colors = read_chart_colors(options.input);
   if (!colors) return colors.error();
-  const Result<std::vector<fs::path>> files = list_chart_pictures(options.input);
-  if (!files) return files.error();
 
   CalibrateOutcome outcome;
   ColorMeasurement color;
   color.reference = colors->name;
   ChartReader reader(options, colors->reference, color, outcome.warnings);
-  std::vector<FlatChart> charts;
-  ShotMetadata camera;
-  for (const fs::path& file : *files) {
-    if (context.stop.stop_requested()) return interrupted();
-    const Result<ChartPicture> picture = read_chart_picture(file, before, options.from, context);
-    if (!picture) return picture.error();
-    if (const auto why = from ? subject_difference(from->subject, picture->camera) : std::nullopt) {
-      return bad_chart(*picture, "frame does not belong to this calibration", *why,
-                       "photograph the chart with the rig's own camera and aperture");
-    }
-    Result<FlatChart> chart = reader.read(*picture);
-    if (!chart) return std::move(chart).error();
-    if (picture->is_albedo) {
-      color.albedo_scale = chart->scale;
-      color.has_albedo = true;
-    } else {
-      camera = picture->camera;
-    }
-    color.slope_of_light = std::max(color.slope_of_light, chart->slope_of_light);
-    color.sources.push_back(file.string());
-    charts.push_back(*chart);
-    context.progress("read", static_cast<double>(charts.size()) / static_cast<double>(files->size()));
-  }
-
-  color.samples = ChartReader::samples_of(mean_of_charts(charts), colors->reference, color.patches);
-  Result<calibration::ColorFit> fit = calibration::fit_color(color.samples, ChartLight::kEven, true);
-  if (!fit) return std::move(fit).error();
-  for (ChartSample& sample : color.samples) {
-    for (double& v : sample.camera) v *= fit->scale;
-  }
-  color.fit = std::move(*fit);
-  color.transform = {color.fit.rec709_from_camera, color.fit.covariance, {}};
+  const Result<ReadCharts> read = read_charts(options, before, reader, color, context);
+  if (!read) return read.error();
+  if (Result<void> ok = fit_matrix(mean_of_charts(read->charts), colors->reference, color); !ok)
+    return std::move(ok).error();
   if (options.curve) {
     if (Result<void> ok = fit_curve(color); !ok) return std::move(ok).error();
   }
   note_scale(color, before);
 
   Calibration change;
-  change.subject = from ? from->subject
-                        : CalibrationSubject{rig_name(options.rig, options.input), camera.model,
-                                             camera.serial, camera.f_number, AlbedoScale::kRelative};
-  change.subject.measured.clear();
+  change.subject = subject_of(options, before, read->camera);
   change.color = color.transform;
   outcome.report = report_of(color, change.subject.rig);
   Result<Calibration> written =

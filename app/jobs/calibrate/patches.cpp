@@ -8,6 +8,7 @@
 
 #include "app/jobs/calibrate/check_result.h"
 #include "app/jobs/calibrate/rig_evidence.h"
+#include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/session_input.h"
 #include "calibration/checks/light_at.h"
 #include "calibration/lights/paper_model.h"
@@ -87,6 +88,50 @@ Reflectance reflectance_of(const calibration::LitPlace& place, const NearLights&
   return out;
 }
 
+struct MeasuredPatch {
+  std::array<double, 3> reflectance_rgb = {};
+  double spread = 0;  ///< of the reflectance from LED to LED, as a share of it
+};
+
+Result<std::vector<MeasuredPatch>> measure_patches(const Calibration& calibration,
+                                                   const pipeline::Photographs& photographs,
+                                                   const fs::path& file, double paper_delta) {
+  const auto evidence = rig_evidence(calibration, photographs);
+  if (!evidence) return evidence.error();
+  std::vector<MeasuredPatch> measured;
+  for (std::size_t p = 0; p < calibration.patches.size(); ++p) {
+    const Reflectance r = reflectance_of(evidence->places[p], std::get<NearLights>(*calibration.lights),
+                                         photographs.size, paper_delta);
+    const std::string where = fmt::format("{}: patch {}", file.string(), p + 1);
+    if (r.leds < 3) return bad_patches(where, "fewer than three LEDs light it, or it is saturated");
+    const double spread = (r.most - r.least) / r.rgb[1];
+    if (spread > kMostSpread) {
+      return bad_patches(where,
+                         fmt::format("its reflectance differs by {:.1f} percent from LED to LED: it is not "
+                                     "white, flat and in the light",
+                                     100 * spread));
+    }
+    measured.push_back({r.rgb, spread});
+  }
+  return measured;
+}
+
+CalibrationReport report_of(const std::vector<MeasuredPatch>& measured, const std::string& rig) {
+  CalibrationReport out;
+  out.part = "patches";
+  out.title = fmt::format("White patches of {}", rig);
+  out.summary = fmt::format("{} patches measured", measured.size());
+  report::Table table = {{"patch", "red", "green", "blue", "spread, percent"}, {}};
+  for (const auto& [rgb, spread] : measured) {
+    table.rows.push_back({std::to_string(table.rows.size() + 1), fmt::format("{:.4f}", rgb[0]),
+                          fmt::format("{:.4f}", rgb[1]), fmt::format("{:.4f}", rgb[2]),
+                          fmt::format("{:.2f}", 100 * spread)});
+    out.numbers["patches"].push_back({{"reflectance_rgb", Json(rgb)}, {"spread", spread}});
+  }
+  out.sections.push_back({"Patches", {}, std::move(table), {}});
+  return out;
+}
+
 }  // namespace
 
 std::string patches_left_out(const std::string& part) {
@@ -114,36 +159,16 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
   if (!loaded) return loaded.error();
 
   const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
-  const double delta = options.paper_delta.value_or(reported_delta(from));
   Calibration change = plan->calibration;
   change.patches = std::move(*patches);
-  const auto evidence = rig_evidence(change, loaded->photographs);
-  if (!evidence) return evidence.error();
+  const Result<std::vector<MeasuredPatch>> measured =
+      measure_patches(change, loaded->photographs, file, options.paper_delta.value_or(reported_delta(from)));
+  if (!measured) return measured.error();
+  for (std::size_t p = 0; p < measured->size(); ++p)
+    change.patches[p].reflectance_rgb = (*measured)[p].reflectance_rgb;
+
   CalibrateOutcome outcome;
-  report::Section section = {
-      "Patches", {}, report::Table{{"patch", "red", "green", "blue", "spread, percent"}, {}}, {}};
-  for (std::size_t p = 0; p < change.patches.size(); ++p) {
-    const Reflectance r =
-        reflectance_of(evidence->places[p], std::get<NearLights>(*change.lights), plan->size, delta);
-    const std::string where = fmt::format("{}: patch {}", file.string(), p + 1);
-    if (r.leds < 3) return bad_patches(where, "fewer than three LEDs light it, or it is saturated");
-    const double spread = (r.most - r.least) / r.rgb[1];
-    if (spread > kMostSpread) {
-      return bad_patches(where,
-                         fmt::format("its reflectance differs by {:.1f} percent from LED to LED: it is not "
-                                     "white, flat and in the light",
-                                     100 * spread));
-    }
-    change.patches[p].reflectance_rgb = r.rgb;
-    section.table->rows.push_back({std::to_string(p + 1), fmt::format("{:.4f}", r.rgb[0]),
-                                   fmt::format("{:.4f}", r.rgb[1]), fmt::format("{:.4f}", r.rgb[2]),
-                                   fmt::format("{:.2f}", 100 * spread)});
-    outcome.report.numbers["patches"].push_back({{"reflectance_rgb", Json(r.rgb)}, {"spread", spread}});
-  }
-  outcome.report.part = "patches";
-  outcome.report.title = fmt::format("White patches of {}", change.subject.rig);
-  outcome.report.summary = fmt::format("{} patches measured", change.patches.size());
-  outcome.report.sections.push_back(std::move(section));
+  outcome.report = report_of(*measured, change.subject.rig);
   Calibration parts;
   parts.subject = change.subject;
   parts.subject.measured.clear();
