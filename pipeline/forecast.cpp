@@ -171,16 +171,15 @@ Result<Forecast> forecast_errors(const Photographs& photographs, int threads) {
   const LightField& field = *photographs.field;
 
   ErrorForecast of_standard = scatter_of(standard, field);
-  of_standard.quality = "standard";
   of_standard.indirect_deg = kIndirect_deg * share + kIndirectSquared_deg * squared(share);
   of_standard.calibration_deg = *calibration;
 
   ErrorForecast of_fast = of_standard;
-  of_fast.quality = "fast";
+  of_fast.level = solver::Level::kFast;
   of_fast.shortcut_deg = turn_deg(solve(solver::fast_method()), standard);
 
   ErrorForecast of_preview = of_standard;
-  of_preview.quality = "preview";
+  of_preview.level = solver::Level::kPreview;
   std::vector<SampleMaps> cells = solve(solver::least_squares_method());
   of_preview.noise_deg = scatter_of(cells, field).noise_deg / 2;  // of four photosites
   average_cells(cells);
@@ -189,11 +188,11 @@ Result<Forecast> forecast_errors(const Photographs& photographs, int threads) {
 
   // What the start that most readings agree on turns was misfit.
   ErrorForecast of_robust = of_standard;
-  of_robust.quality = "robust";
+  of_robust.level = solver::Level::kRobust;
   of_robust.misfit_deg = without(of_standard.misfit_deg, turn_deg(robust, standard));
 
   ErrorForecast of_reference = of_robust;
-  of_reference.quality = "reference";
+  of_reference.level = solver::Level::kReference;
   if (gates->interreflection()) of_reference.indirect_deg = kIndirect_deg * share;
   return Forecast{*gates, {of_preview, of_fast, of_standard, of_robust, of_reference}};
 }

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/result.h"
 #include "pipeline/photographs.h"
 #include "solver/gates/gates.h"
+#include "solver/method.h"
 
 namespace weft::pipeline {
 
 /// The error that a level is expected to leave in the normals of a cloth, mean angles in degrees. There is no
 /// truth to hold it against, so each part is what the sample tiles (solver/sample_tiles.h) let one see of it.
 struct ErrorForecast {
-  std::string quality;
+  solver::Level level = solver::Level::kStandard;
   double noise_deg = 0;        ///< the solver's own sigma; of a preview, for the mean of four photosites
   double misfit_deg = 0;       ///< what the residuals have beyond noise: highlights, sheen, cast shadows
   double indirect_deg = 0;     ///< light from the cloth itself: it fits the model and shows in no residual
@@ -26,7 +26,7 @@ struct ErrorForecast {
 
 struct Forecast {
   solver::Gates gates;
-  std::vector<ErrorForecast> levels;  ///< in the order of solver::method_names()
+  std::vector<ErrorForecast> levels;  ///< in the order of solver::Level
 };
 
 /// Forecasts the levels from what `least-squares`, `fast`, `standard` and `robust` make of the sample tiles.

@@ -9,19 +9,21 @@ std::span<const MethodName> method_names() {
   static constexpr std::array kNames = {
       MethodName{.name = "preview",
                  .help = "half size, no masks",
-                 .is_quality = true,
+                 .level = Level::kPreview,
                  .make = &least_squares_method,
                  .extent = Extent::kHalfSize},
-      MethodName{
-          .name = "fast", .help = "least squares without shadows", .is_quality = true, .make = &fast_method},
+      MethodName{.name = "fast",
+                 .help = "least squares without shadows",
+                 .level = Level::kFast,
+                 .make = &fast_method},
       MethodName{.name = "standard",
                  .help = "weighted, misfits rejected; default",
-                 .is_quality = true,
+                 .level = Level::kStandard,
                  .make = &standard_method},
-      MethodName{.name = "robust", .help = "for highlights", .is_quality = true, .make = &robust_method},
+      MethodName{.name = "robust", .help = "for highlights", .level = Level::kRobust, .make = &robust_method},
       MethodName{.name = "reference",
                  .help = "in double, shadows and light between yarns taken out where the cloth needs it",
-                 .is_quality = true,
+                 .level = Level::kReference,
                  .make = &exact_method,
                  .extent = Extent::kWholeFrame},
       MethodName{.name = "seed",
@@ -37,6 +39,10 @@ std::span<const MethodName> method_names() {
       MethodName{.name = "sbl", .help = "sparse errors", .make = &sparse_method},
       MethodName{.name = "lts", .help = "least trimmed squares", .make = &trimmed_method}};
   return kNames;
+}
+
+const MethodName& method_of(Level level) {
+  return *std::ranges::find(method_names(), level, &MethodName::level);
 }
 
 const MethodName* find_method(std::string_view name) {

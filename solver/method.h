@@ -97,6 +97,10 @@ std::unique_ptr<Method> trimmed_method();
 /// both in double by reweighting, of every valid reading.
 std::unique_ptr<Method> least_absolute_method();
 std::unique_ptr<Method> sparse_method();
+
+/// The levels of --quality, from the cheapest to the dearest.
+enum class Level { kPreview, kFast, kStandard, kRobust, kReference };
+
 /// What a level solves: tiles as they come, tiles of a picture of half the size, or tiles of a whole frame
 /// several times, with what the frame says of the light over it (pipeline/reference.h).
 enum class Extent { kTiles, kHalfSize, kWholeFrame };
@@ -104,16 +108,17 @@ enum class Extent { kTiles, kHalfSize, kWholeFrame };
 /// Levels and methods by the name a person gives them.
 struct MethodName {
   const char* name = "";
-  const char* help = "";    ///< in a few words
-  bool is_quality = false;  ///< a level of --quality; else a method of --method
+  const char* help = "";            ///< in a few words
+  std::optional<Level> level = {};  ///< none: a method of --method
   /// Takes the clipped values of developed photographs at their word, so that it can be held against
   /// published figures. Saturated raw counts enter no method.
   bool keeps_clipped = false;
   std::unique_ptr<Method> (*make)() = nullptr;
   Extent extent = Extent::kTiles;
 };
-/// The levels from the cheapest to the dearest, then the methods.
+/// The levels in their order, then the methods.
 std::span<const MethodName> method_names();
+const MethodName& method_of(Level level);
 /// Null where there is none of that name.
 const MethodName* find_method(std::string_view name);
 

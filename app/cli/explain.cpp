@@ -25,7 +25,7 @@ void print_words(const Ladder& ladder, std::optional<std::size_t> chosen) {
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
     const LevelPrice& level = ladder.levels[i];
     const LevelSeconds& s = level.seconds;
-    print(fmt::format("{:<10} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}", level.error.quality,
+    print(fmt::format("{:<10} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}", level.name(),
                       level.error.total_deg(), s.total(), s.read, s.prepare, s.solve, s.write,
                       chosen == i ? "<- chosen" : ""));
     if (!level.note.empty()) print("           " + level.note);
@@ -58,10 +58,10 @@ Result<std::string> chosen_level(const SolveArguments& arguments, const CommonAr
   if (!chosen) return chosen.error();
   const LevelPrice& level = ladder->levels[*chosen];
   if (!common.quiet) {
-    note(fmt::format("chose {}: {:.3g} degrees off and {:.3g} s expected", level.error.quality,
+    note(fmt::format("chose {}: {:.3g} degrees off and {:.3g} s expected", level.name(),
                      level.error.total_deg(), level.seconds.total()));
   }
-  return level.error.quality;
+  return level.name();
 }
 
 Result<int> run_ladder(const SolveArguments& arguments, const CommonArguments& common) {

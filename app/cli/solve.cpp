@@ -110,7 +110,7 @@ Option add_method(Options& options, const std::string& option, const std::string
                   std::string& method) {
   std::vector<std::string> names, words;
   for (const solver::MethodName& each : solver::method_names()) {
-    if (each.is_quality != quality) continue;
+    if (each.level.has_value() != quality) continue;
     names.emplace_back(each.name);
     words.push_back(fmt::format("{} ({})", each.name, each.help));
   }

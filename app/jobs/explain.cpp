@@ -133,7 +133,7 @@ void add_notes(Ladder& ladder) {
     if (!cheaper.empty()) {
       const LevelPrice& best = ladder.levels[best_of(ladder, cheaper)];
       if (level.error.total_deg() > (1 - kWorthwhileGain) * best.error.total_deg())
-        level.note = "nothing to gain over " + best.error.quality;
+        level.note = "nothing to gain over " + best.name();
     }
     cheaper.push_back(i);
   }
@@ -157,10 +157,10 @@ Result<Ladder> price(const Photographs& photographs, const Photographs& part, do
   const auto cuts = static_cast<double>(photographs.size.pixels()) / static_cast<double>(part.size.pixels());
   Ladder ladder = {forecast->gates, {}};
   for (const ErrorForecast& error : forecast->levels) {
-    const solver::MethodName* level = solver::find_method(error.quality);
-    const Result<double> solve = solve_seconds(part, *level, ladder.gates, options.tile, silent);
+    const solver::MethodName& level = solver::method_of(error.level);
+    const Result<double> solve = solve_seconds(part, level, ladder.gates, options.tile, silent);
     if (!solve) return solve.error();
-    const bool half = level->extent == solver::Extent::kHalfSize;
+    const bool half = level.extent == solver::Extent::kHalfSize;
     ladder.levels.push_back({error,
                              {read, half ? 0 : prepare, *solve * cuts,
                               write->files_seconds + write->maps_seconds * cuts / (half ? 4 : 1)},
@@ -194,11 +194,11 @@ Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
     return a.error.total_deg() < b.error.total_deg();
   });
   const std::string quick =
-      fmt::format("the quickest, {}, takes {:.3g} s at {:.3g} degrees", quickest->error.quality,
+      fmt::format("the quickest, {}, takes {:.3g} s at {:.3g} degrees", quickest->name(),
                   quickest->seconds.total(), quickest->error.total_deg());
   const std::string close =
-      fmt::format("the closest, {}, is expected to be off by {:.3g} degrees in {:.3g} s",
-                  closest->error.quality, closest->error.total_deg(), closest->seconds.total());
+      fmt::format("the closest, {}, is expected to be off by {:.3g} degrees in {:.3g} s", closest->name(),
+                  closest->error.total_deg(), closest->seconds.total());
   std::string where, why, remedy;
   if (wish.within_seconds) {
     where = fmt::format("--within {:g}", *wish.within_seconds);
@@ -253,7 +253,7 @@ Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen) {
   for (const LevelPrice& level : ladder.levels) {
     const ErrorForecast& error = level.error;
     const LevelSeconds& seconds = level.seconds;
-    levels.push_back({{"quality", error.quality},
+    levels.push_back({{"quality", level.name()},
                       {"predicted_deg", error.total_deg()},
                       {"parts_deg",
                        {{"noise", error.noise_deg},
@@ -271,7 +271,7 @@ Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen) {
   }
   return {{"levels", std::move(levels)},
           {"gates", json_of(ladder.gates)},
-          {"chosen", chosen ? Json(ladder.levels[*chosen].error.quality) : Json()}};
+          {"chosen", chosen ? Json(ladder.levels[*chosen].name()) : Json()}};
 }
 
 }  // namespace weft::app

@@ -35,11 +35,13 @@ struct LevelPrice {
   pipeline::ErrorForecast error;
   LevelSeconds seconds;
   std::string note;  ///< what there is to say of it: nothing to gain, gates; or empty
+
+  std::string name() const { return solver::method_of(error.level).name; }
 };
 
 struct Ladder {
   solver::Gates gates;
-  std::vector<LevelPrice> levels;  ///< in the order of solver::method_names()
+  std::vector<LevelPrice> levels;  ///< in the order of solver::Level
 };
 
 /// A dearer level that is not this share better than a cheaper one has nothing to gain.

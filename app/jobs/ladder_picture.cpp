@@ -88,7 +88,7 @@ Result<std::vector<LadderStep>> draw_ladder(const SessionOptions& input, const S
   std::vector<LadderStep> steps;
   std::vector<report::Panel> panels;
   for (const solver::MethodName& level : solver::method_names()) {
-    if (!level.is_quality) continue;
+    if (!level.level) continue;
     SolveOptions solve = options;
     solve.method = level.name;
     solve.output.clear();

@@ -247,7 +247,7 @@ class Run {
     }
     seconds_.pictures = watch_.lap();
     // What leaves no shadow out takes much for a highlight.
-    const bool tells_highlights = method_.is_quality && !is_half();
+    const bool tells_highlights = method_.level && !is_half();
     const double specular =
         static_cast<double>(facts_.status.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
     facts_.warnings = verdicts_of(summary_, tells_highlights ? specular : 0);

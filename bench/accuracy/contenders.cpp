@@ -134,7 +134,7 @@ std::vector<Contender> contenders() {
     }
     std::shared_ptr<const solver::Method> method = name.make();
     const int planes = method->wants_rgb() ? 3 : 1;
-    all.push_back({name.name, as_product(std::move(method)), name.is_quality, false, planes});
+    all.push_back({name.name, as_product(std::move(method)), name.level.has_value(), false, planes});
   }
   all.push_back({"oracle", solve_oracle, false, true, 1});
   return all;

@@ -65,7 +65,7 @@ Result<Rows> explain_table(const ExplainOptions& options) {
       means.resize(forecast->levels.size());
       for (std::size_t i = 0; i < means.size(); ++i) {
         const pipeline::ErrorForecast& level = forecast->levels[i];
-        const Result<double> real = true_deg(patch, solver::method_names()[i], threads);
+        const Result<double> real = true_deg(patch, solver::method_of(level.level), threads);
         if (!real) return real.error();
         means[i].predicted += share * level.total_deg();
         means[i].real += share * *real;

@@ -46,9 +46,7 @@ Forecast forecast_of(double sigma, double error = 0) {
 TEST(Forecast, NamesTheLevelsInTheirOrder) {
   const Forecast forecast = forecast_of(1e-3);
   for (std::size_t i = 0; i < forecast.levels.size(); ++i) {
-    const solver::MethodName& name = solver::method_names()[i];
-    EXPECT_EQ(forecast.levels[i].quality, name.name);
-    EXPECT_TRUE(name.is_quality);
+    EXPECT_EQ(forecast.levels[i].level, solver::method_names()[i].level) << i;
   }
 }
 
@@ -56,11 +54,12 @@ TEST(Forecast, OfNoiseIsWhatTheLightsMakeOfIt) {
   const Forecast forecast = forecast_of(1e-3);
   const double expected_deg = kMeanOfRms * degrees(angle_a_reading() * 1e-3 / kAlbedo);
   for (const ErrorForecast& level : forecast.levels) {
-    const double pixels = level.quality == "preview" ? 4 : 1;
-    EXPECT_NEAR(level.noise_deg * std::sqrt(pixels), expected_deg, 1e-3 * expected_deg) << level.quality;
-    EXPECT_LT(level.misfit_deg, 0.02 * expected_deg) << level.quality;
-    EXPECT_LT(level.indirect_deg, 1e-3) << level.quality;
-    EXPECT_LT(level.shortcut_deg, 0.02 * expected_deg) << level.quality;
+    const double pixels = level.level == solver::Level::kPreview ? 4 : 1;
+    const char* name = solver::method_of(level.level).name;
+    EXPECT_NEAR(level.noise_deg * std::sqrt(pixels), expected_deg, 1e-3 * expected_deg) << name;
+    EXPECT_LT(level.misfit_deg, 0.02 * expected_deg) << name;
+    EXPECT_LT(level.indirect_deg, 1e-3) << name;
+    EXPECT_LT(level.shortcut_deg, 0.02 * expected_deg) << name;
     EXPECT_EQ(level.calibration_deg, 0) << "nothing is known of it";
   }
 }
@@ -77,7 +76,7 @@ TEST(Forecast, OfAMisfitIsTheAngleOfItsResidualWithoutTheNoise) {
 }
 
 TEST(Forecast, TotalIsTheRootOfTheSquares) {
-  const ErrorForecast parts = {.quality = "fast",
+  const ErrorForecast parts = {.level = solver::Level::kFast,
                                .noise_deg = 1,
                                .misfit_deg = 2,
                                .indirect_deg = 4,

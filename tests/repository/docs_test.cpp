@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "solver/method.h"
 #include "tests/repository/source_tree.h"
 
 namespace weft::repository {
@@ -111,6 +112,25 @@ TEST(Docs, EveryLinkLeadsToAFileAndAHeading) {
     }
   }
   EXPECT_GT(followed, 100U);
+}
+
+TEST(Docs, TheReadmeHasEveryLevelInItsOrder) {
+  std::vector<std::string> levels, rows;
+  for (const solver::MethodName& each : solver::method_names()) {
+    if (each.level) levels.emplace_back(each.name);
+  }
+  static const std::regex row(R"(\| `(\w+)` \|.*)");
+  bool is_table = false;
+  for (const TextFile& page : pages()) {
+    if (page.path != "README.md") continue;
+    for (const auto& [number, line] : prose_of(page.text)) {
+      std::cmatch cells;
+      if (line.starts_with("| `--quality`")) is_table = true;
+      if (!line.starts_with("|")) is_table = false;
+      if (is_table && std::regex_match(line.begin(), line.end(), cells, row)) rows.push_back(cells[1]);
+    }
+  }
+  EXPECT_EQ(rows, levels);
 }
 
 TEST(Docs, TheIndexHasEveryPage) {

@@ -122,7 +122,7 @@ app::Ladder ladder_of(const std::vector<std::pair<double, double>>& levels) {
   app::Ladder ladder;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     app::LevelPrice level;
-    level.error.quality = kLevels[i];
+    level.error.level = *solver::method_names()[i].level;
     level.error.noise_deg = levels[i].first;
     level.seconds.solve = levels[i].second;
     ladder.levels.push_back(level);
@@ -132,7 +132,7 @@ app::Ladder ladder_of(const std::vector<std::pair<double, double>>& levels) {
 
 std::string chosen(const app::Ladder& ladder, const app::LevelWish& wish) {
   const Result<std::size_t> choice = app::choose_level(ladder, wish);
-  return choice ? ladder.levels[*choice].error.quality : choice.error().message();
+  return choice ? ladder.levels[*choice].name() : choice.error().message();
 }
 
 TEST(ChooseLevel, TakesTheCheapestThatMeetsAllWishes) {
