@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/command_line.h"
 
+#include <glog/logging.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
@@ -84,6 +86,7 @@ int finish(const Run& run, const CommonArguments& common) {
 }  // namespace
 
 int run_program(const Program& program, int argc, char** argv) {
+  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres writes a line for every step of a fit that failed
   const auto is_said = [&](const Verb& verb) { return argc > 1 && verb.name == argv[1]; };
   const auto said = std::ranges::find_if(program.verbs, is_said);
   if (said != program.verbs.end() && !said->program.empty())

@@ -3,7 +3,6 @@
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
-#include <glog/logging.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -265,7 +264,6 @@ Result<void> PerPixel::refit(std::size_t led, const LightMap& map, const std::ar
   ceres::Solver::Options how;
   how.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   how.logging_type = ceres::SILENT;
-  FLAGS_minloglevel = google::GLOG_FATAL;
   ceres::Solver::Summary summary;
   ceres::Solve(how, &problem, &summary);
   if (!summary.IsSolutionUsable()) {

@@ -3,7 +3,6 @@
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
-#include <glog/logging.h>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
@@ -213,7 +212,7 @@ void Fit::add_priors() {
     add(prior(kNone, options_.quadratic_sigma), {led.quadratic.data()});
   }
   // What all LEDs have in common belongs to the shared gain, and its mean to the fluxes. No reading
-  // contradicts these gauges; were they tighter they would slow Levenberg and Marquardt's steps.
+  // contradicts these gauges; were they tighter they would slow the steps of Levenberg-Marquardt.
   constexpr double kGauge = 1e-3;
   const auto n = static_cast<Eigen::Index>(p_.leds.size() * kOwnGains);
   RowMatrix sum(static_cast<Eigen::Index>(kOwnGains), n);
@@ -248,7 +247,6 @@ void Fit::add_priors() {
 // loss to the end. LEDs get gains of their own only where the readings ask for them, as those take away most
 // of what tells how far a LED is.
 void Fit::solve() {
-  FLAGS_minloglevel = google::GLOG_FATAL;  // failed steps are not worth a line on standard error
   const auto hold_gains = [&](bool hold) {
     for (LedParameters& led : p_.leds) {
       double* gains = led.quadratic.data();
@@ -272,7 +270,7 @@ void Fit::minimise() {
   ceres::Solver::Options how;
   how.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   how.max_num_iterations = options_.most_iterations;
-  how.initial_trust_region_radius = 1e8;  // valleys are long and nearly straight: begin with Gauss and Newton
+  how.initial_trust_region_radius = 1e8;  // valleys are long and nearly straight: begin with Gauss-Newton
   how.function_tolerance = 1e-6;
   how.parameter_tolerance = 1e-9;
   how.num_threads = options_.threads;
