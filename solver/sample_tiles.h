@@ -11,8 +11,8 @@ inline constexpr int kSampleTile = 128;
 
 /// Sixteen tiles of 128 x 128 pixels, four by four over the frame at places that depend on its size alone:
 /// what a cloth is measured on before it is worked on. They start on whole row groups and on whole cells of
-/// the colour filter, and lie inside the frame; where it is too small for sixteen they are fewer and
-/// smaller, never overlapping.
+/// the colour filter, lie inside the frame and never overlap. A frame too small for sixteen has fewer and
+/// smaller ones.
 std::vector<Rect> sample_tiles(Size size);
 
 }  // namespace weft::solver

@@ -152,7 +152,7 @@ double squares_of(const std::vector<const BoardView*>& views, const Bundle& bund
   return sum;
 }
 
-// A share of the step of Gauss and Newton.
+// The bundle after a share of a Gauss-Newton step.
 Bundle stepped(Bundle bundle, const std::vector<std::string>& names, const Vector& camera,
                const std::vector<Vector6>& boards, double share) {
   for (std::size_t p = 0; p < names.size(); ++p)

@@ -18,8 +18,8 @@ struct Bundle {
   std::vector<double> board_z_mm;
 };
 
-/// Brings fx, fy, cx, cy, the named distortion terms and all poses to the least sum of squares by Gauss and
-/// Newton's steps, halved where they would raise it. False where they lead nowhere.
+/// Brings fx, fy, cx, cy, the named distortion terms and all poses to the least sum of squares, by
+/// Gauss-Newton. Steps are halved where they would raise the sum. False where they lead nowhere.
 bool fit(const std::vector<const BoardView*>& views, const std::vector<std::string>& distortion,
          Bundle& bundle);
 

@@ -60,9 +60,9 @@ struct LensFit {
 };
 
 /// Fits focal lengths, principal point, distortion and all poses by least squares over all corners (Zhang,
-/// PAMI 2000): cv::calibrateCamera finds them, Gauss and Newton's steps on the same sum end at its minimum to
-/// 1e-9 and give the covariance sigma^2 (J^T J)^-1, which OpenCV does not. k1 and k2 always; p1, p2 and k3
-/// where they lower the error of held-out boards (five folds) by over two standard errors.
+/// PAMI 2000). cv::calibrateCamera finds them. Gauss-Newton on the same sum then goes to its minimum, to
+/// 1e-9, and gives the covariance sigma^2 (J^T J)^-1, which OpenCV does not. k1 and k2 are always fitted; p1,
+/// p2 and k3 where they lower the error of held-out boards (five folds) by over two standard errors.
 ///
 /// The rig frame follows from the board on the table: origin at its centre, x along its rows, z = 0 at
 /// thickness_mm below what is printed.

@@ -42,7 +42,7 @@ std::vector<Corner> corners_of(std::span<const TagSighting> sightings, std::span
   return corners;
 }
 
-// Least squares over the reprojection of corners, by Gauss and Newton, from a pose nearby.
+// Least squares over the reprojection of corners, by Gauss-Newton, from a pose nearby.
 class PoseFit {
  public:
   PoseFit(const CameraModel& camera, const std::vector<Corner>& corners, Pose start)

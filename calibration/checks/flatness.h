@@ -38,7 +38,7 @@ inline constexpr double kTiltedFrom_deg = 5;
 /// What the calibration makes of a sheet.
 struct SheetCheck {
   std::vector<double> error_deg;  ///< row by row; NaN beside the sheet
-  double rms_deg = 0;             ///< of them
+  double rms_deg = 0;             ///< of error_deg
   double pattern_rms_deg = 0;     ///< about the mean normal of the squares
   double worst_deg = 0;
   int squares = 0;  ///< with a normal: three LEDs at least

@@ -83,7 +83,7 @@ class Judge {
   Judge(const RigModel& model, const RigState& order)
       : model_(model), measured_(model.measured()), factor_(model.covariance(order)) {}
 
-  /// The best numbers for the changes, from `start`, by Gauss and Newton with halved steps.
+  /// The best numbers for the changes, from `start`, by Gauss-Newton with halved steps.
   Story fitted(std::vector<RigChange> changes, const Eigen::VectorXd& start) const {
     Story story;
     story.changes = std::move(changes);

@@ -22,11 +22,13 @@ namespace weft::calibration {
 // one is taken as a fact and the next one looked for, until none explains enough. What nothing explains
 // counts as noise.
 //
-// What can be told apart by what: tags tell where the camera is to the table, and nothing of LEDs. That the
-// camera moved or the table did is told by patches on the table, which LEDs light differently after the one
-// and alike after the other. One patch tells how bright each LED is, several in different places tell a LED
-// that moved from one that faded. A sheet is seen through the camera: without tags on the table it tells that
-// the camera moved to the LEDs, never that the table did.
+// What each piece of evidence can tell:
+// - tags: where the camera is to the table, and nothing of LEDs;
+// - patches on the table: whether the camera moved or the table. LEDs light them differently after the table
+//   moved, and alike after the camera did;
+// - one patch: how bright each LED is. Several in different places tell a LED that moved from one that faded;
+// - a sheet, which is seen through the camera: without tags on the table, that the camera moved to the LEDs,
+//   never that the table did.
 
 /// A small white place that every LED lights.
 struct LitPlace {
@@ -35,7 +37,7 @@ struct LitPlace {
   bool on_table = true;       ///< a patch there; else of a sheet, whose place was measured through the camera
   double x_px = 0, y_px = 0;  ///< where it was read
   int surface = 0;            ///< places of one surface share what is unknown of its reflectance
-  double reflectance_sigma = 0;  ///< of that, relative
+  double reflectance_sigma = 0;  ///< of the surface's reflectance, relative
   std::array<double, 3> reflectance_rgb = {1, 1, 1};
   std::vector<std::array<double, 3>> reading_rgb;  ///< by LED; what is not a positive number is not used
 };

@@ -18,7 +18,7 @@ struct RigState {
   Vec3 table_turn, table_shift_mm;    ///< about the rig frame's origin
   std::vector<Vec3> led_shift_mm;
   std::vector<double> led_log_factor;
-  double log_factor = 0;   ///< of all LEDs
+  double log_factor = 0;   ///< of the brightness of all LEDs
   std::vector<int> order;  ///< order[k] is the LED, from 0, that lights when LED k is called
 };
 
@@ -43,8 +43,8 @@ class RigModel {
   Eigen::VectorXd measured() const;
   /// The same as a state has it; not finite where a tag is behind the camera or a place is not lit.
   Eigen::VectorXd predicted(const RigState& state) const;
-  /// Of what is measured: noise, what is unknown of surfaces and of the calibration, for LEDs that light in
-  /// the order of the state and stand where the calibration has them.
+  /// The covariance of measured(): noise, and what is unknown of surfaces and of the calibration. LEDs light
+  /// in the order of the state and stand where the calibration has them.
   Eigen::MatrixXd covariance(const RigState& state) const;
 
   CameraModel camera_after(const RigState& state) const;

@@ -44,10 +44,10 @@ struct ColorFit {
 /// where they do not determine a matrix.
 Result<ColorFit> fit_color(std::span<const ChartSample> samples, ChartLight light, bool leave_one_out);
 
-/// The share of light that each sample got over what the others got in its place, if their light is a plane
-/// over the chart. What is far off has no say in the fit (Geman and McClure's weights, from 12 units of
-/// CIEDE2000 down to 3, from an even and from a sloped start): a shadow is told from a lamp to one side, as
-/// long as most of the chart is out of it.
+/// The light of each sample over what the others would get in its place, if their light is a plane over the
+/// chart. Samples that are far off have no say in the fit: their weights are those of Geman and McClure, with
+/// a scale that falls from 12 to 3 units of CIEDE2000. It starts from even and from sloped light, and the
+/// better end counts. So a shadow is told from a lamp to one side, as long as most of the chart is out of it.
 Result<std::vector<double>> light_of_each(std::span<const ChartSample> samples);
 
 /// Affine, cubic, affine in xyY (seed 004, "Calibrating Albedo"), fitted one after the other by linear least

@@ -47,9 +47,9 @@ struct GreyChartFit {
 };
 
 /// Weighted least squares in the logs of the readings, once around the lights as given: the covariance is the
-/// Cramer-Rao bound. `full_reading` is of each LED what full scale reads in its photograph.
-/// Errors: kUsage for numbers that do not fit each other or are out of range; kBadData, naming it, for a LED
-/// that fewer than three patches show in some channel.
+/// Cramer-Rao bound. `full_reading[k]` is what full scale reads in the photograph of LED k.
+/// Errors: kUsage for numbers that do not fit each other or are out of range; kBadData, with its name, for a
+/// LED whose light fewer than three patches show in some channel.
 Result<GreyChartFit> fit_grey_chart(const CameraModel& camera, const NearLights& lights,
                                     std::span<const GreyPatch> patches, std::span<const double> full_reading,
                                     const GreyChartOptions& options = {});

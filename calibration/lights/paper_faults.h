@@ -35,9 +35,9 @@ struct PaperFault {
   std::vector<std::size_t> spots;   ///< indices
 };
 
-/// A spot is far out where it departs by this many times the median over all spots,
+/// A spot is far out where its departure is over kFaultFrom times the median over all spots, and over
+/// kFaultFromRelative.
 inline constexpr double kFaultFrom = 6;
-/// and by this much.
 inline constexpr double kFaultFromRelative = 0.007;
 /// Faults are cut out of the paper; with more than this share of its spots gone it is no white sheet.
 inline constexpr double kMostFaultyShare = 0.05;

@@ -13,16 +13,16 @@ namespace weft::calibration {
 
 /// A square printed on a sheet, such as a tag: no paper there.
 struct PrintedSquare {
-  double u_mm = 0, v_mm = 0;  ///< of its centre, from that of the sheet
+  double u_mm = 0, v_mm = 0;  ///< its centre, from the centre of the sheet
   double side_mm = 0;         ///< with its quiet zone
 };
 
-/// A flat sheet of white paper. Its frame: origin at its centre, u right, v up, towards the reader the
-/// normal.
+/// A flat sheet of white paper. Its frame: origin at its centre, u right, v up, the normal towards the
+/// reader.
 struct Sheet {
   double width_mm = 297;
   double height_mm = 210;
-  double margin_mm = 5;  ///< of its border, not used
+  double margin_mm = 5;  ///< width of the border that is not used
   std::vector<PrintedSquare> printed;
   /// Diffuse reflectance at normal incidence, where it was measured; else readings speak of the paper as 1.
   std::optional<std::array<double, 3>> reflectance_rgb;

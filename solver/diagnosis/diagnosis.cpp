@@ -343,7 +343,7 @@ double median_log_gain(const LightModel& model, const std::vector<Gain>& gains) 
 struct Candidate {
   std::size_t light = 0;
   double log_gain = 0;  // against the median light
-  double around = 0;    // the same of its neighbours
+  double around = 0;    // log_gain of its neighbours
   double range = 0;
 };
 

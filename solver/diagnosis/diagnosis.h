@@ -12,16 +12,16 @@ namespace weft::solver {
 /// What one light's photograph says when held against all the others.
 struct LightEvidence {
   double residual_rms = 0;     ///< of (r / e - l . b) / rho over the usable readings
-  double residual_median = 0;  ///< of its absolute value: highlights and shadows hardly count
-  double residual_mean = 0;    ///< the same, signed
+  double residual_median = 0;  ///< median absolute residual: highlights and shadows hardly count
+  double residual_mean = 0;    ///< mean of the signed residual
   double gain = 1;             ///< r / (e l . b) from a fit without this light: median over pixels
-  double gain_range = 0;       ///< of that, between four classes of how the cloth faces the light
-  double saturated = 0;        ///< share of its readings that are; so for the next three
-  double shadowed = 0;         ///< below the shadow mask, or marked
-  double missing = 0;
-  double outlier = 0;         ///< over five times the usual deviation
-  double gradient = 0;        ///< change of the residual over the frame, if it were a plane
-  double gradient_share = 0;  ///< share of the residual's variance that this plane explains
+  double gain_range = 0;       ///< of the gain, between four classes of how the cloth faces the light
+  double saturated = 0;        ///< share of its readings that are saturated
+  double shadowed = 0;         ///< share below the shadow mask, or marked
+  double missing = 0;          ///< share that is missing
+  double outlier = 0;          ///< share over five times the usual deviation
+  double gradient = 0;         ///< change of the residual over the frame, if it were a plane
+  double gradient_share = 0;   ///< share of the residual's variance that this plane explains
 };
 
 enum class FaultKind {
@@ -39,7 +39,7 @@ struct Fault {
   double value = 0;            ///< kDead: share of the expected light seen; kGain: factor
   double sigma = 0;            ///< kGain: standard deviation of `value`
   double residual_before = 0;  ///< median over pixels of the mean deviation of these lights, over the albedo
-  double residual_after = 0;   ///< the same with the fault corrected
+  double residual_after = 0;   ///< residual_before with the fault corrected
   double moved_deg = 0;        ///< how far correcting it turns normals of least squares: median over pixels
   double agreement = 0;        ///< share of the parts of the picture that agree: 0 to 1
 };
@@ -47,7 +47,7 @@ struct Fault {
 struct Diagnosis {
   std::size_t pixels = 0;  ///< that were bright and lit enough to be fitted
   double residual = 0;     ///< median over pixels of the mean deviation, over the albedo, as calibrated
-  double left = 0;         ///< the same with all faults corrected
+  double left = 0;         ///< `residual` with all faults corrected
   std::vector<LightEvidence> lights;
   std::vector<Fault> faults;
 };
@@ -66,8 +66,8 @@ struct Diagnosis {
 /// cloth: a factor exp(a + b l_z^2) is fitted along, so a ring of LEDs that fades as a whole is not named.
 ///
 /// Needs six lights at least; with fewer, and where no pixel is bright enough, nothing is named. What
-/// cannot be told from the readings alone is not named either: an exchange of two neighbours on a flat or
-/// glossy cloth. `threads` 0 is all the machine has; the result does not depend on them.
+/// cannot be told from the readings alone, such as an exchange of two neighbours on a flat or glossy cloth,
+/// is not named either. `threads` 0 is all the machine has; the result does not depend on them.
 Diagnosis diagnose(const Evidence& evidence, int threads = 0);
 
 }  // namespace weft::solver

@@ -19,8 +19,8 @@ struct SolvedSample {
   std::array<View<const float>, 3> normal;
   View<const float> albedo;  ///< of each photosite, or any one channel
   View<const std::uint16_t> status;
-  std::int64_t readings = 0;  ///< that could be used
-  std::int64_t shadowed = 0;  ///< of these, below kShadowShare of the bright ones of their pixel
+  std::int64_t readings = 0;  ///< usable readings
+  std::int64_t shadowed = 0;  ///< usable readings below kShadowShare of the bright ones of their pixel
 };
 
 /// A measured quantity and what follows from it.
@@ -39,8 +39,8 @@ struct GateLimits {
   double specular_share = 0.2;   ///< of the pixels: beyond, a Lambertian cloth cannot be assumed
 };
 
-/// What was measured against each of the GateLimits. Openness is that of the height of each tile by itself,
-/// by a horizon scan of 4 slices of 8 steps.
+/// What was measured, against each of the GateLimits. Openness comes from the height of each tile alone, by a
+/// horizon scan of 4 slices of 8 steps.
 struct Gates {
   Gate slope, shadowed, indirect, specular;
 

@@ -41,8 +41,8 @@ struct HeightOptions {
 struct Height {
   Image<float> height_mm;  ///< towards the camera; mean 0 over each island of connected pixels, 0 outside
   HeightMethod method = HeightMethod::kAutomatic;  ///< the one that ran
-  std::int64_t pixels = 0;                         ///< that had a normal and were inside the mask
-  std::int64_t clamped = 0;                        ///< of these, tilted further than steepest_deg
+  std::int64_t pixels = 0;                         ///< with a normal and inside the mask
+  std::int64_t clamped = 0;                        ///< of `pixels`, those tilted further than steepest_deg
   std::int64_t islands = 0;  ///< parts without a common edge: their heights are not related to each other
   int cycles = 0;            ///< kMultigrid: V-cycles done
   double residual = 0;       ///< kMultigrid: what they left of the right-hand side, relative

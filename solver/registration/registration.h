@@ -28,11 +28,13 @@ struct Registration {
 
 /// No shift beyond this is looked for.
 inline constexpr double kMostShift_px = 8;
-/// What nothing was learnt about has this sigma_px: a shift of so much is taken to be likely beforehand.
+/// The sigma_px of a shot about which nothing was learnt: shifts of this size are taken to be likely
+/// beforehand.
 inline constexpr double kUnknownShift_px = 4;
-/// What shadow, bounces and gloss add to sigma_px: they look like a shift, the same on all of a cloth and so
-/// in no scatter. The second a unit of the share of readings that are in shadow, set so that
-/// the deep weave (a fifth in shadow) is still when it is.
+/// Shadow, bounces and gloss look like a shift that is the same on all of a cloth, so no scatter shows it.
+/// They add kModelShift_px to sigma_px, and kModelShiftOfShadow_px times the share of readings that are in
+/// shadow. The latter is set so that a deep weave that lies still, a fifth of it in shadow, is found to lie
+/// still.
 inline constexpr double kModelShift_px = 0.02;
 inline constexpr double kModelShiftOfShadow_px = 0.7;
 
@@ -40,9 +42,9 @@ inline constexpr double kModelShiftOfShadow_px = 0.7;
 /// least-squares sense, each shot's green readings over strength with b . l_k of the b = rho n that explains
 /// all of them. Gauss-Newton on shifts with b eliminated at every point (variable projection; Golub and
 /// Pereyra 1973, with the Jacobian of Kaufman 1975), readings weighted by noise and Huber's function, those
-/// in attached shadow left out. Greens are smoothed before they are compared, gradients taken of what is
-/// smooth; what noise adds to their energy is subtracted, so that a cloth without features says so. The
-/// standard errors come from the scatter between 16 blocks of each tile.
+/// in attached shadow left out. Greens are smoothed before they are compared and before gradients are taken.
+/// What noise adds to the energy of the gradients is subtracted, so that a cloth without features says so.
+/// The standard errors come from the scatter between 16 blocks of each tile.
 ///
 /// Shifts are against the median of all shots, component by component: the cloth as it lay most of the time.
 /// Nothing can be told from three lights, nor from tiles under about 40 pixels.

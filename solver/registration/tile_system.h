@@ -23,8 +23,10 @@ struct TileSystem {
   std::vector<Eigen::VectorXd> block_scores;
   std::vector<Eigen::Matrix2d> cost;  ///< by shot: d . cost d = summed square angle, rad, of normals for d
   double points = 0;
-  double readings = 0, shadowed = 0;          ///< usable readings at points, and those left out as in shadow
-  double chi2 = 0, squares = 0, freedom = 0;  ///< summed squares of residuals, and their number less 3
+  double readings = 0, shadowed = 0;  ///< usable readings at points, and those left out as in shadow
+  double chi2 = 0;                    ///< summed squares of residuals over their expected variances
+  double squares = 0;                 ///< summed squares of residuals
+  double freedom = 0;                 ///< residuals less the three unknowns of each point
 };
 
 /// At the shots as seen through `shifts`.

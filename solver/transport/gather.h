@@ -28,7 +28,7 @@ inline constexpr int kMostRays = 4096;
 /// What the pixels of `area` send back: `count` numbers a pixel, side by side, row by row. One a light for a
 /// mosaic, one a light and channel for photographs in colour: x = reading / e, the reading over that of a
 /// white surface that faces the light (radiosity over irradiance, all shadows and bounces included).
-/// All must be finite: who fills them in replaces readings that cannot be used.
+/// All must be finite: the caller replaces readings that cannot be used.
 struct Radiosity {
   Rect area;  ///< holds all that is within reach of the tile (within_reach)
   int count = 0;
