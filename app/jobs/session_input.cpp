@@ -4,17 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 
 #include "app/jobs/linear_image.h"
 #include "app/jobs/session_conditions.h"
-#include "capture/raw/decode.h"
-#include "capture/raw/raw_info.h"
+#include "app/jobs/session_frames.h"
 #include "core/files.h"
 #include "core/parallel.h"
-#include "core/same_camera.h"
-#include "core/suits.h"
 
 namespace weft::app {
 namespace {
@@ -75,41 +71,6 @@ void choose_more(SessionPlan& plan) {
   }
 }
 
-// Looks at one frame without decoding it.
-Result<capture::RawInfo> look_at(const fs::path& file) {
-  if (!is_linear_image(file)) return capture::read_raw_info(file);
-  Result<ImageFileInfo> info = read_linear_image_info(file);
-  if (!info) return std::move(info).error();
-  return capture::RawInfo{info->size, {}, {}};
-}
-
-Result<void> check_alike(const SessionPlan& plan, const Shot& shot, const capture::RawInfo& info,
-                         const CfaPattern& cfa) {
-  const auto refuse = [&](std::string why) {
-    return Error{ErrorKind::kBadData, "frame does not belong to its session",
-                 plan.session.path_of(shot).string(), std::move(why),
-                 "copy the session again from the rig, or scan the cloth again"};
-  };
-  if (info.size != plan.size) {
-    return refuse(fmt::format("it has {} x {} pixels, {} has {} x {}", info.size.width, info.size.height,
-                              plan.lit.front().file, plan.size.width, plan.size.height));
-  }
-  if (info.cfa != cfa) return refuse("its colour filters are laid out differently from the first frame's");
-  // A file that records its exposure must agree with the journal: mixed-up frames are caught here.
-  const auto differs = [](double recorded, double journal) {
-    return recorded > 0 && !same_setting(recorded, journal);
-  };
-  if (differs(info.shot.exposure_us, shot.exposure_us)) {
-    return refuse(fmt::format("it was exposed for {:.6g} us, session.json says {:.6g} us",
-                              info.shot.exposure_us, shot.exposure_us));
-  }
-  if (differs(info.shot.iso, shot.iso)) {
-    return refuse(
-        fmt::format("it was taken at ISO {:.6g}, session.json says {:.6g}", info.shot.iso, shot.iso));
-  }
-  return {};
-}
-
 // Bytes that decoding and solving will hold at once: the frames, one more for every thread that decodes, and
 // bands.
 std::uint64_t memory_needed(const SessionPlan& plan, std::size_t frames, int threads) {
@@ -119,16 +80,6 @@ std::uint64_t memory_needed(const SessionPlan& plan, std::size_t frames, int thr
   const std::uint64_t bytes_a_pixel = plan.raw ? 2 : 12;
   return pixels * bytes_a_pixel * (frames + decoding) +
          static_cast<std::uint64_t>(plan.size.width) * 128 * 150 + (std::uint64_t{64} << 20);
-}
-
-Result<void> check_digest(const fs::path& file, const Shot& shot) {
-  if (shot.sha256.empty()) return {};
-  const Result<std::string> digest = sha256_of_file(file);
-  if (!digest) return digest.error();
-  if (*digest == shot.sha256) return {};
-  return Error{ErrorKind::kBadData, "frame is not the one that was captured", file.string(),
-               "its SHA-256 differs from session.json: it was changed, truncated or swapped",
-               "copy the session again from the rig's disk"};
 }
 
 // Frames of one body have one set of levels.
@@ -152,16 +103,12 @@ std::vector<Frame> take(std::vector<Frame>& frames, std::size_t count) {
   return taken;
 }
 
-// Reads each of the shots, after a look at its digest.
 template <typename Frame>
-Result<std::vector<Frame>> read_frames(const SessionPlan& plan, const std::vector<Shot>& shots,
-                                       const JobContext& context,
-                                       const std::function<Result<Frame>(const fs::path&)>& read) {
+Result<std::vector<Frame>> read_frames(const std::vector<Shot>& shots, const JobContext& context,
+                                       const std::function<Result<Frame>(const Shot&)>& read) {
   std::vector<Frame> frames(shots.size());
   const auto read_one = [&](std::size_t i) -> Result<void> {
-    const fs::path file = plan.session.path_of(shots[i]);
-    if (Result<void> same = check_digest(file, shots[i]); !same) return same;
-    Result<Frame> frame = read(file);
+    Result<Frame> frame = read(shots[i]);
     if (!frame) return std::move(frame).error();
     frames[i] = std::move(*frame);
     return {};
@@ -174,8 +121,7 @@ Result<std::vector<Frame>> read_frames(const SessionPlan& plan, const std::vecto
 Result<pipeline::Frames> read_mosaics(const SessionPlan& plan, const std::vector<Shot>& shots,
                                       const JobContext& context, MoreFrames& more) {
   Result<std::vector<RawFrame>> frames = read_frames<RawFrame>(
-      plan, shots, context,
-      [&](const fs::path& file) { return capture::decode_raw(file, {.size = plan.size}); });
+      shots, context, [&](const Shot& shot) { return read_raw_shot(plan.session, shot, plan.size); });
   if (!frames) return std::move(frames).error();
   for (std::size_t i = 1; i < frames->size(); ++i) {
     if (Result<void> ok = check_levels((*frames)[i], frames->front(), plan.session.path_of(shots[i])); !ok)
@@ -194,10 +140,8 @@ Result<pipeline::Frames> read_mosaics(const SessionPlan& plan, const std::vector
 
 Result<pipeline::Frames> read_developed(const SessionPlan& plan, const std::vector<Shot>& shots,
                                         const JobContext& context, MoreFrames& more) {
-  Result<std::vector<Image<float>>> frames =
-      read_frames<Image<float>>(plan, shots, context, [](const fs::path& file) {
-        return read_linear_image(file, Transfer::kLinear, Clipped::kMark, NotNumbers::kMark);
-      });
+  Result<std::vector<Image<float>>> frames = read_frames<Image<float>>(
+      shots, context, [&](const Shot& shot) { return read_developed_shot(plan.session, shot); });
   if (!frames) return std::move(frames).error();
   std::vector<Image<float>> lit = take(*frames, plan.lit.size());
   const std::vector<Image<float>> dark = take(*frames, plan.dark ? 1 : 0);
@@ -244,13 +188,9 @@ std::vector<Shot> SessionPlan::frames() const {
 
 Result<SessionPlan> plan_session(const SessionOptions& options) {
   SessionPlan plan;
-  Result<Session> session = read_session(options.folder);
+  Result<Session> session = read_complete_session(options.folder);
   if (!session) return std::move(session).error();
   plan.session = std::move(*session);
-  if (plan.session.state != "complete") {
-    return Error{ErrorKind::kBadData, "session is not complete", options.folder.string(),
-                 fmt::format("its state is \"{}\"", plan.session.state), "finish the scan with weft scan"};
-  }
   const bool own = options.calibration.empty();
   Result<Calibration> calibration =
       read_calibration(own ? plan.session.calibration_folder() : options.calibration);
@@ -268,37 +208,17 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   if (!lit) return std::move(lit).error();
   plan.lit = std::move(*lit);
   if (const Shot* dark = plan.session.dark()) plan.dark = *dark;
-  plan.raw = !is_linear_image(plan.session.path_of(plan.lit.front()));
 
-  CfaPattern cfa;
-  const auto look = [&](const Shot& shot) -> Result<void> {
-    const fs::path file = plan.session.path_of(shot);
-    if (is_linear_image(file) == plan.raw) {
-      return Error{ErrorKind::kBadData, "session mixes raw and developed frames", file.string(),
-                   "all frames must be of one kind", "export them all the same way"};
-    }
-    const Result<capture::RawInfo> info = look_at(file);
-    if (!info) return info.error();
-    if (plan.size == Size()) {
-      plan.size = info->size;
-      cfa = info->cfa;
-      if (Result<void> ok = suits(plan.calibration, plan.session, info->shot); !ok) return ok;
-    }
-    return check_alike(plan, shot, *info, cfa);
-  };
-  if (Result<void> ok = look(plan.lit.front()); !ok) return std::move(ok).error();
+  FrameHeaders headers(
+      plan.session, plan.calibration,
+      "name the calibration of this rig with --calibration, or calibrate the rig as it is now");
+  if (Result<void> ok = headers.look_at(plan.lit.front()); !ok) return std::move(ok).error();
+  plan.raw = headers.is_raw();
+  plan.size = headers.size();
   choose_more(plan);
   for (const Shot& shot : plan.frames()) {
-    if (Result<void> ok = look(shot); !ok) return std::move(ok).error();
+    if (Result<void> ok = headers.look_at(shot); !ok) return std::move(ok).error();
   }
-  if (plan.calibration.camera->size != plan.size) {
-    return Error{
-        ErrorKind::kBadData, "calibration does not suit the session", options.folder.string(),
-        fmt::format("its camera has {} x {} pixels, the frames {} x {}", plan.calibration.camera->size.width,
-                    plan.calibration.camera->size.height, plan.size.width, plan.size.height),
-        "name the calibration of this camera with --calibration"};
-  }
-
   plan.description = description_of(plan);
   return plan;
 }

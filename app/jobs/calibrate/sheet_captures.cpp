@@ -10,13 +10,11 @@
 #include <set>
 
 #include "app/jobs/linear_image.h"
-#include "capture/raw/decode.h"
-#include "capture/raw/raw_info.h"
+#include "app/jobs/session_frames.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/radiometry.h"
 #include "core/session.h"
-#include "core/suits.h"
 
 namespace weft::app {
 namespace {
@@ -118,60 +116,33 @@ class SessionReader {
 
 // Everything that can be told before a pixel is decoded.
 Result<void> SessionReader::look() {
-  Result<Session> session = read_session(folder_);
+  Result<Session> session = read_complete_session(folder_);
   if (!session) return std::move(session).error();
   session_ = std::move(*session);
-  if (session_.state != "complete") {
-    return bad_capture(folder_, "session is not complete", fmt::format("its state is \"{}\"", session_.state),
-                       "finish the scan with weft scan, or take the session out of the folder");
-  }
   for (const Shot* shot : session_.lit()) lit_.push_back(*shot);
   if (lit_.empty())
     return bad_capture(folder_, "session has no lit shot", "", "take the session out of the folder");
-  raw_ = !is_linear_image(session_.path_of(lit_.front()));
+  FrameHeaders headers(session_, options_.calibration,
+                       "name the calibration of this rig with --from, or take the session out of the folder");
   for (const Shot& shot : session_.shots) {
-    const fs::path file = session_.path_of(shot);
     if (shot.role != ShotRole::kLit && shot.role != ShotRole::kDark) continue;
-    if (is_linear_image(file) == raw_)
-      return bad_capture(file, "session mixes raw and developed frames", "all frames must be of one kind",
-                         "export them all the same way");
-    capture::RawInfo info;
-    if (raw_) {
-      const Result<capture::RawInfo> read = capture::read_raw_info(file);
-      if (!read) return read.error();
-      info = *read;
-    } else {
-      const Result<ImageFileInfo> read = read_linear_image_info(file);
-      if (!read) return read.error();
-      info.size = read->size;
-    }
-    if (Result<void> ok = suits(options_.calibration, session_, info.shot); !ok) {
-      Error error = std::move(ok).error();
-      error.where = file.string();
-      error.remedy = "name the calibration of this rig with --from, or take the session out of the folder";
-      return error;
-    }
-    if (info.size != size()) {
-      return bad_capture(file, "frame does not suit the calibration",
-                         fmt::format("it has {} x {} pixels, the calibrated camera {} x {}", info.size.width,
-                                     info.size.height, size().width, size().height),
-                         "calibrate the camera with frames of this size");
-    }
+    if (Result<void> ok = headers.look_at(shot); !ok) return ok;
   }
+  raw_ = headers.is_raw();
   return {};
 }
 
 Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<BlockGrid>& leds) {
   std::optional<RawFrame> dark;
   if (const Shot* shot = session_.dark()) {
-    Result<RawFrame> frame = capture::decode_raw(session_.path_of(*shot), {.size = size()});
+    Result<RawFrame> frame = read_raw_shot(session_, *shot, size());
     if (!frame) return std::move(frame).error();
     dark = std::move(*frame);
   }
   SumPicture sum(size());
   const auto read_frame = [&](std::size_t i) -> Result<void> {
     const Shot& shot = lit_[i];
-    Result<RawFrame> frame = capture::decode_raw(session_.path_of(shot), {.size = size()});
+    Result<RawFrame> frame = read_raw_shot(session_, shot, size());
     if (!frame) return std::move(frame).error();
     const Radiometry radiometry(*frame, dark ? &*dark : nullptr, *options_.calibration.response,
                                 {shot.exposure_us, shot.iso});
@@ -194,18 +165,15 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<BlockGrid>& 
 }
 
 Result<Image<std::uint8_t>> SessionReader::read_developed(std::vector<BlockGrid>& leds) {
-  const auto read = [&](const Shot& shot) {
-    return read_linear_image(session_.path_of(shot), Transfer::kLinear, Clipped::kMark, NotNumbers::kMark);
-  };
   Image<float> dark;
   if (const Shot* shot = session_.dark()) {
-    Result<Image<float>> image = read(*shot);
+    Result<Image<float>> image = read_developed_shot(session_, *shot);
     if (!image) return std::move(image).error();
     dark = std::move(*image);
   }
   Image<float> sum(size(), 3);
   for (const Shot& shot : lit_) {
-    Result<Image<float>> image = read(shot);
+    Result<Image<float>> image = read_developed_shot(session_, shot);
     if (!image) return std::move(image).error();
     if (!dark.empty()) subtract(*image, dark);
     scale(*image, 1 / seconds(shot));
