@@ -4,20 +4,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
 #include <new>
-#include <numeric>
 #include <string_view>
 #include <utility>
 
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
-#include "core/raw_frame.h"
 #include "core/session.h"
 #include "simulator/build_passes.h"
 #include "simulator/camera/dng_writer.h"
+#include "simulator/frame_parts.h"
 #include "simulator/map_files.h"
 #include "simulator/plan.h"
 
@@ -29,8 +27,6 @@ using std::chrono::steady_clock;
 
 constexpr int kBandRows = 128;      // of frames and truth, in memory at a time
 constexpr int kTallBandRows = 256;  // where tiles have a halo, which costs less the larger they are
-constexpr int kFarthestPixel = 1000 * 1000;
-constexpr int kTruthPlanes = 7;  // normal, albedo, height
 
 /// Adds the time it lives to a sum.
 class Stopwatch {
@@ -45,46 +41,8 @@ class Stopwatch {
   steady_clock::time_point start_;
 };
 
-void copy_counts(const Tile& tile, int y0, View<std::uint16_t> counts) {
-  const auto row_length = static_cast<std::size_t>(tile.rect.width());
-  const std::uint16_t* row = tile.counts.data();
-  for (int y = tile.rect.y0; y < tile.rect.y1; ++y, row += row_length) {
-    std::copy_n(row, row_length, counts.row(y - y0) + tile.rect.x0);
-  }
-}
-
-constexpr std::uint64_t kMegabyte = 1000000;
-
-Error no_memory(const std::string& why) {
-  return {ErrorKind::kTryAgain, "not enough memory", "simulation", why,
-          "end other programs or simulate a smaller picture"};
-}
-
-Result<void> check_memory(std::uint64_t bytes) {
-  const std::uint64_t free = available_memory_bytes();
-  if (free == 0 || bytes <= free) return {};  // 0: the system does not say
-  return no_memory(fmt::format("{} MB are needed, {} MB are free", bytes / kMegabyte, free / kMegabyte));
-}
-
 Error interrupted() {
   return {ErrorKind::kInterrupted, "interrupted", "", "stopped on request", ""};
-}
-
-/// What a raw file says beside its counts.
-RawFrame frame_head(const Plan& plan, double exposure_us) {
-  RawFrame frame;
-  const Sensor& sensor = plan.rig.sensor;
-  const DefectSettings defects = defects_of(plan.scene);
-  for (std::size_t y = 0; y < 2; ++y) {
-    for (std::size_t x = 0; x < 2; ++x) {
-      frame.black[y][x] = static_cast<float>(sensor.black + defects.cell_counts[y][x]);
-    }
-  }
-  frame.white = static_cast<float>(sensor.white);
-  const CameraSettings& camera = plan.scene.camera;
-  frame.shot = {sensor.make, sensor.model,    "virtual",      exposure_us,
-                camera.iso,  camera.f_number, kFocalLength_mm};
-  return frame;
 }
 
 /// One shot of a session.
@@ -109,27 +67,6 @@ std::vector<Exposure> exposures_of(const Plan& plan) {
   // Developed frames have no black level.
   if (plan.scene.frames == FrameFormat::kDng) all.push_back({0, 0, ShotRole::kDark, exposure_us});
   return all;
-}
-
-DngTags tags_of(const Scene& scene) {
-  DngTags tags;
-  for (std::size_t c = 0; c < 3; ++c) {
-    tags.as_shot_neutral[c] = scene.lights.white_balance[c] / scene.lights.white_balance[1];
-  }
-  return tags;
-}
-
-Result<void> check_leds(const std::vector<int>& lit, int leds) {
-  for (std::size_t i = 0; i < lit.size(); ++i) {
-    const bool is_there = lit[i] > 0 && lit[i] <= leds;
-    if (is_there && std::find(lit.begin(), lit.begin() + static_cast<std::ptrdiff_t>(i), lit[i]) ==
-                        lit.begin() + static_cast<std::ptrdiff_t>(i))
-      continue;
-    return Error{ErrorKind::kUsage, is_there ? "a LED is named twice" : "the scene has no such LED",
-                 fmt::format("LED {}", lit[i]),
-                 fmt::format("LEDs are numbered from 1 to {}; 0 is the dark shot", leds), "choose another"};
-  }
-  return {};
 }
 
 class SessionWriter {
@@ -464,109 +401,6 @@ Result<void> simulate_truth(const Scene& scene, const fs::path& session, const S
   Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
   if (!surface) return surface.error();
   return SessionWriter(scene, *plan, std::move(*surface), {}, {}, options).write_truth_of(session);
-} catch (const std::bad_alloc&) {
-  return no_memory("the system refused some");
-}
-
-Result<void> simulate_frame(const Scene& scene, int led, const fs::path& file,
-                            const SimulateOptions& options) {
-  const std::vector<int> leds = led == 0 ? std::vector<int>() : std::vector<int>{led};
-  return simulate_photograph(scene, {leds, {}}, file, options);
-}
-
-Result<void> simulate_photograph(const Scene& scene, const PhotographSettings& photograph,
-                                 const fs::path& file, const SimulateOptions& options) try {
-  const Result<Plan> plan = plan_of(scene);
-  if (!plan) return plan.error();
-  if (plan->scene.frames == FrameFormat::kExr) {
-    return Error{ErrorKind::kUsage, "one frame alone is a raw file", "frames", "the scene's frames are EXR",
-                 "simulate the whole session, or set frames = \"dng\""};
-  }
-  if (Result<void> ok = check_leds(photograph.leds, static_cast<int>(plan->rig.leds.leds.size())); !ok)
-    return ok;
-  SceneRig rig = plan->rig;
-  const double exposure_us = photograph.exposure_us.value_or(rig.exposure_us);
-  if (exposure_us != rig.exposure_us)
-    rig.exposure_us = exposure_us * (1 + scene.camera.retakes.shutter_error);
-  Result<PassList> passes = build_passes(plan->scene, rig, Output::kCounts);
-  if (!passes) return passes.error();
-  passes->lit_together = photograph.leds;
-  passes->takes_before = options.takes_before;
-  const int shot = photograph.leds.empty() ? 0 : photograph.leds.front();
-  RawFrame frame = frame_head(*plan, exposure_us);
-  const Size size = rig.camera.size;
-  if (Result<void> ok = check_memory(2 * sizeof(std::uint16_t) * static_cast<std::uint64_t>(size.pixels()));
-      !ok) {
-    return ok;
-  }
-  frame.counts = Image<std::uint16_t>(size);
-  PassRunner runner(std::move(*passes), options.tiles);
-  Result<void> ran = runner.run(
-      {0, 0, size.width, size.height}, {&shot, 1}, options.stop, [](const Tile&) {},
-      [&](const Tile& tile) { copy_counts(tile, 0, frame.counts.plane()); });
-  if (!ran) return ran;
-  return write_dng(file, frame, tags_of(plan->scene));
-} catch (const std::bad_alloc&) {
-  return no_memory("the system refused some");
-}
-
-Result<Rendering> render_readings(const Scene& scene, Rect area, const TileOptions& tiles) try {
-  const Result<Plan> plan = plan_of(scene);
-  if (!plan) return plan.error();
-  const auto inside = [](int from, int to) {
-    return from >= -kFarthestPixel && to <= kFarthestPixel && from < to;
-  };
-  if (!inside(area.x0, area.x1) || !inside(area.y0, area.y1)) {
-    return Error{ErrorKind::kUsage, "area cannot be rendered",
-                 fmt::format("columns {} to {}, rows {} to {}", area.x0, area.x1, area.y0, area.y1),
-                 fmt::format("it must hold a pixel and end within {} pixels of the origin", kFarthestPixel),
-                 "choose another area"};
-  }
-  Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
-  Result<PassList> frames = build_passes(plan->scene, plan->rig, Output::kRgb);
-  if (!surface) return surface.error();
-  if (!frames) return frames.error();
-  std::vector<int> leds(plan->rig.leds.leds.size());
-  std::iota(leds.begin(), leds.end(), 1);
-  const std::uint64_t planes = 3 * leds.size() + kTruthPlanes;
-  if (Result<void> ok = check_memory(static_cast<std::uint64_t>(area.pixels()) * planes * sizeof(double));
-      !ok) {
-    return ok.error();
-  }
-  const Size size = {area.width(), area.height()};
-  Rendering out = {Image<double>(size, 3 * static_cast<int>(leds.size())), Image<double>(size, 3),
-                   Image<double>(size, 3), Image<double>(size)};
-  const auto put = [&](const Tile& tile, View<double> plane, const auto& value_of) {
-    for_each_pixel(tile.rect,
-                   [&](std::size_t i, int x, int y) { plane(x - area.x0, y - area.y0) = value_of(i); });
-  };
-  const Result<void> truth =
-      PassRunner(std::move(*surface), tiles)
-          .run(area, {}, {},
-               [&](const Tile& tile) {
-                 put(tile, out.normal.plane(0), [&](std::size_t i) { return tile.surface[i].normal.x; });
-                 put(tile, out.normal.plane(1), [&](std::size_t i) { return tile.surface[i].normal.y; });
-                 put(tile, out.normal.plane(2), [&](std::size_t i) { return tile.surface[i].normal.z; });
-                 put(tile, out.height_mm.plane(), [&](std::size_t i) { return tile.surface[i].height_mm; });
-                 for (std::size_t c = 0; c < 3; ++c) {
-                   put(tile, out.albedo.plane(static_cast<int>(c)),
-                       [&](std::size_t i) { return tile.albedo[i][c]; });
-                 }
-               },
-               {});
-  if (!truth) return truth.error();
-  const double exposure = plan->rig.exposure(scene.camera.iso);
-  const Result<void> ran = PassRunner(std::move(*frames), tiles)
-                               .run(
-                                   area, leds, {}, [](const Tile&) {},
-                                   [&](const Tile& tile) {
-                                     for (std::size_t c = 0; c < 3; ++c) {
-                                       put(tile, out.readings.plane(3 * (tile.led - 1) + static_cast<int>(c)),
-                                           [&](std::size_t i) { return tile.samples[3 * i + c] / exposure; });
-                                     }
-                                   });
-  if (!ran) return ran.error();
-  return out;
 } catch (const std::bad_alloc&) {
   return no_memory("the system refused some");
 }
