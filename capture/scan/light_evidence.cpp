@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/statistics.h"
 
@@ -19,9 +20,8 @@ constexpr double kDarkLevel = 0.1;           // of the brightness that other LED
 constexpr double kDimLevel = 0.35;           // gave too little
 constexpr double kDimWarns = 0.6;            // is only spoken of: glossy cloth may look so
 constexpr double kSuspiciousMisfit = 0.002;  // below it the plan is believed without trying other stories
-constexpr std::size_t kStoryStep =
-    5;  // patches from one that is looked at to the next: 48 columns have no factor 5
-constexpr double kMostFull = 0.5;        // of a frame's patches, for it to be held against the others
+constexpr std::size_t kStoryStep = 5;        // every fifth patch is looked at: 48 columns have no factor 5
+constexpr double kMostFull = 0.5;            // of a frame's patches, for it to be held against the others
 constexpr double kFarBetter = 0.6;       // of the plan's misfit, at most, for another story to be believed
 constexpr double kBetterBy = 0.002;      // and by this at least
 constexpr double kDriftWarns = 0.01;     // of a repeat's brightness
@@ -60,11 +60,91 @@ std::optional<Ratio> ratio_of(const std::vector<double>& light, const std::vecto
   return Ratio{middle, median(std::move(ratios))};
 }
 
-std::vector<Vec3> together(const std::vector<Vec3>& a, const std::vector<Vec3>& b, double times) {
-  std::vector<Vec3> sum;
-  sum.reserve(a.size());
-  for (std::size_t i = 0; i < a.size(); ++i) sum.push_back(a[i] + times * b[i]);
-  return sum;
+/// What shines on a frame: a LED, and `times` as much of more light.
+struct FrameLight {
+  int led = 0;
+  const std::vector<Vec3>* more = nullptr;  ///< by patch; none: the LED alone
+  double times = 0;
+  bool operator==(const FrameLight&) const = default;
+};
+
+using FrameLights = std::vector<FrameLight>;
+using Readings = std::vector<const std::vector<double>*>;  ///< by frame
+
+/// What may have happened in the place of the plan.
+struct Story {
+  Finding finding = Finding::kAgrees;
+  std::string sentence;
+  FrameLights lights;
+};
+
+const std::vector<Vec3>& light_of(int led, const PatchLights& model) {
+  return model.leds[static_cast<std::size_t>(led - 1)];
+}
+
+double misfit_in(const FrameLights& lights, const Readings& readings, const PatchLights& model) {
+  std::vector<std::vector<Vec3>> sums;
+  sums.reserve(lights.size());
+  std::vector<const std::vector<Vec3>*> incident;
+  for (const FrameLight& light : lights) {
+    const std::vector<Vec3>& led = light_of(light.led, model);
+    incident.push_back(&led);
+    if (light.more == nullptr) continue;
+    sums.push_back(led);
+    for (std::size_t i = 0; i < led.size(); ++i) sums.back()[i] = led[i] + light.times * (*light.more)[i];
+    incident.back() = &sums.back();
+  }
+  return fit_light(readings, incident, kStoryStep).misfit;
+}
+
+/// Another LED lights in the place of a frame's, or two LEDs are exchanged.
+void add_exchanges(const FrameLights& planned, int leds, std::vector<Story>& stories) {
+  for (std::size_t f = 0; f < planned.size(); ++f) {
+    for (int led = 1; led <= leds; ++led) {
+      if (led == planned[f].led) continue;
+      stories.push_back(
+          {Finding::kOther,
+           fmt::format("LED {} lights where LED {} should: are their wires swapped?", led, planned[f].led),
+           planned});
+      stories.back().lights[f].led = led;
+    }
+    for (std::size_t g = f + 1; g < planned.size(); ++g) {
+      stories.push_back({Finding::kOther,
+                         fmt::format("LED {} lights where LED {} should and the other way round: are their "
+                                     "wires swapped?",
+                                     planned[g].led, planned[f].led),
+                         planned});
+      std::swap(stories.back().lights[f], stories.back().lights[g]);
+    }
+  }
+}
+
+/// Light that comes on with any of the frames and stays. `own_led` has it anyhow; 0: none has.
+void add_more_light(const FrameLights& planned, const std::vector<Vec3>& more, double times, int own_led,
+                    Finding finding, const std::string& sentence, std::vector<Story>& stories) {
+  for (std::size_t from = 0; from < planned.size(); ++from) {
+    if (planned[from].led == own_led) continue;
+    stories.push_back({finding, sentence, planned});
+    for (std::size_t f = from; f < planned.size(); ++f) {
+      if (planned[f].led != own_led) stories.back().lights[f] = {planned[f].led, &more, times};
+    }
+  }
+}
+
+/// Every likely mix-up.
+std::vector<Story> stories_beside(const FrameLights& planned, const PatchLights& model) {
+  std::vector<Story> stories;
+  const int leds = static_cast<int>(model.leds.size());
+  add_exchanges(planned, leds, stories);
+  for (int led = 1; led <= leds; ++led) {
+    add_more_light(planned, light_of(led, model), 1, led, Finding::kStaysLit,
+                   fmt::format("LED {} stays lit", led), stories);
+  }
+  for (const double times : {0.1, 0.3, 1.0, 3.0}) {
+    add_more_light(planned, model.room, times, 0, Finding::kRoomLight, "there is light beside the LEDs",
+                   stories);
+  }
+  return stories;
 }
 
 }  // namespace
@@ -223,72 +303,27 @@ ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vect
   frames.push_back({shot, without_dark(light)});
   if (frames.size() < kEnoughForPatterns) return {};
 
-  const auto of_led = [&](int led) { return &model_->leds[static_cast<std::size_t>(led - 1)]; };
-  std::vector<const std::vector<double>*> readings;
-  std::vector<const std::vector<Vec3>*> plan;
+  Readings readings;
+  FrameLights planned;
   for (const Seen& seen : frames) {
     readings.push_back(&seen.light);
-    plan.push_back(of_led(seen.shot.led));
+    planned.push_back({seen.shot.led, nullptr, 0});
   }
-  ShotVerdict best;
-  const double planned = fit_light(readings, plan, kStoryStep).misfit;
-  best.misfit = planned;
-  if (planned < kSuspiciousMisfit) return best;
-
-  double least = std::min(kFarBetter * planned, planned - kBetterBy);
-  const auto try_story = [&](const std::vector<const std::vector<Vec3>*>& story, Finding finding,
-                             std::vector<int> accused, const auto& sentence) {
-    const double misfit = fit_light(readings, story, kStoryStep).misfit;
-    if (misfit >= least) return;
+  ShotVerdict verdict;
+  const double misfit_as_planned = misfit_in(planned, readings, *model_);
+  verdict.misfit = misfit_as_planned;
+  if (misfit_as_planned < kSuspiciousMisfit) return verdict;
+  double least = std::min(kFarBetter * misfit_as_planned, misfit_as_planned - kBetterBy);
+  for (const Story& story : stories_beside(planned, *model_)) {
+    const double misfit = misfit_in(story.lights, readings, *model_);
+    if (misfit >= least) continue;
     least = misfit;
-    best = {finding, sentence(), std::move(accused), {}, {}, planned};
-  };
-  const int leds = static_cast<int>(model_->leds.size());
-  const auto led_of = [&](std::size_t f) { return frames[f].shot.led; };
-
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    for (int led = 1; led <= leds; ++led) {
-      if (led == led_of(f)) continue;
-      auto story = plan;
-      story[f] = of_led(led);
-      try_story(story, Finding::kOther, {frames[f].shot.index}, [&] {
-        return fmt::format("LED {} lights where LED {} should: are their wires swapped?", led, led_of(f));
-      });
-    }
-    for (std::size_t g = f + 1; g < frames.size(); ++g) {
-      auto story = plan;
-      std::swap(story[f], story[g]);
-      try_story(story, Finding::kOther, {frames[f].shot.index, frames[g].shot.index}, [&] {
-        return fmt::format(
-            "LED {} lights where LED {} should and the other way round: are their wires swapped?", led_of(g),
-            led_of(f));
-      });
+    verdict = {story.finding, story.sentence, {}, {}, {}, misfit_as_planned};
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      if (story.lights[f] != planned[f]) verdict.accused.push_back(frames[f].shot.index);
     }
   }
-
-  const auto try_more_light = [&](const std::vector<Vec3>& more, int led, double times, Finding finding,
-                                  const std::string& sentence) {
-    for (std::size_t from = 0; from < frames.size(); ++from) {
-      std::vector<std::vector<Vec3>> sums;
-      auto story = plan;
-      std::vector<int> accused;
-      sums.reserve(frames.size());
-      for (std::size_t f = from; f < frames.size(); ++f) {
-        if (led_of(f) == led) continue;
-        sums.push_back(together(*plan[f], more, times));
-        story[f] = &sums.back();
-        accused.push_back(frames[f].shot.index);
-      }
-      if (!accused.empty()) try_story(story, finding, accused, [&] { return sentence; });
-    }
-  };
-  for (int led = 1; led <= leds; ++led) {
-    try_more_light(*of_led(led), led, 1, Finding::kStaysLit, fmt::format("LED {} stays lit", led));
-  }
-  for (const double times : {0.1, 0.3, 1.0, 3.0}) {
-    try_more_light(model_->room, 0, times, Finding::kRoomLight, "there is light beside the LEDs");
-  }
-  return best;
+  return verdict;
 }
 
 ShotVerdict ScanEvidence::judge_again(const PlannedShot& shot, const std::vector<double>& light) const {

@@ -19,6 +19,7 @@ constexpr std::size_t kEnoughForPatterns = 5;
 // is left of the readings tells which LEDs were lit: every likely mix-up is tried, and one that leaves far
 // less than the planned order is what happened. docs/reliability.md has how often it is wrong.
 
+/// What the light of a frame says of the LEDs.
 enum class Finding {
   kAgrees,
   kDark,       ///< the LED did not light
@@ -32,6 +33,7 @@ enum class Finding {
 /// "dark", "dim", "swapped", "stays_lit", "room_light", "changed"; "" where it agrees.
 const char* code_of(Finding finding);
 
+/// What a frame says against the plan and the frames before it.
 struct ShotVerdict {
   Finding finding = Finding::kAgrees;
   std::string sentence;      ///< names the LED
@@ -48,14 +50,24 @@ struct ShotVerdict {
   }
 };
 
+/// The evidence of one scan, frame by frame in the order of the plan:
+///
+///   glance() at the frame, then judge() what was seen;
+///   where that agrees, accept() it: now it is evidence for the frames after it;
+///   where it does not, forget() every shot that the verdict accuses.
+///
+/// The dark shot is taken off what comes after it. Repeats and brackets are held against the lit frame of
+/// their LED. Where there is nothing to hold a frame against, it agrees.
 class ScanEvidence {
  public:
   /// Without a model only darkness, the repeat and the brackets are looked at.
   ScanEvidence(PatchGrid grid, std::optional<PatchLights> model);
 
+  /// The light of a frame by patch, which judge() and accept() take.
   std::vector<double> glance(const RawFrame& frame) const;
   ShotVerdict judge(const PlannedShot& shot, const std::vector<double>& light) const;
   void accept(const PlannedShot& shot, std::vector<double> light);
+  /// Takes a lit frame out again, so that its shot can be judged anew; nothing where it was not accepted.
   void forget(int index);
 
  private:
