@@ -40,6 +40,22 @@ struct Kept {
   std::vector<int> take_again;  ///< these shots, if the error may pass
 };
 
+/// What the frames so far say of the next one. While a frame is on its way, its thread owns this and brings
+/// it back.
+struct FramesSoFar {
+  std::optional<PatchLights> model;  ///< until the first frame has come
+  std::optional<RawFrame> first;     ///< without its counts
+  Size first_size;
+  std::optional<ScanEvidence> evidence;  ///< once the first frame has come
+  std::vector<std::string> warnings;
+};
+
+/// A frame at the end of its way.
+struct Arrived {
+  Kept kept;
+  FramesSoFar so_far;
+};
+
 class Scan {
  public:
   Scan(const ScanRequest& request, Lamps& lamps, Camera& camera, const ScanEvents& events,
@@ -107,7 +123,7 @@ class Scan {
     }
     Result<PatchLights> model = PatchLights::make(*calibration_, request_.cloth_height_mm);
     if (!model) return model.error();
-    model_ = std::move(*model);
+    so_far_.model = std::move(*model);
     return {};
   }
 
@@ -206,16 +222,16 @@ class Scan {
   Result<Metering> metered() {
     report_.phase(ScanPhase::kMetering);
     MeterInput input = {list_.leds, {}, shutter_times_us_, 1e6 / 125};
-    if (model_) {
+    if (const auto& model = so_far_.model) {
       double most = 0;
       for (const int led : list_.leds) {
         double brightest = 0;
-        for (const Vec3& s : model_->leds[static_cast<std::size_t>(led - 1)])
+        for (const Vec3& s : model->leds[static_cast<std::size_t>(led - 1)])
           brightest = std::max(brightest, s.z);
         input.expected.push_back(brightest);
         most = std::max(most, input.expected.back());
       }
-      input.start_us = 1e6 * kMeteredTo / (kWhite * most * model_->reading * exposure_.iso / 100);
+      input.start_us = 1e6 * kMeteredTo / (kWhite * most * model->reading * exposure_.iso / 100);
     }
     return meter(input, [&](int led, double exposure_us) -> Result<Brightness> {
       const ExposureSettings exposure = {exposure_us, exposure_.iso, exposure_.f_number};
@@ -248,31 +264,33 @@ class Scan {
       }
       Result<RawFrame> frame = decode_raw(journal_->session().path_of(shot));
       if (!frame) return frame.error();
-      if (Result<void> ok =
-              first_ ? check_alike(*frame, *first_, first_size_, shot.file) : accept_first(*frame, shot.file);
+      const auto& first = so_far_.first;
+      if (Result<void> ok = first ? check_alike(*frame, *first, so_far_.first_size, shot.file)
+                                  : accept_first(*frame, shot.file, so_far_);
           !ok)
         return ok;
-      evidence_->accept(plan_[static_cast<std::size_t>(shot.index)], evidence_->glance(*frame));
+      ScanEvidence& evidence = *so_far_.evidence;
+      evidence.accept(plan_[static_cast<std::size_t>(shot.index)], evidence.glance(*frame));
     }
     shooter_.follow(last);
     return {};
   }
 
   /// The first frame says what all are like.
-  Result<void> accept_first(const RawFrame& frame, const std::string& where) {
+  Result<void> accept_first(const RawFrame& frame, const std::string& where, FramesSoFar& so_far) const {
     const Size size = frame.counts.size();
-    if (model_ && model_->grid.frame != size) {
+    if (so_far.model && so_far.model->grid.frame != size) {
+      const Size calibrated = so_far.model->grid.frame;
       return Error{ErrorKind::kBadData, "calibration is not of this camera", where,
-                   fmt::format("its camera has {} x {} pixels, the frame {} x {}", model_->grid.frame.width,
-                               model_->grid.frame.height, size.width, size.height),
+                   fmt::format("its camera has {} x {} pixels, the frame {} x {}", calibrated.width,
+                               calibrated.height, size.width, size.height),
                    "name the calibration of this camera"};
     }
     if (Result<void> ok = check_body(frame.shot, where); !ok) return ok;
-    const PatchGrid grid = model_ ? model_->grid : PatchGrid::over(size);
-    evidence_.emplace(grid, std::move(model_));
-    model_.reset();
-    first_size_ = size;
-    first_ = RawFrame{{}, frame.cfa, frame.black, frame.white, frame.shot};
+    const PatchGrid grid = so_far.model ? so_far.model->grid : PatchGrid::over(size);
+    so_far.evidence.emplace(grid, std::exchange(so_far.model, std::nullopt));
+    so_far.first_size = size;
+    so_far.first = RawFrame{{}, frame.cfa, frame.black, frame.white, frame.shot};
     return {};
   }
 
@@ -289,7 +307,7 @@ class Scan {
   Result<void> photograph_missing() {
     const std::vector<PlannedShot> missing = missing_shots(plan_, journal_->session());
     std::deque<PlannedShot> queue(missing.begin(), missing.end());
-    std::future<Kept> on_its_way;
+    std::future<Arrived> on_its_way;
     while (!queue.empty() || on_its_way.valid()) {
       std::optional<Photograph> photograph;
       std::optional<Error> fault;
@@ -306,16 +324,19 @@ class Scan {
           fault = taken.error();
       }
       if (on_its_way.valid()) {
-        const Kept before = on_its_way.get();
-        if (before.error && !fault) {
-          if (Result<void> ok = take_again(before, queue); !ok) fault = ok.error();
+        Arrived before = on_its_way.get();
+        so_far_ = std::move(before.so_far);
+        if (before.kept.error && !fault) {
+          if (Result<void> ok = take_again(before.kept, queue); !ok) fault = ok.error();
         }
       }
       if (fault) return *fault;
       if (!photograph) continue;
       if (Result<void> room = check_room_once(*photograph, queue.size()); !room) return room;
-      on_its_way = std::async(std::launch::async, [this, shot, taken = std::move(*photograph)] {
-        return checked_and_kept(shot, taken);
+      on_its_way = std::async(std::launch::async, [this, shot, taken = std::move(*photograph),
+                                                   so_far = std::move(so_far_)]() mutable {
+        Kept kept = checked_and_kept(shot, taken, so_far);
+        return Arrived{std::move(kept), std::move(so_far)};
       });
     }
     return {};
@@ -337,20 +358,20 @@ class Scan {
     return check_room(request_, static_cast<int>(more), list_.count(), photograph.bytes);
   }
 
-  Kept checked_and_kept(const PlannedShot& shot, const Photograph& photograph) try {
+  Kept checked_and_kept(const PlannedShot& shot, const Photograph& photograph, FramesSoFar& so_far) try {
     const std::string where = fmt::format("{} ({})", name_of(shot), file_stem(shot));
     Result<RawFrame> frame = decode_raw(photograph.file);
     if (!frame) return unusable(shot, "damaged", frame.error(), {shot.index});
-    if (!first_) {
-      if (Result<void> suits = accept_first(*frame, where); !suits)
+    if (!so_far.first) {
+      if (Result<void> suits = accept_first(*frame, where, so_far); !suits)
         return unusable(shot, "unlike", suits.error(), {});
-    } else if (Result<void> alike = check_alike(*frame, *first_, first_size_, where); !alike) {
+    } else if (Result<void> alike = check_alike(*frame, *so_far.first, so_far.first_size, where); !alike) {
       return unusable(shot, "unlike", alike.error(), {shot.index});
     }
 
-    std::vector<double> light = evidence_->glance(*frame);
-    const ShotVerdict verdict = evidence_->judge(shot, light);
-    if (verdict.finding != Finding::kAgrees) return refused(verdict);
+    std::vector<double> light = so_far.evidence->glance(*frame);
+    const ShotVerdict verdict = so_far.evidence->judge(shot, light);
+    if (verdict.finding != Finding::kAgrees) return refused(verdict, so_far);
 
     KeptFrame kept = {
         {}, histogram_rgb(*frame), verdict.warnings, {code_of(verdict.doubt), verdict.level, verdict.misfit}};
@@ -364,8 +385,8 @@ class Scan {
       return {in_session.error(), may_pass ? std::vector<int>{shot.index} : std::vector<int>()};
     }
     kept.shot = std::move(*in_session);
-    evidence_->accept(shot, std::move(light));
-    for (const std::string& warning : kept.warnings) warnings_of_frames_.push_back(warning);
+    so_far.evidence->accept(shot, std::move(light));
+    so_far.warnings.insert(so_far.warnings.end(), kept.warnings.begin(), kept.warnings.end());
     report_.kept(kept);
     return {};
   } catch (const std::bad_alloc&) {
@@ -380,7 +401,7 @@ class Scan {
   }
 
   /// Takes what is accused out of the session, so that it is taken again, now or by the next scan.
-  Kept refused(const ShotVerdict& verdict) {
+  Kept refused(const ShotVerdict& verdict, FramesSoFar& so_far) {
     Kept kept = {Error{ErrorKind::kBadData, verdict.sentence, names_of(verdict.accused),
                        "the photograph does not agree with the calibrated light",
                        verdict.finding == Finding::kChanged
@@ -390,7 +411,7 @@ class Scan {
     const Result<void> out = journal_->discard(verdict.accused);
     if (!out) return {out.error(), {}};
     for (const int index : verdict.accused) {
-      evidence_->forget(index);
+      so_far.evidence->forget(index);
       const PlannedShot& shot = plan_[static_cast<std::size_t>(index)];
       report_.refused({index,
                        shot.led,
@@ -426,7 +447,7 @@ class Scan {
 
   Result<void> finish() {
     report_.phase(ScanPhase::kFinishing);
-    for (const std::string& warning : warnings_of_frames_) warnings_.push_back(warning);
+    warnings_.insert(warnings_.end(), so_far_.warnings.begin(), so_far_.warnings.end());
     return journal_->finish(warnings_, request_.copy.empty() ? Json() : second_copy());
   }
 
@@ -449,7 +470,6 @@ class Scan {
   int leds_of_board_;
   std::optional<Calibration> calibration_;
   ShotList list_;
-  std::optional<PatchLights> model_;  ///< until the first frame has come
   std::optional<Journal> journal_;
   std::vector<double> shutter_times_us_;
   ExposureSettings exposure_;
@@ -459,12 +479,7 @@ class Scan {
   std::map<int, int> times_wrong_;
   std::vector<std::string> warnings_;
   bool has_room_ = false, is_odd_ = false;
-
-  // While a frame is on its way, its thread's alone.
-  std::optional<RawFrame> first_;  ///< without its counts
-  Size first_size_;
-  std::optional<ScanEvidence> evidence_;
-  std::vector<std::string> warnings_of_frames_;
+  FramesSoFar so_far_;  ///< away while a frame is on its way
 };
 
 }  // namespace
