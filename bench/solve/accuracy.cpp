@@ -154,73 +154,89 @@ Result<Rows> solve_exactness(const AccuracyOptions& options) {
   return rows;
 }
 
-Result<Rows> solve_noise(const AccuracyOptions& options) {
-  const Size size = bench_size(options.megapixels);
-  Rows rows;
-  for (const double albedo : {0.04, 0.2, 0.9}) {
-    Scene scene = scene_of(GeometryKind::kFlat, size);
-    scene.material.albedo = {albedo, albedo, albedo};
-    const Result<simulator::SceneRig> rig = simulator::rig_of(scene);
-    if (!rig) return rig.error();
-    const Result<LightField> field = field_of(scene);
-    if (!field) return field.error();
-    const double exposure = rig->exposure(scene.camera.iso);
-    const double e = rig->sensor.electrons_at_white, read = rig->sensor.read_noise_electrons;
-    const NoiseModel noise = {1 / (e * exposure), read * read / (e * e * exposure * exposure), 0};
+namespace {
 
-    // Every pixel is one trial of the centre's green photosite, where the cloth faces the camera.
-    const int x0 = size.width / 2, y0 = size.height / 2;
-    const Vec3 normal = {0, 0, 1};
-    NearLights lights = std::get<NearLights>(field->lights());
-    DistantLights here;
-    for (std::size_t k = 0; k < lights.leds.size(); ++k) {
-      const LightField::Light light = field->at(k, 1, x0, y0);
-      here.lights.push_back({light.direction, {light.strength, light.strength, light.strength}});
-    }
-    const Result<LightField> same = LightField::make(here, std::nullopt, size, 0);
-    if (!same) return same.error();
-    Image<float> readings(size, static_cast<int>(same->count()));
-    std::vector<View<const float>> views;
-    for (std::size_t k = 0; k < same->count(); ++k) {
-      const LightField::Light light = same->at(k, 1, 0, 0);
-      const double signal = albedo * light.strength * light.direction.z * exposure;
-      for (int y = 0; y < size.height; ++y) {
-        for (int x = 0; x < size.width; ++x) {
-          const auto bits = simulator::philox({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y),
-                                               static_cast<std::uint32_t>(k), 0},
-                                              {1, 0});
-          readings(x, y, static_cast<int>(k)) =
-              static_cast<float>(simulator::noisy(rig->sensor, signal, bits) / exposure);
-        }
-      }
-      views.emplace_back(readings.plane(static_cast<int>(k)));
-    }
-    SolvedMaps maps(size);
-    solver::least_squares_method()->solve(
-        {{0, 0, size.width, size.height}, 1, CfaPattern{}, views, &*same, noise},
-        maps.output({0, 0, size.width, size.height}));
-    double square = 0, predicted = 0, albedo_square = 0, albedo_predicted = 0;
+/// The lights of one pixel's green photosite, the same at every pixel.
+Result<LightField> lights_of_pixel(const LightField& field, int x, int y, Size size) {
+  DistantLights lights;
+  for (std::size_t k = 0; k < field.count(); ++k) {
+    const LightField::Light light = field.at(k, 1, x, y);
+    lights.lights.push_back({light.direction, {light.strength, light.strength, light.strength}});
+  }
+  return LightField::make(lights, std::nullopt, size, 0);
+}
+
+/// What the sensor reads of grey cloth that faces the camera; every pixel is one trial.
+Image<float> noisy_readings(const simulator::Sensor& sensor, const LightField& field, double albedo,
+                            double exposure, Size size) {
+  Image<float> readings(size, static_cast<int>(field.count()));
+  for (std::size_t k = 0; k < field.count(); ++k) {
+    const LightField::Light light = field.at(k, 1, 0, 0);
+    const double signal = albedo * light.strength * light.direction.z * exposure;
     for (int y = 0; y < size.height; ++y) {
       for (int x = 0; x < size.width; ++x) {
-        square += std::pow(angle_deg(maps.normal_at(x, y), normal), 2);
-        predicted += std::pow(maps.sigma_normal_deg(x, y), 2);
-        albedo_square += std::pow(maps.albedo(x, y) - albedo, 2);
-        albedo_predicted += std::pow(maps.sigma_albedo(x, y), 2);
+        const auto bits = simulator::philox(
+            {static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), static_cast<std::uint32_t>(k), 0},
+            {1, 0});
+        readings(x, y, static_cast<int>(k)) =
+            static_cast<float>(simulator::noisy(sensor, signal, bits) / exposure);
       }
     }
-    const auto pixels = static_cast<double>(size.pixels());
-    const double rms = std::sqrt(square / pixels);
-    std::vector<LightField::Light> reaching;
-    for (std::size_t k = 0; k < same->count(); ++k) reaching.push_back(same->at(k, 1, 0, 0));
-    const double bound = cramer_rao(reaching, normal, albedo, noise).rms_deg();
-    rows.push_back({{"method", "least-squares"},
-                    {"albedo", albedo},
-                    {"pixels", size.pixels()},
-                    {"rms_deg", rms},
-                    {"bound_deg", bound},
-                    {"ratio_to_bound", rms / bound},
-                    {"predicted_over_rms", std::sqrt(predicted / square)},
-                    {"albedo_predicted_over_rms", std::sqrt(albedo_predicted / albedo_square)}});
+  }
+  return readings;
+}
+
+Result<Json> noise_row(double albedo, Size size) {
+  Scene scene = scene_of(GeometryKind::kFlat, size);
+  scene.material.albedo = {albedo, albedo, albedo};
+  const Result<simulator::SceneRig> rig = simulator::rig_of(scene);
+  if (!rig) return rig.error();
+  const Result<LightField> field = field_of(scene);
+  if (!field) return field.error();
+  const Result<LightField> same = lights_of_pixel(*field, size.width / 2, size.height / 2, size);
+  if (!same) return same.error();
+  const double exposure = rig->exposure(scene.camera.iso);
+  const double e = rig->sensor.electrons_at_white, read = rig->sensor.read_noise_electrons;
+  const NoiseModel noise = {1 / (e * exposure), read * read / (e * e * exposure * exposure), 0};
+  const Image<float> readings = noisy_readings(rig->sensor, *same, albedo, exposure, size);
+  std::vector<View<const float>> views;
+  for (int k = 0; k < readings.planes(); ++k) views.emplace_back(readings.plane(k));
+  SolvedMaps maps(size);
+  const Rect frame = {0, 0, size.width, size.height};
+  solver::least_squares_method()->solve({frame, 1, CfaPattern{}, views, &*same, noise}, maps.output(frame));
+
+  const Vec3 normal = {0, 0, 1};
+  double square = 0, predicted = 0, albedo_square = 0, albedo_predicted = 0;
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      square += std::pow(angle_deg(maps.normal_at(x, y), normal), 2);
+      predicted += std::pow(maps.sigma_normal_deg(x, y), 2);
+      albedo_square += std::pow(maps.albedo(x, y) - albedo, 2);
+      albedo_predicted += std::pow(maps.sigma_albedo(x, y), 2);
+    }
+  }
+  const double rms = std::sqrt(square / static_cast<double>(size.pixels()));
+  std::vector<LightField::Light> reaching;
+  for (std::size_t k = 0; k < same->count(); ++k) reaching.push_back(same->at(k, 1, 0, 0));
+  const double bound = cramer_rao(reaching, normal, albedo, noise).rms_deg();
+  return Json{{"method", "least-squares"},
+              {"albedo", albedo},
+              {"pixels", size.pixels()},
+              {"rms_deg", rms},
+              {"bound_deg", bound},
+              {"ratio_to_bound", rms / bound},
+              {"predicted_over_rms", std::sqrt(predicted / square)},
+              {"albedo_predicted_over_rms", std::sqrt(albedo_predicted / albedo_square)}};
+}
+
+}  // namespace
+
+Result<Rows> solve_noise(const AccuracyOptions& options) {
+  Rows rows;
+  for (const double albedo : {0.04, 0.2, 0.9}) {
+    Result<Json> row = noise_row(albedo, bench_size(options.megapixels));
+    if (!row) return std::move(row).error();
+    rows.push_back(std::move(*row));
   }
   return rows;
 }

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 
@@ -189,73 +190,92 @@ std::string number(double value, int digits) {
   return fmt::format("{:.{}f}", value, digits);
 }
 
+std::vector<std::string> row_of(const CheckedSheet& sheet) {
+  const SheetCheck& c = sheet.check;
+  return {sheet.name,
+          number(c.tilt_deg, 2),
+          std::to_string(c.squares),
+          number(c.rms_deg, 3),
+          number(c.pattern_rms_deg, 3),
+          number(c.worst_deg, 3),
+          c.slope_gain ? fmt::format("{:.4f} ± {:.4f}", *c.slope_gain, c.slope_gain_sigma) : "",
+          sheet.drift ? number(100 * *sheet.drift, 2) : ""};
+}
+
+Json numbers_of(const CheckedSheet& sheet) {
+  const SheetCheck& c = sheet.check;
+  Json json = {{"session", sheet.name},
+               {"tilt_deg", c.tilt_deg},
+               {"squares", c.squares},
+               {"rms_deg", c.rms_deg},
+               {"worst_deg", c.worst_deg},
+               {"pattern_rms_deg", c.pattern_rms_deg},
+               {"reflectance_rgb", Json(c.reflectance_rgb)}};
+  if (c.slope_gain) {
+    json["slope_gain"] = *c.slope_gain;
+    json["slope_gain_sigma"] = c.slope_gain_sigma;
+  }
+  if (sheet.drift) json["drift"] = *sheet.drift;
+  return json;
+}
+
+/// Something that sheets are checked for.
+struct Aspect {
+  const char* name;
+  std::string found;     ///< the worst of all sheets; empty: no sheet tells
+  const char* no_sheet;  ///< said then
+};
+
+std::array<Aspect, 3> aspects_of(const std::vector<CheckedSheet>& sheets) {
+  std::optional<double> flat_rms_deg, slopes_off, drift;
+  const auto keep_worst = [](std::optional<double>& worst, double value) {
+    worst = std::max(worst.value_or(0), value);
+  };
+  for (const CheckedSheet& sheet : sheets) {
+    const SheetCheck& c = sheet.check;
+    if (c.slope_gain) keep_worst(slopes_off, std::abs(*c.slope_gain - 1));
+    if (!c.slope_gain && c.squares > 0) keep_worst(flat_rms_deg, c.rms_deg);
+    if (sheet.drift) keep_worst(drift, *sheet.drift);
+  }
+  return {
+      {{"flatness", flat_rms_deg ? fmt::format(", flat ones within {:.3f} degrees rms", *flat_rms_deg) : "",
+        "No sheet lay flat: whether a level surface comes out level was not checked."},
+       {"slopes", slopes_off ? fmt::format(", slopes within {:.2f} percent", 100 * *slopes_off) : "",
+        "No sheet was tilted: how steep slopes come out was not checked."},
+       {"drift", drift ? fmt::format(", LEDs steady to {:.2f} percent", 100 * *drift) : "",
+        "No LED was lit once more: whether LEDs drift was not checked."}}};
+}
+
 CalibrationReport sheets_report(const std::vector<CheckedSheet>& sheets, const Calibration& calibration,
                                 const CalibrateCheckOptions& options) {
   CalibrationReport report;
   report.part = "check";
   report.title = fmt::format("Check of the calibration of {}", calibration.subject.rig);
   report::Section section = {"Sheets", {}, report::Table{}, {}};
-  section.paragraphs = {fmt::format(
-      "Each sheet was solved in squares of {} pixels, at the point that its tags give. A flat sheet may be "
-      "{} "
-      "degrees rms from flat, a tilted one {} off, slopes 1 ± {} times as steep as they are, LEDs may drift "
-      "by {} percent.",
-      options.square_px, options.limits.flat_rms_deg, options.limits.tilted_rms_deg,
-      options.limits.slope_gain, 100 * options.limits.drift)};
+  section.paragraphs = {
+      fmt::format("Each sheet was solved in squares of {} pixels, at the point that its tags give. A flat "
+                  "sheet may be {} degrees rms from flat, a tilted one {} off, slopes 1 ± {} times as steep "
+                  "as they are, LEDs may drift by {} percent.",
+                  options.square_px, options.limits.flat_rms_deg, options.limits.tilted_rms_deg,
+                  options.limits.slope_gain, 100 * options.limits.drift)};
   section.is_answer = true;
   section.table->header = {"sheet",          "tilt, degrees", "squares",    "rms, degrees",
                            "about the mean", "worst",         "slope gain", "drift, percent"};
-  std::optional<double> worst_flat, worst_gain, worst_drift;
-  const auto keep_worst = [](std::optional<double>& worst, double value) {
-    worst = std::max(worst.value_or(0), value);
-  };
   for (const CheckedSheet& sheet : sheets) {
-    const SheetCheck& c = sheet.check;
-    if (c.slope_gain) keep_worst(worst_gain, std::abs(*c.slope_gain - 1));
-    if (!c.slope_gain && c.squares > 0) keep_worst(worst_flat, c.rms_deg);
-    if (sheet.drift) keep_worst(worst_drift, *sheet.drift);
-    section.table->rows.push_back(
-        {sheet.name, number(c.tilt_deg, 2), std::to_string(c.squares), number(c.rms_deg, 3),
-         number(c.pattern_rms_deg, 3), number(c.worst_deg, 3),
-         c.slope_gain ? fmt::format("{:.4f} ± {:.4f}", *c.slope_gain, c.slope_gain_sigma) : "",
-         sheet.drift ? number(100 * *sheet.drift, 2) : ""});
-    section.figures.push_back({fmt::format("Angle between {} as it is solved and as it lies", sheet.name),
-                               report::frame_map_svg({sheet.columns, sheet.rows, c.error_deg, "degrees"})});
-    Json json = {{"session", sheet.name},
-                 {"tilt_deg", c.tilt_deg},
-                 {"squares", c.squares},
-                 {"rms_deg", c.rms_deg},
-                 {"worst_deg", c.worst_deg},
-                 {"pattern_rms_deg", c.pattern_rms_deg},
-                 {"reflectance_rgb", Json(c.reflectance_rgb)}};
-    if (c.slope_gain) {
-      json["slope_gain"] = *c.slope_gain;
-      json["slope_gain_sigma"] = c.slope_gain_sigma;
-    }
-    if (sheet.drift) json["drift"] = *sheet.drift;
-    report.numbers["sheets"].push_back(std::move(json));
+    section.table->rows.push_back(row_of(sheet));
+    section.figures.push_back(
+        {fmt::format("Angle between {} as it is solved and as it lies", sheet.name),
+         report::frame_map_svg({sheet.columns, sheet.rows, sheet.check.error_deg, "degrees"})});
+    report.numbers["sheets"].push_back(numbers_of(sheet));
     for (Verdict& verdict : verdicts_of(sheet, options.limits)) report.verdicts.push_back(std::move(verdict));
   }
-  std::vector<std::string> not_checked;
   std::string found = fmt::format("{} sheet{}", sheets.size(), sheets.size() == 1 ? "" : "s");
-  if (worst_flat) {
-    found += fmt::format(", flat ones within {:.3f} degrees rms", *worst_flat);
-  } else {
-    not_checked.emplace_back("flatness");
-    section.paragraphs.emplace_back(
-        "No sheet lay flat: whether a level surface comes out level was not checked.");
-  }
-  if (worst_gain) {
-    found += fmt::format(", slopes within {:.2f} percent", 100 * *worst_gain);
-  } else {
-    not_checked.emplace_back("slopes");
-    section.paragraphs.emplace_back("No sheet was tilted: how steep slopes come out was not checked.");
-  }
-  if (worst_drift) {
-    found += fmt::format(", LEDs steady to {:.2f} percent", 100 * *worst_drift);
-  } else {
-    not_checked.emplace_back("drift");
-    section.paragraphs.emplace_back("No LED was lit once more: whether LEDs drift was not checked.");
+  std::vector<std::string> not_checked;
+  for (const Aspect& aspect : aspects_of(sheets)) {
+    found += aspect.found;
+    if (!aspect.found.empty()) continue;
+    not_checked.emplace_back(aspect.name);
+    section.paragraphs.emplace_back(aspect.no_sheet);
   }
   report.numbers["not_checked"] = not_checked;
   report.sections.push_back(std::move(section));
@@ -285,8 +305,7 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
   report::Section section = {"What the session shows", {}, {}, {}};
   section.paragraphs.push_back(fmt::format(
       "{} corners of tags and {} readings were compared with what the calibration predicts: chi-square "
-      "{:.2f} each "
-      "before, {:.2f} with what was found.",
+      "{:.2f} each before, {:.2f} with what was found.",
       movement.corners, movement.readings, movement.chi_square_before, movement.chi_square_after));
   if (movement.corners == 0) {
     section.paragraphs.push_back(
@@ -296,8 +315,7 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
   if (movement.readings == 0) {
     section.paragraphs.push_back(
         "No white patch and no sheet was read: LEDs were not checked, and a moved camera cannot be told from "
-        "a moved "
-        "table.");
+        "a moved table.");
   }
   report.numbers = {{"session", session},
                     {"corners", movement.corners},
@@ -324,8 +342,7 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
   }
   if (!movement.changes.empty()) {
     report.summary = fmt::format(
-        "The rig has changed; scanning on would cost {:.2f} degrees in the mean and {:.2f} at "
-        "worst",
+        "The rig has changed; scanning on would cost {:.2f} degrees in the mean and {:.2f} at worst",
         rig.cost.mean_deg, rig.cost.worst_deg);
   } else {
     report.summary =
