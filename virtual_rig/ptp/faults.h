@@ -2,13 +2,13 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
-#include <string>
+#include <span>
 #include <string_view>
 #include <vector>
 
 namespace weft::virtual_rig::ptp {
 
+/// What may befall a camera: fault_kinds() has a sentence on each.
 enum class PtpFault : std::uint8_t {
   kDropInExposure,
   kDropBeforeObject,
@@ -57,14 +57,17 @@ enum class Befalls {
   kBefore,      ///< the end of the exposure before; at once for the first
 };
 
+/// A fault and what is told of it.
 struct PtpFaultKind {
   PtpFault fault;
   Befalls befalls;
-  const char* name;
-  const char* sentence;
+  const char* name;      ///< "drop_in_exposure"
+  const char* sentence;  ///< for people
 };
 
-const std::vector<PtpFaultKind>& fault_kinds();
+/// Each kind once, in the order of PtpFault.
+std::span<const PtpFaultKind> fault_kinds();
+/// Nothing for a name that no kind has.
 const PtpFaultKind* find_fault(std::string_view name);
 
 /// Faults that wait for their turn. Not safe from several threads.
