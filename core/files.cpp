@@ -202,7 +202,7 @@ Result<void> make_writable_folder(const fs::path& folder) {
   std::error_code failed;
   fs::create_directories(folder, failed);
   if (failed) return cannot_write(folder, failed.value());
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) return cannot_write(folder, errno);
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) return cannot_write(folder, errno);
   return {};
 }
 

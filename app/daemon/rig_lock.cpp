@@ -69,7 +69,7 @@ std::filesystem::path state_folder(const capture::Rig& rig) {
 Result<RigLock> RigLock::take(const capture::Rig& rig) {
   const std::filesystem::path folder = state_folder(rig), path = folder / kLock;
   if (Result<void> made = make_writable_folder(folder); !made) {
-    const bool is_denied = access(folder.c_str(), W_OK) != 0 && errno == EACCES;
+    const bool is_denied = ::faccessat(AT_FDCWD, folder.c_str(), W_OK, AT_EACCESS) != 0 && errno == EACCES;
     return is_denied ? kept_out(folder) : std::move(made).error();
   }
   std::error_code not_ours;

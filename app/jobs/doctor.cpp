@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/doctor.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/timex.h>
 #include <unistd.h>
@@ -119,7 +120,7 @@ void examine_board_port(const capture::Rig& rig, const SystemPlaces& places,
                           "plug the board in; ls -l /dev/serial/by-id names what is there"));
     return;
   }
-  if (::access(port.c_str(), R_OK | W_OK) != 0) {
+  if (::faccessat(AT_FDCWD, port.c_str(), R_OK | W_OK, AT_EACCESS) != 0) {
     found.push_back(fault("board", fmt::format("this user may not use {}", port.string()),
                           "sudo usermod -aG dialout $USER, then log in again"));
   }
@@ -166,7 +167,7 @@ std::vector<UsbCamera> usb_cameras(const SystemPlaces& places) {
 /// Cameras that the kernel shows. None is no fault: what drives the camera knows better what is there.
 void examine_usb(const SystemPlaces& places, std::vector<SetupFinding>& found) {
   for (const UsbCamera& camera : usb_cameras(places)) {
-    if (::access(camera.node.c_str(), R_OK | W_OK) != 0) {
+    if (::faccessat(AT_FDCWD, camera.node.c_str(), R_OK | W_OK, AT_EACCESS) != 0) {
       found.push_back(fault("camera", fmt::format("this user may not use {}", camera.node.string()),
                             "sudo usermod -aG plugdev $USER, then log in again"));
     }
