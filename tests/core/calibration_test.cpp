@@ -424,12 +424,12 @@ struct Wrong {
   const char* said;
 };
 
-TEST(Calibration, WithNumbersThatNoRigHasIsRefused) {
-  const ScratchFolder folder;
-  const auto set = [](const char* path, Json value) {
-    return [path, value](Json& json) { json[Json::json_pointer(path)] = value; };
-  };
-  const std::vector<Wrong> all = {
+std::function<void(Json&)> set(const char* path, Json value) {
+  return [path, value = std::move(value)](Json& json) { json[Json::json_pointer(path)] = value; };
+}
+
+const std::vector<Wrong>& all_wrong() {
+  static const std::vector<Wrong> all = {
       {"camera.json", set("/width", 0), "\"width\""},
       {"camera.json", set("/height", -3), "\"height\""},
       {"camera.json", set("/fx", 0), "\"fx\""},
@@ -489,6 +489,12 @@ TEST(Calibration, WithNumbersThatNoRigHasIsRefused) {
        "covariance: \"matrix\" must be symmetric"},
       {"lights.json", set("/covariance", Json::parse(R"({"parameters": ["led01.mu"], "matrix": [[-1]]})")),
        "covariance: \"matrix\" must be symmetric"}};
+  return all;
+}
+
+TEST(Calibration, WithNumbersThatNoRigHasIsRefused) {
+  const ScratchFolder folder;
+  const std::vector<Wrong>& all = all_wrong();
   must_write(folder / "good", full_calibration());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const fs::path here = folder / std::to_string(i);

@@ -117,6 +117,41 @@ double rms_mm(const CameraModel& a, const CameraModel& b) {
   return std::sqrt(sum / n);
 }
 
+/// A ruler grid of 12 mm under the rig's camera, solved and put on the table's grid by a calibration.
+void expect_true_ruler(const Workspace& work, const fs::path& measured) {
+  simulator::Scene ruler = rig_scene();
+  ruler.targets.resize(1);
+  ruler.targets[0].pattern = simulator::CheckerboardSettings{14, 9, 12, 4};
+  ruler.targets[0].centre_mm = {0, 0, 0.001};
+  ASSERT_TRUE(simulator::simulate_session(ruler, work / "ruler.weft", {}));
+  app::SolveOptions solve;
+  solve.method = "fast";
+  solve.previews = false;
+  ASSERT_TRUE(app::solve_session({.folder = work / "ruler.weft", .calibration = {}, .leds = {}}, solve, {}));
+  app::RectifyOptions rectify;
+  rectify.session = work / "ruler.weft";
+  rectify.calibration = measured;
+  const auto maps = app::rectify_session(rectify, {});
+  ASSERT_TRUE(maps) << maps.error().message();
+  const Result<LoadedImage> albedo = read_image(maps->folder / "albedo.exr");
+  ASSERT_TRUE(albedo);
+  const std::vector<View<const float>> rgb = {albedo->planes.plane(0), albedo->planes.plane(1),
+                                              albedo->planes.plane(2)};
+  const auto board = calibration::find_board(
+      calibration::grey_picture(rgb).plane(),
+      {.kind = calibration::BoardKind::kCheckerboard, .squares_x = 14, .squares_y = 9, .square_mm = 12});
+  ASSERT_EQ(board.fault, calibration::BoardFault::kNone) << board.why;
+  const double mm_per_pixel = maps->document["mm_per_pixel"].get<double>();
+  double most_mm = 0;
+  for (const auto& a : board.corners) {
+    for (const auto& b : board.corners) {
+      if (std::abs(std::hypot(a.u_mm - b.u_mm, a.v_mm - b.v_mm) - 12) > 0.1) continue;
+      most_mm = std::max(most_mm, std::abs(mm_per_pixel * std::hypot(a.px.x - b.px.x, a.px.y - b.px.y) - 12));
+    }
+  }
+  EXPECT_LT(most_mm, 0.05);
+}
+
 TEST_F(CalibrateCamera, NamesTwoBlurredPhotographsOfFifteenAndMakesARulerTrueWithTheRest) {
   photograph_boards(15);
   simulator::Scene soft = photograph_scene(4), shaken = photograph_scene(9);
@@ -138,8 +173,7 @@ TEST_F(CalibrateCamera, NamesTwoBlurredPhotographsOfFifteenAndMakesARulerTrueWit
   EXPECT_EQ(used, 13);
   EXPECT_LT(numbers["rms_px"].get<double>(), 0.08);
 
-  const simulator::Scene scene = rig_scene();
-  const CameraModel truth = simulator::rig_of(scene)->camera;
+  const CameraModel truth = simulator::rig_of(rig_scene())->camera;
   const Result<Calibration> written = read_calibration(output_);
   ASSERT_TRUE(written) << written.error().message();
   const double predicted_mm = numbers["table_sigma_mm"].get<double>();
@@ -151,39 +185,7 @@ TEST_F(CalibrateCamera, NamesTwoBlurredPhotographsOfFifteenAndMakesARulerTrueWit
   EXPECT_LT(length(written->fiducials[0].corners_mm[0] - Vec3{-90, 58, 0}), 0.06);
   EXPECT_TRUE(fs::exists(output_ / "report" / "camera.html"));
   EXPECT_TRUE(fs::exists(output_ / "report" / "camera.json"));
-
-  // A ruler grid of 12 mm under the same camera, solved and put on the table's grid by what was measured.
-  simulator::Scene ruler = scene;
-  ruler.targets.resize(1);
-  ruler.targets[0].pattern = simulator::CheckerboardSettings{14, 9, 12, 4};
-  ruler.targets[0].centre_mm = {0, 0, 0.001};
-  ASSERT_TRUE(simulator::simulate_session(ruler, work_ / "ruler.weft", {}));
-  app::SolveOptions solve;
-  solve.method = "fast";
-  solve.previews = false;
-  ASSERT_TRUE(app::solve_session({.folder = work_ / "ruler.weft", .calibration = {}, .leds = {}}, solve, {}));
-  app::RectifyOptions rectify;
-  rectify.session = work_ / "ruler.weft";
-  rectify.calibration = output_;
-  const auto maps = app::rectify_session(rectify, {});
-  ASSERT_TRUE(maps) << maps.error().message();
-  const Result<LoadedImage> albedo = read_image(maps->folder / "albedo.exr");
-  ASSERT_TRUE(albedo);
-  const std::vector<View<const float>> rgb = {albedo->planes.plane(0), albedo->planes.plane(1),
-                                              albedo->planes.plane(2)};
-  const auto board = calibration::find_board(
-      calibration::grey_picture(rgb).plane(),
-      {.kind = calibration::BoardKind::kCheckerboard, .squares_x = 14, .squares_y = 9, .square_mm = 12});
-  ASSERT_EQ(board.fault, calibration::BoardFault::kNone) << board.why;
-  const double mm_per_pixel = maps->document["mm_per_pixel"].get<double>();
-  double most_mm = 0;
-  for (const auto& a : board.corners) {
-    for (const auto& b : board.corners) {
-      if (std::abs(std::hypot(a.u_mm - b.u_mm, a.v_mm - b.v_mm) - 12) > 0.1) continue;
-      most_mm = std::max(most_mm, std::abs(mm_per_pixel * std::hypot(a.px.x - b.px.x, a.px.y - b.px.y) - 12));
-    }
-  }
-  EXPECT_LT(most_mm, 0.05);
+  expect_true_ruler(work_, output_);
 }
 
 TEST_F(CalibrateCamera, NamesPhotographsOfAnotherCameraSizeApertureAndFocalLengthAndFilesThatAreNone) {

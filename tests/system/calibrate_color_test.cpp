@@ -247,6 +247,30 @@ Result<SolveReport> solve(const fs::path& session, const fs::path& calibration, 
   return solve_session(input, options, {});
 }
 
+Rgb at(const LoadedImage& image, int x, int y) {
+  return {static_cast<double>(image.planes(x, y, 0)), static_cast<double>(image.planes(x, y, 1)),
+          static_cast<double>(image.planes(x, y, 2))};
+}
+
+/// The matrix's own share is a channel of its own, and that of noise went through the matrix.
+void expect_sigma(const ColorTransform& transform, const LoadedImage& camera, const LoadedImage& plain,
+                  const LoadedImage& sigma) {
+  const View<const float> share = sigma.channel("R.calibration");
+  ASSERT_FALSE(share.empty());
+  EXPECT_TRUE(plain.channel("R.calibration").empty());
+  EXPECT_TRUE(sigma.channel("normal_deg.calibration").empty()) << "nothing is known of the lights";
+  const int x = 150, y = 100;
+  const Rgb a = at(camera, x, y);
+  double variance = 0, noise = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    noise += std::pow(
+        transform.rec709_from_camera[0][i] * static_cast<double>(plain.planes(x, y, static_cast<int>(i))), 2);
+    for (std::size_t j = 0; j < 3; ++j) variance += a[i] * a[j] * transform.covariance[9 * i + j];
+  }
+  EXPECT_NEAR(static_cast<double>(share(x, y)), std::sqrt(variance), 0.01 * std::sqrt(variance));
+  EXPECT_NEAR(static_cast<double>(sigma.channel("R")(x, y)), std::sqrt(noise), 0.01 * std::sqrt(noise));
+}
+
 TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   const Workspace work;
   fs::create_directories(work / "color");
@@ -277,10 +301,6 @@ TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   const ColorTransform& transform = *outcome->calibration.color;
   double worst = 0, off_before = 0, off_after = 0;
   bool below_nothing = false;
-  const auto at = [](const LoadedImage& image, int x, int y) {
-    return Rgb{static_cast<double>(image.planes(x, y, 0)), static_cast<double>(image.planes(x, y, 1)),
-               static_cast<double>(image.planes(x, y, 2))};
-  };
   for (int y = 60; y < 150; y += 3) {
     for (int x = 60; x < 250; x += 3) {
       const Rgb expected = rec709_of_camera(transform, at(*camera, x, y));
@@ -296,22 +316,7 @@ TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   EXPECT_TRUE(below_nothing) << "cyan is outside Rec.709, and stays so";
   EXPECT_LT(off_after, 0.6 * off_before);
 
-  // Sigma: the matrix's own share is a channel of its own, and that of noise went through the matrix.
-  const View<const float> share = sigma->channel("R.calibration");
-  ASSERT_FALSE(share.empty());
-  EXPECT_TRUE(plain->channel("R.calibration").empty());
-  EXPECT_TRUE(sigma->channel("normal_deg.calibration").empty()) << "nothing is known of the lights";
-  const int x = 150, y = 100;
-  const Rgb a = at(*camera, x, y);
-  double variance = 0, noise = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    noise += std::pow(
-        transform.rec709_from_camera[0][i] * static_cast<double>(plain->planes(x, y, static_cast<int>(i))),
-        2);
-    for (std::size_t j = 0; j < 3; ++j) variance += a[i] * a[j] * transform.covariance[9 * i + j];
-  }
-  EXPECT_NEAR(static_cast<double>(share(x, y)), std::sqrt(variance), 0.01 * std::sqrt(variance));
-  EXPECT_NEAR(static_cast<double>(sigma->channel("R")(x, y)), std::sqrt(noise), 0.01 * std::sqrt(noise));
+  expect_sigma(transform, *camera, *plain, *sigma);
 }
 
 }  // namespace

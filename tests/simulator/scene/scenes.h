@@ -44,35 +44,9 @@ inline Spectrum rising_spectrum(double first) {
   return s;
 }
 
-/// A scene of that kind in which no value is as it is by default.
-inline Scene everything(std::size_t number) {
-  const GeometryKind kind = kKinds[number];
-  Scene s;
-  s.fabric = "a \"quoted\" \\ name\twith a tab, caf\xC3\xA9";
-  s.seed = std::int64_t{1} << 62;
-  s.camera = {640,
-              480,
-              1.0 / 3,
-              700.1,
-              Body::kD5100,
-              12,
-              1e5,
-              2.5,
-              200,
-              5.6,
-              1234.5,
-              0.3,
-              {10.5, -20, 30, 1, -2},
-              {-0.05, 0.03, -0.001, 0.0002, -0.0003, 4, -5},
-              {true, 0.25, 0.03},
-              {0.5, 0.25},
-              {3, 0.1},
-              {1.5, 0.7, 0.1, 9},
-              {0.25, 0.4},
-              {-0.02, 0.03},
-              {6, 31, 7, 0.5, 0.6, 0.7, {{{1, 2}, {3, -4}}}, 21, 9999, 3, 0.125}};
-
-  GeometrySettings& g = s.geometry;
+/// A geometry of that kind in which no value is as it is by default.
+inline GeometrySettings every_geometry(GeometryKind kind) {
+  GeometrySettings g;
   g.kind = kind;
   g.cloth_height_mm = 1.5;
   if (kind == GeometryKind::kTilted) g.tilt_deg = 33;
@@ -103,14 +77,18 @@ inline Scene everything(std::size_t number) {
   }
   g.folds = {{2, 30, 10, 5}, {3, 20, -10, 6}};
   g.waves = {{0.25, 70, 80, 90}};
+  return g;
+}
 
-  MaterialSettings& m = s.material;
+/// A cloth in which no value is as it is by default; even numbers have colours, odd ones spectra.
+inline MaterialSettings every_material(std::size_t number) {
+  MaterialSettings m;
   if (number % 2 == 0) {
     m.albedo = {0.7, 0.8, 0.9};
   } else {
     m.dye = rising_spectrum(0.1);
   }
-  if (is_woven(kind)) {
+  if (is_woven(kKinds[number])) {
     if (number % 2 == 0) {
       m.warp_albedo = Rgb{0.1, 0.2, 0.3};
       m.weft_albedo = Rgb{0.4, 0.5, 0.6};
@@ -134,7 +112,37 @@ inline Scene everything(std::size_t number) {
                                            OrenNayar{0.3},
                                            DisneyDiffuse{0.3}};
   m.reflectance = models[number];
+  return m;
+}
 
+/// A scene of that kind in which no value is as it is by default.
+inline Scene everything(std::size_t number) {
+  Scene s;
+  s.fabric = "a \"quoted\" \\ name\twith a tab, caf\xC3\xA9";
+  s.seed = std::int64_t{1} << 62;
+  s.camera = {640,
+              480,
+              1.0 / 3,
+              700.1,
+              Body::kD5100,
+              12,
+              1e5,
+              2.5,
+              200,
+              5.6,
+              1234.5,
+              0.3,
+              {10.5, -20, 30, 1, -2},
+              {-0.05, 0.03, -0.001, 0.0002, -0.0003, 4, -5},
+              {true, 0.25, 0.03},
+              {0.5, 0.25},
+              {3, 0.1},
+              {1.5, 0.7, 0.1, 9},
+              {0.25, 0.4},
+              {-0.02, 0.03},
+              {6, 31, 7, 0.5, 0.6, 0.7, {{{1, 2}, {3, -4}}}, 21, 9999, 3, 0.125}};
+  s.geometry = every_geometry(kKinds[number]);
+  s.material = every_material(number);
   s.lights = {1e7 / 3, {0.4, 1.1, 0.9}, 1.2, 0.5, 0.004, 0.002, 0.003, 0.004, {}, {}};
   s.lights.rings = {{3, 40, 5, 500}, {2, 50, 6, 550}};
   s.lights.leds = {{{1, 2, 300}, Vec3{0, 0.1, -1}, 0.0, Rgb{1, 2, 3}}, {{4, 5, 600}, {}, {}, {}}};
