@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include <hwy/targets.h>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -11,8 +10,12 @@
 #include <random>
 #include <vector>
 
+#include "tests/simd_targets.h"
+
 namespace weft {
 namespace {
+
+using test::on_every_target;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -55,16 +58,6 @@ Image<float> readings_of(const Radiometry& radiometry, const RawFrame& frame, Re
   Image<float> out({tile.width(), tile.height()});
   radiometry.read(frame.counts.plane(), tile, out.plane());
   return out;
-}
-
-template <typename Check>
-void on_every_target(Check check) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    SCOPED_TRACE(hwy::TargetName(target));
-    check();
-  }
-  hwy::SetSupportedTargetsForTest(0);
 }
 
 // One site at a time: black 1000, white 11000, half a second at ISO 400, so that a count is 1e-4 / 2.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stored session and its maps; testdata/golden/README.md says how they were made.
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +10,7 @@
 #include "app/jobs/compare.h"
 #include "app/jobs/solve.h"
 #include "core/image_io/image_io.h"
+#include "tests/simd_targets.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 
@@ -65,20 +65,17 @@ TEST(Golden, TheStoredSessionSolvesToTheStoredMaps) {
 }
 
 TEST(Golden, EverySimdTargetOfThisMachineSolvesToTheStoredMaps) {
-  for (const auto target : hwy::SupportedAndGeneratedTargets()) {
-    SCOPED_TRACE(hwy::TargetName(target));
+  on_every_target([] {
     const Workspace work;
-    hwy::SetSupportedTargetsForTest(target);
     app::SolveOptions options;
     options.method = "fast";
     options.output = work / "maps";
     options.previews = false;
     const Result<app::SolveReport> report =
         app::solve_session({.folder = kSession, .calibration = {}, .leds = {}}, options, {});
-    hwy::SetSupportedTargetsForTest(0);
     ASSERT_TRUE(report) << report.error().message();
     expect_golden_maps(work / "maps");
-  }
+  });
 }
 
 TEST(Golden, AScanOfAnEarlierVersionIsSolvedAndItsSolveOfThenRectified) {
