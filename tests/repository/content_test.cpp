@@ -14,12 +14,30 @@
 namespace weft::repository {
 namespace {
 
-constexpr std::string_view kLicenceLine = "// SPDX-License-Identifier: Apache-2.0";
-constexpr std::string_view kGplLine = "// SPDX-License-Identifier: GPL-3.0-or-later";
+constexpr std::string_view kLicence = "SPDX-License-Identifier: Apache-2.0";
+constexpr std::string_view kGpl = "SPDX-License-Identifier: GPL-3.0-or-later";
 constexpr std::size_t kMostLines = 600;
 
 bool is_source(std::string_view path) {
   return ends_in(path, {".h", ".cpp", ".c"});
+}
+
+/// What begins a comment in files of this kind; "" for those that need no licence line.
+std::string_view comment_mark(std::string_view path, std::string_view text) {
+  if (is_source(path) || path.ends_with(".ts")) return "// ";
+  const bool is_script = text.starts_with("#!");
+  return is_script || ends_in(path, {"CMakeLists.txt", ".cmake", ".sh", ".py"}) ? "# " : "";
+}
+
+/// Whether the first line, or the one after "#!", says under which licence a file is.
+bool names_licence(std::string_view path, std::string_view text) {
+  const std::string_view mark = comment_mark(path, text);
+  const auto lines = lines_of(text);
+  const std::size_t at = text.starts_with("#!") ? 1 : 0;
+  if (lines.size() <= at || !lines[at].starts_with(mark)) return false;
+  const std::string_view said = lines[at].substr(mark.size());
+  const bool may_be_gpl = path.starts_with("virtual_rig/board/");  // links simavr
+  return said == kLicence || (may_be_gpl && said == kGpl);
 }
 
 /// Whether a path that begins with one of these folders of the machine's root starts somewhere in the line,
@@ -53,14 +71,13 @@ std::vector<std::string> forbidden_content(std::string_view path, std::string_vi
   return found;
 }
 
-/// What a source file lacks; nothing for other files.
+/// What a source, a build file or a script lacks; nothing for other files.
 std::vector<std::string> missing_content(std::string_view path, std::string_view text) {
-  if (!is_source(path)) return {};
   std::vector<std::string> found;
+  const bool needs_licence = !comment_mark(path, text).empty();
+  if (needs_licence && !names_licence(path, text)) found.push_back(place(path, 1) + ": no SPDX line");
+  if (!is_source(path)) return found;
   const auto lines = lines_of(text);
-  const bool may_be_gpl = path.starts_with("virtual_rig/board/");  // links simavr
-  if (lines.empty() || (lines[0] != kLicenceLine && !(may_be_gpl && lines[0] == kGplLine)))
-    found.push_back(place(path, 1) + ": no SPDX line");
   // A kernel's -inl.h is read again for every SIMD target.
   const bool read_once = path.ends_with(".h") && !path.ends_with("-inl.h");
   if (read_once && std::ranges::find(lines, "#pragma once") == lines.end()) {
@@ -108,7 +125,7 @@ TEST(Content, ARegistryIsFoundInLockFilesOnly) {
 }
 
 TEST(Content, ASourceWithoutLicenceGuardOrEndIsFound) {
-  const std::string licence = std::string(kLicenceLine) + "\n";
+  const std::string licence = "// " + std::string(kLicence) + "\n";
   std::string lines;
   for (std::size_t i = 1; i < kMostLines; ++i) lines += "\n";
   EXPECT_THAT(missing_content("core/a.h", licence + "#pragma once\n"), testing::IsEmpty());
@@ -120,6 +137,20 @@ TEST(Content, ASourceWithoutLicenceGuardOrEndIsFound) {
   EXPECT_EQ(missing_content("core/a.h", "").size(), 2U);
   EXPECT_EQ(missing_content("core/a.cpp", "\n" + licence).size(), 1U);
   EXPECT_EQ(missing_content("core/a.cpp", licence + lines + "\n").size(), 1U);
+}
+
+TEST(Content, ABuildFileOrAScriptWithoutLicenceIsFound) {
+  const std::string hash = "# " + std::string(kLicence) + "\n", shell = "#!/usr/bin/env bash\n";
+  for (const char* path : {"core/CMakeLists.txt", "cmake/a.cmake", "a.py"}) {
+    EXPECT_THAT(missing_content(path, hash), testing::IsEmpty()) << path;
+    EXPECT_EQ(missing_content(path, "#SPDX - License - Identifier\n").size(), 1U) << path;
+    EXPECT_EQ(missing_content(path, "").size(), 1U) << path;
+  }
+  EXPECT_THAT(missing_content("dev", shell + hash), testing::IsEmpty());
+  EXPECT_EQ(missing_content("dev", shell).size(), 1U);
+  EXPECT_EQ(missing_content("a.sh", shell + "set -e\n" + hash).size(), 1U);
+  EXPECT_THAT(missing_content("app/web/a.ts", "// " + std::string(kLicence)), testing::IsEmpty());
+  EXPECT_EQ(missing_content("app/web/a.ts", hash).size(), 1U);
 }
 
 }  // namespace
