@@ -1,19 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/solve/transport.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <optional>
 #include <span>
 #include <variant>
 #include <vector>
 
+#include "bench/base/bare_embree.h"
 #include "bench/effects/scenes.h"
 #include "core/parallel.h"
 #include "core/tiles.h"
@@ -26,7 +22,6 @@ namespace weft::bench {
 namespace {
 
 using namespace solver;
-using std::chrono::steady_clock;
 
 constexpr int kTransportRepeats = 7;
 constexpr Size kBlock = {1024, 512};
@@ -74,135 +69,34 @@ LightDirections leds_over(const DeepWeave& cloth) {
           }};
 }
 
-/// Embree with nothing of ours around it, on the same heights.
-class BareEmbree {
- public:
-  explicit BareEmbree(const HeightGrid& grid) : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_)) {
-    const Rect area = grid.area();
-    const auto width = static_cast<unsigned>(area.width()), height = static_cast<unsigned>(area.height());
-    rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
-    const RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_QUAD);
-    auto* xyz =
-        static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                    3 * sizeof(float), std::size_t{width} * height));
-    for (int y = area.y0; y < area.y1; ++y) {
-      for (int x = area.x0; x < area.x1; ++x) {
-        *xyz++ = static_cast<float>(x);
-        *xyz++ = static_cast<float>(-y);
-        *xyz++ = grid.relief().z_px(x, y);
-      }
+/// x, y and z of each vertex of a grid.
+std::vector<float> vertices_of(const HeightGrid& grid) {
+  const Rect area = grid.area();
+  std::vector<float> xyz;
+  xyz.reserve(3 * static_cast<std::size_t>(area.pixels()));
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) {
+      xyz.insert(xyz.end(), {static_cast<float>(x), static_cast<float>(-y), grid.relief().z_px(x, y)});
     }
-    auto* corner = static_cast<unsigned*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                  RTC_FORMAT_UINT4, 4 * sizeof(unsigned),
-                                                                  std::size_t{width - 1} * (height - 1)));
-    for (unsigned y = 0; y + 1 < height; ++y) {
-      for (unsigned x = 0; x + 1 < width; ++x) {
-        const unsigned i = y * width + x;
-        for (const unsigned vertex : {i, i + 1, i + width + 1, i + width}) *corner++ = vertex;
-      }
-    }
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene_, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(scene_);
   }
-  ~BareEmbree() {
-    rtcReleaseScene(scene_);
-    rtcReleaseDevice(device_);
-  }
-  BareEmbree(const BareEmbree&) = delete;
-  BareEmbree& operator=(const BareEmbree&) = delete;
+  return xyz;
+}
 
-  double occlude_ns(std::span<const RayPacket> rays) const {
-    RTCIntersectContext singly = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-    RTCIntersectContext together = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-    return std::min(ns_per_ray<RTCRayHit, 1>(
-                        rays, [&](const int*, RTCRayHit& ray) { rtcOccluded1(scene_, &singly, &ray.ray); }),
-                    ns_per_ray<RTCRayHit16, kPacket>(rays, [&](const int* active, RTCRayHit16& packet) {
-                      rtcOccluded16(active, scene_, &together, &packet.ray);
-                    }));
-  }
+void fill(const RayPacket& from, BarePacket& to) {
+  std::copy_n(from.is_active, kPacket, to.is_active.data());
+  RTCRay16& ray = to.rays.ray;
+  std::copy_n(from.start_x, kPacket, ray.org_x);
+  std::copy_n(from.start_y, kPacket, ray.org_y);
+  std::copy_n(from.start_z, kPacket, ray.org_z);
+  std::copy_n(from.direction_x, kPacket, ray.dir_x);
+  std::copy_n(from.direction_y, kPacket, ray.dir_y);
+  std::copy_n(from.direction_z, kPacket, ray.dir_z);
+  std::copy_n(from.length, kPacket, ray.tfar);
+}
 
-  double intersect_ns(std::span<const RayPacket> rays) const {
-    RTCIntersectContext singly = context(RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT);
-    RTCIntersectContext together = context(RTC_INTERSECT_CONTEXT_FLAG_COHERENT);
-    return std::min(ns_per_ray<RTCRayHit, 1>(
-                        rays, [&](const int*, RTCRayHit& ray) { rtcIntersect1(scene_, &singly, &ray); }),
-                    ns_per_ray<RTCRayHit16, kPacket>(rays, [&](const int* active, RTCRayHit16& packet) {
-                      rtcIntersect16(active, scene_, &together, &packet);
-                    }));
-  }
-
- private:
-  static RTCIntersectContext context(RTCIntersectContextFlags flags) {
-    RTCIntersectContext made;
-    rtcInitIntersectContext(&made);
-    made.flags = flags;
-    return made;
-  }
-
-  static void fill(const RayPacket& from, RTCRayHit16& to) {
-    std::copy_n(from.start_x, kPacket, to.ray.org_x);
-    std::copy_n(from.start_y, kPacket, to.ray.org_y);
-    std::copy_n(from.start_z, kPacket, to.ray.org_z);
-    std::copy_n(from.direction_x, kPacket, to.ray.dir_x);
-    std::copy_n(from.direction_y, kPacket, to.ray.dir_y);
-    std::copy_n(from.direction_z, kPacket, to.ray.dir_z);
-    std::copy_n(from.length, kPacket, to.ray.tfar);
-    std::fill_n(to.ray.mask, kPacket, ~0U);
-    std::fill_n(to.hit.geomID, kPacket, RTC_INVALID_GEOMETRY_ID);
-  }
-
-  static void fill(const RayPacket& from, std::size_t lane, RTCRayHit& to) {
-    to.ray.org_x = from.start_x[lane];
-    to.ray.org_y = from.start_y[lane];
-    to.ray.org_z = from.start_z[lane];
-    to.ray.dir_x = from.direction_x[lane];
-    to.ray.dir_y = from.direction_y[lane];
-    to.ray.dir_z = from.direction_z[lane];
-    to.ray.tfar = from.length[lane];
-    to.ray.mask = ~0U;
-    to.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  }
-
-  /// Times trace(active, ray or packet) alone, 64 packets at a time, over the rays that are active.
-  template <typename Ray, int kRays, typename Trace>
-  static double ns_per_ray(std::span<const RayPacket> rays, const Trace& trace) {
-    constexpr std::size_t kAtOnce = 64;
-    std::vector<Ray> ready;
-    std::vector<const int*> active;
-    double least = std::numeric_limits<double>::infinity();
-    std::int64_t traced = 0;
-    for (int repeat = 0; repeat < kTransportRepeats; ++repeat) {
-      auto spent = steady_clock::duration::zero();
-      traced = 0;
-      for (std::size_t first = 0; first < rays.size(); first += kAtOnce) {
-        ready.clear();
-        active.clear();
-        for (const RayPacket& packet : rays.subspan(first, std::min(kAtOnce, rays.size() - first))) {
-          traced += -std::accumulate(packet.is_active, packet.is_active + kPacket, 0);
-          if constexpr (kRays == 1) {
-            for (std::size_t lane = 0; lane < kPacket; ++lane) {
-              if (packet.is_active[lane] != 0) fill(packet, lane, ready.emplace_back());
-            }
-            active.resize(ready.size());
-          } else {
-            fill(packet, ready.emplace_back());
-            active.push_back(packet.is_active);
-          }
-        }
-        const auto begin = steady_clock::now();
-        for (std::size_t i = 0; i < ready.size(); ++i) trace(active[i], ready[i]);
-        spent += steady_clock::now() - begin;
-      }
-      least = std::min(least, std::chrono::duration<double, std::nano>(spent).count());
-    }
-    return least / static_cast<double>(traced);
-  }
-
-  RTCDevice device_;
-  RTCScene scene_;
-};
+BareEmbree::Fill filler_of(std::span<const RayPacket> packets) {
+  return [packets](std::size_t i, BarePacket& packet) { fill(packets[i], packet); };
+}
 
 template <typename T>
 std::vector<View<T>> planes_of(Image<T>& image, Rect part) {
@@ -286,7 +180,7 @@ Result<void> add_shadows(const Measured& m, const BareEmbree& bare, int reach_px
   if (!found) return found;
   const auto packets = shadow_packets(m.grid, m.timed, normals, m.lights, reach_px);
   rows.push_back(traced_row("shadows", static_cast<int>(m.lights.count), seconds, packets,
-                            bare.occlude_ns(packets), m.timed));
+                            bare.occlude_ns(packets.size(), filler_of(packets)), m.timed));
   return found;
 }
 
@@ -306,7 +200,8 @@ Result<void> add_gathers(const Measured& m, const BareEmbree& bare, Rows& rows) 
   for (const int rays : {8, 16, 32, 64, 128}) {
     const double seconds = least_seconds(kTransportRepeats, [&] { (void)gathered(m.timed, rays); });
     const auto packets = gather_packets(m.grid, m.timed, m.cloth.normals_of(m.timed), {.rays = rays});
-    Json row = traced_row("gather", rays, seconds, packets, bare.intersect_ns(packets), m.timed);
+    Json row = traced_row("gather", rays, seconds, packets,
+                          bare.intersect_ns(packets.size(), filler_of(packets)), m.timed);
     const auto found = gathered(m.compared, rays);
     if (!found) return found.error();
     const Errors errors = errors_of(*found, *truth);
@@ -407,7 +302,8 @@ Result<Rows> transport(const TransportOptions& options) {
        {"threads", hardware_threads()},
        {"bytes_per_pixel", static_cast<double>(HeightGrid::bytes_in_use() - bytes_before) / pixels}}};
 
-  const BareEmbree bare(**grid);
+  const Rect area = (*grid)->area();
+  const BareEmbree bare(BareEmbree::Cells::kQuads, vertices_of(**grid), {area.width(), area.height()});
   const Measured measured = {cloth, lights, **grid, {64, 64, 192, 128}, {80, 80, 112, 112}};
   if (auto done = add_shadows(measured, bare, reach_px, rows); !done) return done.error();
   if (auto done = add_gathers(measured, bare, rows); !done) return done.error();
