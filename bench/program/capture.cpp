@@ -12,6 +12,7 @@
 #include "app/cli/terminal.h"
 #include "bench/capture/board.h"
 #include "bench/capture/camera.h"
+#include "bench/capture/evidence.h"
 #include "bench/capture/fault_matrix.h"
 #include "bench/capture/http.h"
 #include "bench/capture/scans.h"
@@ -25,7 +26,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CaptureArguments {
-  std::string part = "scans";  ///< board, camera, scans: of a running rig; faults, http: of what it starts
+  std::string part = "scans";  ///< board, camera, scans: of a running rig; the others: of what they start
   fs::path rig;
   int runs = 0;  ///< commands, shots, scans, runs or requests; 0: as many as docs/reliability.md
   fs::path scene = "testdata/scenes/satin.toml";
@@ -72,8 +73,15 @@ Result<Rows> measure_rig(const CaptureArguments& a, app::ProgressLine& line) {
        .progress = [&](int done) { line.update("scans", static_cast<double>(done) / scans); }});
 }
 
+Result<Rows> measure_evidence(app::ProgressLine& line) {
+  return capture_evidence_table({.scenes = "testdata/scenes", .progress = [&](int done, int scenes) {
+                                   line.update("evidence", static_cast<double>(done) / scenes);
+                                 }});
+}
+
 Result<Rows> measure(const CaptureArguments& a, bool quiet) {
   app::ProgressLine line(quiet);
+  if (a.part == "evidence") return measure_evidence(line);
   if (a.part == "http") return capture_http_table({.requests = a.runs > 0 ? a.runs : 200, .seed = a.seed});
   return a.part == "faults" ? measure_matrix(a, line) : measure_rig(a, line);
 }
@@ -83,8 +91,8 @@ app::Run add_capture(app::Options& options) {
   options
       .add("--part", &a->part,
            "board, camera, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that "
-           "it starts; http: a daemon among hostile clients")
-      .one_of({"board", "camera", "scans", "faults", "http"})
+           "it starts; http: a daemon among hostile clients; evidence: what light tells of LEDs")
+      .one_of({"board", "camera", "scans", "faults", "http", "evidence"})
       .shows_default();
   options.add("--rig", &a->rig, "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
   options

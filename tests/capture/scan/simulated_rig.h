@@ -12,37 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "bench/oracles/simulated_cloth.h"
 #include "capture/devices.h"
-#include "core/calibration.h"
-#include "core/raw_frame.h"
-#include "simulator/scene/rig.h"
-#include "simulator/simulate.h"
+#include "simulator/scene/scene.h"
 
 namespace weft::test {
-
-/// What lights a photograph: how much of each LED's light and how much of the room's reaches it.
-struct Lighting {
-  std::map<int, double> leds;  ///< LED from 1: 1 is all of it
-  double room = 0;             ///< 1: as bright as LED 1 on average
-};
-
-/// A cloth under the LEDs of a scene, rendered once without noise; every photograph is a sum of that with the
-/// noise of its own take.
-class SimulatedCloth {
- public:
-  explicit SimulatedCloth(simulator::Scene scene);
-  RawFrame photograph(const Lighting& lighting, double exposure_us, std::uint32_t take) const;
-
-  int leds() const { return static_cast<int>(calibration_.lights ? light_count(*calibration_.lights) : 0); }
-  const Calibration& calibration() const { return calibration_; }
-  double scene_exposure_us() const { return rig_.exposure_us; }
-
- private:
-  simulator::Scene scene_;
-  simulator::SceneRig rig_;
-  simulator::Rendering rendering_;
-  Calibration calibration_;
-};
 
 /// A plain weave of 96 x 64 photosites, 200 mm wide, under ten LEDs.
 simulator::Scene small_scene();

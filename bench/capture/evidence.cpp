@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/capture/evidence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "bench/oracles/simulated_cloth.h"
+#include "capture/scan/light_evidence.h"
+
+namespace weft::bench {
+namespace {
+
+using capture::Finding;
+using capture::PatchLights;
+using capture::ScanEvidence;
+using test::Lighting;
+using test::SimulatedCloth;
+
+constexpr int kSide = 480;   // photosites: scenes that are larger are seen from further away
+constexpr int kRepeat = -1;  // in the place of a LED: its shot is LED 1 once more
+
+simulator::Scene smaller(simulator::Scene scene) {
+  const int less = std::max(1, scene.camera.width / kSide);
+  scene.camera.width = scene.camera.width / less / 2 * 2;
+  scene.camera.height = scene.camera.height / less / 2 * 2;
+  scene.camera.mm_per_pixel *= less;
+  scene.transport.bounce_rays = 8;
+  return scene;
+}
+
+/// What lights the shot of a LED (0: dark).
+using Story = std::function<Lighting(int led)>;
+
+Lighting plain(int led) {
+  if (led == 0) return {};
+  return {{{led == kRepeat ? 1 : led, 1.0}}, 0};
+}
+
+/// What a scan says of a story.
+struct Told {
+  Finding finding = Finding::kAgrees;
+  std::string sentence;
+  bool warned = false;
+  double least_level = std::numeric_limits<double>::infinity(), most_level = 0, misfit = 0;
+
+  bool is_refused() const { return finding != Finding::kAgrees; }
+};
+
+/// A cloth of which sessions are told. Light adds up, and so do glances at it: each LED is photographed
+/// twice, and every story of a session is a sum.
+class Stage {
+ public:
+  Stage(const SimulatedCloth& cloth, PatchLights model) : cloth_(cloth), model_(std::move(model)) {
+    const ScanEvidence evidence(model_.grid, model_);
+    std::uint32_t take = 1;
+    const auto glance = [&](const Lighting& lighting) {
+      return evidence.glance(cloth.photograph(lighting, cloth.scene_exposure_us(), take++));
+    };
+    dark_ = glance({});
+    room_ = less_dark(glance({{}, 0.3}), 1 / 0.3);
+    for (int led = 1; led <= cloth.leds(); ++led) {
+      for (auto& takes : leds_) takes.push_back(less_dark(glance({{{led, 1.0}}, 0}), 1));
+    }
+  }
+
+  int leds() const { return cloth_.leds(); }
+
+  /// A session as scan() takes it, up to the first frame that is refused.
+  Told tell(const Story& story) const {
+    ScanEvidence evidence(model_.grid, model_);
+    Told told;
+    std::vector<int> leds(static_cast<std::size_t>(cloth_.leds()));
+    std::iota(leds.begin(), leds.end(), 1);
+    for (const auto& shot : capture::plan_shots({leds, true, {}}, {cloth_.scene_exposure_us(), 100, 8}, 0)) {
+      const bool is_repeat = shot.role == ShotRole::kRepeat;
+      std::vector<double> light = seen(story(is_repeat ? kRepeat : shot.led), is_repeat);
+      const capture::ShotVerdict verdict = evidence.judge(shot, light);
+      if (shot.role == ShotRole::kLit && verdict.level) {
+        told.least_level = std::min(told.least_level, *verdict.level);
+        told.most_level = std::max(told.most_level, *verdict.level);
+        told.misfit = std::max(told.misfit, verdict.misfit.value_or(0));
+      }
+      told.warned = told.warned || !verdict.warnings.empty();
+      told.finding = verdict.finding;
+      told.sentence = verdict.sentence;
+      if (told.is_refused()) break;
+      evidence.accept(shot, std::move(light));
+    }
+    return told;
+  }
+
+ private:
+  std::vector<double> less_dark(std::vector<double> light, double times) const {
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] = times * (light[i] - dark_[i]);
+    return light;
+  }
+
+  std::vector<double> seen(const Lighting& lighting, bool again) const {
+    std::vector<double> sum = dark_;
+    const auto add = [&](const std::vector<double>& light, double times) {
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += times * light[i];
+    };
+    for (const auto& [led, share] : lighting.leds)
+      add(leds_[again][static_cast<std::size_t>(led - 1)], share);
+    if (lighting.room > 0) add(room_, lighting.room);
+    return sum;
+  }
+
+  const SimulatedCloth& cloth_;
+  PatchLights model_;
+  std::vector<double> dark_, room_;
+  std::array<std::vector<std::vector<double>>, 2> leds_;
+};
+
+/// Sessions with two LEDs exchanged.
+std::string exchanged(const Stage& stage) {
+  int named = 0, refused = 0, tried = 0;
+  for (int a = 1; a <= stage.leds(); ++a) {
+    for (int b = a + 1; b <= stage.leds(); b += 1 + (a + b) % 3) {
+      const Told told = stage.tell([=](int led) {
+        return plain(led == a ? b : led == b ? a : led == kRepeat && a == 1 ? b : led);
+      });
+      const auto names = [&](int led) {
+        return told.sentence.find(fmt::format("LED {} ", led)) != std::string::npos;
+      };
+      named += names(a) && names(b);
+      refused += told.is_refused();
+      ++tried;
+    }
+  }
+  return fmt::format("{}/{}/{}", named, refused, tried);
+}
+
+/// Sessions in which a LED stays lit from the shot after its own on.
+std::string stays_lit(const Stage& stage) {
+  int named = 0, refused = 0;
+  for (int a = 1; a <= stage.leds(); ++a) {
+    const Told told = stage.tell([=](int led) {
+      Lighting light = plain(led);
+      if (led > a || led == kRepeat) light.leds[a] = 1;
+      return light;
+    });
+    named += told.sentence == fmt::format("LED {} stays lit", a);
+    refused += told.is_refused();
+  }
+  return fmt::format("{}/{}/{}", named, refused, stage.leds());
+}
+
+Json row_of(const std::string& scene, const Stage& stage) {
+  const Told right = stage.tell(plain);
+  const int n = stage.leds();
+  const auto count = [n](const auto& is_found) {
+    int found = 0;
+    for (int led = 1; led <= n; ++led) found += is_found(led);
+    return fmt::format("{}/{}", found, n);
+  };
+  const auto with_room_light = [&](double light) {
+    return count([&](int from) {
+      return stage
+          .tell([=](int led) {
+            Lighting lighting = plain(led);
+            if (led >= from || led == kRepeat) lighting.room = light;
+            return lighting;
+          })
+          .is_refused();
+    });
+  };
+  const auto replaced = [&](int a) {
+    return stage.tell([=](int led) { return plain(led == a ? a % n + 1 : led); }).is_refused();
+  };
+  const auto dead = [&](int a) {
+    return stage.tell([=](int led) { return led == a ? Lighting() : plain(led); }).finding == Finding::kDark;
+  };
+  const auto dim = [&](int a) {
+    const Told told = stage.tell([=](int led) {
+      Lighting light = plain(led);
+      if (led == a) light.leds[a] = 0.4;
+      return light;
+    });
+    return told.warned || told.is_refused();
+  };
+  return {{"scene", scene},
+          {"false_alarm", right.is_refused()},
+          {"false_warning", right.warned},
+          {"least_level", right.least_level},
+          {"most_level", right.most_level},
+          {"misfit", right.misfit},
+          {"exchanged", exchanged(stage)},
+          {"replaced", count(replaced)},
+          {"dead", count(dead)},
+          {"dim", count(dim)},
+          {"stays_lit", stays_lit(stage)},
+          {"room_30", with_room_light(0.3)},
+          {"room_10", with_room_light(0.1)}};
+}
+
+}  // namespace
+
+std::vector<std::string> evidence_scenes() {
+  return {"flat", "plain",   "twill",           "satin",  "smooth", "plain_family", "deep",
+          "demo", "knit",    "satin_sheen",     "velvet", "folds",  "movement",     "drift",
+          "dyes", "shadows", "interreflection", "tilted", "rig"};
+}
+
+Result<Rows> capture_evidence_table(const EvidenceOptions& options) {
+  Rows rows;
+  const std::vector<std::string> scenes = evidence_scenes();
+  for (const std::string& name : scenes) {
+    Result<simulator::Scene> scene = simulator::read_scene(options.scenes / (name + ".toml"));
+    if (!scene) return std::move(scene).error();
+    const SimulatedCloth cloth(smaller(std::move(*scene)));
+    Result<PatchLights> model = PatchLights::make(cloth.calibration(), 0);
+    if (!model) return std::move(model).error();
+    rows.push_back(row_of(name, Stage(cloth, std::move(*model))));
+    options.progress(static_cast<int>(rows.size()), static_cast<int>(scenes.size()));
+  }
+  return rows;
+}
+
+}  // namespace weft::bench

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/capture/evidence.h"
+
+#include <gtest/gtest.h>
+
+namespace weft::bench {
+namespace {
+
+TEST(EvidenceTable, HasNoUndisturbedSessionThatIsRefused) {
+  const Result<Rows> rows = capture_evidence_table({.scenes = WEFT_SOURCE_DIR "/testdata/scenes"});
+  ASSERT_TRUE(rows) << rows.error().message();
+  ASSERT_EQ(rows->size(), evidence_scenes().size());
+  for (const Json& row : *rows) EXPECT_FALSE(row["false_alarm"].get<bool>()) << row;
+}
+
+}  // namespace
+}  // namespace weft::bench
