@@ -72,8 +72,8 @@ TEST_F(HostileClients, OneThatTricklesIsDroppedAtTheDeadline) {
   HttpLimits limits;
   limits.door.request_deadline_s = 0.5;
   start(limits);
-  RawClient slow(port_);
   const auto began = std::chrono::steady_clock::now();
+  RawClient slow(port_);
   while (slow.say("G") && std::chrono::steady_clock::now() - began < seconds(10)) {
     if (slow.closed_within(milliseconds(20))) break;
   }

@@ -184,7 +184,8 @@ TEST(CameraLink, TellsSoWhenTheTimeIsOverWhereNoPhotographComes) {
   const double told_s = told_after_s(bench, taken);
   ASSERT_FALSE(taken);
   EXPECT_EQ(taken.error().what, "no photograph came") << taken.error().message();
-  EXPECT_NEAR(told_s, 2.4, 0.2) << "the exposure, and 2 s for a slow shutter";
+  EXPECT_GE(told_s, 2.4) << "the exposure, and 2 s for a slow shutter";
+  EXPECT_LT(told_s, 3);
 }
 
 TEST(CameraLink, RefusesAnotherCameraThanTheRigs) {
