@@ -50,7 +50,7 @@ struct CameraFacts {
   ExposureSettings exposure;
   double battery = 1;              ///< share left
   double clock_offset_s = 0;       ///< camera's clock minus this machine's
-  double clock_uncertainty_s = 1;  ///< of that
+  double clock_uncertainty_s = 1;  ///< how far off the offset may be
 };
 
 /// A photograph that has landed on this machine's disk, synced.

@@ -22,11 +22,11 @@ struct Photosite {
   friend auto operator<=>(const Photosite&, const Photosite&) = default;
 };
 
-/// A photosite is hot where the dark shot has it this many sigmas above the middle of its neighbours, sigma
-/// being that of this very difference over the frame, from its median absolute deviation,
+/// A hot photosite stands out of the dark shot by both of these: by so many sigmas above the middle of its
+/// neighbours, where sigma is that of all photosites of the frame (from the median absolute deviation),
 inline constexpr double kHotFrom_sigmas = 8;
-/// and by this share of the way from black to white. Less than that the dark shot takes away at the price of
-/// some noise, which on a weave is far less than what neighbours do not know.
+/// and by so large a share of the way from black to white. A weaker one is kept: the dark shot is subtracted
+/// from it, which adds some noise. On a weave that costs far less than a value from its neighbours.
 inline constexpr double kHotFromShare = 0.1;
 /// A photosite is dead where every bright shot has it below this share of its darkest neighbour.
 inline constexpr double kDeadBelow = 0.05;

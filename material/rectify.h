@@ -26,6 +26,7 @@ struct TableGrid {
   Vec3 point_mm(double x, double y) const;
 };
 
+/// What is asked of a grid on the table.
 struct TableGridOptions {
   double mm_per_pixel = 0;  ///< 0: what the camera sees at the grid's centre
   double height_mm = 0;     ///< of the cloth's surface above the table

@@ -41,6 +41,7 @@ std::string text_within(std::string_view text, int width, int scale);
 /// How large text is on something this wide, so that a 1024 pixel preview can be read on a screen.
 int text_scale_for(int width);
 
+/// A picture on a contact sheet.
 struct Panel {
   std::string label;
   std::string note;  ///< a second, fainter line: a scale or a mean

@@ -22,6 +22,7 @@ struct FrameMap {
 };
 std::string frame_map_svg(const FrameMap& map);
 
+/// A shift in the frame.
 struct Arrow {
   double x_px = 0, y_px = 0;    ///< where it begins
   double dx_px = 0, dy_px = 0;  ///< from there to its tip

@@ -15,17 +15,20 @@
 
 namespace weft::report {
 
+/// Rows of text under one header.
 struct Table {
   std::vector<std::string> header = {};             ///< a title over each column; empty: none
   std::vector<std::vector<std::string>> rows = {};  ///< the first cell names the row, the others are numbers
   std::set<std::size_t> alarms = {};                ///< rows, from 0, that a verdict is about: drawn in red
 };
 
+/// A drawing and its label.
 struct Figure {
   std::string label;  ///< written under it
   std::string svg;    ///< report/figures.h, report/plot_svg.h
 };
 
+/// A part of a page under a heading.
 struct Section {
   std::string title;
   std::vector<std::string> paragraphs = {};
@@ -34,6 +37,7 @@ struct Section {
   bool is_answer = false;            ///< its table is what was asked for: on the terminal, too
 };
 
+/// What a report says, before it is HTML.
 struct Page {
   std::string title;              ///< "Camera of rig A, 2026-01-31"
   std::string summary;            ///< one sentence with the numbers that matter most

@@ -11,11 +11,13 @@
 
 namespace weft::report {
 
+/// A mark.
 struct PlotPoint {
   double x = 0, y = 0;     ///< what an axis cannot show is left out (report/axis.h)
   std::string label = {};  ///< written beside the mark; empty: none
 };
 
+/// Points that belong together and share a mark.
 struct PlotSeries {
   std::string name;
   std::vector<PlotPoint> points = {};
@@ -23,6 +25,7 @@ struct PlotSeries {
   bool marked = true;   ///< a mark at every point
 };
 
+/// Series on one pair of axes.
 struct Plot {
   /// Empty: the plot is a figure of a page, which has a caption; it is drawn flatter then.
   std::string title = {};

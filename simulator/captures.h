@@ -12,6 +12,7 @@
 
 namespace weft::simulator {
 
+/// What is taken of a rig.
 struct CapturesOptions {
   /// Of capture_parts(); empty: all that the scene has what is needed for.
   std::vector<std::string> parts;

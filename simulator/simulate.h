@@ -17,6 +17,7 @@
 
 namespace weft::simulator {
 
+/// How a simulation is run, beside what the scene says.
 struct SimulateOptions {
   TileOptions tiles;  ///< tile size and threads: they change no byte
   std::stop_token stop;
@@ -38,12 +39,11 @@ struct SimulationReport {
 };
 
 /// Renders a scene into a session folder: a lit frame for each LED, the retakes it asks for and a dark one as
-/// DNG, session.json, the
-/// exact calibration, and under truth/ normal.exr (X, Y, Z), albedo.exr (R, G, B), height.exr (mm, above the
-/// plane cloth_height_mm) and scene.toml. With cast shadows, for each LED K visibility_ledKK.exr, the share
-/// of it that each point sees; with interreflection indirect_ledKK.exr (R, G, B), the reading of a white
-/// surface by light from the cloth alone. The same scene gives the same bytes. Memory holds a band of rows of
-/// everything.
+/// DNG, session.json and the exact calibration. Under truth/ there are scene.toml, normal.exr (X, Y, Z),
+/// albedo.exr (R, G, B) and height.exr (mm, above the plane cloth_height_mm). With cast shadows there is a
+/// visibility_ledKK.exr for each LED, the share of the LED that each point sees. With interreflection there
+/// is an indirect_ledKK.exr (R, G, B), the reading of a white surface by light from the cloth alone. The same
+/// scene gives the same bytes. Memory holds a band of rows of everything.
 ///
 /// The folder is made aside, with its parents, and renamed when complete: after an error or an interrupt
 /// there is nothing. Errors: kBadData (the scene), kCannotCreate (`session_folder` exists or may not be

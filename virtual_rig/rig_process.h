@@ -15,6 +15,7 @@
 
 namespace weft::virtual_rig {
 
+/// What weft-virtual-rig is started with.
 struct RigProcessOptions {
   std::filesystem::path programs;  ///< folder with weft, weft-camera and weft-virtual-rig
   std::filesystem::path scene;

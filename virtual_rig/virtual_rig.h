@@ -14,6 +14,7 @@
 
 namespace weft::virtual_rig {
 
+/// What a virtual rig is made of.
 struct VirtualRigOptions {
   simulator::Scene scene;                          ///< its camera's body becomes `body`
   simulator::Body body = simulator::Body::kD5100;  ///< or Body::kD80: what the virtual camera says it is

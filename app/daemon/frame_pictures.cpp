@@ -206,7 +206,7 @@ void FramePictures::run() {
     const FrameFile frame = std::move(wanted_.front());
     wanted_.pop_front();
     lock.unlock();
-    // What cannot be made is told to who asks for it.
+    // Why a picture cannot be made is said to whoever asks for it, not here.
     static_cast<void>(make(frame).has_value());
     lock.lock();
   }

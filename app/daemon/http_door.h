@@ -15,6 +15,7 @@
 
 namespace weft::app {
 
+/// How long and how many the door lets wait.
 struct DoorLimits {
   FrameLimits frame;
   double request_deadline_s = 5;  ///< from the connection to the last byte of its request

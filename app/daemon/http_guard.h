@@ -19,6 +19,7 @@ struct GuardRules {
   std::string token;           ///< empty: none is asked for
 };
 
+/// What a visitor who may not come in is answered.
 struct Refused {
   int status = 0;
   Error error;

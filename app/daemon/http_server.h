@@ -13,6 +13,7 @@
 
 namespace weft::app {
 
+/// What clients may take of the server, so that no number of them keeps the others out.
 struct HttpLimits {
   DoorLimits door;
   std::size_t workers = 64;

@@ -13,10 +13,11 @@
 
 namespace weft::app {
 
+/// How a server is run, beside what the rig file says.
 struct RigServerOptions {
   HttpLimits limits = {};
-  bool own_token =
-      false;  ///< where the rig file names none: one of its own, which clients of this user can read
+  /// Where the rig file names no token, the server makes one that clients of this user can read.
+  bool own_token = false;
   Logbook::Say say = {};  ///< hears each line of its log; empty: nobody does
 };
 

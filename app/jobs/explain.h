@@ -31,6 +31,7 @@ struct LevelSeconds {
   double total() const { return read + prepare + solve + write; }
 };
 
+/// What one level would give, and what it would cost.
 struct LevelPrice {
   pipeline::ErrorForecast error;
   LevelSeconds seconds;
@@ -39,6 +40,7 @@ struct LevelPrice {
   std::string name() const { return solver::method_of(error.level).name; }
 };
 
+/// All levels, priced.
 struct Ladder {
   solver::Gates gates;
   std::vector<LevelPrice> levels;  ///< in the order of solver::Level

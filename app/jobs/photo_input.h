@@ -13,6 +13,7 @@
 
 namespace weft::app {
 
+/// Where photographs under distant lights are: one of `folder` and `light_file` is named.
 struct PhotoOptions {
   /// A folder in the layout of the DiLiGenT benchmark (Shi et al., CVPR 2016): filenames.txt,
   /// light_directions.txt and, where they exist, light_intensities.txt (R G B a line) and mask.png.

@@ -17,6 +17,7 @@
 
 namespace weft::app {
 
+/// Which session is solved, and by which of its LEDs.
 struct SessionOptions {
   std::filesystem::path folder;
   std::filesystem::path calibration;  ///< empty: the session's own
@@ -29,12 +30,12 @@ struct SessionPlan {
   Calibration calibration;
   std::vector<Shot> lit;  ///< the shots to solve from, by LED
   std::optional<Shot> dark;
-  std::vector<Shot> repeats;   ///< of those LEDs
-  std::vector<Shot> brackets;  ///< of those LEDs, with an exposure ratio that the calibration measured
+  std::vector<Shot> repeats;   ///< second shots of LEDs in `lit`
+  std::vector<Shot> brackets;  ///< shots of LEDs in `lit` whose exposure ratio the calibration measured
   Size size;
   bool raw = true;                    ///< mosaics; else linear TIFF, PNG or EXR
   Json description;                   ///< for solve.json, and what the id of the solve is made of
-  std::vector<std::string> warnings;  ///< of shots that will not be used
+  std::vector<std::string> warnings;  ///< about shots that will not be used
 
   /// All shots whose frames are read: lit, dark, repeats, brackets.
   std::vector<Shot> frames() const;
@@ -65,6 +66,7 @@ struct SessionConditions {
 /// {"hot_photosites", "brackets", "left_out", "drift"}, those that there are, for solve.json.
 Json json_of(const SessionConditions& conditions);
 
+/// A session in memory, corrected and ready to be solved.
 struct LoadedSession {
   pipeline::Photographs photographs;
   SessionConditions conditions;

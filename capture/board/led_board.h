@@ -15,6 +15,7 @@ struct LedBoardOptions {
   double greeting_s = 4;  ///< how long it may take to say what it is, its bootloader's two seconds included
 };
 
+/// What last began the board anew.
 enum class BoardReset { kUnknown, kPower, kExternal, kBrownOut, kWatchdog };
 const char* name_of(BoardReset reset);  ///< "watchdog"
 

@@ -82,6 +82,7 @@ struct RefusedFrame {
   std::string why;  ///< one sentence with what to do
 };
 
+/// Where a scan stands.
 struct ScanStatus {
   ScanPhase phase = ScanPhase::kConnecting;
   int led = 0;     ///< being photographed
@@ -104,12 +105,14 @@ struct ScanControl {
   const std::atomic<bool>* pause = nullptr;  ///< while true no new shot begins, all LEDs are off
 };
 
+/// How patient a scan is.
 struct ScanOptions {
   double device_patience_s = 30;  ///< how long a device that is gone is waited for before the scan ends
   int tries_per_shot = 3;         ///< takes of one shot before the scan ends
   double lamp_margin_s = 8;       ///< how long a LED may wait for the camera to open its shutter
 };
 
+/// A finished scan.
 struct ScanOutcome {
   Session session;
   int frames_resumed = 0;  ///< that were there before

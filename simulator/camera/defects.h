@@ -18,8 +18,10 @@ struct PhotositeDefect {
   double offset_counts = 0;         ///< of its black level
 };
 
+/// How a photosite is broken: too much charge without light, or none with it.
 enum class DefectKind : std::uint8_t { kHot, kDead };
 
+/// A broken photosite by its place in the frame.
 struct DefectivePhotosite {
   int x = 0, y = 0;
   DefectKind kind = DefectKind::kHot;

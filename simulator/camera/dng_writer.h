@@ -18,7 +18,7 @@ namespace weft::simulator {
 /// What a DNG says about the camera and a RawFrame does not.
 struct DngTags {
   std::string date_time_original;        ///< "2026:01:31 23:59:58" of EXIF; empty: the file names no time
-  std::optional<int> milliseconds = {};  ///< of that time, 0 to 999
+  std::optional<int> milliseconds = {};  ///< of date_time_original, 0 to 999
   std::optional<std::uint32_t> image_number = {};  ///< the body's count of shots
   /// Camera RGB of a neutral patch under the scene's light, green = 1.
   std::array<double, 3> as_shot_neutral = {1, 1, 1};

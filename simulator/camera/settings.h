@@ -42,7 +42,7 @@ struct MovementSettings {
 struct RetakeSettings {
   bool repeat = false;            ///< LED 1 once more, after the last LED
   std::optional<double> bracket;  ///< every LED once more, for so many times the exposure, 0.001 to 100
-  double shutter_error = 0;       ///< of that: the share it gathers beyond what its time says, -0.5 to 1
+  double shutter_error = 0;       ///< share of light a bracket gathers beyond what its time says, -0.5 to 1
 
   bool operator==(const RetakeSettings&) const = default;
 };
@@ -60,7 +60,7 @@ struct BlurSettings {
   double defocus_px = 0;      ///< diameter of the circle of confusion, 0 to 32
   double spread_px = 0;       ///< standard deviation of the point spread, 0 to 5
   double halo_share = 0;      ///< share of the light that goes into a disc around the point, 0 to 0.5
-  double halo_radius_px = 8;  ///< of that disc, 1 to 40
+  double halo_radius_px = 8;  ///< radius of the disc, 1 to 40
 
   bool operator==(const BlurSettings&) const = default;
 };
@@ -97,6 +97,7 @@ enum class Body {
   kD80,     ///< the same sensor by another name: the virtual rig's second body
 };
 
+/// The camera of a scene. A comment that begins with the name of an effect says where the value counts.
 struct CameraSettings {
   int width = 2464;  ///< photosites, even: whole filter cells
   int height = 1632;

@@ -21,6 +21,7 @@
 
 namespace weft::simulator {
 
+/// What an effect can change at most, in sigma of the noise.
 struct EffectBound {
   double sigma = 0;  ///< from 0; infinite where nothing bounds the effect
   std::string why;   ///< a sentence without its full stop

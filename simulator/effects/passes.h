@@ -89,6 +89,7 @@ void for_each_pixel(Rect rect, const Body& body) {
 /// the cloth, which is then summed; once a shot.
 enum class Stage { kSurface, kLight, kShot };
 
+/// One step of rendering.
 struct Pass {
   std::string name;
   std::string does;  ///< one sentence for `weft simulate --explain`
@@ -104,6 +105,7 @@ struct LeftOut {
   double bound_sigma = 0;  ///< what it would change at most, in sigma of the noise; 0 where nobody asked
 };
 
+/// All steps of a frame, and what they need around it.
 struct PassList {
   std::vector<Pass> passes;       ///< in the order they run and of Stage
   int halo = 0;                   ///< pixels around a tile that the passes need

@@ -14,6 +14,7 @@
 
 namespace weft::simulator {
 
+/// The shapes that a cloth can have.
 enum class GeometryKind {
   kFlat,
   kTilted,

@@ -21,6 +21,7 @@ struct Scramble {
 /// seed and stream to stream. A stream is a use of random numbers, such as a LED's shadow or the bounces.
 Scramble scramble_of(std::uint64_t seed, int x, int y, std::uint32_t stream);
 
+/// A point of the unit square.
 struct SquarePoint {
   float u = 0;  ///< in [0, 1), a multiple of 2^-24
   float v = 0;
@@ -28,7 +29,7 @@ struct SquarePoint {
 
 namespace detail {
 
-/// In this order GCC does not take it for a byte swap, which SSE2 has not for vectors.
+/// Written in this order, for else GCC makes a byte swap of it, and SSE2 has none for vectors.
 inline std::uint32_t reversed_bits(std::uint32_t x) {
   x = x << 16 | x >> 16;
   x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);

@@ -25,6 +25,7 @@
 
 namespace weft::simulator {
 
+/// Colour and gloss of the cloth.
 struct MaterialSettings {
   Rgb albedo = {0.5, 0.5, 0.5};
   std::optional<Rgb> warp_albedo;  ///< instead of `albedo` for the warp
@@ -68,6 +69,7 @@ struct LedSettings {
 /// Four LEDs at a zenith angle of 35 degrees and six at 62, turned by 15.
 std::vector<LedRing> default_rings();
 
+/// The LEDs of a scene, and light from elsewhere.
 struct LightSettings {
   double flux = 2e7;                   ///< of the green channel: reading * mm^2 / s at ISO 100
   Rgb white_balance = {0.5, 1, 0.68};  ///< flux by channel is `flux` times this
@@ -143,6 +145,7 @@ enum class FrameFormat {
   kExr,  ///< developed: linear R, G, B as 32-bit floats, 1 at full scale, nothing clipped
 };
 
+/// What damaged pixels hold.
 enum class DamageKind {
   kMissing,    ///< NaN
   kSaturated,  ///< +infinity in EXR frames, white in raw ones
@@ -164,6 +167,7 @@ struct DamageSettings {
   bool operator==(const DamageSettings&) const = default;
 };
 
+/// Everything that a simulation needs to know.
 struct Scene {
   std::string fabric = "simulated cloth";
   std::int64_t seed = 1;  ///< of all random numbers, from 0

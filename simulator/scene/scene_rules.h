@@ -9,6 +9,7 @@
 
 namespace weft::simulator {
 
+/// A combination of keys that makes no sense.
 struct SceneRule {
   const char* key;  ///< the one that the rule speaks of, with dots
   bool (*is_broken)(const Scene&);

@@ -28,11 +28,13 @@ struct Spot {
   double height_mm = 0;  ///< along v
 };
 
+/// A part of a sheet in one ink.
 struct Rectangle {
   double u0_mm, v0_mm, u1_mm, v1_mm;  ///< u0 < u1, v0 < v1
   int ink = kWhiteInk;
 };
 
+/// What is printed on a sheet, as rectangles on a grid of cells.
 class Pattern {
  public:
   /// The first rectangle is the whole sheet; later ones cover earlier ones and stay inside it.

@@ -7,6 +7,7 @@
 
 namespace weft::simulator {
 
+/// What a setting may be, both ends included.
 struct Range {
   double least;
   double most;

@@ -113,6 +113,7 @@ struct SheetSettings {
   bool operator==(const SheetSettings&) const = default;
 };
 
+/// A sheet on the table, and what is printed on it.
 struct TargetSettings {
   PatternSettings pattern;
   Vec3 centre_mm;           ///< of the sheet in the rig frame; -10000 to 10000

@@ -40,6 +40,7 @@ struct TargetPoint {
   double coverage = 1;    ///< share of the pixel; the rest shows what lies behind
 };
 
+/// A sheet on the table as rays meet it.
 class Target {
  public:
   /// `number` is that of the target in its scene, from 0: its grain and waves depend on it and on the seed.

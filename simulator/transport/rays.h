@@ -14,6 +14,7 @@
 
 namespace weft::simulator {
 
+/// How many rays a pixel sends out, and how far.
 struct RaySettings {
   int rays = 1;         ///< a pixel, from 1 to kMostRays; powers of two are best
   double reach_mm = 0;  ///< on the table, over 0: what is farther from the pixel's point is not met

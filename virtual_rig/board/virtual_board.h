@@ -17,6 +17,7 @@ struct VirtualUsb {
   std::string serial = "5573";
 };
 
+/// What a virtual board is made of, and where its host finds it.
 struct VirtualBoardOptions {
   std::filesystem::path firmware;      ///< the ELF that would be flashed
   std::filesystem::path terminal;      ///< a link to make to the pseudo-terminal: what the host opens

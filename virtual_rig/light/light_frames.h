@@ -40,6 +40,7 @@ class MappedFloats {
   std::size_t bytes_ = 0;
 };
 
+/// How light is rendered where the cache has none.
 struct RenderLightOptions {
   TileOptions tiles = {};
   std::stop_token stop = {};

@@ -6,6 +6,7 @@
 /// Numbers of PTP (ISO 15740) and of Nikon's extension to it, as far as a D5100 serves them here.
 namespace weft::virtual_rig::ptp {
 
+/// What a host asks for.
 enum Operation : std::uint16_t {
   kGetDeviceInfo = 0x1001,
   kOpenSession = 0x1002,
@@ -35,6 +36,7 @@ enum Operation : std::uint16_t {
   kInitiateCaptureRecInMedia = 0x9207,
 };
 
+/// How it ended.
 enum ResponseCode : std::uint16_t {
   kOk = 0x2001,
   kGeneralError = 0x2002,
@@ -52,6 +54,7 @@ enum ResponseCode : std::uint16_t {
   kSessionAlreadyOpen = 0x201e,
 };
 
+/// What a camera says without being asked.
 enum Event : std::uint16_t {
   kObjectAdded = 0x4002,
   kDevicePropChanged = 0x4006,
@@ -60,6 +63,7 @@ enum Event : std::uint16_t {
   kCaptureCompleteInSdram = 0xc102,
 };
 
+/// What can be read and set.
 enum PropertyCode : std::uint16_t {
   kBatteryLevel = 0x5001,
   kImageSize = 0x5003,
@@ -91,6 +95,7 @@ enum PropertyCode : std::uint16_t {
   kLiveViewStatus = 0xd1a2,
 };
 
+/// What a file is.
 enum ObjectFormat : std::uint16_t {
   kUndefinedFormat = 0x3000,
   kFolder = 0x3001,

@@ -18,12 +18,14 @@ void put_string(ByteWriter& writer, std::string_view text);
 /// Nothing if cut off, not ended by NUL or not ASCII.
 std::optional<std::string> get_string(ByteReader& reader);
 
+/// What a camera says it is and can do.
 struct DeviceFacts {
   std::string model, serial;
   std::vector<std::uint16_t> operations, events, properties;
 };
 Bytes device_info(const DeviceFacts& facts);
 
+/// What a camera says of a file or a folder.
 struct ObjectFacts {
   std::uint32_t storage = 0;  ///< 0: the body's memory
   std::uint16_t format = 0;

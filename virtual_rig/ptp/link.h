@@ -14,6 +14,7 @@
 /// What passes between a camera's body and the links that carry PTP to it.
 namespace weft::virtual_rig::ptp {
 
+/// An operation that a host asks for.
 struct Request {
   std::uint16_t operation = 0;
   std::array<std::uint32_t, 5> parameters = {};
@@ -41,6 +42,7 @@ struct Payload {
   }
 };
 
+/// What the body answers, and how it is to arrive.
 struct Answer {
   ResponseCode code = kOk;
   std::vector<std::uint32_t> parameters = {};

@@ -12,6 +12,7 @@
 /// PTP/IP (CIPA DC-005) as packets on streams, whatever carries these.
 namespace weft::virtual_rig::ptp {
 
+/// The kinds of packets, as the standard numbers them.
 enum PacketType : std::uint32_t {
   kInitCommandRequest = 1,
   kInitCommandAck,
@@ -29,6 +30,7 @@ enum PacketType : std::uint32_t {
   kPong,
 };
 
+/// A packet without its length.
 struct Packet {
   std::uint32_t type = 0;
   Bytes body;

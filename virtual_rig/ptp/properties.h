@@ -14,6 +14,7 @@ namespace weft::virtual_rig::ptp {
 
 using PropertyValue = std::variant<std::int64_t, std::string>;
 
+/// How a value is encoded, as PTP numbers it.
 enum class PropertyType : std::uint16_t {
   kUint8 = 2,
   kInt16 = 3,
@@ -22,8 +23,10 @@ enum class PropertyType : std::uint16_t {
   kString = 0xffff,
 };
 
+/// Which values a property takes, as PTP numbers it.
 enum class PropertyForm : std::uint8_t { kAny = 0, kRange = 1, kList = 2 };
 
+/// A property, its value, and what it may be set to.
 struct Property {
   std::uint16_t code = 0;
   PropertyType type = PropertyType::kUint8;

@@ -23,7 +23,7 @@ struct CameraExposure {
   double f_number = 0;
   std::uint32_t image_number = 0;  ///< the body's count of shots
   std::string date_time;           ///< by its clock, "2026:01:31 23:59:58"
-  int milliseconds = 0;            ///< of that
+  int milliseconds = 0;            ///< of date_time
 };
 
 /// Makes the file of an exposure: its bytes. Called on a thread of the camera's; what it takes is read-out.
@@ -37,6 +37,7 @@ enum class CameraBody {
   kD80,
 };
 
+/// The camera as it is when it is switched on, and how a host reaches it.
 struct VirtualCameraOptions {
   CameraBody body = CameraBody::kD5100;
   std::string serial = "6000001";

@@ -7,6 +7,7 @@
 /// a Unix socket on one machine, one at a time a connection. A connection that ends is a device that is gone.
 namespace weft::virtual_rig::usb {
 
+/// What the host's side asks for.
 enum class UsbCall : std::uint32_t {
   kDescribe,   ///< replies with a Description
   kConfigure,  ///< set configuration, clear halt: what waits to be read is thrown away
@@ -19,6 +20,7 @@ enum class UsbCall : std::uint32_t {
   kEvents    ///< nothing is called on this connection any more; a reply with data comes an event
 };
 
+/// Before the data of a call.
 struct CallHead {
   UsbCall call;
   std::uint32_t length;
@@ -32,8 +34,10 @@ struct Description {
   std::uint8_t address;
 };
 
+/// How a call ended.
 enum class UsbStatus : std::int32_t { kDone, kBusy, kTimeOut, kStall };
 
+/// Before the data of a reply.
 struct ReplyHead {
   UsbStatus status;
   std::uint32_t length;  ///< of the data that follow

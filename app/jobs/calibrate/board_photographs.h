@@ -36,6 +36,7 @@ struct PrintedBoard {
 /// unknown, missing or wrong; kUsage as check_board().
 Result<PrintedBoard> read_board_file(const std::filesystem::path& file, const BoardSettings& said);
 
+/// One photograph of a board, and what was found in it.
 struct BoardPhotograph {
   std::string name;       ///< of the file
   bool of_table = false;  ///< its name starts with "table"
@@ -46,12 +47,14 @@ struct BoardPhotograph {
   std::string left_out;                        ///< why it is not used; empty: it is
 };
 
+/// All photographs of a folder.
 struct BoardPhotographs {
   std::vector<BoardPhotograph> photographs;  ///< by name
   ShotMetadata camera;  ///< what those that are used agree in: model, serial, f_number, focal_mm
   Size size;
 };
 
+/// What is looked for in a folder of photographs.
 struct BoardFolderOptions {
   std::filesystem::path folder;
   calibration::Board board;

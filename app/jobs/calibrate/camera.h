@@ -12,8 +12,8 @@
 namespace weft::app {
 
 struct CalibrateCameraOptions {
-  std::filesystem::path
-      input;  ///< folder of photographs of one board; those named table... show it on the table
+  /// Folder of photographs of one board; those named table... show it on the table.
+  std::filesystem::path input;
   std::filesystem::path from;    ///< calibration whose other parts are copied; empty: none
   std::filesystem::path output;  ///< the new calibration, which must not be there yet
   std::string rig;               ///< name of the rig; empty: that of `from`, or the input folder's
@@ -21,8 +21,8 @@ struct CalibrateCameraOptions {
   std::string tag_dictionary = "DICT_APRILTAG_36h11";  ///< of the tags on the table
   double most_blur_px = 5;  ///< width of an edge above which a photograph is blurred; 1 to 100
   int least_boards = 5;     ///< photographs that must be usable; 3 to 1000
-  double most_focal_percent =
-      0.3;  ///< predicted sigma of the focal length above which boards are too alike; 0.001 to 10
+  /// Predicted sigma of the focal length above which boards are too alike; 0.001 to 10.
+  double most_focal_percent = 0.3;
 };
 
 /// Measures lens and pose of the camera from photographs of a checkerboard or ChArUco board and writes a

@@ -16,7 +16,7 @@ struct ColorMeasurement {
   std::string reference;  ///< which values the chart was held against
   std::vector<std::string> sources;
   std::vector<int> patches;                       ///< those fitted, from 0
-  std::vector<calibration::ChartSample> samples;  ///< of those, shading and scale of light taken out
+  std::vector<calibration::ChartSample> samples;  ///< of the patches, without shading and scale
   calibration::ColorFit fit;
   std::vector<double> by_curve, curve_left_out;  ///< CIEDE2000 of each, where a curve was fitted
   ColorTransform transform;

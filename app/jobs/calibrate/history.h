@@ -28,20 +28,24 @@ struct AffectedSession {
   bool after_move = false;  ///< taken after that check; else the move may have come after it
 };
 
+/// What became of a rig from its first calibration on.
 struct CalibrationHistory {
   CalibrationReport report;  ///< table and plots of what was measured, and what checks said
   std::vector<AffectedSession> affected;
-  int sessions = 0;                   ///< that were looked at
-  int without_time = 0;               ///< of these: nobody can tell whether a move affects them
+  int sessions = 0;      ///< sessions that were looked at
+  int without_time = 0;  ///< sessions without a time: nobody can tell whether a move affects them
   std::vector<std::string> warnings;  ///< folders that could not be read, and sessions without a time
 };
 
 /// Everything that is known of a rig over time: positions and flux of its LEDs and pose of its camera, from
-/// the calibrations in their order of `measured`, and the results of checks. Affected are sessions that were
-/// taken with the calibration that a check found moved, after the last check of it that passed and saw
-/// LEDs, where those have changed (or since it was measured) and up to the one that did not: the rig moved
-/// somewhere between them; and those taken with it later still, until a check passes again. Errors: kNoInput
-/// where a folder cannot be read or there is no calibration in `rig`.
+/// the calibrations in their order of `measured`, and the results of checks.
+///
+/// A check that fails says that the rig moved at some time since its calibration was measured, or since the
+/// last check of that calibration that passed; where LEDs have changed, since the last one that passed and
+/// saw LEDs. Affected are the sessions taken with the calibration from that time on, until a check passes
+/// again.
+///
+/// Errors: kNoInput where a folder cannot be read or there is no calibration in `rig`.
 Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
                                              const JobContext& context);
 

@@ -9,6 +9,7 @@
 
 namespace weft::app {
 
+/// How lights are found from readings of paper.
 enum class LightsMethod {
   kPhysical,  ///< a model of every LED, the paper and the poses (calibration/lights/physical.h)
   kPerPixel,  ///< its directions and intensities cell by cell (calibration/lights/per_pixel.h)

@@ -12,6 +12,7 @@
 
 namespace weft::app {
 
+/// A grey scale: what its patches reflect, and where it lies.
 struct ScaleSettings {
   std::vector<double> reflectances;  ///< from the first patch to the last
   std::optional<calibration::ChartCorners> corners_px;

@@ -28,6 +28,7 @@ struct SheetCapture {
   std::vector<std::string> lit_sha256;       ///< of its lit frames, by LED
 };
 
+/// Sessions of one sheet in several poses, block by block.
 struct SheetCaptures {
   int block_px = 16;
   int columns = 0, rows = 0;  ///< of blocks
@@ -35,6 +36,7 @@ struct SheetCaptures {
   std::vector<Verdict> warnings;
 };
 
+/// Where the sessions are, and what they were taken with.
 struct SheetCapturesOptions {
   std::filesystem::path folder;  ///< of *.weft
   Calibration calibration;       ///< camera and response; its lights say how many LEDs there are

@@ -12,9 +12,9 @@
 namespace weft::app {
 
 struct CalibrateUpdateOptions {
-  std::filesystem::path session =
-      {};                           ///< taken after the move: any that shows tags, white patches or the sheet
-  std::filesystem::path from = {};  ///< the calibration to update; empty: the session's own
+  /// Taken after the move: any session that shows tags, white patches or the sheet.
+  std::filesystem::path session = {};
+  std::filesystem::path from = {};    ///< the calibration to update; empty: the session's own
   std::filesystem::path sheet = {};   ///< sheet.toml where the session shows that sheet; empty: it does not
   std::filesystem::path output = {};  ///< the new calibration, which must not be there yet
   std::optional<double> paper_delta = {};  ///< of patches and sheet, as CalibrateCheckOptions has it
