@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "capture/scan/plan.h"
 
@@ -22,23 +23,17 @@ constexpr double kMostClippedByMeter = 1e-5;
 constexpr double kPoorRange = 0.5;  // 99.9 percent below less than this share of white
 constexpr double kLongestBracket = 100;
 
-/// What a LED gives a second, from a test shot that could be read.
-struct Rate {
-  int led = 0;
-  double exposure_us = 0;
-  Brightness seen;
-  /// Longest exposure at which the cloth under it is held.
-  double longest_us() const {
-    return exposure_us * std::min(kMeteredTo / seen.bright, kMeteredBelow / std::max(seen.brightest, 1e-9));
-  }
-};
+/// What a LED gives a microsecond.
+double rate_of(const MeteredShot& shot) {
+  return shot.seen.bright / shot.exposure_us;
+}
 
-Json to_json(const Rate& rate) {
-  return {{"led", rate.led},
-          {"exposure_us", rate.exposure_us},
-          {"bright", rate.seen.bright},
-          {"brightest", rate.seen.brightest},
-          {"clipped", rate.seen.clipped}};
+Json to_json(const MeteredShot& shot) {
+  return {{"led", shot.led},
+          {"exposure_us", shot.exposure_us},
+          {"bright", shot.seen.bright},
+          {"brightest", shot.seen.brightest},
+          {"clipped", shot.seen.clipped}};
 }
 
 class Meter {
@@ -52,16 +47,13 @@ class Meter {
 
   Result<Metering> run() {
     if (Result<void> tried = try_leds(); !tried) return tried.error();
-    const Rate& brightest = *std::min_element(rates_.begin(), rates_.end(), [](const Rate& a, const Rate& b) {
-      return a.longest_us() < b.longest_us();
-    });
-    const double wanted_us = brightest.longest_us();
+    const MeteredShot& brightest = *std::ranges::min_element(shots_, {}, &MeteredShot::longest_us);
     Metering metering;
-    metering.exposure_us = longest_below(wanted_us);
+    metering.led = brightest.led;
+    metering.wanted_us = brightest.longest_us();
+    metering.exposure_us = longest_below(metering.wanted_us);
     judge_range(brightest, metering);
-    Json shots = Json::array();
-    for (const Rate& rate : rates_) shots.push_back(to_json(rate));
-    metering.record = {{"led", brightest.led}, {"wanted_us", wanted_us}, {"test_shots", std::move(shots)}};
+    metering.test_shots = std::move(shots_);
     return metering;
   }
 
@@ -83,8 +75,7 @@ class Meter {
     if (Result<void> tried = try_each({bright}); !tried) return tried;
     if (dark == bright) return {};
     if (Result<void> tried = try_each({dark}); !tried) return tried;
-    const auto rate = [](const Rate& r) { return r.seen.bright / r.exposure_us; };
-    const double off = rate(rates_[1]) / rate(rates_[0]) / (*least / *most) - 1;
+    const double off = rate_of(shots_[1]) / rate_of(shots_[0]) / (*least / *most) - 1;
     if (std::abs(off) <= kAgree) return {};
     std::vector<int> others = input_.leds;
     std::erase_if(others, [&](int led) { return led == bright || led == dark; });
@@ -97,22 +88,22 @@ class Meter {
 
   Result<void> try_each(const std::vector<int>& leds) {
     for (const int led : leds) {
-      Result<Rate> rate = try_led(led);
-      if (!rate) return rate.error();
-      rates_.push_back(*rate);
+      const Result<MeteredShot> shot = try_led(led);
+      if (!shot) return shot.error();
+      shots_.push_back(*shot);
     }
     return {};
   }
 
   /// Shorter or longer until the test shot can be read; the next LED starts where this one ended.
-  Result<Rate> try_led(int led) {
+  Result<MeteredShot> try_led(int led) {
     Brightness seen;
     for (int i = 0; i < kMostTries; ++i) {
       Result<Brightness> shot = shoot_(led, exposure_us_);
       if (!shot) return shot.error();
       seen = *shot;
       const bool is_full = seen.clipped > kMostClippedByMeter || seen.brightest > kReadableTo;
-      if (!is_full && seen.bright >= kReadableFrom) return Rate{led, exposure_us_, seen};
+      if (!is_full && seen.bright >= kReadableFrom) return MeteredShot{led, exposure_us_, seen};
       const double step =
           is_full ? kStepDown : std::min(kMostStepUp, 0.5 * kMeteredTo / std::max(seen.brightest, 1e-4));
       const double next_us = settable(std::min(step * exposure_us_, longest_us_));
@@ -129,7 +120,7 @@ class Meter {
   }
 
   /// Speaks where one exposure uses the range poorly: highlights that a few photosites see hold it down.
-  void judge_range(const Rate& brightest, Metering& metering) const {
+  void judge_range(const MeteredShot& brightest, Metering& metering) const {
     const double bright = brightest.seen.bright * metering.exposure_us / brightest.exposure_us;
     if (bright >= kPoorRange) return;
     const double times = std::min(std::round(kMeteredTo / bright), kLongestBracket);
@@ -143,10 +134,20 @@ class Meter {
   const TestShot& shoot_;
   double longest_us_;  ///< a LED that is dead must not cost half a minute a test shot
   double exposure_us_;
-  std::vector<Rate> rates_;
+  std::vector<MeteredShot> shots_;
 };
 
 }  // namespace
+
+double MeteredShot::longest_us() const {
+  return exposure_us * std::min(kMeteredTo / seen.bright, kMeteredBelow / std::max(seen.brightest, 1e-9));
+}
+
+Json to_json(const Metering& metering) {
+  Json shots = Json::array();
+  for (const MeteredShot& shot : metering.test_shots) shots.push_back(to_json(shot));
+  return {{"led", metering.led}, {"wanted_us", metering.wanted_us}, {"test_shots", std::move(shots)}};
+}
 
 Result<Metering> meter(const MeterInput& input, const TestShot& shoot) {
   return Meter(input, shoot).run();

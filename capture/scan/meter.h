@@ -19,11 +19,25 @@ inline constexpr double kMeteredTo = 0.8;
 /// All but one in 100 000 stay below this one.
 inline constexpr double kMeteredBelow = 0.95;
 
-struct Metering {
+/// A test shot that was neither full nor dark.
+struct MeteredShot {
+  int led = 0;
   double exposure_us = 0;
-  std::vector<std::string> warnings;
-  Json record;  ///< for session.json: test shots, what they showed, what was made of it
+  Brightness seen;
+
+  /// The longest exposure at which the cloth under this LED stays below both limits.
+  double longest_us() const;
 };
+
+struct Metering {
+  double exposure_us = 0;  ///< that the camera has
+  int led = 0;             ///< the brightest, which decides
+  double wanted_us = 0;    ///< longest_us() of its test shot
+  std::vector<MeteredShot> test_shots;
+  std::vector<std::string> warnings;
+};
+/// {"led", "wanted_us", "test_shots"} for session.json.
+Json to_json(const Metering& metering);
 
 struct MeterInput {
   std::vector<int> leds;                 ///< that will be lit, from 1

@@ -167,7 +167,7 @@ class Scan {
       if (!metering) return metering.error();
       exposure_.exposure_us = metering->exposure_us;
       warnings_.insert(warnings_.end(), metering->warnings.begin(), metering->warnings.end());
-      record = {{"from", "meter"}, {"meter", metering->record}};
+      record = {{"from", "meter"}, {"meter", to_json(*metering)}};
     }
     bracket_us_ = nearest_time_us(shutter_times_us_, exposure_.exposure_us * list_.bracket.value_or(1));
     record["exposure_us"] = exposure_.exposure_us;

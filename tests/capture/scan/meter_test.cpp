@@ -126,6 +126,21 @@ TEST(Meter, SuggestsABracketWhereHighlightsHoldTheExposure) {
   EXPECT_THAT(metering->warnings.front(), HasSubstr("--bracket 8"));
 }
 
+TEST(Meter, RecordsTheLedThatDecidesAndItsTestShots) {
+  MeterInput input = {{4, 7}, {}, {}, 8000};
+  const Result<Metering> metering = meter(input, [](int led, double us) -> Result<Brightness> {
+    return Brightness{(led == 7 ? 0.4 : 0.2) * us / 8000, (led == 7 ? 0.5 : 0.25) * us / 8000, 0};
+  });
+  ASSERT_TRUE(metering) << metering.error().message();
+  const Json record = to_json(*metering);
+  EXPECT_EQ(record["led"], 7) << record;
+  EXPECT_NEAR(record["wanted_us"].get<double>(), 0.95 / 0.5 * 8000, 1e-6) << "under 0.8 / 0.4 * 8000";
+  ASSERT_EQ(record["test_shots"].size(), 2U);
+  EXPECT_EQ(
+      record["test_shots"][1],
+      Json({{"led", 7}, {"exposure_us", 8000.0}, {"bright", 0.4}, {"brightest", 0.5}, {"clipped", 0.0}}));
+}
+
 TEST(Meter, SaysThatAClothIsTooDarkOrTooBright) {
   MeterInput input = {{3}, {}, thirds_of_stops(), 8000};
   const auto dark = meter(input, [](int, double) -> Result<Brightness> {
