@@ -10,6 +10,7 @@
 #include "app/daemon/error_json.h"
 #include "app/daemon/session_catalog.h"
 #include "app/daemon/watched_camera.h"
+#include "core/error_json.h"
 
 namespace weft::app {
 namespace {
@@ -22,18 +23,6 @@ std::string name_of_session(const capture::ScanRequest& request) {
 
 Error nothing_runs(const std::string& rig, const char* remedy) {
   return {ErrorKind::kTryAgain, "no scan is running", rig, "", remedy};
-}
-
-Json to_json(const capture::CameraFacts& facts) {
-  return {{"model", facts.model},
-          {"serial", facts.serial},
-          {"port", facts.port},
-          {"exposure_us", facts.exposure.exposure_us},
-          {"iso", facts.exposure.iso},
-          {"f_number", facts.exposure.f_number},
-          {"battery", facts.battery},
-          {"clock_offset_s", facts.clock_offset_s},
-          {"clock_uncertainty_s", facts.clock_uncertainty_s}};
 }
 
 /// What every frame is told with, kept or not.
@@ -66,35 +55,17 @@ RigKeeper::~RigKeeper() {
   scan_.request_stop();
 }
 
-const char* RigKeeper::name_of(State state) {
-  switch (state) {
-    case State::kIdle:
-      return "idle";
-    case State::kConnecting:
-      return "connecting";
-    case State::kScanning:
-      return "scanning";
-    case State::kPaused:
-      return "paused";
-    case State::kFailed:
-      return "failed";
-  }
-  return "failed";
-}
-
 Result<void> RigKeeper::begin(capture::ScanRequest request) {
   const std::lock_guard lock(mutex_);
   if (running_ || stopping_) {
     return Error{ErrorKind::kTryAgain, "the rig is busy", rig_.name,
-                 running_ ? "it scans " + name_of_session(*request_) : "the daemon is ending",
+                 running_ ? "it scans " + status_.session : "the daemon is ending",
                  "wait for its end, or cancel it"};
   }
   running_ = true;
-  state_ = State::kConnecting;
   status_ = {};
-  error_.reset();
-  warnings_.clear();
-  facts_.reset();
+  status_.state = RigStatus::State::kConnecting;
+  status_.session = name_of_session(request);
   pause_ = false;
   request_ = request;
   tell_status_locked();
@@ -111,7 +82,7 @@ Result<void> RigKeeper::begin(capture::ScanRequest request) {
 Result<void> RigKeeper::pause() {
   const std::lock_guard lock(mutex_);
   if (!running_) return nothing_runs(rig_.name, "start one");
-  if (status_.phase == capture::ScanPhase::kFinishing) {
+  if (status_.scan.phase == capture::ScanPhase::kFinishing) {
     return Error{ErrorKind::kTryAgain, "the scan is about to end", rig_.name, "its last frame is kept",
                  "wait for its end"};
   }
@@ -123,7 +94,8 @@ Result<void> RigKeeper::resume() {
   std::optional<capture::ScanRequest> again;
   {
     const std::lock_guard lock(mutex_);
-    const bool finished = state_ == State::kIdle && status_.phase == capture::ScanPhase::kComplete;
+    const bool finished =
+        status_.state == RigStatus::State::kIdle && status_.scan.phase == capture::ScanPhase::kComplete;
     if (!running_ && request_ && !finished) again = request_;
     if (!running_ && !again) {
       return nothing_runs(rig_.name, "start a scan with the name of the session to be resumed");
@@ -157,8 +129,8 @@ Result<RigDevices> RigKeeper::open_devices(const std::stop_token& cancel) {
       return devices;
     log_once("waiting", devices.error().message());
     std::unique_lock lock(mutex_);
-    if (std::string why = devices.error().message(); why != status_.why) {
-      status_.why = std::move(why);
+    if (std::string why = devices.error().message(); why != status_.scan.why) {
+      status_.scan.why = std::move(why);
       tell_status_locked();
     }
     ended_.wait_for(lock, cancel, kBetweenSearches, [] { return false; });
@@ -175,7 +147,7 @@ Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanReq
   if (!devices) return std::move(devices).error();
   {
     const std::lock_guard lock(mutex_);
-    devices_open_ = true;
+    status_.devices_open = true;
   }
   WatchedCamera camera(*devices->camera, [this](const capture::CameraFacts& facts) { on_facts(facts); });
   const capture::ScanEvents events = {
@@ -201,16 +173,16 @@ void RigKeeper::on_status(const capture::ScanStatus& status) {
     logged_.clear();
   }
   const std::lock_guard lock(mutex_);
-  status_ = status;
+  status_.scan = status;
   switch (status.phase) {
     case capture::ScanPhase::kConnecting:
-      state_ = State::kConnecting;
+      status_.state = RigStatus::State::kConnecting;
       break;
     case capture::ScanPhase::kPaused:
-      state_ = State::kPaused;
+      status_.state = RigStatus::State::kPaused;
       break;
     default:
-      state_ = State::kScanning;  // until on_end() says how it ended
+      status_.state = RigStatus::State::kScanning;  // until on_end() says how it ended
   }
   tell_status_locked();
 }
@@ -239,7 +211,7 @@ void RigKeeper::on_refused(const capture::ScanRequest& request, const capture::R
 
 void RigKeeper::on_facts(const capture::CameraFacts& facts) {
   const std::lock_guard lock(mutex_);
-  facts_ = facts;
+  status_.camera = facts;
 }
 
 void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome) {
@@ -251,57 +223,34 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
     record["warnings"] = outcome->warnings;
     log_.add("scan_complete", name_of_session(request), std::move(record));
   } else {
-    record["error"] = error_document(outcome.error())["error"];
+    record["error"] = json_of(outcome.error());
     log_.add(cancelled ? "scan_cancelled" : "scan_failed", outcome.error().message(), std::move(record));
   }
   const std::lock_guard lock(mutex_);
   if (outcome) {
-    status_.phase = capture::ScanPhase::kComplete;
-    warnings_ = outcome->warnings;
+    status_.scan.phase = capture::ScanPhase::kComplete;
+    status_.warnings = outcome->warnings;
   } else {
-    status_.phase = cancelled ? capture::ScanPhase::kCancelled : capture::ScanPhase::kFailed;
-    status_.why = outcome.error().message();
-    if (!cancelled) error_ = outcome.error();
+    status_.scan.phase = cancelled ? capture::ScanPhase::kCancelled : capture::ScanPhase::kFailed;
+    status_.scan.why = outcome.error().message();
+    if (!cancelled) status_.error = outcome.error();
   }
-  state_ = outcome || cancelled ? State::kIdle : State::kFailed;
-  status_.led = 0;
+  status_.state = outcome || cancelled ? RigStatus::State::kIdle : RigStatus::State::kFailed;
+  status_.scan.led = 0;
+  status_.devices_open = false;
   running_ = false;
-  devices_open_ = false;
   tell_status_locked();
   ended_.notify_all();
 }
 
-Json RigKeeper::status() const {
+RigStatus RigKeeper::status() const {
   const std::lock_guard lock(mutex_);
-  return status_locked();
+  return status_;
 }
 
 std::string RigKeeper::session() const {
   const std::lock_guard lock(mutex_);
-  return running_ ? name_of_session(*request_) : "";
-}
-
-Json RigKeeper::status_locked() const {
-  const Json nothing;
-  return {{"rig", rig_.name},
-          {"state", name_of(state_)},
-          {"phase", request_ ? Json(capture::name_of(status_.phase)) : nothing},
-          {"session", request_ ? Json(name_of_session(*request_)) : nothing},
-          {"led", status_.led},
-          {"frames", status_.frames},
-          {"frames_planned", status_.frames_planned},
-          {"exposure_us", status_.exposure_us},
-          {"why", status_.why},
-          {"error", error_ ? error_document(*error_)["error"] : nothing},
-          {"warnings", warnings_},
-          {"devices",
-           {{"board", {{"port", rig_.board.port}, {"leds", rig_.leds}, {"open", devices_open_}}},
-            {"camera",
-             {{"profile", rig_.camera.profile},
-              {"port", rig_.camera.port},
-              {"serial", rig_.camera.serial},
-              {"open", devices_open_},
-              {"says", facts_ ? to_json(*facts_) : nothing}}}}}};
+  return running_ ? status_.session : "";
 }
 
 }  // namespace weft::app

@@ -13,10 +13,10 @@
 #include "app/daemon/event_log.h"
 #include "app/daemon/frame_pictures.h"
 #include "app/daemon/logbook.h"
+#include "app/daemon/rig_status.h"
 #include "capture/devices.h"
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
-#include "core/json_document.h"
 #include "core/result.h"
 
 namespace weft::app {
@@ -55,9 +55,7 @@ class RigKeeper {
   Result<void> resume();
   Result<void> cancel();
 
-  /// {"rig", "state", "phase", "session", "led", "frames", "frames_planned", "exposure_us", "why", "error",
-  /// "warnings", "devices"}
-  Json status() const;
+  RigStatus status() const;
   /// The name of the session being scanned; empty: none.
   std::string session() const;
 
@@ -65,8 +63,6 @@ class RigKeeper {
   bool stop(std::chrono::milliseconds most);
 
  private:
-  enum class State { kIdle, kConnecting, kScanning, kPaused, kFailed };
-  static const char* name_of(State state);
   Result<RigDevices> open_devices(const std::stop_token& cancel);
   Result<capture::ScanOutcome> scan_with_devices(const capture::ScanRequest& request,
                                                  const std::stop_token& cancel);
@@ -76,8 +72,7 @@ class RigKeeper {
   void on_facts(const capture::CameraFacts& facts);
   void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome);
   void log_once(const char* event, const std::string& why);
-  Json status_locked() const;
-  void tell_status_locked() { events_.add("status", status_locked()); }
+  void tell_status_locked() { events_.add("status", to_json(status_, rig_)); }
 
   const capture::Rig rig_;
   const OpenDevices open_;
@@ -88,15 +83,10 @@ class RigKeeper {
 
   mutable std::mutex mutex_;
   std::condition_variable_any ended_;  ///< or asked to end
-  State state_ = State::kIdle;
   bool running_ = false;
-  bool devices_open_ = false;
   bool stopping_ = false;
-  capture::ScanStatus status_;
+  RigStatus status_;
   std::optional<capture::ScanRequest> request_;  ///< the last one
-  std::optional<Error> error_;
-  std::vector<std::string> warnings_;
-  std::optional<capture::CameraFacts> facts_;
   std::atomic<bool> pause_ = false;
   std::string logged_;  ///< the last trouble that log_once() wrote; the scan's own
   std::jthread scan_;

@@ -18,7 +18,7 @@ namespace {
 constexpr int kAccepted = 202, kBusy = 503;
 
 Result<Reply> whole_status(const RigParts& parts) {
-  Json status = parts.keeper.status();
+  Json status = to_json(parts.keeper.status(), parts.rig);
   const std::string session = parts.keeper.session();
   Json resumable = Json::array();
   for (const Json& name : parts.sessions.resumable()) {
@@ -46,7 +46,7 @@ template <typename Step>
 Result<Reply> after(const RigParts& parts, const Call& call, const Step& step) {
   if (const Result<Json> body = parse_body(call.body); !body) return body.error();
   if (Result<void> done = step(); !done) return std::move(done).error();
-  return json_reply(parts.keeper.status(), kAccepted);
+  return json_reply(to_json(parts.keeper.status(), parts.rig), kAccepted);
 }
 
 /// Too many pictures at once is this server's fault, not a conflict with the rig's state.
