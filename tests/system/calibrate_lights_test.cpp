@@ -377,6 +377,15 @@ TEST_F(CalibrateLights, RefusesASheetThatMovedBetweenItsPhotographs) {
   EXPECT_THAT(refusal(), AnyOf(HasSubstr("contradict each other"), HasSubstr("not an even, flat white")));
 }
 
+TEST_F(CalibrateLights, RefusesAFrameThatIsNotTheOneThatWasCaptured) {
+  const Session session = *read_session(options_.input / "sheet2.weft");
+  const fs::path file = session.path_of(*session.lit()[3]);
+  fs::copy_file(session.path_of(*session.lit()[2]), file, fs::copy_options::overwrite_existing);
+  const std::string message = refusal();
+  EXPECT_THAT(message, HasSubstr("frame is not the one that was captured"));
+  EXPECT_THAT(message, HasSubstr(file.filename().string()));
+}
+
 TEST_F(CalibrateLights, NamesALedThatDidNotLight) {
   replace(3, [&](simulator::Scene& scene) {
     scene.damage.push_back({.kind = simulator::DamageKind::kBlack, .first_led = 4, .last_led = 4});
