@@ -8,6 +8,8 @@ set(CMAKE_C_FLAGS_RELEASE "-O2 -DNDEBUG")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
 
+# Presets that are built whole compile eight files of a target at a time: a name of an unnamed namespace stands once
+# in a target. The preset dev compiles each by itself, and so shows what it forgot to include.
 set(WEFT_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=: address,undefined or thread")
 option(WEFT_PLAIN_THREADS "parallel_for on plain threads instead of oneTBB, which ThreadSanitizer cannot see into" OFF)
 option(WEFT_FUZZERS "Build the libFuzzer programs (clang only)" OFF)
@@ -22,6 +24,10 @@ target_compile_options(weft_settings INTERFACE
 target_compile_options(weft_settings INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow
   -Wno-stringop-overread>)
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # A class of one file whose member is of that file's unnamed namespace: GCC takes the file for a header.
+  target_compile_options(weft_settings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
+endif()
 target_link_options(weft_settings INTERFACE -fuse-ld=lld)
 target_link_libraries(weft_settings INTERFACE fmt::fmt)  # in the precompiled headers, so alike in every target
 if(WEFT_FUZZERS)
@@ -62,6 +68,11 @@ function(weft_library name)
   if(NOT ARG_PLAIN)
     target_precompile_headers(${name} REUSE_FROM weft_precompiled)
   endif()
+endfunction()
+
+# weft_vector_code(SOURCES...): what Highway compiles once a target, and so includes itself.
+function(weft_vector_code)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
 endfunction()
 
 # weft_test(NAME DEPENDS ... SOURCES ...): one test program, one CTest entry.
