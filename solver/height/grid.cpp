@@ -17,7 +17,7 @@ int threads_for(Size size, int threads) {
 struct Weights {
   const float *left, *upper, *lower;
 
-  Weights(const Level& level, int y)
+  Weights(const GridLevel& level, int y)
       : left(level.left_weight.row(y)),
         upper(level.upper_weight.row(y)),
         lower(level.upper_weight.row(y + 1)) {}
@@ -93,8 +93,8 @@ void for_each_row(Size size, int threads, const Body& body) {
   });
 }
 
-Level coarser(const Level& fine, int threads) {
-  Level level(Size{(fine.size().width + 1) / 2, (fine.size().height + 1) / 2});
+GridLevel coarser(const GridLevel& fine, int threads) {
+  GridLevel level(Size{(fine.size().width + 1) / 2, (fine.size().height + 1) / 2});
   for_each_row(level.size(), threads, [&](int y) {
     const float *left = fine.left_weight.row(2 * y), *left_below = fine.left_weight.row(2 * y + 1);
     const float* upper = fine.upper_weight.row(2 * y);
@@ -108,11 +108,11 @@ Level coarser(const Level& fine, int threads) {
 
 }  // namespace
 
-void add_coarser_levels(std::vector<Level>& levels, int threads) {
+void add_coarser_levels(std::vector<GridLevel>& levels, int threads) {
   while (levels.back().size().pixels() > 1) levels.push_back(coarser(levels.back(), threads));
 }
 
-void relax(Level& level, float damping, int threads) {
+void relax(GridLevel& level, float damping, int threads) {
   for_each_row(level.size(), threads, [&](int y) {
     relax_row(Weights(level, y), Neighbourhood(level.height, y), level.source.row(y), damping,
               level.size().width, level.scratch.row(y));
@@ -120,7 +120,7 @@ void relax(Level& level, float damping, int threads) {
   std::swap(level.height, level.scratch);
 }
 
-void relax_from_zero(Level& level, float damping, int threads) {
+void relax_from_zero(GridLevel& level, float damping, int threads) {
   for_each_row(level.size(), threads, [&](int y) {
     const Weights w(level, y);
     const float* source = level.source.row(y);
@@ -129,13 +129,13 @@ void relax_from_zero(Level& level, float damping, int threads) {
   });
 }
 
-void apply_row(const Level& level, const Plane& h, int y, float* __restrict out) {
+void apply_row(const GridLevel& level, const Plane& h, int y, float* __restrict out) {
   const Weights w(level, y);
   const Neighbourhood around(h, y);
   for (int x = 0; x < level.size().width; ++x) out[x] = around.outflow(w, x);
 }
 
-void find_residual(Level& level, int threads) {
+void find_residual(GridLevel& level, int threads) {
   for_each_row(level.size(), threads, [&](int y) {
     const Weights w(level, y);
     const Neighbourhood h(level.height, y);
@@ -145,7 +145,7 @@ void find_residual(Level& level, int threads) {
   });
 }
 
-void restrict_residual(const Level& fine, Level& coarse, int threads) {
+void restrict_residual(const GridLevel& fine, GridLevel& coarse, int threads) {
   const int width = fine.size().width;
   for_each_band(coarse.size().height, threads_for(fine.size(), threads), [&](int y0, int y1, int) {
     std::vector<float> sums(static_cast<std::size_t>(width) + 3, 0.0f);  // framed with zeros, as a Plane
@@ -156,7 +156,7 @@ void restrict_residual(const Level& fine, Level& coarse, int threads) {
   });
 }
 
-void add_from_coarse(const Level& coarse, Level& fine, int threads) {
+void add_from_coarse(const GridLevel& coarse, GridLevel& fine, int threads) {
   const int width = fine.size().width;
   for_each_band(coarse.size().height, threads_for(fine.size(), threads), [&](int y0, int y1, int) {
     std::vector<float> above(static_cast<std::size_t>(width) + 1), here(above), below(above);

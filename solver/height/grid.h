@@ -28,9 +28,9 @@ class Plane {
 };
 
 /// One level of a pyramid for sum over neighbours of w (h(here) - h(there)) = source(here).
-struct Level {
-  Level() = default;
-  explicit Level(Size size)
+struct GridLevel {
+  GridLevel() = default;
+  explicit GridLevel(Size size)
       : left_weight(size), upper_weight(size), source(size), height(size), scratch(size) {}
   Size size() const { return height.size(); }
 
@@ -41,21 +41,21 @@ struct Level {
 /// Levels below `finest`, whose sizes are halved until one pixel is left. An edge there weighs half the sum
 /// of the two edges it stands for: right for open ground and for a line of single pixels alike, and no edge
 /// means no way.
-void add_coarser_levels(std::vector<Level>& levels, int threads);
+void add_coarser_levels(std::vector<GridLevel>& levels, int threads);
 
 /// height += damping * (source - what the heights give) / diagonal: a Jacobi step, in whatever order.
-void relax(Level& level, float damping, int threads);
+void relax(GridLevel& level, float damping, int threads);
 /// The same from height 0.
-void relax_from_zero(Level& level, float damping, int threads);
+void relax_from_zero(GridLevel& level, float damping, int threads);
 /// scratch = source - what the heights give.
-void find_residual(Level& level, int threads);
+void find_residual(GridLevel& level, int threads);
 /// coarse.source = transpose of add_from_coarse, of fine.scratch.
-void restrict_residual(const Level& fine, Level& coarse, int threads);
+void restrict_residual(const GridLevel& fine, GridLevel& coarse, int threads);
 /// fine.height += coarse.height, interpolated bilinearly between cells; a neighbour without an edge is taken
 /// as equal, so that nothing leaks over a gap.
-void add_from_coarse(const Level& coarse, Level& fine, int threads);
+void add_from_coarse(const GridLevel& coarse, GridLevel& fine, int threads);
 
 /// What the heights `h` give at row y: sum of w (h(here) - h(there)).
-void apply_row(const Level& level, const Plane& h, int y, float* out);
+void apply_row(const GridLevel& level, const Plane& h, int y, float* out);
 
 }  // namespace weft::solver

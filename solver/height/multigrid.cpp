@@ -18,8 +18,8 @@ namespace {
 constexpr float kDampings[2] = {0.5664f, 1.5763f};
 
 // One V(2,2) cycle for the level's source, from height 0.
-void v_cycle(std::vector<Level>& levels, std::size_t l, int threads) {
-  Level& level = levels[l];
+void v_cycle(std::vector<GridLevel>& levels, std::size_t l, int threads) {
+  GridLevel& level = levels[l];
   relax_from_zero(level, kDampings[0], threads);
   relax(level, kDampings[1], threads);
   if (l + 1 == levels.size()) return;
@@ -30,7 +30,7 @@ void v_cycle(std::vector<Level>& levels, std::size_t l, int threads) {
   for (const float damping : kDampings) relax(level, damping, threads);
 }
 
-void fill_finest(const Slopes& slopes, const SlopeSurvey& survey, Level& level, int threads) {
+void fill_finest(const Slopes& slopes, const SlopeSurvey& survey, GridLevel& level, int threads) {
   const int width = slopes.size().width;
   for_each_band(slopes.size().height, threads, [&](int y0, int y1, int) {
     std::vector<double> source(static_cast<std::size_t>(width));
@@ -59,7 +59,7 @@ double dot_of(const Plane& a, const Plane& b, int threads) {
 }
 
 // direction = height + keep * direction
-void turn(const Level& level, double keep, Plane& direction, int threads) {
+void turn(const GridLevel& level, double keep, Plane& direction, int threads) {
   const auto factor = static_cast<float>(keep);
   for_each_band(level.size().height, threads, [&](int y0, int y1, int) {
     for (int y = y0; y < y1; ++y) {
@@ -71,14 +71,14 @@ void turn(const Level& level, double keep, Plane& direction, int threads) {
 }
 
 // scratch = A direction
-void apply(Level& level, const Plane& direction, int threads) {
+void apply(GridLevel& level, const Plane& direction, int threads) {
   for_each_band(level.size().height, threads, [&](int y0, int y1, int) {
     for (int y = y0; y < y1; ++y) apply_row(level, direction, y, level.scratch.row(y));
   });
 }
 
 // solution += step * direction, source -= step * scratch
-void advance(Level& level, const Plane& direction, double step, View<float> solution, int threads) {
+void advance(GridLevel& level, const Plane& direction, double step, View<float> solution, int threads) {
   const auto factor = static_cast<float>(step);
   for_each_band(level.size().height, threads, [&](int y0, int y1, int) {
     for (int y = y0; y < y1; ++y) {
@@ -96,11 +96,11 @@ void advance(Level& level, const Plane& direction, double step, View<float> solu
 
 MultigridReport solve_weighted(const Slopes& slopes, const SlopeSurvey& survey, const Islands& islands,
                                double tolerance, int most_cycles, View<float> height, int threads) {
-  std::vector<Level> levels;
+  std::vector<GridLevel> levels;
   levels.emplace_back(slopes.size());
   fill_finest(slopes, survey, levels.front(), threads);
   add_coarser_levels(levels, threads);
-  Level& finest = levels.front();
+  GridLevel& finest = levels.front();
   Plane direction(slopes.size());
   const double start = std::sqrt(dot_of(finest.source, finest.source, threads));
   if (start == 0) return {};

@@ -57,9 +57,9 @@ SlopeLevel halved(const SlopeLevel& fine, int threads) {
 
 // The guesses L, R, U and D of a pixel are its neighbours' heights plus steps: their mean is a Jacobi step of
 // damping 1 for weights 1 and the sum of the steps as source.
-Level system_of(const SlopeLevel& slopes, bool signs_as_printed, int threads) {
+GridLevel system_of(const SlopeLevel& slopes, bool signs_as_printed, int threads) {
   const Size size = slopes.size();
-  Level level(size);
+  GridLevel level(size);
   const float back = signs_as_printed ? 1.0f : -1.0f;
   for_each_band(size.height, threads, [&](int y0, int y1, int) {
     for (int y = y0; y < y1; ++y) {
@@ -78,10 +78,10 @@ Level system_of(const SlopeLevel& slopes, bool signs_as_printed, int threads) {
   return level;
 }
 
-Level height_from_slopes(const SlopeLevel& slopes, const RelaxationOptions& options, int threads) {
-  if (slopes.size().pixels() == 1) return Level(slopes.size());
-  const Level coarse = height_from_slopes(halved(slopes, threads), options, threads);
-  Level level = system_of(slopes, options.signs_as_printed, threads);
+GridLevel height_from_slopes(const SlopeLevel& slopes, const RelaxationOptions& options, int threads) {
+  if (slopes.size().pixels() == 1) return GridLevel(slopes.size());
+  const GridLevel coarse = height_from_slopes(halved(slopes, threads), options, threads);
+  GridLevel level = system_of(slopes, options.signs_as_printed, threads);
   add_from_coarse(coarse, level, threads);
   for (int i = 0; i < options.relaxations; ++i) relax(level, 1, threads);
   return level;
@@ -91,7 +91,7 @@ Level height_from_slopes(const SlopeLevel& slopes, const RelaxationOptions& opti
 
 void solve_as_seed(const Slopes& slopes, const SlopeSurvey& survey, const RelaxationOptions& options,
                    View<float> height, int threads) {
-  const Level level = height_from_slopes(finest_slopes(slopes, survey, threads), options, threads);
+  const GridLevel level = height_from_slopes(finest_slopes(slopes, survey, threads), options, threads);
   for (int y = 0; y < height.height(); ++y) {
     std::copy_n(level.height.row(y), height.width(), height.row(y));
   }

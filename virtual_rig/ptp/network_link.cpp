@@ -104,7 +104,9 @@ void NetworkLink::serve(int fd) {
 
 void NetworkLink::serve_host(int fd) {
   const WriteBytes write = [fd](auto parts) { return write_all(fd, parts); };
-  const auto turn_away = [&] { write_packet(write, kInitFail, ByteWriter().put(kRejected).take()); };
+  const auto turn_away = [&] {
+    write_packet(write, PacketType::kInitFail, ByteWriter().put(kRejected).take());
+  };
   if (!take_seat()) return turn_away();
   if (!body_.admit_to_network()) {
     turn_away();

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 constexpr Size kSumFrame = {160, 128};
 
 // Two LEDs over a scene of stripes, by themselves and together, at several exposures.
-struct Capture {
+struct SuperposedCapture {
   VirtualSensor sensor = VirtualSensor::of(simulator::Body::kOffset);
   double drift = 0;    // the first LED is brighter by this beside the second
   double ambient = 0;  // of full scale at the longest exposure
@@ -61,7 +61,7 @@ struct Capture {
 
 TEST(Superposition, FindsABendOfHalfAPercentAndItsSigma) {
   for (const bool knows_dark : {true, false}) {
-    Capture capture;
+    SuperposedCapture capture;
     capture.sensor.linearity = {0.02, 0.01};
     capture.ambient = knows_dark ? 0.001 : 0;
     capture.take(knows_dark);
@@ -82,7 +82,7 @@ TEST(Superposition, FindsABendOfHalfAPercentAndItsSigma) {
 
 TEST(Superposition, FindsTheBlackLevelWithoutADarkFrame) {
   for (const double wrong_counts : {0.0, 12.0}) {
-    Capture capture;
+    SuperposedCapture capture;
     capture.sensor = VirtualSensor::of(simulator::Body::kD5100);
     capture.take(false);
     for (BlockLight& light : capture.lights) {
@@ -98,7 +98,7 @@ TEST(Superposition, FindsTheBlackLevelWithoutADarkFrame) {
 }
 
 TEST(Superposition, IsNotMisledByALedThatIsBrighterTheSecondTime) {
-  Capture capture;
+  SuperposedCapture capture;
   capture.drift = 0.002;
   capture.take(true);
   SuperpositionNoise noise = capture.noise();
@@ -113,7 +113,7 @@ TEST(Superposition, IsNotMisledByALedThatIsBrighterTheSecondTime) {
 }
 
 TEST(Superposition, SeesThatOneOfTheTwoDidNotLight) {
-  Capture capture;
+  SuperposedCapture capture;
   capture.take(true);
   EXPECT_NEAR(sum_over_both(capture.superposed[1]), 1, 0.01);
   SuperposedLight broken = capture.superposed[1];
@@ -122,7 +122,7 @@ TEST(Superposition, SeesThatOneOfTheTwoDidNotLight) {
 }
 
 TEST(Superposition, RefusesPairsThatAreFull) {
-  Capture capture;
+  SuperposedCapture capture;
   capture.take(true);
   for (BlockLight& light : capture.lights) {
     for (auto& block : light.blocks) block = {};

@@ -129,7 +129,7 @@ TEST(Multigrid, SolvesAThinSpiralThatFillsTheFrame) {
 TEST(Grid, RestrictionIsTheTransposeOfInterpolation) {
   for (const Size size : {Size{13, 10}, {8, 7}, {1, 5}}) {
     test::Random random(5);
-    std::vector<Level> levels;
+    std::vector<GridLevel> levels;
     levels.emplace_back(size);
     for (int y = 0; y < size.height; ++y) {
       for (int x = 0; x < size.width; ++x) {
@@ -139,7 +139,7 @@ TEST(Grid, RestrictionIsTheTransposeOfInterpolation) {
       }
     }
     add_coarser_levels(levels, 1);
-    Level &fine = levels[0], &coarse = levels[1];
+    GridLevel &fine = levels[0], &coarse = levels[1];
     const auto dot = [](const Plane& a, const Plane& b) {
       double sum = 0;
       for (int y = 0; y < a.size().height; ++y) {
