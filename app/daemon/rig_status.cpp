@@ -6,7 +6,7 @@
 namespace weft::app {
 namespace {
 
-const char* name_of(RigStatus::State state) {
+const char* word_of(RigStatus::State state) {
   switch (state) {
     case RigStatus::State::kIdle:
       return "idle";
@@ -40,7 +40,7 @@ Json to_json(const RigStatus& status, const capture::Rig& rig) {
   const Json nothing;
   const bool has_session = !status.session.empty();
   return {{"rig", rig.name},
-          {"state", name_of(status.state)},
+          {"state", word_of(status.state)},
           {"phase", has_session ? Json(capture::name_of(status.scan.phase)) : nothing},
           {"session", has_session ? Json(status.session) : nothing},
           {"led", status.scan.led},
