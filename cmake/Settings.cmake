@@ -76,8 +76,8 @@ function(weft_vector_code)
 endfunction()
 
 # weft_test(NAME DEPENDS ... SOURCES ...): one test program, one CTest entry.
-# One entry a program: loading OpenImageIO costs 0.2 s a process. SERIAL: it runs with no other beside it, since what it
-# proves needs the machine's time.
+# One entry a program: loading OpenImageIO costs 0.2 s a process. The longest, by TIMEOUT, begin first. SERIAL: it runs
+# with no other beside it, since what it asserts is real time.
 function(weft_test name)
   cmake_parse_arguments(ARG "SERIAL" "TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -88,7 +88,8 @@ function(weft_test name)
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} LABELS "${ARG_LABELS}" RUN_SERIAL ${ARG_SERIAL})
+  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
+    RUN_SERIAL ${ARG_SERIAL})
 endfunction()
 
 # weft_fuzzer(NAME DEPENDS ... SOURCES ... SEEDS ...): one libFuzzer program, one CTest entry. It goes on from where it
