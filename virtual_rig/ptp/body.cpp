@@ -72,7 +72,7 @@ bool PtpBody::admit_to_network() {
   ++connections_;
   session_silent_ = faults_.take(PtpFault::kOpenSessionSilent, connections_);
   card_full_ = faults_.take(PtpFault::kCardFull, connections_);
-  return powered_ && !faults_.take(PtpFault::kInitFail, connections_);
+  return powered_ && !faults_.take(PtpFault::kTurnedAway, connections_);
 }
 
 bool PtpBody::admit_to_usb() {

@@ -31,7 +31,7 @@ constexpr auto kFaultKinds = std::to_array<PtpFaultKind>({
      "The camera does not answer when a session is opened, until it is reset over USB or connected again."},
     {kCardFull, kConnection, "card_full",
      "The card holds so many pictures that the camera does not get to the end of listing them."},
-    {kInitFail, kConnection, "init_fail", "The camera turns the host away (PTP/IP InitFail)."},
+    {kTurnedAway, kConnection, "init_fail", "The camera turns the host away (PTP/IP InitFail)."},
     {kRefused, kBefore, "refused", "The camera's port is closed to new connections for a while."},
     {kCaptureBusy, kShot, "capture_busy",
      "The camera says that it is busy when asked for the picture, for two seconds."},

@@ -19,7 +19,7 @@ enum class PtpFault : std::uint8_t {
   kDataEndsEarly,
   kOpenSessionSilent,
   kCardFull,
-  kInitFail,
+  kTurnedAway,
   kRefused,
   kCaptureBusy,
   kBusyForEver,
