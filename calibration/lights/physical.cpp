@@ -320,9 +320,18 @@ void Fit::measure_misfit() {
   }
 }
 
+// In the order of Parameters: Ceres lists them by address, which changes sums from run to run.
 std::vector<double*> Fit::blocks() {
   std::vector<double*> all;
-  problem_.GetParameterBlocks(&all);
+  for (LedParameters& led : p_.leds) {
+    for (double* block :
+         {led.position_mm.data(), led.aim.data(), &led.mu, led.log_flux.data(), led.quadratic.data()})
+      all.push_back(block);
+  }
+  for (auto& spline : p_.splines) all.push_back(spline.data());
+  all.push_back(p_.paper.data());
+  for (auto& sheet : p_.sheets) all.push_back(sheet.data());
+  std::erase_if(all, [&](const double* block) { return !problem_.HasParameterBlock(block); });
   return all;
 }
 

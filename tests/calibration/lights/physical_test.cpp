@@ -89,6 +89,19 @@ TEST(PhysicalLights, ErrBySoMuchAsTheirCovarianceSays) {
   EXPECT_LT(normalised / count, 1.5);
 }
 
+TEST(PhysicalLights, HaveTheSameCovarianceWhereverMemoryLies) {
+  const PaperCaptures captures = small_captures(test::common_rig());
+  const std::vector<double> first = fitted(captures).covariance.matrix;
+  ASSERT_FALSE(first.empty());
+  // Holes of every small size, so that what the fit holds lies in another order each time.
+  std::vector<std::vector<char>> held;
+  for (std::size_t turn = 1; turn <= 3; ++turn) {
+    for (std::size_t bytes = 16; bytes < 4096; bytes += 16) held.emplace_back(bytes);
+    for (std::size_t i = turn % 2; i < held.size(); i += turn + 1) std::vector<char>().swap(held[i]);
+    EXPECT_EQ(fitted(captures).covariance.matrix, first) << "turn " << turn;
+  }
+}
+
 TEST(PhysicalLights, NameTheParametersOfTheirCovarianceAsLightsDo) {
   const LightFit& fit = fit_with_gains();
   const auto& names = fit.covariance.parameters;
