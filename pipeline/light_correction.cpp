@@ -166,7 +166,6 @@ Result<void> LightCorrection::prepare(Rect rows) {
 // Bits of the lights that a pixel of the slab sees, or all where they are too few to be believed and solved
 // with.
 bool LightCorrection::sees(int x, int y, std::size_t k) const {
-  if (!options_.stages.shadows) return true;
   int seen = 0;
   for (int w = 0; w < visible_.planes(); ++w) seen += std::popcount(visible_(x, y, w));
   if (seen < kLeastSeen) return true;
@@ -174,6 +173,12 @@ bool LightCorrection::sees(int x, int y, std::size_t k) const {
 }
 
 void LightCorrection::apply(Rect tile, std::span<const View<float>> readings) const {
+  subtract_bounces(tile, readings);
+  mark_shadows(tile, readings);
+}
+
+void LightCorrection::subtract_bounces(Rect tile, std::span<const View<float>> readings) const {
+  if (!options_.stages.interreflection) return;
   const LightField& field = *photographs_->field;
   const std::size_t lights = photographs_->count();
   const auto planes = static_cast<std::size_t>(planes_.count);
@@ -181,25 +186,34 @@ void LightCorrection::apply(Rect tile, std::span<const View<float>> readings) co
   std::vector<float> strengths(3 * width);
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (std::size_t k = 0; k < lights; ++k) {
-      if (options_.stages.interreflection) {
-        for (std::size_t c = 0; c < 3; ++c) {
-          read_strengths(field, k, static_cast<int>(c), y, tile.x0, tile.x1, strengths.data() + c * width);
-        }
+      for (std::size_t c = 0; c < 3; ++c) {
+        read_strengths(field, k, static_cast<int>(c), y, tile.x0, tile.x1, strengths.data() + c * width);
       }
       for (std::size_t p = 0; p < planes; ++p) {
         float* reading = readings[k * planes + p].row(y - tile.y0);
         for (std::size_t i = 0; i < width; ++i) {
           const int x = tile.x0 + static_cast<int>(i), row = y - slab_.y0;
-          if (options_.stages.interreflection) {
-            const auto c = static_cast<std::size_t>(planes_.channel_at(static_cast<int>(p), x, y));
-            const float albedo = solved_->albedo(x, y, static_cast<int>(p));
-            reading[i] -=
-                albedo * arriving_(x, row, static_cast<int>(k * planes + p)) * strengths[c * width + i];
-          }
-          // What cannot be read stays so: the reason counts.
-          if (std::isfinite(reading[i]) && !sees(x, row, k))
-            reading[i] = -std::numeric_limits<float>::infinity();
+          const auto c = static_cast<std::size_t>(planes_.channel_at(static_cast<int>(p), x, y));
+          const float albedo = solved_->albedo(x, y, static_cast<int>(p));
+          reading[i] -=
+              albedo * arriving_(x, row, static_cast<int>(k * planes + p)) * strengths[c * width + i];
         }
+      }
+    }
+  }
+}
+
+void LightCorrection::mark_shadows(Rect tile, std::span<const View<float>> readings) const {
+  if (!options_.stages.shadows) return;
+  const auto planes = static_cast<std::size_t>(planes_.count);
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      float* reading = readings[i].row(y - tile.y0);
+      for (int x = tile.x0; x < tile.x1; ++x) {
+        // What cannot be read stays so: the reason counts.
+        float& here = reading[x - tile.x0];
+        if (std::isfinite(here) && !sees(x, y - slab_.y0, i / planes))
+          here = -std::numeric_limits<float>::infinity();
       }
     }
   }

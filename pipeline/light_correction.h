@@ -48,8 +48,11 @@ class LightCorrection {
 
   /// Traces light for these rows, which begin where those of the last call ended or inside them.
   Result<void> prepare(Rect rows);
-  /// Corrects readings [k * planes + p] of a tile inside the prepared rows. From many threads.
+  /// Corrects readings [k * planes + p] of a tile inside the prepared rows: subtract_bounces(), then
+  /// mark_shadows(). From many threads.
   void apply(Rect tile, std::span<const View<float>> readings) const;
+  void subtract_bounces(Rect tile, std::span<const View<float>> readings) const;
+  void mark_shadows(Rect tile, std::span<const View<float>> readings) const;
 
   int shadow_reach_px() const { return shadow_reach_.reach_px; }
   bool shadow_reach_is_capped() const { return shadow_reach_.is_capped; }
