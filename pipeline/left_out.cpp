@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/left_out.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/statistics.h"
+#include "pipeline/light_correction.h"
+#include "pipeline/samples.h"
+#include "pipeline/tile_reader.h"
+#include "solver/in_double/pixel.h"
+
+namespace weft::pipeline {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+// Where one pixel and light stand in LeftOut.
+struct Slots {
+  std::span<float> reading, error, noise;
+};
+
+// Leaves lights out of one patch after another; one a worker.
+class PatchJudge {
+ public:
+  PatchJudge(const Photographs& photographs, const SolveVariant& variant)
+      : variant_(variant),
+        reader_(photographs, {.width = kRowGroup, .height = 1},
+                variant.method->wants_rgb() ? ReadAs::kRgb : ReadAs::kTaken, variant.shifts),
+        lights_(photographs.count()),
+        planes_(reader_.planes()) {
+    const int count = static_cast<int>(lights_) * planes_.count;
+    taken_ = Image<float>({kRowGroup, 1}, count);
+    used_ = Image<float>({kRowGroup, 1}, count);
+    left_ = Image<float>({kRowGroup, 1}, count);
+  }
+
+  // Writes `into` from its pixel `first` on.
+  void judge(Rect tile, std::size_t first, solver::LeftOut& into) {
+    const solver::TileInput input = prepare(tile);
+    const std::size_t turns = solver::turns_of(lights_);
+    predicted_.assign(static_cast<std::size_t>(tile.width()) * lights_, kNaN);
+    for (std::size_t turn = 0; turn < turns; ++turn) predict(input, turn, turns);
+    for (int x = 0; x < tile.width(); ++x) {
+      const std::size_t pixel = first + static_cast<std::size_t>(x), at = pixel * lights_;
+      write(input, x, into.scale[pixel],
+            {{&into.reading[at], lights_}, {&into.error[at], lights_}, {&into.noise[at], lights_}});
+    }
+  }
+
+ private:
+  static View<float> row_of(Image<float>& image, std::size_t plane, Rect tile) {
+    return image.plane(static_cast<int>(plane)).crop({0, 0, tile.width(), 1});
+  }
+
+  // Reads the patch: `taken_` as predictions are held against it, `used_` as it is solved.
+  solver::TileInput prepare(Rect tile) {
+    solver::TileInput input = reader_.read(tile);
+    std::vector<View<float>> taken, used;
+    for (std::size_t i = 0; i < input.readings.size(); ++i) {
+      const double gain =
+          variant_.gains.empty() ? 1 : variant_.gains[i / static_cast<std::size_t>(planes_.count)];
+      taken.push_back(row_of(taken_, i, tile));
+      used.push_back(row_of(used_, i, tile));
+      for (int x = 0; x < tile.width(); ++x) {
+        taken[i](x, 0) = static_cast<float>(input.readings[i](x, 0) / gain);
+      }
+    }
+    if (variant_.correction != nullptr) variant_.correction->subtract_bounces(tile, taken);
+    for (std::size_t i = 0; i < taken.size(); ++i) std::copy_n(taken[i].row(0), tile.width(), used[i].row(0));
+    if (variant_.correction != nullptr) variant_.correction->mark_shadows(tile, used);
+    return input;
+  }
+
+  // Solves without the lights of one turn and predicts them.
+  void predict(const solver::TileInput& input, std::size_t turn, std::size_t turns) {
+    const Rect tile = input.tile;
+    const auto planes = static_cast<std::size_t>(planes_.count);
+    views_.clear();
+    for (std::size_t i = 0; i < lights_ * planes; ++i) {
+      const View<float> left = row_of(left_, i, tile);
+      if (i / planes % turns == turn) {
+        std::fill_n(left.row(0), tile.width(), kNaN);
+      } else {
+        std::copy_n(row_of(used_, i, tile).row(0), tile.width(), left.row(0));
+      }
+      views_.emplace_back(left);
+    }
+    solver::TileInput others = input;
+    others.readings = views_;
+    const SampleMaps maps = solve_sample(others, *variant_.method);
+    for (int x = 0; x < tile.width(); ++x) {
+      if (maps.status(x, 0) & kNoSolution) continue;
+      const Vec3 n = {maps.normal(x, 0, 0), maps.normal(x, 0, 1), maps.normal(x, 0, 2)};
+      for (std::size_t k = turn; k < lights_; k += turns) {
+        const bool hidden = std::isinf(used(k, x)) && used(k, x) < 0;
+        const double lit = hidden ? 0 : std::max(0.0, dot(n, light(input, k, x).direction));
+        predicted_[static_cast<std::size_t>(x) * lights_ + k] = static_cast<float>(maps.albedo(x, 0) * lit);
+      }
+    }
+  }
+
+  void write(const solver::TileInput& input, int x, float& scale, const Slots& slots) {
+    directions_.assign(lights_, {});
+    variances_.assign(lights_, std::numeric_limits<double>::quiet_NaN());
+    const std::optional<NoiseModel> noise = input.noise;
+    std::vector<float> usable;
+    for (std::size_t k = 0; k < lights_; ++k) {
+      const LightField::Light lit = light(input, k, x);
+      const double gain = variant_.gains.empty() ? 1 : variant_.gains[k];
+      const double taken = taken_(x, 0, plane(k)) / lit.strength;
+      const double predicted = predicted_[static_cast<std::size_t>(x) * lights_ + k];
+      const bool is_usable = lit.strength > 0 && std::isfinite(taken);
+      slots.reading[k] = is_usable ? static_cast<float>(gain * taken) : kNaN;
+      slots.error[k] = is_usable ? static_cast<float>(gain * (taken - predicted)) : kNaN;
+      directions_[k] = lit.direction;
+      if (!is_usable) continue;
+      usable.push_back(slots.reading[k]);
+      if (noise) variances_[k] = noise->variance(predicted * lit.strength) / (lit.strength * lit.strength);
+    }
+    const auto rank = static_cast<std::size_t>(solver::bright_rank(lights_));
+    scale = usable.size() < rank ? kNaN : value_of_rank<float>(usable, usable.size() - rank);
+    solver::left_out_noise(directions_, variances_, slots.noise);
+  }
+
+  LightField::Light light(const solver::TileInput& input, std::size_t k, int x) const {
+    const int px = input.tile.x0 + x, py = input.tile.y0;
+    return input.field->at(k, planes_.channel_at(planes_.speaker(), px, py), px, py);
+  }
+  int plane(std::size_t k) const { return static_cast<int>(k) * planes_.count + planes_.speaker(); }
+  float used(std::size_t k, int x) const { return used_(x, 0, plane(k)); }
+
+  SolveVariant variant_;
+  TileReader reader_;
+  std::size_t lights_;
+  Planes planes_;
+  Image<float> taken_, used_, left_;  // [k * planes + p], one row
+  std::vector<View<const float>> views_;
+  std::vector<float> predicted_;  // [x * lights + k]
+  std::vector<Vec3> directions_;
+  std::vector<double> variances_;
+};
+
+}  // namespace
+
+Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const SolveVariant& variant,
+                                         std::span<const solver::Patch> patches, const JobContext& context) {
+  solver::LeftOut left_out;
+  left_out.grid = solver::blocks_of(photographs.size);
+  left_out.lights = photographs.count();
+  left_out.patches.assign(patches.begin(), patches.end());
+  std::vector<std::size_t> first = {0};  // pixel of each patch
+  for (const solver::Patch& patch : patches) {
+    first.push_back(first.back() + static_cast<std::size_t>(patch.pixels.pixels()));
+  }
+  left_out.scale.assign(first.back(), kNaN);
+  for (std::vector<float>* values : {&left_out.reading, &left_out.error, &left_out.noise}) {
+    values->assign(first.back() * left_out.lights, kNaN);
+  }
+  std::vector<PatchJudge> judges;
+  for (int i = 0; i < resolved_threads(context.threads); ++i) judges.emplace_back(photographs, variant);
+
+  const auto columns = static_cast<std::size_t>(left_out.grid.columns);
+  for (std::size_t begin = 0, end = 0; begin < patches.size(); begin = end) {
+    if (context.stop.stop_requested()) return interrupted();
+    const std::size_t row = patches[begin].block / columns;
+    while (end < patches.size() && patches[end].block / columns == row) ++end;
+    if (variant.correction != nullptr) {
+      const int y0 = static_cast<int>(row) * solver::kBlock;
+      const Rect rows = {0, y0, photographs.size.width,
+                         std::min(y0 + solver::kBlock, photographs.size.height)};
+      if (Result<void> ok = variant.correction->prepare(rows); !ok) return std::move(ok).error();
+    }
+    parallel_for(end - begin, context.threads, [&](std::size_t i, int worker) {
+      judges[static_cast<std::size_t>(worker)].judge(patches[begin + i].pixels, first[begin + i], left_out);
+    });
+  }
+  return left_out;
+}
+
+}  // namespace weft::pipeline

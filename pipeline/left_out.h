@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <span>
+
+#include "core/job.h"
+#include "core/result.h"
+#include "pipeline/photographs.h"
+#include "solver/left_out/left_out.h"
+#include "solver/method.h"
+
+namespace weft::pipeline {
+
+class LightCorrection;
+
+/// One way to solve photographs. What it points to must outlive it.
+struct SolveVariant {
+  const solver::Method* method = nullptr;
+  LightCorrection* correction = nullptr;  ///< readings go through it, if there is one
+  /// How the cloth lay: as of Photographs::shifts, which says nothing here. Empty: still.
+  std::span<const solver::ClothShift> shifts = {};
+  std::span<const double> gains = {};  ///< by light, its light over that of its calibration; empty: all are 1
+};
+
+/// Leaves out each light of the photographs in turn, solves the patches with the others and predicts its
+/// readings. Patches are in the order of patches_of(). Of RGB the green plane is predicted. Costs a solve of
+/// the patches a turn, and one run of the correction over the frame. Returns kInterrupted on request.
+Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const SolveVariant& variant,
+                                         std::span<const solver::Patch> patches, const JobContext& context);
+
+}  // namespace weft::pipeline
