@@ -40,16 +40,31 @@ Result<Timing> time_method(const pipeline::Photographs& photographs, const solve
   return Timing{seconds, static_cast<double>(photographs.size.pixels()), 2 * (kLights + 1) + 4.0 * 11 + 2};
 }
 
+// Planes whose rows lie side by side, as the tiles of a solve have them. Thirty planes of 64 MB, one behind
+// the other, would measure how the processor finds its pages: 2.2 times as long on an EPYC at 16 megapixels.
+class RowPlanes {
+ public:
+  RowPlanes(Size size, int planes)
+      : size_(size), planes_(planes), rows_({size.width, size.height * planes}) {}
+  View<float> plane(int p) { return {rows_.plane().row(p), size_, rows_.plane().stride() * planes_}; }
+
+ private:
+  Size size_;
+  int planes_;
+  Image<float> rows_;
+};
+
 Timing time_bare(Size size, int threads) {
+  constexpr int kReadings = 3 * static_cast<int>(kLights);
   const LightField field = *LightField::make(bench_lights(0, false), bench_camera(size), size, 0);
-  Image<float> readings(size, 3 * kLights), normal(size, 3), albedo(size, 3);
+  RowPlanes planes(size, kReadings + 6);
   parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
     for (std::size_t k = 0; k < kLights; ++k) {
       for (int x = 0; x < size.width; ++x) {
         const LightField::Light light = field.at(k, 0, x, y);
         for (int c = 0; c < 3; ++c) {
-          readings(x, y, static_cast<int>(k) * 3 + c) =
+          planes.plane(static_cast<int>(k) * 3 + c)(x, y) =
               static_cast<float>(0.4 * light.strength * light.direction.z);
         }
       }
@@ -59,11 +74,9 @@ Timing time_bare(Size size, int threads) {
     const TileOptions tiles = {.width = size.width, .height = 16, .threads = threads};
     const Result<void> done = for_each_tile({0, 0, size.width, size.height}, tiles, {}, [&](Rect tile, int) {
       std::vector<View<const float>> views;
-      for (int i = 0; i < readings.planes(); ++i) views.emplace_back(readings.plane(i).crop(tile));
-      solver::solve_bare(
-          tile, views, field,
-          {normal.plane(0).crop(tile), normal.plane(1).crop(tile), normal.plane(2).crop(tile)},
-          {albedo.plane(0).crop(tile), albedo.plane(1).crop(tile), albedo.plane(2).crop(tile)});
+      for (int i = 0; i < kReadings; ++i) views.emplace_back(planes.plane(i).crop(tile));
+      const auto out = [&](int i) { return planes.plane(kReadings + i).crop(tile); };
+      solver::solve_bare(tile, views, field, {out(0), out(1), out(2)}, {out(3), out(4), out(5)});
     });
     if (!done) std::terminate();
   });
