@@ -76,8 +76,8 @@ class Photosites {
       const int y0 = rows.y0 + static_cast<int>(i) * kStrip, y1 = std::min(y0 + kStrip, rows.y1);
       const Rect area = {0, y0 - image_row_of_view, band.x1, y1 - image_row_of_view};
       const Rect out = {0, y0 - rows.y0, band.x1, y1 - rows.y0};
-      solver::demosaic(rho, cfa, area, crop(three(maps.albedo), out));
-      solver::demosaic_sigma(sigma, cfa, area, crop(three(maps.sigma_albedo), out));
+      solver::demosaic(rho, sigma, cfa, area, crop(three(maps.albedo), out),
+                       crop(three(maps.sigma_albedo), out));
       for (int y = 0; y < area.height(); ++y) {
         std::copy_n(angle.row(area.y0 + y), band.x1, maps.sigma_normal_deg.plane().row(out.y0 + y));
       }
