@@ -108,6 +108,7 @@ Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string
                                    {&facts.solved_by, "solved_by"},
                                    {&facts.conditions, "conditions"},
                                    {&facts.registration, "registration"},
+                                   {&facts.sigma_normal_deg, "sigma_normal_deg"},
                                    {&facts.gates, "gates"},
                                    {&facts.reference, "reference"}}) {
     if (fields.has(name)) *part = document[name];
@@ -132,6 +133,7 @@ Json json_of(const SolveFacts& facts) {
                {"solved_by", facts.solved_by},
                {"conditions", facts.conditions},
                {"registration", facts.registration},
+               {"sigma_normal_deg", facts.sigma_normal_deg},
                {"warnings", json_of(facts.warnings)},
                {"pictures", facts.pictures},
                {"gates", facts.gates},

@@ -67,6 +67,7 @@ struct SolveFacts {
   // Kept for people and passed on to the report; no program looks into them. Null where there is none.
   Json input;                                ///< all that the id depends on besides method and compression
   Json solved_by, conditions, registration;  ///< docs/formats.md
+  Json sigma_normal_deg;                     ///< docs/formats.md
   Json gates, reference;                     ///< of the level `reference`
 };
 

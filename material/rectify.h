@@ -39,7 +39,7 @@ struct TableGridOptions {
 Result<TableGrid> table_grid(const CameraModel& camera, const TableGridOptions& options);
 
 /// Planes that a map may have.
-inline constexpr std::size_t kMostPlanes = 8;
+inline constexpr std::size_t kMostPlanes = 16;
 
 /// How values of a map go together.
 enum class MapKind {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "core/color_transform.h"
@@ -50,14 +51,16 @@ AlbedoColor::AlbedoColor(ColorTransform transform, int width, int threads)
       threads_(threads),
       albedo_({width, 0}, 3),
       sigma_({width, 0}, 3),
+      model_({width, 0}, 3),
       calibration_({width, 0}, 3) {}
 
 MapBand AlbedoColor::of(const MapBand& camera, std::vector<View<const float>>& calibration) {
   const Size size = {albedo_.width(), camera.albedo_rows.height()};
   if (albedo_.height() < size.height) {
-    for (Image<float>* image : {&albedo_, &sigma_, &calibration_}) *image = Image<float>(size, 3);
+    for (Image<float>* image : {&albedo_, &sigma_, &model_, &calibration_}) *image = Image<float>(size, 3);
   }
-  const bool of_lights = !calibration.empty(), is_known = has_covariance();
+  const bool of_lights = !calibration.empty(), is_known = has_covariance(),
+             has_model = camera.model_albedo[0].height() > 0;
   parallel_for(static_cast<std::size_t>(size.height), threads_, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < size.width; ++x) {
@@ -69,13 +72,15 @@ MapBand AlbedoColor::of(const MapBand& camera, std::vector<View<const float>>& c
         albedo_(x, y, plane) = static_cast<float>(to[c]);
         sigma_(x, y, plane) = static_cast<float>(
             std::hypot(slope[c][0] * sigma[0], slope[c][1] * sigma[1], slope[c][2] * sigma[2]));
-        // What lights share moves all channels of the camera together.
-        double together = 0;
-        for (std::size_t k = 0; k < 3 && of_lights; ++k) {
-          together += slope[c][k] * static_cast<double>(calibration[k](x, y));
-        }
+        const auto together = [&](std::span<const View<const float>> channels) {
+          double sum = 0;
+          for (std::size_t k = 0; k < 3; ++k) sum += slope[c][k] * static_cast<double>(channels[k](x, y));
+          return sum;
+        };
+        if (has_model) model_(x, y, plane) = static_cast<float>(std::abs(together(camera.model_albedo)));
+        const double of_light = of_lights ? together(calibration) : 0;
         const double own = is_known ? variance_of(transform_.covariance, c, from) : 0;
-        calibration_(x, y, plane) = static_cast<float>(std::sqrt(together * together + own));
+        calibration_(x, y, plane) = static_cast<float>(std::sqrt(of_light * of_light + own));
       }
     }
   });
@@ -86,6 +91,7 @@ MapBand AlbedoColor::of(const MapBand& camera, std::vector<View<const float>>& c
     const auto channel = static_cast<std::size_t>(c);
     band.albedo[channel] = albedo_.plane(c).crop(rows);
     band.sigma_albedo[channel] = sigma_.plane(c).crop(rows);
+    if (has_model) band.model_albedo[channel] = model_.plane(c).crop(rows);
     if (!calibration.empty()) calibration[channel] = calibration_.plane(c).crop(rows);
   }
   return band;

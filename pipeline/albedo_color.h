@@ -10,8 +10,9 @@
 namespace weft::pipeline {
 
 /// Turns solved, demosaiced albedo of a session from the camera's channels into linear Rec.709 by its
-/// calibration's ColorTransform. Albedo below 0 stays. Sigma goes through the transform's slope, channels
-/// being independent in the camera.
+/// calibration's ColorTransform. Albedo below 0 stays. Sigma goes through the transform's slope: by
+/// noise as of channels that are independent in the camera, by the model and the lights as of channels that
+/// err together.
 class AlbedoColor {
  public:
   AlbedoColor(ColorTransform transform, int width, int threads);
@@ -27,7 +28,7 @@ class AlbedoColor {
  private:
   ColorTransform transform_;
   int threads_;
-  Image<float> albedo_, sigma_, calibration_;
+  Image<float> albedo_, sigma_, model_, calibration_;
 };
 
 }  // namespace weft::pipeline

@@ -11,6 +11,7 @@
 
 #include "core/parallel.h"
 #include "pipeline/light_correction.h"
+#include "pipeline/model_sigma.h"
 #include "pipeline/tile_reader.h"
 #include "solver/kernels/demosaic.h"
 
@@ -37,7 +38,7 @@ std::array<View<T>, 3> crop(const std::array<View<T>, 3>& views, Rect r) {
 
 // Maps of one band, reused from band to band.
 struct BandMaps {
-  Image<float> normal, sigma_normal_deg, residual, albedo, sigma_albedo;
+  Image<float> normal, sigma_normal_deg, residual, albedo, sigma_albedo, model_albedo, model_normal_deg;
   Image<std::uint16_t> status;
 
   explicit BandMaps(int width)
@@ -46,6 +47,8 @@ struct BandMaps {
         residual({width, kBandRows}),
         albedo({width, kBandRows + kDemosaicReach}, 3),
         sigma_albedo({width, kBandRows + kDemosaicReach}, 3),
+        model_albedo({width, kBandRows + kDemosaicReach}, 3),
+        model_normal_deg({width, kBandRows + kDemosaicReach}),
         status({width, kBandRows}) {}
 };
 
@@ -134,12 +137,12 @@ std::array<View<const float>, 3> constant(const std::array<View<float>, 3>& view
 class BandSolver {
  public:
   BandSolver(const Photographs& photographs, const solver::Method& method, const TileOptions& tile,
-             const JobContext& context, LightCorrection* correction)
+             const JobContext& context, const BandOptions& options)
       : photographs_(photographs),
         method_(method),
         tile_(tile),
         stop_(context.stop),
-        correction_(correction),
+        correction_(options.correction),
         tallies_(static_cast<std::size_t>(resolved_threads(context.threads))),
         corrected_(tallies_.size()) {
     tile_.threads = static_cast<int>(tallies_.size());
@@ -147,6 +150,7 @@ class BandSolver {
       readers_.emplace_back(photographs, tile, method.wants_rgb() ? ReadAs::kRgb : ReadAs::kTaken);
     }
     if (readers_.front().planes().count == 1) photosites_.emplace(photographs.size.width);
+    if (options.model) model_.emplace(photographs, kBandRows, *options.model, tile_.threads);
   }
 
   Result<MapBand> solve(Rect band, BandMaps& maps) {
@@ -164,19 +168,24 @@ class BandSolver {
     if (!solved) return solved.error();
     if (const Mosaics* mosaics = photographs_.mosaics())
       mark_replaced(mosaics->replaced, band, maps.status.plane());
+    if (model_) gather_model(band, maps);
     const Rect albedo_rows = photosites_
                                  ? photosites_->demosaic(band, photographs_.size.height,
                                                          readers_.front().planes().cfa, tile_.threads, maps)
                                  : band;
     const Rect rows = {0, 0, band.x1, band.height()}, lagging = {0, 0, band.x1, albedo_rows.height()};
-    return MapBand{band,
-                   constant(crop(three(maps.normal), rows)),
-                   maps.residual.plane().crop(rows),
-                   maps.status.plane().crop(rows),
-                   albedo_rows,
-                   constant(crop(three(maps.albedo), lagging)),
-                   constant(crop(three(maps.sigma_albedo), lagging)),
-                   maps.sigma_normal_deg.plane().crop(lagging)};
+    MapBand out = {.rows = band,
+                   .normal = constant(crop(three(maps.normal), rows)),
+                   .residual = maps.residual.plane().crop(rows),
+                   .status = maps.status.plane().crop(rows),
+                   .albedo_rows = albedo_rows,
+                   .albedo = constant(crop(three(maps.albedo), lagging)),
+                   .sigma_albedo = constant(crop(three(maps.sigma_albedo), lagging)),
+                   .sigma_normal_deg = maps.sigma_normal_deg.plane().crop(lagging),
+                   .model_albedo = {},
+                   .model_normal_deg = {}};
+    if (model_) add_model(lagging, maps, out);
+    return out;
   }
 
   solver::SolveTally tally() const {
@@ -186,6 +195,21 @@ class BandSolver {
   }
 
  private:
+  void gather_model(Rect band, BandMaps& maps) {
+    const Rect rows = {0, 0, band.x1, band.height()};
+    const View<const float> albedo = photosites_ ? photosites_->rho() : maps.albedo.plane(1);
+    model_->gather(band, {constant(crop(three(maps.normal), rows)), maps.residual.plane().crop(rows),
+                          maps.status.plane().crop(rows), albedo});
+  }
+
+  void add_model(Rect lagging, BandMaps& maps, MapBand& out) {
+    const View<float> angle = maps.model_normal_deg.plane().crop(lagging);
+    const std::array<View<float>, 3> albedo = crop(three(maps.model_albedo), lagging);
+    model_->fill(out.albedo_rows, out.albedo, angle, albedo);
+    out.model_normal_deg = angle;
+    out.model_albedo = constant(albedo);
+  }
+
   // Where a tile goes, by its place in the band.
   solver::TileOutput output_of(Rect local, BandMaps& maps) {
     solver::TileOutput output;
@@ -213,6 +237,7 @@ class BandSolver {
   std::vector<solver::SolveTally> tallies_;
   std::vector<CorrectedTile> corrected_;
   std::optional<Photosites> photosites_;  // where albedo is demosaiced after it was solved
+  std::optional<ModelPart> model_;
 };
 
 // Hands bands to the sink on a thread of its own, one at a time.
@@ -245,7 +270,7 @@ Result<double> solve_bands(const Photographs& photographs, const solver::Method&
                            const BandOptions& options) {
   const Size size = photographs.size;
   std::array<BandMaps, 2> maps = {BandMaps(size.width), BandMaps(size.width)};
-  BandSolver solver(photographs, method, tile, context, options.correction);
+  BandSolver solver(photographs, method, tile, context, options);
   Handover handover(sink);
   for (int y0 = 0, turn = 0; y0 < size.height; y0 += kBandRows, turn ^= 1) {
     const Rect band = {0, y0, size.width, std::min(y0 + kBandRows, size.height)};

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "core/image.h"
 #include "core/job.h"
@@ -12,6 +13,7 @@
 #include "core/tiles.h"
 #include "pipeline/photographs.h"
 #include "solver/method.h"
+#include "solver/uncertainty/model_sigma.h"
 
 namespace weft::pipeline {
 
@@ -25,10 +27,12 @@ struct MapBand {
   View<const float> residual;
   View<const std::uint16_t> status;
 
-  Rect albedo_rows;  ///< of albedo, sigma_albedo, sigma_normal_deg; may be empty
+  Rect albedo_rows;  ///< of all that follows; may be empty
   std::array<View<const float>, 3> albedo;
-  std::array<View<const float>, 3> sigma_albedo;
-  View<const float> sigma_normal_deg;
+  std::array<View<const float>, 3> sigma_albedo;  ///< by noise
+  View<const float> sigma_normal_deg;             ///< by noise
+  std::array<View<const float>, 3> model_albedo;  ///< sigma by the model, where it was asked for
+  View<const float> model_normal_deg;
 };
 
 /// Whole rows, as few of them as leave the readings of ten lights in a core's second cache: frames are then
@@ -39,8 +43,9 @@ inline constexpr TileOptions kSolveTile = {.width = 8192, .height = 4};
 using BandSink = std::function<Result<void>(const MapBand&)>;
 
 struct BandOptions {
-  LightCorrection* correction = nullptr;  ///< readings go through it, if there is one
-  solver::SolveTally* tally = nullptr;    ///< added to, if there is one
+  LightCorrection* correction = nullptr;          ///< readings go through it, if there is one
+  solver::SolveTally* tally = nullptr;            ///< added to, if there is one
+  std::optional<solver::ModelTraits> model = {};  ///< of a solve whose sigma has the model's part
 };
 
 /// Solves photographs band by band: memory stays at a few hundred rows of maps whatever the size of the

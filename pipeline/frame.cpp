@@ -73,8 +73,9 @@ Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::Met
     facts.reference = *solved;
     return facts;
   }
+  const solver::ModelTraits model = {.is_robust = method.level == solver::Level::kRobust};
   const Result<double> waited =
-      solve_bands(photographs, *method.make(), tile, context, sink, {.tally = &facts.tally});
+      solve_bands(photographs, *method.make(), tile, context, sink, {.tally = &facts.tally, .model = model});
   if (!waited) return waited.error();
   facts.waited_seconds = *waited;
   return facts;

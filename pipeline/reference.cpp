@@ -80,11 +80,12 @@ class Round {
   }
 
   Result<double> solve(const solver::Method& method, const TileOptions& tile, const JobContext& context,
-                       const BandSink& sink, solver::SolveTally* tally) {
+                       const BandSink& sink, BandOptions options) {
     Stopwatch watch;
     LightCorrection correction(*photographs_, *solved_, relief_, options_, threads_);
     reach_is_capped = correction.shadow_reach_is_capped();
-    Result<double> waited = solve_bands(*photographs_, method, tile, context, sink, {&correction, tally});
+    options.correction = &correction;
+    Result<double> waited = solve_bands(*photographs_, method, tile, context, sink, options);
     facts.light_seconds = correction.seconds();
     facts.solve_seconds = watch.lap() - correction.seconds();
     return waited;
@@ -117,7 +118,8 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
                                       : LightStages{gates->shadows(), gates->interreflection()};
   if (!facts.stages.shadows && !facts.stages.interreflection) {
     const Result<double> waited =
-        solve_bands(photographs, *exact, tile, context, sink, {nullptr, &facts.tally});
+        solve_bands(photographs, *exact, tile, context, sink,
+                    {.tally = &facts.tally, .model = solver::ModelTraits{.is_robust = true}});
     if (!waited) return waited.error();
     facts.waited_seconds = *waited;
     return facts;
@@ -134,8 +136,10 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
     Round round(photographs, frame, light, context.threads);
     if (Result<void> ok = round.integrate(); !ok) return std::move(ok).error();
     FrameKeeper next(photographs, &frame);
-    const Result<double> waited = done ? round.solve(*exact, tile, context, sink, &facts.tally)
-                                       : round.solve(*quick, tile, context, std::ref(next), nullptr);
+    const BandOptions last = {.tally = &facts.tally,
+                              .model = solver::ModelTraits{true, facts.stages.interreflection}};
+    const Result<double> waited = done ? round.solve(*exact, tile, context, sink, last)
+                                       : round.solve(*quick, tile, context, std::ref(next), {});
     if (!waited) return waited.error();
     if (done) {
       facts.waited_seconds = *waited;

@@ -6,7 +6,7 @@
 namespace weft::app {
 
 Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size, Compression compression,
-                                const std::vector<std::string>& calibration) {
+                                const std::vector<std::string>& sigma) {
   struct Spec {
     std::optional<ImageWriter>* writer;
     const char* name;
@@ -14,8 +14,6 @@ Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size, 
     SampleType type;
   };
   MapFiles files;
-  std::vector<std::string> sigma = {"R", "G", "B", "normal_deg"};
-  for (const std::string& name : calibration) sigma.push_back(name + ".calibration");
   for (const Spec& spec : {Spec{&files.normal_, "normal.exr", {"X", "Y", "Z"}, SampleType::kFloat},
                            Spec{&files.albedo_, "albedo.exr", {"R", "G", "B"}, SampleType::kHalf},
                            Spec{&files.sigma_, "sigma.exr", sigma, SampleType::kHalf},
@@ -29,13 +27,10 @@ Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size, 
   return files;
 }
 
-Result<void> MapFiles::write(const pipeline::MapBand& band, std::span<const View<const float>> calibration) {
+Result<void> MapFiles::write(const pipeline::MapBand& band, std::span<const View<const float>> sigma) {
   if (Result<void> ok = normal_->write_rows(band.normal); !ok) return ok;
   if (Result<void> ok = residual_->write_rows(std::array{band.residual}); !ok) return ok;
   if (Result<void> ok = status_->write_rows(band.status); !ok) return ok;
-  std::vector<View<const float>> sigma(band.sigma_albedo.begin(), band.sigma_albedo.end());
-  sigma.push_back(band.sigma_normal_deg);
-  sigma.insert(sigma.end(), calibration.begin(), calibration.end());
   if (band.albedo_rows.height() == 0) return {};
   if (Result<void> ok = albedo_->write_rows(band.albedo); !ok) return ok;
   return sigma_->write_rows(sigma);

@@ -17,12 +17,11 @@ namespace weft::app {
 /// The map files of a solve, written band by band: docs/formats.md.
 class MapFiles {
  public:
-  /// `calibration` names what sigma.exr has beside the noise: "R", "G", "B", "normal_deg", as
-  /// "R.calibration" and so on.
+  /// `sigma` names the channels of sigma.exr (pipeline/sigma_channels.h).
   static Result<MapFiles> open(const std::filesystem::path& folder, Size size, Compression compression,
-                               const std::vector<std::string>& calibration);
-  /// `calibration` has a view over band.albedo_rows for each of those names.
-  Result<void> write(const pipeline::MapBand& band, std::span<const View<const float>> calibration);
+                               const std::vector<std::string>& sigma);
+  /// `sigma` has a view over band.albedo_rows for each of those names.
+  Result<void> write(const pipeline::MapBand& band, std::span<const View<const float>> sigma);
   Result<void> finish();
 
  private:

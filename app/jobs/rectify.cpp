@@ -130,9 +130,9 @@ Result<Calibration> calibration_with_camera(const fs::path& folder) {
                "calibrate the camera with weft calibrate camera"};
 }
 
-// Room that the maps take at most: normal 12, sigma 16, albedo 6, status 2 bytes a pixel.
+// Room that the maps take at most: normal 12, sigma 32, albedo 6, status 2 bytes a pixel.
 std::uint64_t bytes_of_rectified(Size size) {
-  return 36 * static_cast<std::uint64_t>(size.pixels());
+  return 52 * static_cast<std::uint64_t>(size.pixels());
 }
 
 Result<void> check_options(const RectifyOptions& options) {

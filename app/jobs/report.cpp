@@ -182,10 +182,11 @@ Json budget_of(const PhotographsSummary& photographs, const MapSummary& maps, co
       budget.push_back({{"source", source}, {"what", what}, {"value", value}, {"unit", unit}});
     }
   };
-  add(photographs.noise_is_known ? "photon and read noise" : "scatter of the readings",
-      "median predicted angle of the normal", maps.sigma_normal_deg()["median"], "deg");
-  if (const Json sigma = maps.sigma_calibration_deg(); !sigma.is_null()) {
-    add("calibration", "median predicted angle of the normal", sigma["median"], "deg");
+  const char* noise = photographs.noise_is_known ? "photon and read noise" : "scatter of the readings";
+  for (const auto& [source, sigma] : {std::pair{noise, maps.sigma_noise_deg()},
+                                      {"what the model leaves out", maps.sigma_model_deg()},
+                                      {"calibration", maps.sigma_calibration_deg()}}) {
+    if (!sigma.is_null()) add(source, "median predicted angle of the normal", sigma["median"], "deg");
   }
   for (const Fault& fault : photographs.diagnosis.faults) {
     if (fault.kind == FaultKind::kDead) continue;
@@ -203,6 +204,12 @@ Json budget_of(const PhotographsSummary& photographs, const MapSummary& maps, co
   share("highlights", "pixels with a reading over three times the prediction", kSpecular);
   share("saturation", "pixels with a reading left out as saturated", kSaturated);
   return budget;
+}
+
+// {"median", "p95"}, or null where nothing was added.
+Json middle_of(const AngleHistogram& angles) {
+  const double median = angles.quantile(0.5);
+  return std::isfinite(median) ? Json({{"median", median}, {"p95", angles.quantile(0.95)}}) : Json();
 }
 
 }  // namespace
@@ -229,23 +236,42 @@ double AngleHistogram::quantile(double share) const {
 
 MapSummary::MapSummary(Size size) : sigma_(size, 1, kGridSide), row_({size.width, 1}) {}
 
-void MapSummary::add(const pipeline::MapBand& band, View<const float> calibration_deg) {
+void MapSummary::add(const pipeline::MapBand& band, View<const float> normal_deg,
+                     View<const float> calibration_deg) {
   for (int y = 0; y < band.albedo_rows.height(); ++y) {
-    const float* sigma = band.sigma_normal_deg.row(y);
+    const float* sigma = normal_deg.row(y);
     for (int x = 0; x < row_.width(); ++x) {
       const bool known = sigma[x] < solver::kUnknownAngleDeg;
       row_(x, 0) = known ? sigma[x] : std::numeric_limits<float>::quiet_NaN();
       if (!known) continue;
-      noise_.add(sigma[x]);
+      sum_.add(sigma[x]);
+      noise_.add(band.sigma_normal_deg(x, y));
+      model_.add(band.model_normal_deg(x, y));
       if (calibration_deg.height() > 0) calibration_.add(calibration_deg(x, y));
     }
     sigma_.add_rows(std::array{View<const float>(row_.plane())});
   }
 }
 
+Json MapSummary::sigma_noise_deg() const {
+  return middle_of(noise_);
+}
+
+Json MapSummary::sigma_model_deg() const {
+  return middle_of(model_);
+}
+
 Json MapSummary::sigma_calibration_deg() const {
-  const double median = calibration_.quantile(0.5);
-  return std::isfinite(median) ? Json({{"median", median}, {"p95", calibration_.quantile(0.95)}}) : Json();
+  return middle_of(calibration_);
+}
+
+Json MapSummary::sigma_facts() const {
+  Json facts = middle_of(sum_);
+  for (const auto& [part, angles] :
+       {std::pair{"noise", &noise_}, {"model", &model_}, {"calibration", &calibration_}}) {
+    if (Json of_part = middle_of(*angles); !of_part.is_null()) facts[part] = std::move(of_part);
+  }
+  return facts;
 }
 
 Json MapSummary::sigma_normal_deg() const {
@@ -254,8 +280,8 @@ Json MapSummary::sigma_normal_deg() const {
   for (int y = 0; y < means.height(); ++y) {
     for (int x = 0; x < means.width(); ++x) grid.push_back(number(means(x, y)));
   }
-  return {{"median", number(noise_.quantile(0.5))},
-          {"p95", number(noise_.quantile(0.95))},
+  return {{"median", number(sum_.quantile(0.5))},
+          {"p95", number(sum_.quantile(0.95))},
           {"square_px", sigma_.square()},
           {"columns", means.width()},
           {"rows", means.height()},
@@ -352,8 +378,10 @@ Json report_document(const std::string& title, const SolveFacts& solve, const Ph
                  {"budget", budget_of(photographs, maps, solve)},
                  {"condition", json_of(photographs.condition)},
                  {"sigma_normal_deg", maps.sigma_normal_deg()}};
-  if (Json sigma = maps.sigma_calibration_deg(); !sigma.is_null()) {
-    report["sigma_calibration_deg"] = std::move(sigma);
+  for (auto& [name, sigma] : {std::pair{"sigma_noise_deg", maps.sigma_noise_deg()},
+                              {"sigma_model_deg", maps.sigma_model_deg()},
+                              {"sigma_calibration_deg", maps.sigma_calibration_deg()}}) {
+    if (!sigma.is_null()) report[name] = sigma;
   }
   if (solve.error) report["error"] = json_of(*solve.error);
   if (!solve.gates.empty()) report["gates"] = solve.gates;

@@ -38,21 +38,28 @@ class AngleHistogram {
 class MapSummary {
  public:
   explicit MapSummary(Size size);
-  /// `calibration_deg` is the channel normal_deg.calibration of sigma.exr over band.albedo_rows; empty where
-  /// the calibration has no covariance.
-  void add(const pipeline::MapBand& band, View<const float> calibration_deg = {});
+  /// `normal_deg` and `calibration_deg` are the channels normal_deg and normal_deg.calibration of sigma.exr
+  /// over band.albedo_rows, the second empty where the calibration has no covariance. The band has its
+  /// model's part.
+  void add(const pipeline::MapBand& band, View<const float> normal_deg,
+           View<const float> calibration_deg = {});
 
   /// {"median", "p95", "square_px", "columns", "rows", "grid"} of the predicted angle in degrees; the grid's
   /// values are means of squares, row by row, null where there is none. "median" is null where no pixel has
   /// an angle.
   Json sigma_normal_deg() const;
-  /// {"median", "p95"} of the angle that the calibration's covariance gives, in degrees; null without one.
+  /// {"median", "p95"} of the part of that angle that noise makes, the model, and the calibration's
+  /// covariance, in degrees; null where there is none.
+  Json sigma_noise_deg() const;
+  Json sigma_model_deg() const;
   Json sigma_calibration_deg() const;
+  /// {"median", "p95"} of the angle, and of its parts as "noise", "model" and "calibration": solve.json.
+  Json sigma_facts() const;
 
  private:
   report::Downsampler sigma_;
   Image<float> row_;  // of the band, NaN where the angle is not known
-  AngleHistogram noise_, calibration_;
+  AngleHistogram sum_, noise_, model_, calibration_;
 };
 
 /// Condition number of the lights over the frame; infinite where they do not span three directions.

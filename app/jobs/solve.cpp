@@ -21,6 +21,7 @@
 #include "pipeline/calibration_channels.h"
 #include "pipeline/frame.h"
 #include "pipeline/shifts.h"
+#include "pipeline/sigma_channels.h"
 
 namespace weft::app {
 namespace {
@@ -58,9 +59,9 @@ Json inputs_of(const Json& input, const SolveOptions& options) {
           {"solver_version", kSolverVersion}};
 }
 
-// Room for the maps: normal 12, albedo 6, sigma 8, residual 2, status and pictures 4 bytes a pixel.
+// Room for the maps: normal 12, albedo 6, sigma 32, residual 2, status and pictures 4 bytes a pixel.
 std::uint64_t bytes_of_maps(Size size) {
-  return 32 * static_cast<std::uint64_t>(size.pixels());
+  return 56 * static_cast<std::uint64_t>(size.pixels());
 }
 
 Result<solver::MethodName> method_named(const std::string& name) {
@@ -84,7 +85,15 @@ Json seconds_json(const SolveSeconds& seconds) {
           {"write", seconds.write}, {"pictures", seconds.pictures}, {"report", seconds.report}};
 }
 
-// What is done to a band on its way from the solver to the files: colours, and the calibration's share.
+// A band as it is written.
+struct FinishedBand {
+  pipeline::MapBand maps;
+  std::vector<View<const float>> sigma;  // the channels of sigma.exr
+  View<const float> calibration_deg;     // of them the calibration's share in the angle, if it has one
+};
+
+// What is done to a band on its way from the solver to the files: colours, the calibration's share, and the
+// sum of all shares.
 class Finish {
  public:
   // `photographs` must outlive it.
@@ -96,32 +105,34 @@ class Finish {
       finish.calibration_.emplace(std::move(*made));
     }
     if (photographs.color) finish.color_.emplace(*photographs.color, photographs.size.width, threads);
+    finish.sigma_.emplace(photographs.size.width, finish.share_names());
     return finish;
   }
 
-  // What sigma.exr has beside the noise: as of MapFiles::open.
+  const std::vector<std::string>& sigma_names() const { return sigma_->names(); }
+
+  // Valid until the next call.
+  FinishedBand of(const pipeline::MapBand& solved) {
+    std::vector<View<const float>> shares;
+    if (calibration_) {
+      const auto channels = calibration_->of(solved);
+      shares.assign(channels.begin(), channels.end());
+    }
+    const pipeline::MapBand band = color_ ? color_->of(solved, shares) : solved;
+    return {band, sigma_->of(band, shares), calibration_ ? shares.back() : View<const float>()};
+  }
+
+ private:
+  // Where the calibration has a share.
   std::vector<std::string> share_names() const {
     if (calibration_) return {"R", "G", "B", "normal_deg"};
     if (color_ && color_->has_covariance()) return {"R", "G", "B"};
     return {};
   }
 
-  // Whether the last share is that of the calibration in the normal's angle.
-  bool has_calibration() const { return calibration_.has_value(); }
-
-  // The band as it is written; fills `shares`, a view a name. Both are valid until the next call.
-  pipeline::MapBand of(const pipeline::MapBand& solved, std::vector<View<const float>>& shares) {
-    shares.clear();
-    if (calibration_) {
-      const auto channels = calibration_->of(solved);
-      shares.assign(channels.begin(), channels.end());
-    }
-    return color_ ? color_->of(solved, shares) : solved;
-  }
-
- private:
   std::optional<pipeline::CalibrationChannels> calibration_;
   std::optional<pipeline::AlbedoColor> color_;
+  std::optional<pipeline::SigmaChannels> sigma_;
 };
 
 // A solve under way: its steps in their order.
@@ -188,20 +199,19 @@ class Run {
     Result<Finish> finish = Finish::make(photographs_, context_.threads);
     if (!finish) return std::move(finish).error();
     Result<MapFiles> files =
-        MapFiles::open(partial_.path(), facts_.size, options_.compression, finish->share_names());
+        MapFiles::open(partial_.path(), facts_.size, options_.compression, finish->sigma_names());
     if (!files) return std::move(files).error();
     seconds_.prepare = watch_.lap();
 
     pictures_.emplace(facts_.size);
     maps_.emplace(facts_.size);
     StatusTally tally;
-    std::vector<View<const float>> shares;
     const auto keep = [&](const pipeline::MapBand& solved) -> Result<void> {
-      const pipeline::MapBand band = finish->of(solved, shares);
-      tally.add(band.status);
-      maps_->add(band, finish->has_calibration() ? shares.back() : View<const float>());
-      if (options_.previews) pictures_->add(band);
-      return files->write(band, shares);
+      const FinishedBand band = finish->of(solved);
+      tally.add(band.maps.status);
+      maps_->add(band.maps, band.sigma[pipeline::kSumOfAngle], band.calibration_deg);
+      if (options_.previews) pictures_->add(band.maps);
+      return files->write(band.maps, band.sigma);
     };
     Result<pipeline::FrameFacts> frame = solve_frame(photographs_, method_, options_.tile, context_, keep);
     if (!frame) return std::move(frame).error();
@@ -250,6 +260,7 @@ class Run {
     const bool tells_highlights = method_.level && !is_half();
     const double specular =
         static_cast<double>(facts_.status.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
+    facts_.sigma_normal_deg = maps_->sigma_facts();
     facts_.warnings = verdicts_of(summary_, tells_highlights ? specular : 0);
     const fs::path document = partial_.path() / kSolveProduct.document;
     if (Result<void> ok = write_json(document, json_of(facts_)); !ok) return ok;

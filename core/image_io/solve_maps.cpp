@@ -25,9 +25,11 @@ struct Map {
 const Map kStatus = {"status.png", {"Y"}};
 const Map kNormal = {"normal.exr", {"X", "Y", "Z"}};
 const Map kAlbedo = {"albedo.exr", {"R", "G", "B"}};
-const Map kSigma = {"sigma.exr",
-                    {"R", "G", "B", "normal_deg"},
-                    {"R.calibration", "G.calibration", "B.calibration", "normal_deg.calibration"}};
+const Map kSigma = {
+    "sigma.exr",
+    {"R", "G", "B", "normal_deg"},
+    {"R.noise", "G.noise", "B.noise", "normal_deg.noise", "R.model", "G.model", "B.model", "normal_deg.model",
+     "R.calibration", "G.calibration", "B.calibration", "normal_deg.calibration"}};
 
 Result<void> check(const Map& map, const ImageFileInfo& info, const fs::path& file, Size size) {
   const auto has = [](const std::vector<std::string>& names, const std::string& name) {

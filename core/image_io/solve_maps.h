@@ -22,8 +22,9 @@ class SolveMaps {
   Result<Image<std::uint16_t>> status() const;  ///< bits of StatusBit (core/solve_record.h)
   Result<LoadedImage> normal() const;           ///< X, Y, Z: unit, rig frame
   Result<LoadedImage> albedo() const;           ///< R, G, B
-  /// R, G, B of the albedo and normal_deg, by noise; R.calibration ... where the calibration has a
-  /// covariance.
+  /// R, G, B of the albedo and normal_deg; their parts R.noise ..., R.model ... and, where the calibration
+  /// has a covariance, R.calibration ... Maps of early versions have no parts by noise and by the model:
+  /// theirs is noise alone.
   Result<LoadedImage> sigma() const;
 
  private:

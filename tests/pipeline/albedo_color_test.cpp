@@ -54,6 +54,19 @@ TEST(AlbedoColor, OfAMatrixIsTheMatrixAndItsSigmaTheRootOfTheSquares) {
   }
 }
 
+TEST(AlbedoColor, OfTheModelsSigmaMovesAllChannelsTogether) {
+  const Band camera;
+  MapBand band = camera.band();
+  const std::vector<View<const float>> shares = camera.shares();
+  band.model_albedo = {shares[0], shares[1], shares[2]};
+  AlbedoColor color({.rec709_from_camera = kMatrix, .covariance = {}, .curve = {}}, 4, 1);
+  std::vector<View<const float>> none;
+  const MapBand rec709 = color.of(band, none);
+  for (std::size_t c = 0; c < 3; ++c) {
+    EXPECT_NEAR(rec709.model_albedo[c](3, 0), 0.1F * std::abs(rec709.albedo[c](3, 0)), 1e-6F) << c;
+  }
+}
+
 TEST(AlbedoColor, OfTheSigmaOfLightsMovesAllChannelsTogether) {
   const Band camera;
   AlbedoColor color({.rec709_from_camera = kMatrix, .covariance = {}, .curve = {}}, 4, 1);

@@ -261,14 +261,15 @@ void expect_sigma(const ColorTransform& transform, const LoadedImage& camera, co
   EXPECT_TRUE(sigma.channel("normal_deg.calibration").empty()) << "nothing is known of the lights";
   const int x = 150, y = 100;
   const Rgb a = at(camera, x, y);
+  constexpr std::array<const char*, 3> kNoise = {"R.noise", "G.noise", "B.noise"};
   double variance = 0, noise = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    noise += std::pow(
-        transform.rec709_from_camera[0][i] * static_cast<double>(plain.planes(x, y, static_cast<int>(i))), 2);
+    noise +=
+        std::pow(transform.rec709_from_camera[0][i] * static_cast<double>(plain.channel(kNoise[i])(x, y)), 2);
     for (std::size_t j = 0; j < 3; ++j) variance += a[i] * a[j] * transform.covariance[9 * i + j];
   }
   EXPECT_NEAR(static_cast<double>(share(x, y)), std::sqrt(variance), 0.01 * std::sqrt(variance));
-  EXPECT_NEAR(static_cast<double>(sigma.channel("R")(x, y)), std::sqrt(noise), 0.01 * std::sqrt(noise));
+  EXPECT_NEAR(static_cast<double>(sigma.channel("R.noise")(x, y)), std::sqrt(noise), 0.01 * std::sqrt(noise));
 }
 
 TEST(CalibrateColor, MakesSolvedAlbedoRec709) {

@@ -203,28 +203,39 @@ TEST_F(Report, OfPhotographsWithoutANoiseModel) {
   EXPECT_THAT(bytes_of(work_ / "maps" / "report.html"), HasSubstr("Light 6"));
 }
 
-TEST(MapSummary, FindsQuantilesOfNoiseAndOfCalibrationWhereTheNormalIsKnown) {
+TEST(MapSummary, FindsQuantilesOfSigmaAndOfItsPartsWhereTheNormalIsKnown) {
   constexpr int kWidth = 1000;
-  Image<float> noise({kWidth, 1}), calibration({kWidth, 1});
+  Image<float> noise({kWidth, 1}), model({kWidth, 1}), calibration({kWidth, 1}), sum({kWidth, 1});
   for (int x = 0; x < kWidth; ++x) {
     noise(x, 0) = 0.001F * static_cast<float>(x + 1);
+    model(x, 0) = 0.002F * static_cast<float>(x + 1);
     calibration(x, 0) = 0.01F * static_cast<float>(x + 1);
+    sum(x, 0) = 0.02F * static_cast<float>(x + 1);
   }
-  for (int x = 800; x < kWidth; ++x) noise(x, 0) = 180;  // without a normal
+  for (int x = 800; x < kWidth; ++x) sum(x, 0) = 180;  // without a normal
   app::MapSummary with({kWidth, 1}), without({kWidth, 1});
   pipeline::MapBand band;
   band.albedo_rows = {0, 0, kWidth, 1};
   band.sigma_normal_deg = noise.plane();
-  with.add(band, calibration.plane());
-  without.add(band);
-  EXPECT_NEAR(with.sigma_normal_deg()["median"], 0.4, 0.004);
+  band.model_normal_deg = model.plane();
+  with.add(band, sum.plane(), calibration.plane());
+  without.add(band, sum.plane());
+  EXPECT_NEAR(with.sigma_normal_deg()["median"], 8, 0.08);
+  EXPECT_NEAR(with.sigma_noise_deg()["median"], 0.4, 0.004);
+  EXPECT_NEAR(with.sigma_model_deg()["median"], 0.8, 0.008);
   EXPECT_NEAR(with.sigma_calibration_deg()["median"], 4, 0.04);
   EXPECT_NEAR(with.sigma_calibration_deg()["p95"], 7.6, 0.076);
   EXPECT_EQ(without.sigma_normal_deg(), with.sigma_normal_deg());
   EXPECT_TRUE(without.sigma_calibration_deg().is_null());
+  const Json facts = with.sigma_facts();
+  EXPECT_EQ(facts["median"], with.sigma_normal_deg()["median"]);
+  EXPECT_EQ(facts["noise"], with.sigma_noise_deg());
+  EXPECT_EQ(facts["model"], with.sigma_model_deg());
+  EXPECT_EQ(facts["calibration"], with.sigma_calibration_deg());
+  EXPECT_FALSE(without.sigma_facts().contains("calibration"));
 }
 
-TEST(Budget, NamesTheCalibrationWhereItHasACovariance) {
+TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
   Workspace work;
   simulate(cloth("plain", "lambert", 5), work / "c");
   Result<app::SessionPlan> plan = app::plan_session({.folder = work / "c", .calibration = {}, .leds = {}});
@@ -248,11 +259,17 @@ TEST(Budget, NamesTheCalibrationWhereItHasACovariance) {
   const Json report = Json::parse(bytes_of(work / "maps" / "report.json"));
   const double median_deg = report["sigma_calibration_deg"]["median"];
   EXPECT_NEAR(median_deg, 0.28, 0.15) << "1 percent of each LED";
-  const auto row = std::find_if(report["budget"].begin(), report["budget"].end(),
-                                [](const Json& each) { return each["source"] == "calibration"; });
-  ASSERT_NE(row, report["budget"].end()) << report["budget"];
-  EXPECT_EQ((*row)["value"], median_deg);
-  EXPECT_EQ((*row)["unit"], "deg");
+  const Json parts = Json::parse(bytes_of(work / "maps" / "solve.json"))["sigma_normal_deg"];
+  for (const auto& [source, part] : {std::pair{"photon and read noise", "noise"},
+                                     {"what the model leaves out", "model"},
+                                     {"calibration", "calibration"}}) {
+    const auto row = std::find_if(report["budget"].begin(), report["budget"].end(),
+                                  [&](const Json& each) { return each["source"] == source; });
+    ASSERT_NE(row, report["budget"].end()) << source << report["budget"];
+    EXPECT_EQ((*row)["value"], report[std::string("sigma_") + part + "_deg"]["median"]) << source;
+    EXPECT_EQ((*row)["value"], parts[part]["median"]) << source;
+    EXPECT_EQ((*row)["unit"], "deg");
+  }
   EXPECT_THAT(bytes_of(work / "maps" / "report.html"), HasSubstr("<td>calibration<br>"));
 }
 

@@ -131,11 +131,13 @@ TEST(ImageRoundTrip, KeepsNanAndInfinityInFloatAndHalf) {
 
 TEST(ImageRoundTrip, FindsExrChannelsByTheirNames) {
   const ScratchFolder folder;
-  for (const std::vector<std::string>& names : {std::vector<std::string>{"X", "Y", "Z"},
-                                                {"R", "G", "B"},
-                                                {"normal_deg", "R", "G", "B"},
-                                                {"normal_deg", "R", "G", "B", "normal_deg.calibration",
-                                                 "R.calibration", "G.calibration", "B.calibration"}}) {
+  for (const std::vector<std::string>& names :
+       {std::vector<std::string>{"X", "Y", "Z"},
+        {"R", "G", "B"},
+        {"normal_deg", "R", "G", "B"},
+        {"normal_deg", "R", "G", "B", "normal_deg.calibration", "R.calibration", "G.calibration",
+         "B.calibration"},
+        {"R", "G", "R.noise", "R.model", "normal_deg", "normal_deg.model"}}) {
     Image<float> written({2, 2}, static_cast<int>(names.size()));
     for (int p = 0; p < written.planes(); ++p) written(1, 1, p) = static_cast<float>(p + 1);
     ASSERT_TRUE(write_image(folder / "named.exr", views_of(written), names, {}));

@@ -63,10 +63,13 @@ TEST(SolveMaps, AreReadByWhatTheyAre) {
 TEST(SolveMaps, MayHaveTheShareOfTheCalibrationInSigma) {
   const ScratchFolder folder;
   write_maps(folder / "");
-  write_map(folder / "sigma.exr", kSize, {"R", "G", "B", "normal_deg", "R.calibration", "G.calibration"});
+  write_map(folder / "sigma.exr", kSize,
+            {"R", "G", "B", "normal_deg", "R.calibration", "G.calibration", "normal_deg.noise",
+             "normal_deg.model"});
   const Result<SolveMaps> maps = SolveMaps::open(folder / "");
   ASSERT_TRUE(maps) << maps.error().message();
   EXPECT_EQ(maps->sigma()->channel("G.calibration")(4, 2), 1.5f);
+  EXPECT_EQ(maps->sigma()->channel("normal_deg.model")(4, 2), 2);
 }
 
 TEST(SolveMaps, OfTwoSizesAreRefusedAtOnce) {

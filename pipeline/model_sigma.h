@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/image.h"
+#include "pipeline/photographs.h"
+#include "solver/uncertainty/model_sigma.h"
+
+namespace weft::pipeline {
+
+/// Solved maps of a band of rows, (0, 0) at its corner.
+struct SolvedRows {
+  std::array<View<const float>, 3> normal;
+  View<const float> residual;
+  View<const std::uint16_t> status;
+  View<const float> albedo;  ///< of each photosite of a mosaic, or of green
+};
+
+/// The model's part of sigma (solver/uncertainty/model_sigma.h) over a frame that is solved band by band.
+/// What the maps show is summed over cells of 2 x 2 pixels. The evidence of a cell is that of the 3 x 3 cells
+/// around it, as far as they are solved when its turn comes, and the misfit around it that of its block of 64
+/// columns and a band's rows. The same bytes for any number of threads.
+class ModelPart {
+ public:
+  /// Bands have `band_rows` rows, an even number, but for the last. `photographs` must outlive this.
+  ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits, int threads);
+
+  /// Takes in the next band.
+  void gather(Rect band, const SolvedRows& solved);
+
+  /// Fills the angle for `rows` of the frame, in degrees, and the albedo's share of R, G, B. They begin on an
+  /// even row, solver::kDemosaicReach rows above the gathered band at most. All views are as large as `rows`.
+  void fill(Rect rows, const std::array<View<const float>, 3>& albedo, View<float> model_normal_deg,
+            const std::array<View<float>, 3>& model_albedo) const;
+
+ private:
+  // Of the pixels with a solution.
+  enum Sum { kPixels, kSlope2, kAlbedo, kShaded, kResidual2, kNoise2, kSums };
+  using Sums = std::array<float, kSums>;
+  struct Block {
+    std::array<solver::ResidualNoise, 3> noise;  ///< by channel
+    float degrees_a_residual = 0;
+    float misfit2 = 0;
+  };
+
+  void set_blocks(Rect band);
+  void add_row(int frame_y, int y, const SolvedRows& solved, int row);
+  void sum_blocks(int first_row);
+  Sums around(int cell_x, int row) const;
+  float angle_at(int cell_x, int row) const;
+
+  const Photographs& photographs_;
+  Planes planes_;
+  bool has_noise_;
+  solver::ModelTraits traits_;
+  int threads_;
+  Image<float> cells_;  ///< a plane a Sum: the last rows of the band before, then those of the band
+  int first_ = 0;       ///< the frame's row of cells that is the first of cells_
+  int known_ = 0;       ///< rows of cells_ that are filled
+  std::vector<Block> blocks_;
+};
+
+}  // namespace weft::pipeline

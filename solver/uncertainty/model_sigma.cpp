@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/uncertainty/model_sigma.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/vec.h"
+
+namespace weft::solver {
+namespace {
+
+// All constants are fitted to the tuning set (bench/accuracy/scenes.h), over all levels at once.
+
+// Degrees by which light from the cloth turns a normal, over albedo and square of the slope: a slope sees as
+// much of the cloth as it does not see of the sky. What is left of it where it was taken out, over albedo and
+// slope: its relief is no better known than the normals.
+constexpr float kBounced_deg = 10.5F, kBouncesLeft_deg = 2.2F;
+// Degrees over the share of pixels with shadowed readings and the slope: the edge of a shadow passes for
+// light.
+constexpr float kShadowed_deg = 1.4F;
+// What a misfit turns, over what it would if it were independent from light to light: upright, and more of it
+// on a slope, since a ring of lights has its highlights on all sides of an upright cloth. A robust start has
+// left out the readings that pull, and their residuals still count.
+struct Pull {
+  float upright, on_slope;
+  float at(float slope) const { return upright + on_slope * slope; }
+};
+constexpr Pull kHere = {0.25F, 0.75F}, kAround = {0.08F, 0.3F};
+constexpr Pull kHereOfRobust = {0.15F, 0.05F}, kAroundOfRobust = {0.02F, 0.06F};
+// Steeper cloth, or lighter, is as steep or light as this.
+constexpr float kMostSlope = 1.5F, kMostAlbedo = 1.2F;
+// Relative error of the albedo for each radian of the angle.
+constexpr float kAlbedoOfAngle = 1;
+
+}  // namespace
+
+ResidualNoise ResidualNoise::at(const LightField& field, const NoiseModel& noise, int x, int y, int c) {
+  ResidualNoise left;
+  const auto lights = static_cast<double>(field.count());
+  const double share = std::max(lights - 3, 0.0) / (lights * lights);
+  Vec3 photons;
+  double floor = 0;
+  for (std::size_t k = 0; k < field.count(); ++k) {
+    const LightField::Light light = field.at(k, c, x, y);
+    if (!(light.strength > 0)) continue;
+    photons = photons + (share * noise.per_reading / light.strength) * light.direction;
+    floor += share * (noise.floor + noise.shared) / (light.strength * light.strength);
+  }
+  left.photons_ = {static_cast<float>(photons.x), static_cast<float>(photons.y),
+                   static_cast<float>(photons.z)};
+  left.floor_ = static_cast<float>(floor);
+  return left;
+}
+
+double degrees_a_residual(const LightField& field, int x, int y) {
+  double xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0, n = 0;
+  for (std::size_t k = 0; k < field.count(); ++k) {
+    const LightField::Light light = field.at(k, 1, x, y);
+    if (!(light.strength > 0)) continue;
+    const Vec3 l = light.direction;
+    xx += l.x * l.x, xy += l.x * l.y, xz += l.x * l.z;
+    yy += l.y * l.y, yz += l.y * l.z, zz += l.z * l.z;
+    ++n;
+  }
+  const double det = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+  if (n < 4 || !(det > 0)) return 0;
+  const double across = (yy * zz - yz * yz + xx * zz - xz * xz) / det;
+  return degrees(std::sqrt(across * n / (n - 3)));
+}
+
+float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, const ModelTraits& traits) {
+  const float slope = std::min(std::sqrt(evidence.slope2), kMostSlope);
+  float bounced = kBounced_deg * slope;
+  if (traits.bounces_are_out) bounced = std::min(bounced, kBouncesLeft_deg);
+  bounced *= std::min(evidence.albedo, kMostAlbedo) * slope;
+  const float shadowed = kShadowed_deg * evidence.shadowed * slope;
+  const float here = (traits.is_robust ? kHereOfRobust : kHere).at(slope),
+              around = (traits.is_robust ? kAroundOfRobust : kAround).at(slope),
+              misfit = static_cast<float>(degrees_a_residual) *
+                       std::sqrt(here * here * evidence.misfit2 + around * around * evidence.misfit2_around);
+  return std::min(std::sqrt(bounced * bounced + shadowed * shadowed + misfit * misfit), 180.0F);
+}
+
+float model_albedo_share(float model_deg) {
+  return kAlbedoOfAngle * static_cast<float>(radians(static_cast<double>(model_deg)));
+}
+
+}  // namespace weft::solver
