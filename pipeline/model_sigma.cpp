@@ -15,8 +15,8 @@ constexpr int kCell = 2;
 constexpr int kKept = solver::kDemosaicReach / kCell + 1;
 // Columns of a block. Over so many the lights change by a percent.
 constexpr int kBlock = 64;
-// A slope of 72 degrees, a residual of three times the albedo, and the least that is divided by.
-constexpr float kMostSlope2 = 9, kMostResidual = 3, kLeastAlbedo = 1e-3F;
+// A slope of 56 degrees, a residual of three times the albedo, and the least that is divided by.
+constexpr float kMostSlope2 = 2.25F, kMostResidual = 3, kLeastAlbedo = 1e-3F;
 
 // What residuals have beyond noise.
 float misfit2_of(float residual2, float noise2, float pixels) {
@@ -83,11 +83,12 @@ void ModelPart::sum_blocks(int first_row) {
     const int x1 = std::min(x0 + kBlock / kCell, cells_.width());
     Sums sums = {};
     for (int row = first_row; row < known_; ++row) {
-      for (const Sum p : {kPixels, kResidual2, kNoise2}) {
+      for (const Sum p : {kPixels, kSlope2, kResidual2, kNoise2}) {
         const float* cells = cells_.plane(p).row(row);
         for (int x = x0; x < x1; ++x) sums[p] += cells[x];
       }
     }
+    if (sums[kPixels] > 0) blocks_[i].slope2 = sums[kSlope2] / sums[kPixels];
     blocks_[i].misfit2 = misfit2_of(sums[kResidual2], sums[kNoise2], sums[kPixels]);
   });
 }
@@ -129,9 +130,12 @@ float ModelPart::angle_at(int cell_x, int row) const {
   const float pixels = sums[kPixels];
   if (!(pixels > 0)) return 0;
   const Block& block = blocks_[static_cast<std::size_t>(cell_x * kCell / kBlock)];
-  const solver::ModelEvidence evidence = {sums[kSlope2] / pixels, sums[kAlbedo] / pixels,
-                                          sums[kShaded] / pixels,
-                                          misfit2_of(sums[kResidual2], sums[kNoise2], pixels), block.misfit2};
+  const solver::ModelEvidence evidence = {.slope2 = sums[kSlope2] / pixels,
+                                          .slope2_around = block.slope2,
+                                          .albedo = sums[kAlbedo] / pixels,
+                                          .shadowed = sums[kShaded] / pixels,
+                                          .misfit2 = misfit2_of(sums[kResidual2], sums[kNoise2], pixels),
+                                          .misfit2_around = block.misfit2};
   return solver::model_sigma_deg(evidence, block.degrees_a_residual, traits_);
 }
 

@@ -20,7 +20,7 @@ struct SolvedRows {
 
 /// The model's part of sigma (solver/uncertainty/model_sigma.h) over a frame that is solved band by band.
 /// What the maps show is summed over cells of 2 x 2 pixels. The evidence of a cell is that of the 3 x 3 cells
-/// around it, as far as they are solved when its turn comes, and the misfit around it that of its block of 64
+/// around it, as far as they are solved when its turn comes, and its wider neighbourhood a block of 64
 /// columns and a band's rows. The same bytes for any number of threads.
 class ModelPart {
  public:
@@ -42,7 +42,7 @@ class ModelPart {
   struct Block {
     std::array<solver::ResidualNoise, 3> noise;  ///< by channel
     float degrees_a_residual = 0;
-    float misfit2 = 0;
+    float slope2 = 0, misfit2 = 0;  ///< means, as of solver::ModelEvidence
   };
 
   void set_blocks(Rect band);

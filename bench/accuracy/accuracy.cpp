@@ -61,6 +61,8 @@ Rows means_of(const std::vector<Rows>& scenes, const std::vector<Contender>& all
   return means;
 }
 
+}  // namespace
+
 Result<std::vector<AccuracyScene>> chosen_scenes(const AccuracyTableOptions& options) {
   std::vector<AccuracyScene> scenes = accuracy_scenes(options.set, options.seed, options.quick), chosen;
   if (options.scene.empty()) return scenes;
@@ -72,8 +74,6 @@ Result<std::vector<AccuracyScene>> chosen_scenes(const AccuracyTableOptions& opt
   if (chosen.empty()) return no_such("scene", options.scene, names);
   return chosen;
 }
-
-}  // namespace
 
 Result<Rows> accuracy_table(const AccuracyTableOptions& options) {
   const Result<std::vector<AccuracyScene>> scenes = chosen_scenes(options);

@@ -20,6 +20,9 @@ struct AccuracyTableOptions {
   int threads = 0;
 };
 
+/// The scenes of the set, or the one that is named. kUsage where there is none of that name.
+Result<std::vector<AccuracyScene>> chosen_scenes(const AccuracyTableOptions& options);
+
 /// The scene of the rows that are means over all scenes.
 inline constexpr const char* kAllScenes = "all";
 

@@ -11,6 +11,7 @@
 
 #include "bench/accuracy/bound.h"
 #include "bench/accuracy/contenders.h"
+#include "bench/accuracy/coverage.h"
 #include "bench/accuracy/curves.h"
 #include "bench/accuracy/score.h"
 #include "core/files.h"
@@ -118,6 +119,40 @@ std::string bound_table(const Rows& rows) {
   return markdown_table(cells);
 }
 
+// How many rows have a key that is true.
+std::int64_t count_true(const Rows& rows, const char* key) {
+  return std::ranges::count_if(rows, [&](const Json& row) { return row[key].get<bool>(); });
+}
+
+std::string coverage_section(const Rows& rows) {
+  std::string section = "## How sure the maps are\n\n";
+  section += fmt::format(
+      "The angle between solved and true normal over `normal_deg` of sigma.exr, at every pixel with a "
+      "solution. "
+      "Its median is to lie from {} to {} (0.83 where the error is Gaussian), and under {:.0f} percent are "
+      "to be "
+      "beyond 3: so it is on {} of the {} lines. The worst tenth is that of the pixels in order of their "
+      "sigma "
+      "whose median is farthest from 1; on {} lines the median of every tenth is within the same limits. "
+      "Pixels "
+      "that are SATURATED, SPECULAR or nearly without a choice of readings are left out where they are under "
+      "a "
+      "fifth.\n\n",
+      kLeastMedian, kMostMedian, 100 * kMostBeyond, count_true(rows, "holds"), rows.size(),
+      count_true(rows, "each_tenth_holds"));
+  return section + columns_table(rows, {{"scene", "scene"},
+                                        {"level", "level"},
+                                        {"seed", "seed"},
+                                        {"median_over_sigma", "median of error over sigma"},
+                                        {"beyond_3", "beyond 3 sigma"},
+                                        {"worst_tenth", "worst tenth"},
+                                        {"worst_tenth_beyond_3", "most beyond 3 in a tenth"},
+                                        {"flagged", "flagged"},
+                                        {"left_out", "and left out"},
+                                        {"holds", "holds"},
+                                        {"each_tenth_holds", "in every tenth"}});
+}
+
 bool is_yardstick(const Json& row) {
   return row["method"] == "oracle";
 }
@@ -137,11 +172,14 @@ Result<AccuracyFigures> measure_figures(const AccuracyTableOptions& options) {
   for (const Contender& contender : contenders()) {
     if (contender.is_quality) levels.methods.push_back(contender.name);
   }
+  AccuracyTableOptions all_levels = options;
+  all_levels.methods.clear();
   AccuracyTableOptions small = options;
   small.quick = true;
   AccuracyFigures figures;
-  const std::array<std::pair<Rows*, Result<Rows>>, 6> parts = {
+  const std::array<std::pair<Rows*, Result<Rows>>, 7> parts = {
       {{&figures.table, accuracy_table(options)},
+       {&figures.coverage, coverage_table(all_levels)},
        {&figures.leds, accuracy_by_leds(levels)},
        {&figures.curves, accuracy_curves(small)},
        {&figures.gates, accuracy_gates(small)},
@@ -238,6 +276,7 @@ std::string accuracy_markdown(const AccuracyFigures& figures) {
   page += markdown_table(by_scene_and_method(figures.table, "albedo_mean_rel"));
   page += "## Leak by scene\n\n";
   page += markdown_table(by_scene_and_method(figures.table, "leak"));
+  page += coverage_section(figures.coverage);
   page += "## Fewer LEDs\n\n";
   page += columns_table(figures.leds, {{"leds", "LEDs"},
                                        {"numbers", "which"},
@@ -290,6 +329,7 @@ Result<void> write_accuracy_docs(const std::filesystem::path& folder, const Accu
   if (Result<void> made = make_writable_folder(pictures); !made) return made;
   const report::Plot plot = accuracy_plot(figures);
   Json document = document_of(figures.table);
+  document["coverage"] = figures.coverage;
   document["leds"] = figures.leds;
   document["curves"] = figures.curves;
   document["gates"] = figures.gates;

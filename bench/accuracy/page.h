@@ -13,7 +13,7 @@ namespace weft::bench {
 
 /// All that docs/accuracy.md shows, as the benchmarks of the same names give it.
 struct AccuracyFigures {
-  Rows table, leds, curves, gates, bound, specular;
+  Rows table, coverage, leds, curves, gates, bound, specular;
 };
 Result<AccuracyFigures> measure_figures(const AccuracyTableOptions& options);
 

@@ -8,6 +8,7 @@
 
 #include "app/cli/options.h"
 #include "bench/accuracy/bound.h"
+#include "bench/accuracy/coverage.h"
 #include "bench/accuracy/page.h"
 #include "bench/program/rows.h"
 #include "bench/program/verbs.h"
@@ -21,6 +22,7 @@ struct AccuracyArguments {
   bool bound = false;
   bool leds = false;
   bool specular = false;
+  bool sigma = false;
   std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
 };
 
@@ -31,6 +33,7 @@ Result<Rows> measure(const AccuracyArguments& a, int threads) {
   if (a.bound) return accuracy_bound({options.methods, threads});
   if (a.leds) return accuracy_by_leds(options);
   if (a.specular) return specular_warnings(options);
+  if (a.sigma) return coverage_table(options);
   if (a.docs.empty()) return accuracy_table(options);
   Result<AccuracyFigures> figures = measure_figures(options);
   if (!figures) return std::move(figures).error();
@@ -54,12 +57,16 @@ app::Run add_accuracy(app::Options& options) {
   const app::Option leds = options.add_flag("--leds", &a->leds, "Instead: from three to ten LEDs");
   const app::Option specular = options.add_flag(
       "--specular", &a->specular, "Instead: who says SPECULAR on 30 dark satins and 90 other cloths");
+  const app::Option sigma = options.add_flag(
+      "--sigma", &a->sigma, "Instead: whether errors on cloth are as large as sigma says, at every level");
+  options.add("--seed", &a->table.seed, "Of weaves and noise, from 1").shows_default();
   const app::Option docs =
       options.add("--docs", &a->docs,
                   "All of it, into this folder: the figures of accuracy.md, pictures/accuracy.svg, .json");
-  bound.excludes(leds).excludes(specular).excludes(docs);
-  leds.excludes(specular).excludes(docs);
-  specular.excludes(docs);
+  bound.excludes(leds).excludes(specular).excludes(sigma).excludes(docs);
+  leds.excludes(specular).excludes(sigma).excludes(docs);
+  specular.excludes(sigma).excludes(docs);
+  sigma.excludes(docs);
   return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.threads), common); };
 }
 

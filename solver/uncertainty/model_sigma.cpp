@@ -12,12 +12,15 @@ namespace {
 // All constants are fitted to the tuning set (bench/accuracy/scenes.h), over all levels at once.
 
 // Degrees by which light from the cloth turns a normal, over albedo and square of the slope: a slope sees as
-// much of the cloth as it does not see of the sky. What is left of it where it was taken out, over albedo and
-// slope: its relief is no better known than the normals.
-constexpr float kBounced_deg = 10.5F, kBouncesLeft_deg = 2.2F;
+// much of the cloth as it does not see of the sky. Flanks, steeper than what is around them, are turned by
+// more than crests and furrows: by as much as their slope's square is over that around, to a limit.
+constexpr float kBounced_deg = 10, kMostOfFlank = 4;
+// What is left of it where it was taken out, over albedo and slope: the relief is no better known than the
+// normals.
+constexpr float kBouncesLeft_deg = 2.2F;
 // Degrees over the share of pixels with shadowed readings and the slope: the edge of a shadow passes for
 // light.
-constexpr float kShadowed_deg = 1.4F;
+constexpr float kShadowed_deg = 1.2F;
 // What a misfit turns, over what it would if it were independent from light to light: upright, and more of it
 // on a slope, since a ring of lights has its highlights on all sides of an upright cloth. A robust start has
 // left out the readings that pull, and their residuals still count.
@@ -25,10 +28,12 @@ struct Pull {
   float upright, on_slope;
   float at(float slope) const { return upright + on_slope * slope; }
 };
-constexpr Pull kHere = {0.25F, 0.75F}, kAround = {0.08F, 0.3F};
-constexpr Pull kHereOfRobust = {0.15F, 0.05F}, kAroundOfRobust = {0.02F, 0.06F};
-// Steeper cloth, or lighter, is as steep or light as this.
-constexpr float kMostSlope = 1.5F, kMostAlbedo = 1.2F;
+constexpr Pull kHere = {0.27F, 0.7F}, kAround = {0.07F, 0.33F};
+constexpr Pull kHereOfRobust = {0.14F, 0.04F}, kAroundOfRobust = {0.015F, 0.085F};
+// Lighter cloth is as light as this.
+constexpr float kMostAlbedo = 1.2F;
+// Divides nothing by nothing.
+constexpr float kLeastSlope2 = 1e-6F;
 // Relative error of the albedo for each radian of the angle.
 constexpr float kAlbedoOfAngle = 1;
 
@@ -69,10 +74,11 @@ double degrees_a_residual(const LightField& field, int x, int y) {
 }
 
 float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, const ModelTraits& traits) {
-  const float slope = std::min(std::sqrt(evidence.slope2), kMostSlope);
-  float bounced = kBounced_deg * slope;
-  if (traits.bounces_are_out) bounced = std::min(bounced, kBouncesLeft_deg);
-  bounced *= std::min(evidence.albedo, kMostAlbedo) * slope;
+  const float slope = std::sqrt(evidence.slope2), albedo = std::min(evidence.albedo, kMostAlbedo);
+  const float flank =
+      std::min(evidence.slope2 / std::max(evidence.slope2_around, kLeastSlope2), kMostOfFlank);
+  float bounced = kBounced_deg * albedo * evidence.slope2 * flank;
+  if (traits.bounces_are_out) bounced = std::min(bounced, kBouncesLeft_deg * albedo * slope);
   const float shadowed = kShadowed_deg * evidence.shadowed * slope;
   const float here = (traits.is_robust ? kHereOfRobust : kHere).at(slope),
               around = (traits.is_robust ? kAroundOfRobust : kAround).at(slope),

@@ -37,11 +37,12 @@ double degrees_a_residual(const LightField& field, int x, int y);
 
 /// What solved maps show around a pixel.
 struct ModelEvidence {
-  float slope2 = 0;          ///< mean square of the slope, the tangent of the angle from upright
+  float slope2 = 0;  ///< mean square of the slope, the tangent of the angle from upright, of each up to 1.5
+  float slope2_around = 0;   ///< the same of a wider neighbourhood
   float albedo = 0;          ///< mean
   float shadowed = 0;        ///< share of the pixels that left out a reading for shadow
   float misfit2 = 0;         ///< mean square residual over the albedo, less what noise leaves of it
-  float misfit2_around = 0;  ///< the same of a wider neighbourhood
+  float misfit2_around = 0;  ///< the same of the wider one
 };
 
 /// How the normals were solved.
