@@ -15,6 +15,16 @@ bool has_own_law(const Scene& scene) {
                      [](const TargetSettings& target) { return target.sheet.non_lambertian != 0; });
 }
 
+/// The scene as a veil needs it: without what spreads light by less than a veil does and without rays, whose
+/// price it would double.
+Scene without_detail(Scene scene) {
+  EffectSettings& on = scene.effects;
+  on.cast_shadows = on.interreflection = on.translucency = false;
+  on.field_curvature = on.defocus = on.chromatic_aberration = on.veil = on.noise = false;
+  scene.damage.clear();
+  return scene;
+}
+
 /// A list of passes under construction.
 class Builder {
  public:
@@ -78,6 +88,7 @@ class Builder {
 
   void add_reflection() {
     on().reflectance ? add(reflectance_pass(scene_, rig_), "reflectance") : add(lambert_pass(scene_, rig_));
+    if (on().translucency) add(translucency_pass(scene_, rig_, halos_), "translucency");
     if (on().interreflection) add(interreflection_pass(scene_, rig_), "interreflection");
     if (on().led_drift) add(led_drift_pass(scene_, rig_), "led_drift");
     if (on().stray) add(stray_pass(scene_, rig_), "stray");
@@ -86,7 +97,16 @@ class Builder {
 
   void add_lens() {
     if (on().vignetting) add(vignetting_pass(scene_, rig_), "vignetting");
+    if (on().field_curvature) add(field_curvature_pass(scene_, rig_, halos_), "field_curvature");
     if (on().defocus) add(defocus_pass(scene_, halos_), "defocus");
+    if (on().chromatic_aberration)
+      add(chromatic_aberration_pass(scene_, rig_, halos_), "chromatic_aberration");
+    if (on().veil) add(veil_pass(scene_, rig_, light_of_the_frame()), "veil");
+  }
+
+  PassList light_of_the_frame() const {
+    const Scene scene = without_detail(scene_);
+    return Builder(scene, rig_, Output::kRgb, {}).build();
   }
 
   bool has_photosites() const { return on().dark_current || on().uneven_response; }

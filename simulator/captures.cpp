@@ -44,7 +44,7 @@ Result<Scene> bare_table(const Scene& given) {
   scene.camera.retakes.repeat = false;
   scene.camera.retakes.bracket.reset();
   EffectSettings& on = scene.effects;
-  on.relief = on.cast_shadows = on.interreflection = on.reflectance = on.movement = false;
+  on.relief = on.cast_shadows = on.interreflection = on.translucency = on.reflectance = on.movement = false;
   if (on.spectral) {
     scene.material.dye = flat_spectrum(kTableAlbedo);
   } else {

@@ -134,6 +134,14 @@ Example interreflection() {
   return example(&E::interreflection, "two bounces, with cast shadows", scene);
 }
 
+Example translucency() {
+  Scene scene = close_weave(Family::kDeep);
+  scene.material.warp_albedo = scene.material.weft_albedo = Rgb{0.85, 0.82, 0.75};
+  scene.material.translucency = {0.6, 0.15, {}, {}, {}, {}};
+  scene.effects = effects_for(&E::cast_shadows);
+  return example(&E::translucency, "share 0.6 over 0.15 mm, with cast shadows", scene);
+}
+
 Scene satin_scene() {
   Scene scene = close_weave(Family::kPlain);
   const Preset satin = *preset("satin");
@@ -180,10 +188,33 @@ Example vignetting() {
   return example(&E::vignetting, "flat card seen from 250 mm, corner loss 0.2", scene);
 }
 
+Example field_curvature() {
+  Scene scene = frame_of(kTable_mm);
+  lay(scene, CheckerboardSettings{.squares_x = 12, .squares_y = 8});
+  scene.camera.field.corner_px = 16;
+  return example(&E::field_curvature, "disc of 16 photosites in the corners", scene);
+}
+
 Example defocus() {
   Scene scene = close_weave(Family::kPlain);
   scene.camera.blur = {.defocus_px = 12, .spread_px = 1};
   return example(&E::defocus, "disc of 12 photosites, spread 1", scene);
+}
+
+Example chromatic_aberration() {
+  Scene scene = frame_of(kTable_mm);
+  lay(scene, CheckerboardSettings{.squares_x = 12, .squares_y = 8});
+  scene.camera.chromatic = {6, -6};
+  return example(&E::chromatic_aberration, "red 6 photosites out, blue 6 in", scene);
+}
+
+Example veil() {
+  Scene scene = greys(kTable_mm * 1.1);
+  scene.material.albedo = {0.02, 0.02, 0.02};
+  scene.camera.veil.share = 0.2;
+  Example e = example(&E::veil, "share 0.2", scene);
+  e.difference = 5;
+  return e;
 }
 
 Example bloom() {
@@ -247,10 +278,30 @@ Example everything() {
 }  // namespace
 
 std::vector<Example> effect_examples() {
-  return {near_light(),   relief(),          finite_led(),      led_drift(),   stray(),
-          ambient(),      cast_shadows(),    interreflection(), reflectance(), spectral(),
-          distortion(),   movement(),        vignetting(),      defocus(),     bloom(),
-          dark_current(), uneven_response(), nonlinearity(),    noise(),       everything()};
+  return {near_light(),
+          relief(),
+          finite_led(),
+          led_drift(),
+          stray(),
+          ambient(),
+          cast_shadows(),
+          interreflection(),
+          translucency(),
+          reflectance(),
+          spectral(),
+          distortion(),
+          movement(),
+          vignetting(),
+          field_curvature(),
+          defocus(),
+          chromatic_aberration(),
+          veil(),
+          bloom(),
+          dark_current(),
+          uneven_response(),
+          nonlinearity(),
+          noise(),
+          everything()};
 }
 
 }  // namespace weft::bench

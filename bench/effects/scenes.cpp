@@ -49,6 +49,7 @@ Scene cloth_scene(Family family, Size size) {
   scene.geometry = family_settings(family);
   scene.camera.mm_per_pixel = scene.geometry.warp_pitch_mm / kPixelsAYarn;
   scene.material.reflectance = preset("satin")->reflectance;
+  scene.material.translucency.share = 0.3;
   add_spectra(scene);
   return scene;
 }
@@ -91,6 +92,8 @@ std::vector<NamedScene> auto_gallery(Size size) {
   satin.material.reflectance = sheen.reflectance;
   Scene dim = matte(smooth, 0.02);
   dim.camera.iso = 1600;
+  Scene cotton = matte(plain, 0.8);
+  cotton.material.translucency.share = 0.3;
   Scene board = matte(smooth, 0.5);
   lay(board, CheckerboardSettings{.square_mm = 1, .margin_mm = 1});
   return {{"flat card", matte({}, 0.5)},
@@ -100,6 +103,7 @@ std::vector<NamedScene> auto_gallery(Size size) {
           {"smooth, albedo 0.5", matte(smooth, 0.5)},
           {"plain, albedo 0.5", matte(plain, 0.5)},
           {"deep, albedo 0.5", matte(deep, 0.5)},
+          {"plain, albedo 0.8, translucent", cotton},
           {"satin with sheen", satin},
           {"checkerboard on smooth", board}};
 }

@@ -111,15 +111,20 @@ void settle(BlurKernel& kernel) {
 
 }  // namespace
 
+double corner_distance_px(const CameraModel& camera) {
+  const double far_x = std::max(camera.cx, camera.size.width - 1 - camera.cx);
+  const double far_y = std::max(camera.cy, camera.size.height - 1 - camera.cy);
+  return std::max(std::hypot(far_x, far_y), 1.0);
+}
+
 Vignette::Vignette(const VignetteSettings& settings, const CameraModel& camera)
     : cx_(camera.cx),
       cy_(camera.cy),
       per_fx_(1 / camera.fx),
       per_fy_(1 / camera.fy),
       half_power_(settings.cosine_power / 2) {
-  const double far_x = std::max(camera.cx, camera.size.width - 1 - camera.cx);
-  const double far_y = std::max(camera.cy, camera.size.height - 1 - camera.cy);
-  loss_per_px2_ = settings.corner_loss / std::max(far_x * far_x + far_y * far_y, 1.0);
+  const double corner_px = corner_distance_px(camera);
+  loss_per_px2_ = settings.corner_loss / (corner_px * corner_px);
 }
 
 double Vignette::gain(double x, double y) const {

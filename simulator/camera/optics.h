@@ -11,6 +11,9 @@
 
 namespace weft::simulator {
 
+/// From the principal point to the farthest corner of the frame, at least 1.
+double corner_distance_px(const CameraModel& camera);
+
 /// Light that reaches a pixel over what reaches the principal point,
 /// g = cos(theta)^power (1 - corner_loss r^2 / r_corner^2), with r in pixels from the principal point and
 /// tan(theta) = r / focal length, the angle behind the lens: the law of cos^4 (Reiss, "The cos^4 law of

@@ -65,6 +65,30 @@ struct BlurSettings {
   bool operator==(const BlurSettings&) const = default;
 };
 
+/// Focus on a bowl instead of a plane: what is sharp at the frame's centre is not in its corners.
+struct FieldSettings {
+  double corner_px = 0;  ///< diameter of the circle of confusion in the farthest corner, 0 to 16
+
+  bool operator==(const FieldSettings&) const = default;
+};
+
+/// Lateral colour: in the frame's farthest corner, a photosite of that colour sees what a green one sees so
+/// much nearer to the optical axis.
+struct ChromaticSettings {
+  double red_px = 0;   ///< -10 to 10
+  double blue_px = 0;  ///< -10 to 10
+
+  bool operator==(const ChromaticSettings&) const = default;
+};
+
+/// Light that reflections within the lens spread over the whole frame.
+struct VeilSettings {
+  double share = 0;     ///< of the frame's mean light, 0 to 0.2
+  double spread = 0.3;  ///< standard deviation of how far a point's light goes, frame diagonals, 0.05 to 10
+
+  bool operator==(const VeilSettings&) const = default;
+};
+
 /// How photosites differ. Counts are those of the scene's converter, whatever its bits.
 struct DefectSettings {
   double dark_electrons_per_s = 0;  ///< of a photosite at 25 degrees Celsius, 0 to 1e6
@@ -120,6 +144,9 @@ struct CameraSettings {
   MovementSettings movement = {0.02, 0.005};                  ///< movement
   VignetteSettings vignette = {4, 0.05};                      ///< vignetting
   BlurSettings blur = {.defocus_px = 0.5, .spread_px = 0.4};  ///< defocus
+  FieldSettings field = {.corner_px = 1};                     ///< field_curvature
+  ChromaticSettings chromatic = {0.4, -0.4};                  ///< chromatic_aberration
+  VeilSettings veil = {.share = 0.005};                       ///< veil
   BloomSettings bloom = {.share = 0.5};                       ///< bloom
   std::array<double, 2> linearity = {0.01, -0.005};           ///< nonlinearity: Response::linearity
   DefectSettings defects = {.dark_electrons_per_s = 5,        ///< dark_current, uneven_response

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "simulator/camera/field_curvature.h"
 #include "simulator/camera/optics.h"
 #include "simulator/camera/saturation.h"
 #include "simulator/effects/halos.h"
@@ -22,6 +23,7 @@ namespace {
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr double kMostDeviation = 8.6;  // of a normal variate
 constexpr double kRayDeviations = 6;
+constexpr int kBetweenPixels = 2;  // pixels that lateral colour looks at beside where it looks
 constexpr double kNearest_mm = 1;  // of a LED: see incidence()
 
 struct Box {
@@ -88,7 +90,7 @@ double rise_deg(double slope) {
 
 /// What a LED can do anywhere in the box of lit points.
 struct LedRange {
-  Rgb signal_of_unit;    ///< on white, of an irradiance of 1
+  Rgb signal_of_unit;    ///< on white, of an irradiance of 1, with as much again as the lens may spread
   double distance_mm;    ///< the least
   double elevation_deg;  ///< the lowest
   double spread_mm;      ///< from the table's centre, where light counts as distant, to the farthest point
@@ -174,6 +176,15 @@ class Bounds {
                       " change by at most {:.2g} of full scale");
   }
 
+  EffectBound translucency() const {
+    const auto [warp, weft] = scene_.material.translucency.yarns();
+    const double most = std::max(warp.share, weft.share);
+    if (most == 0) return {0, "no light enters the yarns"};
+    const std::string why = fmt::format("up to {:.2g} of the light leaves beside where it entered", most) +
+                            ": at most {:.2g} of full scale";
+    return change(most * direct_, why);
+  }
+
   /// Lambert's law as a material leaves dark what faces away from the middle of a LED.
   EffectBound reflectance() const {
     if (is_glossy_) return glossy();
@@ -223,6 +234,30 @@ class Bounds {
     if (elsewhere <= 0) return {0, "no light leaves its pixel"};
     return change(elsewhere * light_, fmt::format("{:.2g} of the light", elsewhere) +
                                           " leaves its pixel: at most {:.2g} of full scale");
+  }
+
+  EffectBound field_curvature() const {
+    const FieldSettings& field = scene_.camera.field;
+    const BlurKernel kernel = widest_disc(field);
+    const double elsewhere = 1 - kernel.weights[kernel.weights.size() / 2];
+    if (elsewhere <= 0) return {0, "no light leaves its pixel in the corners"};
+    const std::string why =
+        fmt::format("a disc of {:.2g} pixels in the corners changes light by at most ", field.corner_px) +
+        "{:.2g} of full scale";
+    return change(elsewhere * light_, why);
+  }
+
+  EffectBound chromatic_aberration() const {
+    const ChromaticSettings& shift = scene_.camera.chromatic;
+    const double most_px = std::max(std::abs(shift.red_px), std::abs(shift.blue_px));
+    if (most_px == 0) return {0, "the lens shows all colours at one scale"};
+    return all(fmt::format("red or blue is seen up to {:.2g} pixels away", most_px));
+  }
+
+  EffectBound veil() const {
+    const double share = scene_.camera.veil.share;
+    if (share == 0) return {0, "the lens spreads no light over the frame"};
+    return change(share * light_, "the lens spreads at most {:.2g} of full scale");
   }
 
   EffectBound bloom() const {
@@ -308,14 +343,18 @@ class Bounds {
   void find_points() {
     const CameraSettings& c = scene_.camera;
     const double plane_mm = scene_.geometry.cloth_height_mm;
-    margin_px_ = blur_kernel(c.blur).radius + bloom_kernel(c.bloom).radius();
+    margin_px_ =
+        blur_kernel(c.blur).radius + widest_disc(c.field).radius + bloom_kernel(c.bloom).radius() +
+        static_cast<int>(std::ceil(std::max(std::abs(c.chromatic.red_px), std::abs(c.chromatic.blue_px)))) +
+        kBetweenPixels;
+    const int light_px = margin_px_ + translucency_reach(scene_);
     Seen seen;
     for (const LensSettings& lens : {c.lens, LensSettings()}) {
       const auto model =
           camera_of({c.width, c.height}, c.distance_mm, c.mm_per_pixel, lens, c.pose, plane_mm);
       if (!model) continue;  // another lens sees: the rig exists
       cameras_.push_back(*model);
-      add_seen(*Lens::of(*model), model->size, margin_px_, plane_mm, seen);
+      add_seen(*Lens::of(*model), model->size, light_px, plane_mm, seen);
     }
     const Area& a = seen.area;
     const double radius_mm = std::hypot(std::max(std::abs(a.x0_mm), std::abs(a.x1_mm)),
@@ -353,6 +392,7 @@ class Bounds {
       const Vec3 to_farthest = led.position_mm - box_.farthest(led.position_mm);
       LedRange& range = leds_.emplace_back();
       range.signal_of_unit = units[j];
+      for (double& signal : range.signal_of_unit) signal *= 1 + scene_.camera.veil.share;
       const double distance_mm = length(led.position_mm - box_.nearest(led.position_mm));
       range.distance_mm = std::max(distance_mm, kNearest_mm);
       range.elevation_deg =
@@ -381,7 +421,7 @@ class Bounds {
     const DefectSettings& d = scene_.camera.defects;
     find_hidden();
     const double gain = 1 + kMostDeviation * l.flicker;
-    const auto strength = [&](const LedRange& led) { return paper_ * gain * led.strength(); };
+    const auto strength = [&](const LedRange& led) { return paper_ * gain * glow() * led.strength(); };
     direct_ = brightest(albedo_, strength);
     const auto at_centre = [](const LedRange& led) { return led.centre_strength; };
     stray_ = l.stray * brightest(albedo_, at_centre);
@@ -409,6 +449,12 @@ class Bounds {
     for (int k = 0; k <= scene_.transport.bounces; ++k) bounced_ += std::pow(albedo() * hidden_, k);
   }
 
+  /// Light that leaves a yarn over the brightest that falls on the cloth: it may get more from others than it
+  /// gives away.
+  double glow() const {
+    const auto [warp, weft] = scene_.material.translucency.yarns();
+    return 1 + std::abs(warp.share - weft.share);
+  }
   double albedo() const { return *std::max_element(albedo_.begin(), albedo_.end()); }
   double response() const { return 1 + kMostDeviation * scene_.camera.defects.response_percent / 100; }
   /// Of a mesh's triangles, whose sides along x and y may both be as steep as the surface.
@@ -458,7 +504,7 @@ class Bounds {
   template <typename ChangeOf>
   EffectBound change_of_irradiance(const ChangeOf& change_of, const std::string& why) const {
     const double gain = 1 + kMostDeviation * scene_.lights.flicker;
-    return change(paper_ * gain * bounced_ * brightest(albedo_, change_of), why);
+    return change(paper_ * gain * glow() * bounced_ * brightest(albedo_, change_of), why);
   }
 
   EffectBound change_on_horizon(const std::string& why) const {
@@ -475,7 +521,7 @@ class Bounds {
   Rgb albedo_{};
   double colour_change_ = 0;  ///< of an albedo, from the observer to the camera
   std::vector<CameraModel> cameras_;
-  int margin_px_ = 0;  ///< around the frame, from where light is spread into it
+  int margin_px_ = 0;  ///< around the frame, from where it brings light into the frame
   HeightRange heights_;
   Box box_;           ///< of all points whose light enters the picture
   double paper_ = 1;  ///< what targets reflect over Lambert's law
@@ -491,12 +537,30 @@ class Bounds {
 };
 
 /// The effects in the order of effect_keys().
-constexpr EffectBound (Bounds::*kBoundOf[])() const = {
-    &Bounds::near_light,      &Bounds::relief,       &Bounds::finite_led,   &Bounds::led_drift,
-    &Bounds::stray,           &Bounds::ambient,      &Bounds::cast_shadows, &Bounds::interreflection,
-    &Bounds::reflectance,     &Bounds::spectral,     &Bounds::distortion,   &Bounds::movement,
-    &Bounds::vignetting,      &Bounds::defocus,      &Bounds::bloom,        &Bounds::dark_current,
-    &Bounds::uneven_response, &Bounds::nonlinearity, &Bounds::noise};
+using BoundOf = EffectBound (Bounds::*)() const;
+constexpr BoundOf kBoundOf[] = {&Bounds::near_light,
+                                &Bounds::relief,
+                                &Bounds::finite_led,
+                                &Bounds::led_drift,
+                                &Bounds::stray,
+                                &Bounds::ambient,
+                                &Bounds::cast_shadows,
+                                &Bounds::interreflection,
+                                &Bounds::translucency,
+                                &Bounds::reflectance,
+                                &Bounds::spectral,
+                                &Bounds::distortion,
+                                &Bounds::movement,
+                                &Bounds::vignetting,
+                                &Bounds::field_curvature,
+                                &Bounds::defocus,
+                                &Bounds::chromatic_aberration,
+                                &Bounds::veil,
+                                &Bounds::bloom,
+                                &Bounds::dark_current,
+                                &Bounds::uneven_response,
+                                &Bounds::nonlinearity,
+                                &Bounds::noise};
 
 }  // namespace
 

@@ -34,6 +34,7 @@ Pass cast_shadows_pass(const Scene& scene, const SceneRig& rig, const Halos& hal
 // From irradiance to signal.
 Pass lambert_pass(const Scene& scene, const SceneRig& rig);  ///< plain
 Pass reflectance_pass(const Scene& scene, const SceneRig& rig);
+Pass translucency_pass(const Scene& scene, const SceneRig& rig, const Halos& halos);
 Pass interreflection_pass(const Scene& scene, const SceneRig& rig);
 Pass led_drift_pass(const Scene& scene, const SceneRig& rig);
 Pass stray_pass(const Scene& scene, const SceneRig& rig);
@@ -41,7 +42,10 @@ Pass ambient_pass(const Scene& scene, const SceneRig& rig);
 
 // Lens.
 Pass vignetting_pass(const Scene& scene, const SceneRig& rig);
+Pass field_curvature_pass(const Scene& scene, const SceneRig& rig, const Halos& halos);
 Pass defocus_pass(const Scene& scene, const Halos& halos);
+Pass chromatic_aberration_pass(const Scene& scene, const SceneRig& rig, const Halos& halos);
+Pass veil_pass(const Scene& scene, const SceneRig& rig, PassList light);  ///< of what a frame's `light` gives
 
 // Photosites.
 Pass photosites_pass(const Scene& scene, const Halos& halos);

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulator/camera/field_curvature.h"
+#include "simulator/camera/lateral_colour.h"
 #include "simulator/camera/lens.h"
 #include "simulator/camera/optics.h"
 #include "simulator/camera/saturation.h"
 #include "simulator/geometry/surface.h"
+#include "simulator/transport/diffusion.h"
 #include "simulator/transport/rays.h"
 
 namespace weft::simulator {
@@ -56,11 +59,30 @@ double longest_shadow_of_unit(const SceneRig& rig, const Area& area, double high
 
 }  // namespace
 
+int translucency_reach(const Scene& scene) {
+  double farthest_mm = 0;
+  for (const YarnTranslucency& yarn : scene.material.translucency.yarns())
+    farthest_mm = std::max(farthest_mm, yarn.share > 0 ? yarn.mean_mm : 0);
+  return Diffusion(farthest_mm / mm_per_pixel_of_cloth(scene)).radius();
+}
+
 Result<Halos> halos_of(const Scene& scene, const SceneRig& rig) {
   constexpr double kMargin = 0.98;  // of the step: the field is looked at here and there
   Halos halos;
+  if (scene.effects.field_curvature) halos.field = FieldCurvature(scene.camera.field, rig.camera).radius();
+  if (scene.effects.chromatic_aberration)
+    halos.chromatic = LateralColour(scene.camera.chromatic, rig.camera).reach();
   if (scene.effects.defocus) halos.blur = blur_kernel(scene.camera.blur).radius;
   if (scene.effects.bloom) halos.bloom_rows = bloom_kernel(scene.camera.bloom).radius();
+  if (scene.effects.translucency) {
+    halos.translucency = translucency_reach(scene);
+    if (halos.translucency > kLongestReach) {
+      return Error{
+          ErrorKind::kBadData, "light goes too far within the cloth", "scene",
+          fmt::format("it is followed over {} pixels, {} are possible", halos.translucency, kLongestReach),
+          "shorten mean_mm of material.translucency or enlarge camera.mm_per_pixel"};
+    }
+  }
   if (!scene.effects.cast_shadows && !scene.effects.interreflection) return halos;
 
   const Field field = field_of(rig, scene.geometry.cloth_height_mm);
@@ -71,10 +93,10 @@ Result<Halos> halos_of(const Scene& scene, const SceneRig& rig) {
     halos.shadow_mm = relief_mm * longest_shadow_of_unit(rig, field.area,
                                                          scene.geometry.cloth_height_mm + heights.highest_mm);
     halos.shadow = halo_for(halos.shadow_mm, step_mm);
-    if (halos.shadow > kLongestShadow) {
+    if (halos.shadow > kLongestReach) {
       return Error{ErrorKind::kBadData, "shadows are too long to be traced", "scene",
                    fmt::format("relief of {:.3g} mm casts them over {} pixels, {} are possible", relief_mm,
-                               halos.shadow, kLongestShadow),
+                               halos.shadow, kLongestReach),
                    "lower the relief, raise the LEDs or enlarge camera.mm_per_pixel"};
     }
   }

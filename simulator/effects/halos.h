@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+
 #include "core/result.h"
 #include "simulator/effects/passes.h"
 #include "simulator/scene/rig.h"
@@ -15,19 +17,25 @@ struct Halos {
   int shadow = 0;
   int bounce = 0;  ///< of one bounce
   int bounces = 0;
+  int translucency = 0;
+  int field = 0;
   int blur = 0;
+  int chromatic = 0;
   int bloom_rows = 0;
 
   /// What the lens spreads into a tile.
-  int of_signal() const { return blur + bloom_rows; }
-  /// Where light must be known before shadows: what lights the tile by way of the cloth.
-  int of_light() const { return of_signal() + bounces * bounce; }
+  int of_signal() const { return field + blur + chromatic + bloom_rows; }
+  /// Where light must be known before shadows: what lights the tile by way of the cloth or through it.
+  int of_light() const { return of_signal() + std::max(bounces * bounce, translucency); }
   int all() const { return of_light() + shadow; }
 };
 
-/// kBadData where a shadow would reach over kLongestShadow pixels.
+/// kBadData where a shadow or light within the cloth would reach over kLongestReach pixels.
 Result<Halos> halos_of(const Scene& scene, const SceneRig& rig);
-inline constexpr int kLongestShadow = 640;
+inline constexpr int kLongestReach = 640;
+
+/// How far light is followed within the cloth, pixels.
+int translucency_reach(const Scene& scene);
 
 /// Light that leaves a point at a grazing angle is followed this many times the cloth's relief, but no
 /// farther than kFarthestBounce pixels.

@@ -37,7 +37,7 @@ Pass vignetting_pass(const Scene& scene, const SceneRig& rig) {
 
 Pass defocus_pass(const Scene& scene, const Halos& halos) {
   return {"defocus", "blurs by a disc and by the lens's point spread", Stage::kShot,
-          [kernel = blur_kernel(scene.camera.blur), halo = halos.bloom_rows](Tile& tile) {
+          [kernel = blur_kernel(scene.camera.blur), halo = halos.bloom_rows + halos.chromatic](Tile& tile) {
             const Rect sharp_rect = grown(tile.rect, halo + kernel.radius);
             const std::vector<Rgb> sharp = cropped(tile.signal, tile.signal_rect, sharp_rect);
             tile.signal_rect = grown(tile.rect, halo);

@@ -42,6 +42,7 @@ PassRunner::PassRunner(PassList list, TileOptions options)
   for (Worker& worker : workers_) {
     worker.spent.resize(list_.passes.size());
     worker.pixels.resize(list_.passes.size());
+    worker.tile.lit_together = list_.lit_together;
   }
 }
 

@@ -38,6 +38,7 @@ struct Tile {
   int shot = 0;  ///< number of the shot (PassRunner::run)
   int take = 0;  ///< the same counted on from session to session: all that is drawn by chance depends on it
   int led = 0;   ///< LED of the shot, from 1; 0 is the dark shot
+  std::vector<int> lit_together;  ///< PassList::lit_together
 
   // On `area`, once a tile.
   std::vector<Vec3> point_mm;            ///< rig frame

@@ -47,11 +47,16 @@ double bracket_exposure_us(const RetakeSettings& retakes, const SceneRig& rig, b
 /// The defects that the scene's effects call for; those of the others are zero.
 DefectSettings defects_of(const Scene& scene);
 
-/// The point of the plane z = cloth_height_mm that a pixel sees of a camera straight above, without lens.
+/// On the plane z = cloth_height_mm, of a camera straight above, without lens.
+inline double mm_per_pixel_of_cloth(const Scene& scene) {
+  const CameraSettings& c = scene.camera;
+  return c.mm_per_pixel * (c.distance_mm - scene.geometry.cloth_height_mm) / c.distance_mm;
+}
+
+/// The point of that plane which a pixel of that camera sees.
 inline Vec3 point_of_pixel(const Scene& scene, int x, int y) {
   const CameraSettings& c = scene.camera;
-  const double height_mm = scene.geometry.cloth_height_mm;
-  const double mm_per_pixel = c.mm_per_pixel * (c.distance_mm - height_mm) / c.distance_mm;
+  const double height_mm = scene.geometry.cloth_height_mm, mm_per_pixel = mm_per_pixel_of_cloth(scene);
   return {(x - (c.width - 1) / 2.0) * mm_per_pixel, ((c.height - 1) / 2.0 - y) * mm_per_pixel, height_mm};
 }
 

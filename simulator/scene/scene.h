@@ -25,6 +25,26 @@
 
 namespace weft::simulator {
 
+/// Light that enters a yarn and leaves beside where it entered.
+struct YarnTranslucency {
+  double share = 0;    ///< of the light that falls on the yarn, 0 to 0.9
+  double mean_mm = 0;  ///< mean distance between where light enters and where it leaves, 0.001 to 5
+};
+struct TranslucencySettings {
+  double share = 0;
+  double mean_mm = 0.3;
+  std::optional<double> warp_share, weft_share;      ///< instead of `share`
+  std::optional<double> warp_mean_mm, weft_mean_mm;  ///< instead of `mean_mm`
+
+  /// Of the warp and the weft; cloth that is not woven counts as warp.
+  std::array<YarnTranslucency, 2> yarns() const {
+    return {{{warp_share.value_or(share), warp_mean_mm.value_or(mean_mm)},
+             {weft_share.value_or(share), weft_mean_mm.value_or(mean_mm)}}};
+  }
+
+  bool operator==(const TranslucencySettings&) const = default;
+};
+
 /// Colour and gloss of the cloth.
 struct MaterialSettings {
   Rgb albedo = {0.5, 0.5, 0.5};
@@ -42,6 +62,7 @@ struct MaterialSettings {
   std::optional<Spectrum> weft_dye;
 
   Reflectance reflectance = Lambert{};  ///< reflectance
+  TranslucencySettings translucency;    ///< translucency
 
   bool operator==(const MaterialSettings&) const = default;
 };
@@ -116,17 +137,21 @@ struct EffectSettings {
   bool ambient = false;          ///< light of the room
   bool cast_shadows = false;     ///< the cloth hides LEDs from parts of itself
   bool interreflection = false;  ///< the cloth lights itself
+  bool translucency = false;     ///< light enters a yarn and leaves beside it
   bool reflectance = false;      ///< the material's own reflectance, not Lambert's
   bool spectral = false;         ///< colours are spectra seen through the camera's filters
   bool distortion = false;       ///< of the lens
   bool movement = false;         ///< the cloth shifts between shots
   bool vignetting = false;       ///< the lens darkens towards the corners
+  bool field_curvature = false;  ///< blur that grows towards the corners
   bool defocus = false;          ///< blur by a disc and by the lens's point spread
-  bool bloom = false;            ///< full photosites spill into their column
-  bool dark_current = false;     ///< photosites fill by warmth, too, and some are hot or dead
-  bool uneven_response = false;  ///< photosites and columns differ in gain and offset
-  bool nonlinearity = false;     ///< counts do not follow light in a straight line
-  bool noise = false;            ///< photon noise and read noise
+  bool chromatic_aberration = false;  ///< red and blue look at another place than green
+  bool veil = false;                  ///< light that the lens spreads over the whole frame
+  bool bloom = false;                 ///< full photosites spill into their column
+  bool dark_current = false;          ///< photosites fill by warmth, too, and some are hot or dead
+  bool uneven_response = false;       ///< photosites and columns differ in gain and offset
+  bool nonlinearity = false;          ///< counts do not follow light in a straight line
+  bool noise = false;                 ///< photon noise and read noise
 
   bool operator==(const EffectSettings&) const = default;
 };

@@ -95,6 +95,23 @@ void walk(Visitor& v, BlurSettings& b) {
 }
 
 template <typename Visitor>
+void walk(Visitor& v, FieldSettings& f) {
+  v.number("corner_px", f.corner_px, {0, 16});
+}
+
+template <typename Visitor>
+void walk(Visitor& v, ChromaticSettings& c) {
+  v.number("red_px", c.red_px, {-10, 10});
+  v.number("blue_px", c.blue_px, {-10, 10});
+}
+
+template <typename Visitor>
+void walk(Visitor& v, VeilSettings& s) {
+  v.number("share", s.share, {0, 0.2});
+  v.number("spread", s.spread, {0.05, 10});
+}
+
+template <typename Visitor>
 void walk(Visitor& v, BloomSettings& b) {
   v.number("share", b.share, kShare);
   v.number("decay", b.decay, {0, 0.9});
@@ -144,6 +161,9 @@ void walk(Visitor& v, CameraSettings& c) {
   v.section("movement", c.movement);
   v.section("vignette", c.vignette);
   v.section("blur", c.blur);
+  v.section("field", c.field);
+  v.section("chromatic", c.chromatic);
+  v.section("veil", c.veil);
   v.section("bloom", c.bloom);
   v.section("defects", c.defects);
 }
@@ -345,6 +365,17 @@ void walk(Visitor& v, Reflectance& r) {
 }
 
 template <typename Visitor>
+void walk(Visitor& v, TranslucencySettings& t) {
+  constexpr Range kMean_mm = {0.001, 5};
+  v.number("share", t.share, {0, 0.9});
+  v.number("mean_mm", t.mean_mm, kMean_mm);
+  v.number("warp_share", t.warp_share, {0, 0.9});
+  v.number("warp_mean_mm", t.warp_mean_mm, kMean_mm);
+  v.number("weft_share", t.weft_share, {0, 0.9});
+  v.number("weft_mean_mm", t.weft_mean_mm, kMean_mm);
+}
+
+template <typename Visitor>
 void walk(Visitor& v, MaterialSettings& m) {
   v.spectrum("dye", m.dye);
   v.spectrum("warp_dye", m.warp_dye);
@@ -366,6 +397,7 @@ void walk(Visitor& v, MaterialSettings& m) {
   v.number("yarn_variation", m.yarn_variation, {0, 0.5});
   v.optional_section("print", m.print);
   v.section("reflectance", m.reflectance);
+  v.section("translucency", m.translucency);
 }
 
 template <typename Visitor>

@@ -11,6 +11,10 @@ bool has_yarn_colours(const MaterialSettings& m) {
          m.yarn_variation > 0;
 }
 
+bool tells_yarns_apart(const TranslucencySettings& t) {
+  return t.warp_share || t.weft_share || t.warp_mean_mm || t.weft_mean_mm;
+}
+
 bool has_chart(const Scene& s) {
   return std::any_of(s.targets.begin(), s.targets.end(),
                      [](const TargetSettings& t) { return kind_of(t.pattern) == TargetKind::kChart; });
@@ -37,6 +41,10 @@ constexpr SceneRule kRules[] = {
     {"material", [](const Scene& s) { return !is_woven(s.geometry.kind) && has_yarn_colours(s.material); },
      "it has colours for yarns, and this geometry has none",
      "remove them, or choose a woven kind of geometry"},
+    {"material.translucency",
+     [](const Scene& s) { return !is_woven(s.geometry.kind) && tells_yarns_apart(s.material.translucency); },
+     "it tells warp from weft, and this geometry has neither",
+     "give \"share\" and \"mean_mm\" alone, or choose a woven kind of geometry"},
     {"material.dye",
      [](const Scene& s) { return s.material.dye && s.material.albedo != MaterialSettings().albedo; },
      "\"albedo\" gives the same cloth another colour", kOneColour},

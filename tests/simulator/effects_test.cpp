@@ -7,6 +7,7 @@
 
 #include "simulator/build_passes.h"
 #include "simulator/camera/optics.h"
+#include "simulator/geometry/weave.h"
 #include "simulator/light/incidence.h"
 #include "simulator/plan.h"
 #include "simulator/simulate.h"
@@ -244,6 +245,148 @@ TEST(Effects, BlurKeepsTheLightAndLevelsIt) {
     return sum;
   };
   EXPECT_LT(contrast(blurred), 0.5 * contrast(sharp));
+}
+
+TEST(Effects, RedAndBlueAreWhatCamerasOfOtherScalesSee) {
+  Scene scene = near_lit(GeometryKind::kFlat);  // waves: a weave has edges, of which pixels tell no place
+  scene.geometry.waves = {{.amplitude_mm = 0.1, .wavelength_mm = 1.2, .direction_deg = 30}};
+  scene.camera.width = scene.camera.height = 400;
+  const double corner_px = 199.5 * std::sqrt(2);
+  const auto seen_at_scale = [&](double shift_px) {
+    Scene scaled = scene;
+    scaled.camera.mm_per_pixel *= 1 - shift_px / corner_px;
+    return render(scaled, {0, 0, 32, 32});
+  };
+  const Rendering green = render(scene, {0, 0, 32, 32}), red = seen_at_scale(0.8), blue = seen_at_scale(-0.5);
+  scene.effects.chromatic_aberration = true;
+  scene.camera.chromatic = {0.8, -0.5};
+  const Rendering seen = render(scene, {0, 0, 32, 32});
+  double moved = 0, off = 0;
+  for (int y = 0; y < 32; ++y) {
+    for (int x = 0; x < 32; ++x) {
+      ASSERT_EQ(seen.readings(x, y, 1), green.readings(x, y, 1));
+      moved += std::abs(green.readings(x, y, 0) - red.readings(x, y, 0)) / 1024;
+      moved += std::abs(green.readings(x, y, 2) - blue.readings(x, y, 2)) / 1024;
+      off += std::abs(seen.readings(x, y, 0) - red.readings(x, y, 0)) / 1024;
+      off += std::abs(seen.readings(x, y, 2) - blue.readings(x, y, 2)) / 1024;
+    }
+  }
+  EXPECT_LT(off, 0.03 * moved) << "what is left is interpolation";
+}
+
+TEST(Effects, FieldCurvatureBlursTheCornersAndLeavesTheCentre) {
+  Scene scene = near_lit(GeometryKind::kPlain);
+  scene.geometry.warp_pitch_mm = scene.geometry.weft_pitch_mm = 0.8;
+  const Rect corner = {0, 0, 32, 32};
+  const auto contrast = [&](Rect area) {
+    const Rendering r = render(scene, area);
+    double sum = 0;
+    for (int y = 0; y < 32; ++y)
+      for (int x = 1; x < 32; ++x) sum += std::abs(r.readings(x, y, 1) - r.readings(x - 1, y, 1));
+    return sum;
+  };
+  const double centre_before = contrast(kCentre), corner_before = contrast(corner);
+  scene.effects.field_curvature = true;
+  scene.camera.field.corner_px = 6;
+  EXPECT_NEAR(contrast(kCentre) / centre_before, 1, 1e-6);
+  EXPECT_LT(contrast(corner) / corner_before, 0.8);
+}
+
+TEST(Effects, AVeilIsItsShareOfTheMeanOfTheFrame) {
+  Scene scene;  // distant light: the frame is even
+  const std::vector<double> plain = samples_of(scene, 1);
+  scene.effects.veil = true;
+  scene.camera.veil = {0.01, 0.3};
+  const std::vector<double> veiled = samples_of(scene, 1);
+  EXPECT_NEAR(veiled[7] / plain[7], 1.01, 1e-9);
+
+  scene.material.albedo = {0.04, 0.04, 0.04};
+  TargetSettings sheet;  // covers the left half of the frame
+  sheet.pattern = PaperSettings{1000, 1000};
+  sheet.centre_mm = {-500, 0, 0};
+  sheet.white = 0.84;
+  scene.targets = {sheet};
+  scene.camera.veil.spread = 10;  // all over the frame alike
+  const double dark = samples_of(scene, 1)[31];
+  scene.effects.veil = false;
+  const double clean = samples_of(scene, 1)[31];
+  EXPECT_NEAR(dark / clean, 1 + 0.01 * (0.84 + 0.04) / 2 / 0.04, 0.002);
+}
+
+TEST(Effects, AVeilFollowsTheLightOfItsShot) {
+  Scene scene;
+  scene.effects.veil = scene.effects.led_drift = scene.effects.ambient = true;
+  scene.camera.veil = {0.01, 0.3};
+  scene.lights.drift = 0.2;
+  scene.lights.ambient = 0.01;
+  for (const int led : {0, 1, 10}) {
+    const std::vector<double> veiled = samples_of(scene, led);
+    scene.effects.veil = false;
+    EXPECT_NEAR(veiled[7] / samples_of(scene, led)[7], 1.01, 1e-9) << "LED " << led;
+    scene.effects.veil = true;
+  }
+}
+
+TEST(Effects, TranslucencyKeepsTheLightAndSoftensTheEdgesOfShadows) {
+  Scene scene = near_lit(GeometryKind::kPlain);
+  scene.geometry = family_settings(Family::kDeep);
+  scene.camera.mm_per_pixel = 0.04;
+  scene.effects.relief = scene.effects.cast_shadows = true;
+  const Rect wide = {1100, 700, 1228, 828};
+  const Rendering opaque = render(scene, wide);
+  scene.effects.translucency = true;
+  scene.material.translucency = {0.3, 0.12, {}, {}, {}, {}};
+  const Rendering soft = render(scene, wide);
+  const int low = 3 * 5 + 1;  // LED 6 stands at 62 degrees
+  EXPECT_NEAR(sum_of(soft.readings, low) / sum_of(opaque.readings, low), 1, 0.01) << "but for the border";
+  int dark = 0, still_dark = 0;
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      dark += opaque.readings(x, y, low) == 0;
+      still_dark += soft.readings(x, y, low) == 0;
+    }
+  }
+  EXPECT_GT(dark, 1000);
+  EXPECT_EQ(still_dark, 0);
+}
+
+TEST(Effects, TranslucencyChangesNothingWhereLightIsEven) {
+  Scene scene;
+  const std::vector<double> opaque = samples_of(scene, 3);
+  scene.effects.translucency = true;
+  scene.material.translucency = {0.5, 1, {}, {}, {}, {}};
+  const std::vector<double> translucent = samples_of(scene, 3);
+  for (std::size_t i = 0; i < opaque.size(); ++i) ASSERT_NEAR(translucent[i] / opaque[i], 1, 1e-12);
+}
+
+TEST(Effects, LightThatEntersTheWeftLeavesTheWarpToo) {
+  Scene scene = near_lit(GeometryKind::kPlain);
+  scene.geometry.warp_pitch_mm = scene.geometry.weft_pitch_mm = 0.8;
+  const Rect wide = {1100, 700, 1228, 828};
+  const Rendering opaque = render(scene, wide);
+  scene.effects.translucency = true;
+  scene.material.translucency = {0, 0.3, {}, 0.5, {}, {}};
+  const Rendering soft = render(scene, wide);
+  const Weave weave(scene.geometry);
+  double gained[2] = {};
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      const Vec3 p = point_of_pixel(scene, wide.x0 + x, wide.y0 + y);
+      gained[weave.at(p.x, p.y).yarn.is_weft] += soft.readings(x, y, 1) - opaque.readings(x, y, 1);
+    }
+  }
+  EXPECT_GT(gained[0], 0);
+  EXPECT_NEAR(gained[1] / gained[0], -1, 0.05) << "what the weft gives away, the warp gets";
+}
+
+TEST(Effects, LightMayNotGoTooFarWithinTheCloth) {
+  Scene scene;
+  scene.effects.translucency = true;
+  scene.material.translucency = {0.2, 0.3, {}, {}, {}, {}};
+  scene.camera.mm_per_pixel = 0.001;
+  const Result<PassList> list = build_passes(scene, *rig_of(scene), Output::kCounts);
+  ASSERT_FALSE(list);
+  EXPECT_NE(list.error().message().find("light goes too far within the cloth"), std::string::npos);
 }
 
 TEST(Effects, SensorFaultsAreWhatTheirSettingsSay) {

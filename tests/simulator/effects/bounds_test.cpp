@@ -64,6 +64,9 @@ TEST(Bounds, AnIdealSceneNeedsNoEffectButItsLights) {
   scene.camera.movement = {};
   scene.camera.vignette = {0, 0};
   scene.camera.blur = {};
+  scene.camera.field = {};
+  scene.camera.chromatic = {};
+  scene.camera.veil = {};
   scene.camera.bloom = {};
   scene.camera.linearity = {};
   scene.camera.defects = {};
@@ -119,6 +122,13 @@ TEST(Bounds, GrowWithWhatTheyBound) {
        [](Scene& s, double t) {
          s.camera.blur = {1 + 4 * t, 0};
        }},
+      {"translucency", [](Scene& s, double t) { s.material.translucency.share = 0.9 * t; }},
+      {"field_curvature", [](Scene& s, double t) { s.camera.field.corner_px = 8 * t; }},
+      {"chromatic_aberration",
+       [](Scene& s, double t) {
+         s.camera.chromatic = {4 * t, 0};
+       }},
+      {"veil", [](Scene& s, double t) { s.camera.veil.share = 0.2 * t; }},
       {"dark_current", [](Scene& s, double t) { s.camera.defects = {.dark_electrons_per_s = 1e4 * t}; }},
       {"uneven_response", [](Scene& s, double t) { s.camera.defects = {.response_percent = 5 * t}; }},
       {"nonlinearity",
@@ -158,6 +168,7 @@ TEST(Bounds, OfASphereOnTheHorizonAreItsFormFactor) {
 TEST(Bounds, OfStrayLightAreTheLightItself) {
   Scene scene;
   scene.camera.defects = {};
+  scene.camera.veil = {};
   const SceneRig rig = *rig_of(scene);
   double brightest = 0;
   for (const DistantLight& led : distant_lights(rig, 0).lights)
@@ -207,6 +218,9 @@ void draw_camera(Random& r, Scene& s) {
   c.movement = {r.up_to(0.2), r.up_to(0.2)};
   c.vignette = {r.up_to(6), r.up_to(0.4)};
   c.blur = {r.up_to(2), r.up_to(0.6)};
+  c.field = {r.up_to(3)};
+  c.chromatic = {r.up_to(3), -r.up_to(3)};
+  c.veil = {r.up_to(0.05), r.between(0.05, 1)};
   c.bloom = {r.up_to(1), r.between(0, 0.4)};
   c.linearity = {r.between(-0.1, 0.1), r.between(-0.05, 0.05)};
   c.defects = {.dark_electrons_per_s = r.up_to(500), .temperature_c = r.between(10, 40)};
@@ -236,6 +250,9 @@ void draw_cloth(Random& r, Scene& s) {
     if (r.in_percent(50)) s.material.weft_albedo = r.colour();
     s.material.yarn_variation = r.up_to(0.3);
   }
+  s.material.translucency.share = r.up_to(0.9);
+  s.material.translucency.mean_mm = s.camera.mm_per_pixel * r.between(0.2, 2);
+  if (is_woven(s.geometry.kind) && r.in_percent(30)) s.material.translucency.weft_share = r.up_to(0.9);
   s.spectra.led = r.spectrum();
   s.spectra.filters = {r.spectrum(), r.spectrum(), r.spectrum()};
   if (r.in_percent(50)) {

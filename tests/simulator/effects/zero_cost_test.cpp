@@ -60,8 +60,10 @@ CountedRun counted(const std::string& program) {
 TEST(ZeroCost, AProgramOfPlainPassesLinksNoEffect) {
   const std::set<std::string> alone = passes_in(LAMBERT_ALONE), among_all = passes_in(LAMBERT_AMONG_ALL);
   EXPECT_THAT(alone, IsSupersetOf({"camera_pass", "geometry_pass", "near_light_pass", "lambert_pass"}));
-  for (const char* effect : {"cast_shadows_pass", "interreflection_pass", "reflectance_pass", "targets_pass",
-                             "vignetting_pass", "defocus_pass", "bloom_pass", "stray_pass"}) {
+  for (const char* effect :
+       {"cast_shadows_pass", "interreflection_pass", "reflectance_pass", "targets_pass", "vignetting_pass",
+        "defocus_pass", "bloom_pass", "stray_pass", "translucency_pass", "field_curvature_pass",
+        "chromatic_aberration_pass", "veil_pass"}) {
     EXPECT_TRUE(among_all.contains(effect)) << effect;
     EXPECT_FALSE(alone.contains(effect)) << effect;
   }

@@ -38,6 +38,8 @@ std::vector<Case> cases() {
   patches += "]\n";
   return {
       {"[material]\nwarp_albedo = 0.3\n", "material", "colours for yarns", plain + "warp_albedo = 0.3\n"},
+      {"[material.translucency]\nweft_share = 0.3\n", "material.translucency", "warp from weft",
+       plain + "[material.translucency]\nweft_share = 0.3\n"},
       {"[material]\n" + dye + "albedo = 0.3\n", "material.dye", "another colour", "[material]\n" + dye},
       {plain + "warp_" + dye + "warp_albedo = 0.3\n", "material.warp_dye", "warp_albedo",
        plain + "warp_" + dye + "weft_albedo = 0.3\n"},

@@ -101,6 +101,8 @@ inline MaterialSettings every_material(std::size_t number) {
   }
   m.print.file = "/somewhere/print.png";
   m.print.placement = {0.3, -1, 2, -45, false};
+  m.translucency = {0.1, 0.25, {}, {}, {}, {}};
+  if (is_woven(kKinds[number])) m.translucency = {0.1, 0.25, 0.3, 0.4, 0.35, 0.45};
   const Rgb f0 = {0.05, 0.06, 0.07};
   const std::vector<Reflectance> models = {Lambert{},
                                            Ggx{0.3, f0, Beneath::kLambert},
@@ -138,6 +140,9 @@ inline Scene everything(std::size_t number) {
               {0.5, 0.25},
               {3, 0.1},
               {1.5, 0.7, 0.1, 9},
+              {2.5},
+              {-0.6, 0.8},
+              {0.01, 0.2},
               {0.25, 0.4},
               {-0.02, 0.03},
               {6, 31, 7, 0.5, 0.6, 0.7, {{{1, 2}, {3, -4}}}, 21, 9999, 3, 0.125}};
