@@ -10,9 +10,10 @@
 namespace weft::pipeline {
 namespace {
 
-constexpr int kCell = 2;
+// Cells of so many pixels a side speak by the filter cell in their corner.
+constexpr int kCell = 4, kQuad = 2;
 // Rows of cells kept from the band before: those of the pixels that waited for demosaicing, and one above.
-constexpr int kKept = solver::kDemosaicReach / kCell + 1;
+constexpr int kKept = (solver::kDemosaicReach + kCell - 1) / kCell + 1;
 // Columns of a block. Over so many the lights change by a percent.
 constexpr int kBlock = 64;
 // A slope of 56 degrees, a residual of three times the albedo, and the least that is divided by.
@@ -32,7 +33,7 @@ ModelPart::ModelPart(const Photographs& photographs, int band_rows, const solver
       has_noise_(photographs.noise().has_value()),
       traits_(traits),
       threads_(threads),
-      cells_({(photographs.size.width + 1) / kCell, kKept + band_rows / kCell}, kSums) {}
+      cells_({(photographs.size.width + kCell - 1) / kCell, kKept + band_rows / kCell}, kSums) {}
 
 // What each block knows before its pixels are seen.
 void ModelPart::set_blocks(Rect band) {
@@ -49,31 +50,28 @@ void ModelPart::set_blocks(Rect band) {
   }
 }
 
-// Adds row y of the band, frame_y of the frame, to a row of cells.
-void ModelPart::add_row(int frame_y, int y, const SolvedRows& solved, int row) {
-  const float *nx = solved.normal[0].row(y), *ny = solved.normal[1].row(y), *nz = solved.normal[2].row(y);
-  const float *residual = solved.residual.row(y), *rho = solved.albedo.row(y);
-  const std::uint16_t* status = solved.status.row(y);
-  std::array<float*, kSums> sums;
-  for (int p = 0; p < kSums; ++p) sums[static_cast<std::size_t>(p)] = cells_.plane(p).row(row);
-  const std::array<std::size_t, kCell> channel = {
-      static_cast<std::size_t>(planes_.channel_at(planes_.speaker(), 0, frame_y)),
-      static_cast<std::size_t>(planes_.channel_at(planes_.speaker(), 1, frame_y))};
-  for (int x = 0; x < solved.status.width(); ++x) {
-    if (status[x] & kNoSolution) continue;
-    const int cell = x / kCell;
-    const float z2 = nz[x] * nz[x], albedo = std::max(rho[x], kLeastAlbedo);
-    const float q = residual[x] < kMostResidual ? residual[x] : kMostResidual;
-    sums[kPixels][cell] += 1;
-    sums[kSlope2][cell] += 1 - z2 < kMostSlope2 * z2 ? (1 - z2) / z2 : kMostSlope2;
-    sums[kAlbedo][cell] += albedo;
-    sums[kShaded][cell] += (status[x] & kShadowed) != 0 ? 1.0F : 0.0F;
-    if (!has_noise_) continue;
-    const Block& block = blocks_[static_cast<std::size_t>(x / kBlock)];
-    sums[kResidual2][cell] += q * q;
-    sums[kNoise2][cell] +=
-        block.noise[channel[static_cast<std::size_t>(x % kCell)]](nx[x], ny[x], nz[x], albedo);
+// Sums over the pixels of a cell that speak for it, from (x0, y0) of the band.
+ModelPart::Sums ModelPart::sums_of(int x0, int y0, int frame_y0, const SolvedRows& solved) const {
+  Sums sums = {};
+  const Block& block = blocks_[static_cast<std::size_t>(x0 / kBlock)];
+  for (int y = y0; y < std::min(y0 + kQuad, solved.status.height()); ++y) {
+    for (int x = x0; x < std::min(x0 + kQuad, solved.status.width()); ++x) {
+      const std::uint16_t status = solved.status(x, y);
+      if (status & kNoSolution) continue;
+      const float nz = solved.normal[2](x, y), z2 = nz * nz, residual = solved.residual(x, y);
+      const float albedo = std::max(solved.albedo(x, y), kLeastAlbedo);
+      const float q = residual < kMostResidual ? residual : kMostResidual;
+      sums[kPixels] += 1;
+      sums[kSlope2] += 1 - z2 < kMostSlope2 * z2 ? (1 - z2) / z2 : kMostSlope2;
+      sums[kAlbedo] += albedo;
+      sums[kShaded] += (status & kShadowed) != 0 ? 1.0F : 0.0F;
+      if (!has_noise_) continue;
+      const auto c = static_cast<std::size_t>(planes_.channel_at(planes_.speaker(), x, frame_y0 + y - y0));
+      sums[kResidual2] += q * q;
+      sums[kNoise2] += block.noise[c](solved.normal[0](x, y), solved.normal[1](x, y), nz, albedo);
+    }
   }
+  return sums;
 }
 
 // Of all cells from `first_row` on.
@@ -101,55 +99,59 @@ void ModelPart::gather(Rect band, const SolvedRows& solved) {
     }
   }
   first_ = band.y0 / kCell - kept;
-  known_ = kept + (band.height() + 1) / kCell;
+  known_ = kept + (band.height() + kCell - 1) / kCell;
   set_blocks(band);
   parallel_for(static_cast<std::size_t>(known_ - kept), threads_, [&](std::size_t i, int) {
-    const int row = kept + static_cast<int>(i), y0 = static_cast<int>(i) * kCell;
-    for (int p = 0; p < kSums; ++p) std::fill_n(cells_.plane(p).row(row), cells_.width(), 0.0F);
-    for (int y = y0; y < std::min(y0 + kCell, band.height()); ++y) add_row(band.y0 + y, y, solved, row);
+    const int row = kept + static_cast<int>(i), y = static_cast<int>(i) * kCell;
+    for (int cell = 0; cell < cells_.width(); ++cell) {
+      const Sums sums = sums_of(cell * kCell, y, band.y0 + y, solved);
+      for (std::size_t p = 0; p < kSums; ++p) cells_(cell, row, static_cast<int>(p)) = sums[p];
+    }
   });
   sum_blocks(kept);
 }
 
-// Sums over the 3 x 3 cells around one.
-ModelPart::Sums ModelPart::around(int cell_x, int row) const {
-  Sums sums = {};
+float ModelPart::angle_at(int cell_x, int row) const {
+  const float pixels = cells_(cell_x, row, kPixels);
+  if (!(pixels > 0)) return 0;
+  Sums around = {};
   for (int j = std::max(row - 1, 0); j < std::min(row + 2, known_); ++j) {
-    for (int p = 0; p < kSums; ++p) {
+    for (const Sum p : {kPixels, kShaded, kResidual2, kNoise2}) {
       const float* cells = cells_.plane(p).row(j);
-      for (int i = std::max(cell_x - 1, 0); i < std::min(cell_x + 2, cells_.width()); ++i) {
-        sums[static_cast<std::size_t>(p)] += cells[i];
-      }
+      for (int i = std::max(cell_x - 1, 0); i < std::min(cell_x + 2, cells_.width()); ++i)
+        around[p] += cells[i];
     }
   }
-  return sums;
-}
-
-float ModelPart::angle_at(int cell_x, int row) const {
-  const Sums sums = around(cell_x, row);
-  const float pixels = sums[kPixels];
-  if (!(pixels > 0)) return 0;
   const Block& block = blocks_[static_cast<std::size_t>(cell_x * kCell / kBlock)];
-  const solver::ModelEvidence evidence = {.slope2 = sums[kSlope2] / pixels,
-                                          .slope2_around = block.slope2,
-                                          .albedo = sums[kAlbedo] / pixels,
-                                          .shadowed = sums[kShaded] / pixels,
-                                          .misfit2 = misfit2_of(sums[kResidual2], sums[kNoise2], pixels),
-                                          .misfit2_around = block.misfit2};
+  const solver::ModelEvidence evidence = {
+      .slope2 = cells_(cell_x, row, kSlope2) / pixels,
+      .slope2_around = block.slope2,
+      .albedo = cells_(cell_x, row, kAlbedo) / pixels,
+      .shadowed = around[kShaded] / around[kPixels],
+      .misfit2 = misfit2_of(around[kResidual2], around[kNoise2], around[kPixels]),
+      .misfit2_around = block.misfit2};
   return solver::model_sigma_deg(evidence, block.degrees_a_residual, traits_);
 }
 
 void ModelPart::fill(Rect rows, const std::array<View<const float>, 3>& albedo, View<float> model_normal_deg,
                      const std::array<View<float>, 3>& model_albedo) const {
-  parallel_for(static_cast<std::size_t>((rows.height() + 1) / kCell), threads_, [&](std::size_t i, int) {
-    const int y0 = static_cast<int>(i) * kCell, row = rows.y0 / kCell + static_cast<int>(i) - first_;
-    for (int x0 = 0; x0 < rows.width(); x0 += kCell) {
-      const float deg = angle_at(x0 / kCell, row), share = solver::model_albedo_share(deg);
-      for (int y = y0; y < std::min(y0 + kCell, rows.height()); ++y) {
-        for (int x = x0; x < std::min(x0 + kCell, rows.width()); ++x) {
-          model_normal_deg(x, y) = deg;
-          for (std::size_t c = 0; c < 3; ++c) model_albedo[c](x, y) = share * albedo[c](x, y);
-        }
+  if (rows.height() == 0) return;
+  const int first = rows.y0 / kCell, last = (rows.y1 - 1) / kCell;
+  parallel_for(static_cast<std::size_t>(last - first + 1), threads_, [&](std::size_t i, int) {
+    const int cell_y = first + static_cast<int>(i);
+    const int y0 = std::max(cell_y * kCell, rows.y0) - rows.y0,
+              y1 = std::min((cell_y + 1) * kCell, rows.y1) - rows.y0;
+    std::vector<float> angles(static_cast<std::size_t>(cells_.width()));
+    for (int cell = 0; cell < cells_.width(); ++cell) {
+      angles[static_cast<std::size_t>(cell)] = angle_at(cell, cell_y - first_);
+    }
+    for (int y = y0; y < y1; ++y) {
+      float* angle = model_normal_deg.row(y);
+      for (int x = 0; x < rows.width(); ++x) angle[x] = angles[static_cast<std::size_t>(x / kCell)];
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float* of = albedo[c].row(y);
+        float* share = model_albedo[c].row(y);
+        for (int x = 0; x < rows.width(); ++x) share[x] = solver::model_albedo_share(angle[x]) * of[x];
       }
     }
   });

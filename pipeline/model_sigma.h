@@ -18,20 +18,21 @@ struct SolvedRows {
   View<const float> albedo;  ///< of each photosite of a mosaic, or of green
 };
 
-/// The model's part of sigma (solver/uncertainty/model_sigma.h) over a frame that is solved band by band.
-/// What the maps show is summed over cells of 2 x 2 pixels. The evidence of a cell is that of the 3 x 3 cells
-/// around it, as far as they are solved when its turn comes, and its wider neighbourhood a block of 64
-/// columns and a band's rows. The same bytes for any number of threads.
+/// The model's part of sigma (solver/uncertainty/model_sigma.h) over a frame that is solved band by band, for
+/// cells of 4 x 4 pixels. The 2 x 2 pixels in its corner speak for a cell. Slope and albedo are its own;
+/// misfit and shadows are those of the 3 x 3 cells around it, as far as they are solved when its turn comes;
+/// the wider neighbourhood is its block of 64 columns and a band's rows. The same bytes for any number of
+/// threads.
 class ModelPart {
  public:
-  /// Bands have `band_rows` rows, an even number, but for the last. `photographs` must outlive this.
+  /// Bands have `band_rows` rows, a multiple of 4, but for the last. `photographs` must outlive this.
   ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits, int threads);
 
   /// Takes in the next band.
   void gather(Rect band, const SolvedRows& solved);
 
-  /// Fills the angle for `rows` of the frame, in degrees, and the albedo's share of R, G, B. They begin on an
-  /// even row, solver::kDemosaicReach rows above the gathered band at most. All views are as large as `rows`.
+  /// Fills the angle for `rows` of the frame, in degrees, and the albedo's share of R, G, B. They begin
+  /// solver::kDemosaicReach rows above the gathered band at most. All views are as large as `rows`.
   void fill(Rect rows, const std::array<View<const float>, 3>& albedo, View<float> model_normal_deg,
             const std::array<View<float>, 3>& model_albedo) const;
 
@@ -46,9 +47,8 @@ class ModelPart {
   };
 
   void set_blocks(Rect band);
-  void add_row(int frame_y, int y, const SolvedRows& solved, int row);
+  Sums sums_of(int x0, int y0, int frame_y0, const SolvedRows& solved) const;
   void sum_blocks(int first_row);
-  Sums around(int cell_x, int row) const;
   float angle_at(int cell_x, int row) const;
 
   const Photographs& photographs_;

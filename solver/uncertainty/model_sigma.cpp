@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/vec.h"
-
 namespace weft::solver {
 namespace {
 
@@ -14,13 +12,13 @@ namespace {
 // Degrees by which light from the cloth turns a normal, over albedo and square of the slope: a slope sees as
 // much of the cloth as it does not see of the sky. Flanks, steeper than what is around them, are turned by
 // more than crests and furrows: by as much as their slope's square is over that around, to a limit.
-constexpr float kBounced_deg = 10, kMostOfFlank = 4;
+constexpr float kBounced_deg = 9, kMostOfFlank = 4;
 // What is left of it where it was taken out, over albedo and slope: the relief is no better known than the
 // normals.
-constexpr float kBouncesLeft_deg = 2.2F;
+constexpr float kBouncesLeft_deg = 2.3F;
 // Degrees over the share of pixels with shadowed readings and the slope: the edge of a shadow passes for
 // light.
-constexpr float kShadowed_deg = 1.2F;
+constexpr float kShadowed_deg = 1.5F;
 // What a misfit turns, over what it would if it were independent from light to light: upright, and more of it
 // on a slope, since a ring of lights has its highlights on all sides of an upright cloth. A robust start has
 // left out the readings that pull, and their residuals still count.
@@ -28,14 +26,12 @@ struct Pull {
   float upright, on_slope;
   float at(float slope) const { return upright + on_slope * slope; }
 };
-constexpr Pull kHere = {0.27F, 0.7F}, kAround = {0.07F, 0.33F};
-constexpr Pull kHereOfRobust = {0.14F, 0.04F}, kAroundOfRobust = {0.015F, 0.085F};
+constexpr Pull kHere = {0.35F, 0.7F}, kAround = {0.38F, 0.2F};
+constexpr Pull kHereOfRobust = {0.15F, 0.05F}, kAroundOfRobust = {0.06F, 0.12F};
 // Lighter cloth is as light as this.
 constexpr float kMostAlbedo = 1.2F;
 // Divides nothing by nothing.
 constexpr float kLeastSlope2 = 1e-6F;
-// Relative error of the albedo for each radian of the angle.
-constexpr float kAlbedoOfAngle = 1;
 
 }  // namespace
 
@@ -85,10 +81,6 @@ float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, 
               misfit = static_cast<float>(degrees_a_residual) *
                        std::sqrt(here * here * evidence.misfit2 + around * around * evidence.misfit2_around);
   return std::min(std::sqrt(bounced * bounced + shadowed * shadowed + misfit * misfit), 180.0F);
-}
-
-float model_albedo_share(float model_deg) {
-  return kAlbedoOfAngle * static_cast<float>(radians(static_cast<double>(model_deg)));
 }
 
 }  // namespace weft::solver

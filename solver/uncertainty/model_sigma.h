@@ -5,6 +5,7 @@
 
 #include "core/light_field.h"
 #include "core/radiometry.h"
+#include "core/vec.h"
 
 // What noise does not say of a solved normal's error: light from the cloth itself, which fits Lambert's law
 // and shows in no residual, and what does not fit it, such as highlights and cast shadows.
@@ -54,7 +55,10 @@ struct ModelTraits {
 /// Rms angle that the model's part of sigma comes to, degrees.
 float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, const ModelTraits& traits);
 
-/// Standard deviation of the albedo by the model, over the albedo, that goes with such an angle.
-float model_albedo_share(float model_deg);
+/// Standard deviation of the albedo by the model, over the albedo, that goes with such an angle: a radian of
+/// the one is about one of the other.
+constexpr float model_albedo_share(float model_deg) {
+  return model_deg * static_cast<float>(kPi / 180);
+}
 
 }  // namespace weft::solver

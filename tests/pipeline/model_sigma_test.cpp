@@ -52,7 +52,7 @@ Sigmas sigmas_of(const Photographs& photographs, const TileOptions& tile = kSolv
     }
     return {};
   };
-  const auto ok = solve_bands(photographs, *solver::standard_method(), tile, {.threads = threads}, keep,
+  const auto ok = solve_bands(photographs, *solver::fast_method(), tile, {.threads = threads}, keep,
                               {.model = traits});
   EXPECT_TRUE(ok) << ok.error().message();
   return sigmas;
