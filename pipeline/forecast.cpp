@@ -163,7 +163,7 @@ Result<Forecast> forecast_errors(const Photographs& photographs, int threads) {
   };
   const std::vector<SampleMaps> standard = solve(solver::standard_method());
   const std::vector<SampleMaps> robust = solve(solver::robust_method());
-  const Result<solver::Gates> gates = measure_gates(standard);
+  const Result<solver::Gates> gates = measure_gates(standard, photographs);
   if (!gates) return gates.error();
   const Result<double> calibration = calibration_deg(photographs, standard);
   if (!calibration) return calibration.error();

@@ -10,6 +10,7 @@
 
 #include "core/job.h"
 #include "core/parallel.h"
+#include "pipeline/picture_axes.h"
 #include "solver/transport/gather.h"
 
 namespace weft::pipeline {
@@ -52,10 +53,11 @@ LightCorrection::LightCorrection(const Photographs& photographs, const SolvedFra
       relief_(&relief),
       planes_(photographs.planes()),
       options_(options),
+      applied_(options.stages),
       threads_(resolved_threads(threads)) {
   directions_.count = photographs.count();
-  directions_.at = [&photographs](std::size_t k, int x, int y) {
-    return photographs.field->at(k, 1, x, y).direction;
+  directions_.at = [&photographs, axes = picture_from_rig(photographs.camera)](std::size_t k, int x, int y) {
+    return axes * photographs.field->at(k, 1, x, y).direction;
   };
   if (options_.stages.shadows) shadow_reach_ = solver::shadow_reach(relief, directions_);
 }
@@ -89,7 +91,7 @@ void LightCorrection::read_radiosity(Rect area, Worker& worker) const {
             float value = reading[i] / worker.strengths[c * width + i];
             if (!std::isfinite(value)) {
               const Vec3 n = {solved_->normal(x, y, 0), solved_->normal(x, y, 1), solved_->normal(x, y, 2)};
-              const double lit = std::max(0.0, dot(n, field.at(k, 1, x, y).direction));
+              const double lit = std::max(0.0, dot(n, directions_.at(k, x, y)));
               value =
                   static_cast<float>(static_cast<double>(solved_->albedo(x, y, static_cast<int>(p))) * lit);
             }
@@ -178,7 +180,8 @@ void LightCorrection::apply(Rect tile, std::span<const View<float>> readings) co
 }
 
 void LightCorrection::subtract_bounces(Rect tile, std::span<const View<float>> readings) const {
-  if (!options_.stages.interreflection) return;
+  if (!applied_.interreflection) return;
+  const auto scale = static_cast<float>(applied_.albedo_scale);
   const LightField& field = *photographs_->field;
   const std::size_t lights = photographs_->count();
   const auto planes = static_cast<std::size_t>(planes_.count);
@@ -194,7 +197,7 @@ void LightCorrection::subtract_bounces(Rect tile, std::span<const View<float>> r
         for (std::size_t i = 0; i < width; ++i) {
           const int x = tile.x0 + static_cast<int>(i), row = y - slab_.y0;
           const auto c = static_cast<std::size_t>(planes_.channel_at(static_cast<int>(p), x, y));
-          const float albedo = solved_->albedo(x, y, static_cast<int>(p));
+          const float albedo = scale * solved_->albedo(x, y, static_cast<int>(p));
           reading[i] -=
               albedo * arriving_(x, row, static_cast<int>(k * planes + p)) * strengths[c * width + i];
         }
@@ -204,7 +207,7 @@ void LightCorrection::subtract_bounces(Rect tile, std::span<const View<float>> r
 }
 
 void LightCorrection::mark_shadows(Rect tile, std::span<const View<float>> readings) const {
-  if (!options_.stages.shadows) return;
+  if (!applied_.shadows) return;
   const auto planes = static_cast<std::size_t>(planes_.count);
   for (std::size_t i = 0; i < readings.size(); ++i) {
     for (int y = tile.y0; y < tile.y1; ++y) {

@@ -15,7 +15,7 @@ namespace weft::pipeline {
 
 /// A solved frame as far as light over it depends on it.
 struct SolvedFrame {
-  Image<float> normal;  ///< X, Y, Z
+  Image<float> normal;  ///< X, Y, Z by the axes of the picture (pipeline/picture_axes.h)
   Image<float> albedo;  ///< of a mosaic each photosite's own colour, else R, G, B
 };
 
@@ -23,6 +23,9 @@ struct SolvedFrame {
 struct LightStages {
   bool shadows = false;
   bool interreflection = false;
+  double albedo_scale = 1;  ///< absolute albedo over the solved one: a bounce goes with both
+
+  bool any() const { return shadows || interreflection; }
 };
 
 struct LightCorrectionOptions {
@@ -33,7 +36,8 @@ struct LightCorrectionOptions {
 
 /// Readings as a convex cloth without shadows would give them. With the relief of a frame that is solved
 /// already, light that the cloth hides from a pixel is marked as shadow (-infinity), and the light that
-/// reaches the pixel from the cloth, albedo times gather_light() (solver/transport/gather.h), is subtracted.
+/// reaches the pixel from the cloth, absolute albedo times gather_light() (solver/transport/gather.h), is
+/// subtracted.
 ///
 /// Works in slabs of rows, so that memory does not grow with the height of the frame: about (K P + 1) * 4
 /// bytes for each of kSlabRows * width pixels, and a mesh a thread. Bytes depend on neither threads nor
@@ -48,6 +52,8 @@ class LightCorrection {
 
   /// Traces light for these rows, which begin where those of the last call ended or inside them.
   Result<void> prepare(Rect rows);
+  /// From now on only these of the stages that are traced correct readings.
+  void apply_only(const LightStages& stages) { applied_ = stages; }
   /// Corrects readings [k * planes + p] of a tile inside the prepared rows: subtract_bounces(), then
   /// mark_shadows(). From many threads.
   void apply(Rect tile, std::span<const View<float>> readings) const;
@@ -69,6 +75,7 @@ class LightCorrection {
   const solver::Relief* relief_;
   Planes planes_;
   LightCorrectionOptions options_;
+  LightStages applied_;
   int threads_;
   solver::LightDirections directions_;
   solver::ShadowReach shadow_reach_;

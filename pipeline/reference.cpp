@@ -3,20 +3,26 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
 #include <utility>
 
 #include "core/vec.h"
+#include "pipeline/picture_axes.h"
 #include "pipeline/samples.h"
 #include "solver/height/height.h"
 
 namespace weft::pipeline {
 namespace {
 
+Vec3 normal_of(const SolvedFrame& frame, int x, int y) {
+  return {frame.normal(x, y, 0), frame.normal(x, y, 1), frame.normal(x, y, 2)};
+}
+
 // Keeps a solve in memory, and by how much it turned the normals of the one before, if there is one.
 class FrameKeeper {
  public:
   FrameKeeper(const Photographs& photographs, const SolvedFrame* before)
-      : planes_(photographs.planes()), before_(before) {
+      : planes_(photographs.planes()), axes_(picture_from_rig(photographs.camera)), before_(before) {
     frame = {Image<float>(photographs.size, 3), Image<float>(photographs.size, planes_.count)};
   }
 
@@ -32,14 +38,12 @@ class FrameKeeper {
  private:
   void keep_normals(const MapBand& band, int y) {
     const int row = band.rows.y0 + y;
-    for (int x = 0; before_ != nullptr && x < band.rows.width(); ++x) {
-      const Vec3 before = {before_->normal(x, row, 0), before_->normal(x, row, 1),
-                           before_->normal(x, row, 2)};
-      turned_deg_ += angle_deg(before, {band.normal[0](x, y), band.normal[1](x, y), band.normal[2](x, y)});
-    }
-    for (int c = 0; c < 3; ++c) {
-      std::copy_n(band.normal[static_cast<std::size_t>(c)].row(y), band.rows.width(),
-                  frame.normal.plane(c).row(row));
+    for (int x = 0; x < band.rows.width(); ++x) {
+      const Vec3 n = axes_ * Vec3{band.normal[0](x, y), band.normal[1](x, y), band.normal[2](x, y)};
+      if (before_ != nullptr) turned_deg_ += angle_deg(normal_of(*before_, x, row), n);
+      frame.normal(x, row, 0) = static_cast<float>(n.x);
+      frame.normal(x, row, 1) = static_cast<float>(n.y);
+      frame.normal(x, row, 2) = static_cast<float>(n.z);
     }
   }
   void keep_albedo(const MapBand& band, int y) {
@@ -53,24 +57,27 @@ class FrameKeeper {
   }
 
   Planes planes_;
+  Mat3 axes_;
   const SolvedFrame* before_;
   double turned_deg_ = 0;
 };
 
-// One round: the frame's relief, its light, and a solve of what is left of the readings.
+// One round: a frame, its relief, what its light does to readings, and a solve of what is left of them.
 class Round {
  public:
-  Round(const Photographs& photographs, const SolvedFrame& solved, LightCorrectionOptions options,
-        int threads)
-      : photographs_(&photographs), solved_(&solved), options_(options), threads_(threads) {}
+  // The others must outlive it.
+  Round(const Photographs& photographs, SolvedFrame frame, const ReferenceOptions& options,
+        const JobContext& context)
+      : solved(std::move(frame)), photographs_(photographs), options_(options), context_(context) {}
 
   Result<void> integrate() {
     Stopwatch watch;
     solver::HeightOptions options;
-    options.threads = threads_;
+    options.threads = context_.threads;
     Result<solver::Height> height = solver::height_from_normals(
-        {solved_->normal.plane(0), solved_->normal.plane(1), solved_->normal.plane(2)}, {}, options);
+        {solved.normal.plane(0), solved.normal.plane(1), solved.normal.plane(2)}, {}, options);
     if (!height) return std::move(height).error();
+    facts.slope_residual_rms = height->slope_residual_rms;
     height_ = std::move(height->height_mm);
     Result<solver::Relief> relief = solver::Relief::of(height_.plane(), 1);
     if (!relief) return std::move(relief).error();
@@ -79,28 +86,134 @@ class Round {
     return {};
   }
 
-  Result<double> solve(const solver::Method& method, const TileOptions& tile, const JobContext& context,
-                       const BandSink& sink, BandOptions options) {
+  // Sets `stages` to those of the candidates that earn their place.
+  Result<LightChoice> choose(const LightStages& candidates) {
     Stopwatch watch;
-    LightCorrection correction(*photographs_, *solved_, relief_, options_, threads_);
+    LightCorrection correction = correct(candidates);
+    Result<LightChoice> choice = choose_light(photographs_, solved, correction, candidates, context_);
+    if (choice) facts.stages = choice->stages;
+    facts.choice_seconds = watch.lap();
+    return choice;
+  }
+
+  Result<double> solve(const solver::Method& method, const TileOptions& tile, const BandSink& sink,
+                       BandOptions options) {
+    Stopwatch watch;
+    LightCorrection correction = correct(facts.stages);
     reach_is_capped = correction.shadow_reach_is_capped();
     options.correction = &correction;
-    Result<double> waited = solve_bands(*photographs_, method, tile, context, sink, options);
+    Result<double> waited = solve_bands(photographs_, method, tile, context_, sink, options);
     facts.light_seconds = correction.seconds();
     facts.solve_seconds = watch.lap() - correction.seconds();
     return waited;
   }
 
   ReferenceRound facts;
+  SolvedFrame solved;
   bool reach_is_capped = false;
 
  private:
-  const Photographs* photographs_;
-  const SolvedFrame* solved_;
-  LightCorrectionOptions options_;
-  int threads_;
+  LightCorrection correct(const LightStages& stages) const {
+    return {photographs_, solved, relief_, {stages, options_.rays, options_.reach_px}, context_.threads};
+  }
+
+  const Photographs& photographs_;
+  const ReferenceOptions& options_;
+  const JobContext& context_;
   Image<float> height_;
   solver::Relief relief_;
+};
+
+// A solve under way.
+class Reference {
+ public:
+  Reference(const Photographs& photographs, const TileOptions& tile, const ReferenceOptions& options,
+            const JobContext& context)
+      : photographs_(photographs), tile_(tile), options_(options), context_(context) {}
+
+  Result<void> find_candidates() {
+    Result<solver::Gates> gates = measure_gates(
+        solve_samples(photographs_, *solver::standard_method(), context_.threads), photographs_);
+    if (!gates) return std::move(gates).error();
+    facts.gates = *gates;
+    facts.stages = {options_.force_stages || gates->shadows(),
+                    options_.force_stages || gates->interreflection()};
+    return {};
+  }
+
+  // Rounds until the normals settle, or a round is refused. The last solve is of readings corrected by
+  // `last_`, if there is one.
+  Result<void> approach() {
+    FrameKeeper first(photographs_, nullptr);
+    if (const auto solved = solve_bands(photographs_, *quick_, tile_, context_, std::ref(first)); !solved) {
+      return solved.error();
+    }
+    SolvedFrame frame = std::move(first.frame);
+    for (bool settled = false;;) {
+      auto round = std::make_unique<Round>(photographs_, std::move(frame), options_, context_);
+      if (Result<void> ok = round->integrate(); !ok) return ok;
+      if (Result<void> ok = choose(*round); !ok) return ok;
+      if (!facts.stages.any()) return {};
+      const bool done = settled || static_cast<int>(facts.rounds.size()) + 1 >= options_.most_rounds;
+      if (done) {
+        last_ = std::move(round);
+        return {};
+      }
+      FrameKeeper next(photographs_, &round->solved);
+      const Result<double> solved = round->solve(*quick_, tile_, std::ref(next), {});
+      if (!solved) return solved.error();
+      ReferenceRound& now = round->facts;
+      now.turned_deg = next.mean_turn_deg();
+      settled = now.turned_deg < options_.settled_deg;
+      now.is_refused = !settled && !facts.rounds.empty() && now.turned_deg >= facts.rounds.back().turned_deg;
+      facts.rounds.push_back(now);
+      if (now.is_refused) return {};
+      last_ = std::move(round);
+      frame = std::move(next.frame);
+    }
+  }
+
+  Result<void> finish(const BandSink& sink) {
+    const auto exact = solver::exact_method();
+    facts.stages = last_ ? last_->facts.stages : LightStages{};
+    const BandOptions bands = {.tally = &facts.tally,
+                               .model = solver::ModelTraits{true, facts.stages.interreflection}};
+    const Result<double> waited = last_ ? last_->solve(*exact, tile_, sink, bands)
+                                        : solve_bands(photographs_, *exact, tile_, context_, sink, bands);
+    if (!waited) return waited.error();
+    facts.waited_seconds = *waited;
+    if (!last_) return {};
+    facts.rounds.push_back(last_->facts);
+    facts.rounds.back().turned_deg = 0;
+    facts.shadow_reach_is_capped = last_->reach_is_capped;
+    return {};
+  }
+
+  ReferenceFacts facts;
+
+ private:
+  // Leaves in facts.stages what earns its place by the relief of the first round, and of each where the scale
+  // of the albedo has to be found: the better the relief, the better it is known.
+  Result<void> choose(Round& round) {
+    const bool is_chosen = !facts.rounds.empty() && (!facts.stages.interreflection ||
+                                                     photographs_.albedo_scale == AlbedoScale::kAbsolute);
+    if (options_.force_stages || is_chosen) {
+      round.facts.stages = facts.stages;
+      return {};
+    }
+    Result<LightChoice> choice = round.choose(facts.stages);
+    if (!choice) return std::move(choice).error();
+    facts.stages = choice->stages;
+    if (facts.rounds.empty()) facts.choice = *choice;
+    return {};
+  }
+
+  const Photographs& photographs_;
+  const TileOptions& tile_;
+  const ReferenceOptions& options_;
+  const JobContext& context_;
+  std::unique_ptr<solver::Method> quick_ = solver::robust_method();
+  std::unique_ptr<Round> last_;
 };
 
 }  // namespace
@@ -108,50 +221,13 @@ class Round {
 Result<ReferenceFacts> solve_reference(const Photographs& photographs, const TileOptions& tile,
                                        const ReferenceOptions& options, const JobContext& context,
                                        const BandSink& sink) {
-  ReferenceFacts facts;
-  const auto quick = solver::robust_method(), exact = solver::exact_method();
-  Result<solver::Gates> gates =
-      measure_gates(solve_samples(photographs, *solver::standard_method(), context.threads));
-  if (!gates) return std::move(gates).error();
-  facts.gates = *gates;
-  facts.stages = options.force_stages ? LightStages{true, true}
-                                      : LightStages{gates->shadows(), gates->interreflection()};
-  if (!facts.stages.shadows && !facts.stages.interreflection) {
-    const Result<double> waited =
-        solve_bands(photographs, *exact, tile, context, sink,
-                    {.tally = &facts.tally, .model = solver::ModelTraits{.is_robust = true}});
-    if (!waited) return waited.error();
-    facts.waited_seconds = *waited;
-    return facts;
+  Reference reference(photographs, tile, options, context);
+  if (Result<void> ok = reference.find_candidates(); !ok) return std::move(ok).error();
+  if (reference.facts.stages.any()) {
+    if (Result<void> ok = reference.approach(); !ok) return std::move(ok).error();
   }
-
-  FrameKeeper first(photographs, nullptr);
-  if (const auto solved = solve_bands(photographs, *quick, tile, context, std::ref(first)); !solved) {
-    return solved.error();
-  }
-  SolvedFrame frame = std::move(first.frame);
-  const LightCorrectionOptions light = {facts.stages, options.rays, options.reach_px};
-  for (bool settled = false, done = false; !done;) {
-    done = settled || static_cast<int>(facts.rounds.size()) + 1 >= options.most_rounds;
-    Round round(photographs, frame, light, context.threads);
-    if (Result<void> ok = round.integrate(); !ok) return std::move(ok).error();
-    FrameKeeper next(photographs, &frame);
-    const BandOptions last = {.tally = &facts.tally,
-                              .model = solver::ModelTraits{true, facts.stages.interreflection}};
-    const Result<double> waited = done ? round.solve(*exact, tile, context, sink, last)
-                                       : round.solve(*quick, tile, context, std::ref(next), {});
-    if (!waited) return waited.error();
-    if (done) {
-      facts.waited_seconds = *waited;
-    } else {
-      round.facts.turned_deg = next.mean_turn_deg();
-      settled = round.facts.turned_deg < options.settled_deg;
-    }
-    facts.rounds.push_back(round.facts);
-    facts.shadow_reach_is_capped |= round.reach_is_capped;
-    if (!done) frame = std::move(next.frame);
-  }
-  return facts;
+  if (Result<void> ok = reference.finish(sink); !ok) return std::move(ok).error();
+  return std::move(reference.facts);
 }
 
 }  // namespace weft::pipeline

@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/statistics.h"
+#include "pipeline/picture_axes.h"
 #include "pipeline/tile_reader.h"
 #include "solver/in_double/pixel.h"
 #include "solver/sample_tiles.h"
@@ -86,10 +87,24 @@ std::vector<SampleMaps> solve_samples(const Photographs& photographs, const solv
   return solved;
 }
 
-Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples) {
+Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples, const Photographs& photographs) {
+  const Mat3 axes = picture_from_rig(photographs.camera);
+  std::vector<Image<float>> turned;
   std::vector<solver::SolvedSample> all;
-  for (const SampleMaps& maps : samples) all.push_back(maps.sample());
-  return solver::measure_gates(all, {});
+  for (const SampleMaps& maps : samples) {
+    Image<float>& normal = turned.emplace_back(maps.normal.size(), 3);
+    for (int y = 0; y < normal.height(); ++y) {
+      for (int x = 0; x < normal.width(); ++x) {
+        const Vec3 n = axes * Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)};
+        normal(x, y, 0) = static_cast<float>(n.x);
+        normal(x, y, 1) = static_cast<float>(n.y);
+        normal(x, y, 2) = static_cast<float>(n.z);
+      }
+    }
+    all.push_back(maps.sample());
+    all.back().normal = {normal.plane(0), normal.plane(1), normal.plane(2)};
+  }
+  return solver::measure_gates(all, {}, photographs.albedo_scale);
 }
 
 }  // namespace weft::pipeline

@@ -32,7 +32,7 @@ SampleMaps solve_sample(const solver::TileInput& input, const solver::Method& me
 std::vector<SampleMaps> solve_samples(const Photographs& photographs, const solver::Method& method,
                                       int threads);
 
-/// The gates of a solve, from its samples.
-Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples);
+/// The gates of a solve, from its samples. Where the scale of the albedo is relative, it is taken for 1.
+Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples, const Photographs& photographs);
 
 }  // namespace weft::pipeline

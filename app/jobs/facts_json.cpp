@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/facts_json.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/vec.h"
@@ -12,6 +13,13 @@ const char* verdict_of(const pipeline::ShotShift& shot, bool found) {
   if (!found) return "not registered";
   if (shot.verdict == pipeline::ShiftVerdict::kCorrected) return "corrected";
   return shot.verdict == pipeline::ShiftVerdict::kFlagged ? "flagged" : "still";
+}
+
+Json names_of(const pipeline::LightStages& stages) {
+  Json names = Json::array();
+  if (stages.shadows) names.push_back("shadows");
+  if (stages.interreflection) names.push_back("interreflection");
+  return names;
 }
 
 }  // namespace
@@ -35,14 +43,47 @@ Json json_of(const solver::SolveTally& tally) {
 }
 
 Json json_of(const pipeline::ReferenceFacts& facts) {
-  Json stages = Json::array(), rounds = Json::array();
-  if (facts.stages.shadows) stages.push_back("shadows");
-  if (facts.stages.interreflection) stages.push_back("interreflection");
-  for (const pipeline::ReferenceRound& round : facts.rounds)
-    rounds.push_back({{"turned_deg", round.turned_deg}});
-  return {{"stages", std::move(stages)},
+  Json rounds = Json::array(), left_out = Json::array();
+  for (const pipeline::ReferenceRound& round : facts.rounds) {
+    rounds.push_back({{"turned_deg", round.turned_deg},
+                      {"stages", names_of(round.stages)},
+                      {"albedo_scale", round.stages.albedo_scale},
+                      {"slope_residual_rms", round.slope_residual_rms},
+                      {"refused", round.is_refused}});
+  }
+  for (const auto& [name, gain] : {std::pair{"shadows", facts.choice.shadows},
+                                   std::pair{"interreflection", facts.choice.interreflection}}) {
+    if (gain.patches == 0) continue;
+    left_out.push_back({{"stage", name},
+                        {"gain", gain.mean},
+                        {"sigma", gain.sigma},
+                        {"patches", gain.patches},
+                        {"kept", gain.keeps()}});
+  }
+  return {{"stages", names_of(facts.stages)},
           {"rounds", std::move(rounds)},
+          {"left_out", std::move(left_out)},
+          {"albedo_scale_is_open", facts.choice.scale_is_open},
           {"shadow_reach_is_capped", facts.shadow_reach_is_capped}};
+}
+
+std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts) {
+  std::vector<std::string> said;
+  if (facts.choice.scale_is_open) {
+    said.emplace_back(
+        "light between yarns was left in: the scale of the albedo is relative and this cloth does not tell "
+        "it; "
+        "measure the reflectance of the paper that the lights are calibrated on");
+  }
+  if (std::ranges::any_of(facts.rounds, &pipeline::ReferenceRound::is_refused)) {
+    said.emplace_back(
+        "reference ended early: a round turned the normals no less than the one before, so its normals were "
+        "not used");
+  }
+  if (facts.shadow_reach_is_capped) {
+    said.emplace_back("shadows from farther than reference looks were not found; flatten the cloth");
+  }
+  return said;
 }
 
 Json json_of(const pipeline::SessionShifts& shifts, const std::vector<int>& leds) {

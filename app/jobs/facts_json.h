@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "core/json_document.h"
@@ -19,8 +20,11 @@ Json json_of(const solver::Gates& gates);
 /// How many pixels were solved in which way.
 Json json_of(const solver::SolveTally& tally);
 
-/// {"stages", "rounds", "shadow_reach_is_capped"}.
+/// {"stages", "rounds", "left_out", "albedo_scale_is_open", "shadow_reach_is_capped"}.
 Json json_of(const pipeline::ReferenceFacts& facts);
+
+/// What the reference level could not do, a sentence each.
+std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts);
 
 /// A list by shot of {"led", "dx_px", "dy_px", "turn_deg", "sigma_px", "cost_deg", "corrected", "verdict":
 /// "still" | "corrected" | "flagged" | "not registered"}. `leds` are the numbers of the lights, if they have

@@ -11,6 +11,7 @@
 #include "app/jobs/session_frames.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "pipeline/reference.h"
 
 namespace weft::app {
 namespace {
@@ -69,17 +70,6 @@ void choose_more(SessionPlan& plan) {
       plan.brackets.push_back(shot);
     }
   }
-}
-
-// Bytes that decoding and solving will hold at once: the frames, one more for every thread that decodes, and
-// bands.
-std::uint64_t memory_needed(const SessionPlan& plan, std::size_t frames, int threads) {
-  const auto pixels = static_cast<std::uint64_t>(plan.size.pixels());
-  const auto decoding =
-      static_cast<std::uint64_t>(std::min<std::size_t>(static_cast<std::size_t>(threads), frames));
-  const std::uint64_t bytes_a_pixel = plan.raw ? 2 : 12;
-  return pixels * bytes_a_pixel * (frames + decoding) +
-         static_cast<std::uint64_t>(plan.size.width) * 128 * 150 + (std::uint64_t{64} << 20);
 }
 
 // Frames of one body have one set of levels.
@@ -157,8 +147,8 @@ Result<pipeline::Frames> read_developed(const SessionPlan& plan, const std::vect
 }
 
 // Before an hour of work.
-Result<void> check_memory(const SessionPlan& plan, std::size_t frames, int threads) {
-  const std::uint64_t needed = memory_needed(plan, frames, threads);
+Result<void> check_memory(const SessionPlan& plan, int threads) {
+  const std::uint64_t needed = memory_needed(plan, threads);
   const std::uint64_t free = available_memory_bytes();
   if (free == 0 || needed <= free) return {};
   return Error{ErrorKind::kTryAgain, "not enough memory", plan.session.folder.string(),
@@ -184,6 +174,18 @@ std::vector<Shot> SessionPlan::frames() const {
   all.insert(all.end(), repeats.begin(), repeats.end());
   all.insert(all.end(), brackets.begin(), brackets.end());
   return all;
+}
+
+std::uint64_t memory_needed(const SessionPlan& plan, int threads) {
+  const auto pixels = static_cast<std::uint64_t>(plan.size.pixels());
+  const std::size_t frames = plan.frames().size();
+  const std::size_t decoding = std::min(static_cast<std::size_t>(threads), frames);
+  const std::uint64_t bytes_a_pixel = plan.raw ? 2 : 12;
+  const std::uint64_t of_level = plan.extent == solver::Extent::kWholeFrame
+                                     ? pixels * pipeline::reference_bytes_a_pixel(plan.raw ? 1 : 3)
+                                     : 0;
+  return pixels * bytes_a_pixel * (frames + decoding) + of_level +
+         static_cast<std::uint64_t>(plan.size.width) * 128 * 150 + (std::uint64_t{64} << 20);
 }
 
 Result<SessionPlan> plan_session(const SessionOptions& options) {
@@ -226,7 +228,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
 Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& context) {
   const std::vector<Shot> shots = plan.frames();
   const int threads = std::min(resolved_threads(context.threads), static_cast<int>(shots.size()));
-  if (Result<void> room = check_memory(plan, shots.size(), threads); !room) return std::move(room).error();
+  if (Result<void> room = check_memory(plan, threads); !room) return std::move(room).error();
 
   LoadedSession loaded;
   loaded.warnings = plan.warnings;

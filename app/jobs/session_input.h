@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include "pipeline/conditions/drift.h"
 #include "pipeline/conditions/useless_lights.h"
 #include "pipeline/photographs.h"
+#include "solver/method.h"
 
 namespace weft::app {
 
@@ -36,12 +38,17 @@ struct SessionPlan {
   bool raw = true;                    ///< mosaics; else linear TIFF, PNG or EXR
   Json description;                   ///< for solve.json, and what the id of the solve is made of
   std::vector<std::string> warnings;  ///< about shots that will not be used
+  solver::Extent extent = solver::Extent::kTiles;  ///< of the level that will be solved by
 
   /// All shots whose frames are read: lit, dark, repeats, brackets.
   std::vector<Shot> frames() const;
 };
 
 Result<SessionPlan> plan_session(const SessionOptions& options);
+
+/// Bytes that decoding and solving will hold at once: the frames, one more for every thread that decodes,
+/// bands, and what the level keeps of the whole frame.
+std::uint64_t memory_needed(const SessionPlan& plan, int threads);
 
 /// A LED that was not solved from, and why.
 struct LeftOutLed {

@@ -222,6 +222,7 @@ class Run {
     if (frame->reference) {
       facts_.gates = json_of(frame->reference->gates);
       facts_.reference = json_of(*frame->reference);
+      for (std::string& said : warnings_of(*frame->reference)) warnings_.push_back(std::move(said));
     }
     summary_ = summarize_photographs(photographs_, input_.picked, warnings_, context_);
     seconds_.report = watch_.lap();
@@ -316,6 +317,7 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
   if (!method) return method.error();
   Result<SessionPlan> plan = plan_session(input);
   if (!plan) return std::move(plan).error();
+  plan->extent = method->extent;
   const fs::path truth = plan->session.folder / "truth" / "normal.exr";
   return solve(*method,
                {.title = plan->session.fabric,

@@ -68,7 +68,8 @@ Gate gate(const char* name, double value, double limit, const char* unit) {
 
 }  // namespace
 
-Result<Gates> measure_gates(std::span<const SolvedSample> samples, const GateLimits& limits) {
+Result<Gates> measure_gates(std::span<const SolvedSample> samples, const GateLimits& limits,
+                            AlbedoScale scale) {
   Totals totals;
   for (const SolvedSample& sample : samples) {
     add_pixels(sample, totals);
@@ -83,7 +84,8 @@ Result<Gates> measure_gates(std::span<const SolvedSample> samples, const GateLim
   };
   const auto pixels = static_cast<double>(totals.pixels);
   const auto slope_deg = static_cast<double>(lower_quantile(std::move(totals.slopes_deg), 0.95));
-  const double indirect = totals.albedo / pixels * (1 - totals.openness / pixels);
+  const double albedo = scale == AlbedoScale::kAbsolute ? totals.albedo / pixels : 1;
+  const double indirect = albedo * (1 - totals.openness / pixels);
   return Gates{
       gate("slope", slope_deg, limits.slope_deg, "degrees"),
       gate("shadowed", share(totals.shadowed, totals.readings), limits.shadowed_share, "of readings"),

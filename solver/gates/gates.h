@@ -7,10 +7,12 @@
 #include <string>
 #include <vector>
 
+#include "core/albedo_scale.h"
 #include "core/image.h"
 #include "core/result.h"
 
-// Whether a cloth needs what the reference level can do to it, measured on tiles of it before it is done.
+// Whether what the reference level can do to a cloth can gain anything, measured on tiles of it before it is
+// done.
 
 namespace weft::solver {
 
@@ -33,10 +35,10 @@ struct Gate {
 };
 
 struct GateLimits {
-  double slope_deg = 20;         ///< 95th percentile over the pixels
-  double shadowed_share = 0.01;  ///< of the readings
-  double indirect_share = 0.02;  ///< mean albedo times 1 minus mean openness: what bounces add to the light
-  double specular_share = 0.2;   ///< of the pixels: beyond, a Lambertian cloth cannot be assumed
+  double slope_deg = 20;          ///< 95th percentile over the pixels
+  double shadowed_share = 0.01;   ///< of the readings
+  double indirect_share = 0.005;  ///< mean albedo times 1 minus mean openness: what bounces add to the light
+  double specular_share = 0.2;    ///< of the pixels: beyond, a Lambertian cloth cannot be assumed
 };
 
 /// What was measured, against each of the GateLimits. Openness comes from the height of each tile alone, by a
@@ -50,7 +52,9 @@ struct Gates {
   bool interreflection() const { return indirect.is_over && !specular.is_over; }
 };
 
-/// Errors: as height_from_normals and scan_openness; kBadData without samples.
-Result<Gates> measure_gates(std::span<const SolvedSample> samples, const GateLimits& limits);
+/// Normals are by the axes of the picture. An albedo whose scale is relative is taken for 1, the most that
+/// it can be. Errors: as height_from_normals and scan_openness; kBadData without samples.
+Result<Gates> measure_gates(std::span<const SolvedSample> samples, const GateLimits& limits,
+                            AlbedoScale scale);
 
 }  // namespace weft::solver

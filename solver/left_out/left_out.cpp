@@ -34,6 +34,7 @@ std::vector<std::vector<Pair>> pairs_of(const LeftOut& a, const LeftOut& b) {
   std::size_t pixel = 0;
   for (std::size_t p = 0; p < a.patches.size(); ++p) {
     for (const std::size_t end = pixel + pixels_of(a.patches[p]); pixel < end; ++pixel) {
+      if (!(a.scale[pixel] > 0)) continue;
       for (std::size_t k = 0; k < a.lights; ++k) {
         const std::size_t i = pixel * a.lights + k;
         const double of_a = std::abs(a.error[i]) / a.scale[pixel];
@@ -82,7 +83,7 @@ class ErrorGatherer {
     for (std::size_t pixel = 0; pixel < left_out_.scale.size(); ++pixel) {
       const std::size_t i = pixel * left_out_.lights + light;
       const double reading = left_out_.reading[i], scale = left_out_.scale[pixel];
-      if (!(reading >= kShadowShare * scale) || !std::isfinite(left_out_.error[i])) continue;
+      if (!(scale > 0) || !(reading >= kShadowShare * scale) || !std::isfinite(left_out_.error[i])) continue;
       relative_.push_back(std::abs(left_out_.error[i]) / reading);
       square_ += std::pow(left_out_.error[i] / scale, 2);
       noise_.push_back(kMedianOfNormal * left_out_.noise[i] / reading);

@@ -49,7 +49,8 @@ TEST(Samples, CountTheReadingsThatAreDarkBesideTheOthersOfTheirPixel) {
 
 TEST(Samples, OpenTheGateOfSlopesForASteepClothAlone) {
   const auto gates_of = [](const Cloth& cloth) {
-    return *measure_gates(solve_samples(mosaics({128, 128}, cloth), *solver::standard_method(), 2));
+    const Photographs photographs = mosaics({128, 128}, cloth);
+    return *measure_gates(solve_samples(photographs, *solver::standard_method(), 2), photographs);
   };
   EXPECT_FALSE(gates_of({}).slope.is_over);
   const auto steep = [](int x, int) {

@@ -50,7 +50,7 @@ class Waves {
 
 Gates gates_of(Waves& waves) {
   const SolvedSample sample = waves.sample();
-  const Result<Gates> gates = measure_gates({&sample, 1}, {});
+  const Result<Gates> gates = measure_gates({&sample, 1}, {}, AlbedoScale::kAbsolute);
   EXPECT_TRUE(gates) << gates.error().message();
   return *gates;
 }
@@ -99,7 +99,7 @@ TEST(Gates, RefuseAClothWithoutASolution) {
   Waves waves(0, 0.5f);
   waves.mark(kNoSolution, 1);
   const SolvedSample sample = waves.sample();
-  const Result<Gates> gates = measure_gates({&sample, 1}, {});
+  const Result<Gates> gates = measure_gates({&sample, 1}, {}, AlbedoScale::kAbsolute);
   ASSERT_FALSE(gates);
   EXPECT_EQ(gates.error().kind, ErrorKind::kBadData);
 }

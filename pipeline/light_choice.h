@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/job.h"
+#include "core/result.h"
+#include "pipeline/light_correction.h"
+#include "pipeline/photographs.h"
+#include "solver/left_out/left_out.h"
+
+namespace weft::pipeline {
+
+/// Which effects are taken out of the readings of a frame, and why.
+struct LightChoice {
+  LightStages stages;
+  /// How much better left-out light is predicted with the effect than without it, the other one being as it
+  /// was chosen. Without patches where it was not tried.
+  solver::Gain shadows, interreflection;
+  /// The scale of the albedo is relative, and the readings do not tell it: bounces stay in.
+  bool scale_is_open = false;
+};
+
+/// Leaves lights out on patches of at most four rows of blocks (solver/left_out) and keeps each effect that
+/// `correction` traces where they are then predicted better by more than its own sigma.
+///
+/// Both factors of a bounce carry the albedo's scale. Where it is relative, the scale is the one with which
+/// left-out light is predicted best, mean albedos up to 1 being tried: so the same cloth is corrected alike
+/// whatever intensities the solve was given. Where brighter cloth would always do better, it is open: that is
+/// so on shallow weaves, whose bounces look like a little more albedo.
+Result<LightChoice> choose_light(const Photographs& photographs, const SolvedFrame& solved,
+                                 LightCorrection& correction, const LightStages& traced,
+                                 const JobContext& context);
+
+}  // namespace weft::pipeline

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// The reference level on simulated sessions in memory.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <utility>
+
+#include "app/jobs/session_input.h"
+#include "core/image_io/image_io.h"
+#include "core/vec.h"
+#include "pipeline/frame.h"
+#include "pipeline/reference.h"
+#include "tests/system/samples.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+constexpr Size kSize = {128, 96};
+
+struct Solved {
+  explicit Solved(Size size) : normal(size, 3) {}
+  Result<void> operator()(const pipeline::MapBand& band) {
+    for (int c = 0; c < 3; ++c) {
+      for (int y = 0; y < band.rows.height(); ++y) {
+        std::copy_n(band.normal[static_cast<std::size_t>(c)].row(y), band.rows.width(),
+                    normal.plane(c).row(band.rows.y0 + y));
+      }
+    }
+    return {};
+  }
+
+  Image<float> normal;
+  pipeline::FrameFacts facts;
+};
+
+Vec3 normal_at(const Image<float>& normal, int x, int y) {
+  return {normal(x, y, 0), normal(x, y, 1), normal(x, y, 2)};
+}
+
+double mean_angle_deg(const Image<float>& a, const Image<float>& b) {
+  double sum = 0;
+  for (int y = 0; y < a.height(); ++y) {
+    for (int x = 0; x < a.width(); ++x) sum += angle_deg(normal_at(a, x, y), normal_at(b, x, y));
+  }
+  return sum / static_cast<double>(a.size().pixels());
+}
+
+class ReferenceLevel : public testing::Test {
+ protected:
+  void photograph(const simulator::Scene& scene) {
+    simulate(scene, session_);
+    Result<LoadedImage> truth = read_image(session_ / "truth" / "normal.exr");
+    ASSERT_TRUE(truth) << truth.error().message();
+    truth_ = std::move(truth->planes);
+  }
+  // The photographs, with lights said to be so many times as bright as they are and albedo without a scale.
+  pipeline::Photographs photographs(double brighter = 1) const {
+    auto loaded =
+        app::load_session(*app::plan_session({.folder = session_, .calibration = {}, .leds = {}}), {});
+    EXPECT_TRUE(loaded) << loaded.error().message();
+    pipeline::Photographs photographs = std::move(loaded->photographs);
+    if (brighter == 1) return photographs;
+    NearLights lights = std::get<NearLights>(photographs.field->lights());
+    for (auto& led : lights.leds) {
+      for (double& flux : led.flux_rgb) flux *= brighter;
+    }
+    photographs.field =
+        *LightField::make(lights, photographs.camera, kSize, photographs.field->cloth_height_mm());
+    photographs.albedo_scale = AlbedoScale::kRelative;
+    return photographs;
+  }
+  static Solved solve(const pipeline::Photographs& photographs, const char* level) {
+    Solved solved(photographs.size);
+    auto facts = pipeline::solve_frame(photographs, *solver::find_method(level), pipeline::kSolveTile,
+                                       {.threads = 2}, std::ref(solved));
+    EXPECT_TRUE(facts) << facts.error().message();
+    solved.facts = std::move(*facts);
+    return solved;
+  }
+  double error_deg(const pipeline::Photographs& photographs, const char* level) const {
+    return mean_angle_deg(solve(photographs, level).normal, truth_);
+  }
+
+  Workspace work_;
+  const std::filesystem::path session_ = work_ / "cloth.weft";
+  Image<float> truth_;
+};
+
+TEST_F(ReferenceLevel, IsAsGoodWhereTheCameraIsTurned) {
+  for (const double roll_deg : {90.0, 180.0}) {
+    simulator::Scene scene = scene_named("deep", kSize);
+    scene.camera.pose.roll_deg = roll_deg;
+    photograph(scene);
+    EXPECT_LT(error_deg(photographs(), "reference"), 1.8) << "turned by " << roll_deg << " degrees";
+    std::filesystem::remove_all(session_);
+  }
+}
+
+TEST_F(ReferenceLevel, LeavesAClothAloneThatShowsNeitherShadowsNorBounces) {
+  simulator::Scene scene = scene_named("deep", kSize);
+  scene.effects.cast_shadows = scene.effects.interreflection = false;
+  photograph(scene);
+  const pipeline::Photographs taken = photographs();
+  const Solved reference = solve(taken, "reference");
+  EXPECT_TRUE(reference.facts.reference->gates.shadows()) << "there would be shadows on such slopes";
+  EXPECT_FALSE(reference.facts.reference->stages.any());
+  EXPECT_LE(mean_angle_deg(reference.normal, truth_), 1.02 * error_deg(taken, "robust"));
+}
+
+TEST_F(ReferenceLevel, IsTheSameForIntensitiesOfAnyScale) {
+  photograph(scene_named("deep", kSize));
+  const pipeline::Photographs dark = photographs(0.1), bright = photographs(10);
+  for (const char* level : {"fast", "standard", "robust", "reference"}) {
+    const Solved a = solve(dark, level), b = solve(bright, level);
+    EXPECT_LT(mean_angle_deg(a.normal, b.normal), 0.01) << level;
+  }
+  EXPECT_LT(error_deg(dark, "reference"), 0.6 * error_deg(dark, "robust"));
+}
+
+TEST_F(ReferenceLevel, IsNoWorseOnAShallowWeaveOfUnknownAlbedo) {
+  photograph(scene_named("plain_family", kSize));
+  const pipeline::Photographs dark = photographs(0.3);
+  EXPECT_LE(error_deg(dark, "reference"), 1.02 * error_deg(dark, "robust"));
+}
+
+TEST_F(ReferenceLevel, RefusesARoundThatTurnsNormalsMoreThanTheOneBefore) {
+  photograph(scene_named("deep", kSize));
+  const pipeline::Photographs dark = photographs(0.2);
+  Solved forced(kSize);
+  const auto facts = pipeline::solve_reference(dark, pipeline::kSolveTile, {.force_stages = true},
+                                               {.threads = 2}, std::ref(forced));
+  ASSERT_TRUE(facts) << facts.error().message();
+  int refused = 0;
+  for (const pipeline::ReferenceRound& round : facts->rounds) refused += round.is_refused;
+  EXPECT_EQ(refused, 1) << "albedo is taken for five times what it is";
+}
+
+TEST_F(ReferenceLevel, AsksForTheMemoryOfItsFrames) {
+  photograph(scene_named("flat", kSize));
+  app::SessionPlan plan = *app::plan_session({.folder = session_, .calibration = {}, .leds = {}});
+  const std::uint64_t of_tiles = app::memory_needed(plan, 1);
+  plan.extent = solver::Extent::kWholeFrame;
+  EXPECT_GE(app::memory_needed(plan, 1), of_tiles + 69 * static_cast<std::uint64_t>(kSize.pixels()));
+}
+
+}  // namespace
+}  // namespace weft::test
