@@ -104,6 +104,11 @@ Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string
     if (!error) return error.error();
     facts.error = *error;
   }
+  if (fields.has("check")) {
+    Result<LeftOutFacts> check = left_out_facts_from_json(document["check"], where + ": check");
+    if (!check) return std::move(check).error();
+    facts.check = std::move(*check);
+  }
   for (const auto& [part, name] : {std::pair{&facts.input, "input"},
                                    {&facts.solved_by, "solved_by"},
                                    {&facts.conditions, "conditions"},
@@ -134,6 +139,7 @@ Json json_of(const SolveFacts& facts) {
                {"conditions", facts.conditions},
                {"registration", facts.registration},
                {"sigma_normal_deg", facts.sigma_normal_deg},
+               {"check", facts.check ? json_of(*facts.check) : Json()},
                {"warnings", json_of(facts.warnings)},
                {"pictures", facts.pictures},
                {"gates", facts.gates},

@@ -12,6 +12,7 @@
 #include "core/compression.h"
 #include "core/image.h"
 #include "core/json_document.h"
+#include "core/left_out_facts.h"
 #include "core/product.h"
 #include "core/result.h"
 #include "core/solve_record.h"
@@ -62,6 +63,7 @@ struct SolveFacts {
   StatusCounts status;
   std::vector<Verdict> warnings;
   std::vector<std::string> pictures;  ///< files in its folder
+  std::optional<LeftOutFacts> check;  ///< where a light could be left out
   std::optional<SolveError> error;    ///< where there is a truth
 
   // Kept for people and passed on to the report; no program looks into them. Null where there is none.

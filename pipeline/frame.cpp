@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "pipeline/left_out.h"
 #include "pipeline/tile_reader.h"
 
 namespace weft::pipeline {
@@ -60,24 +61,57 @@ CameraModel half_camera(CameraModel camera, Size size) {
   return camera;
 }
 
+Result<void> solve_tiles(const Photographs& photographs, const solver::Method& method,
+                         const TileOptions& tile, const JobContext& context, const BandSink& sink,
+                         const solver::ModelTraits& model, FrameFacts& facts) {
+  const Result<double> waited =
+      solve_bands(photographs, method, tile, context, sink, {.tally = &facts.tally, .model = model});
+  if (!waited) return waited.error();
+  facts.waited_seconds = *waited;
+  return {};
+}
+
+// What lights tell of a method, or of the blocks that two methods share, when they are left out.
+Result<void> check(const Photographs& photographs, const solver::Method& method, const JobContext& context,
+                   FrameFacts& facts) {
+  Result<solver::LeftOut> left_out =
+      leave_out_lights(photographs, {.method = &method, .shifts = photographs.shifts},
+                       solver::patches_of(photographs.size, solver::PatchUse::kReport), context);
+  if (!left_out) return std::move(left_out).error();
+  facts.left_out = std::move(*left_out);
+  return {};
+}
+
 }  // namespace
 
 Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
                                const TileOptions& tile, const JobContext& context, const BandSink& sink) {
   FrameFacts facts;
+  const std::unique_ptr<solver::Method> asked = method.make();
   if (method.extent == solver::Extent::kWholeFrame) {
-    const Result<ReferenceFacts> solved = solve_reference(photographs, tile, {}, context, sink);
-    if (!solved) return solved.error();
+    Result<ReferenceFacts> solved = solve_reference(photographs, tile, {}, context, sink);
+    if (!solved) return std::move(solved).error();
     facts.waited_seconds = solved->waited_seconds;
     facts.tally = solved->tally;
-    facts.reference = *solved;
+    const bool is_corrected = solved->stages.shadows || solved->stages.interreflection;
+    facts.reference = std::move(*solved);
+    if (is_corrected) return facts;
+    if (Result<void> ok = check(photographs, *asked, context, facts); !ok) return std::move(ok).error();
     return facts;
   }
   const solver::ModelTraits model = {.is_robust = method.level == solver::Level::kRobust};
-  const Result<double> waited =
-      solve_bands(photographs, *method.make(), tile, context, sink, {.tally = &facts.tally, .model = model});
-  if (!waited) return waited.error();
-  facts.waited_seconds = *waited;
+  const std::unique_ptr<solver::Method> standard = solver::method_of(solver::Level::kStandard).make();
+  std::unique_ptr<solver::Method> by_block;
+  if (model.is_robust) {
+    Result<solver::BlockChoice> choice = choose_by_block(photographs, *standard, *asked, context);
+    if (!choice) return std::move(choice).error();
+    facts.robust_share = choice->share();
+    by_block = solver::blended_method(*standard, *asked, std::move(*choice));
+  }
+  const solver::Method& chosen = by_block ? *by_block : *asked;
+  if (Result<void> ok = solve_tiles(photographs, chosen, tile, context, sink, model, facts); !ok)
+    return std::move(ok).error();
+  if (Result<void> ok = check(photographs, chosen, context, facts); !ok) return std::move(ok).error();
   return facts;
 }
 

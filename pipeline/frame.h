@@ -9,6 +9,7 @@
 #include "pipeline/bands.h"
 #include "pipeline/photographs.h"
 #include "pipeline/reference.h"
+#include "solver/left_out/left_out.h"
 #include "solver/method.h"
 
 namespace weft::pipeline {
@@ -18,6 +19,11 @@ struct FrameFacts {
   double waited_seconds = 0;  ///< seconds that bands waited for the sink
   solver::SolveTally tally;
   std::optional<ReferenceFacts> reference = {};  ///< where the level is reference
+  /// Of `robust`: the share of blocks that it predicts left-out light better on than `standard`, which
+  /// solves the others.
+  std::optional<double> robust_share = {};
+  /// On patches that chose nothing. None of a reference that corrected readings.
+  std::optional<solver::LeftOut> left_out = {};
 };
 
 /// Solves a frame by a level or method, whatever it extends over.

@@ -182,4 +182,20 @@ Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const S
   return left_out;
 }
 
+Result<solver::BlockChoice> choose_by_block(const Photographs& photographs, const solver::Method& base,
+                                            const solver::Method& better, const JobContext& context) {
+  const std::vector<solver::Patch> patches = solver::patches_of(photographs.size, solver::PatchUse::kChoose);
+  const auto judged = [&](const solver::Method& method) {
+    return leave_out_lights(photographs, {.method = &method, .shifts = photographs.shifts}, patches, context);
+  };
+  const Result<solver::LeftOut> of_base = judged(base);
+  if (!of_base) return of_base.error();
+  const Result<solver::LeftOut> of_better = judged(better);
+  if (!of_better) return of_better.error();
+  const solver::Comparison comparison = solver::compare(*of_base, *of_better);
+  if (comparison.frame.patches < solver::kLeastPatches)
+    return solver::BlockChoice(comparison.grid, std::vector<float>(comparison.grid.count(), 1.0F));
+  return comparison.choice();
+}
+
 }  // namespace weft::pipeline

@@ -28,4 +28,9 @@ struct SolveVariant {
 Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const SolveVariant& variant,
                                          std::span<const solver::Patch> patches, const JobContext& context);
 
+/// Where `better` predicts left-out light better than `base` by more than its own sigma, on patches that
+/// choose. A frame with too few of them is all `better`: nothing speaks against it.
+Result<solver::BlockChoice> choose_by_block(const Photographs& photographs, const solver::Method& base,
+                                            const solver::Method& better, const JobContext& context);
+
 }  // namespace weft::pipeline

@@ -12,6 +12,7 @@
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/jobs/left_out_report.h"
 #include "core/files.h"
 #include "solver/method.h"
 
@@ -45,6 +46,7 @@ Json json_of(const SolveReport& report) {
           {"peak_bytes", peak_memory_bytes()},
           {"pixels", facts.pixels},
           {"status", json_of(facts.status)},
+          {"check", facts.check ? json_of(*facts.check) : Json()},
           {"warnings", json_of(facts.warnings)},
           {"pictures", facts.pictures}};
 }
@@ -65,6 +67,10 @@ void print_words(const SolveReport& report) {
       "peak {} MB",
       s.total, s.read, s.solve, s.write, s.pictures, s.report, s.sync, peak_memory_bytes() >> 20));
   print(fmt::format("  look at {}", (report.folder / "report.html").string()));
+}
+
+void print_check(const SolveFacts& facts) {
+  print(facts.check ? left_out_words(*facts.check) : "  no light could be left out and predicted");
 }
 
 void print_warnings(const std::vector<Verdict>& warnings) {
@@ -98,6 +104,7 @@ Result<int> solve(const SolveArguments& arguments, const CommonArguments& common
     print_json(json_of(*report));
   } else {
     print_words(*report);
+    if (arguments.check) print_check(report->facts);
   }
   const SolveFacts& facts = report->facts;
   print_warnings(facts.warnings);
@@ -190,6 +197,8 @@ void add_maps(Options& options, const Level& level, SolveArguments& a) {
       .in_range(1, 1 << 20)
       .shows_default();
   options.add_flag("!--no-previews", &a.options.previews, "Write no pictures");
+  options.add_flag("--check", &a.check,
+                   "Print how well each light that is left out is predicted from the others");
   options.add_flag("--strict", &a.strict, "Exit with 2 where pixels have no solution");
 }
 

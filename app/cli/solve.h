@@ -16,6 +16,7 @@ struct SolveArguments {
   bool explain = false;
   LevelWish wish;
   std::filesystem::path ladder;  ///< a picture of all levels, instead of one solve
+  bool check = false;            ///< print how well left-out lights are predicted
   bool strict = false;           ///< pixels without a solution, and warnings, end with exit code 2
 };
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "app/jobs/left_out_report.h"
 #include "app/jobs/report_page.h"
 #include "core/files.h"
 #include "core/statistics.h"
@@ -327,7 +328,9 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
   return summary;
 }
 
-std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular) {
+std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular,
+                                 const std::optional<LeftOutFacts>& check,
+                                 std::optional<solver::Level> level) {
   const Speaker say = {photographs};
   std::vector<Verdict> verdicts;
   for (const FaultKind kind : {FaultKind::kExchanged, FaultKind::kDead, FaultKind::kGain}) {
@@ -336,13 +339,18 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
       if (fault.kind == kind && matters) verdicts.push_back(say(fault));
     }
   }
+  if (check && verdicts.empty()) {
+    if (const std::optional<Verdict> unfit = verdict_of(*check, photographs.of_session, level))
+      verdicts.push_back(*unfit);
+  }
   if (specular > kSpecularDominated) {
+    const bool robust_ran = level && *level >= solver::Level::kRobust;
     verdicts.push_back({"SPECULAR_DOMINATED",
                         fmt::format("Highlights dominate: in {:.0f} percent of the pixels a reading is over "
                                     "three times what a matt cloth would give",
                                     percent(specular)),
-                        "put crossed polarisers on LEDs and lens and scan again, or solve with --quality "
-                        "robust"});
+                        std::string("put crossed polarisers on LEDs and lens and scan again") +
+                            (robust_ran ? "" : ", or solve with --quality robust")});
   }
   for (const std::string& warning : photographs.warnings) verdicts.push_back({"CONDITIONS", warning, ""});
   return verdicts;
@@ -383,6 +391,7 @@ Json report_document(const std::string& title, const SolveFacts& solve, const Ph
                               {"sigma_calibration_deg", maps.sigma_calibration_deg()}}) {
     if (!sigma.is_null()) report[name] = sigma;
   }
+  if (solve.check) report["check"] = json_of(*solve.check);
   if (solve.error) report["error"] = json_of(*solve.error);
   if (!solve.gates.empty()) report["gates"] = solve.gates;
   if (!solve.registration.empty()) report["registration"] = solve.registration;

@@ -88,9 +88,12 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
 /// The scene is called dominated by highlights where this share of pixels has the bit SPECULAR.
 inline constexpr double kSpecularDominated = 0.2;
 
-/// Everything to be warned of, the gravest first: LEDS_EXCHANGED, LED_DEAD, LED_GAIN, SPECULAR_DOMINATED,
-/// CONDITIONS. `specular` is the share of pixels with that bit.
-std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular);
+/// Everything to be warned of, the gravest first: LEDS_EXCHANGED, LED_DEAD, LED_GAIN, LIGHTS_DO_NOT_FIT,
+/// SPECULAR_DOMINATED, CONDITIONS. `specular` is the share of pixels with that bit. `level` is the one that
+/// ran, if it was a level: no remedy names it or one below.
+std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular,
+                                 const std::optional<LeftOutFacts>& check,
+                                 std::optional<solver::Level> level);
 
 /// report.json from solve.json and seconds by phase. Nothing but "seconds" differs from run to run.
 Json report_document(const std::string& title, const SolveFacts& solve, const PhotographsSummary& photographs,

@@ -9,6 +9,7 @@
 #include <set>
 #include <string_view>
 
+#include "app/jobs/left_out_report.h"
 #include "core/text.h"
 #include "report/figures.h"
 #include "report/html.h"
@@ -267,6 +268,7 @@ std::string report_page(const Json& report, const std::vector<PagePicture>& pict
               report::html_section("Pixels by state", status_chart(report)));
   page += two(report::html_section("Where the error comes from", budget(report)), sigma_map(report));
   page += light_table(report);
+  page += left_out_section(report, light_noun(report));
   page += two(gates(report) + time(report), conditions(report));
   return report::html_page(report.value("title", "") + " · report of a solve", page);
 }

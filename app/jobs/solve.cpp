@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/jobs/facts_json.h"
+#include "app/jobs/left_out_report.h"
 #include "app/jobs/map_files.h"
 #include "app/jobs/pictures.h"
 #include "app/jobs/report.h"
@@ -219,12 +220,14 @@ class Run {
     facts_.status = tally.counts();
     facts_.pixels = facts_.size.pixels() - facts_.status.with(kNoSolution);
     facts_.solved_by = json_of(frame->tally);
+    if (frame->robust_share) facts_.solved_by["robust_share"] = *frame->robust_share;
     if (frame->reference) {
       facts_.gates = json_of(frame->reference->gates);
       facts_.reference = json_of(*frame->reference);
       for (std::string& said : warnings_of(*frame->reference)) warnings_.push_back(std::move(said));
     }
     summary_ = summarize_photographs(photographs_, input_.picked, warnings_, context_);
+    if (frame->left_out) facts_.check = facts_of(*frame->left_out, summary_.numbers);
     seconds_.report = watch_.lap();
     photographs_ = {};  // their memory is needed for nothing more
 
@@ -262,7 +265,8 @@ class Run {
     const double specular =
         static_cast<double>(facts_.status.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
     facts_.sigma_normal_deg = maps_->sigma_facts();
-    facts_.warnings = verdicts_of(summary_, tells_highlights ? specular : 0);
+    facts_.warnings = verdicts_of(summary_, tells_highlights ? specular : 0,
+                                  tells_highlights ? facts_.check : std::nullopt, method_.level);
     const fs::path document = partial_.path() / kSolveProduct.document;
     if (Result<void> ok = write_json(document, json_of(facts_)); !ok) return ok;
     const Json page = report_document(input_.title, facts_, summary_, *maps_, seconds_json(seconds_));

@@ -85,20 +85,21 @@ class ErrorGatherer {
       const double reading = left_out_.reading[i], scale = left_out_.scale[pixel];
       if (!(scale > 0) || !(reading >= kShadowShare * scale) || !std::isfinite(left_out_.error[i])) continue;
       relative_.push_back(std::abs(left_out_.error[i]) / reading);
-      square_ += std::pow(left_out_.error[i] / scale, 2);
+      square_ += std::pow(std::min(std::abs(left_out_.error[i]) / scale, 1.0), 2);
+      knows_noise_ = knows_noise_ && !std::isnan(left_out_.noise[i]);
       noise_.push_back(kMedianOfNormal * left_out_.noise[i] / reading);
-      noise_square_ += std::pow(left_out_.noise[i] / scale, 2);
+      noise_square_ += std::pow(std::min(left_out_.noise[i] / scale, 1.0), 2);
     }
   }
 
   LeftOutError error() {
     const auto n = static_cast<double>(relative_.size());
-    const bool knows_noise = std::isfinite(noise_square_);
+    const bool knows_noise = knows_noise_ && !noise_.empty();
     LeftOutError error;
     error.readings = relative_.size();
     error.rms = std::sqrt(square_ / n);
     error.median = median(std::move(relative_));
-    error.noise_rms = std::sqrt(noise_square_ / n);
+    error.noise_rms = knows_noise ? std::sqrt(noise_square_ / n) : kNaN;
     error.noise_median = knows_noise ? median(std::move(noise_)) : kNaN;
     return error;
   }
@@ -107,6 +108,7 @@ class ErrorGatherer {
   const LeftOut& left_out_;
   std::vector<double> relative_, noise_;
   double square_ = 0, noise_square_ = 0;
+  bool knows_noise_ = true;
 };
 
 }  // namespace

@@ -66,7 +66,7 @@ Comparison compare(const LeftOut& a, const LeftOut& b);
 /// Relative to the reading; NaN where there are none.
 struct LeftOutError {
   double median = 0;        ///< of |error| / reading
-  double rms = 0;           ///< of error / brightness
+  double rms = 0;           ///< of error / brightness, each cut to 1
   double noise_median = 0;  ///< the same two as noise alone would give them; NaN where it is not known
   double noise_rms = 0;
   std::size_t readings = 0;

@@ -26,6 +26,7 @@ SolveFacts some_facts() {
   facts.warnings = {{"LED_DEAD", "LED 3 is dead", "check its cable"},
                     {"CONDITIONS", "a frame was left out", ""}};
   facts.pictures = {"sheet.png"};
+  facts.check = LeftOutFacts{{0.02, 0.03, 0.01, 0.015, 90}, {{4, {0.04, 0.06, {}, {}, 12}}}};
   facts.error = SolveError{0.5, 0.25, 1.5, 8};
   facts.input = {{"session", "twill"}};
   facts.gates = {{{"name", "slope"}}};
@@ -55,6 +56,7 @@ TEST(SolveFacts, AreReadAsTheyWereWritten) {
   EXPECT_EQ(read->warnings, written.warnings);
   EXPECT_EQ(read->pictures, written.pictures);
   EXPECT_EQ(read->error, written.error);
+  EXPECT_EQ(read->check, written.check);
   EXPECT_EQ(json_of(*read).dump(), json.dump());
 }
 
@@ -82,6 +84,8 @@ TEST(SolveFacts, WithAFieldOfTheWrongKindAreRefusedByItsName) {
   const Json good = json_of(some_facts());
   for (const auto& [path, value, said] : {std::tuple<const char*, Json, const char*>{"/id", 3, "\"id\""},
                                           {"/width", "wide", "\"width\""},
+                                          {"/check/rms", "small", "check: \"rms\""},
+                                          {"/check/lights/0/light", 0.5, "check: lights: \"light\""},
                                           {"/status/DARK", 0.5, "status: \"DARK\""},
                                           {"/compression", "rar", "none or zip or piz was expected"},
                                           {"/albedo_scale", "big", "relative or absolute was expected"},

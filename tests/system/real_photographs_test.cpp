@@ -10,7 +10,9 @@
 #include <fstream>
 #include <string>
 
+#include "app/jobs/photo_input.h"
 #include "core/image_io/image_io.h"
+#include "pipeline/left_out.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 
@@ -98,6 +100,33 @@ TEST_F(RealPhotographs, TheGreySphereIsRound) {
   ASSERT_TRUE(write_image(work_ / "sphere.exr", planes, {"X", "Y", "Z"}, {}));
   const Json error = error_against(work_ / "sphere.exr", mask_file);
   EXPECT_LT(error["mean_deg"], 10) << error;
+}
+
+TEST_F(RealPhotographs, OfMattObjectsLeaveRobustNoBlockThatStandardPredictsBetter) {
+  ASSERT_NO_FATAL_FAILURE(find("harvard_dev"));
+  if (IsSkipped()) return;
+  for (const char* object : {"frog", "turtle"}) {
+    app::PhotoOptions options;
+    options.folder = data_ / object;
+    options.transfer = app::Transfer::kLinear;
+    const Result<app::PhotoPlan> plan = app::plan_photos(options);
+    ASSERT_TRUE(plan) << plan.error().message();
+    const Result<pipeline::Photographs> photographs = app::load_photos(*plan, {});
+    ASSERT_TRUE(photographs) << photographs.error().message();
+    const auto standard = solver::standard_method(), robust = solver::robust_method();
+    Result<solver::BlockChoice> choice = pipeline::choose_by_block(*photographs, *standard, *robust, {});
+    ASSERT_TRUE(choice) << choice.error().message();
+    const auto chosen = solver::blended_method(*standard, *robust, *choice);
+    const auto median = [&](const solver::Method& method) {
+      return error_of_all(*pipeline::leave_out_lights(
+                              *photographs, {.method = &method},
+                              solver::patches_of(photographs->size, solver::PatchUse::kReport), {}))
+          .median;
+    };
+    const double by_standard = median(*standard), by_robust = median(*robust), by_block = median(*chosen);
+    EXPECT_GT(by_robust, 1.2 * by_standard) << object;
+    EXPECT_LE(by_block, 1.02 * by_standard) << object << ": robust alone has " << by_robust;
+  }
 }
 
 }  // namespace

@@ -274,12 +274,52 @@ TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
 }
 
 TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
-  EXPECT_THAT(app::verdicts_of({}, 0.2), IsEmpty());
-  const std::vector<Verdict> verdicts = app::verdicts_of({}, 0.21);
+  EXPECT_THAT(app::verdicts_of({}, 0.2, {}, solver::Level::kStandard), IsEmpty());
+  const std::vector<Verdict> verdicts = app::verdicts_of({}, 0.21, {}, solver::Level::kStandard);
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "SPECULAR_DOMINATED");
   EXPECT_THAT(verdicts[0].text, HasSubstr("21 percent"));
   EXPECT_THAT(verdicts[0].remedy, HasSubstr("crossed polarisers"));
+}
+
+TEST(Verdicts, RecommendNoLevelThatHasRun) {
+  const LeftOutFacts unfit = {{.median = 0.2, .rms = 0.3, .readings = 100}, {}};
+  for (const solver::Level level :
+       {solver::Level::kStandard, solver::Level::kRobust, solver::Level::kReference}) {
+    const std::vector<Verdict> verdicts = app::verdicts_of({}, 0.5, unfit, level);
+    ASSERT_EQ(verdicts.size(), 2U);
+    for (const Verdict& verdict : verdicts) {
+      EXPECT_EQ(verdict.remedy.find("--quality robust") != std::string::npos, level < solver::Level::kRobust)
+          << verdict.remedy;
+    }
+  }
+}
+
+TEST(Verdicts, SayThatLightsDoNotFitFromATenthAndThreeTimesTheNoise) {
+  const auto names = [](double median, std::optional<double> noise) {
+    const LeftOutFacts facts = {{.median = median, .noise_median = noise}, {}};
+    std::vector<std::string> all;
+    for (const Verdict& verdict : app::verdicts_of({}, 0, facts, solver::Level::kStandard))
+      all.push_back(verdict.name);
+    return all;
+  };
+  EXPECT_THAT(names(0.09, {}), IsEmpty());
+  EXPECT_THAT(names(0.11, {}), testing::ElementsAre("LIGHTS_DO_NOT_FIT"));
+  EXPECT_THAT(names(0.11, 0.03), testing::ElementsAre("LIGHTS_DO_NOT_FIT"));
+  EXPECT_THAT(names(0.11, 0.04), IsEmpty()) << "a dark cloth";
+}
+
+TEST(ReportPage, SaysHowWellLeftOutLightsArePredictedAndWhatThatCannotSee) {
+  Json report = {{"title", "twill"},         {"of", "session"},          {"warnings", Json::array()},
+                 {"status", Json::object()}, {"lights", Json::array()},  {"faults", Json::array()},
+                 {"budget", Json::array()},  {"seconds", Json::object()}};
+  report["sigma_normal_deg"]["median"] = nullptr;
+  report["check"] = json_of(LeftOutFacts{{0.0123, 0.02, 0.0111, 0.015, 90}, {{4, {0.04, 0.06, {}, {}, 12}}}});
+  const std::string page = app::report_page(report, {});
+  EXPECT_THAT(page, HasSubstr("1.23 %"));
+  EXPECT_THAT(page, HasSubstr("1.11 %"));
+  EXPECT_THAT(page, HasSubstr("LED 4"));
+  EXPECT_THAT(page, HasSubstr(kLeftOutBlindSpot));
 }
 
 TEST(ReportPage, SaysBelowWhichAnglesNinetyFivePercentAre) {

@@ -113,6 +113,18 @@ TEST(LeftOutError, IsRelativeToLitReadingsBesideWhatNoiseGives) {
   EXPECT_EQ(error_of_all(out).readings, 3 * lit.readings);
 }
 
+TEST(LeftOutError, CountsAnErrorOverTheBrightnessAsTheBrightness) {
+  LeftOut out = with_errors(1000, 1000, 3);
+  EXPECT_EQ(error_of_all(out).rms, 1);
+}
+
+TEST(LeftOutError, SkipsPixelsWithoutLight) {
+  LeftOut out = with_errors(0.03F, 0.03F, 3);
+  std::fill(out.scale.begin(), out.scale.end(), 0.0F);
+  EXPECT_EQ(error_of_all(out).readings, 0U);
+  EXPECT_EQ(compare(out, out).frame.patches, 0);
+}
+
 TEST(LeftOutNoise, IsThatOfTheReadingAndOfItsPrediction) {
   // Four lights; three of them along the axes, so that the prediction of the fourth is their sum over sqrt 3.
   const double s = 1 / std::sqrt(3.0);
