@@ -8,6 +8,7 @@
 
 #include "app/cli/options.h"
 #include "bench/accuracy/bound.h"
+#include "bench/accuracy/chain.h"
 #include "bench/accuracy/coverage.h"
 #include "bench/accuracy/page.h"
 #include "bench/program/rows.h"
@@ -23,6 +24,7 @@ struct AccuracyArguments {
   bool leds = false;
   bool specular = false;
   bool sigma = false;
+  bool chain = false;
   std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
 };
 
@@ -34,6 +36,9 @@ Result<Rows> measure(const AccuracyArguments& a, int threads) {
   if (a.leds) return accuracy_by_leds(options);
   if (a.specular) return specular_warnings(options);
   if (a.sigma) return coverage_table(options);
+  if (a.chain)
+    return chain_table(
+        {.name = options.scene, .levels = options.methods, .seed = options.seed, .threads = threads});
   if (a.docs.empty()) return accuracy_table(options);
   Result<AccuracyFigures> figures = measure_figures(options);
   if (!figures) return std::move(figures).error();
@@ -52,21 +57,22 @@ app::Run add_accuracy(app::Options& options) {
   options.add("--scene", &a->table.scene, "One scene alone, such as \"deep satin\"");
   options.add("--method", &a->table.methods, "These levels and methods alone: fast,least-squares")
       .by_commas();
-  const app::Option bound = options.add_flag(
-      "--bound", &a->bound, "Instead: scatter against the Cramer-Rao bound, and whether sigma is honest");
-  const app::Option leds = options.add_flag("--leds", &a->leds, "Instead: from three to ten LEDs");
-  const app::Option specular = options.add_flag(
-      "--specular", &a->specular, "Instead: who says SPECULAR on 30 dark satins and 90 other cloths");
-  const app::Option sigma = options.add_flag(
-      "--sigma", &a->sigma, "Instead: whether errors on cloth are as large as sigma says, at every level");
-  options.add("--seed", &a->table.seed, "Of weaves and noise, from 1").shows_default();
-  const app::Option docs =
+  const std::vector<app::Option> instead = {
+      options.add_flag("--bound", &a->bound,
+                       "Instead: scatter against the Cramer-Rao bound, and whether sigma is honest"),
+      options.add_flag("--leds", &a->leds, "Instead: from three to ten LEDs"),
+      options.add_flag("--specular", &a->specular,
+                       "Instead: who says SPECULAR on 30 dark satins and 90 other cloths"),
+      options.add_flag("--sigma", &a->sigma,
+                       "Instead: whether errors on cloth are as large as sigma says, at every level"),
+      options.add_flag("--chain", &a->chain,
+                       "Instead: whole sessions by the product's own steps, from captures to maps"),
       options.add("--docs", &a->docs,
-                  "All of it, into this folder: the figures of accuracy.md, pictures/accuracy.svg, .json");
-  bound.excludes(leds).excludes(specular).excludes(sigma).excludes(docs);
-  leds.excludes(specular).excludes(sigma).excludes(docs);
-  specular.excludes(sigma).excludes(docs);
-  sigma.excludes(docs);
+                  "All of it, into this folder: the figures of accuracy.md, pictures/accuracy.svg, .json")};
+  for (std::size_t i = 0; i < instead.size(); ++i) {
+    for (std::size_t j = i + 1; j < instead.size(); ++j) app::Option(instead[i]).excludes(instead[j]);
+  }
+  options.add("--seed", &a->table.seed, "Of weaves and noise, from 1").shows_default();
   return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.threads), common); };
 }
 
