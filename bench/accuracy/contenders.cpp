@@ -22,12 +22,10 @@ Result<void> solve_patch(const solver::Method& method, const std::vector<View<co
                       patch.photographs.noise(), threads, maps);
 }
 
-// The reference level: maps of a whole frame, band by band.
-Result<void> solve_by_reference(const Patch& patch, const pipeline::ReferenceOptions& options, int threads,
-                                SolvedMaps& maps) {
-  JobContext context;
-  context.threads = threads;
-  const auto keep = [&](const pipeline::MapBand& band) -> Result<void> {
+// Puts bands of a frame into maps; albedo in each photosite's own colour where it was measured alone.
+pipeline::BandSink keeper_of(const pipeline::Planes& planes, SolvedMaps& maps) {
+  maps.planes = planes.count;
+  return [planes, &maps](const pipeline::MapBand& band) -> Result<void> {
     for (int y = 0; y < band.rows.height(); ++y) {
       const int row = band.rows.y0 + y;
       for (int c = 0; c < 3; ++c) {
@@ -39,18 +37,22 @@ Result<void> solve_by_reference(const Patch& patch, const pipeline::ReferenceOpt
     for (int y = 0; y < band.albedo_rows.height(); ++y) {
       const int row = band.albedo_rows.y0 + y;
       for (int x = 0; x < band.albedo_rows.width(); ++x) {
-        const auto c = static_cast<std::size_t>(patch.photographs.planes().cfa.channel_at(x, row));
-        maps.albedo(x, row) = band.albedo[c](x, y);
-        maps.sigma_albedo(x, row) = band.sigma_albedo[c](x, y);
+        for (int p = 0; p < planes.count; ++p) {
+          const auto c = static_cast<std::size_t>(planes.channel_at(p, x, row));
+          maps.albedo(x, row, p) = band.albedo[c](x, y);
+          maps.sigma_albedo(x, row, p) = band.sigma_albedo[c](x, y);
+        }
         maps.sigma_normal_deg(x, row) = band.sigma_normal_deg(x, y);
       }
     }
     return {};
   };
-  const auto solved =
-      pipeline::solve_reference(patch.photographs, pipeline::kSolveTile, options, context, keep);
-  if (!solved) return solved.error();
-  return {};
+}
+
+JobContext on_threads(int threads) {
+  JobContext context;
+  context.threads = threads;
+  return context;
 }
 
 // Least squares on what each point truly faces and sees.
@@ -85,16 +87,21 @@ void enlarge(const SolvedMaps& half, SolvedMaps& maps) {
   }
 }
 
-Result<void> solve_preview(const Patch& patch, int threads, SolvedMaps& maps) {
+Result<void> solve_level(const pipeline::Photographs& photographs, const solver::MethodName& level,
+                         int threads, SolvedMaps& maps) {
+  const auto solved = solve_frame(photographs, level, pipeline::kSolveTile, on_threads(threads),
+                                  keeper_of(photographs.planes(), maps));
+  return solved ? Result<void>() : solved.error();
+}
+
+// Each pixel of a preview stands for the four photosites that it was made of.
+Result<void> solve_at_half_size(const Patch& patch, const solver::MethodName& level, int threads,
+                                SolvedMaps& maps) {
   const Result<pipeline::Photographs> half = pipeline::half_size(patch.photographs, threads);
   if (!half) return half.error();
   SolvedMaps solved(half->size);
-  solved.planes = maps.planes = 3;
-  std::vector<View<const float>> readings;
-  for (const Image<float>& rgb : std::get<pipeline::Developed>(half->frames).rgb) {
-    for (int c = 0; c < 3; ++c) readings.emplace_back(rgb.plane(c));
-  }
-  Result<void> ok = solve_images(*solver::fast_method(), readings, *half->field, {}, {}, threads, solved);
+  Result<void> ok = solve_level(*half, level, threads, solved);
+  maps.planes = solved.planes;
   if (ok) enlarge(solved, maps);
   return ok;
 }
@@ -114,27 +121,31 @@ SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
   };
 }
 
-SolvePatch by_reference(const pipeline::ReferenceOptions& options) {
-  return [options](const Patch& patch, int threads, SolvedMaps& maps) {
-    return solve_by_reference(patch, options, threads, maps);
+SolvePatch by_level(const solver::MethodName& level) {
+  return [level](const Patch& patch, int threads, SolvedMaps& maps) {
+    return level.extent == solver::Extent::kHalfSize ? solve_at_half_size(patch, level, threads, maps)
+                                                     : solve_level(patch.photographs, level, threads, maps);
   };
 }
 
-SolvePatch by_preview() {
-  return solve_preview;
+SolvePatch by_reference(const pipeline::ReferenceOptions& options) {
+  return [options](const Patch& patch, int threads, SolvedMaps& maps) -> Result<void> {
+    const auto solved = solve_reference(patch.photographs, pipeline::kSolveTile, options, on_threads(threads),
+                                        keeper_of(patch.photographs.planes(), maps));
+    return solved ? Result<void>() : solved.error();
+  };
 }
 
 std::vector<Contender> contenders() {
   std::vector<Contender> all;
   for (const solver::MethodName& name : solver::method_names()) {
-    if (name.extent == solver::Extent::kHalfSize) continue;  // has no pixels to hold against the truth's
-    if (name.extent == solver::Extent::kWholeFrame) {
-      all.push_back({name.name, by_reference({}), true, false, 1});
+    if (name.level) {
+      all.push_back({name.name, by_level(name), true, false, 1});
       continue;
     }
     std::shared_ptr<const solver::Method> method = name.make();
     const int planes = method->wants_rgb() ? 3 : 1;
-    all.push_back({name.name, as_product(std::move(method)), name.level.has_value(), false, planes});
+    all.push_back({name.name, as_product(std::move(method)), false, false, planes});
   }
   all.push_back({"oracle", solve_oracle, false, true, 1});
   return all;

@@ -33,10 +33,11 @@ std::vector<Contender> contenders();
 /// there.
 Result<std::vector<Contender>> contenders_named(const std::vector<std::string>& names);
 
-/// The reference level with these options.
+/// The level reference with these options.
 SolvePatch by_reference(const pipeline::ReferenceOptions& options);
-/// The level preview, each of its pixels standing for the four photosites it was made of.
-SolvePatch by_preview();
+/// A level as the product runs it on a frame: from counts to maps. Each pixel of a preview stands for the
+/// four photosites that it was made of.
+SolvePatch by_level(const solver::MethodName& level);
 /// A method as the product runs it: on the mosaic, or after demosaicing where that is what it wants.
 SolvePatch as_product(std::shared_ptr<const solver::Method> method);
 

@@ -21,8 +21,8 @@ struct Setting {
 
 std::vector<Setting> settings() {
   std::vector<Setting> all = {
-      {"resolution", {"half", by_preview()}},
-      {"resolution", {"full", as_product(solver::fast_method())}},
+      {"resolution", {"half", by_level(solver::method_of(solver::Level::kPreview))}},
+      {"resolution", {"full", by_level(solver::method_of(solver::Level::kFast))}},
       {"arithmetic", {"float32", as_product(solver::robust_method())}},
       {"arithmetic", {"double", as_product(solver::exact_method())}},
   };
