@@ -14,8 +14,8 @@
 namespace weft::report {
 namespace {
 
-constexpr double kWidth = 760, kHeight = 520, kFlatHeight = 372;
-constexpr double kLeft = 64, kRight = 740, kAbove = 14, kBelow = 54;  // of the field, and around it
+constexpr double kWidth = 760, kHeight = 520, kFlatHeight = 372, kLargeWidth = 420, kLargeHeight = 300;
+constexpr double kLeft = 64, kBeside = 20, kAbove = 14, kBelow = 54;  // around the field
 constexpr double kTitleHeight = 26, kLegendHeight = 26, kLegendLine = 18, kLegendGap = 18.5;
 constexpr double kFontSize = 12, kLetter = 0.56 * kFontSize;  // mean width of a sans-serif letter
 constexpr double kMark = 4.5, kSmallMark = 2.2;               // half the size of a mark
@@ -63,7 +63,14 @@ Plot reduced_to_shown(Plot plot) {
 
 class Drawing {
  public:
-  explicit Drawing(const Plot& plot) : plot_(reduced_to_shown(plot)) {
+  explicit Drawing(const Plot& plot)
+      : plot_(reduced_to_shown(plot)),
+        width_(plot.large ? kLargeWidth : kWidth),
+        right_(width_ - kBeside),
+        height_(plot.large           ? kLargeHeight
+                : plot.title.empty() ? kFlatHeight
+                                     : kHeight),
+        bottom_(height_ - kBelow) {
     place_legend();
     top_ = kAbove + (plot.title.empty() ? 0 : kTitleHeight) +
            (legend_.empty() ? 0 : kLegendHeight + kLegendLine * legend_.back().line);
@@ -74,9 +81,7 @@ class Drawing {
         y.push_back(p.y);
       }
     }
-    height_ = plot.title.empty() ? kFlatHeight : kHeight;
-    bottom_ = height_ - kBelow;
-    x_ = Axis::around(x, plot.log_x, kLeft, kRight);
+    x_ = Axis::around(x, plot.log_x, kLeft, right_);
     y_ = Axis::around(y, plot.log_y, bottom_, top_);
   }
 
@@ -84,7 +89,7 @@ class Drawing {
     out_ = fmt::format(
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {} {}' font-family='sans-serif' "
         "font-size='{}'>\n<rect width='{}' height='{}' fill='white'/>\n",
-        kWidth, height_, kFontSize, kWidth, height_);
+        width_, height_, kFontSize, width_, height_);
     add_axes();
     if (plot_.frontier) add_frontier();
     add_legend();
@@ -112,13 +117,13 @@ class Drawing {
       text(x_.at(value), bottom_ + 18, "middle", fmt::format("{:g}", value));
     }
     for (const double value : y_.ticks()) {
-      line(kLeft, y_.at(value), kRight, y_.at(value), "stroke='#ddd'");
+      line(kLeft, y_.at(value), right_, y_.at(value), "stroke='#ddd'");
       text(kLeft - 8, y_.at(value) + 4, "end", fmt::format("{:g}", value));
     }
     out_ += fmt::format("<rect x='{}' y='{}' width='{}' height='{}' fill='none' stroke='black'/>\n", kLeft,
-                        top_, kRight - kLeft, bottom_ - top_);
+                        top_, right_ - kLeft, bottom_ - top_);
     if (!plot_.title.empty()) text(kLeft, kTitleHeight, "start", plot_.title, " font-weight='bold'");
-    text((kLeft + kRight) / 2, bottom_ + 40, "middle", plot_.x_label);
+    text((kLeft + right_) / 2, bottom_ + 40, "middle", plot_.x_label);
     const double middle = (top_ + bottom_) / 2;
     text(18, middle, "middle", plot_.y_label, fmt::format(" transform='rotate(-90 18 {})'", middle).c_str());
   }
@@ -131,7 +136,7 @@ class Drawing {
       path += height ? fmt::format("H{:.1f}V{:.1f}", x, y) : fmt::format("M{:.1f} {:.1f}V{:.1f}", x, top_, y);
       height = y;
     }
-    if (height) path += fmt::format("H{:.1f}", kRight);
+    if (height) path += fmt::format("H{:.1f}", right_);
     out_ += fmt::format("<path d='{}' fill='none' stroke='#999' stroke-dasharray='5 4'/>\n", path);
   }
 
@@ -147,7 +152,7 @@ class Drawing {
     for (std::size_t s = 0; s < plot_.series.size(); ++s) {
       const double before = (has_sample(s) ? kSample : 2 * kMark) + kMark;  // its name
       const double width = before + kLetter * static_cast<double>(plot_.series[s].name.size());
-      if (x > kLeft && x + width > kRight) {
+      if (x > kLeft && x + width > right_) {
         x = kLeft;
         ++row;
       }
@@ -204,7 +209,7 @@ class Drawing {
                  y + place[1] + kFontSize / 2};
     };
     const auto is_free = [&](const Box& box) {
-      return box.x0 > kLeft && box.x1 < kRight && box.y0 > top_ && box.y1 < bottom_ &&
+      return box.x0 > kLeft && box.x1 < right_ && box.y0 > top_ && box.y1 < bottom_ &&
              std::none_of(taken_.begin(), taken_.end(), [&](const Box& other) { return other.meets(box); });
     };
     const auto place = std::find_if(places.begin(), places.end(),
@@ -220,8 +225,9 @@ class Drawing {
   };
 
   const Plot plot_;
+  const double width_, right_, height_, bottom_;
+  double top_ = 0;
   std::vector<LegendEntry> legend_;  // one a series
-  double top_ = 0, bottom_ = 0, height_ = 0;
   Axis x_ = {}, y_ = {};
   std::vector<Box> taken_;
   std::string out_;

@@ -136,6 +136,14 @@ SolvePatch by_reference(const pipeline::ReferenceOptions& options) {
   };
 }
 
+std::vector<std::string> level_names() {
+  std::vector<std::string> names;
+  for (const solver::MethodName& name : solver::method_names()) {
+    if (name.level) names.emplace_back(name.name);
+  }
+  return names;
+}
+
 std::vector<Contender> contenders() {
   std::vector<Contender> all;
   for (const solver::MethodName& name : solver::method_names()) {

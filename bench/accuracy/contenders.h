@@ -33,6 +33,9 @@ std::vector<Contender> contenders();
 /// there.
 Result<std::vector<Contender>> contenders_named(const std::vector<std::string>& names);
 
+/// The levels, from the cheapest.
+std::vector<std::string> level_names();
+
 /// The level reference with these options.
 SolvePatch by_reference(const pipeline::ReferenceOptions& options);
 /// A level as the product runs it on a frame: from counts to maps. Each pixel of a preview stands for the

@@ -5,36 +5,31 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "bench/accuracy/bound.h"
+#include "bench/accuracy/chain.h"
 #include "bench/accuracy/contenders.h"
 #include "bench/accuracy/coverage.h"
 #include "bench/accuracy/curves.h"
+#include "bench/accuracy/explain.h"
 #include "bench/accuracy/score.h"
 #include "core/files.h"
+#include "core/parallel.h"
+#include "core/process.h"
+#include "core/solve_record.h"
+#include "core/temporary_folder.h"
 
 namespace weft::bench {
 namespace {
 
-// Mean degrees of a research prototype of the same levels on weaves of the same families, for comparison.
-struct Prototype {
-  const char* scene;
-  const char* standard;
-  const char* reference;
-};
-constexpr std::array<Prototype, 10> kPrototype = {{{"smooth lambert", "0.18", "0.18"},
-                                                   {"smooth cotton", "0.36", "0.34"},
-                                                   {"smooth satin", "0.53", "0.35"},
-                                                   {"plain lambert", "0.95", "0.70"},
-                                                   {"plain white", "1.64", "1.32"},
-                                                   {"plain satin", "1.11", ""},
-                                                   {"deep lambert", "4.1", "2.4"},
-                                                   {"deep white", "7.7", "3.6"},
-                                                   {"deep cotton", "3.6", "2.1"},
-                                                   {"deep velvet", "3.0", ""}}};
+constexpr const char* kListedScene = "testdata/scenes/plain_family.toml";
+constexpr const char* kFiguresFile = "accuracy.json";
+constexpr const char* kSchema = "weft.accuracy-figures";
 
 using Cells = std::vector<std::string>;
 
@@ -78,28 +73,22 @@ std::vector<std::string> distinct(const Rows& rows, const char* key) {
   return values;
 }
 
-// A line for each scene and a column for each method.
-std::vector<Cells> by_scene_and_method(const Rows& rows, const char* key) {
-  const std::vector<std::string> methods = distinct(rows, "method");
-  std::vector<Cells> cells = {{"scene"}};
-  cells[0].insert(cells[0].end(), methods.begin(), methods.end());
-  for (const std::string& scene : distinct(rows, "scene")) {
-    Cells& line = cells.emplace_back(Cells{scene});
+// A line for each value of one column and a column for each value of another.
+std::vector<Cells> crossed(const Rows& rows, const char* line_key, const char* column_key, const char* key) {
+  const std::vector<std::string> columns = distinct(rows, column_key);
+  std::vector<Cells> cells = {{line_key}};
+  cells[0].insert(cells[0].end(), columns.begin(), columns.end());
+  for (const std::string& value : distinct(rows, line_key)) {
+    Cells& line = cells.emplace_back(Cells{value});
     for (const Json& row : rows) {
-      if (row["scene"] == scene) line.push_back(cell_of(row[key]));
+      if (row[line_key] == value) line.push_back(cell_of(row[key]));
     }
   }
   return cells;
 }
 
-void add_prototype(std::vector<Cells>& cells) {
-  cells[0].insert(cells[0].end(), {"prototype's standard", "its reference"});
-  for (std::size_t i = 1; i < cells.size(); ++i) {
-    const auto known = std::find_if(kPrototype.begin(), kPrototype.end(),
-                                    [&](const Prototype& p) { return cells[i][0] == p.scene; });
-    cells[i].emplace_back(known == kPrototype.end() ? "" : known->standard);
-    cells[i].emplace_back(known == kPrototype.end() ? "" : known->reference);
-  }
+std::vector<Cells> by_scene_and_method(const Rows& rows, const char* key) {
+  return crossed(rows, "scene", "method", key);
 }
 
 // A line for each albedo and tilt: ratio to the bound, and share within chi-square's 68 percent.
@@ -164,32 +153,252 @@ Rows overall(const Rows& table) {
   return rows;
 }
 
+// Cloths that a person tells apart, and the scenes of the set that stand for them.
+struct ClothGroup {
+  const char* name;
+  bool (*has)(const std::string& family, const std::string& material);
+};
+bool is_matt(const std::string& material) {
+  return material == "lambert" || material == "white" || material == "cotton";
+}
+constexpr std::array<ClothGroup, 6> kGroups = {
+    {{"smooth matt cloth", [](const auto& f, const auto& m) { return f == "smooth" && is_matt(m); }},
+     {"plain matt weave", [](const auto& f, const auto& m) { return f == "plain" && is_matt(m); }},
+     {"deep matt weave", [](const auto& f, const auto& m) { return f == "deep" && is_matt(m); }},
+     {"velvet", [](const auto&, const auto& m) { return m == "velvet"; }},
+     {"satin", [](const auto&, const auto& m) { return m == "satin"; }},
+     {"dark satin", [](const auto&, const auto& m) { return m == "dark-satin"; }}}};
+
+// One level on one group: means over its scenes.
+struct LevelOnCloth {
+  double seconds = 0;  // of 16 megapixels, from counts in memory to maps
+  double mean_deg = 0, albedo_rel = 0;
+  double left_out_rel = std::numeric_limits<double>::quiet_NaN();
+};
+
+LevelOnCloth measured_on(const Rows& table, const std::string& level, const ClothGroup& group) {
+  constexpr double kPixels = 16e6;
+  LevelOnCloth sum;
+  double n = 0, left_out = 0;
+  for (const Json& row : table) {
+    const std::string scene = row["scene"];
+    const std::size_t blank = scene.find(' ');
+    if (row["method"] != level || blank == std::string::npos) continue;
+    if (!group.has(scene.substr(0, blank), scene.substr(blank + 1))) continue;
+    ++n;
+    sum.seconds += number(row, "ns_per_pixel") * 1e-9 * kPixels;
+    sum.mean_deg += number(row, "mean_deg");
+    sum.albedo_rel += number(row, "albedo_mean_rel");
+    if (row.contains("left_out_rel") && row["left_out_rel"].is_number())
+      left_out += number(row, "left_out_rel");
+  }
+  return {sum.seconds / n, sum.mean_deg / n, sum.albedo_rel / n, left_out / n};
+}
+
+// The table that a person reads who has a scan and no time.
+std::string levels_table(const Rows& table) {
+  std::vector<Cells> cells = {{"cloth"}};
+  for (const std::string& level : level_names()) cells[0].push_back(level);
+  for (const ClothGroup& group : kGroups) {
+    Cells& line = cells.emplace_back(Cells{group.name});
+    for (const std::string& level : level_names()) {
+      const LevelOnCloth m = measured_on(table, level, group);
+      line.push_back(fmt::format("{:.2g} s: **{:.2g}°**, {:.2g} %, {:.2g} %", m.seconds, m.mean_deg,
+                                 100 * m.albedo_rel, 100 * m.left_out_rel));
+    }
+  }
+  return markdown_table(cells);
+}
+
+// When a level is not worth its seconds.
+std::string advice(const Rows& table) {
+  const auto deg = [&](const char* level, std::size_t group) {
+    return measured_on(table, level, kGroups[group]).mean_deg;
+  };
+  const auto times = [&](const char* level, const char* of, std::size_t group) {
+    return measured_on(table, level, kGroups[group]).seconds / measured_on(table, of, kGroups[group]).seconds;
+  };
+  constexpr std::size_t kSmooth = 0, kPlain = 1, kDeep = 2, kSatin = 4;
+  std::string lines;
+  lines += fmt::format(
+      "- **preview** is for framing. Do not keep its maps: a quarter of the pixels, and {:.2g}° on a plain "
+      "weave where fast has {:.2g}°.\n",
+      deg("preview", kPlain), deg("fast", kPlain));
+  lines += fmt::format(
+      "- **fast** is not for gloss: {:.2g}° on satin where standard has {:.2g}°, for {:.2g} times the "
+      "seconds.\n",
+      deg("fast", kSatin), deg("standard", kSatin), times("standard", "fast", kSatin));
+  lines += fmt::format(
+      "- **standard** is the default. Do not stop at it on satin, where robust has {:.2g}° for its {:.2g}°, "
+      "or on a deep weave, where reference has {:.2g}° for its {:.2g}°.\n",
+      deg("robust", kSatin), deg("standard", kSatin), deg("reference", kDeep), deg("standard", kDeep));
+  lines += fmt::format(
+      "- **robust** gains nothing on smooth matt cloth ({:.2g}° and {:.2g}°) and on satin takes {:.2g} times "
+      "the seconds of standard.\n",
+      deg("robust", kSmooth), deg("standard", kSmooth), times("robust", "standard", kSatin));
+  lines += fmt::format(
+      "- **reference** gains nothing on smooth matt cloth ({:.2g}°) and little on satin ({:.2g}° for "
+      "{:.2g}°); "
+      "on a plain weave it takes {:.2g} times the seconds of standard.\n\n",
+      deg("reference", kSmooth), deg("reference", kSatin), deg("robust", kSatin),
+      times("reference", "standard", kPlain));
+  return lines;
+}
+
+// What `weft solve --explain` says of a plain weave.
+Result<std::string> explain_listing(const std::filesystem::path& program) {
+  const TemporaryFolder scratch;
+  const std::filesystem::path session = scratch.path() / "plain.weft", log = scratch.path() / "log";
+  const std::vector<std::vector<std::string>> commands = {
+      {program.string(), "simulate", kListedScene, "-o", session.string(), "--quiet"},
+      {program.string(), "solve", session.string(), "--explain", "--quiet"}};
+  std::string said;
+  for (const std::vector<std::string>& command : commands) {
+    auto process = ChildProcess::start(command, {}, log);
+    if (!process) return std::move(process).error();
+    constexpr double kPatience_s = 600;
+    const std::optional<int> code = (*process)->wait(kPatience_s);
+    said = (*process)->said();
+    if (code != 0) {
+      return Error{ErrorKind::kInputOutput, "weft did not end well", command[1], said,
+                   "run the same command by hand"};
+    }
+  }
+  return said;
+}
+
+struct FigurePart {
+  const char* name;
+  Rows AccuracyFigures::*rows;
+  Result<Rows> (*measure)(const AccuracyTableOptions& options);
+};
+
+AccuracyTableOptions levels_alone(AccuracyTableOptions options) {
+  options.methods = level_names();
+  return options;
+}
+AccuracyTableOptions small(AccuracyTableOptions options) {
+  options.quick = true;
+  return options;
+}
+
+constexpr std::array<FigurePart, 9> kParts = {
+    {{"table", &AccuracyFigures::table, [](const auto& o) { return accuracy_table(o); }},
+     {"coverage", &AccuracyFigures::coverage, [](const auto& o) { return coverage_table(o); }},
+     {"explain", &AccuracyFigures::explain,
+      [](const auto& o) {
+        return explain_table({o.set, o.seed, o.quick, o.threads});
+      }},
+     {"chain", &AccuracyFigures::chain,
+      [](const auto& o) {
+        ChainOptions options;
+        options.seed = o.seed;
+        options.threads = o.threads;
+        return chain_table(options);
+      }},
+     {"leds", &AccuracyFigures::leds, [](const auto& o) { return accuracy_by_leds(levels_alone(o)); }},
+     {"curves", &AccuracyFigures::curves, [](const auto& o) { return accuracy_curves(small(o)); }},
+     {"gates", &AccuracyFigures::gates, [](const auto& o) { return accuracy_gates(small(o)); }},
+     {"bound", &AccuracyFigures::bound,
+      [](const auto& o) {
+        return accuracy_bound({{}, o.threads});
+      }},
+     {"specular", &AccuracyFigures::specular,
+      [](const auto& o) { return specular_warnings(levels_alone(o)); }}}};
+
 }  // namespace
 
-Result<AccuracyFigures> measure_figures(const AccuracyTableOptions& options) {
-  AccuracyTableOptions levels = options;
-  levels.methods.clear();
-  for (const Contender& contender : contenders()) {
-    if (contender.is_quality) levels.methods.push_back(contender.name);
+const std::vector<std::string>& figure_parts() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const FigurePart& part : kParts) all.emplace_back(part.name);
+    all.emplace_back("listing");
+    return all;
+  }();
+  return names;
+}
+
+Result<void> measure_figures(const FiguresOptions& options, AccuracyFigures& figures) {
+  const std::vector<std::string>& parts = options.parts.empty() ? figure_parts() : options.parts;
+  for (const std::string& part : parts) {
+    if (std::count(figure_parts().begin(), figure_parts().end(), part) == 0)
+      return no_such("part", part, figure_parts());
   }
-  AccuracyTableOptions all_levels = options;
-  all_levels.methods.clear();
-  AccuracyTableOptions small = options;
-  small.quick = true;
+  figures.processor = document_of({})["machine"]["processor"];
+  figures.threads = resolved_threads(options.table.threads);
+  figures.solver_version = kSolverVersion;
+  for (const std::string& name : parts) {
+    if (name == "listing") {
+      Result<std::string> listing = explain_listing(options.program);
+      if (!listing) return std::move(listing).error();
+      figures.listing = std::move(*listing);
+      continue;
+    }
+    const FigurePart& part = *std::find_if(kParts.begin(), kParts.end(),
+                                           [&](const FigurePart& each) { return each.name == name; });
+    Result<Rows> rows = part.measure(options.table);
+    if (!rows) return std::move(rows).error();
+    figures.*part.rows = std::move(*rows);
+  }
+  return {};
+}
+
+Json json_of(const AccuracyFigures& figures) {
+  Json document = {{"schema", fmt::format("{}/1", kSchema)},
+                   {"processor", figures.processor},
+                   {"threads", figures.threads},
+                   {"solver_version", figures.solver_version},
+                   {"listing", figures.listing}};
+  for (const FigurePart& part : kParts) document[part.name] = figures.*part.rows;
+  return document;
+}
+
+Result<AccuracyFigures> figures_from_json(const Json& document, const std::string& where) {
   AccuracyFigures figures;
-  const std::array<std::pair<Rows*, Result<Rows>>, 7> parts = {
-      {{&figures.table, accuracy_table(options)},
-       {&figures.coverage, coverage_table(all_levels)},
-       {&figures.leds, accuracy_by_leds(levels)},
-       {&figures.curves, accuracy_curves(small)},
-       {&figures.gates, accuracy_gates(small)},
-       {&figures.bound, accuracy_bound({{}, options.threads})},
-       {&figures.specular, specular_warnings(levels)}}};
-  for (const auto& [rows, measured] : parts) {
-    if (!measured) return measured.error();
-    *rows = *measured;
+  try {
+    figures.processor = document.at("processor");
+    figures.threads = document.at("threads");
+    figures.solver_version = document.at("solver_version");
+    figures.listing = document.at("listing");
+    for (const FigurePart& part : kParts) figures.*part.rows = document.at(part.name).get<Rows>();
+  } catch (const Json::exception& e) {
+    return Error{ErrorKind::kBadData, "figures cannot be read", where, e.what(),
+                 "remove the file and measure all parts again"};
   }
   return figures;
+}
+
+report::Plot levels_plot(const AccuracyFigures& figures) {
+  report::Plot plot = {.title = "What a level costs and gains",
+                       .x_label = "seconds for 16 megapixels",
+                       .y_label = "mean error, degrees",
+                       .log_x = true,
+                       .log_y = true,
+                       .large = true};
+  for (const std::size_t group : {std::size_t{1}, std::size_t{2}, std::size_t{4}}) {
+    report::PlotSeries series = {kGroups[group].name, {}, true};
+    for (const std::string& level : level_names()) {
+      const LevelOnCloth m = measured_on(figures.table, level, kGroups[group]);
+      series.points.push_back({m.seconds, m.mean_deg, group == 2 ? level : ""});
+    }
+    plot.series.push_back(std::move(series));
+  }
+  return plot;
+}
+
+std::string summary_markdown(const AccuracyFigures& figures) {
+  std::string text = fmt::format(
+      "Seconds for a scan of 16 megapixels and ten LEDs on {}, {} threads; then the mean error of the "
+      "normals, of the albedo, and of the light left out when it is predicted from the others, which needs "
+      "no truth. Reading the frames and writing the maps comes on top and is the same for all levels.\n\n",
+      figures.processor, figures.threads);
+  text += levels_table(figures.table);
+  text += "![error against seconds, by level](pictures/levels.svg)\n\n";
+  text += advice(figures.table);
+  text += fmt::format("What `weft solve NAME.weft --explain` prints for {}, before anything is paid:\n\n",
+                      kListedScene);
+  text += "```\n" + figures.listing + "```\n";
+  return text;
 }
 
 report::Plot accuracy_plot(const AccuracyFigures& figures) {
@@ -250,11 +459,10 @@ report::Plot curves_plot(const AccuracyFigures& figures) {
 }
 
 std::string accuracy_markdown(const AccuracyFigures& figures) {
-  std::string page = "![mean error against time](pictures/accuracy.svg)\n\n";
-  page += fmt::format(
-      "All figures of one run on {}, {} threads. The numbers behind plot and tables are in "
-      "[accuracy.json](pictures/accuracy.json).\n\n",
-      document_of({})["machine"]["processor"].get<std::string>(), figures.table.front()["threads"].dump());
+  std::string page = fmt::format(
+      "Measured on {}, {} threads, by solver version {}. The numbers behind plots and tables are in "
+      "[accuracy.json](pictures/accuracy.json).\n\n![mean error against time](pictures/accuracy.svg)\n\n",
+      figures.processor, figures.threads, figures.solver_version);
   page += "## All scenes together\n\n";
   page += columns_table(overall(figures.table), {{"method", "method"},
                                                  {"mean_deg", "mean, degrees"},
@@ -269,14 +477,21 @@ std::string accuracy_markdown(const AccuracyFigures& figures) {
                                                  {"ratio_to_copy", "over a copy"},
                                                  {"pareto", "on the front"}});
   page += "## Mean error by scene, degrees\n\n";
-  std::vector<Cells> degrees = by_scene_and_method(figures.table, "mean_deg");
-  add_prototype(degrees);
-  page += markdown_table(degrees);
+  page += markdown_table(by_scene_and_method(figures.table, "mean_deg"));
   page += "## Mean relative error of albedo by scene\n\n";
   page += markdown_table(by_scene_and_method(figures.table, "albedo_mean_rel"));
   page += "## Leak by scene\n\n";
   page += markdown_table(by_scene_and_method(figures.table, "leak"));
   page += coverage_section(figures.coverage);
+  page += "## From captures to maps, mean error in degrees\n\n";
+  page += columns_table(figures.chain, {{"case", "case"},
+                                        {"level", "level"},
+                                        {"mean_deg", "mean, degrees"},
+                                        {"p95_deg", "95 %"},
+                                        {"exact_deg", "mean with exact calibration"},
+                                        {"albedo_rel", "albedo error"}});
+  page += "## What `--explain` foretells, over what comes true\n\n";
+  page += markdown_table(crossed(figures.explain, "scene", "quality", "ratio"));
   page += "## Fewer LEDs\n\n";
   page += columns_table(figures.leds, {{"leds", "LEDs"},
                                        {"numbers", "which"},
@@ -310,36 +525,49 @@ std::string accuracy_markdown(const AccuracyFigures& figures) {
   return page;
 }
 
-Result<std::string> with_figures(const std::string& page, const std::string& figures) {
-  const std::string_view begin = kFiguresBegin, end = kFiguresEnd;
+namespace {
+
+Result<std::string> with_part(const std::string& page, std::string_view begin, std::string_view end,
+                              const std::string& part) {
   const std::size_t from = page.find(begin), to = page.find(end);
   if (from == std::string::npos || to == std::string::npos || to < from) {
     return Error{ErrorKind::kBadData, "page has no place for figures", "accuracy.md",
                  fmt::format("it lacks the lines \"{}\" and \"{}\"", begin, end), "add them, in this order"};
   }
-  return page.substr(0, from + begin.size()) + "\n\n" + figures + "\n" + page.substr(to);
+  return page.substr(0, from + begin.size()) + "\n\n" + part + "\n" + page.substr(to);
+}
+
+}  // namespace
+
+Result<std::string> with_figures(const std::string& page, const AccuracyFigures& figures) {
+  const Result<std::string> begun = with_part(page, kSummaryBegin, kSummaryEnd, summary_markdown(figures));
+  if (!begun) return begun.error();
+  return with_part(*begun, kFiguresBegin, kFiguresEnd, accuracy_markdown(figures));
 }
 
 Result<void> write_accuracy_docs(const std::filesystem::path& folder, const AccuracyFigures& figures) {
   const std::filesystem::path file = folder / "accuracy.md", pictures = folder / "pictures";
   const Result<std::string> page = read_text(file);
   if (!page) return page.error();
-  const Result<std::string> renewed = with_figures(*page, accuracy_markdown(figures));
+  const Result<std::string> renewed = with_figures(*page, figures);
   if (!renewed) return renewed.error();
   if (Result<void> made = make_writable_folder(pictures); !made) return made;
-  const report::Plot plot = accuracy_plot(figures);
-  Json document = document_of(figures.table);
-  document["coverage"] = figures.coverage;
-  document["leds"] = figures.leds;
-  document["curves"] = figures.curves;
-  document["gates"] = figures.gates;
-  document["bound"] = figures.bound;
-  document["specular"] = figures.specular;
-  document["plot"] = plot_json(plot);
-  if (Result<void> ok = write_file(pictures / "accuracy.json", document.dump(1) + "\n"); !ok) return ok;
-  if (Result<void> ok = write_file(pictures / "accuracy.svg", plot_svg(plot)); !ok) return ok;
-  if (Result<void> ok = write_file(pictures / "curves.svg", plot_svg(curves_plot(figures))); !ok) return ok;
+  const std::pair<const char*, report::Plot> kPlots[] = {{"levels.svg", levels_plot(figures)},
+                                                         {"accuracy.svg", accuracy_plot(figures)},
+                                                         {"curves.svg", curves_plot(figures)}};
+  for (const auto& [name, plot] : kPlots) {
+    if (Result<void> ok = write_file(pictures / name, plot_svg(plot)); !ok) return ok;
+  }
+  if (Result<void> ok = write_file(pictures / kFiguresFile, json_of(figures).dump(1) + "\n"); !ok) return ok;
   return write_file(file, *renewed);
+}
+
+Result<AccuracyFigures> read_accuracy_docs(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "pictures" / kFiguresFile;
+  if (!is_there(file)) return AccuracyFigures();
+  Result<Json> document = read_json(file, kSchema, 1);
+  if (!document) return std::move(document).error();
+  return figures_from_json(*document, file.string());
 }
 
 }  // namespace weft::bench

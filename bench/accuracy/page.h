@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "bench/accuracy/accuracy.h"
 #include "bench/base/report.h"
@@ -11,26 +12,53 @@
 
 namespace weft::bench {
 
-/// All that docs/accuracy.md shows, as the benchmarks of the same names give it.
+/// All that docs/accuracy.md shows, as the benchmarks give it.
 struct AccuracyFigures {
-  Rows table, coverage, leds, curves, gates, bound, specular;
+  std::string processor;  ///< of the run
+  int threads = 0;
+  int solver_version = 0;
+  std::string listing;  ///< what `weft solve --explain` prints
+  Rows table, coverage, leds, curves, gates, bound, specular, explain, chain;
 };
-Result<AccuracyFigures> measure_figures(const AccuracyTableOptions& options);
 
+/// "table", "leds", ... "listing": what can be measured by itself.
+const std::vector<std::string>& figure_parts();
+
+struct FiguresOptions {
+  AccuracyTableOptions table;
+  std::vector<std::string> parts;  ///< of figure_parts(); empty: all
+  std::filesystem::path program;   ///< weft itself, for the listing
+};
+/// Measures these parts anew. kUsage for a part that there is not.
+Result<void> measure_figures(const FiguresOptions& options, AccuracyFigures& figures);
+
+/// As docs/pictures/accuracy.json keeps them.
+Json json_of(const AccuracyFigures& figures);
+Result<AccuracyFigures> figures_from_json(const Json& document, const std::string& where);
+
+/// Mean error against seconds of a 16-megapixel scan: the levels, on matt cloth, satin and velvet.
+report::Plot levels_plot(const AccuracyFigures& figures);
 /// Mean error against time over all scenes: levels, other methods, and each level from three to ten LEDs.
 report::Plot accuracy_plot(const AccuracyFigures& figures);
 /// The same of the settings of accuracy_curves().
 report::Plot curves_plot(const AccuracyFigures& figures);
 
-/// The page's generated part: plot and tables in Markdown.
+/// The page's generated parts in Markdown: what it begins with, and the tables that it ends with.
+std::string summary_markdown(const AccuracyFigures& figures);
 std::string accuracy_markdown(const AccuracyFigures& figures);
 
-/// `page` with what stands between its two marks replaced. kBadData where the marks are not there.
+/// `page` with what stands between the two pairs of marks replaced. kBadData where marks are not there.
+inline constexpr const char* kSummaryBegin = "<!-- summary: made by weft bench accuracy --docs -->";
+inline constexpr const char* kSummaryEnd = "<!-- end of summary -->";
 inline constexpr const char* kFiguresBegin = "<!-- figures: made by weft bench accuracy --docs -->";
 inline constexpr const char* kFiguresEnd = "<!-- end of figures -->";
-Result<std::string> with_figures(const std::string& page, const std::string& figures);
+Result<std::string> with_figures(const std::string& page, const AccuracyFigures& figures);
 
-/// Renews the figures of `folder`/accuracy.md and writes pictures/accuracy.svg, curves.svg and accuracy.json.
+/// Renews the figures of `folder`/accuracy.md and writes pictures/levels.svg, accuracy.svg, curves.svg and
+/// accuracy.json.
 Result<void> write_accuracy_docs(const std::filesystem::path& folder, const AccuracyFigures& figures);
+
+/// The figures of `folder`/pictures/accuracy.json; none where there is no such file.
+Result<AccuracyFigures> read_accuracy_docs(const std::filesystem::path& folder);
 
 }  // namespace weft::bench

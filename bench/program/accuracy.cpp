@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/accuracy/accuracy.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -13,6 +16,7 @@
 #include "bench/accuracy/page.h"
 #include "bench/program/rows.h"
 #include "bench/program/verbs.h"
+#include "core/process.h"
 
 namespace weft::bench {
 namespace {
@@ -25,6 +29,7 @@ struct AccuracyArguments {
   bool specular = false;
   bool sigma = false;
   bool chain = false;
+  std::vector<std::string> parts;
   std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
 };
 
@@ -40,12 +45,17 @@ Result<Rows> measure(const AccuracyArguments& a, int threads) {
     return chain_table(
         {.name = options.scene, .levels = options.methods, .seed = options.seed, .threads = threads});
   if (a.docs.empty()) return accuracy_table(options);
-  Result<AccuracyFigures> figures = measure_figures(options);
-  if (!figures) return std::move(figures).error();
-  if (Result<void> written = write_accuracy_docs(a.docs, *figures); !written) {
-    return std::move(written).error();
+  AccuracyFigures figures;
+  if (!a.parts.empty()) {
+    Result<AccuracyFigures> before = read_accuracy_docs(a.docs);
+    if (!before) return std::move(before).error();
+    figures = std::move(*before);
   }
-  return std::move(figures->table);
+  const auto measured = measure_figures({options, a.parts, program_beside("weft")}, figures);
+  if (!measured) return measured.error();
+  if (Result<void> written = write_accuracy_docs(a.docs, figures); !written)
+    return std::move(written).error();
+  return std::move(figures.table);
 }
 
 app::Run add_accuracy(app::Options& options) {
@@ -68,11 +78,17 @@ app::Run add_accuracy(app::Options& options) {
       options.add_flag("--chain", &a->chain,
                        "Instead: whole sessions by the product's own steps, from captures to maps"),
       options.add("--docs", &a->docs,
-                  "All of it, into this folder: the figures of accuracy.md, pictures/accuracy.svg, .json")};
+                  "All of it, into this folder: the figures of accuracy.md, its plots, accuracy.json")};
   for (std::size_t i = 0; i < instead.size(); ++i) {
-    for (std::size_t j = i + 1; j < instead.size(); ++j) app::Option(instead[i]).excludes(instead[j]);
+    for (std::size_t j = i + 1; j < instead.size(); ++j) instead[i].excludes(instead[j]);
   }
   options.add("--seed", &a->table.seed, "Of weaves and noise, from 1").shows_default();
+  options
+      .add("--part", &a->parts,
+           fmt::format("With --docs: these figures alone, the others as accuracy.json has them: {}",
+                       fmt::join(figure_parts(), ",")))
+      .by_commas()
+      .needs(instead.back());
   return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.threads), common); };
 }
 
