@@ -21,13 +21,14 @@ Result<Ladder> price(const SolveArguments& a, const CommonArguments& common) {
 }
 
 void print_words(const Ladder& ladder, std::optional<std::size_t> chosen) {
-  print("level       degrees  seconds     read  prepare    solve    write");
+  print("level       degrees  seconds     read  prepare    solve    write pictures   report     sync");
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
     const LevelPrice& level = ladder.levels[i];
     const LevelSeconds& s = level.seconds;
-    print(fmt::format("{:<10} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}", level.name(),
-                      level.error.total_deg(), s.total(), s.read, s.prepare, s.solve, s.write,
-                      chosen == i ? "<- chosen" : ""));
+    print(fmt::format(
+        "{:<10} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}",
+        level.name(), level.error.total_deg(), s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
+        s.report, s.sync, chosen == i ? "<- chosen" : ""));
     if (!level.note.empty()) print("           " + level.note);
   }
 }

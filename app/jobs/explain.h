@@ -19,16 +19,18 @@
 
 namespace weft::app {
 
-/// Wall seconds of one level on the whole frame.
+/// Wall seconds of one level on the whole frame, by the phases of a solve. What is not measured on the frame
+/// itself is that of solving the cut below, by its pixels to those of the frame.
 struct LevelSeconds {
-  double read = 0;     ///< measured: the photographs were read
-  double prepare = 0;  ///< measured: shots registered to each other; a preview does without
-  double solve = 0;    ///< of the cut below, by its pixels to those of the frame
-  double write = 0;    ///< likewise, its maps written to the system's temporary folder, and opening them
+  double read = 0;      ///< measured: the photographs were read
+  double prepare = 0;   ///< measured: shots registered to each other; a preview does without
+  double solve = 0;     ///< of the cut
+  double write = 0;     ///< of the cut, its maps written to the system's temporary folder
+  double pictures = 0;  ///< of the cut, up to the size that previews have
+  double report = 0;    ///< of the cut, as it is: it looks at samples
+  double sync = 0;      ///< of the cut
 
-  /// Their sum, though maps are written while the next are solved. Pictures, report and sync, which do not
-  /// grow with the level, come on top.
-  double total() const { return read + prepare + solve + write; }
+  double total() const { return read + prepare + solve + write + pictures + report + sync; }
 };
 
 /// What one level would give, and what it would cost.
@@ -49,11 +51,11 @@ struct Ladder {
 /// A dearer level that is not this share better than a cheaper one has nothing to gain.
 inline constexpr double kWorthwhileGain = 0.05;
 
-/// Reads the photographs, forecasts errors (pipeline/forecast.h) and times every level on a cut of up to
-/// 512 x 256 pixels from the middle of the frame, on the threads of `context`: the lesser of two runs, or one
-/// where it takes long. The reference level runs on the cut as it would on the frame, if its gates are open
-/// with as many rounds as the cut needs; that the height's transform grows by a logarithm faster than the
-/// frame is left out. Nothing is written beside the photographs.
+/// Reads the photographs, forecasts errors (pipeline/forecast.h) and solves a cut of up to 512 x 256 pixels
+/// from the middle of the frame at every level as `weft solve` does, on the threads of `context`: the quicker
+/// of two runs, or one where it takes long. That the height's transform of the reference level grows by a
+/// logarithm faster than the frame is left out, and so is holding a simulated session against its truth.
+/// Nothing is written beside the photographs.
 Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& options,
                                const JobContext& context);
 Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,

@@ -79,6 +79,7 @@ struct Input {
   fs::path truth;           // normal.exr of a simulated session, or empty
   std::vector<int> picked;  // numbers of photographs picked from a list
   std::function<Result<LoadedSession>()> load;
+  bool is_registered = false;  // photographs come with their shifts
 };
 
 Json seconds_json(const SolveSeconds& seconds) {
@@ -182,7 +183,7 @@ class Run {
       Result<pipeline::Photographs> half = half_size(photographs_, context_.threads);
       if (!half) return std::move(half).error();
       photographs_ = std::move(*half);
-    } else {
+    } else if (!input_.is_registered) {
       Result<pipeline::SessionShifts> found = register_shots(photographs_, context_);
       if (!found) return std::move(found).error();
       shifts = std::move(*found);
@@ -361,6 +362,24 @@ Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& 
                                      options, context);
   if (report) report->transfer = plan->transfer;
   return report;
+}
+
+Result<SolveReport> solve_loaded(pipeline::Photographs photographs, const SolveOptions& options,
+                                 const JobContext& context) {
+  const Result<solver::MethodName> method = method_named(options.method);
+  if (!method) return method.error();
+  return solve(*method,
+               {.title = {},
+                .description = Json::object(),
+                .size = photographs.size,
+                .default_parent = {},
+                .truth = {},
+                .picked = {},
+                .load = [&]() -> Result<LoadedSession> {
+                  return LoadedSession{std::move(photographs), {}, {}};
+                },
+                .is_registered = true},
+               options, context);
 }
 
 }  // namespace weft::app

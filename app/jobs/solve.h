@@ -47,4 +47,9 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
 Result<SolveReport> solve_photos(const PhotoOptions& input, const SolveOptions& options,
                                  const JobContext& context);
 
+/// The same from photographs that are in memory, their shots registered: what solving them costs, for a price
+/// (app/jobs/explain.h). `options.output` is not empty.
+Result<SolveReport> solve_loaded(pipeline::Photographs photographs, const SolveOptions& options,
+                                 const JobContext& context);
+
 }  // namespace weft::app

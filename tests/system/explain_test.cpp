@@ -40,10 +40,11 @@ TEST_F(Explain, PricesEveryLevelAndLeavesNothingBehind) {
     EXPECT_EQ(level.at("quality"), kLevels[i]);
     EXPECT_GT(level.at("predicted_deg").get<double>(), 0) << level;
     double sum = 0;
-    for (const char* part : {"read", "prepare", "solve", "write"}) {
+    for (const char* part : {"read", "prepare", "solve", "write", "pictures", "report", "sync"}) {
       sum += level.at("seconds").at(part).get<double>();
     }
-    EXPECT_GT(level["seconds"].at("solve").get<double>(), 0) << level;
+    for (const char* paid : {"solve", "write", "pictures", "report", "sync"})
+      EXPECT_GT(level["seconds"].at(paid).get<double>(), 0) << paid << ": " << level;
     EXPECT_NEAR(level["seconds"].at("total").get<double>(), sum, 1e-9) << level;
   }
   EXPECT_EQ(document.at("gates").size(), 4u);
