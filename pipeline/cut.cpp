@@ -48,6 +48,9 @@ Result<Photographs> cut(const Photographs& whole, Rect area) {
   part.size = {area.width(), area.height()};
   part.leds = whole.leds;
   part.shifts = whole.shifts;
+  part.light_covariance = whole.light_covariance;
+  part.albedo_scale = whole.albedo_scale;
+  part.color = whole.color;
   part.camera = whole.camera;
   if (part.camera) {
     part.camera->size = part.size;

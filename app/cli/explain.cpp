@@ -27,7 +27,7 @@ void print_words(const Ladder& ladder, std::optional<std::size_t> chosen) {
     const LevelSeconds& s = level.seconds;
     print(fmt::format(
         "{:<10} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}",
-        level.name(), level.error.total_deg(), s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
+        level.name(), level.error.total_deg, s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
         s.report, s.sync, chosen == i ? "<- chosen" : ""));
     if (!level.note.empty()) print("           " + level.note);
   }
@@ -60,7 +60,7 @@ Result<std::string> chosen_level(const SolveArguments& arguments, const CommonAr
   const LevelPrice& level = ladder->levels[*chosen];
   if (!common.quiet) {
     note(fmt::format("chose {}: {:.3g} degrees off and {:.3g} s expected", level.name(),
-                     level.error.total_deg(), level.seconds.total()));
+                     level.error.total_deg, level.seconds.total()));
   }
   return level.name();
 }

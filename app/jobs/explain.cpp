@@ -17,7 +17,6 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using pipeline::ErrorForecast;
 using pipeline::Photographs;
 
 constexpr Size kCut = {512, 256};
@@ -38,11 +37,11 @@ struct Scratch {
   }
 };
 
-// What the level takes for the middle of the frame: the quicker of two solves unless the first is long.
-Result<SolveSeconds> cut_seconds(const Photographs& photographs, const std::string& level,
-                                 const SolveOptions& options, const JobContext& context) {
+// What the level makes of the middle of the frame: the quicker of two solves unless the first is long.
+Result<SolveReport> solve_cut(const Photographs& photographs, const std::string& level,
+                              const SolveOptions& options, const JobContext& context) {
   constexpr double kLong_s = 0.5;
-  SolveSeconds least;
+  std::optional<SolveReport> quickest;
   for (int run = 0; run < 2; ++run) {
     const Scratch scratch;
     Result<Photographs> part = cut(photographs, timed_area(photographs.size));
@@ -50,12 +49,12 @@ Result<SolveSeconds> cut_seconds(const Photographs& photographs, const std::stri
     SolveOptions one = options;
     one.method = level;
     one.output = scratch.path;
-    const Result<SolveReport> solved = solve_loaded(std::move(*part), one, context);
-    if (!solved) return solved.error();
-    if (run == 0 || solved->seconds.total < least.total) least = solved->seconds;
-    if (least.total > kLong_s) break;
+    Result<SolveReport> solved = solve_loaded(std::move(*part), one, context);
+    if (!solved) return std::move(solved).error();
+    if (!quickest || solved->seconds.total < quickest->seconds.total) quickest = std::move(*solved);
+    if (quickest->seconds.total > kLong_s) break;
   }
-  return least;
+  return std::move(*quickest);
 }
 
 // Of the whole frame, from those of its cut.
@@ -74,11 +73,20 @@ LevelSeconds scaled(const SolveSeconds& cut, Size frame, bool is_half) {
   return seconds;
 }
 
-std::string words_of(const solver::Gates& gates) {
+// What the reference level takes out of the readings, and why, as solve.json says it.
+std::string words_of(const Json& stages, const Json& gates) {
   std::string words;
-  for (const solver::Gate& gate : gates.measured()) {
-    words += fmt::format("{}{} {:.3g} of {:.3g}{}{}", words.empty() ? "" : ", ", gate.name, gate.value,
-                         gate.limit, gate.unit.empty() ? "" : " ", gate.unit);
+  for (const Json& stage : stages) {
+    words += fmt::format("{}{}", words.empty() ? "takes out " : ", ", stage.get<std::string>());
+  }
+  if (words.empty()) words = "gates shut";
+  const char* before = ": ";
+  for (const Json& gate : gates) {
+    const std::string unit = gate.at("unit");
+    words += fmt::format("{}{} {:.3g} of {:.3g}{}{}", before, gate.at("name").get<std::string>(),
+                         gate.at("value").get<double>(), gate.at("limit").get<double>(),
+                         unit.empty() ? "" : " ", unit);
+    before = ", ";
   }
   return words;
 }
@@ -87,7 +95,7 @@ std::string words_of(const solver::Gates& gates) {
 std::size_t best_of(const Ladder& ladder, const std::vector<std::size_t>& from_cheapest) {
   std::size_t best = from_cheapest.front();
   for (const std::size_t i : from_cheapest) {
-    const double error = ladder.levels[i].error.total_deg(), before = ladder.levels[best].error.total_deg();
+    const double error = ladder.levels[i].error.total_deg, before = ladder.levels[best].error.total_deg;
     if (error < (1 - kWorthwhileGain) * before) best = i;
   }
   return best;
@@ -108,41 +116,40 @@ void add_notes(Ladder& ladder) {
     LevelPrice& level = ladder.levels[i];
     if (!cheaper.empty()) {
       const LevelPrice& best = ladder.levels[best_of(ladder, cheaper)];
-      if (level.error.total_deg() > (1 - kWorthwhileGain) * best.error.total_deg())
+      if (level.error.total_deg > (1 - kWorthwhileGain) * best.error.total_deg)
         level.note = "nothing to gain over " + best.name();
     }
     cheaper.push_back(i);
   }
-  LevelPrice& reference = ladder.levels.back();
-  const bool open = ladder.gates.shadows() || ladder.gates.interreflection();
-  const char* gates = open                            ? "gates open"
-                      : ladder.gates.specular.is_over ? "gates shut, as this cloth is no Lambertian one"
-                                                      : "gates shut";
-  reference.note +=
-      fmt::format("{}{}: {}", reference.note.empty() ? "" : "; ", gates, words_of(ladder.gates));
 }
 
 Result<Ladder> price(const Photographs& photographs, double read, double prepare, const SolveOptions& options,
                      const JobContext& context) {
   const JobContext silent = {context.threads, context.stop};
   context.progress("explain", 0);
-  const Result<pipeline::Forecast> forecast = forecast_errors(photographs, context.threads);
-  if (!forecast) return forecast.error();
-  Ladder ladder = {forecast->gates, {}};
-  for (const ErrorForecast& error : forecast->levels) {
-    const solver::MethodName& level = solver::method_of(error.level);
+  Ladder ladder;
+  std::string stages;
+  const auto levels = std::ranges::count_if(
+      solver::method_names(), [](const solver::MethodName& name) { return name.level.has_value(); });
+  for (const solver::MethodName& level : solver::method_names()) {
+    if (!level.level) continue;
     const bool is_half = level.extent == solver::Extent::kHalfSize;
-    const Result<SolveSeconds> cut = cut_seconds(photographs, level.name, options, silent);
+    const Result<SolveReport> cut = solve_cut(photographs, level.name, options, silent);
     if (!cut) return cut.error();
-    LevelSeconds seconds = scaled(*cut, photographs.size, is_half);
+    LevelSeconds seconds = scaled(cut->seconds, photographs.size, is_half);
     seconds.read = read;
     seconds.prepare = is_half ? 0 : prepare;
-    ladder.levels.push_back({error, seconds, ""});
+    ladder.levels.push_back({*level.level, cut->expected, seconds, ""});
+    if (level.level == solver::Level::kReference) {
+      ladder.gates = cut->facts.gates;
+      stages = words_of(cut->facts.reference.at("stages"), ladder.gates);
+    }
     if (context.stop.stop_requested()) return interrupted();
-    context.progress(
-        "explain", static_cast<double>(ladder.levels.size()) / static_cast<double>(forecast->levels.size()));
+    context.progress("explain", static_cast<double>(ladder.levels.size()) / static_cast<double>(levels));
   }
   add_notes(ladder);
+  std::string& note = ladder.levels.back().note;
+  note += (note.empty() ? "" : "; ") + stages;
   return ladder;
 }
 
@@ -162,14 +169,14 @@ Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
     return a.seconds.total() < b.seconds.total();
   });
   const auto closest = std::min_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
-    return a.error.total_deg() < b.error.total_deg();
+    return a.error.total_deg < b.error.total_deg;
   });
   const std::string quick =
       fmt::format("the quickest, {}, takes {:.3g} s at {:.3g} degrees", quickest->name(),
-                  quickest->seconds.total(), quickest->error.total_deg());
+                  quickest->seconds.total(), quickest->error.total_deg);
   const std::string close =
       fmt::format("the closest, {}, is expected to be off by {:.3g} degrees in {:.3g} s", closest->name(),
-                  closest->error.total_deg(), closest->seconds.total());
+                  closest->error.total_deg, closest->seconds.total());
   std::string where, why, remedy;
   if (wish.within_seconds) {
     where = fmt::format("--within {:g}", *wish.within_seconds);
@@ -212,7 +219,7 @@ Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish) {
   for (const std::size_t i : from_cheapest(ladder)) {
     const LevelPrice& level = ladder.levels[i];
     const bool is_quick = !wish.within_seconds || level.seconds.total() <= *wish.within_seconds;
-    const bool is_close = !wish.to_deg || level.error.total_deg() <= *wish.to_deg;
+    const bool is_close = !wish.to_deg || level.error.total_deg <= *wish.to_deg;
     if (is_quick && is_close) fitting.push_back(i);
   }
   if (fitting.empty()) return nothing_fits(ladder, wish);
@@ -222,29 +229,26 @@ Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish) {
 Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen) {
   Json levels = Json::array();
   for (const LevelPrice& level : ladder.levels) {
-    const ErrorForecast& error = level.error;
+    const ExpectedError& error = level.error;
     const LevelSeconds& seconds = level.seconds;
-    levels.push_back({{"quality", level.name()},
-                      {"predicted_deg", error.total_deg()},
-                      {"parts_deg",
-                       {{"noise", error.noise_deg},
-                        {"misfit", error.misfit_deg},
-                        {"indirect", error.indirect_deg},
-                        {"shortcut", error.shortcut_deg},
-                        {"calibration", error.calibration_deg}}},
-                      {"seconds",
-                       {{"read", seconds.read},
-                        {"prepare", seconds.prepare},
-                        {"solve", seconds.solve},
-                        {"write", seconds.write},
-                        {"pictures", seconds.pictures},
-                        {"report", seconds.report},
-                        {"sync", seconds.sync},
-                        {"total", seconds.total()}}},
-                      {"note", level.note}});
+    levels.push_back(
+        {{"quality", level.name()},
+         {"predicted_deg", error.total_deg},
+         {"parts_deg",
+          {{"noise", error.noise_deg}, {"model", error.model_deg}, {"calibration", error.calibration_deg}}},
+         {"seconds",
+          {{"read", seconds.read},
+           {"prepare", seconds.prepare},
+           {"solve", seconds.solve},
+           {"write", seconds.write},
+           {"pictures", seconds.pictures},
+           {"report", seconds.report},
+           {"sync", seconds.sync},
+           {"total", seconds.total()}}},
+         {"note", level.note}});
   }
   return {{"levels", std::move(levels)},
-          {"gates", json_of(ladder.gates)},
+          {"gates", ladder.gates},
           {"chosen", chosen ? Json(ladder.levels[*chosen].name()) : Json()}};
 }
 

@@ -12,7 +12,7 @@
 #include "core/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
-#include "pipeline/forecast.h"
+#include "solver/method.h"
 
 // What each level of the solver would give and cost, measured on this cloth and this machine before it is
 // paid.
@@ -35,27 +35,28 @@ struct LevelSeconds {
 
 /// What one level would give, and what it would cost.
 struct LevelPrice {
-  pipeline::ErrorForecast error;
+  solver::Level level = solver::Level::kStandard;
+  ExpectedError error;
   LevelSeconds seconds;
   std::string note;  ///< what there is to say of it: nothing to gain, gates; or empty
 
-  std::string name() const { return solver::method_of(error.level).name; }
+  std::string name() const { return solver::method_of(level).name; }
 };
 
 /// All levels, priced.
 struct Ladder {
-  solver::Gates gates;
+  Json gates;                      ///< of the reference level, as solve.json has them
   std::vector<LevelPrice> levels;  ///< in the order of solver::Level
 };
 
 /// A dearer level that is not this share better than a cheaper one has nothing to gain.
 inline constexpr double kWorthwhileGain = 0.05;
 
-/// Reads the photographs, forecasts errors (pipeline/forecast.h) and solves a cut of up to 512 x 256 pixels
+/// Reads the photographs and solves a cut of up to 512 x 256 pixels
 /// from the middle of the frame at every level as `weft solve` does, on the threads of `context`: the quicker
-/// of two runs, or one where it takes long. That the height's transform of the reference level grows by a
-/// logarithm faster than the frame is left out, and so is holding a simulated session against its truth.
-/// Nothing is written beside the photographs.
+/// of two runs, or one where it takes long. The error to expect is what sigma.exr says of the cut. That the
+/// height's transform of the reference level grows by a logarithm faster than the frame is left out, and so
+/// is holding a simulated session against its truth. Nothing is written beside the photographs.
 Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& options,
                                const JobContext& context);
 Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,

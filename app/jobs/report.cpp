@@ -14,6 +14,7 @@
 #include "core/statistics.h"
 #include "pipeline/evidence.h"
 #include "solver/method.h"
+#include "solver/uncertainty/model_sigma.h"
 
 namespace weft::app {
 namespace {
@@ -221,6 +222,13 @@ void AngleHistogram::add(double angle_deg) {
   if (!std::isfinite(angle_deg)) return;
   const double bin = std::log(std::max(angle_deg, kLeastSigma) / kLeastSigma) / std::log(kBinRatio);
   ++counts_[std::min(static_cast<std::size_t>(bin), kBins - 1)];
+  sum_deg_ += angle_deg;
+}
+
+double AngleHistogram::mean() const {
+  std::int64_t all = 0;
+  for (const std::int64_t n : counts_) all += n;
+  return all > 0 ? sum_deg_ / static_cast<double>(all) : 0;
 }
 
 double AngleHistogram::quantile(double share) const {
@@ -264,6 +272,11 @@ Json MapSummary::sigma_model_deg() const {
 
 Json MapSummary::sigma_calibration_deg() const {
   return middle_of(calibration_);
+}
+
+ExpectedError MapSummary::expected() const {
+  const auto mean_deg = [](const AngleHistogram& rms) { return solver::kMeanOfRms * rms.mean(); };
+  return {mean_deg(sum_), mean_deg(noise_), mean_deg(model_), mean_deg(calibration_)};
 }
 
 Json MapSummary::sigma_facts() const {

@@ -29,9 +29,17 @@ class AngleHistogram {
   void add(double angle_deg);  ///< what is not finite is left out
   /// To one percent; NaN where nothing was added.
   double quantile(double share) const;
+  double mean() const;  ///< 0 where nothing was added
 
  private:
   std::vector<std::int64_t> counts_;
+  double sum_deg_ = 0;
+};
+
+/// The mean error of the normals that sigma.exr lets one expect, and of its parts, whose squares add up pixel
+/// by pixel. Degrees.
+struct ExpectedError {
+  double total_deg = 0, noise_deg = 0, model_deg = 0, calibration_deg = 0;
 };
 
 /// What the report says of the maps, gathered while they are solved.
@@ -55,6 +63,7 @@ class MapSummary {
   Json sigma_calibration_deg() const;
   /// {"median", "p95"} of the angle, and of its parts as "noise", "model" and "calibration": solve.json.
   Json sigma_facts() const;
+  ExpectedError expected() const;
 
  private:
   report::Downsampler sigma_;

@@ -162,7 +162,7 @@ class Run {
     if (Result<void> ok = describe(); !ok) return std::move(ok).error();
     if (Result<void> ok = publish(); !ok) return std::move(ok).error();
     seconds_.total = total.lap();
-    return SolveReport{product_.folder, false, std::move(facts_), {}, seconds_};
+    return SolveReport{product_.folder, false, std::move(facts_), maps_->expected(), {}, seconds_};
   }
 
  private:
@@ -309,7 +309,7 @@ Result<SolveReport> solve(const solver::MethodName& method, const Input& input, 
     Result<SolveFacts> facts =
         solve_facts_from_json(**finished, (product.folder / kSolveProduct.document).string());
     if (!facts) return std::move(facts).error();
-    return SolveReport{product.folder, true, std::move(*facts), {}, {}};
+    return SolveReport{product.folder, true, std::move(*facts), {}, {}, {}};
   }
   return Run(method, input, options, context, product).run();
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/jobs/photo_input.h"
+#include "app/jobs/report.h"
 #include "app/jobs/session_input.h"
 #include "core/compression.h"
 #include "core/job.h"
@@ -34,6 +35,7 @@ struct SolveReport {
   std::filesystem::path folder;
   bool was_there = false;  ///< a complete solve of the same inputs and options was found
   SolveFacts facts;
+  ExpectedError expected;    ///< of this run: zero if was_there
   std::optional<Transfer> transfer;  ///< of photographs: kLinear or kSrgb
   SolveSeconds seconds;              ///< of this run: zero if was_there
 };

@@ -16,9 +16,9 @@ struct ExplainOptions {
   int threads = 0;
 };
 
-/// What `weft solve --explain` predicts against what comes true: a row for each scene and level, with the
-/// mean over patches of predicted and true mean angle, their ratio, the parts of the prediction and the gate
-/// for light from the cloth. A pixel of a preview is held against the four that it stands for.
+/// What `weft solve --explain` predicts, by `normal_deg` of sigma.exr, against what comes true: a row for
+/// each scene and level, with the mean of both angles over all pixels with a solution, and their ratio. A
+/// pixel of a preview is held against the four that it stands for.
 Result<Rows> explain_table(const ExplainOptions& options);
 
 }  // namespace weft::bench

@@ -55,6 +55,9 @@ struct ModelTraits {
 /// Rms angle that the model's part of sigma comes to, degrees.
 float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, const ModelTraits& traits);
 
+/// Mean over rms of an angle whose two components scatter alike, as those of sigma do: sqrt(pi) / 2.
+inline constexpr double kMeanOfRms = 0.886226925452758;
+
 /// Standard deviation of the albedo by the model, over the albedo, that goes with such an angle: a radian of
 /// the one is about one of the other.
 constexpr float model_albedo_share(float model_deg) {

@@ -123,8 +123,8 @@ app::Ladder ladder_of(const std::vector<std::pair<double, double>>& levels) {
   app::Ladder ladder;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     app::LevelPrice level;
-    level.error.level = *solver::method_names()[i].level;
-    level.error.noise_deg = levels[i].first;
+    level.level = *solver::method_names()[i].level;
+    level.error.total_deg = levels[i].first;
     level.seconds.solve = levels[i].second;
     ladder.levels.push_back(level);
   }
