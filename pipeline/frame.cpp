@@ -99,7 +99,8 @@ Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::Met
     if (Result<void> ok = check(photographs, *asked, context, facts); !ok) return std::move(ok).error();
     return facts;
   }
-  const solver::ModelTraits model = {.is_robust = method.level == solver::Level::kRobust};
+  const solver::ModelTraits model = {.is_robust = method.level == solver::Level::kRobust,
+                                     .is_half = method.extent == solver::Extent::kHalfSize};
   const std::unique_ptr<solver::Method> standard = solver::method_of(solver::Level::kStandard).make();
   std::unique_ptr<solver::Method> by_block;
   if (model.is_robust) {

@@ -24,6 +24,14 @@ float misfit2_of(float residual2, float noise2, float pixels) {
   return pixels > 0 ? std::max(residual2 - noise2, 0.0F) / pixels : 0;
 }
 
+// Square of the difference of a normal to the next along the row, or to the one before where there is none.
+float turn2_at(int x, int y, const std::array<View<const float>, 3>& normal) {
+  const int next = x + 1 < normal[0].width() ? x + 1 : std::max(x - 1, 0);
+  float sum = 0;
+  for (const View<const float>& n : normal) sum += (n(next, y) - n(x, y)) * (n(next, y) - n(x, y));
+  return sum;
+}
+
 }  // namespace
 
 ModelPart::ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits,
@@ -65,6 +73,7 @@ ModelPart::Sums ModelPart::sums_of(int x0, int y0, int frame_y0, const SolvedRow
       sums[kSlope2] += 1 - z2 < kMostSlope2 * z2 ? (1 - z2) / z2 : kMostSlope2;
       sums[kAlbedo] += albedo;
       sums[kShaded] += (status & kShadowed) != 0 ? 1.0F : 0.0F;
+      if (traits_.is_half) sums[kTurn2] += turn2_at(x, y, solved.normal);
       if (!has_noise_) continue;
       const auto c = static_cast<std::size_t>(planes_.channel_at(planes_.speaker(), x, frame_y0 + y - y0));
       sums[kResidual2] += q * q;
@@ -129,7 +138,8 @@ float ModelPart::angle_at(int cell_x, int row) const {
       .albedo = cells_(cell_x, row, kAlbedo) / pixels,
       .shadowed = around[kShaded] / around[kPixels],
       .misfit2 = misfit2_of(around[kResidual2], around[kNoise2], around[kPixels]),
-      .misfit2_around = block.misfit2};
+      .misfit2_around = block.misfit2,
+      .turn2 = cells_(cell_x, row, kTurn2) / pixels};
   return solver::model_sigma_deg(evidence, block.degrees_a_residual, traits_);
 }
 

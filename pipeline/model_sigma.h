@@ -38,7 +38,7 @@ class ModelPart {
 
  private:
   // Of the pixels with a solution.
-  enum Sum { kPixels, kSlope2, kAlbedo, kShaded, kResidual2, kNoise2, kSums };
+  enum Sum { kPixels, kSlope2, kAlbedo, kShaded, kResidual2, kNoise2, kTurn2, kSums };
   using Sums = std::array<float, kSums>;
   struct Block {
     std::array<solver::ResidualNoise, 3> noise;  ///< by channel

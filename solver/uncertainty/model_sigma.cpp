@@ -28,6 +28,10 @@ struct Pull {
 };
 constexpr Pull kHere = {0.35F, 0.7F}, kAround = {0.38F, 0.2F};
 constexpr Pull kHereOfRobust = {0.15F, 0.05F}, kAroundOfRobust = {0.06F, 0.12F};
+// Of a preview: what its pixels' four photosites differ by, over what pixels differ by from neighbour to
+// neighbour; and degrees over the square of the slope, as light that does not reach a slope is taken for
+// little light.
+constexpr float kWithinPixel = 0.5F, kUnmasked_deg = 24;
 // Lighter cloth is as light as this.
 constexpr float kMostAlbedo = 1.2F;
 // Divides nothing by nothing.
@@ -80,7 +84,13 @@ float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, 
               around = (traits.is_robust ? kAroundOfRobust : kAround).at(slope),
               misfit = static_cast<float>(degrees_a_residual) *
                        std::sqrt(here * here * evidence.misfit2 + around * around * evidence.misfit2_around);
-  return std::min(std::sqrt(bounced * bounced + shadowed * shadowed + misfit * misfit), 180.0F);
+  float sum2 = bounced * bounced + shadowed * shadowed + misfit * misfit;
+  if (traits.is_half) {
+    const float within = static_cast<float>(degrees(1)) * kWithinPixel,
+                unmasked = kUnmasked_deg * evidence.slope2;
+    sum2 += within * within * evidence.turn2 + unmasked * unmasked;
+  }
+  return std::min(std::sqrt(sum2), 180.0F);
 }
 
 }  // namespace weft::solver

@@ -44,12 +44,14 @@ struct ModelEvidence {
   float shadowed = 0;        ///< share of the pixels that left out a reading for shadow
   float misfit2 = 0;         ///< mean square residual over the albedo, less what noise leaves of it
   float misfit2_around = 0;  ///< the same of the wider one
+  float turn2 = 0;           ///< mean square difference of the normals of neighbours
 };
 
 /// How the normals were solved.
 struct ModelTraits {
   bool is_robust = false;        ///< from the start that most readings agree on
   bool bounces_are_out = false;  ///< light from the cloth was taken out of the readings
+  bool is_half = false;          ///< at half the size, and without a shadow mask
 };
 
 /// Rms angle that the model's part of sigma comes to, degrees.
