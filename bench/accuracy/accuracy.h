@@ -32,6 +32,7 @@ inline constexpr const char* kAllScenes = "all";
 /// ratio_to_oracle: of mean_deg.
 /// albedo_mean_rel, albedo_bias_rel: |A - B| / B and (A - B) / B in the photosite's own colour.
 /// leak: slope of (A - B) / B over the true openness.
+/// left_out_rel: of a level, median of |error| / reading where each light is left out and predicted.
 /// ns_per_pixel: wall time with `threads`, the least of three. ratio_to_unpack, ratio_to_copy: of it to the
 /// yardsticks (bench/base/yardsticks.h). pareto: nothing else is both quicker and closer.
 /// kUsage where no scene or method has the given name.

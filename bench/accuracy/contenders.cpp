@@ -91,7 +91,9 @@ Result<void> solve_level(const pipeline::Photographs& photographs, const solver:
                          int threads, SolvedMaps& maps) {
   const auto solved = solve_frame(photographs, level, pipeline::kSolveTile, on_threads(threads),
                                   keeper_of(photographs.planes(), maps));
-  return solved ? Result<void>() : solved.error();
+  if (!solved) return solved.error();
+  if (solved->left_out) maps.left_out_rel = solver::error_of_all(*solved->left_out).median;
+  return {};
 }
 
 // Each pixel of a preview stands for the four photosites that it was made of.
@@ -102,6 +104,7 @@ Result<void> solve_at_half_size(const Patch& patch, const solver::MethodName& le
   SolvedMaps solved(half->size);
   Result<void> ok = solve_level(*half, level, threads, solved);
   maps.planes = solved.planes;
+  maps.left_out_rel = solved.left_out_rel;
   if (ok) enlarge(solved, maps);
   return ok;
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <string_view>
@@ -189,8 +190,7 @@ LevelOnCloth measured_on(const Rows& table, const std::string& level, const Clot
     sum.seconds += number(row, "ns_per_pixel") * 1e-9 * kPixels;
     sum.mean_deg += number(row, "mean_deg");
     sum.albedo_rel += number(row, "albedo_mean_rel");
-    if (row.contains("left_out_rel") && row["left_out_rel"].is_number())
-      left_out += number(row, "left_out_rel");
+    left_out += row["left_out_rel"].is_number() ? number(row, "left_out_rel") : std::nan("");
   }
   return {sum.seconds / n, sum.mean_deg / n, sum.albedo_rel / n, left_out / n};
 }
@@ -203,8 +203,10 @@ std::string levels_table(const Rows& table) {
     Cells& line = cells.emplace_back(Cells{group.name});
     for (const std::string& level : level_names()) {
       const LevelOnCloth m = measured_on(table, level, group);
-      line.push_back(fmt::format("{:.2g} s: **{:.2g}°**, {:.2g} %, {:.2g} %", m.seconds, m.mean_deg,
-                                 100 * m.albedo_rel, 100 * m.left_out_rel));
+      std::string cell =
+          fmt::format("{:.2g} s: **{:.2g}°**, {:.2g} %", m.seconds, m.mean_deg, 100 * m.albedo_rel);
+      if (std::isfinite(m.left_out_rel)) cell += fmt::format(", {:.2g} %", 100 * m.left_out_rel);
+      line.push_back(std::move(cell));
     }
   }
   return markdown_table(cells);
@@ -390,7 +392,8 @@ std::string summary_markdown(const AccuracyFigures& figures) {
   std::string text = fmt::format(
       "Seconds for a scan of 16 megapixels and ten LEDs on {}, {} threads; then the mean error of the "
       "normals, of the albedo, and of the light left out when it is predicted from the others, which needs "
-      "no truth. Reading the frames and writing the maps comes on top and is the same for all levels.\n\n",
+      "no truth (absent where reference corrected readings). Reading the frames and writing the maps comes "
+      "on top and is the same for all levels.\n\n",
       figures.processor, figures.threads);
   text += levels_table(figures.table);
   text += "![error against seconds, by level](pictures/levels.svg)\n\n";

@@ -117,7 +117,7 @@ BoundedPatches with_bounds(std::vector<Patch> patches, int threads) {
 
 Result<Json> score(const Contender& contender, const BoundedPatches& scene, int threads) {
   Errors errors;
-  double seconds = 0, pixels = 0;
+  double seconds = 0, pixels = 0, left_out = 0;
   for (std::size_t i = 0; i < scene.patches.size(); ++i) {
     const Patch& patch = scene.patches[i];
     SolvedMaps maps(patch.size());
@@ -126,8 +126,10 @@ Result<Json> score(const Contender& contender, const BoundedPatches& scene, int 
     seconds += *took;
     pixels += static_cast<double>(patch.size().pixels());
     errors.add(patch, scene.bounds[i], maps);
+    left_out += maps.left_out_rel / static_cast<double>(scene.patches.size());
   }
   Json row = errors.row(contender.name);
+  row["left_out_rel"] = left_out;
   row["ns_per_pixel"] = seconds * 1e9 / pixels;
   row["threads"] = threads;
   return row;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 
 #include "core/image.h"
 #include "core/raw_frame.h"
@@ -15,6 +16,7 @@ namespace weft::bench {
 struct SolvedMaps {
   Image<float> normal, albedo, sigma_albedo, sigma_normal_deg, residual;
   Image<std::uint16_t> status;
+  double left_out_rel = std::numeric_limits<double>::quiet_NaN();  ///< median error of left-out light
   int planes = 1;  ///< of `albedo`: 1 where each photosite was solved alone, else R, G, B
 
   explicit SolvedMaps(Size size)
