@@ -26,6 +26,7 @@ namespace weft::bench {
 namespace {
 
 namespace fs = std::filesystem;
+using simulator::EffectSettings;
 using simulator::Scene;
 
 constexpr Size kFrame = {1024, 768};
@@ -89,6 +90,34 @@ class Cloths {
     return scene;
   }
 
+  // Nine holes, a tenth of the frame wide, over a white table.
+  Scene holed(const std::string& name) const {
+    Scene scene = with(name);
+    scene.fabric = name + " with holes";
+    for (const double x : {-60.0, 0.0, 60.0}) {
+      for (const double y : {-40.0, 0.0, 40.0}) {
+        simulator::TargetSettings hole;
+        hole.pattern = simulator::GreyScaleSettings{.reflectances = {0.85}, .patch_mm = 15, .margin_mm = 0};
+        hole.centre_mm = {x, y, -2};
+        scene.targets.push_back(std::move(hole));
+      }
+    }
+    return scene;
+  }
+
+  // What a real rig has at once: a turned camera, lateral colour, a curved field, a veil, blur, drift.
+  Scene everything(const std::string& name) const {
+    Scene scene = flickering(blurred(name, 0.4));
+    scene.camera.pose.roll_deg = 90;
+    scene.camera.chromatic = {.red_px = 0.5, .blue_px = -0.4};
+    scene.camera.field.corner_px = 1;
+    scene.camera.veil.share = 0.005;
+    scene.material.translucency.share = 0.2;
+    EffectSettings& on = scene.effects;
+    on.chromatic_aberration = on.field_curvature = on.veil = on.translucency = true;
+    return scene;
+  }
+
   Scene with_weak_led(const std::string& name) const {
     constexpr std::size_t kWeak = 2;
     Scene scene = with(name);
@@ -138,7 +167,11 @@ class Chain {
     const Result<fs::path> calibration = calibrated(one);
     if (!calibration) return calibration.error();
     Scene cloth = one.scene;
-    if (!cloth.effects.led_drift) cloth.targets.clear();  // white patches that tell the drift
+    if (!cloth.effects.led_drift) {  // without white patches, which tell the drift
+      std::erase_if(cloth.targets, [](const simulator::TargetSettings& target) {
+        return kind_of(target.pattern) != simulator::TargetKind::kGreyScale;
+      });
+    }
     const fs::path session = scratch_.path() / "cloth.weft";
     const auto simulated = simulate_session(cloth, session, simulate_);
     if (!simulated) return simulated.error();
@@ -230,22 +263,22 @@ Result<std::vector<ChainCase>> chain_cases(const fs::path& rig, std::uint32_t se
   Result<Scene> scene = simulator::read_scene(rig);
   if (!scene) return std::move(scene).error();
   const Cloths cloths(std::move(*scene), seed);
-  return std::vector<ChainCase>{
-      {"smooth", cloths.with("smooth lambert")},
-      {"plain", cloths.with("plain lambert")},
-      {"plain, blur 0.4 px", cloths.blurred("plain lambert", 0.4)},
-      {"plain, blur 0.7 px", cloths.blurred("plain lambert", 0.7)},
-      {"plain, flicker and drift", cloths.flickering(cloths.with("plain lambert"))},
-      {"plain, one LED weak", cloths.with_weak_led("plain lambert")},
-      {"deep, camera turned by 10", cloths.turned("deep lambert", 10)},
-      {"deep, camera turned by 90", cloths.turned("deep lambert", 90)},
-      {"deep, camera turned by 180", cloths.turned("deep lambert", 180)},
-      {"deep, paper unknown", cloths.with("deep lambert"), false},
-      {"smooth satin", cloths.with("smooth satin")},
-      {"plain satin", cloths.with("plain satin")},
-      {"plain velvet", cloths.with("plain velvet")},
-      {"dyed twill", cloths.dyed_twill()},
-      {"plain, everything", cloths.flickering(cloths.blurred("plain cotton", 0.4))}};
+  return std::vector<ChainCase>{{"smooth", cloths.with("smooth lambert")},
+                                {"plain", cloths.with("plain lambert")},
+                                {"plain, blur 0.4 px", cloths.blurred("plain lambert", 0.4)},
+                                {"plain, blur 0.7 px", cloths.blurred("plain lambert", 0.7)},
+                                {"plain, flicker and drift", cloths.flickering(cloths.with("plain lambert"))},
+                                {"plain, one LED weak", cloths.with_weak_led("plain lambert")},
+                                {"deep, camera turned by 10", cloths.turned("deep lambert", 10)},
+                                {"deep, camera turned by 90", cloths.turned("deep lambert", 90)},
+                                {"deep, camera turned by 180", cloths.turned("deep lambert", 180)},
+                                {"deep, paper unknown", cloths.with("deep lambert"), false},
+                                {"smooth satin", cloths.with("smooth satin")},
+                                {"plain satin", cloths.with("plain satin")},
+                                {"plain velvet", cloths.with("plain velvet")},
+                                {"dyed twill", cloths.dyed_twill()},
+                                {"plain, holes", cloths.holed("plain lambert")},
+                                {"plain cotton, everything", cloths.everything("plain cotton")}};
 }
 
 Result<Rows> chain_table(const ChainOptions& options) {
