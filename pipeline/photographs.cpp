@@ -2,6 +2,7 @@
 #include "pipeline/photographs.h"
 
 #include <algorithm>
+#include <ranges>
 #include <utility>
 
 #include "core/solve_record.h"
@@ -77,6 +78,26 @@ Planes Photographs::planes() const {
 
 std::optional<NoiseModel> Photographs::noise() const {
   return std::visit([](const auto& kind) { return kind.noise_model(); }, frames);
+}
+
+Result<void> leave_out(std::span<const std::size_t> lights, Photographs& photographs) {
+  if (lights.empty()) return {};
+  std::vector<int> kept;  // from 1
+  for (std::size_t k = 0; k < photographs.count(); ++k) {
+    if (!std::ranges::binary_search(lights, k)) kept.push_back(static_cast<int>(k) + 1);
+  }
+  Result<Lights> rest = select_lights(photographs.field->lights(), kept);
+  if (!rest) return std::move(rest).error();
+  Result<LightField> field = LightField::make(std::move(*rest), photographs.camera, photographs.size,
+                                              photographs.field->cloth_height_mm());
+  if (!field) return std::move(field).error();
+  photographs.field = std::move(*field);
+  for (const std::size_t k : std::views::reverse(lights)) {
+    std::visit([&](auto& frames) { frames.erase(k); }, photographs.frames);
+    if (k < photographs.leds.size())
+      photographs.leds.erase(photographs.leds.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  return {};
 }
 
 void mark_replaced(const std::vector<Photosite>& replaced, Rect band, View<std::uint16_t> status) {

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <variant>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "core/photosites.h"
 #include "core/radiometry.h"
 #include "core/raw_frame.h"
+#include "core/result.h"
 #include "solver/registration/cloth_shift.h"
 
 namespace weft::pipeline {
@@ -99,6 +102,9 @@ struct Photographs {
   const Mosaics* mosaics() const { return std::get_if<Mosaics>(&frames); }
   Mosaics* mosaics() { return std::get_if<Mosaics>(&frames); }
 };
+
+/// Photographs and field without these lights, from 0 and in order. Errors: as LightField::make.
+Result<void> leave_out(std::span<const std::size_t> lights, Photographs& photographs);
 
 /// Marks with INVALID_READING the pixels of `band`, as high as `status`, whose counts were replaced.
 void mark_replaced(const std::vector<Photosite>& replaced, Rect band, View<std::uint16_t> status);

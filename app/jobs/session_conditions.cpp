@@ -173,9 +173,11 @@ void join_brackets(const SessionPlan& plan, LoadedSession& loaded, MoreFrames& m
 Result<void> leave_out_useless_lights(const SessionPlan& plan, LoadedSession& loaded) {
   pipeline::Photographs& photographs = loaded.photographs;
   const std::vector<UselessLight> useless = pipeline::find_useless_lights(photographs);
+  std::vector<std::size_t> lights;
   std::vector<std::string> warnings;
   std::string reasons;
   for (const UselessLight& light : useless) {
+    lights.push_back(light.light);
     const int led = photographs.leds[light.light];
     const std::string words = fmt::format("LED {} {}", led, words_of(light));
     reasons += (reasons.empty() ? "" : "; ") + words;
@@ -189,7 +191,7 @@ Result<void> leave_out_useless_lights(const SessionPlan& plan, LoadedSession& lo
                  "see to these LEDs and to the exposure, and scan the cloth again"};
   }
   loaded.warnings.insert(loaded.warnings.begin(), warnings.begin(), warnings.end());
-  return pipeline::leave_out(useless, photographs);
+  return pipeline::leave_out(lights, photographs);
 }
 
 Result<void> follow_drift(const SessionPlan& plan, const JobContext& context, LoadedSession& loaded,

@@ -78,29 +78,4 @@ std::vector<UselessLight> find_useless_lights(const Photographs& photographs) {
   return useless;
 }
 
-Result<void> leave_out(const std::vector<UselessLight>& lights, Photographs& photographs) {
-  if (lights.empty()) return {};
-  std::vector<int> kept;  // from 1
-  for (std::size_t k = 0, next = 0; k < photographs.field->count(); ++k) {
-    if (next < lights.size() && lights[next].light == k) {
-      ++next;
-    } else {
-      kept.push_back(static_cast<int>(k) + 1);
-    }
-  }
-  Result<Lights> rest = select_lights(photographs.field->lights(), kept);
-  if (!rest) return std::move(rest).error();
-  Result<LightField> field = LightField::make(std::move(*rest), photographs.camera, photographs.size,
-                                              photographs.field->cloth_height_mm());
-  if (!field) return std::move(field).error();
-  photographs.field = std::move(*field);
-  for (auto useless = lights.rbegin(); useless != lights.rend(); ++useless) {
-    const std::size_t k = useless->light;
-    std::visit([&](auto& frames) { frames.erase(k); }, photographs.frames);
-    if (k < photographs.leds.size())
-      photographs.leds.erase(photographs.leds.begin() + static_cast<std::ptrdiff_t>(k));
-  }
-  return {};
-}
-
 }  // namespace weft::pipeline

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "core/result.h"
 #include "pipeline/photographs.h"
 
 namespace weft::pipeline {
@@ -23,8 +22,5 @@ struct UselessLight {
 /// Looks at every 16th pair of rows of each photograph. Where no photograph stands five standard errors out
 /// of the dark, none is called unlit. In the order of the lights.
 std::vector<UselessLight> find_useless_lights(const Photographs& photographs);
-
-/// Photographs and field without these lights, which are in order. Errors: as LightField::make.
-Result<void> leave_out(const std::vector<UselessLight>& lights, Photographs& photographs);
 
 }  // namespace weft::pipeline

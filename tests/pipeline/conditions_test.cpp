@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <vector>
@@ -96,7 +97,7 @@ TEST(UselessLights, AreThoseThatAreFullAndThoseThatDidNotLight) {
   EXPECT_EQ(useless[1].why, UselessLight::Why::kNotLit);
 
   const Vec3 ninth = photographs.field->at(9, 1, 0, 0).direction;
-  ASSERT_TRUE(leave_out(useless, photographs));
+  ASSERT_TRUE(leave_out(std::array<std::size_t, 2>{2, 8}, photographs));
   EXPECT_EQ(photographs.count(), 8U);
   EXPECT_THAT(photographs.leds, ElementsAre(1, 2, 4, 5, 6, 7, 8, 10));
   ASSERT_EQ(photographs.field->count(), 8U);
