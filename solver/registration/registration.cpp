@@ -22,6 +22,7 @@ constexpr int kMostRounds = 15;
 constexpr double kDone_px = 0.002;
 // Signal is believed in where it adds this share to the energy of noisy gradients.
 constexpr double kLeastSignal = 0.1;
+constexpr double kSignificant_sigmas = 3;  // of a component
 
 // Where the tiles lie, in pixels from the frame's centre, and what displaces them: each shot has x, y and a
 // turn, as pixels at the frame's corner so that all parameters are of one size.
@@ -157,8 +158,29 @@ void measure_from_median(VectorXd& parameters) {
   }
 }
 
+// Displacement of a shot, root mean square of both components over the tiles.
+double rms_px(const ClothShift& shift, const Layout& layout) {
+  double square = 0;
+  for (std::size_t t = 0; t < layout.tiles(); ++t) {
+    const ClothShift::Displacement d = layout.at(shift, t);
+    square += (d.x * d.x + d.y * d.y) / 2;
+  }
+  return std::sqrt(square / static_cast<double>(layout.tiles()));
+}
+
+// Standard deviation of a component over the shots, from the middle one of them: some may have moved.
+double spread_px(const VectorXd& parameters, const Layout& layout) {
+  constexpr double kMedianOfRms = 0.8326;  // of two normal numbers of standard deviation 1: sqrt(ln 2)
+  std::vector<double> rms;
+  for (Eigen::Index k = 0; 3 * k < parameters.size(); ++k)
+    rms.push_back(rms_px(layout.shift(parameters, k), layout));
+  return rms.empty() ? 0 : lower_quantile(std::move(rms), 0.5) / kMedianOfRms;
+}
+
+// `spread_px` is what the shots' own spread adds to the error of each.
 std::vector<ShotRegistration> describe(const VectorXd& parameters, const MatrixXd& covariance,
-                                       const std::vector<TileSystem>& systems, const Layout& layout) {
+                                       const std::vector<TileSystem>& systems, const Layout& layout,
+                                       double spread_px) {
   std::vector<ShotRegistration> shots;
   const auto tiles = static_cast<double>(layout.tiles());
   double readings = 0, shadowed = 0;
@@ -170,19 +192,18 @@ std::vector<ShotRegistration> describe(const VectorXd& parameters, const MatrixX
   for (Eigen::Index k = 0; 3 * k < parameters.size(); ++k) {
     ShotRegistration s;
     s.shift = layout.shift(parameters, k);
-    double variance = model_px * model_px, square = 0, cost2 = 0, points = 0;
+    double variance = model_px * model_px + spread_px * spread_px, cost2 = 0, points = 0;
     for (std::size_t t = 0; t < layout.tiles(); ++t) {
       const MatrixXd j = layout.jacobian(t).block(2 * k, 3 * k, 2, 3);
       variance += (j * covariance.block(3 * k, 3 * k, 3, 3) * j.transpose()).trace() / 2 / tiles;
       const ClothShift::Displacement d = layout.at(s.shift, t);
-      square += (d.x * d.x + d.y * d.y) / tiles;
       const Eigen::Vector2d v(d.x, d.y);
       cost2 += std::max(0.0, v.dot(systems[t].cost[static_cast<std::size_t>(k)] * v));
       points += systems[t].points;
     }
     s.sigma_px = std::sqrt(variance);
     s.cost_deg = points > 0 ? degrees(std::sqrt(cost2 / points)) : 0;
-    s.significant = square > 2 * 9 * variance;
+    s.significant = rms_px(s.shift, layout) > kSignificant_sigmas * s.sigma_px;
     shots.push_back(s);
   }
   return shots;
@@ -221,7 +242,10 @@ Registration register_shots(std::span<const TileInput> tiles, Size frame, int th
   }
   result.found = result.found && moved_px < 10 * kDone_px && misfit <= first_misfit;
   measure_from_median(parameters);
-  result.shots = describe(parameters, centred(step.covariance), systems, layout);
+  result.explained = first_misfit > 0 ? 1 - misfit / first_misfit : 0;
+  const bool is_movement = result.explained > kExplainedByMovement;
+  result.shots = describe(parameters, centred(step.covariance), systems, layout,
+                          is_movement ? 0 : spread_px(parameters, layout));
   return result;
 }
 
