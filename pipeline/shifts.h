@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/job.h"
@@ -11,9 +12,9 @@
 namespace weft::pipeline {
 
 enum class ShiftVerdict {
-  kStill,      ///< no shift that its error does not explain, or one that costs under kLeastCost_deg
-  kCorrected,  ///< the shot is resampled
-  kFlagged,    ///< a shift that is left alone, at its cost: resampling would not help
+  kStill,    ///< no shift that its error does not explain, or one that costs under kLeastCost_deg
+  kLeftOut,  ///< the cloth lay elsewhere: the others are solved without this shot
+  kFlagged,  ///< it stays in at its cost: without the shots that moved, too few would be left
 };
 
 struct ShotShift {
@@ -24,21 +25,20 @@ struct ShotShift {
 struct SessionShifts {
   std::vector<ShotShift> shots;  ///< by light of the field
   bool found = true;             ///< solver::Registration::found
-  /// For Photographs::shifts: by light, or nothing where nothing is corrected, so that not a byte changes.
-  std::vector<solver::ClothShift> corrections;
+
+  /// The lights with the verdict, in order.
+  std::vector<std::size_t> with(ShiftVerdict verdict) const;
 };
 
-/// A shift that costs less is not worth a resampling.
+/// A shift that costs less is not worth a shot.
 inline constexpr double kLeastCost_deg = 0.1;
-/// Resampling must lower the residual of the fit by this share: it costs resolution, and a shift that is
-/// there explains what the lights alone cannot.
-inline constexpr double kLeastGain = 0.05;
+/// So many shots stay at least, and more than have moved: four readings of three unknowns can still disagree.
+inline constexpr std::size_t kLeastStillShots = 4;
 
-/// Measures how the cloth lies in each shot on the sample tiles (solver/registration/registration.h), and
-/// decides what to do: shots whose shift is significant and costs enough are corrected together, if the
-/// residual of `fast` at the photosites of the tiles is smaller once they are resampled; else they are
-/// flagged. Shifts that the photographs have already are not looked at. Memory: a few megabytes. Returns
-/// kInterrupted on request.
+/// Measures how the cloth lies in each shot on the sample tiles (solver/registration/registration.h) and
+/// judges what to do about each. A moved shot is left out, not resampled: a mosaic has sites of one colour
+/// two pixels apart, and a weave has detail finer than that, so resampling mends a fifth of what leaving out
+/// does. Memory: a few megabytes. Returns kInterrupted on request.
 Result<SessionShifts> register_shots(const Photographs& photographs, const JobContext& context);
 
 }  // namespace weft::pipeline

@@ -158,7 +158,8 @@ Result<Ladder> explain(Photographs photographs, double read, const SolveOptions&
   Stopwatch watch;
   Result<pipeline::SessionShifts> shifts = register_shots(photographs, context);
   if (!shifts) return std::move(shifts).error();
-  photographs.shifts = std::move(shifts->corrections);
+  if (Result<void> ok = leave_out(shifts->with(pipeline::ShiftVerdict::kLeftOut), photographs); !ok)
+    return std::move(ok).error();
   const double prepare = watch.lap();
   return price(photographs, read, prepare, options, context);
 }

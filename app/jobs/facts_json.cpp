@@ -11,7 +11,7 @@ namespace {
 
 const char* verdict_of(const pipeline::ShotShift& shot, bool found) {
   if (!found) return "not registered";
-  if (shot.verdict == pipeline::ShiftVerdict::kCorrected) return "corrected";
+  if (shot.verdict == pipeline::ShiftVerdict::kLeftOut) return "left out";
   return shot.verdict == pipeline::ShiftVerdict::kFlagged ? "flagged" : "still";
 }
 
@@ -97,7 +97,7 @@ Json json_of(const pipeline::SessionShifts& shifts, const std::vector<int>& leds
                     {"turn_deg", degrees(m.shift.turn)},
                     {"sigma_px", m.sigma_px},
                     {"cost_deg", m.cost_deg},
-                    {"corrected", shot.verdict == pipeline::ShiftVerdict::kCorrected},
+                    {"corrected", shot.verdict == pipeline::ShiftVerdict::kLeftOut},
                     {"verdict", verdict_of(shot, shifts.found)}});
   }
   return list;

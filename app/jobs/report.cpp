@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -341,6 +342,40 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
   return summary;
 }
 
+namespace {
+
+// Of a cloth that moved and was not put right: one verdict or none.
+std::vector<Verdict> moved_verdicts(const PhotographsSummary& photographs) {
+  const char* remedy =
+      "see that nothing touches cloth, table and camera while they are scanned, and scan again";
+  const pipeline::SessionShifts& shifts = photographs.shifts;
+  const double residual = photographs.diagnosis.residual;
+  if (!shifts.found) {
+    if (residual <= kMoved) return {};
+    return {{"CLOTH_MOVED",
+             fmt::format("The shots show the cloth in different places, too far apart to be registered, and "
+                         "readings deviate by {:.1f} percent from their fit",
+                         percent(residual)),
+             remedy}};
+  }
+  double cost_deg = 0;
+  std::vector<std::size_t> lights;
+  for (const std::size_t k : shifts.with(pipeline::ShiftVerdict::kFlagged)) {
+    if (shifts.shots[k].measured.cost_deg <= kLeastWarnedShift_deg) continue;
+    cost_deg = std::max(cost_deg, shifts.shots[k].measured.cost_deg);
+    lights.push_back(k);
+  }
+  if (lights.empty()) return {};
+  return {
+      {"CLOTH_MOVED",
+       fmt::format("The cloth moved in so many shots that none can be left out: a shift under {} turns the "
+                   "normals by up to {:.2f}°",
+                   Speaker{photographs}.name(lights), cost_deg),
+       remedy}};
+}
+
+}  // namespace
+
 std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular,
                                  const std::optional<LeftOutFacts>& check,
                                  std::optional<solver::Level> level) {
@@ -352,6 +387,7 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
       if (fault.kind == kind && matters) verdicts.push_back(say(fault));
     }
   }
+  std::ranges::move(moved_verdicts(photographs), std::back_inserter(verdicts));
   if (check && verdicts.empty()) {
     if (const std::optional<Verdict> unfit = verdict_of(*check, photographs.of_session, level))
       verdicts.push_back(*unfit);
@@ -364,6 +400,11 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
                                     percent(specular)),
                         std::string("put crossed polarisers on LEDs and lens and scan again") +
                             (robust_ran ? "" : ", or solve with --quality robust")});
+  }
+  if (photographs.shadow_reach_is_capped) {
+    verdicts.push_back({"SHADOWS_CAPPED",
+                        "The relief is so high that shadows fall farther than they are looked for",
+                        "lay the cloth flat and scan again, or solve with --quality robust"});
   }
   for (const std::string& warning : photographs.warnings) verdicts.push_back({"CONDITIONS", warning, ""});
   return verdicts;

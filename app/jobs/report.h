@@ -14,6 +14,7 @@
 #include "core/verdict.h"
 #include "pipeline/bands.h"
 #include "pipeline/photographs.h"
+#include "pipeline/shifts.h"
 #include "report/downsampler.h"
 #include "solver/diagnosis/diagnosis.h"
 
@@ -87,6 +88,8 @@ struct PhotographsSummary {
   bool noise_is_known = false;  ///< the camera's noise was calibrated
   LightCondition condition;
   std::vector<std::string> warnings;  ///< a sentence each, said when the photographs were read
+  pipeline::SessionShifts shifts;     ///< of the photographs as they were read
+  bool shadow_reach_is_capped = false;
 };
 /// `picked` are the numbers of the lights where photographs were picked from a list; else empty. `warnings`
 /// are what was said when they were read.
@@ -97,9 +100,15 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
 /// The scene is called dominated by highlights where this share of pixels has the bit SPECULAR.
 inline constexpr double kSpecularDominated = 0.2;
 
-/// Everything to be warned of, the gravest first: LEDS_EXCHANGED, LED_DEAD, LED_GAIN, LIGHTS_DO_NOT_FIT,
-/// SPECULAR_DOMINATED, CONDITIONS. `specular` is the share of pixels with that bit. `level` is the one that
-/// ran, if it was a level: no remedy names it or one below.
+/// Shots that cannot be registered are warned of where readings deviate by more than this from their fit,
+/// over the albedo: cloth that shows nothing to register by fits well.
+inline constexpr double kMoved = 0.05;
+/// What is left alone and costs more is warned of.
+inline constexpr double kLeastWarnedShift_deg = 0.2;
+
+/// Everything to be warned of, the gravest first: LEDS_EXCHANGED, LED_DEAD, LED_GAIN, CLOTH_MOVED,
+/// LIGHTS_DO_NOT_FIT, SPECULAR_DOMINATED, SHADOWS_CAPPED, CONDITIONS. `specular` is the share of pixels with
+/// that bit. `level` is the one that ran, if it was a level: no remedy names it or one below.
 std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular,
                                  const std::optional<LeftOutFacts>& check,
                                  std::optional<solver::Level> level);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -147,7 +148,8 @@ class Run {
         options_(options),
         context_(context),
         product_(product),
-        partial_(product.folder) {
+        partial_(product.folder),
+        picked_(input.picked) {
     facts_.id = product.id;
     facts_.solver_version = kSolverVersion;
     facts_.method = options.method;
@@ -178,23 +180,33 @@ class Run {
     warnings_ = std::move(loaded->warnings);
     seconds_.read = watch_.lap();
 
-    pipeline::SessionShifts shifts;
+    facts_.registration = Json::array();
     if (is_half()) {
       Result<pipeline::Photographs> half = half_size(photographs_, context_.threads);
       if (!half) return std::move(half).error();
       photographs_ = std::move(*half);
     } else if (!input_.is_registered) {
-      Result<pipeline::SessionShifts> found = register_shots(photographs_, context_);
-      if (!found) return std::move(found).error();
-      shifts = std::move(*found);
-      photographs_.shifts = shifts.corrections;
+      if (Result<void> ok = register_cloth(); !ok) return ok;
     }
-    facts_.registration = json_of(shifts, photographs_.leds);
     facts_.size = photographs_.size;
     facts_.lights = static_cast<int>(photographs_.count());
     facts_.albedo_scale = photographs_.albedo_scale;
     facts_.is_rec709 = photographs_.color.has_value();
     return {};
+  }
+
+  // Finds how the cloth lay in each shot, and leaves out those in which it lay elsewhere.
+  Result<void> register_cloth() {
+    Result<pipeline::SessionShifts> found = register_shots(photographs_, context_);
+    if (!found) return std::move(found).error();
+    shifts_ = std::move(*found);
+    facts_.registration = json_of(shifts_, photographs_.leds);
+    const std::vector<std::size_t> moved = shifts_.with(pipeline::ShiftVerdict::kLeftOut);
+    for (std::size_t k = picked_.size(); k < photographs_.count(); ++k)
+      picked_.push_back(static_cast<int>(k) + 1);
+    for (const std::size_t k : std::views::reverse(moved))
+      picked_.erase(picked_.begin() + static_cast<std::ptrdiff_t>(k));
+    return leave_out(moved, photographs_);
   }
 
   Result<void> solve_into_files() {
@@ -227,7 +239,9 @@ class Run {
       facts_.reference = json_of(*frame->reference);
       for (std::string& said : warnings_of(*frame->reference)) warnings_.push_back(std::move(said));
     }
-    summary_ = summarize_photographs(photographs_, input_.picked, warnings_, context_);
+    summary_ = summarize_photographs(photographs_, picked_, warnings_, context_);
+    summary_.shifts = std::move(shifts_);
+    summary_.shadow_reach_is_capped = frame->reference && frame->reference->shadow_reach_is_capped;
     if (frame->left_out) facts_.check = facts_of(*frame->left_out, summary_.numbers);
     seconds_.report = watch_.lap();
     photographs_ = {};  // their memory is needed for nothing more
@@ -291,6 +305,8 @@ class Run {
   PartialFolder partial_;
   Stopwatch watch_;
   pipeline::Photographs photographs_;
+  std::vector<int> picked_;  // numbers of the photographs of a list, by light
+  pipeline::SessionShifts shifts_;
   std::vector<std::string> warnings_;
   SolveFacts facts_;
   SolveSeconds seconds_;

@@ -273,6 +273,42 @@ TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
   EXPECT_THAT(bytes_of(work / "maps" / "report.html"), HasSubstr("<td>calibration<br>"));
 }
 
+// Ten shots of which the fifth has moved, at a cost.
+app::PhotographsSummary moved_summary(double cost_deg) {
+  app::PhotographsSummary summary;
+  for (int k = 1; k <= 10; ++k) summary.numbers.push_back(k);
+  summary.shifts.shots.resize(10);
+  summary.shifts.shots[4].verdict = pipeline::ShiftVerdict::kFlagged;
+  summary.shifts.shots[4].measured.cost_deg = cost_deg;
+  return summary;
+}
+
+TEST(Verdicts, WarnOfAClothThatMovedWhereItCostsADegreeAndNotWhereATenth) {
+  EXPECT_THAT(app::verdicts_of(moved_summary(0.15), 0), IsEmpty());
+  const std::vector<Verdict> verdicts = app::verdicts_of(moved_summary(1.1), 0);
+  ASSERT_EQ(verdicts.size(), 1U);
+  EXPECT_EQ(verdicts[0].name, "CLOTH_MOVED");
+  EXPECT_THAT(verdicts[0].text, testing::HasSubstr("LED 5"));
+  EXPECT_THAT(verdicts[0].remedy, testing::HasSubstr("scan again"));
+}
+
+TEST(Verdicts, WarnOfShotsThatCannotBeRegisteredWhereTheyDoNotFit) {
+  app::PhotographsSummary summary = moved_summary(0);
+  summary.shifts.found = false;
+  summary.diagnosis.residual = 0.004;
+  EXPECT_THAT(app::verdicts_of(summary, 0), IsEmpty());
+  summary.diagnosis.residual = 0.11;
+  ASSERT_EQ(app::verdicts_of(summary, 0).size(), 1U);
+  EXPECT_EQ(app::verdicts_of(summary, 0)[0].name, "CLOTH_MOVED");
+}
+
+TEST(Verdicts, WarnOfShadowsFromFartherThanTheyAreLookedFor) {
+  app::PhotographsSummary summary;
+  summary.shadow_reach_is_capped = true;
+  ASSERT_EQ(app::verdicts_of(summary, 0).size(), 1U);
+  EXPECT_EQ(app::verdicts_of(summary, 0)[0].name, "SHADOWS_CAPPED");
+}
+
 TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
   EXPECT_THAT(app::verdicts_of({}, 0.2, {}, solver::Level::kStandard), IsEmpty());
   const std::vector<Verdict> verdicts = app::verdicts_of({}, 0.21, {}, solver::Level::kStandard);
