@@ -14,7 +14,7 @@ app::Run add_registration(app::Options&) {
 }  // namespace
 
 app::Verb registration_verb() {
-  return {"registration", "Shots registered to each other: shift, error, cost and gain on three weaves",
+  return {"registration", "Shots registered to each other: what a moved one costs and gets back, and what gloss feigns",
           add_registration};
 }
 
