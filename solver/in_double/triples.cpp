@@ -3,7 +3,6 @@
 
 #include <cstdint>
 #include <map>
-#include <mutex>
 
 namespace weft::solver {
 namespace {
@@ -39,9 +38,7 @@ std::vector<Triple> drawn_triples(std::size_t n) {
 }  // namespace
 
 const std::vector<Triple>& triples_of(std::size_t n) {
-  static std::mutex mutex;
-  static std::map<std::size_t, std::vector<Triple>> made;
-  const std::lock_guard lock(mutex);
+  thread_local std::map<std::size_t, std::vector<Triple>> made;
   const auto found = made.find(n);
   if (found != made.end()) return found->second;
   const bool few = n < 3 || n * (n - 1) * (n - 2) / 6 <= kMostTriples;

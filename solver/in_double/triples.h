@@ -14,7 +14,7 @@ using Triple = std::array<std::size_t, 3>;
 inline constexpr std::size_t kMostTriples = 500;
 
 /// All triples of 0 .. n-1 in lexical order, or where those are more than kMostTriples, so many drawn from a
-/// counter-based generator: the same ones for the same n, everywhere.
+/// counter-based generator: the same ones for the same n, everywhere. Each thread keeps its own.
 const std::vector<Triple>& triples_of(std::size_t n);
 
 /// How many of n readings least trimmed squares wants to agree: eight of ten.
