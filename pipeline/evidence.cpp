@@ -51,10 +51,12 @@ solver::Evidence thinned(solver::Evidence all, std::size_t most) {
   for (std::size_t i = 0; i < most; ++i) {
     const std::size_t p = pixels * i / most;
     all.position[i] = all.position[p];
+    all.channel[i] = all.channel[p];
     std::copy_n(all.rows.begin() + static_cast<std::ptrdiff_t>(p * all.lights), all.lights,
                 all.rows.begin() + static_cast<std::ptrdiff_t>(i * all.lights));
   }
   all.position.resize(most);
+  all.channel.resize(most);
   all.rows.resize(most * all.lights);
   return all;
 }
@@ -69,6 +71,7 @@ solver::Evidence read_evidence(const Photographs& photographs) {
   const std::vector<Rect> tiles = solver::sample_tiles(photographs.size);
   // A mask may leave little of the frame.
   const int step = step_for(tiles, 8 * most);
+  const Planes planes = photographs.planes();
   TileReader reader(photographs, {.width = solver::kSampleTile, .height = solver::kSampleTile});
   for (const Rect& tile : tiles) {
     const solver::TileInput input = reader.read(tile);
@@ -84,6 +87,7 @@ solver::Evidence read_evidence(const Photographs& photographs) {
         if (usable >= 3) {
           all.position.push_back(
               {(2.0 * x + 1) / photographs.size.width - 1, (2.0 * y + 1) / photographs.size.height - 1});
+          all.channel.push_back(planes.channel_at(planes.speaker(), x, y));
         } else {
           all.rows.resize(begin);
         }

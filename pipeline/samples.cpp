@@ -6,8 +6,10 @@
 
 #include "core/parallel.h"
 #include "core/statistics.h"
+#include "pipeline/evidence.h"
 #include "pipeline/picture_axes.h"
 #include "pipeline/tile_reader.h"
+#include "solver/diagnosis/highlights.h"
 #include "solver/in_double/pixel.h"
 #include "solver/sample_tiles.h"
 
@@ -104,7 +106,11 @@ Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples, cons
     all.push_back(maps.sample());
     all.back().normal = {normal.plane(0), normal.plane(1), normal.plane(2)};
   }
-  return solver::measure_gates(all, {}, photographs.albedo_scale);
+  solver::GateLimits limits;
+  if (solver::outshining_share(read_evidence(photographs)) < solver::kLeastOutshining) {
+    limits.specular_share = 1;
+  }
+  return solver::measure_gates(all, limits, photographs.albedo_scale);
 }
 
 }  // namespace weft::pipeline

@@ -33,6 +33,8 @@ std::vector<SampleMaps> solve_samples(const Photographs& photographs, const solv
                                       int threads);
 
 /// The gates of a solve, from its samples. Where the scale of the albedo is relative, it is taken for 1.
+/// `specular` is limited where highlights outshine the cloth (solver/diagnosis/highlights.h); what else has
+/// the bit are holes, which no gate is shut for.
 Result<solver::Gates> measure_gates(const std::vector<SampleMaps>& samples, const Photographs& photographs);
 
 }  // namespace weft::pipeline

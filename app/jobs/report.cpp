@@ -14,6 +14,7 @@
 #include "core/files.h"
 #include "core/statistics.h"
 #include "pipeline/evidence.h"
+#include "solver/diagnosis/highlights.h"
 #include "solver/method.h"
 #include "solver/uncertainty/model_sigma.h"
 
@@ -330,7 +331,9 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
                                          const std::vector<std::string>& warnings,
                                          const JobContext& context) {
   PhotographsSummary summary;
-  summary.diagnosis = solver::diagnose(pipeline::read_evidence(photographs), context.threads);
+  const solver::Evidence evidence = pipeline::read_evidence(photographs);
+  summary.diagnosis = solver::diagnose(evidence, context.threads);
+  summary.outshining = solver::outshining_share(evidence);
   summary.of_session = !photographs.leds.empty();
   summary.numbers = summary.of_session ? photographs.leds : picked;
   for (std::size_t k = summary.numbers.size(); k < photographs.count(); ++k) {
@@ -392,7 +395,7 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
     if (const std::optional<Verdict> unfit = verdict_of(*check, photographs.of_session, level))
       verdicts.push_back(*unfit);
   }
-  if (specular > kSpecularDominated) {
+  if (specular > kSpecularDominated && photographs.outshining >= solver::kLeastOutshining) {
     const bool robust_ran = level && *level >= solver::Level::kRobust;
     verdicts.push_back({"SPECULAR_DOMINATED",
                         fmt::format("Highlights dominate: in {:.0f} percent of the pixels a reading is over "
@@ -433,6 +436,7 @@ Json report_document(const std::string& title, const SolveFacts& solve, const Ph
                  {"warnings", json_of(solve.warnings)},
                  {"status", std::move(shares)},
                  {"looked_at", diagnosis.pixels},
+                 {"outshining", photographs.outshining},
                  {"residual", number(diagnosis.residual)},
                  {"residual_explained", number(diagnosis.left)},
                  {"lights", std::move(lights)},

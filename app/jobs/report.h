@@ -87,6 +87,7 @@ struct PhotographsSummary {
   bool of_session = true;       ///< lights are LEDs of a rig; else photographs in a list
   bool noise_is_known = false;  ///< the camera's noise was calibrated
   LightCondition condition;
+  double outshining = 0;              ///< share of pixels, solver/diagnosis/highlights.h
   std::vector<std::string> warnings;  ///< a sentence each, said when the photographs were read
   pipeline::SessionShifts shifts;     ///< of the photographs as they were read
   bool shadow_reach_is_capped = false;
@@ -97,7 +98,8 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
                                          const std::vector<int>& picked,
                                          const std::vector<std::string>& warnings, const JobContext& context);
 
-/// The scene is called dominated by highlights where this share of pixels has the bit SPECULAR.
+/// The scene is called dominated by highlights where this share of pixels has the bit SPECULAR, if highlights
+/// outshine the cloth (solver/diagnosis/highlights.h).
 inline constexpr double kSpecularDominated = 0.2;
 
 /// Shots that cannot be registered are warned of where readings deviate by more than this from their fit,

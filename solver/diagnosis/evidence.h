@@ -25,6 +25,7 @@ struct Evidence {
   std::size_t lights = 0;
   std::vector<EvidenceRow> rows;                ///< [pixel * lights + light]
   std::vector<std::array<double, 2>> position;  ///< of each pixel: -1 to 1, left to right and top to bottom
+  std::vector<int> channel = {};                ///< of each pixel: 0 to 2, or any one where all are alike
   std::optional<NoiseModel> noise;              ///< of the readings, where it is known
 
   std::size_t pixels() const { return position.size(); }

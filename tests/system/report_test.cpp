@@ -310,8 +310,10 @@ TEST(Verdicts, WarnOfShadowsFromFartherThanTheyAreLookedFor) {
 }
 
 TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
-  EXPECT_THAT(app::verdicts_of({}, 0.2, {}, solver::Level::kStandard), IsEmpty());
-  const std::vector<Verdict> verdicts = app::verdicts_of({}, 0.21, {}, solver::Level::kStandard);
+  app::PhotographsSummary glossy;
+  glossy.outshining = 0.3;
+  EXPECT_THAT(app::verdicts_of(glossy, 0.2, {}, solver::Level::kStandard), IsEmpty());
+  const std::vector<Verdict> verdicts = app::verdicts_of(glossy, 0.21, {}, solver::Level::kStandard);
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "SPECULAR_DOMINATED");
   EXPECT_THAT(verdicts[0].text, HasSubstr("21 percent"));
