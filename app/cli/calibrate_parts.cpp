@@ -105,6 +105,11 @@ Run add_lights(Options& options) {
   options.add("--flatness", &a->flatness_deg, "Rms waviness of the sheet, degrees")
       .in_range(0.0, 2.0)
       .shows_default();
+  options
+      .add("--flicker", &a->flicker_percent,
+           "Flicker of LEDs from shot to shot, percent, where sheets do not tell")
+      .in_range(0.01, 5.0)
+      .shows_default();
   options.add_flag("--lambertian", &a->lambertian, "Take the paper to follow Lambert's law");
   options.add_flag("--accept-misfit", &a->accept_misfit,
                    "Write the calibration although readings and model contradict each other");

@@ -102,6 +102,36 @@ Result<void> five_poses(const CalibrationLightsBenchOptions& options, double del
   return {};
 }
 
+Result<void> flicker(const CalibrationLightsBenchOptions& options, double percent, Rows& rows) {
+  PaperRig rig = test::common_rig();
+  rig.delta = 0.05;
+  std::vector<double> off, sigma, normalised, found;
+  for (int seed = 1; seed <= options.seeds; ++seed) {
+    test::PaperErrors errors;
+    errors.seed = static_cast<std::uint64_t>(seed);
+    errors.flicker = percent / 100;
+    const Result<LightFit> lights = fit(test::captures_of(rig, errors), options.threads);
+    if (!lights) return lights.error();
+    if (lights->misfits()) continue;
+    found.push_back(100 * lights->flicker);
+    for (std::size_t k = 0; k < rig.lights.leds.size(); ++k) {
+      const Vec3 d = lights->scene.lights.leds[k].position_mm - rig.lights.leds[k].position_mm;
+      const Vec3 s = lights->position_sigma_mm[k];
+      off.insert(off.end(), {d.x, d.y, d.z});
+      sigma.insert(sigma.end(), {s.x, s.y, s.z});
+      normalised.insert(normalised.end(), {d.x / s.x, d.y / s.y, d.z / s.z});
+    }
+  }
+  const std::string name = fmt::format("flicker of {:g} percent", percent);
+  rows.push_back(row(name, "share of fits accepted", percent <= 0.3 ? "1" : "",
+                     static_cast<double>(found.size()) / options.seeds));
+  rows.push_back(row(name, "position, mm an axis", "", rms(off)));
+  rows.push_back(row(name, "position, predicted", "", rms(sigma)));
+  rows.push_back(row(name, "position, error over sigma", "1.5", rms(normalised)));
+  rows.push_back(row(name, "flicker found, percent", "", rms(found)));
+  return {};
+}
+
 using LightOfCell = std::function<std::optional<CellLight>(std::size_t led, std::size_t cell)>;
 
 LightOfCell light_of(const CellGrid& grid, const CameraModel& camera, const NearLights& lights) {
@@ -358,6 +388,9 @@ Result<Rows> calibration_lights_table(const CalibrationLightsBenchOptions& optio
   Rows rows;
   for (const double delta : {0.0, 0.05}) {
     if (Result<void> ok = five_poses(options, delta, rows); !ok) return std::move(ok).error();
+  }
+  for (const double percent : {0.0, 0.03, 0.1, 0.2, 0.3, 0.5}) {
+    if (Result<void> ok = flicker(options, percent, rows); !ok) return std::move(ok).error();
   }
   if (Result<void> ok = methods(options, rows); !ok) return std::move(ok).error();
   if (Result<void> ok = pose_curve(options, rows); !ok) return std::move(ok).error();

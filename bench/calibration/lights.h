@@ -22,6 +22,8 @@ struct CalibrationLightsBenchOptions {
 ///
 /// - "five poses", the paper Lambertian or not: positions, directions, iterations, chi-square, delta; and
 ///   in how many seeds the gate fires where delta is held at 0.
+/// - "flicker": LEDs that differ from shot to shot: how many seeds are accepted, the error of positions, what
+///   it is predicted to be, the error over its sigma, and the flicker that was found.
 /// - "method": what lights by the tape alone, by the seed, by the pixel and by ours make of a slope of 20
 ///   degrees at the centre, in the corners and over the frame, the gain of slopes, and the minutes they take:
 ///   two a pose at the rig (an estimate), and the fit.

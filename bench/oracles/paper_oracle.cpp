@@ -116,16 +116,18 @@ PaperCaptures captures_of(const PaperRig& rig, const PaperErrors& errors, int co
       pose.covariance[7 * i] = sigma * sigma;
     }
   }
+  Random flickering(errors.seed + 1000);
   for (std::size_t j = 0; j < rig.sheets.size(); ++j) {
     for (std::size_t k = 0; k < rig.lights.leds.size(); ++k) {
+      const double shot = 1 + errors.flicker * flickering.normal();
       for (int row = 0; row < rows; ++row) {
         for (int column = 0; column < columns; ++column) {
           calibration::PaperReading reading = {
               j,  k, (column + 0.5) * rig.width_px / columns - 0.5, (row + 0.5) * rig.height_px / rows - 0.5,
               {}, {}};
           for (std::size_t c = 0; c < 3; ++c) {
-            reading.reading_rgb[c] =
-                rig.reading(j, k, c, reading.x_px, reading.y_px) * (1 + errors.noise * random.normal());
+            reading.reading_rgb[c] = rig.reading(j, k, c, reading.x_px, reading.y_px) * shot *
+                                     (1 + errors.noise * random.normal());
             reading.relative_sigma[c] = errors.noise;
           }
           captures.readings.push_back(reading);

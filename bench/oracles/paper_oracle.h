@@ -45,6 +45,7 @@ std::vector<PaperRig::Lie> lies(int count, double tilt_deg = 20);
 /// What is told of a rig, and what is not.
 struct PaperErrors {
   double noise = 0.002;    ///< relative, of each block and channel
+  double flicker = 0;      ///< relative, of a LED's light from shot to shot
   double tape_mm = 10;     ///< LEDs are said to be so far from where they are, in a random direction
   double turn_deg = 0.05;  ///< standard deviation of the poses about each axis
   double shift_mm = 0.1;   ///< and along each

@@ -52,7 +52,7 @@ std::optional<double> PaperScene::log_reading(std::size_t sheet, std::size_t led
   const auto c = static_cast<std::size_t>(channel);
   const auto [u, v] = frame_place(camera.size, x_px, y_px);
   return term->log_value + std::log(light.flux_rgb[c] * paper.reflectance_rgb[c]) +
-         lights.log_gain(led, channel, u, v);
+         lights.log_gain(led, channel, u, v) + shot_log_gain(sheet, led);
 }
 
 }  // namespace weft::calibration

@@ -51,7 +51,12 @@ struct PaperScene {
   NearLights lights;
   Paper paper;
   std::vector<SheetPose> sheets;
+  /// [sheet][led]: log of what the LED gave in that shot over its flux; empty: nothing of the kind.
+  std::vector<std::vector<double>> shot_log_gains = {};
 
+  double shot_log_gain(std::size_t sheet, std::size_t led) const {
+    return shot_log_gains.empty() ? 0 : shot_log_gains[sheet][led];
+  }
   /// Log of the reading of a channel at a pixel; nothing where paper_term() has nothing.
   std::optional<double> log_reading(std::size_t sheet, std::size_t led, int channel, double x_px,
                                     double y_px) const;

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -20,8 +21,12 @@ constexpr std::size_t kFewestReadings = 30;
 constexpr double kGainsFrom = 3;          // times what the cost falls by where LEDs have no gains
 constexpr double kGainsFromShare = 0.05;  // of the cost
 constexpr std::size_t kPatches = 12;      // of a sheet, 4 x 3 of the frame
-constexpr double kSettled = 2e-3;         // share of the cost that the last step may change
-constexpr double kHuberFrom = 3.5;        // of the length of three residuals, which 99 percent stay below
+constexpr double kSettled = 0.3;          // sigmas that one more step may change a parameter by
+constexpr double kFlickerCounts = 0.1;    // shots that the flicker that was expected counts for
+constexpr double kToldFrom = 1e-3;        // of a shot's light: by readings, not by the prior
+constexpr int kFlickerRounds = 20;
+constexpr double kCapFlicker = 2;   // times what was expected: where LEDs have gains it runs away
+constexpr double kHuberFrom = 3.5;  // of the length of three residuals, which 99 percent stay below
 
 // All parameters, in blocks as Ceres wants them.
 struct LedParameters {
@@ -34,6 +39,7 @@ struct Parameters {
   std::array<std::vector<double>, 3> splines;
   std::array<double, 6> paper = {};           // log albedo, delta
   std::vector<std::array<double, 6>> sheets;  // turn and shift from the pose that the tags gave
+  std::vector<double> shots;                  // log gain of each, sheet by sheet
 };
 
 NearLight led_of(const LedParameters& p) {
@@ -90,17 +96,23 @@ class Fit {
   Result<void> begin();
   void add_readings();
   void add_priors();
+  void expect_flicker(double sigma);
   void solve();
   void minimise();
+  void find_flicker();
   bool leds_have_gains();
   void measure_misfit();
+  Eigen::MatrixXd inverse_of_normal_matrix() const;
+  void find_other_shot(const Eigen::MatrixXd& sigma);
   void find_covariance();
   void settle();
   Result<void> check_leds() const;
   void find_normal_matrix();
   std::size_t patch_of(const PaperReading& reading) const;
   double likeness_of_neighbours(const Eigen::MatrixXd& sigma);
+  double& shot(std::size_t sheet, std::size_t led) { return p_.shots[sheet * p_.leds.size() + led]; }
   std::vector<double*> blocks();
+  std::vector<double*> shot_blocks();
   static ceres::Problem::Options shared_loss() {
     ceres::Problem::Options options;
     options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -115,6 +127,7 @@ class Fit {
   ceres::LossFunctionWrapper loss_{nullptr, ceres::TAKE_OWNERSHIP};
   ceres::Problem problem_{shared_loss()};
   std::vector<ceres::ResidualBlockId> reading_blocks_, prior_blocks_;
+  ceres::ResidualBlockId flicker_prior_ = nullptr;
   Eigen::MatrixXd normal_;  // lower half
   Eigen::VectorXd gradient_;
   std::vector<Eigen::VectorXd> pull_;  // share of the gradient, by patch
@@ -179,6 +192,7 @@ Result<void> Fit::begin() {
   for (std::size_t k = 0; k < count.size(); ++k) {
     for (double& flux : p_.leds[k].log_flux) flux /= count[k];
   }
+  p_.shots.resize(p_.sheets.size() * p_.leds.size());
   p_.paper[5] = options_.lambertian ? 0 : start_.paper.delta;
   return {};
 }
@@ -191,7 +205,8 @@ void Fit::add_readings() {
         new ReadingCost(start_, r, sigmas_[i], options_), &loss_,
         std::vector<double*>{led.position_mm.data(), led.aim.data(), &led.mu, led.log_flux.data(),
                              led.quadratic.data(), p_.splines[0].data(), p_.splines[1].data(),
-                             p_.splines[2].data(), p_.paper.data(), p_.sheets[r.sheet].data()}));
+                             p_.splines[2].data(), p_.paper.data(), p_.sheets[r.sheet].data(),
+                             &shot(r.sheet, r.led)}));
   }
   for (LedParameters& led : p_.leds) {
     problem_.SetManifold(led.aim.data(), new ceres::SphereManifold<3>());
@@ -241,6 +256,22 @@ void Fit::add_priors() {
   for (std::size_t j = 0; j < p_.sheets.size(); ++j) {
     add(new LinearPrior(whitening(start_.sheets[j]), Eigen::VectorXd::Zero(6), {6}), {p_.sheets[j].data()});
   }
+  expect_flicker(options_.flicker);
+}
+
+void Fit::expect_flicker(double sigma) {
+  if (flicker_prior_ != nullptr) {
+    problem_.RemoveResidualBlock(flicker_prior_);
+    std::erase(prior_blocks_, flicker_prior_);
+  }
+  const std::vector<double*> shots = shot_blocks();
+  const auto n = static_cast<Eigen::Index>(shots.size());
+  flicker_prior_ =
+      problem_.AddResidualBlock(new LinearPrior(RowMatrix::Identity(n, n) / sigma, Eigen::VectorXd::Zero(n),
+                                                std::vector<int>(shots.size(), 1)),
+                                nullptr, shots);
+  prior_blocks_.push_back(flicker_prior_);
+  fit_.flicker = sigma;
 }
 
 // From a tape ten millimetres wrong every reading looks like an outlier: plain squares lead near, Huber's
@@ -257,13 +288,43 @@ void Fit::solve() {
   minimise();
   loss_.Reset(new ceres::HuberLoss(kHuberFrom), ceres::TAKE_OWNERSHIP);
   minimise();
+  find_flicker();
+  minimise();
   hold_gains(false);
   fit_.leds_have_gains = leds_have_gains();
   if (fit_.leds_have_gains) {
     minimise();
+    find_flicker();  // of which gains had been a part
+    minimise();
   } else {
     hold_gains(true);
   }
+}
+
+// The flicker under which the shots' gains are as large as they were found, each counted by how far readings
+// rather than the prior tell it (the evidence's maximum, MacKay 1992). Nothing but the prior's width changes,
+// so all is linear; where no reading tells a gain, what was expected stays.
+void Fit::find_flicker() {
+  find_normal_matrix();
+  const Eigen::MatrixXd sigma = inverse_of_normal_matrix();
+  const Eigen::VectorXd step = -sigma * gradient_;
+  const std::vector<double*> shots = shot_blocks();
+  const auto n = static_cast<Eigen::Index>(shots.size());
+  const Eigen::Index first = begin_[shots.front()];
+  Eigen::VectorXd gains = step.segment(first, n);
+  for (Eigen::Index i = 0; i < n; ++i) gains[i] += *shots[static_cast<std::size_t>(i)];
+  const double expected = std::pow(options_.flicker, 2), was = std::pow(fit_.flicker, 2);
+  const Eigen::MatrixXd known = sigma.block(first, first, n, n).inverse();
+  const Eigen::MatrixXd by_readings = known - Eigen::MatrixXd::Identity(n, n) / was;
+  const Eigen::VectorXd pull = known * gains;
+  double variance = was;
+  for (int i = 0; i < kFlickerRounds; ++i) {
+    const Eigen::MatrixXd covariance = (by_readings + Eigen::MatrixXd::Identity(n, n) / variance).inverse();
+    const double told = static_cast<double>(n) - covariance.trace() / variance;
+    variance = (kFlickerCounts * expected + (covariance * pull).squaredNorm()) / (kFlickerCounts + told);
+  }
+  fit_.flickers_too_much = variance > std::pow(kMostFlicker, 2) * expected;
+  expect_flicker(std::sqrt(std::min(variance, kCapFlicker * kCapFlicker * expected)));
 }
 
 void Fit::minimise() {
@@ -278,10 +339,7 @@ void Fit::minimise() {
   ceres::Solver::Summary summary;
   ceres::Solve(how, &problem_, &summary);
   fit_.iterations += static_cast<int>(summary.iterations.size()) - 1;
-  // Where paper is wavy its residuals bend the valley, and the last steps along it are many and change
-  // nothing.
-  fit_.settled = summary.IsSolutionUsable() &&
-                 std::abs(summary.iterations.back().cost_change) <= kSettled * summary.final_cost;
+  fit_.settled = summary.IsSolutionUsable();
 }
 
 // By the score test: whether freeing all gains would lower the cost by far more than so many idle parameters
@@ -332,7 +390,17 @@ std::vector<double*> Fit::blocks() {
   all.push_back(p_.paper.data());
   for (auto& sheet : p_.sheets) all.push_back(sheet.data());
   std::erase_if(all, [&](const double* block) { return !problem_.HasParameterBlock(block); });
+  const std::vector<double*> shots = shot_blocks();
+  all.insert(all.end(), shots.begin(), shots.end());
   return all;
+}
+
+std::vector<double*> Fit::shot_blocks() {
+  std::vector<double*> shots;
+  for (double& shot : p_.shots) {
+    if (problem_.HasParameterBlock(&shot)) shots.push_back(&shot);
+  }
+  return shots;
 }
 
 // Of all that is free, each block in the tangent of its manifold, and where each block begins in it.
@@ -396,16 +464,51 @@ double Fit::likeness_of_neighbours(const Eigen::MatrixXd& sigma) {
   return sum / count;
 }
 
-void Fit::find_covariance() {
-  find_normal_matrix();
+Eigen::MatrixXd Fit::inverse_of_normal_matrix() const {
   const Eigen::Index size = normal_.rows();
   const Eigen::VectorXd scale = normal_.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
   const Eigen::MatrixXd scaled = scale.asDiagonal() * normal_ * scale.asDiagonal();
-  Eigen::MatrixXd sigma =
+  const Eigen::MatrixXd inverse =
       scaled.selfadjointView<Eigen::Lower>().ldlt().solve(Eigen::MatrixXd::Identity(size, size));
-  sigma = (scale.asDiagonal() * sigma * scale.asDiagonal()).eval();
+  return scale.asDiagonal() * (0.5 * (inverse + inverse.transpose())) * scale.asDiagonal();
+}
+
+// Each shot against what all others say of it. Where readings tell a share `told` of a gain and the prior the
+// rest, readings alone say 1 / told times what was found, and gains of mere flicker scatter by the root of
+// told. Sigmas are of Student's residual, which has no part in the flicker that it is held against.
+void Fit::find_other_shot(const Eigen::MatrixXd& sigma) {
+  const double variance = fit_.flicker * fit_.flicker;
+  const auto told_of = [&](double* shot) {
+    const Eigen::Index at = begin_.at(shot);
+    return 1 - sigma(at, at) / variance;
+  };
+  double freedom = 0;
+  for (double* shot : shot_blocks()) freedom += told_of(shot);
+  double worst = kOtherShotFrom_sigmas;
+  for (std::size_t j = 0; j < p_.sheets.size(); ++j) {
+    for (std::size_t k = 0; k < p_.leds.size(); ++k) {
+      double* gain = &shot(j, k);
+      const double told = begin_.contains(gain) ? told_of(gain) : 0;
+      if (!(told > kToldFrom && freedom > 1)) continue;
+      const double square = *gain * *gain / (told * variance);
+      const double sigmas = square < freedom ? std::sqrt(square * (freedom - 1) / (freedom - square))
+                                             : std::numeric_limits<double>::infinity();
+      if (sigmas <= worst || std::abs(*gain / told) <= kOtherShotFrom * options_.flicker) continue;
+      worst = sigmas;
+      fit_.other_shot = {j, k, *gain / told};
+    }
+  }
+}
+
+void Fit::find_covariance() {
+  find_normal_matrix();
+  Eigen::MatrixXd sigma = inverse_of_normal_matrix();
+  const Eigen::Index size = sigma.rows();
+  find_other_shot(sigma);
   fit_.inflation = std::max({1.0, fit_.chi_square, likeness_of_neighbours(sigma)});
   sigma *= fit_.inflation;
+  // Newton's decrement bounds what a step changes, in sigmas of whatever parameter.
+  fit_.settled = fit_.settled && gradient_.dot(sigma * gradient_) <= std::pow(kSettled * fit_.inflation, 2);
 
   std::vector<Named> named;
   const auto name = [&](std::string text, const double* block, Eigen::VectorXd of_block) {
@@ -462,6 +565,10 @@ void Fit::settle() {
   fit_.scene.paper.delta = p_.paper[5];
   for (std::size_t j = 0; j < p_.sheets.size(); ++j)
     fit_.scene.sheets[j].rig_from_sheet = pose_of(start_.sheets[j].rig_from_sheet, p_.sheets[j].data());
+  fit_.scene.shot_log_gains.resize(p_.sheets.size());
+  for (std::size_t j = 0; j < p_.sheets.size(); ++j) {
+    for (std::size_t k = 0; k < p_.leds.size(); ++k) fit_.scene.shot_log_gains[j].push_back(shot(j, k));
+  }
 }
 
 // Of readings that contradict each other, where LEDs come to lie says nothing.

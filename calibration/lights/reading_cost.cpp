@@ -98,7 +98,7 @@ ReadingCost::ReadingCost(const PaperScene& start, const PaperReading& reading,
     weight_[c] = 1 / sigma[c];
   }
   const auto n = static_cast<int>(basis_.size());
-  *mutable_parameter_block_sizes() = {3, 3, 1, 3, static_cast<int>(kOwnGains), n, n, n, 6, 6};
+  *mutable_parameter_block_sizes() = {3, 3, 1, 3, static_cast<int>(kOwnGains), n, n, n, 6, 6, 1};
   set_num_residuals(3);
 }
 
@@ -115,7 +115,7 @@ bool ReadingCost::Evaluate(double const* const* p, double* residuals, double** j
   const double own = std::inner_product(quadratic_.begin(), quadratic_.end(), p[4], 0.0);
   for (std::size_t c = 0; c < 3; ++c) {
     const double gain = std::inner_product(basis_.begin(), basis_.end(), p[5 + c], own);
-    residuals[c] = weight_[c] * (term->log_value + p[3][c] + gain - target_[c]);
+    residuals[c] = weight_[c] * (term->log_value + p[3][c] + gain + p[10][0] - target_[c]);
   }
   if (jacobians != nullptr) differentiate(*term, p[9], jacobians);
   return true;
@@ -137,6 +137,7 @@ void ReadingCost::differentiate(const PaperTerm& term, const double* sheet, doub
   fill(8, std::array{q[0], q[1], q[2], q[3], q[4], term.by_delta});
   const Vec3 m = term.by_centre;
   fill(9, std::array{by_turn.x, by_turn.y, by_turn.z, m.x, m.y, m.z});
+  fill(10, std::array{1.0});
   if (jacobians[3] != nullptr) {
     std::fill_n(jacobians[3], 9, 0.0);
     for (std::size_t c = 0; c < 3; ++c) jacobians[3][4 * c] = weight_[c];

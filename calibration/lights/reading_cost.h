@@ -45,7 +45,7 @@ std::vector<double> mean_basis(const LightFitOptions& options);
 RowMatrix third_differences(const LightFitOptions& options);
 
 /// Residuals of the three channels of one reading. Blocks: position, aim, mu, log flux, own gains, the
-/// splines of R, G and B, paper (log albedo and delta), sheet (pose_of()).
+/// splines of R, G and B, paper (log albedo and delta), sheet (pose_of()), log gain of the shot.
 class ReadingCost : public ceres::CostFunction {
  public:
   ReadingCost(const PaperScene& start, const PaperReading& reading, const std::array<double, 3>& sigma,

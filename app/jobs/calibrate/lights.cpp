@@ -96,6 +96,11 @@ Result<void> LightsJob::prepare() {
     return bad(ErrorKind::kUsage, "option out of range", "flatness",
                fmt::format("{} degrees is not 0 to 2", options_.flatness_deg), "say how flat the sheet lies");
   }
+  if (!(options_.flicker_percent >= 0.01 && options_.flicker_percent <= 5)) {
+    return bad(ErrorKind::kUsage, "option out of range", "flicker",
+               fmt::format("{} percent is not 0.01 to 5", options_.flicker_percent),
+               "say how much LEDs flicker from shot to shot");
+  }
   if (Result<void> ok = check_new(options_.output); !ok) return ok;
   Result<Calibration> from = read_calibration(options_.from);
   if (!from) return std::move(from).error();
@@ -167,6 +172,7 @@ calibration::LightFitOptions LightsJob::fit_options() const {
   how.lambertian = options_.lambertian;
   how.unevenness = kUnevenness;
   how.flatness_deg = options_.flatness_deg;
+  how.flicker = options_.flicker_percent / 100;
   how.threads = resolved_threads(context_.threads);
   return how;
 }
@@ -243,11 +249,20 @@ Result<void> LightsJob::leave_out_faults(bool& any) {
 Result<void> LightsJob::judge() {
   const calibration::LightFit& fit = *evidence_.fit;
   if (fit.misfits()) {
-    const std::string why = fmt::format(
+    std::string why = fmt::format(
         "chi-square is {:.2f} for each of {:.0f} degrees of freedom, at most {:.1f} is consistent{}; the "
         "most: {}",
         fit.chi_square, fit.degrees_of_freedom, calibration::kMisfitFrom,
         fit.settled ? "" : ", and the fit did not settle", worst_of(evidence_));
+    if (fit.flickers_too_much) {
+      why += fmt::format("; LEDs differ from shot to shot by more than {:.2g} times --flicker",
+                         calibration::kMostFlicker);
+    }
+    if (fit.other_shot) {
+      why += fmt::format("; LED {} gave {:.3g} times the light in {} that it gave in the others",
+                         fit.other_shot->led + 1, std::exp(fit.other_shot->log_gain),
+                         evidence_.captures[fit.other_shot->sheet]);
+    }
     if (!options_.accept_misfit) {
       return bad(
           ErrorKind::kBadData, "the photographs of the sheet contradict each other", options_.input.string(),

@@ -21,10 +21,11 @@ struct CalibrateLightsOptions {
   std::filesystem::path from;    ///< the calibration to change: camera and response are needed
   std::filesystem::path output;  ///< the new one; must not be there
   LightsMethod method = LightsMethod::kPhysical;
-  double tape_sigma_mm = 10;   ///< how well positions were measured, along each axis: 0.1 to 1000
-  double flatness_deg = 0.05;  ///< of the sheet's slow waves, rms: 0 to 2
-  bool lambertian = false;     ///< takes the paper to follow Lambert's law
-  bool accept_misfit = false;  ///< writes the calibration although readings and model contradict each other
+  double tape_sigma_mm = 10;     ///< how well positions were measured, along each axis: 0.1 to 1000
+  double flatness_deg = 0.05;    ///< of the sheet's slow waves, rms: 0 to 2
+  double flicker_percent = 0.3;  ///< of LEDs from shot to shot, where the sheets do not tell: 0.01 to 5
+  bool lambertian = false;       ///< takes the paper to follow Lambert's law
+  bool accept_misfit = false;    ///< writes the calibration although readings and model contradict each other
 };
 
 /// Measures the lights of a rig from sessions of a sheet of white paper in several poses, which its tags tell
@@ -35,8 +36,8 @@ struct CalibrateLightsOptions {
 ///
 /// Stains and folds of the paper are found, named and left out. Nothing is written unless all went well.
 /// Errors beside those of reading: kUsage without `from` or with an option out of its range; kBadData for
-/// paper of which more than a twentieth is faulty, and for a misfit (chi-square, calibration::kMisfitFrom)
-/// that is not accepted. A calibration from one sheet is written with a warning and its predicted error.
+/// paper of which more than a twentieth is faulty, and for a misfit (LightFit::misfits()) that is not
+/// accepted. A calibration from one sheet is written with a warning and its predicted error.
 Result<CalibrateOutcome> calibrate_lights(const CalibrateLightsOptions& options, const JobContext& context);
 
 }  // namespace weft::app

@@ -75,7 +75,9 @@ report::Section led_section(const LightsEvidence& e) {
                    fit.chi_square, fit.degrees_of_freedom, fit.iterations, calibration::kMisfitFrom),
        fit.leds_have_gains
            ? "The readings ask for a smooth gain of each LED's own: its light is not quite that of the model."
-           : "No LED needs a gain of its own: the model of its light is enough."},
+           : "No LED needs a gain of its own: the model of its light is enough.",
+       fmt::format("From shot to shot LEDs flicker by {:.2f} percent, which is in all sigmas.",
+                   100 * fit.flicker)},
       table,
       {}};
   if (const std::string lax = lax_gate(e); !lax.empty())
@@ -216,6 +218,7 @@ Json numbers_of(const LightsEvidence& e) {
     numbers["degrees_of_freedom"] = fit.degrees_of_freedom;
     numbers["iterations"] = fit.iterations;
     numbers["leds_have_gains"] = fit.leds_have_gains;
+    numbers["flicker"] = fit.flicker;
     numbers["worst_position_sigma_mm"] = fit.worst_position_sigma_mm();
     numbers["delta"] = fit.scene.paper.delta;
     numbers["delta_sigma"] = fit.delta_sigma;

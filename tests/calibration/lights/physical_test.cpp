@@ -50,6 +50,7 @@ TEST(PhysicalLights, AreFoundFromFivePosesAndATapeTenMillimetresWrong) {
   EXPECT_GT(fit.chi_square, 0.9);
   EXPECT_LT(fit.chi_square, 1.1);
   EXPECT_FALSE(fit.is_weak()) << fit.worst_position_sigma_mm();
+  EXPECT_LT(fit.flicker, 0.0005) << "there is none";
 }
 
 TEST(PhysicalLights, AreFoundOnPaperThatIsNotLambertian) {
@@ -87,6 +88,47 @@ TEST(PhysicalLights, ErrBySoMuchAsTheirCovarianceSays) {
   }
   EXPECT_GT(normalised / count, 0.5);
   EXPECT_LT(normalised / count, 1.5);
+}
+
+TEST(PhysicalLights, BearFlickerAndErrBySoMuchAsTheySay) {
+  const PaperRig rig = test::common_rig();
+  double normalised = 0, count = 0;
+  for (const std::uint64_t seed : {1u, 2u, 3u}) {
+    PaperErrors errors;
+    errors.seed = seed;
+    errors.flicker = 0.003;
+    const LightFit fit = fitted(small_captures(rig, errors));
+    EXPECT_FALSE(fit.misfits()) << "chi-square " << fit.chi_square << ", settled " << fit.settled << ", seed "
+                                << seed;
+    EXPECT_FALSE(fit.leds_have_gains) << "flicker is no gain, seed " << seed;
+    EXPECT_NEAR(fit.flicker, 0.003, 0.001) << "seed " << seed;
+    for (std::size_t k = 0; k < rig.lights.leds.size(); ++k) {
+      const Vec3 off = fit.scene.lights.leds[k].position_mm - rig.lights.leds[k].position_mm;
+      const Vec3 sigma = fit.position_sigma_mm[k];
+      normalised +=
+          std::pow(off.x / sigma.x, 2) + std::pow(off.y / sigma.y, 2) + std::pow(off.z / sigma.z, 2);
+      count += 3;
+    }
+  }
+  EXPECT_LT(std::sqrt(normalised / count), 1.5);
+  EXPECT_GT(std::sqrt(normalised / count), 0.7);
+}
+
+TEST(PhysicalLights, AreRefusedWhereALedWasAnotherInOneShot) {
+  for (const double flicker : {0.0, 0.003}) {
+    PaperErrors errors;
+    errors.flicker = flicker;
+    PaperCaptures captures = small_captures(test::common_rig(), errors);
+    for (PaperReading& reading : captures.readings) {
+      for (double& value : reading.reading_rgb) value *= reading.sheet == 2 && reading.led == 3 ? 1.03 : 1;
+    }
+    const LightFit fit = fitted(captures);
+    EXPECT_TRUE(fit.misfits()) << "flicker " << flicker;
+    ASSERT_TRUE(fit.other_shot) << "flicker " << flicker;
+    EXPECT_EQ(fit.other_shot->sheet, 2u);
+    EXPECT_EQ(fit.other_shot->led, 3u);
+    EXPECT_NEAR(fit.other_shot->log_gain, 0.03, 0.01) << "flicker " << flicker;
+  }
 }
 
 TEST(PhysicalLights, HaveTheSameCovarianceWhereverMemoryLies) {
