@@ -51,7 +51,8 @@ struct CapturesReport {
 ///
 /// The paper is that of the scene's first target of kind paper (a white patch); tags and patches of the scene
 /// stay on the table in every photograph, and where it has no tag there is one in each corner of the frame.
-/// The scene's cloth is taken away. Errors: as simulate_session(); kUsage for an unknown part, for a part
+/// The scene's cloth is taken away; its LEDs flicker and fade in every capture as they do in scans, where it
+/// has the effect led_drift. Errors: as simulate_session(); kUsage for an unknown part, for a part
 /// that the scene lacks something for.
 Result<CapturesReport> simulate_captures(const Scene& rig, const std::filesystem::path& folder,
                                          const CapturesOptions& options);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simulator/captures.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -155,6 +156,35 @@ TEST(Captures, OfTheLightsAreFiveSheetsThatHoldTheStartingCalibration) {
   ASSERT_TRUE(rig->lights);
   ASSERT_EQ(rig->lights->leds.size(), 4U);
   EXPECT_NEAR(length(rig->lights->leds[0].position_mm - leds[0].position_mm), 0, 0.1);
+}
+
+TEST(Captures, FlickerAndFadeAsTheSceneSays) {
+  const fs::path folder = absent_folder();
+  Scene scene = small_rig();
+  taken(scene, folder / "steady", {"lights"});
+  scene.effects.led_drift = true;
+  scene.lights.drift = 0.1;
+  scene.lights.flicker = 0.02;
+  taken(scene, folder / "real", {"lights"});
+  const auto light_of = [&](const char* rig, int sheet, int led) {
+    const fs::path session = folder / rig / "lights" / fmt::format("sheet{:02}.weft", sheet);
+    const RawFrame frame =
+        decoded(session / read_session(session)->lit()[static_cast<std::size_t>(led)]->file);
+    double sum = 0;
+    for (int y = 24; y < 40; ++y) {
+      for (int x = 36; x < 60; ++x) sum += frame.counts(x, y) - 600.0;
+    }
+    return sum;
+  };
+  double last_over_first = 0, scatter = 0;
+  for (int sheet = 1; sheet <= 5; ++sheet) {
+    const auto gain = [&](int led) { return light_of("real", sheet, led) / light_of("steady", sheet, led); };
+    last_over_first += gain(3) / gain(0) / 5;
+    scatter += std::pow(gain(0) - 1, 2) / 5;
+  }
+  EXPECT_NEAR(last_over_first, 0.9, 0.03) << "4 LEDs, 2 percent of flicker";
+  EXPECT_GT(std::sqrt(scatter), 0.007) << "LED 1 of every session";
+  EXPECT_LT(std::sqrt(scatter), 0.04);
 }
 
 TEST(Captures, ForChecksEndWithARepeat) {

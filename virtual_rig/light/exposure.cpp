@@ -198,15 +198,16 @@ GatheredLight gathered_light(const LightFrames& frames, const std::vector<double
   const bool is_nominal = exposure.exposure_us == frames.rig().exposure_us;
   const double exposure_s =
       exposure.exposure_us * 1e-6 * (is_nominal ? 1 : 1 + scene.camera.retakes.shutter_error);
+  const double flicker = std::hypot(faults.flicker, scene.effects.led_drift ? scene.lights.flicker : 0);
   GatheredLight light;
   light.leds_s = with_faults(faults, pin_shares);
   for (std::size_t k = 0; k < light.leds_s.size(); ++k) {
     light.leds_s[k] *= exposure_s;
-    if (faults.flicker == 0) continue;
+    if (flicker == 0) continue;
     const auto led = static_cast<std::uint32_t>(k);
     const simulator::NormalPair normal = simulator::normal_pair(
         simulator::philox({exposure.image_number, led, simulator::kFlickerStream, 1}, random_key(scene)));
-    light.leds_s[k] *= std::max(1 + faults.flicker * normal.first, 0.0);
+    light.leds_s[k] *= std::max(1 + flicker * normal.first, 0.0);
   }
   light.ambient_s = exposure_s * ((scene.effects.ambient ? scene.lights.ambient : 0) + faults.ambient);
   light.dark_s = exposure_s;

@@ -260,7 +260,7 @@ std::vector<std::string> LightFrames::left_out() const {
   std::vector<std::string> left_out;
   const Scene& s = plan_.scene;
   if (s.effects.movement) left_out.emplace_back("movement: the cloth lies still between exposures");
-  if (s.effects.led_drift) left_out.emplace_back("led_drift: LEDs stay as bright as they are");
+  if (s.effects.led_drift) left_out.emplace_back("led_drift: LEDs flicker and do not fade");
   if (!s.damage.empty()) left_out.emplace_back("damage: frames are whole");
   if (s.frames == simulator::FrameFormat::kExr)
     left_out.emplace_back("frames = \"exr\": a camera delivers raw files");

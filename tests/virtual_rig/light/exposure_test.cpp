@@ -272,6 +272,21 @@ TEST(Exposure, ShowsFaultsOfLight) {
   EXPECT_EQ(one, gathered(frames, {0, 0, 1}, flicker, 1).leds_s[2]);
 }
 
+TEST(Exposure, FlickersAsItsSceneSays) {
+  Scene scene = small_scene();
+  scene.effects.led_drift = true;
+  scene.lights.flicker = 0.003;
+  const LightFrames frames = opened(scene);
+  const double steady = gathered(opened(small_scene()), {0, 0, 1}, {}, 1).leds_s[2];
+  double sum = 0, squares = 0;
+  for (std::uint32_t image = 1; image <= 400; ++image) {
+    const double off = gathered(frames, {0, 0, 1}, {}, image).leds_s[2] / steady - 1;
+    sum += off, squares += off * off;
+  }
+  EXPECT_NEAR(sum / 400, 0, 3 * 0.003 / 20);
+  EXPECT_NEAR(std::sqrt(squares / 400), 0.003, 0.0004);
+}
+
 /// The tags of the EXIF directory by number: type and raw bytes.
 std::map<int, std::string> exif_tags(const std::vector<std::uint8_t>& bytes) {
   const auto tiff = capture::Tiff::read([&bytes](std::uint64_t offset, std::span<std::uint8_t> out) {
