@@ -285,7 +285,10 @@ TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   EXPECT_LT(outcome->report.numbers["mean_held_out"].get<double>(), 1.5);
   EXPECT_NEAR(outcome->report.numbers["chart_over_albedo"].get<double>(), 1, 0.03);
 
-  const auto before = solve(session, {}, work / "before"),
+  Calibration without_color = outcome->calibration;
+  without_color.color.reset();
+  ASSERT_TRUE(write_calibration(work / "camera", without_color));
+  const auto before = solve(session, work / "camera", work / "before"),
              after = solve(session, work / "new", work / "after");
   ASSERT_TRUE(before && after);
   EXPECT_FALSE(before->facts.is_rec709);
@@ -318,6 +321,46 @@ TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   EXPECT_LT(off_after, 0.6 * off_before);
 
   expect_sigma(transform, *camera, *plain, *sigma);
+}
+
+TEST(CalibrateColor, TakesWhiteAndScaleFromTheChartWhereNobodyMeasuredThem) {
+  const Workspace work;
+  fs::create_directories(work / "color");
+  simulate_chart(work / "color");
+  const fs::path session = work / "color" / "chart.weft";
+  const Calibration exact = *read_calibration(session / "calibration");
+  Calibration tinted = exact;
+  tinted.subject.albedo_scale = AlbedoScale::kRelative;
+  for (NearLight& led : std::get<NearLights>(*tinted.lights).leds) {
+    for (double& flux : led.flux_rgb) flux *= 0.7;
+    led.flux_rgb[0] *= 1.05;
+  }
+  tinted.patches = {{{{10, 10}, {30, 10}, {30, 30}}, {0.8, 0.8, 0.8}}};
+  ASSERT_TRUE(write_calibration(work / "tinted", tinted));
+  CalibrateColorOptions options = options_of(work);
+  options.from = work / "tinted";
+  options.corners_px.reset();
+  const auto outcome = calibrate_color(options, {});
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  const Calibration& now = outcome->calibration;
+  EXPECT_EQ(now.subject.albedo_scale, AlbedoScale::kAbsolute);
+  const auto& flux = std::get<NearLights>(*now.lights).leds[1].flux_rgb;
+  const auto& truth = std::get<NearLights>(*exact.lights).leds[1].flux_rgb;
+  EXPECT_NEAR(flux[1] / truth[1], 1, 0.03) << "the scale";
+  EXPECT_NEAR(flux[0] / flux[1] / (truth[0] / truth[1]), 1, 0.01) << "red over green";
+  EXPECT_NEAR(flux[2] / flux[1] / (truth[2] / truth[1]), 1, 0.01) << "blue over green";
+  ASSERT_THAT(now.patches, SizeIs(1));
+  EXPECT_NEAR(now.patches[0].reflectance_rgb[1] * flux[1],
+              0.8 * std::get<NearLights>(*tinted.lights).leds[1].flux_rgb[1], 1e-6 * flux[1])
+      << "a patch sends back what it did";
+
+  options.from = session / "calibration";
+  options.output = work / "absolute";
+  const auto absolute = calibrate_color(options, {});
+  ASSERT_TRUE(absolute) << absolute.error().message();
+  EXPECT_NEAR(std::get<NearLights>(*absolute->calibration.lights).leds[1].flux_rgb[1], truth[1],
+              1e-6 * truth[1])
+      << "a reflectance that was measured is kept";
 }
 
 }  // namespace

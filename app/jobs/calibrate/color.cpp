@@ -38,6 +38,7 @@ constexpr int kFirstGrey = 19, kLastGrey = 22;  // neutral 8 to neutral 3.5
 struct FlatChart {
   std::array<Rgb, calibration::kChartPatches> camera = {};
   std::array<bool, calibration::kChartPatches> is_good = {};
+  std::array<double, 3> gain = {1, 1, 1};  // of the greys, over green: taken out of `camera`
   double scale = 1;
   double slope_of_light = 0;
 };
@@ -65,7 +66,6 @@ class ChartReader {
     if (!patches) return std::move(patches).error();
     FlatChart chart;
     if (Result<void> ok = choose(picture, *patches, chart); !ok) return std::move(ok).error();
-    if (picture.is_albedo) check_white(chart);
     if (!picture.is_albedo && chart.camera[kWhite][1] < kDark) {
       note("CHART_DARK",
            fmt::format("{}: the white patch is at {:.1f} percent of full scale", picture.source.string(),
@@ -73,6 +73,7 @@ class ChartReader {
            kExposeWhite);
     }
     balance(chart);
+    if (picture.is_albedo) check_white(chart);
     if (Result<void> ok = take_light_out(picture, chart); !ok) return std::move(ok).error();
     return chart;
   }
@@ -185,21 +186,22 @@ class ChartReader {
   }
 
   void balance(FlatChart& chart) const {
-    const std::array<double, 3> gain = gain_of_greys(chart);
+    chart.gain = gain_of_greys(chart);
     for (Rgb& rgb : chart.camera) {
-      for (std::size_t c = 0; c < 3; ++c) rgb[c] /= gain[c];
+      for (std::size_t c = 0; c < 3; ++c) rgb[c] /= chart.gain[c];
     }
   }
 
   void check_white(const FlatChart& chart) {
-    const std::array<double, 3> gain = gain_of_greys(chart);
+    const std::array<double, 3>& gain = chart.gain;
     const double worst = std::max(std::abs(gain[0] - 1), std::abs(gain[2] - 1));
     if (worst <= kWhiteOff) return;
-    note(
-        "WHITE_OFF",
-        fmt::format("the chart's greys come out with {:+.1f} percent red and {:+.1f} percent blue over green",
-                    100 * (gain[0] - 1), 100 * (gain[2] - 1)),
-        "calibrate the lights first, on a white sheet without brighteners");
+    note("WHITE_OFF",
+         fmt::format(
+             "the chart's greys come out with {:+.1f} percent red and {:+.1f} percent blue over green, "
+             "which the fluxes of the lights now make up for",
+             100 * (gain[0] - 1), 100 * (gain[2] - 1)),
+         "calibrate the lights on a white sheet without brighteners the next time");
   }
 
   Result<void> take_light_out(const ChartPicture& picture, FlatChart& chart) {
@@ -265,6 +267,12 @@ class ChartReader {
 FlatChart mean_of_charts(const std::vector<FlatChart>& charts) {
   FlatChart mean = charts.front();
   const auto count = static_cast<double>(charts.size());
+  mean.scale = 0;
+  mean.gain = {};
+  for (const FlatChart& chart : charts) {
+    mean.scale += chart.scale / count;
+    for (std::size_t c = 0; c < 3; ++c) mean.gain[c] += chart.gain[c] / count;
+  }
   for (std::size_t i = 0; i < mean.camera.size(); ++i) {
     mean.camera[i] = {};
     for (const FlatChart& chart : charts) {
@@ -308,8 +316,14 @@ void note_scale(ColorMeasurement& color, const Calibration* from) {
 }
 
 struct ReadCharts {
-  std::vector<FlatChart> charts;
+  std::vector<FlatChart> albedos, photographs;
   ShotMetadata camera;  // of the last photograph
+
+  FlatChart mean() const {
+    std::vector<FlatChart> all = albedos;
+    all.insert(all.end(), photographs.begin(), photographs.end());
+    return mean_of_charts(all);
+  }
 };
 
 Result<ReadCharts> read_charts(const CalibrateColorOptions& options, const Calibration* from,
@@ -327,17 +341,14 @@ Result<ReadCharts> read_charts(const CalibrateColorOptions& options, const Calib
     }
     Result<FlatChart> chart = reader.read(*picture);
     if (!chart) return std::move(chart).error();
-    if (picture->is_albedo) {
-      color.albedo_scale = chart->scale;
-      color.has_albedo = true;
-    } else {
-      read.camera = picture->camera;
-    }
+    if (!picture->is_albedo) read.camera = picture->camera;
     color.slope_of_light = std::max(color.slope_of_light, chart->slope_of_light);
     color.sources.push_back(file.string());
-    read.charts.push_back(*chart);
-    context.progress("read", static_cast<double>(read.charts.size()) / static_cast<double>(files->size()));
+    (picture->is_albedo ? read.albedos : read.photographs).push_back(*chart);
+    context.progress("read", static_cast<double>(color.sources.size()) / static_cast<double>(files->size()));
   }
+  color.has_albedo = !read.albedos.empty();
+  if (color.has_albedo) color.albedo_scale = mean_of_charts(read.albedos).scale;
   return read;
 }
 
@@ -352,6 +363,33 @@ Result<void> fit_matrix(const FlatChart& chart, const calibration::ChartReferenc
   color.fit = std::move(*fit);
   color.transform = {color.fit.rec709_from_camera, color.fit.covariance, {}};
   return {};
+}
+
+void multiply(Lights& lights, const std::array<double, 3>& factors) {
+  const auto each = [&](std::array<double, 3>& rgb) {
+    for (std::size_t c = 0; c < 3; ++c) rgb[c] *= factors[c];
+  };
+  if (auto* near = std::get_if<NearLights>(&lights)) {
+    for (NearLight& led : near->leds) each(led.flux_rgb);
+  } else {
+    for (DistantLight& light : std::get<DistantLights>(lights).lights) each(light.irradiance_rgb);
+  }
+}
+
+// Lights under which the chart's greys are solved as grey as they are, and, where no reflectance was measured
+// before, as bright as they are. White patches reflect as much less as there is more light.
+void take_white_from(const FlatChart& chart, const Calibration& before, Calibration& change) {
+  const bool sets_scale = before.subject.albedo_scale == AlbedoScale::kRelative;
+  std::array<double, 3> factors = chart.gain;
+  for (double& factor : factors) factor /= sets_scale ? chart.scale : 1;
+  change.lights = before.lights;
+  multiply(*change.lights, factors);
+  change.light_covariance = before.light_covariance;
+  change.patches = before.patches;
+  for (WhitePatch& patch : change.patches) {
+    for (std::size_t c = 0; c < 3; ++c) patch.reflectance_rgb[c] /= factors[c];
+  }
+  change.subject.albedo_scale = AlbedoScale::kAbsolute;
 }
 
 CalibrationSubject subject_of(const CalibrateColorOptions& options, const Calibration* from,
@@ -384,8 +422,7 @@ Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, c
   ChartReader reader(options, colors->reference, color, outcome.warnings);
   const Result<ReadCharts> read = read_charts(options, before, reader, color, context);
   if (!read) return read.error();
-  if (Result<void> ok = fit_matrix(mean_of_charts(read->charts), colors->reference, color); !ok)
-    return std::move(ok).error();
+  if (Result<void> ok = fit_matrix(read->mean(), colors->reference, color); !ok) return std::move(ok).error();
   if (options.curve) {
     if (Result<void> ok = fit_curve(color); !ok) return std::move(ok).error();
   }
@@ -394,6 +431,8 @@ Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, c
   Calibration change;
   change.subject = subject_of(options, before, read->camera);
   change.color = color.transform;
+  if (before != nullptr && before->lights && color.has_albedo)
+    take_white_from(mean_of_charts(read->albedos), *before, change);
   outcome.report = report_of(color, change.subject.rig);
   Result<Calibration> written =
       derive_calibration(options.from, std::move(change), options.output, report_files(outcome.report));

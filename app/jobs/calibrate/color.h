@@ -25,8 +25,9 @@ struct CalibrateColorOptions {
 
 /// Fits what makes linear Rec.709 of the camera's channels and writes a calibration with color.json and
 /// report/color.html. Pictures are white balanced on the chart's greys, for the white balance of scans is
-/// that of their lights; where solved albedo differs from it, the report says so. Photographs may be lit from
-/// one side; sessions are solved. Several pictures are averaged.
+/// that of their lights. Photographs may be lit from one side; sessions are solved. Several pictures are
+/// averaged. Of sessions, what the greys are off by is put into the lights of `from`, and where nobody had
+/// measured a reflectance, the scale of albedo, too, which is absolute then.
 ///
 /// Errors: as read_chart_picture() and read_chart_colors(); kBadData: no chart, or one that is mirrored,
 /// upside down against named corners, in the shadow of something, or with more than six patches full or

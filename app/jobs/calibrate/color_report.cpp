@@ -124,8 +124,9 @@ CalibrationReport report_of(const ColorMeasurement& color, const std::string& ri
   report::Section sources = {"Sources"};
   sources.paragraphs = color.sources;
   if (color.has_albedo) {
-    sources.paragraphs.push_back(
-        fmt::format("The chart's reflectances are {:.4f} times the solved albedo.", color.albedo_scale));
+    sources.paragraphs.push_back(fmt::format(
+        "The chart's reflectances are {:.4f} times the albedo that was solved by the lights of before.",
+        color.albedo_scale));
   } else {
     sources.paragraphs.push_back(fmt::format(
         "Light over the chart differed by {:.0f} percent, and was fitted.", 100 * color.slope_of_light));
