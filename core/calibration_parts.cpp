@@ -126,7 +126,10 @@ Json covariance_json(const ParameterCovariance& covariance) {
 Json patches_json(const std::vector<WhitePatch>& patches) {
   Json list = Json::array();
   for (const WhitePatch& patch : patches) {
-    list.push_back({{"polygon_px", patch.polygon_px}, {"reflectance_rgb", patch.reflectance_rgb}});
+    Json& record =
+        list.emplace_back(Json{{"polygon_px", patch.polygon_px}, {"reflectance_rgb", patch.reflectance_rgb}});
+    if (patch.delta != 0) record["delta"] = patch.delta;
+    if (patch.height_mm) record["height_mm"] = *patch.height_mm;
   }
   return list;
 }
@@ -233,6 +236,9 @@ Result<std::vector<WhitePatch>> patches_from_json(const Json& list, const std::s
     if (polygon.size() < 3) fields.reject("polygon_px", "must have three corners or more");
     patch.reflectance_rgb = fields.rgb("reflectance_rgb");
     require_bright(fields, "reflectance_rgb", patch.reflectance_rgb);
+    patch.delta = fields.optional_number("delta").value_or(0);
+    if (!(std::abs(patch.delta) < 1)) fields.reject("delta", "must be between -1 and 1");
+    patch.height_mm = fields.optional_number("height_mm");
     if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
     patches.push_back(std::move(patch));
   }
@@ -430,6 +436,10 @@ Result<ColorTransform> color_from_json(const Json& json, const std::string& wher
 Json json_of(const LightsPart& part) {
   Json json = model_json(part.lights);
   if (!part.patches.empty() || part.covariance) json["schema"] = "weft.lights/1.1";
+  const bool is_newer = std::any_of(part.patches.begin(), part.patches.end(), [](const WhitePatch& patch) {
+    return patch.delta != 0 || patch.height_mm;
+  });
+  if (is_newer) json["schema"] = "weft.lights/1.2";
   if (!part.patches.empty()) json["patches"] = patches_json(part.patches);
   if (part.covariance) json["covariance"] = covariance_json(*part.covariance);
   return json;

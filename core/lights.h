@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -54,8 +55,11 @@ struct DistantLights {
 
 /// A patch of known reflectance that lies in the frame of every scan, as a white standard beside the cloth.
 struct WhitePatch {
-  std::vector<std::array<double, 2>> polygon_px;  ///< corners on the active area, at least three
+  std::vector<std::array<double, 2>> polygon_px = {};  ///< corners on the active area, at least three
   std::array<double, 3> reflectance_rgb = {1, 1, 1};
+  double delta = 0;  ///< it reflects 1 - delta (1 - cosine) of Lambert's law
+  std::optional<double> height_mm =
+      {};  ///< where it lies, rig frame; where nobody said at the cloth's height
 };
 
 /// How far measured parameters may be off, as the fit that found them says. Those of lights are named

@@ -2,9 +2,12 @@
 #include "app/jobs/session_conditions.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 
 #include "core/image_io/image_io.h"
@@ -86,6 +89,24 @@ pipeline::DriftEvidence drift_evidence(const SessionPlan& plan, const pipeline::
   return evidence;
 }
 
+// Of one patch.
+std::string words_of(std::span<const pipeline::PatchDeparture> departures, const std::vector<int>& leds) {
+  std::vector<int> of_leds;
+  double worst = 1;
+  for (const pipeline::PatchDeparture& each : departures) {
+    of_leds.push_back(leds[each.light]);
+    if (std::abs(each.ratio - 1) > std::abs(worst - 1)) worst = each.ratio;
+  }
+  return fmt::format(
+      "white patch {} gives {:.3g} times the light that most patches give{}; their median was used; see "
+      "whether "
+      "cloth or its shadow lies on it, or whether it is dirty",
+      departures.front().patch + 1, worst,
+      of_leds.size() == leds.size()
+          ? ""
+          : fmt::format(" under LED{} {}", of_leds.size() == 1 ? "" : "s", fmt::join(of_leds, ", ")));
+}
+
 // What there is to be warned of, in sentences.
 std::vector<std::string> words_of(const Drift& drift, const pipeline::DriftEvidence& evidence,
                                   const SessionPlan& plan, const std::vector<int>& leds) {
@@ -95,6 +116,12 @@ std::vector<std::string> words_of(const Drift& drift, const pipeline::DriftEvide
         fmt::format("no white patch can be read in the light of LED {}, as they lie outside the frame, are "
                     "saturated or unlit; patches were not used",
                     leds[*drift.unread_light]));
+  }
+  for (auto first = drift.departures.begin(); first != drift.departures.end();) {
+    const auto last = std::find_if(first, drift.departures.end(),
+                                   [&](const auto& each) { return each.patch != first->patch; });
+    words.push_back(words_of({first, last}, leds));
+    first = last;
   }
   for (std::size_t i = 0; i < drift.ratios.size(); ++i) {
     const std::optional<double>& ratio = drift.ratios[i];

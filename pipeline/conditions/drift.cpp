@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "core/parallel.h"
-#include "solver/conditions/light_change.h"
+#include "core/statistics.h"
 
 namespace weft::pipeline {
 namespace {
@@ -46,34 +47,57 @@ void ask_repeats(const Photographs& photographs, const DriftEvidence& evidence, 
   for (const double time : evidence.times) drift.measured.push_back(1 + rate * (time - evidence.first_time));
 }
 
-// What all patches give of light k together.
-solver::PatchLight light_of_patches(const Photographs& photographs, const std::vector<WhitePatch>& patches,
-                                    std::size_t k) {
-  solver::PatchLight light;
-  for (const WhitePatch& patch : patches) {
-    const Rect area = solver::area_of(patch, photographs.size);
-    if (area.pixels() == 0) continue;
-    Image<float> scratch({area.width(), area.height()});
-    const solver::PatchLight one = solver::patch_light(
-        patch, *photographs.field, k, area, readings_of(photographs.frames, k, area, scratch.plane()),
-        photographs.planes().cfa);
-    if (one.unusable > one.used) continue;
-    light.reading += one.reading;
-    light.predicted += one.predicted;
+// Fields by the height of patches; the photographs' own where a patch has none.
+class PatchFields {
+ public:
+  explicit PatchFields(const Photographs& photographs) : photographs_(photographs) {}
+
+  /// Nothing where no light can be at this height.
+  const LightField* at(std::optional<double> height_mm) {
+    if (!height_mm) return &*photographs_.field;
+    const auto [at, is_new] = fields_.try_emplace(*height_mm);
+    if (is_new) {
+      Result<LightField> field =
+          LightField::make(photographs_.field->lights(), photographs_.camera, photographs_.size, *height_mm);
+      if (field) at->second = std::move(*field);
+    }
+    return at->second ? &*at->second : nullptr;
   }
-  return light;
-}
+
+ private:
+  const Photographs& photographs_;
+  std::map<double, std::optional<LightField>> fields_;
+};
 
 void ask_patches(const Photographs& photographs, const std::vector<WhitePatch>& patches, Drift& drift) {
   if (patches.empty()) return;
+  PatchFields fields(photographs);
+  std::vector<std::vector<std::optional<solver::PatchLight>>> seen;
+  for (const WhitePatch& patch : patches) {
+    const LightField* field = fields.at(patch.height_mm);
+    if (field == nullptr) {
+      seen.emplace_back(photographs.count());
+    } else {
+      seen.push_back(read_patch(photographs, patch, *field));
+    }
+  }
   std::vector<double> factors;
   for (std::size_t k = 0; k < photographs.count(); ++k) {
-    const solver::PatchLight light = light_of_patches(photographs, patches, k);
-    if (light.predicted <= 0) {
+    std::vector<double> of_patches;
+    for (const auto& patch : seen) {
+      if (patch[k]) of_patches.push_back(patch[k]->factor());
+    }
+    if (of_patches.empty()) {
       drift.unread_light = k;
       return;
     }
-    factors.push_back(light.reading / light.predicted);
+    factors.push_back(median(std::move(of_patches)));
+  }
+  for (std::size_t p = 0; p < seen.size(); ++p) {
+    for (std::size_t k = 0; k < factors.size(); ++k) {
+      const double ratio = seen[p][k] ? seen[p][k]->factor() / factors[k] : 1;
+      if (std::abs(ratio - 1) > kMostScatter) drift.departures.push_back({p, k, ratio});
+    }
   }
   drift.source = Drift::Source::kPatches;
   drift.measured = std::move(factors);
@@ -87,6 +111,23 @@ bool is_drift(double factor) {
 
 double Drift::factor(std::size_t k) const {
   return is_drift(measured[k]) ? measured[k] : 1;
+}
+
+std::vector<std::optional<solver::PatchLight>> read_patch(const Photographs& photographs,
+                                                          const WhitePatch& patch, const LightField& field) {
+  std::vector<std::optional<solver::PatchLight>> lights(photographs.count());
+  const WhitePatch inside = solver::well_inside(patch);
+  const Rect area = solver::area_of(inside, photographs.size);
+  if (area.pixels() == 0) return lights;
+  Image<float> scratch({area.width(), area.height()});
+  for (std::size_t k = 0; k < lights.size(); ++k) {
+    const solver::PatchLight light =
+        solver::patch_light(inside, field, k, area, readings_of(photographs.frames, k, area, scratch.plane()),
+                            photographs.planes().cfa);
+    const auto& [r, g, b] = light.predicted_rgb;
+    if (light.unusable <= light.used && r + g + b > 0) lights[k] = light;
+  }
+  return lights;
 }
 
 Drift find_drift(const Photographs& photographs, const DriftEvidence& evidence, int threads) {

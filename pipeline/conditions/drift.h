@@ -8,6 +8,7 @@
 #include "core/lights.h"
 #include "core/result.h"
 #include "pipeline/photographs.h"
+#include "solver/conditions/light_change.h"
 
 // How bright each light was in its shot against its calibration, and the field put right
 // (solver/conditions/light_change.h).
@@ -30,11 +31,19 @@ struct DriftEvidence {
   double first_time = 0;           ///< when the session began: all lights are as calibrated
 };
 
+/// A white patch whose light of one LED is not what the others say of that LED: kMostScatter.
+struct PatchDeparture {
+  std::size_t patch = 0;
+  std::size_t light = 0;
+  double ratio = 1;  ///< its factor over the median of all patches
+};
+
 struct Drift {
   enum class Source { kNone, kPatches, kRepeats };
   Source source = Source::kNone;
   std::vector<double> measured;             ///< brightness of each light; empty where there is no source
   std::optional<std::size_t> unread_light;  ///< in whose light no patch can be read: patches were not used
+  std::vector<PatchDeparture> departures;   ///< patch by patch, where patches told
   /// What each repeat gave of its earlier shot, or nothing where they share no light; empty where patches
   /// told.
   std::vector<std::optional<double>> ratios;
@@ -46,9 +55,18 @@ struct Drift {
 /// No LED drifts by more between two shots: beyond it something else happened.
 inline constexpr double kMostDrift = 0.2;
 bool is_drift(double factor);
+/// Patches differ by no more, relative: beyond it something lies on one, or shades it.
+inline constexpr double kMostScatter = 0.01;
 
-/// White patches tell of each light; without a patch that can be read in all of them, repeats tell of a drift
-/// that is the same for all lights and straight in time. Repeats that are no drift are not used.
+/// What each photograph shows of a patch, well inside it; nothing where it cannot be read: it lies outside
+/// the frame, is unlit, or full over more than half of it. `field` is at the patch's height.
+std::vector<std::optional<solver::PatchLight>> read_patch(const Photographs& photographs,
+                                                          const WhitePatch& patch, const LightField& field);
+
+/// White patches tell of each light by the median of their factors, so that one that is covered or shaded
+/// tells nothing; each is predicted at its own height, place by place. Without a patch that can be read in
+/// all of them, repeats tell of a drift that is the same for all lights and straight in time. Repeats that
+/// are no drift are not used.
 Drift find_drift(const Photographs& photographs, const DriftEvidence& evidence, int threads);
 
 /// Gives the field's lights their factors. Errors: as LightField::make.

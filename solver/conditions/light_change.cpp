@@ -20,6 +20,20 @@ bool is_inside(const std::vector<std::array<double, 2>>& polygon, double x, doub
 
 }  // namespace
 
+double PatchLight::factor() const {
+  return (reading_rgb[0] + reading_rgb[1] + reading_rgb[2]) /
+         (predicted_rgb[0] + predicted_rgb[1] + predicted_rgb[2]);
+}
+
+WhitePatch well_inside(WhitePatch patch) {
+  constexpr double kInside = 0.8;
+  double x0 = 0, y0 = 0;
+  const auto corners = static_cast<double>(patch.polygon_px.size());
+  for (const auto& [x, y] : patch.polygon_px) x0 += x / corners, y0 += y / corners;
+  for (auto& [x, y] : patch.polygon_px) x = x0 + kInside * (x - x0), y = y0 + kInside * (y - y0);
+  return patch;
+}
+
 BlockChange block_light(std::span<const View<const float>> earlier,
                         std::span<const View<const float>> later) {
   BlockChange light;
@@ -87,10 +101,12 @@ PatchLight patch_light(const WhitePatch& patch, const LightField& field, std::si
           continue;
         }
         const int c = readings.size() == 1 ? cfa.channel_at(x, y) : static_cast<int>(p);
+        const auto channel = static_cast<std::size_t>(c);
         const LightField::Light l = field.at(k, c, x, y);
-        light.reading += static_cast<double>(reading);
-        light.predicted +=
-            patch.reflectance_rgb[static_cast<std::size_t>(c)] * l.strength * std::max(l.direction.z, 0.0);
+        const double cosine = std::max(l.direction.z, 0.0);
+        light.reading_rgb[channel] += static_cast<double>(reading);
+        light.predicted_rgb[channel] +=
+            patch.reflectance_rgb[channel] * l.strength * cosine * (1 - patch.delta * (1 - cosine));
         ++light.used;
       }
     }

@@ -44,13 +44,20 @@ struct LightRepeat {
 /// through the repeats. 0 without repeats.
 double drift_rate(std::span<const LightRepeat> repeats);
 
-/// Light that a patch sends back, summed over its pixels and channels.
+/// Light that a patch sends back, summed over its pixels.
 struct PatchLight {
-  double reading = 0;
-  double predicted = 0;  ///< by the field, from a patch that lies flat at the field's cloth height
+  std::array<double, 3> reading_rgb = {};
+  /// By the field, from a patch that lies flat at the field's cloth height.
+  std::array<double, 3> predicted_rgb = {};
   std::int64_t used = 0;
   std::int64_t unusable = 0;  ///< pixels in the patch whose readings are full or missing
+
+  /// Light read over light predicted, of all channels together.
+  double factor() const;
 };
+
+/// The part of a patch that is read: its border is shared with what lies beside it.
+WhitePatch well_inside(WhitePatch patch);
 
 /// The smallest area that holds a patch and begins on a whole filter cell, inside the frame; empty where the
 /// patch lies outside.

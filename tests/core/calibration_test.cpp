@@ -118,7 +118,7 @@ TEST(Calibration, ReturnsRatiosPatchesCovarianceAndHotPicture) {
   const ScratchFolder folder;
   Calibration written = full_calibration();
   written.response->exposure_ratios = {{4000, 16000, 0.2512}, {64000, 16000, 4.03}};
-  written.patches = {{{{1, 2.5}, {30, 2}, {15, 40}}, {0.88, 0.9, 0.91}}};
+  written.patches = {{{{1, 2.5}, {30, 2}, {15, 40}}, {0.88, 0.9, 0.91}, 0.04, 0.8}};
   written.light_covariance = ParameterCovariance{{"led01.mu", "led02.log_flux"}, {4e-4, -1e-6, -1e-6, 1e-4}};
   put_bytes(folder / "bad.png", "bytes of a picture");
   written.hot_picture = folder / "bad.png";
@@ -129,6 +129,8 @@ TEST(Calibration, ReturnsRatiosPatchesCovarianceAndHotPicture) {
   ASSERT_EQ(read.patches.size(), 1U);
   EXPECT_EQ(read.patches[0].polygon_px, written.patches[0].polygon_px);
   EXPECT_EQ(read.patches[0].reflectance_rgb, written.patches[0].reflectance_rgb);
+  EXPECT_EQ(read.patches[0].delta, 0.04);
+  EXPECT_EQ(read.patches[0].height_mm, 0.8);
   ASSERT_TRUE(read.light_covariance);
   EXPECT_EQ(read.light_covariance->parameters, written.light_covariance->parameters);
   EXPECT_EQ(read.light_covariance->matrix, written.light_covariance->matrix);

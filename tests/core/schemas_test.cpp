@@ -116,6 +116,8 @@ TEST(Schemas, Calibration1WithResponse11AndLights11) {
   ASSERT_EQ(calibration->patches.size(), 1U);
   EXPECT_EQ(calibration->patches[0].polygon_px[2], (std::array{398.0, 300.25}));
   EXPECT_EQ(calibration->patches[0].reflectance_rgb, (std::array{0.88, 0.9, 0.91}));
+  EXPECT_EQ(calibration->patches[0].delta, 0) << "nobody said";
+  EXPECT_FALSE(calibration->patches[0].height_mm);
   ASSERT_TRUE(calibration->light_covariance);
   EXPECT_EQ(calibration->light_covariance->parameters,
             (std::vector<std::string>{"led01.position_mm.x", "led01.mu", "led03.log_flux"}));

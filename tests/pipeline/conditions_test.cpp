@@ -131,6 +131,47 @@ TEST(Drift, OfEachLightIsWhatAWhitePatchGives) {
   EXPECT_NEAR(photographs.field->at(9, 1, 0, 0).strength, 1.09, 1e-4);
 }
 
+// Four patches of the cloth itself.
+std::vector<WhitePatch> four_patches() {
+  std::vector<WhitePatch> patches;
+  for (const double y : {2.0, 26.0}) {
+    for (const double x : {2.0, 34.0})
+      patches.push_back({{{x, y}, {x + 24, y}, {x + 24, y + 18}, {x, y + 18}}, {0.5, 0.5, 0.5}});
+  }
+  return patches;
+}
+
+// The lower left quarter of photograph k, where the third patch lies.
+void shade(Photographs& photographs, std::size_t k, double factor) {
+  Image<std::uint16_t>& counts = photographs.mosaics()->frames[k].counts;
+  for (int y = 24; y < kShotSize.height; ++y) {
+    for (int x = 0; x < 32; ++x)
+      counts(x, y) = static_cast<std::uint16_t>(std::lround(kBlack + factor * (counts(x, y) - kBlack)));
+  }
+}
+
+TEST(Drift, IsTheMedianOfPatchesOneOfWhichIsShadedUnderALight) {
+  Photographs photographs = mosaics(kShotSize, {});
+  brighten(photographs, 7, 1.02);
+  shade(photographs, 7, 0.4);
+  const Drift drift = find_drift(photographs, {.patches = four_patches()}, 1);
+  EXPECT_NEAR(drift.measured[7], 1.02, 1e-3);
+  EXPECT_NEAR(drift.measured[3], 1, 1e-3);
+  ASSERT_EQ(drift.departures.size(), 1U);
+  EXPECT_EQ(drift.departures[0].patch, 2U);
+  EXPECT_EQ(drift.departures[0].light, 7U);
+  EXPECT_NEAR(drift.departures[0].ratio, 0.4, 1e-3);
+}
+
+TEST(Drift, IsNotThatOfAPatchThatIsCoveredUnderAllLights) {
+  Photographs photographs = mosaics(kShotSize, {});
+  for (std::size_t k = 0; k < 10; ++k) shade(photographs, k, 0.1);
+  const Drift drift = find_drift(photographs, {.patches = four_patches()}, 1);
+  for (std::size_t k = 0; k < 10; ++k) EXPECT_NEAR(drift.measured[k], 1, 1e-3) << "light " << k;
+  ASSERT_EQ(drift.departures.size(), 10U);
+  for (const PatchDeparture& each : drift.departures) EXPECT_EQ(each.patch, 2U);
+}
+
 TEST(Drift, BeyondAFifthIsMeasuredAndNotFollowed) {
   Photographs photographs = mosaics(kShotSize, {});
   brighten(photographs, 4, 0.5);

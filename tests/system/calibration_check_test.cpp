@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -372,6 +373,8 @@ TEST_F(CalibrationCheck, PatchesAreMeasuredByTheLightThatIsKnown) {
   ASSERT_EQ(measured->calibration.patches.size(), 4U);
   for (const WhitePatch& patch : measured->calibration.patches) {
     for (const double r : patch.reflectance_rgb) EXPECT_NEAR(r, 0.88, 0.003);
+    EXPECT_EQ(patch.height_mm, 0) << "as high as the tags that the calibration knows: none";
+    EXPECT_EQ(patch.delta, 0);
   }
   // A corner outside the frame.
   ASSERT_TRUE(write_file(root_ / "wrong.toml", "[[patch]]\npolygon_px = [[1, 1], [700, 1], [1, 30]]\n"));
@@ -380,6 +383,34 @@ TEST_F(CalibrationCheck, PatchesAreMeasuredByTheLightThatIsKnown) {
   ASSERT_FALSE(wrong);
   EXPECT_THAT(wrong.error().message(), HasSubstr("patch 1"));
   EXPECT_FALSE(is_there(root_ / "never"));
+}
+
+TEST_F(CalibrationCheck, PatchesOfPaperThatIsNotLambertianAboveTheClothSayThatNothingDrifted) {
+  Scene scene = checked_rig();
+  scene.geometry.cloth_height_mm = -6;
+  for (TargetSettings& target : scene.targets) {
+    if (kind_of(target.pattern) == simulator::TargetKind::kPaper) target.sheet.non_lambertian = 0.05;
+  }
+  simulate(scene, "paper.weft");
+  std::string text;
+  for (const WhitePatch& patch : read_calibration(root_ / "rig" / "first")->patches) {
+    text += "[[patch]]\nheight_mm = 0.3\ndelta = 0.05\npolygon_px = [";
+    for (const auto& [x, y] : patch.polygon_px) text += fmt::format("[{}, {}], ", x, y);
+    text += "]\n";
+  }
+  ASSERT_TRUE(write_file(root_ / "paper.toml", text));
+  const auto measured = calibrate_patches(
+      {.session = root_ / "paper.weft", .patches = root_ / "paper.toml", .output = root_ / "with paper"}, {});
+  ASSERT_TRUE(measured) << measured.error().message();
+  EXPECT_EQ(measured->calibration.patches[0].delta, 0.05);
+  EXPECT_EQ(measured->calibration.patches[0].height_mm, 0.3);
+  const auto plan = plan_session({root_ / "paper.weft", root_ / "with paper", {}});
+  ASSERT_TRUE(plan) << plan.error().message();
+  const auto loaded = load_session(*plan, {});
+  ASSERT_TRUE(loaded) << loaded.error().message();
+  EXPECT_THAT(loaded->warnings, testing::IsEmpty());
+  ASSERT_EQ(loaded->conditions.drift.size(), 10U);
+  for (const LedDrift& led : loaded->conditions.drift) EXPECT_NEAR(led.factor, 1, 0.002) << "LED " << led.led;
 }
 
 TEST_F(CalibrationCheck, ADimmedLedIsFoundInTheLightOfThePatches) {

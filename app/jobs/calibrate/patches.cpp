@@ -4,16 +4,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <limits>
+#include <span>
 
 #include "app/jobs/calibrate/check_result.h"
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/session_input.h"
-#include "calibration/checks/light_at.h"
-#include "calibration/lights/paper_model.h"
 #include "core/files.h"
 #include "core/toml/toml_keys.h"
+#include "pipeline/conditions/drift.h"
 
 namespace weft::app {
 namespace {
@@ -26,7 +26,8 @@ Error bad_patches(const std::string& where, std::string why) {
           "give each [[patch]] a polygon_px of three corners or more inside the frame"};
 }
 
-Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame) {
+/// `common` holds what a patch is that does not say otherwise.
+Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame, const WhitePatch& common) {
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
   TomlKeys keys(*table, file.string(), kCalibrationPage);
@@ -35,10 +36,12 @@ Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame) {
   if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
   std::vector<WhitePatch> patches;
   for (const toml::table* entry : list) {
-    WhitePatch& patch = patches.emplace_back();
+    WhitePatch& patch = patches.emplace_back(common);
     const auto where = fmt::format("{}: patch {}", file.string(), patches.size());
     TomlKeys patch_keys(*entry, where, kCalibrationPage);
-    patch_keys.know({"polygon_px"});
+    patch_keys.know({"polygon_px", "height_mm", "delta"});
+    patch.height_mm = patch_keys.number_or("height_mm", *common.height_mm, -1000, 1000);
+    patch.delta = patch_keys.number_or("delta", common.delta, -0.5, 0.99);
     if (Result<void> ok = patch_keys.status(); !ok) return std::move(ok).error();
     const toml::array* corners = entry->get_as<toml::array>("polygon_px");
     if (corners == nullptr) return bad_patches(where, "it has no polygon_px");
@@ -55,63 +58,47 @@ Result<std::vector<WhitePatch>> read_patches(const fs::path& file, Size frame) {
   return patches;
 }
 
-/// Reflectance of a place by the light of each LED, means of those that can be read.
-struct Reflectance {
-  std::array<double, 3> rgb = {};
-  double least = 1e9, most = 0;  ///< of all LEDs, green
-  int leds = 0;
-};
-
-Reflectance reflectance_of(const calibration::LitPlace& place, const NearLights& lights, Size frame,
-                           double delta) {
-  Reflectance out;
-  const auto [u, v] = calibration::frame_place(frame, place.x_px, place.y_px);
-  for (std::size_t k = 0; k < std::min(lights.leds.size(), place.reading_rgb.size()); ++k) {
-    const auto light = calibration::light_at(lights.leds[k], place.point_mm);
-    const double cosine = light ? dot(light->direction, place.normal) : 0;
-    if (!(cosine > 0)) continue;
-    std::array<double, 3> rgb = {};
-    for (int c = 0; c < 3; ++c) {
-      const auto channel = static_cast<std::size_t>(c);
-      const double white = lights.leds[k].flux_rgb[channel] *
-                           std::exp(light->log_geometry + lights.log_gain(k, c, u, v)) * cosine *
-                           (1 - delta * (1 - cosine));
-      rgb[channel] = place.reading_rgb[k][channel] / white;
-    }
-    if (!std::isfinite(rgb[0] + rgb[1] + rgb[2])) continue;
-    for (std::size_t c = 0; c < 3; ++c) out.rgb[c] += rgb[c];
-    out.least = std::min(out.least, rgb[1]);
-    out.most = std::max(out.most, rgb[1]);
-    ++out.leds;
-  }
-  for (double& r : out.rgb) r /= std::max(out.leds, 1);
-  return out;
-}
-
 struct MeasuredPatch {
   std::array<double, 3> reflectance_rgb = {};
   double spread = 0;  ///< of the reflectance from LED to LED, as a share of it
 };
 
-Result<std::vector<MeasuredPatch>> measure_patches(const Calibration& calibration,
-                                                   const pipeline::Photographs& photographs,
-                                                   const fs::path& file, double paper_delta) {
-  const auto evidence = rig_evidence(calibration, photographs);
-  if (!evidence) return evidence.error();
+/// Means over the LEDs by whose light all of the patch can be read.
+Result<MeasuredPatch> measure_patch(const pipeline::Photographs& photographs, const WhitePatch& patch,
+                                    const LightField& field, const std::string& where) {
+  MeasuredPatch measured;
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  int leds = 0;
+  for (const std::optional<solver::PatchLight>& light : pipeline::read_patch(photographs, patch, field)) {
+    if (!light || light->unusable > 0) continue;
+    ++leds;
+    for (std::size_t c = 0; c < 3; ++c)
+      measured.reflectance_rgb[c] += light->reading_rgb[c] / light->predicted_rgb[c];
+    least = std::min(least, light->factor());
+    most = std::max(most, light->factor());
+  }
+  if (leds < 3) return bad_patches(where, "fewer than three LEDs light it, or it is saturated");
+  for (double& r : measured.reflectance_rgb) r /= leds;
+  measured.spread = (most - least) / measured.reflectance_rgb[1];
+  if (measured.spread <= kMostSpread) return measured;
+  return bad_patches(where,
+                     fmt::format("its reflectance differs by {:.1f} percent from LED to LED: it is not "
+                                 "white, flat and in the light",
+                                 100 * measured.spread));
+}
+
+Result<std::vector<MeasuredPatch>> measure_patches(const pipeline::Photographs& photographs,
+                                                   std::span<const WhitePatch> patches,
+                                                   const fs::path& file) {
   std::vector<MeasuredPatch> measured;
-  for (std::size_t p = 0; p < calibration.patches.size(); ++p) {
-    const Reflectance r = reflectance_of(evidence->places[p], std::get<NearLights>(*calibration.lights),
-                                         photographs.size, paper_delta);
-    const std::string where = fmt::format("{}: patch {}", file.string(), p + 1);
-    if (r.leds < 3) return bad_patches(where, "fewer than three LEDs light it, or it is saturated");
-    const double spread = (r.most - r.least) / r.rgb[1];
-    if (spread > kMostSpread) {
-      return bad_patches(where,
-                         fmt::format("its reflectance differs by {:.1f} percent from LED to LED: it is not "
-                                     "white, flat and in the light",
-                                     100 * spread));
-    }
-    measured.push_back({r.rgb, spread});
+  for (const WhitePatch& patch : patches) {
+    const Result<LightField> field =
+        LightField::make(photographs.field->lights(), photographs.camera, photographs.size, *patch.height_mm);
+    if (!field) return field.error();
+    Result<MeasuredPatch> one = measure_patch(
+        photographs, patch, *field, fmt::format("{}: patch {}", file.string(), measured.size() + 1));
+    if (!one) return std::move(one).error();
+    measured.push_back(*one);
   }
   return measured;
 }
@@ -149,7 +136,10 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
   const fs::path file = options.patches.empty()
                             ? absolute_folder(options.session).parent_path() / "patches.toml"
                             : options.patches;
-  Result<std::vector<WhitePatch>> patches = read_patches(file, plan->size);
+  const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
+  const WhitePatch common = {.delta = options.paper_delta.value_or(reported_delta(from)),
+                             .height_mm = tag_height_mm(plan->calibration.fiducials)};
+  Result<std::vector<WhitePatch>> patches = read_patches(file, plan->size, common);
   if (!patches) return std::move(patches).error();
   if (!std::holds_alternative<NearLights>(*plan->calibration.lights)) {
     return bad_patches(options.session.string(), "the calibration's lights are distant");
@@ -158,12 +148,10 @@ Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& option
   const Result<LoadedSession> loaded = load_session(*plan, context);
   if (!loaded) return loaded.error();
 
-  const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
+  const Result<std::vector<MeasuredPatch>> measured = measure_patches(loaded->photographs, *patches, file);
+  if (!measured) return measured.error();
   Calibration change = plan->calibration;
   change.patches = std::move(*patches);
-  const Result<std::vector<MeasuredPatch>> measured =
-      measure_patches(change, loaded->photographs, file, options.paper_delta.value_or(reported_delta(from)));
-  if (!measured) return measured.error();
   for (std::size_t p = 0; p < measured->size(); ++p)
     change.patches[p].reflectance_rgb = (*measured)[p].reflectance_rgb;
 

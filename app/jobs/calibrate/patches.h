@@ -21,7 +21,9 @@ struct CalibratePatchesOptions {
 
 /// Measures white patches on the table by the light that the calibration knows, and writes a calibration with
 /// them in its lights.json: what later scans tell of drift and of moves by. patches.toml: for each a
-/// [[patch]] of polygon_px, three corners or more, [[x, y], ...]; only what lies well inside is read.
+/// [[patch]] of polygon_px, three corners or more, [[x, y], ...], of which only what lies well inside is
+/// read; height_mm, where it lies (else as high as the tags), and delta, how it falls off (else as the paper
+/// of the lights), are kept with it.
 ///
 /// Errors: as plan_session(); kBadData for a description that cannot be used, a patch that cannot be read, or
 /// one whose reflectance differs from LED to LED by more than 10 percent: it is not white, flat and in the

@@ -9,6 +9,8 @@
 #include <set>
 #include <utility>
 
+#include "solver/conditions/light_change.h"
+
 namespace weft::app {
 namespace {
 
@@ -17,7 +19,6 @@ using calibration::PixelPoint;
 using calibration::TagSighting;
 
 constexpr std::size_t kMostLooks = 3;
-constexpr double kInside = 0.8;       // of a patch: its border is shared with what lies beside it
 constexpr double kPatchSigma = 0.02;  // of a patch's reflectance since it was measured
 constexpr double kNoReading = std::numeric_limits<double>::quiet_NaN();
 
@@ -50,10 +51,7 @@ bool is_inside(const Polygon& polygon, double x, double y) {
 
 Polygon inside_of(const WhitePatch& patch) {
   Polygon polygon;
-  for (const auto& [x, y] : patch.polygon_px) polygon.push_back({x, y});
-  const PixelPoint centre = centre_of(polygon);
-  for (PixelPoint& p : polygon)
-    p = {centre.x + kInside * (p.x - centre.x), centre.y + kInside * (p.y - centre.y)};
+  for (const auto& [x, y] : solver::well_inside(patch).polygon_px) polygon.push_back({x, y});
   return polygon;
 }
 
@@ -153,10 +151,11 @@ Result<calibration::RigEvidence> rig_evidence(const Calibration& calibration,
   if (const auto by_tags = calibration::find_movement(calibration, evidence)) now = by_tags->camera;
   for (const WhitePatch& patch : calibration.patches) {
     if (patch.polygon_px.size() < 3) continue;
-    const Polygon polygon = inside_of(relocated(patch, *calibration.camera, now, plane_mm));
+    const double height_mm = patch.height_mm.value_or(plane_mm);
+    const Polygon polygon = inside_of(relocated(patch, *calibration.camera, now, height_mm));
     LitPlace& place = evidence.places.emplace_back();
     const PixelPoint centre = centre_of(polygon);
-    place.point_mm = point_on_plane(now, centre.x, centre.y, plane_mm);
+    place.point_mm = point_on_plane(now, centre.x, centre.y, height_mm);
     place.x_px = centre.x, place.y_px = centre.y;
     place.surface = static_cast<int>(evidence.places.size());
     place.reflectance_sigma = kPatchSigma;

@@ -21,7 +21,7 @@ namespace weft::app {
 Result<std::vector<calibration::TagSighting>> tags_in(const pipeline::Photographs& photographs,
                                                       const std::vector<std::string>& dictionaries);
 
-/// Height of the tags on the table, rig frame: patches are taken to lie there, too.
+/// Height of the tags on the table, rig frame: patches lie there, too, where nobody said how high they lie.
 double tag_height_mm(const std::vector<Fiducial>& fiducials);
 
 /// Where a patch is in the pictures of a camera that has moved: its own pixels by way of the plane of the

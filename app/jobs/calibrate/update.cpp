@@ -96,8 +96,8 @@ Calibration change_of(const RigCheck& rig) {
     change.lights = rig.movement.lights;
     change.light_covariance = renamed(merged(before.light_covariance, rig.movement.covariance), changes);
     for (const WhitePatch& patch : before.patches) {
-      change.patches.push_back(
-          relocated(patch, *before.camera, rig.movement.camera, tag_height_mm(before.fiducials)));
+      change.patches.push_back(relocated(patch, *before.camera, rig.movement.camera,
+                                         patch.height_mm.value_or(tag_height_mm(before.fiducials))));
     }
   }
   return change;

@@ -78,9 +78,40 @@ TEST(PatchLight, IsTheFactorOfItsLed) {
   readings(20, 20) = kFull;
   const PatchLight light =
       patch_light(patch, field, 4, area, std::vector<View<const float>>{readings.plane()}, cfa);
-  EXPECT_NEAR(light.reading / light.predicted, 0.97, 1e-6);
+  EXPECT_NEAR(light.factor(), 0.97, 1e-6);
+  EXPECT_NEAR(light.reading_rgb[2] / light.predicted_rgb[2], 0.97, 1e-6) << "of a channel alone";
   EXPECT_NEAR(static_cast<double>(light.used), 1400, 150) << "the quadrilateral's pixels, not its box's 1681";
   EXPECT_EQ(light.unusable, 1);
+}
+
+TEST(PatchLight, FallsOffAsThePaperDoes) {
+  const Size size = {128, 96};
+  const LightField field =
+      LightField::make(Lights(test::ten_leds()), overhead_camera(size, 600, 0.5), size, 0).value();
+  WhitePatch patch = {{{20, 30}, {30, 30}, {30, 40}, {20, 40}}, {0.8, 0.8, 0.8}};
+  patch.delta = 0.05;
+  const Rect area = area_of(patch, size);
+  Image<float> readings({area.width(), area.height()}, 3);
+  for (int y = area.y0; y < area.y1; ++y) {
+    for (int x = area.x0; x < area.x1; ++x) {
+      for (int c = 0; c < 3; ++c) {
+        const LightField::Light light = field.at(6, c, x, y);
+        const double cosine = light.direction.z;
+        readings(x - area.x0, y - area.y0, c) =
+            static_cast<float>(0.8 * light.strength * cosine * (1 - 0.05 * (1 - cosine)));
+      }
+    }
+  }
+  const std::vector<View<const float>> planes = {readings.plane(0), readings.plane(1), readings.plane(2)};
+  EXPECT_NEAR(patch_light(patch, field, 6, area, planes, {}).factor(), 1, 1e-6);
+  patch.delta = 0;
+  EXPECT_LT(patch_light(patch, field, 6, area, planes, {}).factor(), 0.98) << "62 degrees from the zenith";
+}
+
+TEST(WellInside, IsFourFifthsOfAPatchAboutItsMiddle) {
+  const WhitePatch inside = well_inside({{{10, 20}, {30, 20}, {30, 40}, {10, 40}}});
+  EXPECT_NEAR(inside.polygon_px[0][0], 12, 1e-9);
+  EXPECT_NEAR(inside.polygon_px[2][1], 38, 1e-9);
 }
 
 TEST(PatchLight, OutsideTheFrameHasNoArea) {
