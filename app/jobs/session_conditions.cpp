@@ -98,9 +98,8 @@ std::string words_of(std::span<const pipeline::PatchDeparture> departures, const
     if (std::abs(each.ratio - 1) > std::abs(worst - 1)) worst = each.ratio;
   }
   return fmt::format(
-      "white patch {} gives {:.3g} times the light that most patches give{}; their median was used; see "
-      "whether "
-      "cloth or its shadow lies on it, or whether it is dirty",
+      "white patch {} gives {:.3g} times the light that most patches give{}, and their median was used; see "
+      "whether cloth or its shadow lies on it, or whether it is dirty",
       departures.front().patch + 1, worst,
       of_leds.size() == leds.size()
           ? ""
