@@ -12,6 +12,7 @@
 #include "core/camera.h"
 #include "core/json_document.h"
 #include "core/lights.h"
+#include "core/point_spread.h"
 #include "core/result.h"
 
 namespace weft {
@@ -87,6 +88,7 @@ struct Calibration {
   std::optional<CameraModel> camera;
   std::optional<ParameterCovariance> camera_covariance;  ///< of camera.json
   std::vector<Fiducial> fiducials;                       ///< of camera.json
+  std::optional<PointSpread> spread;                     ///< of camera.json
   std::optional<Response> response;
   std::optional<ColorTransform> color;
   std::optional<Lights> lights;

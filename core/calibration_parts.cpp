@@ -331,6 +331,17 @@ std::array<double, N> numbers(JsonFields& fields, const Json& json, const char* 
   return {};
 }
 
+Result<std::optional<PointSpread>> optional_spread(const Json& json, const std::string& where) {
+  if (!JsonFields(json, where).has("point_spread")) return std::optional<PointSpread>();
+  JsonFields fields(json["point_spread"], where + ": point_spread");
+  const PointSpread spread = {numbers<3>(fields, json["point_spread"], "sigma_px")};
+  for (const double sigma_px : spread.sigma_px) {
+    if (!(sigma_px >= 0 && sigma_px <= 10)) fields.reject("sigma_px", "must be 0 to 10");
+  }
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  return std::optional<PointSpread>(spread);
+}
+
 }  // namespace
 
 Json json_of(const CameraPart& part) {
@@ -338,6 +349,10 @@ Json json_of(const CameraPart& part) {
   if (part.covariance || !part.fiducials.empty()) json["schema"] = "weft.camera/1.1";
   if (!part.fiducials.empty()) json["fiducials"] = fiducials_json(part.fiducials);
   if (part.covariance) json["covariance"] = covariance_json(*part.covariance);
+  if (part.spread) {
+    json["schema"] = "weft.camera/1.2";
+    json["point_spread"] = {{"sigma_px", part.spread->sigma_px}};
+  }
   return json;
 }
 
@@ -348,7 +363,9 @@ Result<CameraPart> camera_part_from_json(const Json& json, const std::string& wh
   if (!covariance) return std::move(covariance).error();
   Result<std::vector<Fiducial>> fiducials = optional_list(json, "fiducials", where, fiducials_from_json);
   if (!fiducials) return std::move(fiducials).error();
-  return CameraPart{*model, std::move(*covariance), std::move(*fiducials)};
+  Result<std::optional<PointSpread>> spread = optional_spread(json, where);
+  if (!spread) return std::move(spread).error();
+  return CameraPart{*model, std::move(*covariance), std::move(*fiducials), *spread};
 }
 
 Json json_of(const Response& r) {

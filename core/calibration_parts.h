@@ -18,6 +18,7 @@ struct CameraPart {
   CameraModel model;
   std::optional<ParameterCovariance> covariance;
   std::vector<Fiducial> fiducials;
+  std::optional<PointSpread> spread;
 };
 Json json_of(const CameraPart& part);
 Result<CameraPart> camera_part_from_json(const Json& json, const std::string& where);

@@ -114,6 +114,7 @@ Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string
                                    {&facts.conditions, "conditions"},
                                    {&facts.registration, "registration"},
                                    {&facts.sigma_normal_deg, "sigma_normal_deg"},
+                                   {&facts.sharpening, "sharpening"},
                                    {&facts.gates, "gates"},
                                    {&facts.reference, "reference"}}) {
     if (fields.has(name)) *part = document[name];
@@ -140,6 +141,7 @@ Json json_of(const SolveFacts& facts) {
                {"registration", facts.registration},
                {"sigma_normal_deg", facts.sigma_normal_deg},
                {"check", facts.check ? json_of(*facts.check) : Json()},
+               {"sharpening", facts.sharpening},
                {"warnings", json_of(facts.warnings)},
                {"pictures", facts.pictures},
                {"gates", facts.gates},

@@ -70,6 +70,7 @@ struct SolveFacts {
   Json input;                                ///< all that the id depends on besides method and compression
   Json solved_by, conditions, registration;  ///< docs/formats.md
   Json sigma_normal_deg;                     ///< docs/formats.md
+  Json sharpening;                           ///< where the spread of the lens is known
   Json gates, reference;                     ///< of the level `reference`
 };
 

@@ -51,6 +51,7 @@ Result<Photographs> cut(const Photographs& whole, Rect area) {
   part.light_covariance = whole.light_covariance;
   part.albedo_scale = whole.albedo_scale;
   part.color = whole.color;
+  part.spread = whole.spread;
   part.camera = whole.camera;
   if (part.camera) {
     part.camera->size = part.size;

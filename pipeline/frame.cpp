@@ -82,10 +82,8 @@ Result<void> check(const Photographs& photographs, const solver::Method& method,
   return {};
 }
 
-}  // namespace
-
-Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
-                               const TileOptions& tile, const JobContext& context, const BandSink& sink) {
+Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::MethodName& method,
+                                 const TileOptions& tile, const JobContext& context, const BandSink& sink) {
   FrameFacts facts;
   const std::unique_ptr<solver::Method> asked = method.make();
   if (method.extent == solver::Extent::kWholeFrame) {
@@ -113,6 +111,19 @@ Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::Met
   if (Result<void> ok = solve_tiles(photographs, chosen, tile, context, sink, model, facts); !ok)
     return std::move(ok).error();
   if (Result<void> ok = check(photographs, chosen, context, facts); !ok) return std::move(ok).error();
+  return facts;
+}
+
+}  // namespace
+
+Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
+                               const TileOptions& tile, const JobContext& context, const BandSink& sink) {
+  if (!photographs.spread) return solve_as_seen(photographs, method, tile, context, sink);
+  const Planes planes = method.make()->wants_rgb() ? Planes() : photographs.planes();
+  Deblur deblur(photographs.size, planes, *photographs.spread, context.threads, sink);
+  Result<FrameFacts> facts = solve_as_seen(photographs, method, tile, context,
+                                           [&](const MapBand& band) { return deblur.put(band); });
+  if (facts) facts->deblur = deblur.facts();
   return facts;
 }
 

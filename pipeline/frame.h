@@ -7,6 +7,7 @@
 #include "core/result.h"
 #include "core/tiles.h"
 #include "pipeline/bands.h"
+#include "pipeline/deblur.h"
 #include "pipeline/photographs.h"
 #include "pipeline/reference.h"
 #include "solver/left_out/left_out.h"
@@ -24,9 +25,11 @@ struct FrameFacts {
   std::optional<double> robust_share = {};
   /// On patches that chose nothing. None of a reference that corrected readings.
   std::optional<solver::LeftOut> left_out = {};
+  std::optional<DeblurFacts> deblur = {};  ///< where the spread of the lens is known
 };
 
-/// Solves a frame by a level or method, whatever it extends over.
+/// Solves a frame by a level or method, whatever it extends over, and sharpens the maps by
+/// photographs.spread.
 Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
                                const TileOptions& tile, const JobContext& context, const BandSink& sink);
 

@@ -13,6 +13,7 @@
 #include "core/light_field.h"
 #include "core/lights.h"
 #include "core/photosites.h"
+#include "core/point_spread.h"
 #include "core/radiometry.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
@@ -91,6 +92,7 @@ struct Photographs {
   std::vector<int> leds;                                ///< number of each light in its rig, if it has one
   std::optional<LightField> field;                      ///< always there once the photographs are whole
   std::optional<CameraModel> camera;                    ///< where the lights are near
+  std::optional<PointSpread> spread;                    ///< of the lens, to be undone; none: left as it is
   std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
   std::vector<solver::ClothShift> shifts;               ///< put right as tiles are read (pipeline/shifts.h)
   AlbedoScale albedo_scale = AlbedoScale::kRelative;

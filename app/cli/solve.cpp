@@ -199,6 +199,7 @@ void add_maps(Options& options, const Level& level, SolveArguments& a) {
   options.add_flag("!--no-previews", &a.options.previews, "Write no pictures");
   options.add_flag("--check", &a.check,
                    "Print how well each light that is left out is predicted from the others");
+  options.add_flag("!--no-deblur", &a.options.deblur, "Leave the blur of the lens as it is");
   options.add_flag("--strict", &a.strict, "Exit with 2 where pixels have no solution");
 }
 

@@ -42,6 +42,10 @@ Json json_of(const solver::SolveTally& tally) {
           {"unsolved", tally.unsolved}, {"rejected_readings", tally.rejected_readings}};
 }
 
+Json json_of(const pipeline::DeblurFacts& facts) {
+  return {{"sigma_px", facts.sigma_px}, {"share", facts.mean_share}};
+}
+
 Json json_of(const pipeline::ReferenceFacts& facts) {
   Json rounds = Json::array(), left_out = Json::array();
   for (const pipeline::ReferenceRound& round : facts.rounds) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/json_document.h"
+#include "pipeline/deblur.h"
 #include "pipeline/reference.h"
 #include "pipeline/shifts.h"
 #include "solver/gates/gates.h"
@@ -19,6 +20,9 @@ Json json_of(const solver::Gates& gates);
 
 /// How many pixels were solved in which way.
 Json json_of(const solver::SolveTally& tally);
+
+/// {"sigma_px", "share"}.
+Json json_of(const pipeline::DeblurFacts& facts);
 
 /// {"stages", "rounds", "left_out", "albedo_scale_is_open", "shadow_reach_is_capped"}.
 Json json_of(const pipeline::ReferenceFacts& facts);

@@ -243,6 +243,7 @@ Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& co
   if (!field) return std::move(field).error();
   photographs.field = std::move(*field);
   photographs.camera = plan.calibration.camera;
+  photographs.spread = plan.calibration.spread;
   photographs.light_covariance = plan.calibration.light_covariance;
   photographs.color = plan.calibration.color;
 

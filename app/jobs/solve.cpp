@@ -55,10 +55,12 @@ class StatusTally {
 
 // All that the bytes of the maps depend on.
 Json inputs_of(const Json& input, const SolveOptions& options) {
-  return {{"input", input},
-          {"method", options.method},
-          {"compression", name_of(options.compression)},
-          {"solver_version", kSolverVersion}};
+  Json inputs = {{"input", input},
+                 {"method", options.method},
+                 {"compression", name_of(options.compression)},
+                 {"solver_version", kSolverVersion}};
+  if (!options.deblur) inputs["deblur"] = false;
+  return inputs;
 }
 
 // Room for the maps: normal 12, albedo 6, sigma 32, residual 2, status and pictures 4 bytes a pixel.
@@ -176,6 +178,7 @@ class Run {
     Result<LoadedSession> loaded = input_.load();
     if (!loaded) return std::move(loaded).error();
     photographs_ = std::move(loaded->photographs);
+    if (!options_.deblur) photographs_.spread.reset();
     facts_.conditions = json_of(loaded->conditions);
     warnings_ = std::move(loaded->warnings);
     seconds_.read = watch_.lap();
@@ -234,6 +237,7 @@ class Run {
     facts_.pixels = facts_.size.pixels() - facts_.status.with(kNoSolution);
     facts_.solved_by = json_of(frame->tally);
     if (frame->robust_share) facts_.solved_by["robust_share"] = *frame->robust_share;
+    if (frame->deblur) facts_.sharpening = json_of(*frame->deblur);
     if (frame->reference) {
       facts_.gates = json_of(frame->reference->gates);
       facts_.reference = json_of(*frame->reference);

@@ -179,6 +179,19 @@ BlurKernel blur_kernel(const BlurSettings& settings) {
   return kernel;
 }
 
+double spread_px(const BlurSettings& settings) {
+  BlurSettings core = settings;
+  core.halo_share = 0;
+  const BlurKernel kernel = blur_kernel(core);
+  const int side = 2 * kernel.radius + 1;
+  double variance = 0;
+  for (int i = 0; i < side * side; ++i) {
+    const double x = i % side - kernel.radius;
+    variance += kernel.weights[index(i)] * x * x;
+  }
+  return std::sqrt(variance);
+}
+
 void convolve(const BlurKernel& kernel, std::span<const double> in, Rect out_rect, int channels,
               std::span<double> out) {
   const int side = 2 * kernel.radius + 1;

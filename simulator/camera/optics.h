@@ -53,6 +53,9 @@ struct BlurKernel {
 /// radius is at most 40. Cost grows with its square: keep wide halos to small frames.
 BlurKernel blur_kernel(const BlurSettings& settings);
 
+/// Standard deviation of the kernel along x and along y, without its halo.
+double spread_px(const BlurSettings& settings);
+
 /// out = kernel * in, both with `channels` samples a pixel by rows; `in` lies on `out_rect` grown by the
 /// kernel's radius on all sides, also beyond the frame. Every sample is the sum of the same products in the
 /// same order, whatever the tile.

@@ -196,6 +196,7 @@ Calibration exact_calibration(const Scene& scene, const SceneRig& rig) {
   calibration.subject.focal_length_mm = kFocalLength_mm;
   calibration.subject.albedo_scale = AlbedoScale::kAbsolute;
   calibration.camera = rig.camera;
+  if (scene.effects.defocus) calibration.spread.emplace().sigma_px.fill(spread_px(scene.camera.blur));
   calibration.response = response_of(rig.sensor);
   if (scene.effects.nonlinearity) calibration.response->linearity.fill(scene.camera.linearity);
   if (const RetakeSettings& retakes = scene.camera.retakes; retakes.bracket) {

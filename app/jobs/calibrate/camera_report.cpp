@@ -319,6 +319,12 @@ CalibrationReport camera_report(const CameraFitFacts& facts) {
       {"mm a pixel at the frame's centre", words(f.scale_mm, 6)},
       {"noise of a corner along x or y, pixels", fmt::format("{:.3f}", facts.fit.corner_sigma_px)},
       {"tags on the table", fmt::format("{}", facts.fiducials.size())}};
+  if (const auto& spread = facts.spread) {
+    numbers.rows.push_back(
+        {"spread of the lens, R, G, B, pixels", fmt::format("{:.3f}, {:.3f}, {:.3f}", spread->sigma_px[0],
+                                                            spread->sigma_px[1], spread->sigma_px[2])});
+    report.numbers["point_spread_px"] = spread->sigma_px;
+  }
   report.sections.push_back(
       {"Numbers", {"Each with its standard deviation, by the noise that the corners show."}, numbers});
 

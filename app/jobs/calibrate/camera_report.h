@@ -20,7 +20,8 @@ struct CameraFitFacts {
   std::span<const calibration::BoardView> views;  ///< as fitted
   const calibration::LensFit& fit;
   std::vector<Fiducial> fiducials;
-  std::optional<Calibration> from;  ///< the calibration that the other parts come from
+  std::optional<PointSpread> spread;  ///< of the lens; nothing where too few edges show it
+  std::optional<Calibration> from;    ///< the calibration that the other parts come from
   std::string rig;
 };
 

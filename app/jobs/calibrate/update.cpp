@@ -91,6 +91,7 @@ Calibration change_of(const RigCheck& rig) {
   if (body) {
     change.camera = rig.movement.camera;
     change.fiducials = before.fiducials;
+    change.spread = before.spread;
   }
   if (lights || (body && !before.patches.empty())) {
     change.lights = rig.movement.lights;
