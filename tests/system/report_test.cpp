@@ -284,8 +284,8 @@ app::PhotographsSummary moved_summary(double cost_deg) {
 }
 
 TEST(Verdicts, WarnOfAClothThatMovedWhereItCostsADegreeAndNotWhereATenth) {
-  EXPECT_THAT(app::verdicts_of(moved_summary(0.15), 0), IsEmpty());
-  const std::vector<Verdict> verdicts = app::verdicts_of(moved_summary(1.1), 0);
+  EXPECT_THAT(app::verdicts_of(moved_summary(0.15), 0, {}, {}), IsEmpty());
+  const std::vector<Verdict> verdicts = app::verdicts_of(moved_summary(1.1), 0, {}, {});
   ASSERT_EQ(verdicts.size(), 1U);
   EXPECT_EQ(verdicts[0].name, "CLOTH_MOVED");
   EXPECT_THAT(verdicts[0].text, testing::HasSubstr("LED 5"));
@@ -296,17 +296,17 @@ TEST(Verdicts, WarnOfShotsThatCannotBeRegisteredWhereTheyDoNotFit) {
   app::PhotographsSummary summary = moved_summary(0);
   summary.shifts.found = false;
   summary.diagnosis.residual = 0.004;
-  EXPECT_THAT(app::verdicts_of(summary, 0), IsEmpty());
+  EXPECT_THAT(app::verdicts_of(summary, 0, {}, {}), IsEmpty());
   summary.diagnosis.residual = 0.11;
-  ASSERT_EQ(app::verdicts_of(summary, 0).size(), 1U);
-  EXPECT_EQ(app::verdicts_of(summary, 0)[0].name, "CLOTH_MOVED");
+  ASSERT_EQ(app::verdicts_of(summary, 0, {}, {}).size(), 1U);
+  EXPECT_EQ(app::verdicts_of(summary, 0, {}, {})[0].name, "CLOTH_MOVED");
 }
 
 TEST(Verdicts, WarnOfShadowsFromFartherThanTheyAreLookedFor) {
   app::PhotographsSummary summary;
   summary.shadow_reach_is_capped = true;
-  ASSERT_EQ(app::verdicts_of(summary, 0).size(), 1U);
-  EXPECT_EQ(app::verdicts_of(summary, 0)[0].name, "SHADOWS_CAPPED");
+  ASSERT_EQ(app::verdicts_of(summary, 0, {}, {}).size(), 1U);
+  EXPECT_EQ(app::verdicts_of(summary, 0, {}, {})[0].name, "SHADOWS_CAPPED");
 }
 
 TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
