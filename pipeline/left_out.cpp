@@ -10,7 +10,6 @@
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "pipeline/light_correction.h"
-#include "pipeline/samples.h"
 #include "pipeline/tile_reader.h"
 #include "solver/in_double/pixel.h"
 
@@ -37,6 +36,15 @@ class PatchJudge {
     taken_ = Image<float>({kRowGroup, 1}, count);
     used_ = Image<float>({kRowGroup, 1}, count);
     left_ = Image<float>({kRowGroup, 1}, count);
+    for (int c = 0; c < 3; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      output_.normal[i] = maps_.plane(c);
+      output_.albedo[i] = maps_.plane(3 + c);
+      output_.sigma_albedo[i] = maps_.plane(6 + c);
+    }
+    output_.sigma_normal_deg = maps_.plane(9);
+    output_.residual = maps_.plane(10);
+    output_.status = status_.plane();
   }
 
   // Writes `into` from its pixel `first` on.
@@ -44,6 +52,7 @@ class PatchJudge {
     const solver::TileInput input = prepare(tile);
     const std::size_t turns = solver::turns_of(lights_);
     predicted_.assign(static_cast<std::size_t>(tile.width()) * lights_, kNaN);
+    read_lights(input);
     for (std::size_t turn = 0; turn < turns; ++turn) predict(input, turn, turns);
     for (int x = 0; x < tile.width(); ++x) {
       const std::size_t pixel = first + static_cast<std::size_t>(x), at = pixel * lights_;
@@ -92,14 +101,15 @@ class PatchJudge {
     }
     solver::TileInput others = input;
     others.readings = views_;
-    const SampleMaps maps = solve_sample(others, *variant_.method);
+    variant_.method->solve(others, output_);
     for (int x = 0; x < tile.width(); ++x) {
-      if (maps.status(x, 0) & kNoSolution) continue;
-      const Vec3 n = {maps.normal(x, 0, 0), maps.normal(x, 0, 1), maps.normal(x, 0, 2)};
+      if (output_.status(x, 0) & kNoSolution) continue;
+      const Vec3 n = {output_.normal[0](x, 0), output_.normal[1](x, 0), output_.normal[2](x, 0)};
+      const double albedo = output_.albedo[static_cast<std::size_t>(planes_.speaker())](x, 0);
       for (std::size_t k = turn; k < lights_; k += turns) {
         const bool hidden = std::isinf(used(k, x)) && used(k, x) < 0;
-        const double lit = hidden ? 0 : std::max(0.0, dot(n, light(input, k, x).direction));
-        predicted_[static_cast<std::size_t>(x) * lights_ + k] = static_cast<float>(maps.albedo(x, 0) * lit);
+        const double lit = hidden ? 0 : std::max(0.0, dot(n, light(k, x).direction));
+        predicted_[static_cast<std::size_t>(x) * lights_ + k] = static_cast<float>(albedo * lit);
       }
     }
   }
@@ -108,9 +118,9 @@ class PatchJudge {
     directions_.assign(lights_, {});
     variances_.assign(lights_, std::numeric_limits<double>::quiet_NaN());
     const std::optional<NoiseModel> noise = input.noise;
-    std::vector<float> usable;
+    usable_.clear();
     for (std::size_t k = 0; k < lights_; ++k) {
-      const LightField::Light lit = light(input, k, x);
+      const LightField::Light& lit = light(k, x);
       const double gain = variant_.gains.empty() ? 1 : variant_.gains[k];
       const double taken = taken_(x, 0, plane(k)) / lit.strength;
       const double predicted = predicted_[static_cast<std::size_t>(x) * lights_ + k];
@@ -119,17 +129,23 @@ class PatchJudge {
       slots.error[k] = is_usable ? static_cast<float>(gain * (taken - predicted)) : kNaN;
       directions_[k] = lit.direction;
       if (!is_usable) continue;
-      usable.push_back(slots.reading[k]);
+      usable_.push_back(slots.reading[k]);
       if (noise) variances_[k] = noise->variance(predicted * lit.strength) / (lit.strength * lit.strength);
     }
     const auto rank = static_cast<std::size_t>(solver::bright_rank(lights_));
-    scale = usable.size() < rank ? kNaN : value_of_rank<float>(usable, usable.size() - rank);
-    solver::left_out_noise(directions_, variances_, slots.noise);
+    scale = usable_.size() < rank ? kNaN : value_of_rank<float>(usable_, usable_.size() - rank);
+    if (noise) solver::left_out_noise(directions_, variances_, slots.noise);
   }
 
-  LightField::Light light(const solver::TileInput& input, std::size_t k, int x) const {
-    const int px = input.tile.x0 + x, py = input.tile.y0;
-    return input.field->at(k, planes_.channel_at(planes_.speaker(), px, py), px, py);
+  void read_lights(const solver::TileInput& input) {
+    light_.clear();
+    for (int px = input.tile.x0, py = input.tile.y0; px < input.tile.x1; ++px) {
+      const int channel = planes_.channel_at(planes_.speaker(), px, py);
+      for (std::size_t k = 0; k < lights_; ++k) light_.push_back(input.field->at(k, channel, px, py));
+    }
+  }
+  const LightField::Light& light(std::size_t k, int x) const {
+    return light_[static_cast<std::size_t>(x) * lights_ + k];
   }
   int plane(std::size_t k) const { return static_cast<int>(k) * planes_.count + planes_.speaker(); }
   float used(std::size_t k, int x) const { return used_(x, 0, plane(k)); }
@@ -139,8 +155,13 @@ class PatchJudge {
   std::size_t lights_;
   Planes planes_;
   Image<float> taken_, used_, left_;  // [k * planes + p], one row
+  Image<float> maps_{{kRowGroup, 1}, 11};
+  Image<std::uint16_t> status_{{kRowGroup, 1}};
+  solver::TileOutput output_;  // of one row, views of the two
   std::vector<View<const float>> views_;
-  std::vector<float> predicted_;  // [x * lights + k]
+  std::vector<LightField::Light> light_;  // [x * lights + k], as the next
+  std::vector<float> predicted_;
+  std::vector<float> usable_;
   std::vector<Vec3> directions_;
   std::vector<double> variances_;
 };

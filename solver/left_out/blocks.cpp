@@ -7,7 +7,7 @@ namespace weft::solver {
 namespace {
 
 constexpr int kCell = kRowGroup;
-constexpr int kPatchWidth = 32;
+constexpr int kChooseWidth = 32, kReportWidth = 16;
 constexpr int kLeastWidth = 8;  // of what the frame's edge leaves of a patch
 static_assert(kBlock % kCell == 0);
 
@@ -24,6 +24,7 @@ BlockGrid blocks_of(Size size) {
 
 std::vector<Patch> patches_of(Size size, PatchUse use) {
   constexpr int kCells = kBlock / kCell;
+  const int width = use == PatchUse::kChoose ? kChooseWidth : kReportWidth;
   const BlockGrid grid = blocks_of(size);
   std::vector<Patch> patches;
   for (std::size_t block = 0; block < grid.count(); ++block) {
@@ -33,7 +34,7 @@ std::vector<Patch> patches_of(Size size, PatchUse use) {
       for (int column = first_column; column < first_column + kCells; ++column) {
         if (((row + column) % 2 == 0) != (use == PatchUse::kChoose)) continue;
         const int x0 = column * kCell, y0 = row * kCell + row_in_cell(column, row);
-        const int x1 = std::min(x0 + kPatchWidth, size.width);
+        const int x1 = std::min(x0 + width, size.width);
         if (y0 < size.height && x1 - x0 >= kLeastWidth) patches.push_back({{x0, y0, x1, y0 + 1}, block});
       }
     }

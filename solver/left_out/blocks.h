@@ -28,9 +28,9 @@ struct Patch {
 /// Patches that choose a stage never report its error.
 enum class PatchUse { kChoose, kReport };
 
-/// Patches of one use, block by block: one of 32 x 1 pixels in every second cell of 64 x 64, as on a
-/// chessboard, 1/256 of the frame for each use. They depend on the frame's size alone. A frame of one cell
-/// has none that report.
+/// Patches of one use, block by block: one row of pixels in every second cell of 64 x 64, as on a chessboard.
+/// 32 pixels choose and 16 report: 1/256 and 1/512 of the frame. They depend on the frame's size alone. A
+/// frame of one cell has none that report.
 std::vector<Patch> patches_of(Size size, PatchUse use);
 
 }  // namespace weft::solver

@@ -16,6 +16,8 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 // Errors count up to so many times their median: no method predicts a highlight.
 constexpr double kCutAt = 4;
+// Below this share of the cubed trace a determinant is rounding.
+constexpr double kRankDeficient = 1e-12;
 // Median of the absolute value of a normal deviate.
 constexpr double kMedianOfNormal = 0.6745;
 
@@ -123,15 +125,20 @@ void left_out_noise(std::span<const Vec3> directions, std::span<const double> va
   const auto vector = [&](std::size_t k) {
     return Eigen::Vector3d(directions[k].x, directions[k].y, directions[k].z);
   };
-  for (std::size_t turn = 0; turn < turns; ++turn) {
-    Eigen::Matrix3d others = Eigen::Matrix3d::Zero();
-    for (std::size_t k = 0; k < lights; ++k) {
-      if (k % turns != turn && std::isfinite(variances[k]))
-        others += vector(k) * vector(k).transpose() / variances[k];
+  const auto information = [&](std::size_t first, std::size_t step) {
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (std::size_t k = first; k < lights; k += step) {
+      const Eigen::Vector3d l = vector(k);
+      if (std::isfinite(variances[k])) sum.noalias() += (l / variances[k]) * l.transpose();
     }
-    Eigen::Matrix3d covariance;
-    bool spans = false;
-    others.computeInverseWithCheck(covariance, spans, 0.0);
+    return sum;
+  };
+  const Eigen::Matrix3d all = information(0, 1);
+  const double least_determinant = kRankDeficient * std::pow(all.trace(), 3);
+  for (std::size_t turn = 0; turn < turns; ++turn) {
+    const Eigen::Matrix3d others = all - information(turn, turns);
+    const bool spans = others.determinant() > least_determinant;
+    const Eigen::Matrix3d covariance = others.inverse();
     for (std::size_t k = turn; k < lights; k += turns) {
       const double variance = variances[k] + vector(k).dot(covariance * vector(k));
       sigma[k] = static_cast<float>(spans ? std::sqrt(variance) : kNaN);

@@ -52,7 +52,7 @@ TEST(Patches, ThatChooseAndThatReportShareNoPixelAndAreEnoughOfTheFrame) {
     }
   }
   EXPECT_EQ(choose.size(), report.size());
-  EXPECT_EQ(pixels * 128, kFrame.pixels());
+  EXPECT_EQ(pixels * 512, 3 * kFrame.pixels()) << "1/256 and 1/512";
 }
 
 TEST(Patches, LieInsideSmallFrames) {
