@@ -322,9 +322,11 @@ TEST(Verdicts, CallAClothDominatedByHighlightsFromAFifthOfThePixels) {
 
 TEST(Verdicts, RecommendNoLevelThatHasRun) {
   const LeftOutFacts unfit = {{.median = 0.2, .rms = 0.3, .readings = 100}, {}};
+  app::PhotographsSummary glossy;
+  glossy.outshining = 1;
   for (const solver::Level level :
        {solver::Level::kStandard, solver::Level::kRobust, solver::Level::kReference}) {
-    const std::vector<Verdict> verdicts = app::verdicts_of({}, 0.5, unfit, level);
+    const std::vector<Verdict> verdicts = app::verdicts_of(glossy, 0.5, unfit, level);
     ASSERT_EQ(verdicts.size(), 2U);
     for (const Verdict& verdict : verdicts) {
       EXPECT_EQ(verdict.remedy.find("--quality robust") != std::string::npos, level < solver::Level::kRobust)
