@@ -10,7 +10,6 @@ namespace weft::solver {
 namespace {
 
 constexpr int kFrequencies = 256;  // from 0 to Nyquist's
-constexpr float kDoubt = 2;        // times the noise: what noise may explain of a correction
 
 double square(double x) {
   return x * x;
@@ -107,10 +106,6 @@ DeblurFilter deblur_filter(double sigma_px, double noise) {
   for (int k = 0; k < kWeights; ++k)
     filter.weights[static_cast<std::size_t>(k)] = static_cast<float>(weights[k]);
   return filter;
-}
-
-float best_share(float correction, float noise) {
-  return correction > kDoubt * noise ? 1 - kDoubt * noise / correction : 0;
 }
 
 }  // namespace weft::solver

@@ -30,6 +30,8 @@ DeblurFilter deblur_filter(double sigma_px, double noise);
 /// square, noise included; `noise` is what noise makes of that, its covariance with the noise of what is
 /// corrected included. Noise counts twice, as the mean is taken over few pixels: 0 where it explains half of
 /// it.
-float best_share(float correction, float noise);
+inline float best_share(float correction, float noise) {
+  return correction > 2 * noise ? 1 - 2 * noise / correction : 0;
+}
 
 }  // namespace weft::solver
