@@ -10,19 +10,13 @@
 namespace weft::pipeline {
 namespace {
 
-// Cells of so many pixels a side speak by the filter cell in their corner.
-constexpr int kCell = 4, kQuad = 2;
+constexpr int kCell = 2;
 // Rows of cells kept from the band before: those of the pixels that waited for demosaicing, and one above.
 constexpr int kKept = (solver::kDemosaicReach + kCell - 1) / kCell + 1;
 // Columns of a block. Over so many the lights change by a percent.
 constexpr int kBlock = 64;
 // A slope of 56 degrees, a residual of three times the albedo, and the least that is divided by.
 constexpr float kMostSlope2 = 2.25F, kMostResidual = 3, kLeastAlbedo = 1e-3F;
-
-// What residuals have beyond noise.
-float misfit2_of(float residual2, float noise2, float pixels) {
-  return pixels > 0 ? std::max(residual2 - noise2, 0.0F) / pixels : 0;
-}
 
 // Square of the difference of a normal to the next along the row, or to the one before where there is none.
 float turn2_at(int x, int y, const std::array<View<const float>, 3>& normal) {
@@ -58,29 +52,27 @@ void ModelPart::set_blocks(Rect band) {
   }
 }
 
-// Sums over the pixels of a cell that speak for it, from (x0, y0) of the band.
-ModelPart::Sums ModelPart::sums_of(int x0, int y0, int frame_y0, const SolvedRows& solved) const {
-  Sums sums = {};
-  const Block& block = blocks_[static_cast<std::size_t>(x0 / kBlock)];
-  for (int y = y0; y < std::min(y0 + kQuad, solved.status.height()); ++y) {
-    for (int x = x0; x < std::min(x0 + kQuad, solved.status.width()); ++x) {
-      const std::uint16_t status = solved.status(x, y);
-      if (status & kNoSolution) continue;
-      const float nz = solved.normal[2](x, y), z2 = nz * nz, residual = solved.residual(x, y);
-      const float albedo = std::max(solved.albedo(x, y), kLeastAlbedo);
-      const float q = residual < kMostResidual ? residual : kMostResidual;
-      sums[kPixels] += 1;
-      sums[kSlope2] += 1 - z2 < kMostSlope2 * z2 ? (1 - z2) / z2 : kMostSlope2;
-      sums[kAlbedo] += albedo;
-      sums[kShaded] += (status & kShadowed) != 0 ? 1.0F : 0.0F;
-      if (traits_.is_half) sums[kTurn2] += turn2_at(x, y, solved.normal);
-      if (!has_noise_) continue;
-      const auto c = static_cast<std::size_t>(planes_.channel_at(planes_.speaker(), x, frame_y0 + y - y0));
-      sums[kResidual2] += q * q;
-      sums[kNoise2] += block.noise[c](solved.normal[0](x, y), solved.normal[1](x, y), nz, albedo);
-    }
-  }
-  return sums;
+// What the pixel that speaks for a cell shows. It is another corner in each of four neighbouring cells, so
+// that they have all filters between them.
+ModelPart::Sums ModelPart::seen_at(int cell_x, int cell_y, int frame_y0, const SolvedRows& solved) const {
+  const int x = std::min(cell_x * kCell + cell_y % kCell, solved.status.width() - 1),
+            y = std::min(cell_y * kCell + cell_x % kCell, solved.status.height() - 1);
+  const std::uint16_t status = solved.status(x, y);
+  if (status & kNoSolution) return {};
+  const float nz = solved.normal[2](x, y), z2 = nz * nz, residual = solved.residual(x, y);
+  const float albedo = std::max(solved.albedo(x, y), kLeastAlbedo);
+  const float q = residual < kMostResidual ? residual : kMostResidual;
+  Sums seen = {};
+  seen[kPixels] = 1;
+  seen[kSlope2] = 1 - z2 < kMostSlope2 * z2 ? (1 - z2) / z2 : kMostSlope2;
+  seen[kAlbedo] = albedo;
+  seen[kShaded] = (status & kShadowed) != 0 ? 1.0F : 0.0F;
+  if (traits_.is_half) seen[kTurn2] = turn2_at(x, y, solved.normal);
+  if (!has_noise_) return seen;
+  const auto c = static_cast<std::size_t>(planes_.channel_at(planes_.speaker(), x, frame_y0 + y));
+  const Block& block = blocks_[static_cast<std::size_t>(x / kBlock)];
+  seen[kMisfit2] = q * q - block.noise[c](solved.normal[0](x, y), solved.normal[1](x, y), nz, albedo);
+  return seen;
 }
 
 // Of all cells from `first_row` on.
@@ -90,13 +82,14 @@ void ModelPart::sum_blocks(int first_row) {
     const int x1 = std::min(x0 + kBlock / kCell, cells_.width());
     Sums sums = {};
     for (int row = first_row; row < known_; ++row) {
-      for (const Sum p : {kPixels, kSlope2, kResidual2, kNoise2}) {
+      for (const Sum p : {kPixels, kSlope2, kMisfit2}) {
         const float* cells = cells_.plane(p).row(row);
         for (int x = x0; x < x1; ++x) sums[p] += cells[x];
       }
     }
-    if (sums[kPixels] > 0) blocks_[i].slope2 = sums[kSlope2] / sums[kPixels];
-    blocks_[i].misfit2 = misfit2_of(sums[kResidual2], sums[kNoise2], sums[kPixels]);
+    if (!(sums[kPixels] > 0)) return;
+    blocks_[i].slope2 = sums[kSlope2] / sums[kPixels];
+    blocks_[i].misfit2 = std::max(sums[kMisfit2], 0.0F) / sums[kPixels];
   });
 }
 
@@ -111,36 +104,45 @@ void ModelPart::gather(Rect band, const SolvedRows& solved) {
   known_ = kept + (band.height() + kCell - 1) / kCell;
   set_blocks(band);
   parallel_for(static_cast<std::size_t>(known_ - kept), threads_, [&](std::size_t i, int) {
-    const int row = kept + static_cast<int>(i), y = static_cast<int>(i) * kCell;
-    for (int cell = 0; cell < cells_.width(); ++cell) {
-      const Sums sums = sums_of(cell * kCell, y, band.y0 + y, solved);
-      for (std::size_t p = 0; p < kSums; ++p) cells_(cell, row, static_cast<int>(p)) = sums[p];
+    const int cell_y = static_cast<int>(i), row = kept + cell_y;
+    for (int cell_x = 0; cell_x < cells_.width(); ++cell_x) {
+      const Sums seen = seen_at(cell_x, cell_y, band.y0, solved);
+      for (std::size_t p = 0; p < kSums; ++p) cells_(cell_x, row, static_cast<int>(p)) = seen[p];
     }
   });
   sum_blocks(kept);
 }
 
-float ModelPart::angle_at(int cell_x, int row) const {
-  const float pixels = cells_(cell_x, row, kPixels);
-  if (!(pixels > 0)) return 0;
-  Sums around = {};
-  for (int j = std::max(row - 1, 0); j < std::min(row + 2, known_); ++j) {
-    for (const Sum p : {kPixels, kShaded, kResidual2, kNoise2}) {
-      const float* cells = cells_.plane(p).row(j);
-      for (int i = std::max(cell_x - 1, 0); i < std::min(cell_x + 2, cells_.width()); ++i)
-        around[p] += cells[i];
+void ModelPart::angles_at(int row, std::vector<float>& angles) const {
+  const std::size_t width = angles.size(), stride = width + 2;
+  std::vector<float> columns(kSums * stride);  // sums of three rows, with none beyond both ends
+  for (std::size_t p = 0; p < kSums; ++p) {
+    float* sums = columns.data() + p * stride + 1;
+    for (int j = std::max(row - 1, 0); j < std::min(row + 2, known_); ++j) {
+      const float* cells = cells_.plane(static_cast<int>(p)).row(j);
+      for (std::size_t x = 0; x < width; ++x) sums[x] += cells[x];
     }
   }
-  const Block& block = blocks_[static_cast<std::size_t>(cell_x * kCell / kBlock)];
-  const solver::ModelEvidence evidence = {
-      .slope2 = cells_(cell_x, row, kSlope2) / pixels,
-      .slope2_around = block.slope2,
-      .albedo = cells_(cell_x, row, kAlbedo) / pixels,
-      .shadowed = around[kShaded] / around[kPixels],
-      .misfit2 = misfit2_of(around[kResidual2], around[kNoise2], around[kPixels]),
-      .misfit2_around = block.misfit2,
-      .turn2 = cells_(cell_x, row, kTurn2) / pixels};
-  return solver::model_sigma_deg(evidence, block.degrees_a_residual, traits_);
+  for (std::size_t x = 0; x < width; ++x) {
+    Sums around;
+    for (std::size_t p = 0; p < kSums; ++p) {
+      const float* sums = columns.data() + p * stride + x;
+      around[p] = sums[0] + sums[1] + sums[2];
+    }
+    angles[x] = around[kPixels] > 0 ? angle_of(around, blocks_[x * kCell / kBlock]) : 0;
+  }
+}
+
+float ModelPart::angle_of(const Sums& around, const Block& block) const {
+  const float share = 1 / around[kPixels];
+  return solver::model_sigma_deg({.slope2 = around[kSlope2] * share,
+                                  .slope2_around = block.slope2,
+                                  .albedo = around[kAlbedo] * share,
+                                  .shadowed = around[kShaded] * share,
+                                  .misfit2 = std::max(around[kMisfit2], 0.0F) * share,
+                                  .misfit2_around = block.misfit2,
+                                  .turn2 = around[kTurn2] * share},
+                                 block.degrees_a_residual, traits_);
 }
 
 void ModelPart::fill(Rect rows, const std::array<View<const float>, 3>& albedo, View<float> model_normal_deg,
@@ -152,9 +154,7 @@ void ModelPart::fill(Rect rows, const std::array<View<const float>, 3>& albedo, 
     const int y0 = std::max(cell_y * kCell, rows.y0) - rows.y0,
               y1 = std::min((cell_y + 1) * kCell, rows.y1) - rows.y0;
     std::vector<float> angles(static_cast<std::size_t>(cells_.width()));
-    for (int cell = 0; cell < cells_.width(); ++cell) {
-      angles[static_cast<std::size_t>(cell)] = angle_at(cell, cell_y - first_);
-    }
+    angles_at(cell_y - first_, angles);
     for (int y = y0; y < y1; ++y) {
       float* angle = model_normal_deg.row(y);
       for (int x = 0; x < rows.width(); ++x) angle[x] = angles[static_cast<std::size_t>(x / kCell)];

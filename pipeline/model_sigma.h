@@ -18,14 +18,13 @@ struct SolvedRows {
   View<const float> albedo;  ///< of each photosite of a mosaic, or of green
 };
 
-/// The model's part of sigma (solver/uncertainty/model_sigma.h) over a frame that is solved band by band, for
-/// cells of 4 x 4 pixels. The 2 x 2 pixels in its corner speak for a cell. Slope and albedo are its own;
-/// misfit and shadows are those of the 3 x 3 cells around it, as far as they are solved when its turn comes;
-/// the wider neighbourhood is its block of 64 columns and a band's rows. The same bytes for any number of
-/// threads.
+/// The model's part of sigma (solver/uncertainty/model_sigma.h) over a frame that is solved band by band. One
+/// pixel speaks for each cell of 2 x 2. The evidence of a cell is that of the 3 x 3 cells around it, as far
+/// as they are solved when its turn comes; its wider neighbourhood is a block of 64 columns and a band's
+/// rows. The same bytes for any number of threads.
 class ModelPart {
  public:
-  /// Bands have `band_rows` rows, a multiple of 4, but for the last. `photographs` must outlive this.
+  /// Bands have `band_rows` rows, an even number, but for the last. `photographs` must outlive this.
   ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits, int threads);
 
   /// Takes in the next band.
@@ -38,7 +37,7 @@ class ModelPart {
 
  private:
   // Of the pixels with a solution.
-  enum Sum { kPixels, kSlope2, kAlbedo, kShaded, kResidual2, kNoise2, kTurn2, kSums };
+  enum Sum { kPixels, kSlope2, kAlbedo, kShaded, kMisfit2, kTurn2, kSums };
   using Sums = std::array<float, kSums>;
   struct Block {
     std::array<solver::ResidualNoise, 3> noise;  ///< by channel
@@ -47,9 +46,10 @@ class ModelPart {
   };
 
   void set_blocks(Rect band);
-  Sums sums_of(int x0, int y0, int frame_y0, const SolvedRows& solved) const;
+  Sums seen_at(int cell_x, int cell_y, int frame_y0, const SolvedRows& solved) const;
   void sum_blocks(int first_row);
-  float angle_at(int cell_x, int row) const;
+  void angles_at(int row, std::vector<float>& angles) const;
+  float angle_of(const Sums& around, const Block& block) const;
 
   const Photographs& photographs_;
   Planes planes_;

@@ -82,9 +82,9 @@ float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, 
   const float shadowed = kShadowed_deg * evidence.shadowed * slope;
   const float here = (traits.is_robust ? kHereOfRobust : kHere).at(slope),
               around = (traits.is_robust ? kAroundOfRobust : kAround).at(slope),
-              misfit = static_cast<float>(degrees_a_residual) *
-                       std::sqrt(here * here * evidence.misfit2 + around * around * evidence.misfit2_around);
-  float sum2 = bounced * bounced + shadowed * shadowed + misfit * misfit;
+              scale = static_cast<float>(degrees_a_residual);
+  float sum2 = bounced * bounced + shadowed * shadowed +
+               scale * scale * (here * here * evidence.misfit2 + around * around * evidence.misfit2_around);
   if (traits.is_half) {
     const float within = static_cast<float>(degrees(1)) * kWithinPixel,
                 unmasked = kUnmasked_deg * evidence.slope2;
