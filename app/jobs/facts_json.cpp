@@ -84,9 +84,6 @@ std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts) {
         "reference ended early: a round turned the normals no less than the one before, so its normals were "
         "not used");
   }
-  if (facts.shadow_reach_is_capped) {
-    said.emplace_back("shadows from farther than reference looks were not found; flatten the cloth");
-  }
   return said;
 }
 

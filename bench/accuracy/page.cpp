@@ -115,8 +115,7 @@ std::int64_t count_true(const Rows& rows, const char* key) {
 }
 
 std::string coverage_section(const Rows& rows) {
-  std::string section = "## How sure the maps are\n\n";
-  section += fmt::format(
+  std::string section = fmt::format(
       "The angle between solved and true normal over `normal_deg` of sigma.exr, at every pixel with a "
       "solution. "
       "Its median is to lie from {} to {} (0.83 where the error is Gaussian), and under {:.0f} percent are "
@@ -190,7 +189,8 @@ LevelOnCloth measured_on(const Rows& table, const std::string& level, const Clot
     sum.seconds += number(row, "ns_per_pixel") * 1e-9 * kPixels;
     sum.mean_deg += number(row, "mean_deg");
     sum.albedo_rel += number(row, "albedo_mean_rel");
-    left_out += row["left_out_rel"].is_number() ? number(row, "left_out_rel") : std::nan("");
+    left_out += row.contains("left_out_rel") && row["left_out_rel"].is_number() ? number(row, "left_out_rel")
+                                                                                : std::nan("");
   }
   return {sum.seconds / n, sum.mean_deg / n, sum.albedo_rel / n, left_out / n};
 }
@@ -203,6 +203,10 @@ std::string levels_table(const Rows& table) {
     Cells& line = cells.emplace_back(Cells{group.name});
     for (const std::string& level : level_names()) {
       const LevelOnCloth m = measured_on(table, level, group);
+      if (!std::isfinite(m.mean_deg)) {  // not measured
+        line.emplace_back();
+        continue;
+      }
       std::string cell =
           fmt::format("{:.2g} s: **{:.2g}°**, {:.2g} %", m.seconds, m.mean_deg, 100 * m.albedo_rel);
       if (std::isfinite(m.left_out_rel)) cell += fmt::format(", {:.2g} %", 100 * m.left_out_rel);
@@ -214,6 +218,9 @@ std::string levels_table(const Rows& table) {
 
 // When a level is not worth its seconds.
 std::string advice(const Rows& table) {
+  for (const std::string& level : level_names()) {
+    if (!std::isfinite(measured_on(table, level, kGroups[0]).mean_deg)) return {};
+  }
   const auto deg = [&](const char* level, std::size_t group) {
     return measured_on(table, level, kGroups[group]).mean_deg;
   };
@@ -326,10 +333,12 @@ Result<void> measure_figures(const FiguresOptions& options, AccuracyFigures& fig
     if (std::count(figure_parts().begin(), figure_parts().end(), part) == 0)
       return no_such("part", part, figure_parts());
   }
-  figures.processor = document_of({})["machine"]["processor"];
-  figures.threads = resolved_threads(options.table.threads);
-  figures.solver_version = kSolverVersion;
+  const std::string here = fmt::format("solver version {} on {}, {} threads{}", kSolverVersion,
+                                       document_of({})["machine"]["processor"].get<std::string>(),
+                                       resolved_threads(options.table.threads),
+                                       options.table.quick ? ", one small patch a scene" : "");
   for (const std::string& name : parts) {
+    figures.measured_by[name] = here;
     if (name == "listing") {
       Result<std::string> listing = explain_listing(options.program);
       if (!listing) return std::move(listing).error();
@@ -347,9 +356,7 @@ Result<void> measure_figures(const FiguresOptions& options, AccuracyFigures& fig
 
 Json json_of(const AccuracyFigures& figures) {
   Json document = {{"schema", fmt::format("{}/1", kSchema)},
-                   {"processor", figures.processor},
-                   {"threads", figures.threads},
-                   {"solver_version", figures.solver_version},
+                   {"measured_by", figures.measured_by},
                    {"listing", figures.listing}};
   for (const FigurePart& part : kParts) document[part.name] = figures.*part.rows;
   return document;
@@ -358,9 +365,7 @@ Json json_of(const AccuracyFigures& figures) {
 Result<AccuracyFigures> figures_from_json(const Json& document, const std::string& where) {
   AccuracyFigures figures;
   try {
-    figures.processor = document.at("processor");
-    figures.threads = document.at("threads");
-    figures.solver_version = document.at("solver_version");
+    figures.measured_by = document.at("measured_by").get<std::map<std::string, std::string>>();
     figures.listing = document.at("listing");
     for (const FigurePart& part : kParts) figures.*part.rows = document.at(part.name).get<Rows>();
   } catch (const Json::exception& e) {
@@ -390,11 +395,11 @@ report::Plot levels_plot(const AccuracyFigures& figures) {
 
 std::string summary_markdown(const AccuracyFigures& figures) {
   std::string text = fmt::format(
-      "Seconds for a scan of 16 megapixels and ten LEDs on {}, {} threads; then the mean error of the "
+      "Seconds for a scan of 16 megapixels and ten LEDs ({}); then the mean error of the "
       "normals, of the albedo, and of the light left out when it is predicted from the others, which needs "
       "no truth (absent where reference corrected readings). Reading the frames and writing the maps comes "
       "on top and is the same for all levels.\n\n",
-      figures.processor, figures.threads);
+      figures.measured_by.contains("table") ? figures.measured_by.at("table") : "not measured");
   text += levels_table(figures.table);
   text += "![error against seconds, by level](pictures/levels.svg)\n\n";
   text += advice(figures.table);
@@ -462,68 +467,68 @@ report::Plot curves_plot(const AccuracyFigures& figures) {
 }
 
 std::string accuracy_markdown(const AccuracyFigures& figures) {
-  std::string page = fmt::format(
-      "Measured on {}, {} threads, by solver version {}. The numbers behind plots and tables are in "
-      "[accuracy.json](pictures/accuracy.json).\n\n![mean error against time](pictures/accuracy.svg)\n\n",
-      figures.processor, figures.threads, figures.solver_version);
-  page += "## All scenes together\n\n";
-  page += columns_table(overall(figures.table), {{"method", "method"},
-                                                 {"mean_deg", "mean, degrees"},
-                                                 {"p95_deg", "95 %"},
-                                                 {"ratio_to_bound", "over bound"},
-                                                 {"ratio_to_oracle", "over oracle"},
-                                                 {"albedo_mean_rel", "albedo error"},
-                                                 {"albedo_bias_rel", "bias"},
-                                                 {"leak", "leak"},
-                                                 {"ns_per_pixel", "ns a pixel"},
-                                                 {"ratio_to_unpack", "over unpacking"},
-                                                 {"ratio_to_copy", "over a copy"},
-                                                 {"pareto", "on the front"}});
-  page += "## Mean error by scene, degrees\n\n";
-  page += markdown_table(by_scene_and_method(figures.table, "mean_deg"));
-  page += "## Mean relative error of albedo by scene\n\n";
-  page += markdown_table(by_scene_and_method(figures.table, "albedo_mean_rel"));
-  page += "## Leak by scene\n\n";
-  page += markdown_table(by_scene_and_method(figures.table, "leak"));
-  page += coverage_section(figures.coverage);
-  page += "## From captures to maps, mean error in degrees\n\n";
-  page += columns_table(figures.chain, {{"case", "case"},
-                                        {"level", "level"},
-                                        {"mean_deg", "mean, degrees"},
-                                        {"p95_deg", "95 %"},
-                                        {"exact_deg", "mean with exact calibration"},
-                                        {"albedo_rel", "albedo error"}});
-  page += "## What `--explain` foretells, over what comes true\n\n";
-  page += markdown_table(crossed(figures.explain, "scene", "quality", "ratio"));
-  page += "## Fewer LEDs\n\n";
-  page += columns_table(figures.leds, {{"leds", "LEDs"},
-                                       {"numbers", "which"},
-                                       {"method", "method"},
-                                       {"mean_deg", "mean, degrees"},
-                                       {"p95_deg", "95 %"},
-                                       {"albedo_mean_rel", "albedo error"},
-                                       {"ns_per_pixel", "ns a pixel"}});
-  page +=
-      "## Resolution, arithmetic, rays and rounds\n\n![error against time by "
-      "setting](pictures/curves.svg)\n\n";
-  page += columns_table(figures.curves, {{"curve", "what"},
+  std::string page =
+      "The numbers behind plots and tables are in [accuracy.json](pictures/accuracy.json).\n\n![mean error "
+      "against time](pictures/accuracy.svg)\n\n";
+  const auto add = [&](const char* heading, const char* part, const std::string& table) {
+    if (!figures.measured_by.contains(part)) return;
+    page += fmt::format("## {}\n\nBy {}.\n\n{}", heading, figures.measured_by.at(part), table);
+  };
+  add("All scenes together", "table",
+      columns_table(overall(figures.table), {{"method", "method"},
+                                             {"mean_deg", "mean, degrees"},
+                                             {"p95_deg", "95 %"},
+                                             {"ratio_to_bound", "over bound"},
+                                             {"ratio_to_oracle", "over oracle"},
+                                             {"albedo_mean_rel", "albedo error"},
+                                             {"albedo_bias_rel", "bias"},
+                                             {"leak", "leak"},
+                                             {"ns_per_pixel", "ns a pixel"},
+                                             {"ratio_to_unpack", "over unpacking"},
+                                             {"ratio_to_copy", "over a copy"},
+                                             {"pareto", "on the front"}}));
+  add("Mean error by scene, degrees", "table",
+      markdown_table(by_scene_and_method(figures.table, "mean_deg")));
+  add("Mean relative error of albedo by scene", "table",
+      markdown_table(by_scene_and_method(figures.table, "albedo_mean_rel")));
+  add("Leak by scene", "table", markdown_table(by_scene_and_method(figures.table, "leak")));
+  add("How sure the maps are", "coverage", coverage_section(figures.coverage));
+  add("From captures to maps", "chain",
+      columns_table(figures.chain, {{"case", "case"},
+                                    {"level", "level"},
+                                    {"mean_deg", "mean, degrees"},
+                                    {"p95_deg", "95 %"},
+                                    {"exact_deg", "mean with exact calibration"},
+                                    {"albedo_rel", "albedo error"}}));
+  add("What `--explain` foretells, over what comes true", "explain",
+      markdown_table(crossed(figures.explain, "scene", "quality", "ratio")));
+  add("Fewer LEDs", "leds",
+      columns_table(figures.leds, {{"leds", "LEDs"},
+                                   {"numbers", "which"},
+                                   {"method", "method"},
+                                   {"mean_deg", "mean, degrees"},
+                                   {"p95_deg", "95 %"},
+                                   {"albedo_mean_rel", "albedo error"},
+                                   {"ns_per_pixel", "ns a pixel"}}));
+  add("Resolution, arithmetic, rays and rounds", "curves",
+      "![error against time by setting](pictures/curves.svg)\n\n" +
+          columns_table(figures.curves, {{"curve", "what"},
                                          {"setting", "setting"},
                                          {"mean_deg", "mean, degrees"},
                                          {"p95_deg", "95 %"},
                                          {"albedo_mean_rel", "albedo error"},
-                                         {"ns_per_pixel", "ns a pixel"}});
-  page += "## What the gates leave out, mean error in degrees\n\n";
-  page += markdown_table(by_scene_and_method(figures.gates, "mean_deg"));
-  page += "## Photon noise alone, over the bound\n\n";
-  page += bound_table(figures.bound);
-  page += "## Who says SPECULAR\n\n";
-  page += columns_table(figures.specular, {{"method", "method"},
-                                           {"cloths", "cloths"},
-                                           {"scenes", "scenes"},
-                                           {"warned", "over 20 %"},
-                                           {"least", "least share"},
-                                           {"median", "median"},
-                                           {"largest", "largest"}});
+                                         {"ns_per_pixel", "ns a pixel"}}));
+  add("What stages are left out, mean error in degrees", "gates",
+      markdown_table(by_scene_and_method(figures.gates, "mean_deg")));
+  if (!figures.bound.empty()) add("Photon noise alone, over the bound", "bound", bound_table(figures.bound));
+  add("Who says SPECULAR", "specular",
+      columns_table(figures.specular, {{"method", "method"},
+                                       {"cloths", "cloths"},
+                                       {"scenes", "scenes"},
+                                       {"warned", "over 20 %"},
+                                       {"least", "least share"},
+                                       {"median", "median"},
+                                       {"largest", "largest"}}));
   page.pop_back();
   return page;
 }

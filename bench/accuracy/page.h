@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -14,10 +15,8 @@ namespace weft::bench {
 
 /// All that docs/accuracy.md shows, as the benchmarks give it.
 struct AccuracyFigures {
-  std::string processor;  ///< of the run
-  int threads = 0;
-  int solver_version = 0;
-  std::string listing;  ///< what `weft solve --explain` prints
+  std::map<std::string, std::string> measured_by;  ///< each part that is there: version, processor, threads
+  std::string listing;                             ///< what `weft solve --explain` prints
   Rows table, coverage, leds, curves, gates, bound, specular, explain, chain;
 };
 

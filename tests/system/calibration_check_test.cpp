@@ -393,7 +393,9 @@ TEST_F(CalibrationCheck, PatchesOfPaperThatIsNotLambertianAboveTheClothSayThatNo
   }
   simulate(scene, "paper.weft");
   std::string text;
-  for (const WhitePatch& patch : read_calibration(root_ / "rig" / "first")->patches) {
+  const Result<Calibration> first = read_calibration(root_ / "rig" / "first");
+  ASSERT_TRUE(first) << first.error().message();
+  for (const WhitePatch& patch : first->patches) {
     text += "[[patch]]\nheight_mm = 0.3\ndelta = 0.05\npolygon_px = [";
     for (const auto& [x, y] : patch.polygon_px) text += fmt::format("[{}, {}], ", x, y);
     text += "]\n";

@@ -102,8 +102,8 @@ TEST_F(NoRoom, ADiskTooSmallForTheMapsIsSeenBeforeSolving) {
 }
 
 TEST_F(NoRoom, ADiskThatFillsUpEndsASolve) {
-  // 32 bytes a pixel are asked for and given; the pictures and the header of each file need more.
-  const SmallDisk disk(work_ / "disk", 48 * 32 * 32 + 8192);
+  // 56 bytes a pixel are asked for and given; the pictures and the header of each file need more.
+  const SmallDisk disk(work_ / "disk", 48 * 32 * 56 + 8192);
   if (!disk.mounted()) GTEST_SKIP() << disk.reason();
   expect_refusal(work_, {"solve", session_.string(), "-o", (disk / "maps").string(), "-q"}, 74,
                  {"cannot write", "disk", "No space left", kFreeDisk});

@@ -31,7 +31,8 @@ AccuracyFigures few_figures() {
                 {"ns_per_pixel", ns}};
   };
   AccuracyFigures figures;
-  figures.processor = "a processor";
+  figures.measured_by = {{"table", "solver version 4 on a processor, 2 threads"},
+                         {"leds", "solver version 4 on a processor, 2 threads"}};
   figures.listing = "level  degrees\n";
   figures.table = {row("deep white", "fast", 4.125, 10), row("deep white", "oracle", 3, 10),
                    row(kAllScenes, "fast", 4.25, 10), row(kAllScenes, "oracle", 3, 10)};
