@@ -332,7 +332,7 @@ void Fit::minimise() {
   how.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   how.max_num_iterations = options_.most_iterations;
   how.initial_trust_region_radius = 1e8;  // valleys are long and nearly straight: begin with Gauss-Newton
-  how.function_tolerance = 1e-6;
+  how.function_tolerance = 1e-9;
   how.parameter_tolerance = 1e-9;
   how.num_threads = options_.threads;
   how.logging_type = ceres::SILENT;
