@@ -86,15 +86,20 @@ void write_cells(Rect area, std::uint32_t* corners) {
   }
 }
 
-/// The rays of a packet in Embree's structure, from a little after their start to their length.
+/// The rays of a packet in Embree's structure, from a little after their start to their length. Processors
+/// without AVX-512 make Embree trace a packet of sixteen as a stream, which does not look at who takes part:
+/// a ray that ends before it begins is left out by any of its ways.
 void write_rays(const RayPacket& rays, RTCRay16& to) {
-  std::copy_n(rays.start_x, kPacket, to.org_x);
-  std::copy_n(rays.start_y, kPacket, to.org_y);
-  std::copy_n(rays.start_z, kPacket, to.org_z);
-  std::copy_n(rays.direction_x, kPacket, to.dir_x);
-  std::copy_n(rays.direction_y, kPacket, to.dir_y);
-  std::copy_n(rays.direction_z, kPacket, to.dir_z);
-  std::copy_n(rays.length, kPacket, to.tfar);
+  for (int i = 0; i < kPacket; ++i) {
+    const bool is_active = rays.is_active[i] != 0;
+    to.org_x[i] = is_active ? rays.start_x[i] : 0;
+    to.org_y[i] = is_active ? rays.start_y[i] : 0;
+    to.org_z[i] = is_active ? rays.start_z[i] : 0;
+    to.dir_x[i] = is_active ? rays.direction_x[i] : 0;
+    to.dir_y[i] = is_active ? rays.direction_y[i] : 0;
+    to.dir_z[i] = is_active ? rays.direction_z[i] : 1;
+    to.tfar[i] = is_active ? rays.length[i] : -1;
+  }
   std::fill_n(to.tnear, kPacket, 0.0f);
   std::fill_n(to.time, kPacket, 0.0f);
   std::fill_n(to.mask, kPacket, ~0U);

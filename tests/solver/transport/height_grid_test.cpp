@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 
@@ -44,6 +46,36 @@ TEST(HeightGrid, RefusesBlocksOutsideThePicture) {
   const auto grid = HeightGrid::build(relief, {10, 0, 20, 30}, 4);
   ASSERT_TRUE(grid);
   EXPECT_EQ(grid->area(), (Rect{6, 0, 24, 30}));
+}
+
+TEST(HeightGrid, TracesTheActiveRaysOfAPacketWhateverTheOthersHold) {
+  const TestCloth wall = cloth_over({40, 30}, [](int x, int) {
+    return std::pair{x < 20 ? 0.0 : 8.0, Vec3{0, 0, 1}};
+  });
+  const HeightGrid grid = grid_of(wall, wall.pixels(), 0);
+  RayPacket rays;
+  const float nothing = std::numeric_limits<float>::quiet_NaN();
+  for (float* values : {rays.start_x, rays.start_y, rays.start_z, rays.direction_x, rays.direction_y,
+                        rays.direction_z, rays.length}) {
+    std::fill_n(values, kPacket, nothing);
+  }
+  std::fill_n(rays.is_active, kPacket, 0);
+  const auto aim = [&](int lane, float towards_x) {
+    rays.is_active[lane] = -1;
+    rays.start_x[lane] = 10;
+    rays.start_y[lane] = -15;
+    rays.start_z[lane] = 1;
+    rays.direction_x[lane] = towards_x;
+    rays.direction_y[lane] = rays.direction_z[lane] = 0;
+    rays.length[lane] = 25;
+  };
+  aim(3, 1);
+  aim(12, -1);
+  EXPECT_EQ(grid.occlude(rays), 1U << 3);
+  std::array<float, kPacket> met = {};
+  grid.intersect(rays, met.data());
+  EXPECT_NEAR(met[3], 9.125, 1e-3);
+  EXPECT_EQ(met[12], std::numeric_limits<float>::infinity());
 }
 
 TEST(HeightGrid, OfOneRowOrColumnHidesNothing) {
