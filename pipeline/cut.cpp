@@ -47,7 +47,6 @@ Result<Photographs> cut(const Photographs& whole, Rect area) {
   Photographs part;
   part.size = {area.width(), area.height()};
   part.leds = whole.leds;
-  part.shifts = whole.shifts;
   part.light_covariance = whole.light_covariance;
   part.albedo_scale = whole.albedo_scale;
   part.color = whole.color;

@@ -75,7 +75,7 @@ Result<void> solve_tiles(const Photographs& photographs, const solver::Method& m
 Result<void> check(const Photographs& photographs, const solver::Method& method, const JobContext& context,
                    FrameFacts& facts) {
   Result<solver::LeftOut> left_out =
-      leave_out_lights(photographs, {.method = &method, .shifts = photographs.shifts},
+      leave_out_lights(photographs, {.method = &method},
                        solver::patches_of(photographs.size, solver::PatchUse::kReport), context);
   if (!left_out) return std::move(left_out).error();
   facts.left_out = std::move(*left_out);
@@ -91,10 +91,9 @@ Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::M
     if (!solved) return std::move(solved).error();
     facts.waited_seconds = solved->waited_seconds;
     facts.tally = solved->tally;
-    const bool is_corrected = solved->stages.shadows || solved->stages.interreflection;
+    facts.robust_share = solved->robust_share;
+    facts.left_out = std::move(solved->left_out);
     facts.reference = std::move(*solved);
-    if (is_corrected) return facts;
-    if (Result<void> ok = check(photographs, *asked, context, facts); !ok) return std::move(ok).error();
     return facts;
   }
   const solver::ModelTraits model = {.is_robust = method.level == solver::Level::kRobust,

@@ -17,6 +17,8 @@ namespace weft::pipeline {
 namespace {
 
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+// Rows of blocks that a correction is traced for.
+constexpr int kMostRows = 4;
 
 // Where one pixel and light stand in LeftOut.
 struct Slots {
@@ -29,7 +31,7 @@ class PatchJudge {
   PatchJudge(const Photographs& photographs, const SolveVariant& variant)
       : variant_(variant),
         reader_(photographs, {.width = kRowGroup, .height = 1},
-                variant.method->wants_rgb() ? ReadAs::kRgb : ReadAs::kTaken, variant.shifts),
+                variant.method->wants_rgb() ? ReadAs::kRgb : ReadAs::kTaken),
         lights_(photographs.count()),
         planes_(reader_.planes()) {
     const int count = static_cast<int>(lights_) * planes_.count;
@@ -203,11 +205,26 @@ Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const S
   return left_out;
 }
 
+std::vector<std::vector<solver::Patch>> patches_of_few_rows(std::span<const solver::Patch> patches,
+                                                            Size size) {
+  const solver::BlockGrid grid = solver::blocks_of(size);
+  const int count = std::min(grid.rows, kMostRows);
+  std::vector<std::vector<solver::Patch>> rows(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const int row = (2 * i + 1) * grid.rows / (2 * count);
+    for (const solver::Patch& patch : patches) {
+      if (static_cast<int>(patch.block) / grid.columns == row)
+        rows[static_cast<std::size_t>(i)].push_back(patch);
+    }
+  }
+  return rows;
+}
+
 Result<solver::BlockChoice> choose_by_block(const Photographs& photographs, const solver::Method& base,
                                             const solver::Method& better, const JobContext& context) {
   const std::vector<solver::Patch> patches = solver::patches_of(photographs.size, solver::PatchUse::kChoose);
   const auto judged = [&](const solver::Method& method) {
-    return leave_out_lights(photographs, {.method = &method, .shifts = photographs.shifts}, patches, context);
+    return leave_out_lights(photographs, {.method = &method}, patches, context);
   };
   const Result<solver::LeftOut> of_base = judged(base);
   if (!of_base) return of_base.error();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "core/job.h"
 #include "core/result.h"
@@ -17,8 +18,6 @@ class LightCorrection;
 struct SolveVariant {
   const solver::Method* method = nullptr;
   LightCorrection* correction = nullptr;  ///< readings go through it, if there is one
-  /// How the cloth lay: as of Photographs::shifts, which says nothing here. Empty: still.
-  std::span<const solver::ClothShift> shifts = {};
   std::span<const double> gains = {};  ///< by light, its light over that of its calibration; empty: all are 1
 };
 
@@ -27,6 +26,11 @@ struct SolveVariant {
 /// the patches a turn, and one run of the correction over the frame. Returns kInterrupted on request.
 Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const SolveVariant& variant,
                                          std::span<const solver::Patch> patches, const JobContext& context);
+
+/// The patches of at most four rows of blocks, in the middles of equal parts of the frame, row by row: what a
+/// correction is traced for where the whole frame would take too long.
+std::vector<std::vector<solver::Patch>> patches_of_few_rows(std::span<const solver::Patch> patches,
+                                                            Size size);
 
 /// Where `better` predicts left-out light better than `base` by more than its own sigma, on patches that
 /// choose. A frame with too few of them is all `better`: nothing speaks against it.

@@ -17,7 +17,6 @@
 #include "core/radiometry.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
-#include "solver/registration/cloth_shift.h"
 
 namespace weft::pipeline {
 
@@ -94,7 +93,6 @@ struct Photographs {
   std::optional<CameraModel> camera;                    ///< where the lights are near
   std::optional<PointSpread> spread;                    ///< of the lens, to be undone; none: left as it is
   std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
-  std::vector<solver::ClothShift> shifts;               ///< put right as tiles are read (pipeline/shifts.h)
   AlbedoScale albedo_scale = AlbedoScale::kRelative;
   std::optional<ColorTransform> color;  ///< of solved albedo, where the calibration has one
 

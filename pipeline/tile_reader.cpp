@@ -13,15 +13,10 @@ namespace weft::pipeline {
 using solver::kDemosaicReach;  // what is read around a tile
 
 TileReader::TileReader(const Photographs& photographs, const TileOptions& tile, ReadAs as)
-    : TileReader(photographs, tile, as, photographs.shifts) {}
-
-TileReader::TileReader(const Photographs& photographs, const TileOptions& tile, ReadAs as,
-                       std::span<const solver::ClothShift> shifts)
     : photographs_(&photographs),
-      shifts_(shifts),
       taken_(photographs.planes()),
       planes_(as == ReadAs::kRgb ? Planes{} : taken_) {
-  if (taken_.count == 3 && shifts.empty()) return;  // they are shown where they are
+  if (taken_.count == 3) return;  // they are shown where they are
   const Size size = {
       std::min((std::max(tile.width, 1) + kRowGroup - 1) / kRowGroup * kRowGroup, photographs.size.width),
       std::min(std::max(tile.height, 1), photographs.size.height)};
@@ -42,32 +37,12 @@ solver::TileInput TileReader::read(Rect tile) {
       read_rgb(k, tile, out);
       views_.insert(views_.end(), out.begin(), out.end());
     } else {
-      const std::vector<View<const float>> taken = read_taken(k, tile, out);
+      const std::vector<View<const float>> taken = readings_of(photographs_->frames, k, tile, out[0]);
       views_.insert(views_.end(), taken.begin(), taken.end());
     }
   }
   return {tile,   planes_.count,         planes_.cfa,
           views_, &*photographs_->field, planes_.count == 1 ? photographs_->noise() : std::nullopt};
-}
-
-// The planes of photograph k, with the cloth back in its place: in `out`, or where they are.
-std::vector<View<const float>> TileReader::read_taken(std::size_t k, Rect tile,
-                                                      std::span<const View<float>> out) {
-  const Frames& frames = photographs_->frames;
-  if (shifts_.empty() || shifts_[k] == solver::ClothShift()) return readings_of(frames, k, tile, out[0]);
-  const solver::ClothShift& shift = shifts_[k];
-  const int step = taken_.count == 1 ? 2 : 1;  // from a site to the next of its colour
-  const Rect seen = solver::seen_through(shift, tile, photographs_->size, step);
-  if (seen.width() > unmoved_.width() || seen.height() > unmoved_.height()) {
-    unmoved_ = Image<float>({seen.width(), seen.height()});
-  }
-  const bool sees = seen.width() > 0 && seen.height() > 0;
-  const std::vector<View<const float>> unmoved =
-      sees ? readings_of(frames, k, seen, unmoved_.plane()) : std::vector<View<const float>>(out.size());
-  for (std::size_t p = 0; p < out.size(); ++p) {
-    solver::resample(unmoved[p], seen, shift, tile, photographs_->size, step, out[p]);
-  }
-  return {out.begin(), out.end()};
 }
 
 // Demosaics frame k before solving, white-balanced by the flux of its light as the filters expect.
@@ -77,7 +52,7 @@ void TileReader::read_rgb(std::size_t k, Rect tile, std::span<const View<float>>
                        std::min(tile.x1 + kDemosaicReach, size.width),
                        std::min(tile.y1 + kDemosaicReach, size.height)};
   const View<float> mosaic = mosaic_.plane().crop({0, 0, around.width(), around.height()});
-  read_taken(k, around, {&mosaic, 1});
+  readings_of(photographs_->frames, k, around, mosaic);
   const CfaPattern& cfa = taken_.cfa;
   const std::array<double, 3> flux = flux_of(k);
   for (int y = 0; y < around.height(); ++y) {

@@ -19,14 +19,11 @@ enum class ReadAs {
   kRgb,    ///< demosaiced before they are solved: three
 };
 
-/// The readings of one tile after another, made by one worker; shots of a shifted cloth are resampled.
+/// The readings of one tile after another, made by one worker.
 class TileReader {
  public:
-  /// `tile` bounds the tiles to come. The cloth lay as photographs.shifts says, or as `shifts` does: one a
-  /// photograph, or none at all. What is passed must outlive the reader.
+  /// `tile` bounds the tiles to come. The photographs must outlive the reader.
   TileReader(const Photographs& photographs, const TileOptions& tile, ReadAs as = ReadAs::kTaken);
-  TileReader(const Photographs& photographs, const TileOptions& tile, ReadAs as,
-             std::span<const solver::ClothShift> shifts);
 
   Planes planes() const { return planes_; }
   /// A tile as methods want it, its readings valid until the next call. `tile.x0` is a multiple of
@@ -34,14 +31,12 @@ class TileReader {
   solver::TileInput read(Rect tile);
 
  private:
-  std::vector<View<const float>> read_taken(std::size_t k, Rect tile, std::span<const View<float>> out);
   void read_rgb(std::size_t k, Rect tile, std::span<const View<float>> rgb);
   std::array<double, 3> flux_of(std::size_t k) const;
 
   const Photographs* photographs_;
-  std::span<const solver::ClothShift> shifts_;
   Planes taken_, planes_;
-  Image<float> readings_, mosaic_, unmoved_;
+  Image<float> readings_, mosaic_;
   std::vector<View<const float>> views_;
 };
 

@@ -53,39 +53,6 @@ TEST(TileReader, DemosaicsAnEvenClothUnderColouredLightToItsOwnReadings) {
   }
 }
 
-// A reading that says where it was taken.
-double place(int x, int y) {
-  return 0.001 * x + 0.01 * y;
-}
-
-TEST(TileReader, TakesAShiftedShotFromWhereTheClothWent) {
-  Photographs photographs = mosaics(kReadSize, {});
-  photographs.mosaics()->frames[3] = frame_of(kReadSize, place);
-  std::vector<solver::ClothShift> shifts(10);
-  shifts[3] = {.dx_px = 4, .dy_px = -2, .turn = 0};
-  TileReader reader(photographs, kTiles, ReadAs::kTaken, shifts);
-  const View<const float> moved = reader.read(kTile).readings[3];
-  EXPECT_NEAR(moved(10, 5), place(64 + 10 + 4, 4 + 5 - 2), 1 / kRange);
-  EXPECT_TRUE(std::isnan(moved(63, 5))) << "it came from beyond the frame";
-
-  photographs.shifts = shifts;
-  EXPECT_EQ(TileReader(photographs, kTiles).read(kTile).readings[3](10, 5), moved(10, 5));
-}
-
-TEST(TileReader, ShiftsDevelopedPhotographsByOddPixelsToo) {
-  Photographs photographs = developed(kReadSize, {});
-  Image<float>& image = std::get<Developed>(photographs.frames).rgb[3];
-  for (int y = 0; y < kReadSize.height; ++y) {
-    for (int x = 0; x < kReadSize.width; ++x) image(x, y, 1) = static_cast<float>(place(x, y));
-  }
-  photographs.shifts.resize(10);
-  photographs.shifts[3] = {.dx_px = -3, .dy_px = 1, .turn = 0};
-  TileReader reader(photographs, kTiles);
-  const auto readings = reader.read(kTile).readings;
-  EXPECT_FLOAT_EQ(readings[3 * 3 + 1](10, 5), static_cast<float>(place(64 + 10 - 3, 4 + 5 + 1)));
-  EXPECT_FLOAT_EQ(readings[3 * 4 + 1](10, 5), static_cast<float>(0.5 * std::cos(radians(62))));
-}
-
 TEST(Mosaics, JoinABracketWhereTheLitShotIsFull) {
   Photographs photographs = mosaics(kReadSize, {});
   Mosaics& all = *photographs.mosaics();
