@@ -20,10 +20,10 @@ struct FrameFacts {
   double waited_seconds = 0;  ///< seconds that bands waited for the sink
   solver::SolveTally tally;
   std::optional<ReferenceFacts> reference = {};  ///< where the level is reference
-  /// Of `robust`: the share of blocks that it predicts left-out light better on than `standard`, which
-  /// solves the others.
+  /// Of `robust` and `reference`: the share of blocks on which `robust` predicts left-out light better than
+  /// `standard`, which solves the others.
   std::optional<double> robust_share = {};
-  /// On patches that chose nothing. None of a reference that corrected readings.
+  /// On patches that chose nothing.
   std::optional<solver::LeftOut> left_out = {};
   std::optional<DeblurFacts> deblur = {};  ///< where the spread of the lens is known
 };

@@ -19,7 +19,6 @@ using solver::Gain;
 using solver::LeftOut;
 using solver::Patch;
 
-constexpr int kMostRows = 4;
 // Mean albedos that are tried where the scale is relative. Those that win are refined between their
 // neighbours.
 constexpr std::array<double, 8> kAlbedos = {0, 0.125, 0.18, 0.25, 0.35, 0.5, 0.7, 1};
@@ -29,14 +28,6 @@ constexpr double kNoiseMargin = 1.1;
 // What a small frame has too few patches of, it has rows of: so many are wanted.
 constexpr std::size_t kWantedPatches = 256;
 constexpr int kMostRowsOfCell = 32;
-
-// Rows of blocks that are judged: in the middles of equal parts of the frame.
-std::vector<int> judged_rows(int rows) {
-  const int count = std::min(rows, kMostRows);
-  std::vector<int> judged;
-  for (int i = 0; i < count; ++i) judged.push_back((2 * i + 1) * rows / (2 * count));
-  return judged;
-}
 
 // The patches that choose, with more rows of their cells where they are few.
 std::vector<Patch> patches_to_choose_by(Size size) {
@@ -216,13 +207,8 @@ Result<LightChoice> choose_light(const Photographs& photographs, const SolvedFra
     for (std::size_t i = 1; i < kAlbedos.size(); ++i) scales.push_back(kAlbedos[i] / albedo);
   }
   Trial trial(photographs, correction, traced, scales);
-  const solver::BlockGrid grid = solver::blocks_of(photographs.size);
-  for (const int row : judged_rows(grid.rows)) {
-    std::vector<Patch> of_row;
-    for (const Patch& patch : patches) {
-      if (static_cast<int>(patch.block) / grid.columns == row) of_row.push_back(patch);
-    }
-    if (Result<void> judged = trial.judge(of_row, context); !judged) return std::move(judged).error();
+  for (const std::vector<Patch>& row : patches_of_few_rows(patches, photographs.size)) {
+    if (Result<void> judged = trial.judge(row, context); !judged) return std::move(judged).error();
   }
 
   if (!is_relative || scales.size() == 1) return trial.choose(scales.size() - 1);

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "core/vec.h"
+#include "pipeline/left_out.h"
 #include "pipeline/picture_axes.h"
 #include "pipeline/samples.h"
 #include "solver/height/height.h"
@@ -108,6 +111,15 @@ class Round {
     return waited;
   }
 
+  Result<solver::LeftOut> leave_out_lights_of(std::span<const solver::Patch> patches,
+                                              const solver::Method& method) const {
+    std::vector<solver::Patch> few;
+    for (const std::vector<solver::Patch>& row : patches_of_few_rows(patches, photographs_.size))
+      few.insert(few.end(), row.begin(), row.end());
+    LightCorrection correction = correct(facts.stages);
+    return leave_out_lights(photographs_, {.method = &method, .correction = &correction}, few, context_);
+  }
+
   ReferenceRound facts;
   SolvedFrame solved;
   bool reach_is_capped = false;
@@ -124,12 +136,31 @@ class Round {
   solver::Relief relief_;
 };
 
+// What the blocks of a frame are shared between.
+struct TwoMethods {
+  std::unique_ptr<solver::Method> standard, robust;
+
+  std::unique_ptr<solver::Method> by_block(solver::BlockChoice choice) const {
+    return solver::blended_method(*standard, *robust, std::move(choice));
+  }
+};
+
 // A solve under way.
 class Reference {
  public:
   Reference(const Photographs& photographs, const TileOptions& tile, const ReferenceOptions& options,
             const JobContext& context)
       : photographs_(photographs), tile_(tile), options_(options), context_(context) {}
+
+  // By which method each block is solved.
+  Result<void> choose_methods() {
+    Result<solver::BlockChoice> choice = choose_by_block(photographs_, *quickly_.standard, *quickly_.robust, context_);
+    if (!choice) return std::move(choice).error();
+    facts.robust_share = choice->share();
+    quick_ = quickly_.by_block(*choice);
+    exact_ = exactly_.by_block(std::move(*choice));
+    return {};
+  }
 
   Result<void> find_candidates() {
     Result<solver::Gates> gates = measure_gates(
@@ -174,14 +205,14 @@ class Reference {
   }
 
   Result<void> finish(const BandSink& sink) {
-    const auto exact = solver::exact_method();
     facts.stages = last_ ? last_->facts.stages : LightStages{};
     const BandOptions bands = {.tally = &facts.tally,
                                .model = solver::ModelTraits{true, facts.stages.interreflection}};
-    const Result<double> waited = last_ ? last_->solve(*exact, tile_, sink, bands)
-                                        : solve_bands(photographs_, *exact, tile_, context_, sink, bands);
+    const Result<double> waited = last_ ? last_->solve(*exact_, tile_, sink, bands)
+                                        : solve_bands(photographs_, *exact_, tile_, context_, sink, bands);
     if (!waited) return waited.error();
     facts.waited_seconds = *waited;
+    if (Result<void> ok = check(); !ok) return ok;
     if (!last_) return {};
     facts.rounds.push_back(last_->facts);
     facts.rounds.back().turned_deg = 0;
@@ -208,11 +239,25 @@ class Reference {
     return {};
   }
 
+  // Leaves lights out of the last solve; where readings are corrected, on few rows of blocks.
+  Result<void> check() {
+    const std::vector<solver::Patch> patches =
+        solver::patches_of(photographs_.size, solver::PatchUse::kReport);
+    Result<solver::LeftOut> left_out =
+        last_ ? last_->leave_out_lights_of(patches, *exact_)
+              : leave_out_lights(photographs_, {.method = exact_.get()}, patches, context_);
+    if (!left_out) return std::move(left_out).error();
+    facts.left_out = std::move(*left_out);
+    return {};
+  }
+
   const Photographs& photographs_;
   const TileOptions& tile_;
   const ReferenceOptions& options_;
   const JobContext& context_;
-  std::unique_ptr<solver::Method> quick_ = solver::robust_method();
+  TwoMethods quickly_ = {solver::standard_method(), solver::robust_method()};
+  TwoMethods exactly_ = {solver::exact_standard_method(), solver::exact_method()};
+  std::unique_ptr<solver::Method> quick_, exact_;
   std::unique_ptr<Round> last_;
 };
 
@@ -222,6 +267,7 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
                                        const ReferenceOptions& options, const JobContext& context,
                                        const BandSink& sink) {
   Reference reference(photographs, tile, options, context);
+  if (Result<void> ok = reference.choose_methods(); !ok) return std::move(ok).error();
   if (Result<void> ok = reference.find_candidates(); !ok) return std::move(ok).error();
   if (reference.facts.stages.any()) {
     if (Result<void> ok = reference.approach(); !ok) return std::move(ok).error();

@@ -12,6 +12,7 @@
 #include "pipeline/light_correction.h"
 #include "pipeline/photographs.h"
 #include "solver/gates/gates.h"
+#include "solver/left_out/left_out.h"
 #include "solver/method.h"
 
 namespace weft::pipeline {
@@ -40,6 +41,8 @@ struct ReferenceFacts {
   LightStages stages;  ///< that the last solve took out
   std::vector<ReferenceRound> rounds;
   bool shadow_reach_is_capped = false;
+  double robust_share = 1;    ///< of the frame; the rest is solved as the standard level does
+  solver::LeftOut left_out;   ///< of the readings that the last solve used, on patches that chose nothing
   solver::SolveTally tally;   ///< of the last solve
   double waited_seconds = 0;  ///< for the sink
 };
@@ -48,8 +51,10 @@ struct ReferenceFacts {
 /// and the light that this relief casts on itself (LightCorrection), and solved again, until they settle.
 /// Gates (solver/gates) spare the work where nothing can be won; beyond them each effect is taken out only
 /// where left-out light is predicted better without it (choose_light). A round that turns
-/// the normals no less than the one before is refused: the last good one stands. The last solve is in double,
-/// with the factorisation that each pixel's conditioning asks for. Without an effect it is the only one.
+/// the normals no less than the one before is refused: the last good one stands. As at the robust level,
+/// blocks where `robust` predicts left-out light no better are solved as `standard` does. The last solve is
+/// in double, with the factorisation that each pixel's conditioning asks for. Without an effect it is the
+/// only one.
 ///
 /// Relief and its light are taken in pixels and by the axes of the picture (picture_axes.h), so neither the
 /// scale nor the camera's roll matters; it must look nearly straight down.

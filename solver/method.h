@@ -88,6 +88,8 @@ std::unique_ptr<Method> weighted_method();
 std::unique_ptr<Method> standard_method();
 /// Robust in double: what the reference level solves its last round by.
 std::unique_ptr<Method> exact_method();
+/// Standard in double: the same where robust earns nothing.
+std::unique_ptr<Method> exact_standard_method();
 /// Standard; where its residuals ask for it, from the start that most readings agree on.
 std::unique_ptr<Method> robust_method();
 /// Least trimmed squares at every pixel (Rousseeuw 1984), then weighted.

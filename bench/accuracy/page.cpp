@@ -397,8 +397,7 @@ std::string summary_markdown(const AccuracyFigures& figures) {
   std::string text = fmt::format(
       "Seconds for a scan of 16 megapixels and ten LEDs ({}); then the mean error of the "
       "normals, of the albedo, and of the light left out when it is predicted from the others, which needs "
-      "no truth (absent where reference corrected readings). Reading the frames and writing the maps comes "
-      "on top and is the same for all levels.\n\n",
+      "no truth. Reading the frames and writing the maps comes on top and is the same for all levels.\n\n",
       figures.measured_by.contains("table") ? figures.measured_by.at("table") : "not measured");
   text += levels_table(figures.table);
   text += "![error against seconds, by level](pictures/levels.svg)\n\n";

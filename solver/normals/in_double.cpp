@@ -24,6 +24,9 @@ class InDouble : public Method {
 std::unique_ptr<Method> exact_method() {
   return std::make_unique<InDouble>(Estimator::kTrimmed, true);
 }
+std::unique_ptr<Method> exact_standard_method() {
+  return std::make_unique<InDouble>(Estimator::kRejecting, true);
+}
 std::unique_ptr<Method> least_absolute_method() {
   return std::make_unique<InDouble>(Estimator::kLeastAbsolute, false);
 }

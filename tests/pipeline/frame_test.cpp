@@ -154,6 +154,24 @@ TEST(SolveFrame, ByRobustIsNowhereWorseThanByStandard) {
   EXPECT_EQ(facts->robust_share, 0.5);
 }
 
+TEST(SolveFrame, ByReferenceSharesTheBlocksAsRobustDoes) {
+  const Photographs photographs = glossy_beside_uneven();
+  WholeMaps by_robust(photographs.size), by_reference(photographs.size);
+  const auto solved = [&](solver::Level level, WholeMaps& maps) {
+    return solve_frame(photographs, solver::method_of(level), kSolveTile, {.threads = 1}, std::ref(maps));
+  };
+  ASSERT_TRUE(solved(solver::Level::kRobust, by_robust));
+  const auto facts = solved(solver::Level::kReference, by_reference);
+  ASSERT_TRUE(facts) << facts.error().message();
+  EXPECT_EQ(facts->robust_share, 0.5);
+  const auto [robust_left, robust_right] = errors_of_halves(by_robust);
+  const auto [left, right] = errors_of_halves(by_reference);
+  EXPECT_NEAR(left, robust_left, 0.02 * robust_left);
+  EXPECT_NEAR(right, robust_right, 0.02 * robust_right);
+  ASSERT_TRUE(facts->left_out);
+  EXPECT_GT(error_of_all(*facts->left_out).readings, 1000U);
+}
+
 TEST(SolveFrame, SaysHowWellLeftOutLightsArePredicted) {
   const Photographs photographs = glossy_beside_uneven();
   for (const char* name : {"fast", "standard", "robust"}) {
