@@ -2,10 +2,12 @@
 #include "pipeline/model_sigma.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/parallel.h"
 #include "core/solve_record.h"
 #include "solver/kernels/demosaic.h"
+#include "solver/method.h"
 
 namespace weft::pipeline {
 namespace {
@@ -18,12 +20,18 @@ constexpr int kBlock = 64;
 // A slope of 56 degrees, a residual of three times the albedo, and the least that is divided by.
 constexpr float kMostSlope2 = 2.25F, kMostResidual = 3, kLeastAlbedo = 1e-3F;
 
-// Square of the difference of a normal to the next along the row, or to the one before where there is none.
-float turn2_at(int x, int y, const std::array<View<const float>, 3>& normal) {
-  const int next = x + 1 < normal[0].width() ? x + 1 : std::max(x - 1, 0);
-  float sum = 0;
-  for (const View<const float>& n : normal) sum += (n(next, y) - n(x, y)) * (n(next, y) - n(x, y));
-  return sum;
+// Length of the step from normal a to normal b, negative if component `axis` falls.
+float step_of(const std::array<float, 3>& a, const std::array<float, 3>& b, std::size_t axis) {
+  const float x = b[0] - a[0], y = b[1] - a[1], z = b[2] - a[2];
+  return std::copysign(std::sqrt(x * x + y * y + z * z), b[axis] - a[axis]);
+}
+
+// Of three normals in a row, in the direction in which `axis` grows. Beyond the edge it goes on as before.
+float within_of(const std::array<float, 3>* before, const std::array<float, 3>& here,
+                const std::array<float, 3>* after, std::size_t axis) {
+  if (before == nullptr && after == nullptr) return 0;
+  const float to = before != nullptr ? step_of(*before, here, axis) : step_of(here, *after, axis);
+  return solver::within_pixel2(to, after != nullptr ? step_of(here, *after, axis) : to);
 }
 
 }  // namespace
@@ -35,7 +43,9 @@ ModelPart::ModelPart(const Photographs& photographs, int band_rows, const solver
       has_noise_(photographs.noise().has_value()),
       traits_(traits),
       threads_(threads),
-      cells_({(photographs.size.width + kCell - 1) / kCell, kKept + band_rows / kCell}, kSums) {}
+      cells_({(photographs.size.width + kCell - 1) / kCell, kKept + band_rows / kCell}, kSums) {
+  if (traits.is_half) within2_deg2_ = Image<float>({photographs.size.width, band_rows});
+}
 
 // What each block knows before its pixels are seen.
 void ModelPart::set_blocks(Rect band) {
@@ -67,7 +77,6 @@ ModelPart::Sums ModelPart::seen_at(int cell_x, int cell_y, int frame_y0, const S
   seen[kSlope2] = 1 - z2 < kMostSlope2 * z2 ? (1 - z2) / z2 : kMostSlope2;
   seen[kAlbedo] = albedo;
   seen[kShaded] = (status & kShadowed) != 0 ? 1.0F : 0.0F;
-  if (traits_.is_half) seen[kTurn2] = turn2_at(x, y, solved.normal);
   if (!has_noise_) return seen;
   const auto c = static_cast<std::size_t>(planes_.channel_at(planes_.speaker(), x, frame_y0 + y));
   const Block& block = blocks_[static_cast<std::size_t>(x / kBlock)];
@@ -93,6 +102,25 @@ void ModelPart::sum_blocks(int first_row) {
   });
 }
 
+void ModelPart::see_within(const SolvedRows& solved) {
+  const int width = solved.status.width(), height = solved.status.height();
+  const auto normal_at = [&](int x, int y) {
+    return std::array{solved.normal[0](x, y), solved.normal[1](x, y), solved.normal[2](x, y)};
+  };
+  parallel_for(static_cast<std::size_t>(height), threads_, [&](std::size_t i, int) {
+    const int y = static_cast<int>(i);
+    for (int x = 0; x < width; ++x) {
+      const std::array<float, 3> here = normal_at(x, y), left = normal_at(std::max(x - 1, 0), y),
+                                 right = normal_at(std::min(x + 1, width - 1), y),
+                                 above = normal_at(x, std::max(y - 1, 0)),
+                                 below = normal_at(x, std::min(y + 1, height - 1));
+      const float within2 = within_of(x > 0 ? &left : nullptr, here, x + 1 < width ? &right : nullptr, 0) +
+                            within_of(y + 1 < height ? &below : nullptr, here, y > 0 ? &above : nullptr, 1);
+      within2_deg2_(x, y) = static_cast<float>(degrees(1) * degrees(1)) * within2;
+    }
+  });
+}
+
 void ModelPart::gather(Rect band, const SolvedRows& solved) {
   const int kept = std::min(known_, kKept);
   for (int p = 0; p < kSums; ++p) {
@@ -111,6 +139,7 @@ void ModelPart::gather(Rect band, const SolvedRows& solved) {
     }
   });
   sum_blocks(kept);
+  if (traits_.is_half) see_within(solved);
 }
 
 void ModelPart::angles_at(int row, std::vector<float>& angles) const {
@@ -140,8 +169,7 @@ float ModelPart::angle_of(const Sums& around, const Block& block) const {
                                   .albedo = around[kAlbedo] * share,
                                   .shadowed = around[kShaded] * share,
                                   .misfit2 = std::max(around[kMisfit2], 0.0F) * share,
-                                  .misfit2_around = block.misfit2,
-                                  .turn2 = around[kTurn2] * share},
+                                  .misfit2_around = block.misfit2},
                                  block.degrees_a_residual, traits_);
 }
 
@@ -158,6 +186,12 @@ void ModelPart::fill(Rect rows, const std::array<View<const float>, 3>& albedo, 
     for (int y = y0; y < y1; ++y) {
       float* angle = model_normal_deg.row(y);
       for (int x = 0; x < rows.width(); ++x) angle[x] = angles[static_cast<std::size_t>(x / kCell)];
+      if (traits_.is_half) {
+        const float* within2 = within2_deg2_.plane().row(y);
+        for (int x = 0; x < rows.width(); ++x) {
+          angle[x] = std::min(std::sqrt(angle[x] * angle[x] + within2[x]), solver::kUnknownAngleDeg);
+        }
+      }
       for (std::size_t c = 0; c < 3; ++c) {
         const float* of = albedo[c].row(y);
         float* share = model_albedo[c].row(y);

@@ -21,10 +21,12 @@ struct SolvedRows {
 /// The model's part of sigma (solver/uncertainty/model_sigma.h) over a frame that is solved band by band. One
 /// pixel speaks for each cell of 2 x 2. The evidence of a cell is that of the 3 x 3 cells around it, as far
 /// as they are solved when its turn comes; its wider neighbourhood is a block of 64 columns and a band's
-/// rows. The same bytes for any number of threads.
+/// rows. What lies within the pixels of a preview is told for each, by its four neighbours in the band. The
+/// same bytes for any number of threads.
 class ModelPart {
  public:
-  /// Bands have `band_rows` rows, an even number, but for the last. `photographs` must outlive this.
+  /// Bands have `band_rows` rows, an even number, but for the last. `photographs` must outlive this; those of
+  /// a preview are RGB.
   ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits, int threads);
 
   /// Takes in the next band.
@@ -37,7 +39,7 @@ class ModelPart {
 
  private:
   // Of the pixels with a solution.
-  enum Sum { kPixels, kSlope2, kAlbedo, kShaded, kMisfit2, kTurn2, kSums };
+  enum Sum { kPixels, kSlope2, kAlbedo, kShaded, kMisfit2, kSums };
   using Sums = std::array<float, kSums>;
   struct Block {
     std::array<solver::ResidualNoise, 3> noise;  ///< by channel
@@ -48,6 +50,7 @@ class ModelPart {
   void set_blocks(Rect band);
   Sums seen_at(int cell_x, int cell_y, int frame_y0, const SolvedRows& solved) const;
   void sum_blocks(int first_row);
+  void see_within(const SolvedRows& solved);
   void angles_at(int row, std::vector<float>& angles) const;
   float angle_of(const Sums& around, const Block& block) const;
 
@@ -56,9 +59,10 @@ class ModelPart {
   bool has_noise_;
   solver::ModelTraits traits_;
   int threads_;
-  Image<float> cells_;  ///< a plane a Sum: the last rows of the band before, then those of the band
-  int first_ = 0;       ///< the frame's row of cells that is the first of cells_
-  int known_ = 0;       ///< rows of cells_ that are filled
+  Image<float> cells_;         ///< a plane a Sum: the last rows of the band before, then those of the band
+  int first_ = 0;              ///< the frame's row of cells that is the first of cells_
+  int known_ = 0;              ///< rows of cells_ that are filled
+  Image<float> within2_deg2_;  ///< of a preview, over the band
   std::vector<Block> blocks_;
 };
 

@@ -28,10 +28,13 @@ struct Pull {
 };
 constexpr Pull kHere = {0.35F, 0.7F}, kAround = {0.38F, 0.2F};
 constexpr Pull kHereOfRobust = {0.15F, 0.05F}, kAroundOfRobust = {0.06F, 0.12F};
-// Of a preview: what its pixels' four photosites differ by, over what pixels differ by from neighbour to
-// neighbour; and degrees over the square of the slope, as light that does not reach a slope is taken for
-// little light.
-constexpr float kWithinPixel = 0.5F, kUnmasked_deg = 24;
+// Of a preview: what its pixels' four photosites differ by, over the steps from pixel to pixel. On a yarn
+// they lie a quarter of a step to both sides. Where normals meet on both sides the pixel itself is mixed from
+// two yarns; where they meet on one side, what mixes is mostly the neighbour.
+constexpr float kOnYarn = 0.3F, kMixed = 0.88F, kBesideMixed = 0.09F;
+// Of a preview: degrees over the cube of the slope around, as light that does not reach a slope is taken for
+// little light, and what is added to the albedo, as pale cloth fills it with light of its own.
+constexpr float kUnmasked_deg = 57, kUnmaskedOfBlack = 1.1F;
 // Lighter cloth is as light as this.
 constexpr float kMostAlbedo = 1.2F;
 // Divides nothing by nothing.
@@ -73,6 +76,15 @@ double degrees_a_residual(const LightField& field, int x, int y) {
   return degrees(std::sqrt(across * n / (n - 3)));
 }
 
+float within_pixel2(float step_before, float step_after) {
+  const auto square = [](float x) { return x * x; };
+  const float most = std::max(step_before, step_after), least = std::min(step_before, step_after);
+  const float across = (step_before + step_after) / 2;
+  if (least >= 0) return square(kOnYarn * across);
+  if (most < 0) return square(kMixed * across);
+  return square(kOnYarn * most) + square(kBesideMixed * least);
+}
+
 float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, const ModelTraits& traits) {
   const float slope = std::sqrt(evidence.slope2), albedo = std::min(evidence.albedo, kMostAlbedo);
   const float flank =
@@ -86,9 +98,9 @@ float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, 
   float sum2 = bounced * bounced + shadowed * shadowed +
                scale * scale * (here * here * evidence.misfit2 + around * around * evidence.misfit2_around);
   if (traits.is_half) {
-    const float within = static_cast<float>(degrees(1)) * kWithinPixel,
-                unmasked = kUnmasked_deg * evidence.slope2;
-    sum2 += within * within * evidence.turn2 + unmasked * unmasked;
+    const float unmasked = kUnmasked_deg * (kUnmaskedOfBlack + albedo) * evidence.slope2_around *
+                           std::sqrt(evidence.slope2_around);
+    sum2 += unmasked * unmasked;
   }
   return std::min(std::sqrt(sum2), 180.0F);
 }

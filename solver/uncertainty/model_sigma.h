@@ -44,7 +44,6 @@ struct ModelEvidence {
   float shadowed = 0;        ///< share of the pixels that left out a reading for shadow
   float misfit2 = 0;         ///< mean square residual over the albedo, less what noise leaves of it
   float misfit2_around = 0;  ///< the same of the wider one
-  float turn2 = 0;           ///< mean square difference of the normals of neighbours
 };
 
 /// How the normals were solved.
@@ -54,7 +53,13 @@ struct ModelTraits {
   bool is_half = false;          ///< at half the size, and without a shadow mask
 };
 
-/// Rms angle that the model's part of sigma comes to, degrees.
+/// Square of the angle, in radians, that lies between the normal of a preview's pixel and those of the four
+/// photosites it stands for, as far as a row or a column shows it: by the length of the step to the pixel's
+/// normal from the one before, and from it to the one after. A step counts as positive where normals part, as
+/// over a yarn, and as negative where they meet, as between two.
+float within_pixel2(float step_before, float step_after);
+
+/// Rms angle that the model's part of sigma comes to, degrees; of a preview without what lies within pixels.
 float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, const ModelTraits& traits);
 
 /// Mean over rms of an angle whose two components scatter alike, as those of sigma do: sqrt(pi) / 2.

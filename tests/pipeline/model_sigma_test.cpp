@@ -52,8 +52,8 @@ Sigmas sigmas_of(const Photographs& photographs, const TileOptions& tile = kSolv
     }
     return {};
   };
-  const auto ok = solve_bands(photographs, *solver::fast_method(), tile, {.threads = threads}, keep,
-                              {.model = traits});
+  const auto ok =
+      solve_bands(photographs, *solver::fast_method(), tile, {.threads = threads}, keep, {.model = traits});
   EXPECT_TRUE(ok) << ok.error().message();
   return sigmas;
 }
@@ -131,6 +131,18 @@ TEST(ModelPart, OfDevelopedPhotographsCountsLightFromTheClothAlone) {
   const Sigmas sigmas = sigmas_of(developed(kSigmaSize, {.normal = wave}));
   EXPECT_GT(sigmas.median_of(sigmas.model_deg), 0.05);
   EXPECT_LT(sigmas.median_of(sigmas.model_deg), 1);
+}
+
+TEST(ModelPart, OfAPreviewIsLargeInAFoldAndSmallOnTheYarnsBeside) {
+  constexpr int kFold = 48;
+  const auto roofs = [](int x, int) {
+    const double slope = x < kFold ? -0.35 : x > kFold ? 0.35 : 0;  // a furrow, whose pixel mixes both sides
+    return normalized(Vec3{-slope, 0, 1});
+  };
+  const Sigmas sigmas = sigmas_of(developed(kSigmaSize, {.normal = roofs}), kSolveTile, 1, {.is_half = true});
+  const float fold = sigmas.model_deg(kFold, 30), beside = sigmas.model_deg(kFold - 8, 30);
+  EXPECT_NEAR(static_cast<double>(fold), degrees(std::atan(0.35)), 4) << "beside it " << beside;
+  EXPECT_LT(beside, 0.4F * fold);
 }
 
 TEST(SigmaChannels, AreTheRootOfTheSumOfTheSquaresOfTheirParts) {
