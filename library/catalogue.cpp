@@ -1,0 +1,462 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "library/catalogue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <sstream>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include "core/files.h"
+#include "core/iso_time.h"
+#include "core/parallel.h"
+#include "core/solve.h"
+#include "library/current.h"
+
+namespace weft::library {
+
+namespace fs = std::filesystem;
+
+// A session as the folders show it without reading it.
+struct Found {
+  fs::path folder;
+  std::int64_t bytes = 0, written = 0;  // of session.json
+  std::int64_t solved = 0;              // when the list of its solves changed; 0 where there is none
+
+  friend bool operator==(const Found&, const Found&) = default;
+};
+
+namespace {
+
+// Raised whenever the tables change.
+constexpr int kVersion = 1;
+constexpr std::size_t kMostRanked = 20'000;
+constexpr int kMostLimit = 1000;
+constexpr int kMostWords = 16;
+constexpr const char* kEnding = ".weft";
+
+constexpr const char* kTables = R"(
+CREATE TABLE session(
+  key INTEGER PRIMARY KEY, folder TEXT NOT NULL UNIQUE, name TEXT NOT NULL,
+  bytes INTEGER, written INTEGER, solved INTEGER,
+  fabric TEXT, rig TEXT, calibration TEXT, state TEXT, error TEXT,
+  revision INTEGER, barcode TEXT, tags TEXT, composition TEXT, construction TEXT, side TEXT, notes TEXT,
+  weight_g_m2 REAL, thickness_mm REAL,
+  shots INTEGER, solves INTEGER, current_solve TEXT, taken TEXT);
+CREATE INDEX session_taken ON session(taken DESC, key DESC);
+CREATE INDEX session_name ON session(name);
+CREATE INDEX session_barcode ON session(barcode);
+CREATE TABLE tag(tag TEXT, key INTEGER, PRIMARY KEY(tag, key)) WITHOUT ROWID;
+CREATE INDEX tag_key ON tag(key);
+CREATE VIRTUAL TABLE words USING fts5(name, fabric, tags, composition, notes, barcode,
+  content = 'session', content_rowid = 'key', tokenize = 'unicode61 remove_diacritics 2', prefix = '2 3');
+CREATE TRIGGER session_added AFTER INSERT ON session BEGIN
+  INSERT INTO words(rowid, name, fabric, tags, composition, notes, barcode)
+  VALUES (new.key, new.name, new.fabric, new.tags, new.composition, new.notes, new.barcode);
+END;
+CREATE TRIGGER session_removed AFTER DELETE ON session BEGIN
+  INSERT INTO words(words, rowid, name, fabric, tags, composition, notes, barcode)
+  VALUES ('delete', old.key, old.name, old.fabric, old.tags, old.composition, old.notes, old.barcode);
+  DELETE FROM tag WHERE key = old.key;
+END;
+CREATE TRIGGER session_changed AFTER UPDATE ON session BEGIN
+  INSERT INTO words(words, rowid, name, fabric, tags, composition, notes, barcode)
+  VALUES ('delete', old.key, old.name, old.fabric, old.tags, old.composition, old.notes, old.barcode);
+  INSERT INTO words(rowid, name, fabric, tags, composition, notes, barcode)
+  VALUES (new.key, new.name, new.fabric, new.tags, new.composition, new.notes, new.barcode);
+  DELETE FROM tag WHERE key = new.key;
+END;
+)";
+
+constexpr const char* kPut = R"(
+INSERT INTO session(folder, name, bytes, written, solved, fabric, rig, calibration, state, error, revision,
+  barcode, tags, composition, construction, side, notes, weight_g_m2, thickness_mm, shots, solves,
+  current_solve, taken)
+VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23)
+ON CONFLICT(folder) DO UPDATE SET
+  bytes = ?3, written = ?4, solved = ?5, fabric = ?6, rig = ?7, calibration = ?8, state = ?9, error = ?10,
+  revision = ?11, barcode = ?12, tags = ?13, composition = ?14, construction = ?15, side = ?16, notes = ?17,
+  weight_g_m2 = ?18, thickness_mm = ?19, shots = ?20, solves = ?21, current_solve = ?22, taken = ?23)";
+
+constexpr const char* kGet =
+    "SELECT key, folder, name, fabric, rig, calibration, state, error, revision, barcode, tags, composition, "
+    "construction, side, notes, weight_g_m2, thickness_mm, shots, solves, current_solve, taken FROM session "
+    "WHERE key = ?";
+
+std::int64_t nanoseconds(fs::file_time_type time) {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+             std::chrono::file_clock::to_sys(time).time_since_epoch())
+      .count();
+}
+
+// Nothing where it is no session.
+std::optional<Found> look_at(const fs::path& folder) {
+  std::error_code error;
+  const fs::path document = folder / "session.json";
+  Found found = {folder, static_cast<std::int64_t>(fs::file_size(document, error)), 0, 0};
+  if (error) return {};
+  found.written = nanoseconds(fs::last_write_time(document, error));
+  if (error) return {};
+  const auto solved = fs::last_write_time(folder / "solve", error);
+  if (!error) found.solved = nanoseconds(solved);
+  return found;
+}
+
+// Adds the sessions at and below a folder. Whether it could be listed.
+bool walk(const fs::path& folder, std::vector<Found>& found) {
+  std::error_code error;
+  fs::directory_iterator entries(folder, error);
+  if (error) return false;
+  std::vector<fs::path> below;
+  for (; entries != fs::directory_iterator(); entries.increment(error)) {
+    if (error) return false;
+    std::error_code ignored;
+    const fs::path& path = entries->path();
+    if (!entries->is_directory(ignored) || entries->is_symlink(ignored)) continue;
+    if (path.filename().native().starts_with('.')) continue;
+    if (path.extension() != kEnding) {
+      below.push_back(path);
+    } else if (std::optional<Found> session = look_at(path)) {
+      found.push_back(std::move(*session));
+    }
+  }
+  for (const fs::path& each : below) walk(each, found);
+  return true;
+}
+
+std::string joined(const std::vector<std::string>& tags) {
+  return fmt::format("{}", fmt::join(tags, "\n"));
+}
+
+std::vector<std::string> parted(const std::string& text) {
+  std::vector<std::string> tags;
+  std::istringstream lines(text);
+  for (std::string tag; std::getline(lines, tag);) tags.push_back(std::move(tag));
+  return tags;
+}
+
+Entry read_entry(const Found& found) {
+  Entry entry;
+  entry.folder = found.folder;
+  entry.name = found.folder.stem().string();
+  entry.taken = iso_time(static_cast<double>(found.written) * 1e-9);
+  const auto unreadable = [&](const Error& error) {
+    entry.state = "unreadable";
+    entry.error = error.message();
+    return entry;
+  };
+  const Result<Session> session = read_session(found.folder);
+  if (!session) return unreadable(session.error());
+  Result<Metadata> metadata = metadata_of(*session);
+  if (!metadata) return unreadable(metadata.error());
+  entry.fabric = session->fabric;
+  entry.rig = session->rig;
+  entry.calibration = session->calibration_id;
+  entry.state = session->state;
+  entry.metadata = std::move(*metadata);
+  entry.shots = static_cast<int>(session->shots.size());
+  if (!session->shots.empty() && !session->shots.front().time.empty())
+    entry.taken = session->shots.front().time;
+  if (found.solved != 0) {
+    entry.solves = static_cast<int>(list_solves(found.folder).size());
+    entry.current_solve = current_solve(*session);
+  }
+  return entry;
+}
+
+Error unusable(const std::string& where, std::string why, std::string remedy) {
+  return {ErrorKind::kUsage, "sessions cannot be searched so", where, std::move(why), std::move(remedy)};
+}
+
+// Each word as the beginning of one, all of them wanted. Quoted, a word means itself whatever it is made of.
+Result<std::string> match_of(const std::string& words) {
+  std::istringstream parts(words);
+  std::string match;
+  int count = 0;
+  for (std::string word; parts >> word;) {
+    if (++count > kMostWords) {
+      return unusable("words", fmt::format("they are more than {}", kMostWords), "search for fewer words");
+    }
+    std::string quoted;
+    for (const char c : word) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    match += fmt::format("\"{}\"* ", quoted);
+  }
+  return match;
+}
+
+Result<Database> with_tables(const fs::path& file) {
+  Result<Database> database = Database::open(file);
+  if (!database) return database;
+  int version = 0;
+  {
+    Result<Statement> asked = database->prepare("PRAGMA user_version");
+    if (!asked) return std::move(asked).error();
+    const Result<bool> row = asked->step();
+    if (!row) return row.error();
+    version = static_cast<int>(asked->integer(0));
+  }
+  if (version == kVersion) {
+    // A damaged file shows here rather than in the middle of a search.
+    Result<Statement> check = database->prepare("PRAGMA quick_check(1)");
+    if (!check) return std::move(check).error();
+    const Result<bool> row = check->step();
+    if (!row) return row.error();
+    if (check->text(0) == "ok") return database;
+  }
+  if (version != 0) {
+    return Error{ErrorKind::kBadData, "catalogue cannot be used", file.string(),
+                 fmt::format("it is damaged or of version {}, this is {}", version, kVersion), ""};
+  }
+  if (Result<void> ok = database->run("BEGIN IMMEDIATE"); !ok) return std::move(ok).error();
+  Result<void> made = database->run(kTables);
+  if (made) made = database->run(fmt::format("PRAGMA user_version = {}; COMMIT", kVersion).c_str());
+  if (!made) return std::move(made).error();
+  return database;
+}
+
+}  // namespace
+
+Result<Catalogue> Catalogue::open(const fs::path& file) {
+  std::error_code error;
+  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
+  Result<Database> database = with_tables(file);
+  if (!database && database.error().kind == ErrorKind::kBadData) {
+    for (const char* part : {"", "-wal", "-shm"}) {
+      const fs::path of_it = file.string() + part;
+      if (!is_there(of_it)) continue;
+      fs::rename(of_it, file.string() + ".damaged" + part, error);
+      if (error) return cannot_write(file, error.value());
+    }
+    database = with_tables(file);
+  }
+  if (!database) return std::move(database).error();
+  return Catalogue(std::move(*database));
+}
+
+Result<RefreshFacts> Catalogue::refresh(const std::vector<fs::path>& folders, const JobContext& context) {
+  RefreshFacts facts;
+  std::vector<Found> found;
+  for (const fs::path& folder : folders) {
+    const fs::path absolute = absolute_folder(folder);
+    if (!walk(absolute, found)) facts.unreachable.push_back(absolute);
+  }
+  facts.sessions = found.size();
+
+  // What is known, and of that what the folders no longer show.
+  std::unordered_map<std::string, Found> known;
+  {
+    Result<Statement> all = database_.prepare("SELECT folder, bytes, written, solved FROM session");
+    if (!all) return std::move(all).error();
+    for (;;) {
+      const Result<bool> row = all->step();
+      if (!row) return row.error();
+      if (!*row) break;
+      const std::string folder = all->text(0);
+      known[folder] = {folder, all->integer(1), all->integer(2), all->integer(3)};
+    }
+  }
+  std::vector<Found> changed;
+  for (const Found& session : found) {
+    const auto before = known.find(session.folder.string());
+    if (before == known.end() || !(before->second == session)) changed.push_back(session);
+    if (before != known.end()) known.erase(before);
+  }
+  const auto is_out_of_sight = [&](const std::string& folder) {
+    return std::ranges::any_of(facts.unreachable,
+                               [&](const fs::path& lost) { return folder.starts_with(lost.string() + "/"); });
+  };
+  std::erase_if(known, [&](const auto& each) { return is_out_of_sight(each.first); });
+
+  std::vector<Entry> entries(changed.size());
+  parallel_for(changed.size(), context.threads, [&](std::size_t i, int) {
+    if (!context.stop.stop_requested()) entries[i] = read_entry(changed[i]);
+  });
+  if (context.stop.stop_requested()) return interrupted();
+
+  if (Result<void> ok = database_.run("BEGIN IMMEDIATE"); !ok) return std::move(ok).error();
+  Result<void> done = put(changed, entries);
+  Result<Statement> forget = database_.prepare("DELETE FROM session WHERE folder = ?");
+  if (!forget) return std::move(forget).error();
+  for (auto it = known.begin(); done && it != known.end(); ++it) done = forget->bind(it->first).run();
+  done = done ? database_.run("COMMIT") : std::move(done);
+  if (!done) {
+    (void)database_.run("ROLLBACK");
+    return std::move(done).error();
+  }
+  facts.read = changed.size();
+  facts.removed = known.size();
+  return facts;
+}
+
+Result<void> Catalogue::refresh(const fs::path& session) {
+  const std::optional<Found> found = look_at(absolute_folder(session));
+  if (!found) {
+    Result<Statement> forget = database_.prepare("DELETE FROM session WHERE folder = ?");
+    if (!forget) return std::move(forget).error();
+    return forget->bind(absolute_folder(session).string()).run();
+  }
+  return put({*found}, {read_entry(*found)});
+}
+
+Result<void> Catalogue::put(const std::vector<Found>& found, const std::vector<Entry>& entries) {
+  Result<Statement> put = database_.prepare(kPut);
+  if (!put) return std::move(put).error();
+  Result<Statement> tag =
+      database_.prepare("INSERT OR IGNORE INTO tag SELECT ?, key FROM session WHERE folder = ?");
+  if (!tag) return std::move(tag).error();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    const Entry& e = entries[i];
+    const Metadata& m = e.metadata;
+    const std::string folder = e.folder.string();
+    put->bind(folder).bind(e.name).bind(found[i].bytes).bind(found[i].written).bind(found[i].solved);
+    put->bind(e.fabric).bind(e.rig).bind(e.calibration).bind(e.state).bind(e.error);
+    put->bind(std::int64_t{m.revision}).bind(m.barcode).bind(joined(m.tags)).bind(m.composition);
+    put->bind(m.construction).bind(m.side).bind(m.notes).bind(m.weight_g_m2).bind(m.thickness_mm);
+    put->bind(std::int64_t{e.shots}).bind(std::int64_t{e.solves}).bind(e.current_solve).bind(e.taken);
+    if (Result<void> ok = put->run(); !ok) return ok;
+    for (const std::string& each : m.tags) {
+      if (Result<void> ok = tag->bind(each).bind(folder).run(); !ok) return ok;
+    }
+  }
+  return {};
+}
+
+Result<std::vector<std::int64_t>> Catalogue::keys_of(const Query& query) {
+  const Result<std::string> match = match_of(query.words);
+  if (!match) return match.error();
+  std::string sql = "SELECT s.key FROM session s";
+  std::vector<std::string> values;
+  const auto with = [&](const char* condition, const std::string& value) {
+    if (value.empty()) return;
+    sql += values.empty() ? " WHERE " : " AND ";
+    sql += condition;
+    values.push_back(value);
+  };
+  if (!match->empty()) {
+    sql = fmt::format(
+        "SELECT s.key FROM (SELECT rowid, rank FROM words WHERE words MATCH ? LIMIT {}) hit JOIN session s "
+        "ON "
+        "s.key = hit.rowid WHERE 1",
+        kMostRanked);
+    values.push_back(*match);
+  }
+  with("s.barcode = ?", query.barcode);
+  with("s.key IN (SELECT key FROM tag WHERE tag = ?)", query.tag);
+  with("s.state = ?", query.state);
+  with("s.rig = ?", query.rig);
+  with("s.calibration = ?", query.calibration);
+  with("s.taken >= ?", query.from);
+  with("s.taken < ?", query.before);
+  sql +=
+      match->empty() ? " ORDER BY s.taken DESC, s.key DESC" : " ORDER BY hit.rank, s.taken DESC, s.key DESC";
+  Result<Statement> rows = database_.prepare(sql);
+  if (!rows) return std::move(rows).error();
+  for (const std::string& value : values) rows->bind(value);
+  std::vector<std::int64_t> keys;
+  for (;;) {
+    const Result<bool> row = rows->step();
+    if (!row) return row.error();
+    if (!*row) return keys;
+    keys.push_back(rows->integer(0));
+  }
+}
+
+Result<Entry> Catalogue::entry(std::int64_t key) {
+  Result<Statement> get = database_.prepare(kGet);
+  if (!get) return std::move(get).error();
+  const Result<bool> row = get->bind(key).step();
+  if (!row) return row.error();
+  if (!*row) {
+    return Error{ErrorKind::kNoInput, "there is no such session", fmt::format("entry {}", key),
+                 "it is no longer in its folder", "search again"};
+  }
+  Entry e;
+  e.key = get->integer(0);
+  e.folder = get->text(1);
+  e.name = get->text(2);
+  e.fabric = get->text(3);
+  e.rig = get->text(4);
+  e.calibration = get->text(5);
+  e.state = get->text(6);
+  e.error = get->text(7);
+  e.metadata = {.revision = static_cast<int>(get->integer(8)),
+                .barcode = get->text(9),
+                .tags = parted(get->text(10)),
+                .composition = get->text(11),
+                .construction = get->text(12),
+                .side = get->text(13),
+                .notes = get->text(14),
+                .weight_g_m2 = get->number(15),
+                .thickness_mm = get->number(16)};
+  e.shots = static_cast<int>(get->integer(17));
+  e.solves = static_cast<int>(get->integer(18));
+  e.current_solve = get->text(19);
+  e.taken = get->text(20);
+  return e;
+}
+
+Result<Page> Catalogue::find(const Query& query) {
+  if (query.limit < 1 || query.limit > kMostLimit) {
+    return unusable("limit", fmt::format("{} sessions a page", query.limit),
+                    fmt::format("ask for 1 to {}", kMostLimit));
+  }
+  const Result<std::vector<std::int64_t>> keys = keys_of(query);
+  if (!keys) return keys.error();
+  Page page;
+  page.total = keys->size();
+  std::size_t at = 0;
+  if (query.after) {
+    const auto last = std::ranges::find(*keys, *query.after);
+    if (last == keys->end()) {
+      return unusable("after", fmt::format("entry {} is not found any more", *query.after),
+                      "begin with the first page again");
+    }
+    at = static_cast<std::size_t>(last - keys->begin()) + 1;
+  }
+  const std::size_t end = std::min(keys->size(), at + static_cast<std::size_t>(query.limit));
+  for (; at < end; ++at) {
+    Result<Entry> found = entry((*keys)[at]);
+    if (!found) return std::move(found).error();
+    page.entries.push_back(std::move(*found));
+  }
+  if (end < keys->size()) page.after = (*keys)[end - 1];
+  return page;
+}
+
+Result<Entry> Catalogue::find_one(const std::string& name) {
+  Result<Statement> rows = database_.prepare(
+      "SELECT key FROM session WHERE name = ?1 OR folder = ?1 OR (barcode = ?1 AND barcode <> '') LIMIT 2");
+  if (!rows) return std::move(rows).error();
+  Result<bool> row = rows->bind(name).step();
+  if (!row) return std::move(row).error();
+  if (!*row) {
+    return Error{ErrorKind::kNoInput, "there is no such session", name, "no name, folder or barcode is that",
+                 "search for it with weft library find"};
+  }
+  const std::int64_t key = rows->integer(0);
+  row = rows->step();
+  if (!row) return std::move(row).error();
+  if (*row) {
+    return Error{ErrorKind::kUsage, "several sessions are called so", name, "",
+                 "give the folder; weft library find shows them"};
+  }
+  return entry(key);
+}
+
+Result<std::vector<std::pair<std::string, int>>> Catalogue::tags() {
+  Result<Statement> rows =
+      database_.prepare("SELECT tag, count(*) AS n FROM tag GROUP BY tag ORDER BY n DESC, tag");
+  if (!rows) return std::move(rows).error();
+  std::vector<std::pair<std::string, int>> tags;
+  for (;;) {
+    const Result<bool> row = rows->step();
+    if (!row) return row.error();
+    if (!*row) return tags;
+    tags.emplace_back(rows->text(0), static_cast<int>(rows->integer(1)));
+  }
+}
+
+}  // namespace weft::library

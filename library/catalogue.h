@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/job.h"
+#include "core/result.h"
+#include "library/database.h"
+#include "library/metadata.h"
+
+// All sessions of some folders, to be listed and searched without opening them.
+
+namespace weft::library {
+
+/// What the catalogue knows of a session.
+struct Entry {
+  std::int64_t key = 0;          ///< its place in this catalogue, for paging
+  std::filesystem::path folder;  ///< absolute, NAME.weft
+  std::string name;
+  std::string fabric, rig, calibration;
+  std::string
+      state;  ///< as session.json has it; "unreadable" where that cannot be read, and `error` says why
+  std::string error;
+  Metadata metadata;
+  int shots = 0, solves = 0;
+  std::string current_solve;  ///< id (library/current.h); empty where there is no solve
+  std::string taken;          ///< ISO 8601, of the first shot, else when session.json was written
+};
+
+/// What to look for. Empty fields ask for nothing.
+struct Query {
+  /// All of these must occur in name, fabric, tags, composition, notes or barcode, each as the beginning of a
+  /// word, whatever its case and accents.
+  std::string words = {};
+  std::string barcode = {}, tag = {}, state = {}, rig = {}, calibration = {};  ///< exactly
+  std::string from = {}, before = {};      ///< ISO 8601, or its beginning: 2026-11
+  int limit = 100;                         ///< entries a page, 1 to 1000
+  std::optional<std::int64_t> after = {};  ///< the key that ended the page before
+};
+
+struct Page {
+  std::vector<Entry> entries;
+  std::size_t total = 0;              ///< over all pages
+  std::optional<std::int64_t> after;  ///< of the next page; none: this is the last
+};
+
+/// What refreshing found.
+struct RefreshFacts {
+  std::size_t sessions = 0, read = 0, removed = 0;
+  std::vector<std::filesystem::path> unreachable;  ///< folders that cannot be listed: what was known stays
+};
+
+/// A SQLite file that can be thrown away: refresh() makes it again from the folders. Never on a disk that
+/// several machines share. One object serves one thread; several objects and processes may use one file.
+class Catalogue {
+ public:
+  /// Opens the file, and makes it if there is none. A file that is damaged, or of another version, is put
+  /// aside (".damaged") and made anew: the next refresh() fills it. Errors of database.h.
+  static Result<Catalogue> open(const std::filesystem::path& file);
+
+  /// Looks through the folders and those below them for sessions, and reads those whose session.json or list
+  /// of solves changed since. Links are not followed. What is under no folder any more is forgotten. Reads in
+  /// parallel.
+  Result<RefreshFacts> refresh(const std::vector<std::filesystem::path>& folders, const JobContext& context);
+  /// The same for one session, after it was changed.
+  Result<void> refresh(const std::filesystem::path& session);
+
+  /// Newest first; of words the best match first, among the first 20 000. kUsage where limit or words cannot
+  /// be used, or the entry `after` is gone.
+  Result<Page> find(const Query& query);
+  /// The session of this name, folder or barcode: kNoInput where there is none, kUsage where there are
+  /// several.
+  Result<Entry> find_one(const std::string& name);
+  /// All tags with how many sessions have each, most first.
+  Result<std::vector<std::pair<std::string, int>>> tags();
+
+ private:
+  explicit Catalogue(Database database) : database_(std::move(database)) {}
+  Result<void> put(const std::vector<struct Found>& found, const std::vector<Entry>& entries);
+  Result<std::vector<std::int64_t>> keys_of(const Query& query);
+  Result<Entry> entry(std::int64_t key);
+
+  Database database_;
+};
+
+}  // namespace weft::library

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "library/metadata.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "core/solve.h"
+#include "library/session_lock.h"
+
+namespace weft::library {
+namespace {
+
+constexpr double kMost = 1e5;  // grams per square metre, millimetres
+
+// What the value of a field must be; empty where it is that.
+using Rule = std::string (*)(const Json& value);
+
+bool is_utf8(const Json& text) {
+  try {
+    (void)text.dump();
+    return true;
+  } catch (const Json::type_error&) {
+    return false;
+  }
+}
+
+std::string text_rule(const Json& value, std::size_t longest, bool may_have_lines) {
+  if (!value.is_string()) return "must be a text";
+  const std::string& text = value.get_ref<const std::string&>();
+  if (text.size() > longest) return fmt::format("must be at most {} bytes long", longest);
+  if (!is_utf8(value)) return "must be UTF-8";
+  const bool has_control = std::ranges::any_of(text, [&](char c) {
+    return (static_cast<unsigned char>(c) < 0x20 && !(may_have_lines && c == '\n')) || c == 0x7f;
+  });
+  return has_control ? "must have no control characters" : "";
+}
+
+std::string line_rule(const Json& value) {
+  return text_rule(value, kLongestText, false);
+}
+std::string notes_rule(const Json& value) {
+  return text_rule(value, kLongestNotes, true);
+}
+std::string side_rule(const Json& value) {
+  return value == "front" || value == "back" ? "" : "must be front or back";
+}
+std::string amount_rule(const Json& value) {
+  if (!value.is_number()) return "must be a number";
+  const double amount = value.get<double>();
+  return std::isfinite(amount) && amount >= 0 && amount <= kMost
+             ? ""
+             : fmt::format("must be a number from 0 to {}", kMost);
+}
+std::string tags_rule(const Json& value) {
+  if (!value.is_array()) return "must be a list of texts";
+  if (value.size() > kMostTags) return fmt::format("must be at most {} tags", kMostTags);
+  for (const Json& tag : value) {
+    if (const std::string broken = line_rule(tag); !broken.empty()) return "each " + broken;
+    if (tag == "") return "must have no empty tag";
+  }
+  return "";
+}
+
+struct Field {
+  const char* key;
+  Rule rule;
+};
+constexpr std::array<Field, 8> kFields = {{{"barcode", line_rule},
+                                           {"tags", tags_rule},
+                                           {"composition", line_rule},
+                                           {"construction", line_rule},
+                                           {"side", side_rule},
+                                           {"notes", notes_rule},
+                                           {"weight_g_m2", amount_rule},
+                                           {"thickness_mm", amount_rule}}};
+
+std::vector<std::string> tags_of(const Json& list) {
+  auto tags = list.get<std::vector<std::string>>();
+  std::ranges::sort(tags);
+  tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
+  return tags;
+}
+
+std::string id_rule(const Json& value) {
+  const bool is_id = value.is_string() && value.get_ref<const std::string&>().size() == 16 &&
+                     std::ranges::all_of(value.get_ref<const std::string&>(), [](char c) {
+                       return ('0' <= c && c <= '9') || ('a' <= c && c <= 'f');
+                     });
+  return is_id ? "" : "must be the id of a solve";
+}
+
+Error refused(const std::string& key, const std::string& rule) {
+  std::string known = "fabric, current_solve";
+  for (const Field& field : kFields) known += fmt::format(", {}", field.key);
+  return {ErrorKind::kUsage, "metadata cannot be set", key, rule, "set one of " + known};
+}
+
+// Fields of session.json itself.
+bool is_of_session(std::string_view key) {
+  return key == "fabric" || key == "current_solve";
+}
+
+// Null where there is no such field.
+Rule rule_of(std::string_view key) {
+  if (key == "fabric") return line_rule;
+  if (key == "current_solve") return id_rule;
+  const auto* known = std::ranges::find(kFields, key, &Field::key);
+  return known == kFields.end() ? nullptr : known->rule;
+}
+
+Result<void> check_fields(const Json& fields) {
+  if (!fields.is_object() || fields.empty()) return refused("", "no field is named");
+  for (const auto& [key, value] : fields.items()) {
+    const Rule rule = rule_of(key);
+    if (rule == nullptr) return refused(key.substr(0, 40), "there is no such field");
+    if (value.is_null()) continue;
+    if (const std::string broken = rule(value); !broken.empty()) return refused(key, broken);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Metadata> metadata_from_json(const Json& document, const std::string& where) {
+  const auto wrong = [&](const char* key, const std::string& rule) {
+    return Error{ErrorKind::kBadData, "metadata cannot be used", fmt::format("{}: {}", where, key), rule,
+                 "set the field again with weft library tag"};
+  };
+  if (!document.is_object()) return wrong("metadata", "must be an object");
+  for (const Field& field : kFields) {
+    if (!document.contains(field.key)) continue;
+    if (const std::string broken = field.rule(document[field.key]); !broken.empty())
+      return wrong(field.key, broken);
+  }
+  Metadata metadata;
+  if (const auto revision = document.find("revision"); revision != document.end()) {
+    if (!revision->is_number_integer() || *revision < 0 || *revision > 1'000'000'000)
+      return wrong("revision", "must be a count");
+    metadata.revision = revision->get<int>();
+  }
+  metadata.barcode = document.value("barcode", "");
+  if (document.contains("tags")) metadata.tags = tags_of(document["tags"]);
+  metadata.composition = document.value("composition", "");
+  metadata.construction = document.value("construction", "");
+  metadata.side = document.value("side", "");
+  metadata.notes = document.value("notes", "");
+  metadata.weight_g_m2 = document.value("weight_g_m2", 0.0);
+  metadata.thickness_mm = document.value("thickness_mm", 0.0);
+  return metadata;
+}
+
+Result<Metadata> metadata_of(const Session& session) {
+  const auto found = session.document.find("metadata");
+  if (found == session.document.end()) return Metadata();
+  return metadata_from_json(*found, (session.folder / "session.json").string());
+}
+
+Result<Change> change_metadata(const std::filesystem::path& folder, const Json& fields,
+                               const Provided& provided) {
+  if (Result<void> ok = check_fields(fields); !ok) return std::move(ok).error();
+  const Result<Descriptor> lock = lock_session(folder);
+  if (!lock) return lock.error();
+  Result<Session> session = read_session(folder);
+  if (!session) return std::move(session).error();
+  const Result<Metadata> known = metadata_of(*session);
+  if (!known) return known.error();
+  if (const auto solve = fields.find("current_solve"); solve != fields.end() && solve->is_string()) {
+    if (const Result<Product> found = find_solve(folder, solve->get<std::string>()); !found)
+      return found.error();
+  }
+
+  Json& document = session->document;
+  document["fabric"] = session->fabric;
+  if (!document.contains("metadata")) document["metadata"] = Json::object();
+  const auto holder_of = [&](const std::string& key) -> Json& {
+    return is_of_session(key) ? document : document["metadata"];
+  };
+  const auto changed_meanwhile = [&](const std::string& why) {
+    return Error{ErrorKind::kTryAgain, "session was changed meanwhile", folder.string(), why,
+                 "read it again, then repeat the change"};
+  };
+  if (provided.revision && *provided.revision != known->revision) {
+    return changed_meanwhile(
+        fmt::format("the revision of its metadata is {}, not {}", known->revision, *provided.revision));
+  }
+  for (const auto& [key, value] : provided.values.items()) {
+    if (holder_of(key).value(key, Json()) != value) return changed_meanwhile(key + " is another");
+  }
+
+  Change change = {folder, Json::object(), Json::object(), known->revision};
+  for (const auto& [key, value] : fields.items()) {
+    Json& holder = holder_of(key);
+    Json before = holder.value(key, Json());
+    Json after = key == "tags" && value.is_array() ? Json(tags_of(value)) : value;
+    if (before == after) continue;
+    if (after.is_null()) {
+      holder.erase(key);
+    } else {
+      holder[key] = after;
+    }
+    change.before[key] = std::move(before);
+    change.after[key] = std::move(after);
+  }
+  if (change.after.empty()) return change;
+  session->fabric = document.value("fabric", "");
+  document["metadata"]["revision"] = change.revision = known->revision + 1;
+  if (Result<void> ok = write_session(*session); !ok) return std::move(ok).error();
+  return change;
+}
+
+std::string words_of(const Change& change) {
+  std::string words;
+  for (const auto& [key, value] : change.after.items()) {
+    std::string said = value.is_string() ? value.get<std::string>() : value.is_null() ? "none" : value.dump();
+    if (value.is_array()) {
+      said = value.empty() ? "none" : "";
+      for (const Json& tag : value) said += (said.empty() ? "" : ", ") + tag.get<std::string>();
+    }
+    words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", key, said);
+  }
+  return fmt::format("{} of {}", words.empty() ? "nothing" : words, change.folder.stem().string());
+}
+
+}  // namespace weft::library

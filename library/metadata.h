@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/json_document.h"
+#include "core/result.h"
+#include "core/session.h"
+
+// What people say of a cloth, kept in its session.json. No solve depends on it.
+
+namespace weft::library {
+
+/// `metadata` of session.json (docs/formats.md). Empty or 0: nobody said.
+struct Metadata {
+  int revision = 0;  ///< counts the changes
+  std::string barcode = {};
+  std::vector<std::string> tags = {};  ///< sorted, each once
+  std::string composition = {};        ///< "80 % wool, 20 % polyamide"
+  std::string construction = {};       ///< "twill 2/1"
+  std::string side = {};               ///< "front" or "back"
+  std::string notes = {};              ///< may have several lines
+  double weight_g_m2 = 0;
+  double thickness_mm = 0;
+
+  friend bool operator==(const Metadata&, const Metadata&) = default;
+};
+
+/// Texts are valid UTF-8 without control characters, of at most this many bytes; notes may have line feeds.
+inline constexpr std::size_t kLongestText = 200;
+inline constexpr std::size_t kLongestNotes = 10'000;
+inline constexpr std::size_t kMostTags = 64;
+
+/// kBadData, `where` being its name for messages.
+Result<Metadata> metadata_from_json(const Json& document, const std::string& where);
+/// What a session says; empty where it says nothing. kBadData.
+Result<Metadata> metadata_of(const Session& session);
+
+/// A change that was made, and what undoes it: `before` and `after` hold the fields that differ, null where
+/// there was none.
+struct Change {
+  std::filesystem::path folder;  ///< of the session
+  Json before, after;
+  int revision = 0;  ///< after it
+};
+
+/// What must hold of the session for a change to be made: somebody else may have changed it.
+struct Provided {
+  std::optional<int> revision = {};  ///< that of its metadata
+  Json values = {};                  ///< of fields, as Change has them; null: any
+};
+
+/// Sets fields of a session's metadata, or `fabric`, or `current_solve` (library/current.h); a field that is
+/// null is removed. Others stay, unknown ones of newer versions too. `tags` is a whole list. Takes the lock
+/// that a scan holds. Errors: kUsage (a field that is none, or breaks a rule), kNoInput (also: no such
+/// solve), kBadData, kTryAgain (a scan writes the session, or it is not as provided), kCannotCreate.
+Result<Change> change_metadata(const std::filesystem::path& session, const Json& fields,
+                               const Provided& provided = {});
+
+/// What a change did, in words: "tags of twill: red, wool".
+std::string words_of(const Change& change);
+
+}  // namespace weft::library

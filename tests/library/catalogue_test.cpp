@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "library/catalogue.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <set>
+
+#include "tests/library/shelf.h"
+
+namespace weft::library {
+namespace {
+
+Catalogue opened(const Shelf& shelf) {
+  Result<Catalogue> catalogue = Catalogue::open(shelf.beside("library.sqlite"));
+  EXPECT_TRUE(catalogue) << (catalogue ? "" : catalogue.error().message());
+  return std::move(*catalogue);
+}
+
+RefreshFacts refreshed(Catalogue& catalogue, const std::vector<std::filesystem::path>& folders) {
+  const Result<RefreshFacts> facts = catalogue.refresh(folders, {.threads = 2});
+  EXPECT_TRUE(facts) << (facts ? "" : facts.error().message());
+  return *facts;
+}
+
+// Names of the sessions that fit, in order.
+std::vector<std::string> found(Catalogue& catalogue, const Query& query) {
+  const Result<Page> page = catalogue.find(query);
+  EXPECT_TRUE(page) << (page ? "" : page.error().message());
+  std::vector<std::string> names;
+  for (const Entry& entry : page->entries) names.push_back(entry.name);
+  return names;
+}
+
+Json taken(const std::string& time) {
+  return {{{"index", 0},
+           {"led", 1},
+           {"role", "lit"},
+           {"file", "raw/0.dng"},
+           {"exposure_us", 1},
+           {"iso", 100},
+           {"f_number", 8},
+           {"time", time}}};
+}
+
+using Names = std::vector<std::string>;
+
+TEST(Catalogue, FindsSessionsByWhatIsSaidOfThem) {
+  const Shelf shelf;
+  shelf.put("a", {{"fabric", "Crêpe de Chine"},
+                  {"shots", taken("2026-11-03T08:00:00Z")},
+                  {"metadata", {{"barcode", "4006381333931"}, {"tags", {"silk", "red"}}}}});
+  shelf.put("b", {{"fabric", "wool twill"},
+                  {"shots", taken("2026-11-02T08:00:00Z")},
+                  {"state", "capturing"},
+                  {"metadata", {{"composition", "wool and silk"}, {"tags", {"red"}}}}});
+  shelf.put("c", {{"fabric", "twill"}, {"rig", "bench-2"}, {"shots", taken("2026-11-01T08:00:00Z")}});
+  shelf.solve("c", "0000000000000001");
+  Catalogue catalogue = opened(shelf);
+  EXPECT_EQ(refreshed(catalogue, {shelf.path()}).read, 3U);
+
+  EXPECT_EQ(found(catalogue, {}), (Names{"a", "b", "c"})) << "newest first";
+  EXPECT_EQ(found(catalogue, {.words = "crepe"}), Names{"a"}) << "without its accent";
+  EXPECT_EQ(found(catalogue, {.words = "SIL"}).size(), 2U) << "the beginning of a word";
+  EXPECT_EQ(found(catalogue, {.words = "silk twill"}), Names{"b"}) << "all words";
+  EXPECT_EQ(found(catalogue, {.words = "4006381333931"}), Names{"a"});
+  EXPECT_EQ(found(catalogue, {.words = "nylon"}), Names{});
+  EXPECT_EQ(found(catalogue, {.barcode = "4006381333931"}), Names{"a"});
+  EXPECT_EQ(found(catalogue, {.tag = "red"}), (Names{"a", "b"}));
+  EXPECT_EQ(found(catalogue, {.state = "capturing"}), Names{"b"});
+  EXPECT_EQ(found(catalogue, {.rig = "bench-2"}), Names{"c"});
+  EXPECT_EQ(found(catalogue, {.from = "2026-11-02", .before = "2026-11-03"}), Names{"b"});
+  EXPECT_EQ(found(catalogue, {.words = "twill", .tag = "red"}), Names{"b"});
+
+  const Result<Entry> solved = catalogue.find_one("c");
+  ASSERT_TRUE(solved) << solved.error().message();
+  EXPECT_EQ(solved->solves, 1);
+  EXPECT_EQ(solved->current_solve, "0000000000000001");
+  EXPECT_EQ(catalogue.find_one("4006381333931")->name, "a");
+  EXPECT_EQ(catalogue.tags()->front(), (std::pair<std::string, int>{"red", 2}));
+}
+
+TEST(Catalogue, TakesAnyTextForWordsAndNeverForALanguage) {
+  const Shelf shelf;
+  shelf.put("a", {{"fabric", "\"quoted\" OR NOT (near) a* b:c -d"}});
+  Catalogue catalogue = opened(shelf);
+  refreshed(catalogue, {shelf.path()});
+  for (const char* words : {"\"quoted\"", "OR", "NOT", "(near)", "a*", "b:c", "-d", "\"",
+                            "'; DROP TABLE session; --", "*", "{}", "^quoted"}) {
+    EXPECT_TRUE(catalogue.find({.words = words})) << words;
+  }
+  EXPECT_EQ(found(catalogue, {.words = "quoted near"}), Names{"a"});
+  EXPECT_EQ(
+      catalogue.find({.words = std::string(100, 'x') + " a b c d e f g h i j k l m n o p"}).error().kind,
+      ErrorKind::kUsage)
+      << "seventeen words";
+}
+
+TEST(Catalogue, ReadsOnlyWhatChangedAndForgetsWhatIsGone) {
+  const Shelf shelf;
+  for (const char* name : {"a", "b", "c"}) shelf.put(name);
+  Catalogue catalogue = opened(shelf);
+  EXPECT_EQ(refreshed(catalogue, {shelf.path()}).read, 3U);
+  EXPECT_EQ(refreshed(catalogue, {shelf.path()}).read, 0U);
+  const std::int64_t key = catalogue.find_one("b")->key;
+
+  ASSERT_TRUE(change_metadata(shelf.folder_of("b"), {{"tags", {"new"}}}));
+  EXPECT_EQ(refreshed(catalogue, {shelf.path()}).read, 1U);
+  EXPECT_EQ(found(catalogue, {.tag = "new"}), Names{"b"});
+  EXPECT_EQ(catalogue.find_one("b")->key, key) << "pages stay where they were";
+  ASSERT_TRUE(change_metadata(shelf.folder_of("b"), {{"tags", nullptr}, {"fabric", "linen"}}));
+  ASSERT_TRUE(catalogue.refresh(shelf.folder_of("b")));
+  EXPECT_EQ(found(catalogue, {.tag = "new"}), Names{});
+  EXPECT_EQ(found(catalogue, {.words = "new"}), Names{}) << "its words are taken out too";
+  EXPECT_EQ(found(catalogue, {.words = "linen"}), Names{"b"});
+
+  shelf.solve("a", "0000000000000001");
+  EXPECT_EQ(refreshed(catalogue, {shelf.path()}).read, 1U) << "it was solved";
+  std::filesystem::remove_all(shelf.folder_of("c"));
+  EXPECT_EQ(refreshed(catalogue, {shelf.path()}).removed, 1U);
+  EXPECT_EQ(found(catalogue, {}).size(), 2U);
+}
+
+TEST(Catalogue, ShowsASessionThatCannotBeReadWithItsError) {
+  const Shelf shelf;
+  shelf.put("good");
+  std::ofstream(shelf.put("broken") / "session.json", std::ios::trunc)
+      << "{\"schema\": \"weft.session/1\", \"sh";
+  std::filesystem::create_directories(shelf.folder_of("empty"));
+  std::filesystem::create_directory_symlink(shelf.path(), shelf.path() / "loop");
+  Catalogue catalogue = opened(shelf);
+  EXPECT_EQ(refreshed(catalogue, {shelf.path()}).sessions, 2U) << "a link is not followed";
+  EXPECT_EQ(found(catalogue, {.state = "unreadable"}), Names{"broken"});
+  EXPECT_NE(catalogue.find_one("broken")->error, "");
+}
+
+TEST(Catalogue, LooksIntoFoldersBelowAndKeepsWhatItKnewOfAFolderThatCannotBeListed) {
+  const Shelf near, far;
+  near.put("2026/november/a");
+  far.put("b");
+  Catalogue catalogue = opened(near);
+  EXPECT_EQ(refreshed(catalogue, {near.path(), far.path()}).sessions, 2U);
+  std::filesystem::rename(far.path(), far.beside("unmounted"));
+  const RefreshFacts facts = refreshed(catalogue, {near.path(), far.path()});
+  EXPECT_EQ(facts.unreachable, std::vector{far.path()});
+  EXPECT_EQ(facts.removed, 0U);
+  EXPECT_EQ(found(catalogue, {}).size(), 2U);
+}
+
+TEST(Catalogue, PagesThroughAllSessionsWithoutSkippingOrRepeating) {
+  const Shelf shelf;
+  for (int i = 0; i < 25; ++i) shelf.put(fmt::format("s{:02}", i), {{"fabric", "twill number"}});
+  Catalogue catalogue = opened(shelf);
+  refreshed(catalogue, {shelf.path()});
+  for (const char* words : {"", "twill"}) {
+    std::set<std::string> names;
+    Query query = {.words = words, .limit = 7};
+    int pages = 0;
+    do {
+      const Result<Page> page = catalogue.find(query);
+      ASSERT_TRUE(page) << page.error().message();
+      EXPECT_EQ(page->total, 25U);
+      for (const Entry& entry : page->entries) EXPECT_TRUE(names.insert(entry.name).second) << entry.name;
+      query.after = page->after;
+      ++pages;
+    } while (query.after);
+    EXPECT_EQ(names.size(), 25U);
+    EXPECT_EQ(pages, 4);
+  }
+  EXPECT_EQ(catalogue.find({.limit = 0}).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(catalogue.find({.limit = 1001}).error().kind, ErrorKind::kUsage);
+  EXPECT_EQ(catalogue.find({.after = 999}).error().kind, ErrorKind::kUsage);
+}
+
+TEST(Catalogue, ThatIsDamagedOrNewerIsPutAsideAndMadeAgain) {
+  const Shelf shelf;
+  shelf.put("a");
+  const auto file = shelf.beside("library.sqlite");
+  std::ofstream(file) << std::string(5000, 'x');
+  {
+    Catalogue catalogue = opened(shelf);
+    EXPECT_EQ(refreshed(catalogue, {shelf.path()}).read, 1U);
+  }
+  EXPECT_TRUE(std::filesystem::exists(shelf.beside("library.sqlite.damaged")));
+  {
+    Result<Database> newer = Database::open(file);
+    ASSERT_TRUE(newer && newer->run("PRAGMA user_version = 99"));
+  }
+  Catalogue catalogue = opened(shelf);
+  EXPECT_EQ(refreshed(catalogue, {shelf.path()}).read, 1U);
+}
+
+}  // namespace
+}  // namespace weft::library

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "core/json_document.h"
+#include "core/temporary_folder.h"
+
+namespace weft::library {
+
+/// A folder of sessions without photographs.
+class Shelf {
+ public:
+  std::filesystem::path path() const { return folder_.path() / "sessions"; }
+  std::filesystem::path beside(const std::string& name) const { return folder_.path() / name; }
+  std::filesystem::path folder_of(const std::string& name) const { return path() / (name + ".weft"); }
+
+  /// Writes its session.json; `fields` replace those of a finished scan of twill on rig bench-1.
+  std::filesystem::path put(const std::string& name, const Json& fields = Json::object()) const;
+  /// Adds a finished solve without maps.
+  void solve(const std::string& name, const std::string& id) const;
+
+ private:
+  TemporaryFolder folder_;
+};
+
+}  // namespace weft::library
