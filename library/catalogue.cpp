@@ -43,46 +43,46 @@ CREATE TABLE session(
   key INTEGER PRIMARY KEY, folder TEXT NOT NULL UNIQUE, name TEXT NOT NULL,
   bytes INTEGER, written INTEGER, solved INTEGER,
   fabric TEXT, rig TEXT, calibration TEXT, state TEXT, error TEXT,
-  revision INTEGER, barcode TEXT, tags TEXT, composition TEXT, construction TEXT, side TEXT, notes TEXT,
+  revision INTEGER, id TEXT, tags TEXT, composition TEXT, construction TEXT, side TEXT, notes TEXT,
   weight_g_m2 REAL, thickness_mm REAL,
   shots INTEGER, solves INTEGER, current_solve TEXT, taken TEXT);
 CREATE INDEX session_taken ON session(taken DESC, key DESC);
 CREATE INDEX session_name ON session(name);
-CREATE INDEX session_barcode ON session(barcode);
+CREATE INDEX session_id ON session(id);
 CREATE TABLE tag(tag TEXT, key INTEGER, PRIMARY KEY(tag, key)) WITHOUT ROWID;
 CREATE INDEX tag_key ON tag(key);
-CREATE VIRTUAL TABLE words USING fts5(name, fabric, tags, composition, notes, barcode,
+CREATE VIRTUAL TABLE words USING fts5(name, fabric, tags, composition, notes, id,
   content = 'session', content_rowid = 'key', tokenize = 'unicode61 remove_diacritics 2', prefix = '2 3');
 CREATE TRIGGER session_added AFTER INSERT ON session BEGIN
-  INSERT INTO words(rowid, name, fabric, tags, composition, notes, barcode)
-  VALUES (new.key, new.name, new.fabric, new.tags, new.composition, new.notes, new.barcode);
+  INSERT INTO words(rowid, name, fabric, tags, composition, notes, id)
+  VALUES (new.key, new.name, new.fabric, new.tags, new.composition, new.notes, new.id);
 END;
 CREATE TRIGGER session_removed AFTER DELETE ON session BEGIN
-  INSERT INTO words(words, rowid, name, fabric, tags, composition, notes, barcode)
-  VALUES ('delete', old.key, old.name, old.fabric, old.tags, old.composition, old.notes, old.barcode);
+  INSERT INTO words(words, rowid, name, fabric, tags, composition, notes, id)
+  VALUES ('delete', old.key, old.name, old.fabric, old.tags, old.composition, old.notes, old.id);
   DELETE FROM tag WHERE key = old.key;
 END;
 CREATE TRIGGER session_changed AFTER UPDATE ON session BEGIN
-  INSERT INTO words(words, rowid, name, fabric, tags, composition, notes, barcode)
-  VALUES ('delete', old.key, old.name, old.fabric, old.tags, old.composition, old.notes, old.barcode);
-  INSERT INTO words(rowid, name, fabric, tags, composition, notes, barcode)
-  VALUES (new.key, new.name, new.fabric, new.tags, new.composition, new.notes, new.barcode);
+  INSERT INTO words(words, rowid, name, fabric, tags, composition, notes, id)
+  VALUES ('delete', old.key, old.name, old.fabric, old.tags, old.composition, old.notes, old.id);
+  INSERT INTO words(rowid, name, fabric, tags, composition, notes, id)
+  VALUES (new.key, new.name, new.fabric, new.tags, new.composition, new.notes, new.id);
   DELETE FROM tag WHERE key = new.key;
 END;
 )";
 
 constexpr const char* kPut = R"(
 INSERT INTO session(folder, name, bytes, written, solved, fabric, rig, calibration, state, error, revision,
-  barcode, tags, composition, construction, side, notes, weight_g_m2, thickness_mm, shots, solves,
+  id, tags, composition, construction, side, notes, weight_g_m2, thickness_mm, shots, solves,
   current_solve, taken)
 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23)
 ON CONFLICT(folder) DO UPDATE SET
   bytes = ?3, written = ?4, solved = ?5, fabric = ?6, rig = ?7, calibration = ?8, state = ?9, error = ?10,
-  revision = ?11, barcode = ?12, tags = ?13, composition = ?14, construction = ?15, side = ?16, notes = ?17,
+  revision = ?11, id = ?12, tags = ?13, composition = ?14, construction = ?15, side = ?16, notes = ?17,
   weight_g_m2 = ?18, thickness_mm = ?19, shots = ?20, solves = ?21, current_solve = ?22, taken = ?23)";
 
 constexpr const char* kGet =
-    "SELECT key, folder, name, fabric, rig, calibration, state, error, revision, barcode, tags, composition, "
+    "SELECT key, folder, name, fabric, rig, calibration, state, error, revision, id, tags, composition, "
     "construction, side, notes, weight_g_m2, thickness_mm, shots, solves, current_solve, taken FROM session "
     "WHERE key = ?";
 
@@ -143,20 +143,19 @@ Entry read_entry(const Found& found) {
   entry.folder = found.folder;
   entry.name = found.folder.stem().string();
   entry.taken = iso_time(static_cast<double>(found.written) * 1e-9);
-  const auto unreadable = [&](const Error& error) {
-    entry.state = "unreadable";
-    entry.error = error.message();
-    return entry;
-  };
   const Result<Session> session = read_session(found.folder);
-  if (!session) return unreadable(session.error());
+  if (!session) {
+    entry.state = "unreadable";
+    entry.error = session.error().message();
+    return entry;
+  }
   Result<Metadata> metadata = metadata_of(*session);
-  if (!metadata) return unreadable(metadata.error());
+  if (metadata) entry.metadata = std::move(*metadata);
+  if (!metadata) entry.error = metadata.error().message();
   entry.fabric = session->fabric;
   entry.rig = session->rig;
   entry.calibration = session->calibration_id;
   entry.state = session->state;
-  entry.metadata = std::move(*metadata);
   entry.shots = static_cast<int>(session->shots.size());
   if (!session->shots.empty() && !session->shots.front().time.empty())
     entry.taken = session->shots.front().time;
@@ -313,7 +312,7 @@ Result<void> Catalogue::put(const std::vector<Found>& found, const std::vector<E
     const std::string folder = e.folder.string();
     put->bind(folder).bind(e.name).bind(found[i].bytes).bind(found[i].written).bind(found[i].solved);
     put->bind(e.fabric).bind(e.rig).bind(e.calibration).bind(e.state).bind(e.error);
-    put->bind(std::int64_t{m.revision}).bind(m.barcode).bind(joined(m.tags)).bind(m.composition);
+    put->bind(std::int64_t{m.revision}).bind(m.id).bind(joined(m.tags)).bind(m.composition);
     put->bind(m.construction).bind(m.side).bind(m.notes).bind(m.weight_g_m2).bind(m.thickness_mm);
     put->bind(std::int64_t{e.shots}).bind(std::int64_t{e.solves}).bind(e.current_solve).bind(e.taken);
     if (Result<void> ok = put->run(); !ok) return ok;
@@ -343,7 +342,7 @@ Result<std::vector<std::int64_t>> Catalogue::keys_of(const Query& query) {
         kMostRanked);
     values.push_back(*match);
   }
-  with("s.barcode = ?", query.barcode);
+  with("s.id = ?", query.id);
   with("s.key IN (SELECT key FROM tag WHERE tag = ?)", query.tag);
   with("s.state = ?", query.state);
   with("s.rig = ?", query.rig);
@@ -383,7 +382,7 @@ Result<Entry> Catalogue::entry(std::int64_t key) {
   e.state = get->text(6);
   e.error = get->text(7);
   e.metadata = {.revision = static_cast<int>(get->integer(8)),
-                .barcode = get->text(9),
+                .id = get->text(9),
                 .tags = parted(get->text(10)),
                 .composition = get->text(11),
                 .construction = get->text(12),
@@ -428,12 +427,12 @@ Result<Page> Catalogue::find(const Query& query) {
 
 Result<Entry> Catalogue::find_one(const std::string& name) {
   Result<Statement> rows = database_.prepare(
-      "SELECT key FROM session WHERE name = ?1 OR folder = ?1 OR (barcode = ?1 AND barcode <> '') LIMIT 2");
+      "SELECT key FROM session WHERE name = ?1 OR folder = ?1 OR (id = ?1 AND id <> '') LIMIT 2");
   if (!rows) return std::move(rows).error();
   Result<bool> row = rows->bind(name).step();
   if (!row) return std::move(row).error();
   if (!*row) {
-    return Error{ErrorKind::kNoInput, "there is no such session", name, "no name, folder or barcode is that",
+    return Error{ErrorKind::kNoInput, "there is no such session", name, "no name, folder or id is that",
                  "search for it with weft library find"};
   }
   const std::int64_t key = rows->integer(0);

@@ -22,9 +22,8 @@ struct Entry {
   std::filesystem::path folder;  ///< absolute, NAME.weft
   std::string name;
   std::string fabric, rig, calibration;
-  std::string
-      state;  ///< as session.json has it; "unreadable" where that cannot be read, and `error` says why
-  std::string error;
+  std::string state;  ///< as session.json has it; "unreadable" where that cannot be read
+  std::string error;  ///< why it, or its metadata, cannot be read
   Metadata metadata;
   int shots = 0, solves = 0;
   std::string current_solve;  ///< id (library/current.h); empty where there is no solve
@@ -33,10 +32,10 @@ struct Entry {
 
 /// What to look for. Empty fields ask for nothing.
 struct Query {
-  /// All of these must occur in name, fabric, tags, composition, notes or barcode, each as the beginning of a
+  /// All of these must occur in name, fabric, tags, composition, notes or id, each as the beginning of a
   /// word, whatever its case and accents.
   std::string words = {};
-  std::string barcode = {}, tag = {}, state = {}, rig = {}, calibration = {};  ///< exactly
+  std::string id = {}, tag = {}, state = {}, rig = {}, calibration = {};  ///< exactly
   std::string from = {}, before = {};      ///< ISO 8601, or its beginning: 2026-11
   int limit = 100;                         ///< entries a page, 1 to 1000
   std::optional<std::int64_t> after = {};  ///< the key that ended the page before
@@ -72,7 +71,7 @@ class Catalogue {
   /// Newest first; of words the best match first, among the first 20 000. kUsage where limit or words cannot
   /// be used, or the entry `after` is gone.
   Result<Page> find(const Query& query);
-  /// The session of this name, folder or barcode: kNoInput where there is none, kUsage where there are
+  /// The session of this name, folder or id: kNoInput where there is none, kUsage where there are
   /// several.
   Result<Entry> find_one(const std::string& name);
   /// All tags with how many sessions have each, most first.

@@ -70,7 +70,7 @@ struct Field {
   const char* key;
   Rule rule;
 };
-constexpr std::array<Field, 8> kFields = {{{"barcode", line_rule},
+constexpr std::array<Field, 8> kFields = {{{"id", line_rule},
                                            {"tags", tags_rule},
                                            {"composition", line_rule},
                                            {"construction", line_rule},
@@ -124,6 +124,14 @@ Result<void> check_fields(const Json& fields) {
   return {};
 }
 
+// Of a session's document; 0 where it holds none, or none that counts.
+int revision_of(const Json& session) {
+  const Json metadata = session.value("metadata", Json());
+  const Json revision = metadata.is_object() ? metadata.value("revision", Json()) : Json();
+  const bool counts = revision.is_number_integer() && revision >= 0 && revision < 1'000'000'000;
+  return counts ? revision.get<int>() : 0;
+}
+
 }  // namespace
 
 Result<Metadata> metadata_from_json(const Json& document, const std::string& where) {
@@ -138,12 +146,8 @@ Result<Metadata> metadata_from_json(const Json& document, const std::string& whe
       return wrong(field.key, broken);
   }
   Metadata metadata;
-  if (const auto revision = document.find("revision"); revision != document.end()) {
-    if (!revision->is_number_integer() || *revision < 0 || *revision > 1'000'000'000)
-      return wrong("revision", "must be a count");
-    metadata.revision = revision->get<int>();
-  }
-  metadata.barcode = document.value("barcode", "");
+  metadata.revision = revision_of({{"metadata", document}});
+  metadata.id = document.value("id", "");
   if (document.contains("tags")) metadata.tags = tags_of(document["tags"]);
   metadata.composition = document.value("composition", "");
   metadata.construction = document.value("construction", "");
@@ -167,8 +171,7 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
   if (!lock) return lock.error();
   Result<Session> session = read_session(folder);
   if (!session) return std::move(session).error();
-  const Result<Metadata> known = metadata_of(*session);
-  if (!known) return known.error();
+  const int revision = revision_of(session->document);
   if (const auto solve = fields.find("current_solve"); solve != fields.end() && solve->is_string()) {
     if (const Result<Product> found = find_solve(folder, solve->get<std::string>()); !found)
       return found.error();
@@ -176,7 +179,8 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
 
   Json& document = session->document;
   document["fabric"] = session->fabric;
-  if (!document.contains("metadata")) document["metadata"] = Json::object();
+  if (!document.contains("metadata") || !document["metadata"].is_object())
+    document["metadata"] = Json::object();
   const auto holder_of = [&](const std::string& key) -> Json& {
     return is_of_session(key) ? document : document["metadata"];
   };
@@ -184,15 +188,15 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
     return Error{ErrorKind::kTryAgain, "session was changed meanwhile", folder.string(), why,
                  "read it again, then repeat the change"};
   };
-  if (provided.revision && *provided.revision != known->revision) {
+  if (provided.revision && *provided.revision != revision) {
     return changed_meanwhile(
-        fmt::format("the revision of its metadata is {}, not {}", known->revision, *provided.revision));
+        fmt::format("the revision of its metadata is {}, not {}", revision, *provided.revision));
   }
   for (const auto& [key, value] : provided.values.items()) {
     if (holder_of(key).value(key, Json()) != value) return changed_meanwhile(key + " is another");
   }
 
-  Change change = {folder, Json::object(), Json::object(), known->revision};
+  Change change = {folder, Json::object(), Json::object(), revision};
   for (const auto& [key, value] : fields.items()) {
     Json& holder = holder_of(key);
     Json before = holder.value(key, Json());
@@ -208,7 +212,7 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
   }
   if (change.after.empty()) return change;
   session->fabric = document.value("fabric", "");
-  document["metadata"]["revision"] = change.revision = known->revision + 1;
+  document["metadata"]["revision"] = change.revision = revision + 1;
   if (Result<void> ok = write_session(*session); !ok) return std::move(ok).error();
   return change;
 }

@@ -16,8 +16,8 @@ namespace weft::library {
 
 /// `metadata` of session.json (docs/formats.md). Empty or 0: nobody said.
 struct Metadata {
-  int revision = 0;  ///< counts the changes
-  std::string barcode = {};
+  int revision = 0;                    ///< counts the changes
+  std::string id = {};                 ///< article number or barcode
   std::vector<std::string> tags = {};  ///< sorted, each once
   std::string composition = {};        ///< "80 % wool, 20 % polyamide"
   std::string construction = {};       ///< "twill 2/1"

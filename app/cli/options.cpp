@@ -51,6 +51,11 @@ Option Option::by_commas() const {
   return *this;
 }
 
+Option Option::one_at_a_time() const {
+  option_->allow_extra_args(false);
+  return *this;
+}
+
 Option Option::takes(int least, int most) const {
   option_->expected(least, most);
   return *this;

@@ -36,6 +36,8 @@ class Option {
 
   /// A list is written 1,4,7.
   Option by_commas() const;
+  /// A list takes one value each time it is named: --in A --in B.
+  Option one_at_a_time() const;
   /// How many values follow its name.
   Option takes(int least, int most) const;
   /// Its help says what it is where it is not given.

@@ -37,7 +37,7 @@ Result<int> rectify(const RectifyOptions& options, const CommonArguments& common
 Run add_rectify(Options& options) {
   const auto a = std::make_shared<RectifyOptions>();
   options.add("session", &a->session, "Session folder, NAME.weft").required();
-  options.add("--solve", &a->solve, "Id of the solve; default the newest complete one");
+  options.add("--solve", &a->solve, "Id of the solve; default the session's current one");
   options.add("--calibration", &a->calibration, "Calibration folder; default the session's own");
   options.add("-o,--output", &a->output, "Folder for the maps; default SESSION/rectified/ID");
   options.add("--mm-per-pixel", &a->mm_per_pixel, "Of the grid; default what the camera sees").above_zero();

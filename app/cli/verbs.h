@@ -21,6 +21,7 @@ Verb scan_verb();
 Verb rig_verb();
 Verb doctor_verb();
 Verb copy_verb();
+Verb library_verb();
 Verb demo_verb();
 
 }  // namespace weft::app

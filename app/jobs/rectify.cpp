@@ -15,6 +15,7 @@
 #include "core/session.h"
 #include "core/solve.h"
 #include "core/solve_record.h"
+#include "library/current.h"
 #include "material/rectify.h"
 
 namespace weft::app {
@@ -153,7 +154,8 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   const Result<Calibration> calibration = calibration_with_camera(
       options.calibration.empty() ? session->calibration_folder() : options.calibration);
   if (!calibration) return calibration.error();
-  const Result<Product> solve = find_solve(session->folder, options.solve);
+  const Result<Product> solve =
+      find_solve(session->folder, options.solve.empty() ? library::current_solve(*session) : options.solve);
   if (!solve) return solve.error();
   const Result<SolveMaps> maps = SolveMaps::open(solve->folder);
   if (!maps) return maps.error();

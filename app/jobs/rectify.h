@@ -13,7 +13,7 @@ namespace weft::app {
 
 struct RectifyOptions {
   std::filesystem::path session;
-  std::string solve;                  ///< id of the solve; empty: the newest complete one
+  std::string solve;                  ///< id of the solve; empty: the session's current one
   std::filesystem::path calibration;  ///< empty: the session's own
   std::filesystem::path output;       ///< empty: <session>/rectified/<id>
   double mm_per_pixel = 0;            ///< 0: what the camera sees at the grid's centre; else above 0

@@ -29,7 +29,7 @@ namespace fs = std::filesystem;
 using simulator::EffectSettings;
 using simulator::Scene;
 
-constexpr Size kFrame = {1024, 768};
+constexpr Size kFrame = {768, 576};
 constexpr double kFrame_mm = 200;
 constexpr double kYarn_px = 12.5;  // as the accuracy set has it
 
@@ -197,8 +197,14 @@ class Chain {
     if (const auto known = calibrations_.find(key); known != calibrations_.end()) return known->second;
     const fs::path folder = scratch_.path() / fmt::format("rig{}", calibrations_.size());
     simulator::CapturesOptions options;
-    options.parts = {"camera", "response", "lights"};
     options.simulate = simulate_;
+    // The chart of the response fits the long side of the frame alone, and what it tells does not turn.
+    Scene straight = one.scene;
+    straight.camera.pose.roll_deg = 0;
+    options.parts = {"response"};
+    const auto chart = simulator::simulate_captures(straight, folder, options);
+    if (!chart) return chart.error();
+    options.parts = {"camera", "lights"};
     const auto captures = simulator::simulate_captures(one.scene, folder, options);
     if (!captures) return captures.error();
     if (!one.knows_paper) {
@@ -298,7 +304,11 @@ Result<Rows> chain_table(const ChainOptions& options) {
   for (const ChainCase& one : *cases) {
     if (!options.name.empty() && one.name != options.name) continue;
     Result<Rows> rows = chain.run(one);
-    if (!rows) return std::move(rows).error();
+    if (!rows) {
+      Error error = std::move(rows).error();
+      error.where = fmt::format("case {}: {}", one.name, error.where);
+      return error;
+    }
     std::move(rows->begin(), rows->end(), std::back_inserter(table));
   }
   return table;

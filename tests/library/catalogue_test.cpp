@@ -50,7 +50,7 @@ TEST(Catalogue, FindsSessionsByWhatIsSaidOfThem) {
   const Shelf shelf;
   shelf.put("a", {{"fabric", "Crêpe de Chine"},
                   {"shots", taken("2026-11-03T08:00:00Z")},
-                  {"metadata", {{"barcode", "4006381333931"}, {"tags", {"silk", "red"}}}}});
+                  {"metadata", {{"id", "4006381333931"}, {"tags", {"silk", "red"}}}}});
   shelf.put("b", {{"fabric", "wool twill"},
                   {"shots", taken("2026-11-02T08:00:00Z")},
                   {"state", "capturing"},
@@ -66,7 +66,7 @@ TEST(Catalogue, FindsSessionsByWhatIsSaidOfThem) {
   EXPECT_EQ(found(catalogue, {.words = "silk twill"}), Names{"b"}) << "all words";
   EXPECT_EQ(found(catalogue, {.words = "4006381333931"}), Names{"a"});
   EXPECT_EQ(found(catalogue, {.words = "nylon"}), Names{});
-  EXPECT_EQ(found(catalogue, {.barcode = "4006381333931"}), Names{"a"});
+  EXPECT_EQ(found(catalogue, {.id = "4006381333931"}), Names{"a"});
   EXPECT_EQ(found(catalogue, {.tag = "red"}), (Names{"a", "b"}));
   EXPECT_EQ(found(catalogue, {.state = "capturing"}), Names{"b"});
   EXPECT_EQ(found(catalogue, {.rig = "bench-2"}), Names{"c"});
@@ -133,6 +133,14 @@ TEST(Catalogue, ShowsASessionThatCannotBeReadWithItsError) {
   EXPECT_EQ(refreshed(catalogue, {shelf.path()}).sessions, 2U) << "a link is not followed";
   EXPECT_EQ(found(catalogue, {.state = "unreadable"}), Names{"broken"});
   EXPECT_NE(catalogue.find_one("broken")->error, "");
+
+  const auto odd = shelf.put("odd", {{"metadata", {{"tags", "red"}}}});
+  refreshed(catalogue, {shelf.path()});
+  EXPECT_EQ(catalogue.find_one("odd")->state, "complete");
+  EXPECT_NE(catalogue.find_one("odd")->error.find("list of texts"), std::string::npos);
+  ASSERT_TRUE(change_metadata(odd, {{"tags", {"red"}}})) << "it can be mended";
+  refreshed(catalogue, {shelf.path()});
+  EXPECT_EQ(catalogue.find_one("odd")->error, "");
 }
 
 TEST(Catalogue, LooksIntoFoldersBelowAndKeepsWhatItKnewOfAFolderThatCannotBeListed) {

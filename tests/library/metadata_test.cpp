@@ -19,7 +19,7 @@ namespace {
 TEST(Metadata, IsWrittenIntoTheSessionAndReadBack) {
   const Shelf shelf;
   const auto folder = shelf.put("a", {{"future", {1, 2}}, {"metadata", {{"future", "kept"}}}});
-  const Result<Change> change = change_metadata(folder, {{"barcode", "4006381333931"},
+  const Result<Change> change = change_metadata(folder, {{"id", "4006381333931"},
                                                          {"tags", {"wool", "red", "wool"}},
                                                          {"composition", "80 % wool"},
                                                          {"construction", "twill 2/1"},
@@ -36,7 +36,7 @@ TEST(Metadata, IsWrittenIntoTheSessionAndReadBack) {
   EXPECT_EQ(session->document["metadata"]["future"], "kept") << "a newer version wrote it";
   EXPECT_EQ(session->shots.size(), 1U);
   EXPECT_EQ(*metadata_of(*session), (Metadata{.revision = 1,
-                                              .barcode = "4006381333931",
+                                              .id = "4006381333931",
                                               .tags = {"red", "wool"},
                                               .composition = "80 % wool",
                                               .construction = "twill 2/1",
@@ -107,8 +107,8 @@ TEST(Metadata, IsNotChangedOverSomebodyElsesChangeNorWhileAScanWrites) {
 }
 
 TEST(Metadata, OfTheWrongKindIsNamed) {
-  for (const Json& metadata : {Json("text"), Json({{"tags", "red"}}), Json({{"revision", -1}}),
-                               Json({{"weight_g_m2", 1e300}}), Json({{"notes", 5}})}) {
+  for (const Json& metadata :
+       {Json("text"), Json({{"tags", "red"}}), Json({{"weight_g_m2", 1e300}}), Json({{"notes", 5}})}) {
     const Result<Metadata> read = metadata_from_json(metadata, "session.json");
     ASSERT_FALSE(read) << metadata.dump();
     EXPECT_EQ(read.error().kind, ErrorKind::kBadData);

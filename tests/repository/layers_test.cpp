@@ -55,8 +55,8 @@ const std::vector<Layer> kLayers = {
     {"app/server/", {"app/jobs/", "capture/", "core/", "library/", "report/"}},
     {"app/camera/", {"capture/camera/", "core/"}},
     {"app/cli/",
-     {"app/daemon/", "app/jobs/", "app/server/", "batch/", "capture/", "core/", "report/", "simulator/",
-      "solver/", "virtual_rig/rig_process"}},
+     {"app/daemon/", "app/jobs/", "app/server/", "batch/", "capture/", "core/", "library/", "report/",
+      "simulator/", "solver/", "virtual_rig/rig_process"}},
     {"bench/program/", {"app/cli/", "bench/", "core/"}},
     {"bench/",
      {"app/daemon/", "app/jobs/", "calibration/", "capture/", "core/", "material/", "pipeline/", "report/",
@@ -80,6 +80,7 @@ const std::vector<Door> kDoors = {
     {"embree3/", {"simulator/transport/", "solver/transport/", "bench/"}},
     {"spdlog/", {"app/daemon/"}},
     {"kissfft/", {"solver/height/", "bench/"}},
+    {"sqlite3", {"library/"}},
 };
 
 bool starts_with_any(std::string_view path, const Prefixes& prefixes) {
