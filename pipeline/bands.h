@@ -12,6 +12,7 @@
 #include "core/result.h"
 #include "core/tiles.h"
 #include "pipeline/photographs.h"
+#include "solver/left_out/block_choice.h"
 #include "solver/method.h"
 #include "solver/uncertainty/model_sigma.h"
 
@@ -46,6 +47,7 @@ struct BandOptions {
   LightCorrection* correction = nullptr;          ///< readings go through it, if there is one
   solver::SolveTally* tally = nullptr;            ///< added to, if there is one
   std::optional<solver::ModelTraits> model = {};  ///< of a solve whose sigma has the model's part
+  const solver::BlockChoice* robust = nullptr;    ///< where the method is the level robust, for that part
 };
 
 /// Solves photographs band by band: memory stays at a few hundred rows of maps whatever the size of the

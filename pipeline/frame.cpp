@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -63,9 +64,9 @@ CameraModel half_camera(CameraModel camera, Size size) {
 
 Result<void> solve_tiles(const Photographs& photographs, const solver::Method& method,
                          const TileOptions& tile, const JobContext& context, const BandSink& sink,
-                         const solver::ModelTraits& model, FrameFacts& facts) {
-  const Result<double> waited =
-      solve_bands(photographs, method, tile, context, sink, {.tally = &facts.tally, .model = model});
+                         BandOptions options, FrameFacts& facts) {
+  options.tally = &facts.tally;
+  const Result<double> waited = solve_bands(photographs, method, tile, context, sink, options);
   if (!waited) return waited.error();
   facts.waited_seconds = *waited;
   return {};
@@ -96,18 +97,19 @@ Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::M
     facts.reference = std::move(*solved);
     return facts;
   }
-  const solver::ModelTraits model = {.is_robust = method.level == solver::Level::kRobust,
-                                     .is_half = method.extent == solver::Extent::kHalfSize};
+  BandOptions bands = {.model = solver::ModelTraits{.is_half = method.extent == solver::Extent::kHalfSize}};
   const std::unique_ptr<solver::Method> standard = solver::method_of(solver::Level::kStandard).make();
   std::unique_ptr<solver::Method> by_block;
-  if (model.is_robust) {
+  std::optional<solver::BlockChoice> robust;
+  if (method.level == solver::Level::kRobust) {
     Result<solver::BlockChoice> choice = choose_by_block(photographs, *standard, *asked, context);
     if (!choice) return std::move(choice).error();
     facts.robust_share = choice->share();
-    by_block = solver::blended_method(*standard, *asked, std::move(*choice));
+    by_block = solver::blended_method(*standard, *asked, *choice);
+    bands.robust = &robust.emplace(std::move(*choice));
   }
   const solver::Method& chosen = by_block ? *by_block : *asked;
-  if (Result<void> ok = solve_tiles(photographs, chosen, tile, context, sink, model, facts); !ok)
+  if (Result<void> ok = solve_tiles(photographs, chosen, tile, context, sink, bands, facts); !ok)
     return std::move(ok).error();
   if (Result<void> ok = check(photographs, chosen, context, facts); !ok) return std::move(ok).error();
   return facts;

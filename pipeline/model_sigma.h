@@ -6,7 +6,8 @@
 
 #include "core/image.h"
 #include "pipeline/photographs.h"
-#include "solver/uncertainty/model_sigma.h"
+#include "solver/left_out/block_choice.h"
+#include "solver/uncertainty/model_angles.h"
 
 namespace weft::pipeline {
 
@@ -18,16 +19,16 @@ struct SolvedRows {
   View<const float> albedo;  ///< of each photosite of a mosaic, or of green
 };
 
-/// The model's part of sigma (solver/uncertainty/model_sigma.h) over a frame that is solved band by band. One
-/// pixel speaks for each cell of 2 x 2. The evidence of a cell is that of the 3 x 3 cells around it, as far
-/// as they are solved when its turn comes; its wider neighbourhood is a block of 64 columns and a band's
-/// rows. What lies within the pixels of a preview is told for each, by its four neighbours in the band. The
-/// same bytes for any number of threads.
+/// The model's part of sigma (solver/uncertainty/model_angles.h) over a frame that is solved band by band: of
+/// each pixel by itself, the 3 x 3 cells of 2 x 2 pixels around it, as far as they lie in its band, and a
+/// block of 64 columns and the band's rows. One pixel speaks for a cell. What lies within the pixels of a
+/// preview is told by their neighbours in the band. The same bytes for any number of threads.
 class ModelPart {
  public:
-  /// Bands have `band_rows` rows, an even number, but for the last. `photographs` must outlive this; those of
-  /// a preview are RGB.
-  ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits, int threads);
+  /// Bands have `band_rows` rows, an even number, but for the last. `robust` says where the level robust
+  /// solved; null: nowhere. It and `photographs` must outlive this; photographs of a preview are RGB.
+  ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits,
+            const solver::BlockChoice* robust, int threads);
 
   /// Takes in the next band.
   void gather(Rect band, const SolvedRows& solved);
@@ -38,31 +39,34 @@ class ModelPart {
             const std::array<View<float>, 3>& model_albedo) const;
 
  private:
-  // Of the pixels with a solution.
-  enum Sum { kPixels, kSlope2, kAlbedo, kShaded, kMisfit2, kSums };
-  using Sums = std::array<float, kSums>;
   struct Block {
-    std::array<solver::ResidualNoise, 3> noise;  ///< by channel
-    float degrees_a_residual = 0;
-    float slope2 = 0, misfit2 = 0;  ///< means, as of solver::ModelEvidence
+    // By row and column of the filter.
+    std::array<std::array<solver::ResidualNoise, 2>, 2> noise;
+    solver::ModelSurroundings around;
+  };
+  // Sums and means of a row of cells.
+  struct CellRow {
+    explicit CellRow(int cells);
+    Image<float> sums, means;
   };
 
   void set_blocks(Rect band);
-  Sums seen_at(int cell_x, int cell_y, int frame_y0, const SolvedRows& solved) const;
-  void sum_blocks(int first_row);
+  solver::SolvedPixels pixels_at(int x, int y, const SolvedRows& solved) const;
+  void see_row(int cell_y, const SolvedRows& solved);
+  void sum_blocks(int cell_rows);
   void see_within(const SolvedRows& solved);
-  void angles_at(int row, std::vector<float>& angles) const;
-  float angle_of(const Sums& around, const Block& block) const;
+  void angles_of(int cell_y, int cell_rows, const SolvedRows& solved, CellRow& row);
 
   const Photographs& photographs_;
   Planes planes_;
   bool has_noise_;
   solver::ModelTraits traits_;
+  const solver::BlockChoice* robust_;
   int threads_;
-  Image<float> cells_;         ///< a plane a Sum: the last rows of the band before, then those of the band
-  int first_ = 0;              ///< the frame's row of cells that is the first of cells_
-  int known_ = 0;              ///< rows of cells_ that are filled
-  Image<float> within2_deg2_;  ///< of a preview, over the band
+  Image<float> cells_;    ///< a plane a solver::CellFact over the band, with an empty cell before each row
+  Image<float> angles_;   ///< the last rows of the band before, then those of the band
+  Image<float> within2_;  ///< of a preview, over the band
+  int first_ = 0;         ///< the frame's row that is the first of angles_
   std::vector<Block> blocks_;
 };
 

@@ -154,11 +154,13 @@ class Reference {
 
   // By which method each block is solved.
   Result<void> choose_methods() {
-    Result<solver::BlockChoice> choice = choose_by_block(photographs_, *quickly_.standard, *quickly_.robust, context_);
+    Result<solver::BlockChoice> choice =
+        choose_by_block(photographs_, *quickly_.standard, *quickly_.robust, context_);
     if (!choice) return std::move(choice).error();
     facts.robust_share = choice->share();
     quick_ = quickly_.by_block(*choice);
-    exact_ = exactly_.by_block(std::move(*choice));
+    exact_ = exactly_.by_block(*choice);
+    robust_ = std::move(*choice);
     return {};
   }
 
@@ -207,7 +209,8 @@ class Reference {
   Result<void> finish(const BandSink& sink) {
     facts.stages = last_ ? last_->facts.stages : LightStages{};
     const BandOptions bands = {.tally = &facts.tally,
-                               .model = solver::ModelTraits{true, facts.stages.interreflection}};
+                               .model = solver::ModelTraits{.bounces_are_out = facts.stages.interreflection},
+                               .robust = &*robust_};
     const Result<double> waited = last_ ? last_->solve(*exact_, tile_, sink, bands)
                                         : solve_bands(photographs_, *exact_, tile_, context_, sink, bands);
     if (!waited) return waited.error();
@@ -258,6 +261,7 @@ class Reference {
   TwoMethods quickly_ = {solver::standard_method(), solver::robust_method()};
   TwoMethods exactly_ = {solver::exact_standard_method(), solver::exact_method()};
   std::unique_ptr<solver::Method> quick_, exact_;
+  std::optional<solver::BlockChoice> robust_;  ///< where the better of the two solves
   std::unique_ptr<Round> last_;
 };
 

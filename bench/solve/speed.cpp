@@ -27,12 +27,12 @@ struct Timing {
 };
 
 Result<Timing> time_method(const pipeline::Photographs& photographs, const solver::Method& method,
-                           int threads) {
+                           int threads, const pipeline::BandOptions& options = {}) {
   std::optional<Error> failure;
   const double seconds = least_seconds(kSolveRepeats, [&] {
     const Result<double> done = pipeline::solve_bands(
         photographs, method, pipeline::kSolveTile, {threads, {}, [](std::string_view, double) {}},
-        [](const pipeline::MapBand&) { return Result<void>(); });
+        [](const pipeline::MapBand&) { return Result<void>(); }, options);
     if (!done) failure = done.error();
   });
   if (failure) return *failure;
@@ -155,12 +155,20 @@ Result<Rows> solve_speed(const SpeedOptions& options) {
                                   {"quality", "robust", &solver::robust_method},
                                   {"method", "lts", &solver::trimmed_method}};
   for (const Cloth cloth : {Cloth::kSmooth, Cloth::kSatin}) {
+    const char* cloth_name = cloth == Cloth::kSmooth ? "smooth" : "satin";
     put_cloth(photographs, cloth, threads);
     for (const OnCloth& m : kMethods) {
       const Result<Timing> timing = time_method(photographs, *m.make(), threads);
       if (!timing) return timing.error();
       add(m.kind, m.name, *timing);
-      rows.back()["cloth"] = cloth == Cloth::kSmooth ? "smooth" : "satin";
+      rows.back()["cloth"] = cloth_name;
+      if (m.make != &solver::standard_method) continue;
+      const Result<Timing> with_model =
+          time_method(photographs, *m.make(), threads, {.model = solver::ModelTraits()});
+      if (!with_model) return with_model.error();
+      add(m.kind, m.name, *with_model);
+      rows.back()["cloth"] = cloth_name;
+      rows.back()["sigma"] = "with .model";
     }
   }
   for (Json& row : rows) {

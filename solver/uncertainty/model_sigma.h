@@ -16,39 +16,21 @@ namespace weft::solver {
 /// strength e_k that give a Lambertian point the readings r_k it is
 ///   (N - 3) / N * mean over k of variance(r_k) / (e_k rho)^2,
 /// which is linear in the normal, as r_k is.
-class ResidualNoise {
- public:
-  /// Of channel c around pixel (x, y).
-  static ResidualNoise at(const LightField& field, const NoiseModel& noise, int x, int y, int c);
-
-  float operator()(float nx, float ny, float nz, float albedo) const {
-    const float inverse = 1 / albedo;
-    return inverse * (photons_[0] * nx + photons_[1] * ny + photons_[2] * nz + floor_ * inverse);
-  }
-
- private:
-  std::array<float, 3> photons_ = {};
-  float floor_ = 0;
+struct ResidualNoise {
+  std::array<float, 3> photons = {};  ///< of which it is (photons . n + floor / albedo) / albedo
+  float floor = 0;
 };
+
+/// That of channel c around pixel (x, y).
+ResidualNoise residual_noise(const LightField& field, const NoiseModel& noise, int x, int y, int c);
 
 /// Degrees of rms angle for each unit of residual over the albedo, if misfits were independent: the root of
 /// N / (N - 3) tr(P G^-1 P), with G the sum of l l^T over the N lights and P across an upright normal. 0 with
 /// fewer than four lights, which fit anything.
 double degrees_a_residual(const LightField& field, int x, int y);
 
-/// What solved maps show around a pixel.
-struct ModelEvidence {
-  float slope2 = 0;  ///< mean square of the slope, the tangent of the angle from upright, of each up to 1.5
-  float slope2_around = 0;   ///< the same of a wider neighbourhood
-  float albedo = 0;          ///< mean
-  float shadowed = 0;        ///< share of the pixels that left out a reading for shadow
-  float misfit2 = 0;         ///< mean square residual over the albedo, less what noise leaves of it
-  float misfit2_around = 0;  ///< the same of the wider one
-};
-
 /// How the normals were solved.
 struct ModelTraits {
-  bool is_robust = false;        ///< from the start that most readings agree on
   bool bounces_are_out = false;  ///< light from the cloth was taken out of the readings
   bool is_half = false;          ///< at half the size, and without a shadow mask
 };
@@ -59,16 +41,7 @@ struct ModelTraits {
 /// over a yarn, and as negative where they meet, as between two.
 float within_pixel2(float step_before, float step_after);
 
-/// Rms angle that the model's part of sigma comes to, degrees; of a preview without what lies within pixels.
-float model_sigma_deg(const ModelEvidence& evidence, double degrees_a_residual, const ModelTraits& traits);
-
 /// Mean over rms of an angle whose two components scatter alike, as those of sigma do: sqrt(pi) / 2.
 inline constexpr double kMeanOfRms = 0.886226925452758;
-
-/// Standard deviation of the albedo by the model, over the albedo, that goes with such an angle: a radian of
-/// the one is about one of the other.
-constexpr float model_albedo_share(float model_deg) {
-  return model_deg * static_cast<float>(kPi / 180);
-}
 
 }  // namespace weft::solver
