@@ -15,6 +15,8 @@ constexpr int kCell = 2;
 constexpr int kKept = solver::kDemosaicReach;
 // Columns of a block. Over so many the lights change by a percent.
 constexpr int kBlock = 64;
+// Rows of bands that share what is known of the lights: a multiple of a band's.
+constexpr int kLightRows = 256;
 
 // Length of the step from normal a to normal b, negative if component `axis` falls.
 float step_of(const std::array<float, 3>& a, const std::array<float, 3>& b, std::size_t axis) {
@@ -53,16 +55,16 @@ ModelPart::ModelPart(const Photographs& photographs, int band_rows, const solver
   if (traits.is_half) within2_ = Image<float>({photographs.size.width, band_rows});
 }
 
-// What each block knows before its pixels are seen. Bands begin with the phase of the filter.
-void ModelPart::set_blocks(Rect band) {
-  blocks_.assign(static_cast<std::size_t>((band.width() + kBlock - 1) / kBlock), {});
+// What the lights around each block say, for all bands that begin in the next kLightRows rows. Bands begin
+// with the phase of the filter.
+void ModelPart::set_lights(int y0) {
+  blocks_.assign(static_cast<std::size_t>((photographs_.size.width + kBlock - 1) / kBlock), {});
   const LightField& field = *photographs_.field;
-  const int y = (band.y0 + band.y1) / 2;
+  const int y = std::min(y0 + kLightRows / 2, photographs_.size.height - 1);
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     Block& block = blocks_[i];
-    const int x = std::min(static_cast<int>(i) * kBlock + kBlock / 2, band.width() - 1);
+    const int x = column_of(i);
     block.around.degrees_a_residual = static_cast<float>(solver::degrees_a_residual(field, x, y));
-    if (robust_ != nullptr) block.around.robust = robust_->weight_at(x, y);
     if (!has_noise_) continue;
     std::array<solver::ResidualNoise, 3> noise;
     for (int c = 0; c < 3; ++c) {
@@ -75,6 +77,10 @@ void ModelPart::set_blocks(Rect band) {
       }
     }
   }
+}
+
+int ModelPart::column_of(std::size_t block) const {
+  return std::min(static_cast<int>(block) * kBlock + kBlock / 2, photographs_.size.width - 1);
 }
 
 solver::SolvedPixels ModelPart::pixels_at(int x, int y, const SolvedRows& solved) const {
@@ -119,9 +125,9 @@ void ModelPart::sum_blocks(int cell_rows) {
       return sum;
     };
     const float pixels = total(solver::kCellPixels);
-    if (!(pixels > 0)) return;
-    blocks_[i].around.slope2 = total(solver::kCellSlope2) / pixels;
-    blocks_[i].around.misfit2 = std::max(total(solver::kCellMisfit2), 0.0F) / pixels;
+    const float share = pixels > 0 ? 1 / pixels : 0;
+    blocks_[i].around.slope2 = share * total(solver::kCellSlope2);
+    blocks_[i].around.misfit2 = share * std::max(total(solver::kCellMisfit2), 0.0F);
   });
 }
 
@@ -173,7 +179,10 @@ void ModelPart::gather(Rect band, const SolvedRows& solved) {
     std::copy_n(angles_.plane().row(band.y0 - first_ - kKept + j), band.width(), angles_.plane().row(j));
   }
   first_ = band.y0 - kKept;
-  set_blocks(band);
+  if (band.y0 % kLightRows == 0) set_lights(band.y0);
+  for (std::size_t i = 0; i < blocks_.size() && robust_ != nullptr; ++i) {
+    blocks_[i].around.robust = robust_->weight_at(column_of(i), (band.y0 + band.y1) / 2);
+  }
   const std::size_t cell_rows = cells_of(band.height());
   parallel_for(cell_rows, threads_, [&](std::size_t i, int) { see_row(static_cast<int>(i), solved); });
   sum_blocks(static_cast<int>(cell_rows));

@@ -25,8 +25,9 @@ struct SolvedRows {
 /// preview is told by their neighbours in the band. The same bytes for any number of threads.
 class ModelPart {
  public:
-  /// Bands have `band_rows` rows, an even number, but for the last. `robust` says where the level robust
-  /// solved; null: nowhere. It and `photographs` must outlive this; photographs of a preview are RGB.
+  /// Bands have `band_rows` rows, an even number of which 256 is a multiple, but for the last. `robust` says
+  /// where the level robust solved; null: nowhere. It and `photographs` must outlive this; photographs of a
+  /// preview are RGB.
   ModelPart(const Photographs& photographs, int band_rows, const solver::ModelTraits& traits,
             const solver::BlockChoice* robust, int threads);
 
@@ -50,7 +51,8 @@ class ModelPart {
     Image<float> sums, means;
   };
 
-  void set_blocks(Rect band);
+  void set_lights(int y0);
+  int column_of(std::size_t block) const;
   solver::SolvedPixels pixels_at(int x, int y, const SolvedRows& solved) const;
   void see_row(int cell_y, const SolvedRows& solved);
   void sum_blocks(int cell_rows);
