@@ -8,12 +8,13 @@
 #include <optional>
 
 #include "app/cli/exit_code.h"
-#include "app/cli/rig_devices.h"
 #include "app/cli/rig_options.h"
+#include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
-#include "app/daemon/rig_lock.h"
+#include "app/server/rig/rig_lock.h"
 #include "capture/rig.h"
+#include "capture/rig_devices/rig_devices.h"
 
 namespace weft::app {
 namespace {
@@ -43,12 +44,12 @@ void append(std::vector<SetupFinding>& all, std::vector<SetupFinding> more) {
 
 std::vector<SetupFinding> examine_devices(const capture::Rig& rig) {
   return examine_rig(rig, {.board = [&]() -> Result<std::string> {
-                             const auto board = open_board(rig);
+                             const auto board = capture::open_board(rig);
                              if (!board) return board.error();
                              return words_of((*board)->facts());
                            },
                            .camera = [&]() -> Result<capture::CameraFacts> {
-                             auto camera = open_camera(rig);
+                             auto camera = capture::open_camera(rig);
                              if (!camera) return std::move(camera).error();
                              return (*camera)->connect();
                            }});

@@ -10,12 +10,13 @@
 #include <thread>
 
 #include "app/cli/exit_code.h"
-#include "app/cli/rig_devices.h"
 #include "app/cli/rig_options.h"
+#include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
-#include "app/daemon/rig_lock.h"
-#include "app/daemon/scan_body.h"
+#include "app/server/api/scan_body.h"
+#include "app/server/rig/rig_lock.h"
+#include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
 #include "core/temporary_folder.h"
 
@@ -35,10 +36,10 @@ std::vector<int> chosen_leds(const capture::Rig& rig, const RigArguments& argume
 }
 
 Result<int> show_status(const capture::Rig& rig, const RigArguments&, const CommonArguments& common) {
-  const auto board = open_board(rig);
+  const auto board = capture::open_board(rig);
   if (!board) return board.error();
   const capture::BoardFacts& lamps = (*board)->facts();
-  auto camera = open_camera(rig);
+  auto camera = capture::open_camera(rig);
   if (!camera) return std::move(camera).error();
   const Result<capture::CameraFacts> facts = (*camera)->connect();
   if (!facts) return facts.error();
@@ -79,7 +80,7 @@ bool wait(double seconds, const std::stop_token& stop) {
 
 Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments,
                           const CommonArguments& common) {
-  const auto board = open_board(rig);
+  const auto board = capture::open_board(rig);
   if (!board) return board.error();
   const std::stop_token stop = stop_on_signal();
   const double most_s = arguments.seconds + 1;
@@ -111,7 +112,7 @@ double mean_of(const capture::RawHistogram& histogram) {
 /// A scan that nobody keeps.
 Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& arguments,
                                const CommonArguments& common) {
-  Result<RigDevices> devices = open_devices(rig);
+  Result<capture::RigDevices> devices = capture::open_devices(rig);
   if (!devices) return std::move(devices).error();
   const TemporaryFolder scratch;
   capture::ScanRequest request = request_of_rig(rig);

@@ -11,16 +11,17 @@
 #include <utility>
 
 #include "app/cli/exit_code.h"
-#include "app/cli/rig_devices.h"
 #include "app/cli/rig_options.h"
+#include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
-#include "app/daemon/error_json.h"
-#include "app/daemon/rig_lock.h"
-#include "app/daemon/rig_server.h"
-#include "app/daemon/session_choice.h"
 #include "app/jobs/solve.h"
+#include "app/server/api/session_choice.h"
+#include "app/server/http/error_json.h"
+#include "app/server/rig/rig_lock.h"
+#include "app/server/rig_server.h"
 #include "capture/rig.h"
+#include "capture/rig_devices/rig_devices.h"
 #include "core/calibration.h"
 #include "core/files.h"
 
@@ -69,7 +70,7 @@ Result<Scanner> find_scanner(capture::Rig rig, const std::optional<std::string>&
   rig.daemon.host = "127.0.0.1";
   rig.daemon.port = 0;
   auto server = RigServer::start(
-      rig, open_devices,
+      rig, capture::open_devices,
       [](const auto& request, auto& lamps, auto& camera, const auto& events, const auto& control) {
         return capture::scan(request, lamps, camera, events, control);
       },

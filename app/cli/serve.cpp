@@ -8,14 +8,14 @@
 #include <thread>
 
 #include "app/cli/exit_code.h"
-#include "app/cli/rig_devices.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
-#include "app/daemon/client.h"
-#include "app/daemon/rig_server.h"
-#include "app/daemon/service_manager.h"
+#include "app/server/http/client.h"
+#include "app/server/rig_server.h"
+#include "app/server/service_manager.h"
 #include "capture/rig.h"
+#include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
 
 namespace weft::app {
@@ -70,8 +70,8 @@ Result<int> serve(const ServeArguments& arguments, const CommonArguments& common
   if (arguments.host) rig->daemon.host = *arguments.host;
   if (arguments.port) rig->daemon.port = *arguments.port;
 
-  const Result<std::unique_ptr<RigServer>> server =
-      RigServer::start(*rig, open_devices, run_scan_of, {.say = [](const std::string& line) { note(line); }});
+  const Result<std::unique_ptr<RigServer>> server = RigServer::start(
+      *rig, capture::open_devices, run_scan_of, {.say = [](const std::string& line) { note(line); }});
   if (!server) return server.error();
   if (Result<void> said = say_address(**server, rig->name, common.json); !said)
     return std::move(said).error();

@@ -15,8 +15,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/daemon/client.h"
-#include "app/daemon/rig_server.h"
+#include "app/server/http/client.h"
+#include "app/server/rig_server.h"
 #include "bench/capture/malformed_request.h"
 #include "core/descriptor.h"
 #include "core/files.h"
@@ -97,7 +97,7 @@ Result<Rows> capture_http_table(const CaptureHttpOptions& options) {
   rig.daemon.state = folder.path() / "state";
   const Error no_devices = {ErrorKind::kTryAgain, "this rig has no devices", rig.name, "", "name another"};
   const Result<std::unique_ptr<app::RigServer>> server = app::RigServer::start(
-      rig, [&](const capture::Rig&) -> Result<app::RigDevices> { return no_devices; },
+      rig, [&](const capture::Rig&) -> Result<capture::RigDevices> { return no_devices; },
       [&](const capture::ScanRequest&, capture::Lamps&, capture::Camera&, const capture::ScanEvents&,
           const capture::ScanControl&) -> Result<capture::ScanOutcome> { return no_devices; });
   if (!server) return server.error();

@@ -62,7 +62,7 @@ Result<double> bare_s(const ScansOptions& options) {
 
 Result<OneScan> scan_once(const ScansOptions& options, const fs::path& folder) {
   Stopwatch watch;
-  Result<app::RigDevices> devices = options.open(options.rig);
+  Result<capture::RigDevices> devices = options.open(options.rig);
   if (!devices) return std::move(devices).error();
   capture::ScanRequest request;
   request.session = folder;

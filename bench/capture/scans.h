@@ -5,16 +5,16 @@
 #include <functional>
 #include <stop_token>
 
-#include "app/daemon/rig_keeper.h"
 #include "bench/base/report.h"
 #include "capture/rig.h"
+#include "capture/rig_devices/rig_devices.h"
 #include "core/result.h"
 
 namespace weft::bench {
 
 struct ScansOptions {
   capture::Rig rig;
-  app::OpenDevices open;
+  capture::OpenDevices open;
   int scans = 1;
   double exposure_us = 20000;
   std::stop_token stop = {};

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "app/cli/options.h"
-#include "app/cli/rig_devices.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "bench/capture/board.h"
@@ -18,6 +17,7 @@
 #include "bench/capture/scans.h"
 #include "bench/program/rows.h"
 #include "bench/program/verbs.h"
+#include "capture/rig_devices/rig_devices.h"
 #include "core/process.h"
 
 namespace weft::bench {
@@ -67,7 +67,7 @@ Result<Rows> measure_rig(const CaptureArguments& a, app::ProgressLine& line) {
   const int scans = a.runs > 0 ? a.runs : 3;
   return capture_scans_table(
       {.rig = *rig,
-       .open = app::open_devices,
+       .open = capture::open_devices,
        .scans = scans,
        .stop = app::stop_on_signal(),
        .progress = [&](int done) { line.update("scans", static_cast<double>(done) / scans); }});

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/api/api.h"
+
+#include <utility>
+
+#include "app/server/api/descriptions.h"
+
+namespace weft::app {
+namespace {
+
+Json whole_description(const std::vector<Resource>& resources) {
+  Json whole = Json::parse(common_description());
+  for (const Resource& resource : resources) {
+    const Json part = Json::parse(resource.description);
+    whole["paths"].update(part["paths"]);
+    whole["components"]["schemas"].update(part["schemas"]);
+  }
+  return whole;
+}
+
+}  // namespace
+
+std::vector<Route> api_routes(const RigParts& parts) {
+  std::vector<Resource> resources = {server_resource(),        rig_resource(parts),    scan_resource(parts),
+                                     sessions_resource(parts), frames_resource(parts), events_resource()};
+  std::vector<Route> routes;
+  routes.push_back({"GET", "/api/v1/openapi.json",
+                    [description = whole_description(resources)](const Call&) -> Result<Reply> {
+                      return json_reply(description);
+                    }});
+  for (Resource& resource : resources) {
+    for (Route& route : resource.routes) routes.push_back(std::move(route));
+  }
+  return routes;
+}
+
+}  // namespace weft::app

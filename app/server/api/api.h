@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "app/server/http/routes.h"
+#include "app/server/rig/frame_pictures.h"
+#include "app/server/rig/rig_keeper.h"
+#include "capture/rig.h"
+#include "core/json_document.h"
+#include "library/session_catalog.h"
+
+namespace weft::app {
+
+/// What the calls of the interface work on.
+struct RigParts {
+  const capture::Rig& rig;
+  std::filesystem::path state;
+  RigKeeper& keeper;
+  library::SessionCatalog& sessions;
+  FramePictures& pictures;
+};
+
+/// The calls of one resource, and its part of the OpenAPI file.
+struct Resource {
+  std::vector<Route> routes;
+  const char* description;
+};
+
+// One file each. The parts must outlive the routes.
+Resource server_resource();
+Resource rig_resource(const RigParts& parts);
+Resource scan_resource(const RigParts& parts);
+Resource sessions_resource(const RigParts& parts);
+Resource frames_resource(const RigParts& parts);
+Resource events_resource();
+
+/// Every call of the interface, GET openapi.json among them.
+std::vector<Route> api_routes(const RigParts& parts);
+
+}  // namespace weft::app

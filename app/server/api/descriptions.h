@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+namespace weft::app {
+
+/// The texts of openapi.json and of each resource's part of it, RESOURCE.openapi.json: {"paths", "schemas"}.
+const char* common_description();
+const char* events_description();
+const char* frames_description();
+const char* rig_description();
+const char* scan_description();
+const char* server_description();
+const char* sessions_description();
+
+}  // namespace weft::app

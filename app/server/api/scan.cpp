@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+#include <utility>
+
+#include "app/server/api/api.h"
+#include "app/server/api/descriptions.h"
+#include "app/server/api/scan_body.h"
+#include "app/server/api/session_choice.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+constexpr int kAccepted = 202;
+
+Result<Reply> start_scan(const RigParts& parts, const Call& call) {
+  const Result<Json> body = parse_body(call.body);
+  if (!body) return body.error();
+  Result<SessionChoice> choice = choose_session(*body, parts.rig, std::chrono::system_clock::now());
+  if (!choice) return std::move(choice).error();
+  if (Result<void> made = make_writable_folder(parts.rig.scan.sessions); !made)
+    return std::move(made).error();
+  if (Result<void> begun = parts.keeper.begin(std::move(choice->request)); !begun)
+    return std::move(begun).error();
+  return json_reply(to_json(*choice), kAccepted);
+}
+
+/// A step whose success is told by the status it leads to.
+template <typename Step>
+Result<Reply> after(const RigParts& parts, const Call& call, const Step& step) {
+  if (const Result<Json> body = parse_body(call.body); !body) return body.error();
+  if (Result<void> done = step(); !done) return std::move(done).error();
+  return json_reply(to_json(parts.keeper.status(), parts.rig), kAccepted);
+}
+
+}  // namespace
+
+Resource scan_resource(const RigParts& parts) {
+  return {
+      {{"POST", "/api/v1/scan", [&parts](const Call& call) { return start_scan(parts, call); }},
+       {"POST", "/api/v1/scan/pause",
+        [&parts](const Call& call) { return after(parts, call, [&] { return parts.keeper.pause(); }); }},
+       {"POST", "/api/v1/scan/resume",
+        [&parts](const Call& call) { return after(parts, call, [&] { return parts.keeper.resume(); }); }},
+       {"POST", "/api/v1/scan/cancel",
+        [&parts](const Call& call) { return after(parts, call, [&] { return parts.keeper.cancel(); }); }}},
+      scan_description()};
+}
+
+}  // namespace weft::app

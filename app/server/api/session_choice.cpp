@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/api/session_choice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "app/server/api/scan_body.h"
+#include "capture/scan/plan.h"
+#include "core/calibration.h"
+#include "core/files.h"
+#include "core/session.h"
+#include "library/session_name.h"
+#include "library/unfinished_sessions.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr auto kRecent = std::chrono::hours(1);
+constexpr double kSameExposure = 0.2;  // octaves: a camera's times are a third apart
+constexpr const char* kComplete = "complete";
+
+/// The calibration that this rig's sessions are begun with now.
+std::string calibration_id(const capture::Rig& rig) {
+  if (rig.scan.calibration.empty()) return "";
+  const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
+  return calibration ? calibration->id : "";
+}
+
+/// Those of this rig, cloth and calibration that a scan could finish, newest first.
+std::vector<library::UnfinishedSession> unfinished_of(const std::string& fabric, const capture::Rig& rig) {
+  auto found = library::unfinished_sessions(rig.scan.sessions, rig.name, fabric);
+  if (found.empty()) return found;
+  std::erase_if(found, [id = calibration_id(rig)](const library::UnfinishedSession& each) {
+    return each.session.calibration_id != id;
+  });
+  return found;
+}
+
+bool is_exposed_as(const Session& session, const capture::ExposureSettings& asked) {
+  const Json record = session.document.value("exposure", Json());
+  if (record.is_null()) return true;  // it was not chosen yet
+  JsonFields fields(record, "exposure");
+  const capture::ExposureSettings of_session = {fields.number("exposure_us"), fields.number("iso"),
+                                                fields.number("f_number")};
+  if (!fields.status() || of_session.iso != asked.iso || of_session.f_number != asked.f_number) return false;
+  return asked.exposure_us == 0 ||
+         std::abs(std::log2(asked.exposure_us / of_session.exposure_us)) < kSameExposure;
+}
+
+/// Whether the body asks for nothing else than what the session was begun with.
+bool is_asked_for(const Session& session, const Json& body, const capture::Rig& rig) {
+  const capture::ScanRequest begun = request_of_session(session, rig);
+  const Result<ScanWish> asked = read_scan_body(body, rig.leds, begun);
+  return asked && asked->request.cloth_height_mm == begun.cloth_height_mm &&
+         asked->request.leds == begun.leds && asked->request.repeat == begun.repeat &&
+         asked->request.bracket == begun.bracket && asked->request.metadata == begun.metadata &&
+         is_exposed_as(session, asked->request.exposure);
+}
+
+Result<SessionChoice> resumed(std::string name, const Session& session, const Json& body,
+                              const capture::Rig& rig) {
+  Result<ScanWish> wish = read_scan_body(body, rig.leds, request_of_session(session, rig));
+  if (!wish) return std::move(wish).error();
+  SessionChoice choice = {std::move(name), std::move(wish->request), true};
+  choice.request.session = session.folder;
+  choice.frames = static_cast<int>(session.shots.size());
+  const capture::ScanRequest& asked = choice.request;
+  choice.frames_planned = capture::ShotList{asked.leds, asked.repeat, asked.bracket}.count();
+  return choice;
+}
+
+Result<SessionChoice> new_one(std::string name, capture::ScanRequest request, const capture::Rig& rig) {
+  Result<fs::path> folder = library::session_folder(rig.scan.sessions, name);
+  if (!folder) return std::move(folder).error();
+  request.session = std::move(*folder);
+  return SessionChoice{std::move(name), std::move(request)};
+}
+
+Result<SessionChoice> named(const std::string& name, const Json& body, const capture::Rig& rig) {
+  const Result<fs::path> folder = library::session_folder(rig.scan.sessions, name);
+  if (!folder) return folder.error();
+  if (!is_there(*folder)) {
+    Result<ScanWish> wish = read_scan_body(body, rig.leds, request_of_rig(rig));
+    if (!wish) return std::move(wish).error();
+    return new_one(name, std::move(wish->request), rig);
+  }
+  const Result<Session> session = read_session(*folder);
+  if (!session) return session.error();
+  if (session->state == kComplete || session->rig != rig.name) {
+    return Error{
+        ErrorKind::kCannotCreate, "there is a session of this name", name,
+        session->rig == rig.name ? "it is finished, and none is overwritten" : "it is of rig " + session->rig,
+        "take another name"};
+  }
+  return resumed(name, *session, body, rig);
+}
+
+Result<SessionChoice> by_cloth(const Json& body, const capture::Rig& rig,
+                               std::chrono::system_clock::time_point now) {
+  Result<ScanWish> wish = read_scan_body(body, rig.leds, request_of_rig(rig));
+  if (!wish) return std::move(wish).error();
+  const std::string fabric = wish->request.fabric;
+  const std::vector<library::UnfinishedSession> unfinished =
+      fabric.empty() ? std::vector<library::UnfinishedSession>() : unfinished_of(fabric, rig);
+  for (const library::UnfinishedSession& each : unfinished) {
+    const bool recent = now - std::chrono::file_clock::to_sys(each.written) <= kRecent;
+    if (recent && is_asked_for(each.session, body, rig)) return resumed(each.name, each.session, body, rig);
+  }
+  Result<std::string> name =
+      library::next_session_name(rig.scan.session_name, fabric, rig.name, rig.scan.sessions, now);
+  if (!name) return std::move(name).error();
+  Result<SessionChoice> choice = new_one(std::move(*name), std::move(wish->request), rig);
+  if (choice && !unfinished.empty()) choice->unfinished = unfinished.front().name;
+  return choice;
+}
+
+}  // namespace
+
+Json to_json(const SessionChoice& choice) {
+  Json json = {{"session", choice.name}, {"resumed", choice.resumed}};
+  if (choice.resumed) {
+    json["frames"] = choice.frames;
+    json["frames_planned"] = choice.frames_planned;
+  }
+  if (!choice.unfinished.empty()) json["unfinished"] = choice.unfinished;
+  return json;
+}
+
+Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig,
+                                     std::chrono::system_clock::time_point now) {
+  const Result<std::string> name = session_in_body(body);
+  if (!name) return name.error();
+  Result<SessionChoice> choice = name->empty() ? by_cloth(body, rig, now) : named(*name, body, rig);
+  if (choice && choice->request.fabric.empty()) {
+    return Error{ErrorKind::kUsage, "the scan has no fabric", "fabric", "",
+                 "name the cloth: --fabric satin, or {\"fabric\": \"satin\"}"};
+  }
+  return choice;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/http/http_door.h"
+
+#include <fmt/format.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <utility>
+#include <vector>
+
+#include "app/server/http/error_json.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+constexpr int kBacklog = 512;
+constexpr auto kFarewell = std::chrono::seconds(1);  // for a refused client to take its answer
+
+struct FreeAddresses {
+  void operator()(addrinfo* first) const { freeaddrinfo(first); }
+};
+using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
+
+Addresses addresses_of(const std::string& host, int port) {
+  addrinfo hints = {};
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  const int failed = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
+  return Addresses(failed == 0 ? found : nullptr);
+}
+
+bool is_loopback(const sockaddr& address) {
+  if (address.sa_family == AF_INET) {
+    const auto& v4 = reinterpret_cast<const sockaddr_in&>(address);
+    return ntohl(v4.sin_addr.s_addr) >> 24 == 127;
+  }
+  return address.sa_family == AF_INET6 &&
+         IN6_IS_ADDR_LOOPBACK(&reinterpret_cast<const sockaddr_in6&>(address).sin6_addr);
+}
+
+Error cannot_listen(const std::string& where, int error_number) {
+  if (error_number == EADDRINUSE) {
+    return {ErrorKind::kTryAgain, "the port is in use", where, "another program listens on it",
+            "end that program, or set another daemon.port in the rig file (0: any free one)"};
+  }
+  return {ErrorKind::kCannotCreate, "the port cannot be opened", where, system_reason(error_number),
+          "set another daemon.host or daemon.port in the rig file"};
+}
+
+Result<Descriptor> listen_on(const addrinfo& address, const std::string& where) {
+  Descriptor socket(::socket(address.ai_family, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
+  const int yes = 1;
+  setsockopt(socket.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);  // not SO_REUSEPORT: one listener
+  if (bind(socket.get(), address.ai_addr, address.ai_addrlen) != 0 || listen(socket.get(), kBacklog) != 0) {
+    return cannot_listen(where, errno);
+  }
+  return socket;
+}
+
+int port_of(int socket) {
+  sockaddr_storage address = {};
+  socklen_t bytes = sizeof address;
+  getsockname(socket, reinterpret_cast<sockaddr*>(&address), &bytes);
+  // The port is at the same place in both families.
+  return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
+}
+
+std::string refusal(int status, std::string_view why) {
+  const std::string body = line_of(
+      error_document({status == 503 ? ErrorKind::kTryAgain : ErrorKind::kUsage, "the request is refused", "",
+                      std::string(why), "see /api/v1/openapi.json for what is taken"}));
+  return fmt::format(
+      "HTTP/1.1 {} Refused\r\nContent-Type: application/json\r\nContent-Length: {}\r\nConnection: "
+      "close\r\n\r\n{}",
+      status, body.size(), body);
+}
+
+}  // namespace
+
+bool is_loopback(const std::string& host) {
+  const Addresses addresses = addresses_of(host, 0);
+  return addresses != nullptr && is_loopback(*addresses->ai_addr);
+}
+
+Result<std::unique_ptr<HttpDoor>> HttpDoor::open(const std::string& host, int port,
+                                                 const DoorLimits& limits) {
+  const std::string where = fmt::format("{}:{}", host, port);
+  const Addresses addresses = addresses_of(host, port);
+  if (addresses == nullptr) {
+    return Error{ErrorKind::kUsage, "the host is no address", where, "",
+                 "set daemon.host to 127.0.0.1 or an address of this machine"};
+  }
+  Result<Descriptor> listening = listen_on(*addresses, where);
+  if (!listening) return std::move(listening).error();
+  const int bound = port_of(listening->get());
+  return std::unique_ptr<HttpDoor>(new HttpDoor(std::move(*listening), bound, limits));
+}
+
+HttpDoor::HttpDoor(Descriptor listening, int port, const DoorLimits& limits)
+    : listening_(std::move(listening)),
+      wake_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)),
+      port_(port),
+      limits_(limits) {}
+
+void HttpDoor::begin(Enter enter) {
+  enter_ = std::move(enter);
+  thread_ = std::thread([this] { run(); });
+}
+
+HttpDoor::~HttpDoor() {
+  close();
+}
+
+void HttpDoor::close() {
+  closing_ = true;
+  eventfd_write(wake_.get(), 1);
+  if (thread_.joinable()) thread_.join();
+}
+
+void HttpDoor::run() {
+  constexpr int kTickMs = 100;  // how late a deadline may be noticed
+  std::vector<pollfd> watched;
+  while (!closing_) {
+    const bool room = in_service_ < limits_.in_service;
+    watched = {{wake_.get(), POLLIN, 0}, {room ? listening_.get() : -1, POLLIN, 0}};
+    for (const Waiting& client : waiting_) watched.push_back({client.socket.get(), POLLIN, 0});
+    const bool idle = waiting_.empty() && room;
+    if (poll(watched.data(), watched.size(), idle ? -1 : kTickMs) < 0) continue;
+    std::size_t at = 2;
+    for (Waiting& client : waiting_) {
+      if (watched[at++].revents != 0) receive(client);
+    }
+    if (watched[1].revents != 0) accept_all();
+    drop_overdue();
+  }
+  waiting_.clear();
+}
+
+void HttpDoor::accept_all() {
+  for (int taken = 0; taken < kBacklog; ++taken) {
+    Descriptor socket(accept4(listening_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
+    const bool out_of_descriptors = !socket && (errno == EMFILE || errno == ENFILE);
+    if (!socket && !out_of_descriptors) return;
+    if (waiting_.size() >= limits_.waiting || (out_of_descriptors && !waiting_.empty())) {
+      waiting_.pop_front();
+    }
+    if (!socket) return;
+    const auto patience = std::chrono::duration<double>(limits_.request_deadline_s);
+    const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(patience);
+    waiting_.push_back({std::move(socket), {}, deadline});
+    receive(waiting_.back());
+  }
+}
+
+void HttpDoor::receive(Waiting& client) {
+  std::array<char, 16384> block = {};
+  const ssize_t bytes = recv(client.socket.get(), block.data(), block.size(), 0);
+  if (bytes < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (bytes <= 0) {
+    client.gone = true;
+    return;
+  }
+  if (client.answered) return;
+  client.received.append(block.data(), static_cast<std::size_t>(bytes));
+  const RequestFrame frame = frame_request(client.received, limits_.frame);
+  if (frame.status != 0) return refuse(client, frame.status, frame.why);
+  if (frame.bytes == 0) return;
+  client.received.resize(frame.bytes);
+  client.gone = true;
+  ++in_service_;
+  enter_({std::move(client.socket), std::move(client.received)});
+}
+
+void HttpDoor::refuse(Waiting& client, int status, std::string_view why) {
+  const std::string answer = refusal(status, why);
+  if (send(client.socket.get(), answer.data(), answer.size(), MSG_NOSIGNAL) < 0) client.gone = true;
+  shutdown(client.socket.get(), SHUT_WR);
+  client.answered = true;
+  client.received = {};
+  client.deadline = Clock::now() + kFarewell;
+}
+
+void HttpDoor::drop_overdue() {
+  const Clock::time_point now = Clock::now();
+  for (Waiting& client : waiting_) {
+    if (client.gone || now < client.deadline) continue;
+    const bool began = !client.answered && !client.received.empty();
+    if (began) {
+      refuse(client, 408, "the request did not come in time");
+    } else {
+      client.gone = true;
+    }
+  }
+  waiting_.remove_if([](const Waiting& client) { return client.gone; });
+}
+
+}  // namespace weft::app

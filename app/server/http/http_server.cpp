@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/http/http_server.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+#include <poll.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <regex>
+#include <utility>
+
+#include "app/server/http/error_json.h"
+
+namespace weft::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A whole request to read from, and its client to write to.
+class RequestStream : public httplib::Stream {
+ public:
+  RequestStream(WholeRequest request, double write_deadline_s)
+      : request_(std::move(request)), write_deadline_s_(write_deadline_s) {}
+
+  bool is_readable() const override { return at_ < request_.bytes.size(); }
+  bool is_writable() const override {
+    pollfd socket = {request_.socket.get(), POLLRDHUP, 0};
+    return poll(&socket, 1, 0) == 0;
+  }
+  ssize_t read(char* bytes, std::size_t most) override {
+    const std::size_t count = request_.bytes.copy(bytes, most, at_);
+    at_ += count;
+    return static_cast<ssize_t>(count);
+  }
+  ssize_t write(const char* bytes, std::size_t count) override {
+    const auto deadline = Clock::now() + std::chrono::duration<double>(write_deadline_s_);
+    for (std::size_t sent = 0; sent < count;) {
+      const ssize_t more = send(socket(), bytes + sent, count - sent, MSG_NOSIGNAL);
+      if (more >= 0) {
+        sent += static_cast<std::size_t>(more);
+        continue;
+      }
+      const auto left =
+          std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+      if ((errno != EAGAIN && errno != EINTR) || left <= 0) return -1;
+      pollfd socket_room = {socket(), POLLOUT, 0};
+      poll(&socket_room, 1, static_cast<int>(left));
+    }
+    return static_cast<ssize_t>(count);
+  }
+  void get_remote_ip_and_port(std::string&, int&) const override {}
+  void get_local_ip_and_port(std::string&, int&) const override {}
+  socket_t socket() const override { return request_.socket.get(); }
+
+ private:
+  WholeRequest request_;
+  double write_deadline_s_;
+  std::size_t at_ = 0;
+};
+
+std::string pattern_of(const std::string& path) {
+  return std::regex_replace(path, std::regex(R"(\{[a-z]+\})"), "([^/]+)");
+}
+
+void answer(const Reply& reply, httplib::Response& response) {
+  response.status = reply.status;
+  response.set_header("Cache-Control", "no-store");
+  response.set_header("X-Content-Type-Options", "nosniff");
+  response.set_content(reply.body, reply.type);
+}
+
+void answer(const Error& error, int status, httplib::Response& response) {
+  if (status == 401) response.set_header("WWW-Authenticate", "Bearer");
+  answer(json_reply(error_document(error), status), response);
+}
+
+Call call_of(const httplib::Request& request) {
+  Call call;
+  for (std::size_t i = 1; i < request.matches.size(); ++i) call.segments.push_back(request.matches[i].str());
+  for (const auto& [key, value] : request.params) call.query.emplace(key, value);
+  call.body = request.body;
+  return call;
+}
+
+std::string lines_of(const EventLog::Event& event) {
+  return fmt::format("id: {}\nevent: {}\ndata: {}\n\n", event.id, event.name, event.data);
+}
+
+}  // namespace
+
+Reply json_reply(const Json& document, int status) {
+  return {status, "application/json", line_of(document)};
+}
+
+class HttpServer::Parser : public httplib::Server {
+ public:
+  Parser(GuardRules rules, std::vector<Route> routes, EventLog& events, const HttpLimits& limits)
+      : rules_(std::move(rules)), routes_(std::move(routes)), events_(events), limits_(limits) {
+    set_keep_alive_max_count(1);
+    set_payload_max_length(limits.door.frame.body_bytes);
+    set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
+      return guard(request, response) ? HandlerResponse::Handled : HandlerResponse::Unhandled;
+    });
+    set_error_handler(Handler([this](const httplib::Request& request, httplib::Response& response) {
+      if (response.body.empty()) explain(request, response);
+    }));
+    set_exception_handler([](const httplib::Request& request, httplib::Response& response,
+                             const std::exception_ptr& thrown) { fail(request, response, thrown); });
+    for (const Route& route : routes_) add(route);
+  }
+
+  /// Lets the streams of cpp-httplib run: it ends them where it does not listen.
+  void begin(HttpDoor& door) {
+    svr_sock_ = door.socket();
+    workers_ = std::make_unique<httplib::ThreadPool>(limits_.workers);
+    door.begin([this, &door](WholeRequest request) {
+      // std::function wants to copy what it holds.
+      auto held = std::make_shared<WholeRequest>(std::move(request));
+      workers_->enqueue([this, &door, held] {
+        answer_one(std::move(*held));
+        door.left();
+      });
+    });
+  }
+
+  void end() {
+    svr_sock_ = INVALID_SOCKET;
+    if (workers_) workers_->shutdown();
+    workers_.reset();
+  }
+
+ private:
+  void answer_one(WholeRequest request) {
+    RequestStream stream(std::move(request), limits_.write_deadline_s);
+    bool closed = false;
+    process_request(stream, true, closed, nullptr);
+    shutdown(stream.socket(), SHUT_WR);
+  }
+
+  bool guard(const httplib::Request& request, httplib::Response& response) const {
+    const auto refused =
+        turned_away({request.method, request.get_header_value("Host"), request.get_header_value("Origin"),
+                     request.get_header_value("Authorization"), request.get_header_value("Content-Type")},
+                    rules_);
+    if (refused) answer(refused->error, refused->status, response);
+    return refused.has_value();
+  }
+
+  void add(const Route& route) {
+    const Handler handle = [this, &route](const httplib::Request& request, httplib::Response& response) {
+      if (!route.handle) return stream_events(request, response);
+      const Result<Reply> reply = route.handle(call_of(request));
+      if (reply) return answer(*reply, response);
+      answer(reply.error(), http_status_of(reply.error().kind), response);
+    };
+    if (route.method == "GET") Get(pattern_of(route.path), handle);
+    if (route.method == "POST") Post(pattern_of(route.path), handle);
+  }
+
+  /// An error of cpp-httplib's own.
+  void explain(const httplib::Request& request, httplib::Response& response) const {
+    const auto fits = [&](const Route& route) {
+      return std::regex_match(request.path, std::regex(pattern_of(route.path)));
+    };
+    if (response.status == 404 && std::ranges::any_of(routes_, fits)) response.status = 405;
+    const bool absent = response.status == 404;
+    answer(
+        Error{absent ? ErrorKind::kNoInput : ErrorKind::kUsage,
+              absent ? "there is no such call" : "the request is refused", request.path,
+              fmt::format("HTTP status {}", response.status), "see /api/v1/openapi.json for what there is"},
+        response.status, response);
+  }
+
+  static void fail(const httplib::Request& request, httplib::Response& response,
+                   const std::exception_ptr& thrown) {
+    std::string why = "unknown";
+    try {
+      std::rethrow_exception(thrown);
+    } catch (const std::exception& exception) {
+      why = exception.what();
+    } catch (...) {
+    }
+    answer(Error{ErrorKind::kInternal, "a bug in weft", request.path, why, "report it with the request"}, 500,
+           response);
+  }
+
+  void stream_events(const httplib::Request& request, httplib::Response& response) {
+    if (++streams_ > limits_.streams) {
+      --streams_;
+      return answer(Error{ErrorKind::kTryAgain, "too many clients follow this rig", request.path,
+                          fmt::format("{} streams are open", limits_.streams), "close one of them"},
+                    503, response);
+    }
+    response.set_header("Cache-Control", "no-store");
+    response.set_chunked_content_provider(
+        "text/event-stream",
+        [this, follower = follower_of(request)](std::size_t, httplib::DataSink& sink) mutable {
+          return send_next(follower, sink);
+        },
+        [this](bool) { --streams_; });
+  }
+
+  struct Follower {
+    std::uint64_t seen = 0;
+    std::string greeting = {};
+    Clock::time_point last = Clock::now();
+  };
+
+  /// One that names no event it has seen is told first how things are.
+  Follower follower_of(const httplib::Request& request) const {
+    const std::string id = request.get_header_value("Last-Event-ID");
+    const bool digits =
+        !id.empty() && id.size() < 19 && id.find_first_not_of("0123456789") == std::string::npos;
+    if (digits) return {std::stoull(id)};
+    const EventLog::Event current = events_.current();
+    return {current.id, lines_of(current)};
+  }
+
+  bool send_next(Follower& follower, httplib::DataSink& sink) const {
+    constexpr auto kLook = std::chrono::milliseconds(200);  // how late a client that left is noticed
+    if (!sink.is_writable()) return false;
+    std::string text = std::exchange(follower.greeting, "");
+    const auto events = events_.wait_after(follower.seen, text.empty() ? kLook : kLook * 0);
+    if (events_.closed()) {
+      sink.done();
+      return true;
+    }
+    for (const EventLog::Event& event : events) text += lines_of(event);
+    const auto silence = std::chrono::duration<double>(Clock::now() - follower.last);
+    if (text.empty() && silence.count() >= limits_.heartbeat_s) text = "event: heartbeat\ndata: {}\n\n";
+    if (text.empty()) return true;
+    if (!events.empty()) follower.seen = events.back().id;
+    follower.last = Clock::now();
+    return sink.write(text.data(), text.size());
+  }
+
+  GuardRules rules_;
+  std::vector<Route> routes_;
+  EventLog& events_;
+  HttpLimits limits_;
+  std::atomic<std::size_t> streams_ = 0;
+  std::unique_ptr<httplib::ThreadPool> workers_;
+};
+
+Result<std::unique_ptr<HttpServer>> HttpServer::start(int port, GuardRules rules, std::vector<Route> routes,
+                                                      EventLog& events, const HttpLimits& limits) {
+  if (rules.token.empty() && !is_loopback(rules.listening_host)) {
+    return Error{ErrorKind::kUsage, "the rig would be open to the network", rules.listening_host,
+                 "a host other than this machine's own needs a token",
+                 "set daemon.token in the rig file to a file that holds one, or daemon.host to 127.0.0.1"};
+  }
+  Result<std::unique_ptr<HttpDoor>> door = HttpDoor::open(rules.listening_host, port, limits.door);
+  if (!door) return std::move(door).error();
+  auto parser = std::make_unique<Parser>(std::move(rules), std::move(routes), events, limits);
+  return std::unique_ptr<HttpServer>(new HttpServer(std::move(*door), std::move(parser)));
+}
+
+HttpServer::HttpServer(std::unique_ptr<HttpDoor> door, std::unique_ptr<Parser> parser)
+    : parser_(std::move(parser)), door_(std::move(door)) {
+  parser_->begin(*door_);
+}
+
+HttpServer::~HttpServer() {
+  stop();
+}
+
+int HttpServer::port() const {
+  return door_->port();
+}
+
+void HttpServer::stop() {
+  door_->close();
+  parser_->end();
+}
+
+}  // namespace weft::app

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/server/http/event_log.h"
+#include "app/server/http/http_door.h"
+#include "app/server/http/http_guard.h"
+#include "app/server/http/routes.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// What clients may take of the server, so that no number of them keeps the others out.
+struct HttpLimits {
+  DoorLimits door;
+  std::size_t workers = 64;
+  std::size_t streams = 16;     ///< of events at once; one more is answered with 503
+  double write_deadline_s = 2;  ///< for one piece of an answer to leave
+  double heartbeat_s = 10;      ///< between events of a stream at most
+};
+
+/// The HTTP interface over a table of routes: HttpDoor before cpp-httplib, which parses, routes and answers.
+/// Each connection is answered once and closed.
+class HttpServer {
+ public:
+  static Result<std::unique_ptr<HttpServer>> start(int port, GuardRules rules, std::vector<Route> routes,
+                                                   EventLog& events, const HttpLimits& limits);
+  ~HttpServer();
+
+  int port() const;
+  /// Ends every stream and connection and joins all threads, within write_deadline_s.
+  void stop();
+
+ private:
+  class Parser;
+  HttpServer(std::unique_ptr<HttpDoor> door, std::unique_ptr<Parser> parser);
+
+  std::unique_ptr<Parser> parser_;
+  std::unique_ptr<HttpDoor> door_;
+};
+
+}  // namespace weft::app

@@ -1,0 +1,256 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/rig/rig_keeper.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <exception>
+#include <utility>
+
+#include "app/server/http/error_json.h"
+#include "app/server/rig/watched_camera.h"
+#include "core/error_json.h"
+#include "library/session_catalog.h"
+
+namespace weft::app {
+namespace {
+
+constexpr auto kBetweenSearches = std::chrono::milliseconds(500);
+
+std::string name_of_session(const capture::ScanRequest& request) {
+  return request.session.stem().string();
+}
+
+Error nothing_runs(const std::string& rig, const char* remedy) {
+  return {ErrorKind::kTryAgain, "no scan is running", rig, "", remedy};
+}
+
+/// What every frame is told with, kept or not.
+Json frame_event(const std::string& session, int index, int led, ShotRole role,
+                 const capture::FrameFinding& finding) {
+  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+  return {{"session", session},
+          {"index", index},
+          {"led", led},
+          {"role", library::name_of(role)},
+          {"code", finding.code},
+          {"level", number(finding.level)},
+          {"misfit", number(finding.misfit)}};
+}
+
+}  // namespace
+
+RigKeeper::RigKeeper(capture::Rig rig, capture::OpenDevices open, RunScan run, EventLog& events, Logbook& log,
+                     FramePictures& pictures)
+    : rig_(std::move(rig)),
+      open_(std::move(open)),
+      run_(std::move(run)),
+      events_(events),
+      log_(log),
+      pictures_(pictures) {
+  tell_status_locked();
+}
+
+RigKeeper::~RigKeeper() {
+  scan_.request_stop();
+}
+
+Result<void> RigKeeper::begin(capture::ScanRequest request) {
+  const std::lock_guard lock(mutex_);
+  if (running_ || stopping_) {
+    return Error{ErrorKind::kTryAgain, "the rig is busy", rig_.name,
+                 running_ ? "it scans " + status_.session : "the daemon is ending",
+                 "wait for its end, or cancel it"};
+  }
+  running_ = true;
+  status_ = {};
+  status_.state = RigStatus::State::kConnecting;
+  status_.session = name_of_session(request);
+  pause_ = false;
+  request_ = request;
+  tell_status_locked();
+  // The last one's thread has done its last deed once running_ is false: joining it here takes no time.
+  scan_ = std::jthread([this, request = std::move(request)](const std::stop_token& cancel) {
+    log_.add("scan_began", fmt::format("{} of {}", name_of_session(request), request.fabric),
+             {{"session", name_of_session(request)}, {"fabric", request.fabric}});
+    logged_.clear();
+    on_end(request, scan_with_devices(request, cancel));
+  });
+  return {};
+}
+
+Result<void> RigKeeper::pause() {
+  const std::lock_guard lock(mutex_);
+  if (!running_) return nothing_runs(rig_.name, "start one");
+  if (status_.scan.phase == capture::ScanPhase::kFinishing) {
+    return Error{ErrorKind::kTryAgain, "the scan is about to end", rig_.name, "its last frame is kept",
+                 "wait for its end"};
+  }
+  pause_ = true;
+  return {};
+}
+
+Result<void> RigKeeper::resume() {
+  std::optional<capture::ScanRequest> again;
+  {
+    const std::lock_guard lock(mutex_);
+    const bool finished =
+        status_.state == RigStatus::State::kIdle && status_.scan.phase == capture::ScanPhase::kComplete;
+    if (!running_ && request_ && !finished) again = request_;
+    if (!running_ && !again) {
+      return nothing_runs(rig_.name, "start a scan with the name of the session to be resumed");
+    }
+    pause_ = false;
+  }
+  if (again) return begin(std::move(*again));
+  return {};
+}
+
+Result<void> RigKeeper::cancel() {
+  const std::lock_guard lock(mutex_);
+  if (!running_) return nothing_runs(rig_.name, "start one");
+  scan_.request_stop();
+  return {};
+}
+
+bool RigKeeper::stop(std::chrono::milliseconds most) {
+  std::unique_lock lock(mutex_);
+  stopping_ = true;
+  scan_.request_stop();
+  return ended_.wait_for(lock, most, [&] { return !running_; });
+}
+
+Result<capture::RigDevices> RigKeeper::open_devices(const std::stop_token& cancel) {
+  const auto patience = std::chrono::duration<double>(capture::ScanOptions().device_patience_s);
+  const auto until = std::chrono::steady_clock::now() + patience;
+  for (;;) {
+    Result<capture::RigDevices> devices = open_(rig_);
+    if (devices || devices.error().kind != ErrorKind::kNoDevice || std::chrono::steady_clock::now() >= until)
+      return devices;
+    log_once("waiting", devices.error().message());
+    std::unique_lock lock(mutex_);
+    if (std::string why = devices.error().message(); why != status_.scan.why) {
+      status_.scan.why = std::move(why);
+      tell_status_locked();
+    }
+    ended_.wait_for(lock, cancel, kBetweenSearches, [] { return false; });
+    if (cancel.stop_requested()) {
+      return Error{ErrorKind::kInterrupted, "scan was stopped", rig_.name, "on request",
+                   "run the same command again to go on"};
+    }
+  }
+}
+
+Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanRequest& request,
+                                                          const std::stop_token& cancel) try {
+  Result<capture::RigDevices> devices = open_devices(cancel);
+  if (!devices) return std::move(devices).error();
+  {
+    const std::lock_guard lock(mutex_);
+    status_.devices_open = true;
+  }
+  WatchedCamera camera(*devices->camera, [this](const capture::CameraFacts& facts) { on_facts(facts); });
+  const capture::ScanEvents events = {
+      [this](const capture::ScanStatus& status) { on_status(status); },
+      [&](const capture::KeptFrame& frame) { on_kept(request, frame); },
+      [&](const capture::RefusedFrame& frame) { on_refused(request, frame); }};
+  return run_(request, *devices->lamps, camera, events, {cancel, &pause_});
+} catch (const std::exception& thrown) {
+  return error_of_exception(thrown, name_of_session(request));
+}
+
+/// What comes again and again until it passes is written once.
+void RigKeeper::log_once(const char* event, const std::string& why) {
+  if (std::exchange(logged_, why) != why) log_.add(event, why);
+}
+
+void RigKeeper::on_status(const capture::ScanStatus& status) {
+  if (status.phase == capture::ScanPhase::kRecovering) {
+    log_once("recovering", status.why);
+  } else if (status.phase == capture::ScanPhase::kPaused) {
+    log_once("paused", status.why);
+  } else {
+    logged_.clear();
+  }
+  const std::lock_guard lock(mutex_);
+  status_.scan = status;
+  switch (status.phase) {
+    case capture::ScanPhase::kConnecting:
+      status_.state = RigStatus::State::kConnecting;
+      break;
+    case capture::ScanPhase::kPaused:
+      status_.state = RigStatus::State::kPaused;
+      break;
+    default:
+      status_.state = RigStatus::State::kScanning;  // until on_end() says how it ended
+  }
+  tell_status_locked();
+}
+
+void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::KeptFrame& frame) {
+  pictures_.prepare({request.session / frame.shot.file, frame.shot.sha256, frame.histogram_rgb});
+  const std::string name = name_of_session(request);
+  const auto& rgb = frame.histogram_rgb;
+  Json event = frame_event(name, frame.shot.index, frame.shot.led, frame.shot.role, frame.finding);
+  event["kept"] = true;
+  event["clipped_rgb"] = {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped};
+  event["warnings"] = frame.warnings;
+  event["thumbnail"] = fmt::format("/api/v1/sessions/{}/frames/{}/thumbnail", name, frame.shot.index);
+  log_.add("frame", fmt::format("{} is kept", frame.shot.file), event);
+  event["histogram"] = to_json(rgb);
+  events_.add("frame", event);
+}
+
+void RigKeeper::on_refused(const capture::ScanRequest& request, const capture::RefusedFrame& frame) {
+  Json event = frame_event(name_of_session(request), frame.index, frame.led, frame.role, frame.finding);
+  event["kept"] = false;
+  event["why"] = frame.why;
+  log_.add("frame_refused", frame.why, event);
+  events_.add("frame", event);
+}
+
+void RigKeeper::on_facts(const capture::CameraFacts& facts) {
+  const std::lock_guard lock(mutex_);
+  status_.camera = facts;
+}
+
+void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome) {
+  const bool cancelled = !outcome && outcome.error().kind == ErrorKind::kInterrupted;
+  Json record = {{"session", name_of_session(request)}};
+  if (outcome) {
+    record["frames_resumed"] = outcome->frames_resumed;
+    record["frames_retaken"] = outcome->frames_retaken;
+    record["warnings"] = outcome->warnings;
+    log_.add("scan_complete", name_of_session(request), std::move(record));
+  } else {
+    record["error"] = json_of(outcome.error());
+    log_.add(cancelled ? "scan_cancelled" : "scan_failed", outcome.error().message(), std::move(record));
+  }
+  const std::lock_guard lock(mutex_);
+  if (outcome) {
+    status_.scan.phase = capture::ScanPhase::kComplete;
+    status_.warnings = outcome->warnings;
+  } else {
+    status_.scan.phase = cancelled ? capture::ScanPhase::kCancelled : capture::ScanPhase::kFailed;
+    status_.scan.why = outcome.error().message();
+    if (!cancelled) status_.error = outcome.error();
+  }
+  status_.state = outcome || cancelled ? RigStatus::State::kIdle : RigStatus::State::kFailed;
+  status_.scan.led = 0;
+  status_.devices_open = false;
+  running_ = false;
+  tell_status_locked();
+  ended_.notify_all();
+}
+
+RigStatus RigKeeper::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+std::string RigKeeper::session() const {
+  const std::lock_guard lock(mutex_);
+  return running_ ? status_.session : "";
+}
+
+}  // namespace weft::app

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "app/server/http/event_log.h"
+#include "app/server/rig/frame_pictures.h"
+#include "app/server/rig/logbook.h"
+#include "app/server/rig/rig_status.h"
+#include "capture/devices.h"
+#include "capture/rig.h"
+#include "capture/rig_devices/rig_devices.h"
+#include "capture/scan/scan.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// capture::scan, or what stands for it where no rig leads.
+using RunScan =
+    std::function<Result<capture::ScanOutcome>(const capture::ScanRequest&, capture::Lamps&, capture::Camera&,
+                                               const capture::ScanEvents&, const capture::ScanControl&)>;
+
+/// The state machine of a rig, drawn in docs/http.md:
+///
+///   idle, failed --begin--> connecting --> scanning <--> paused
+///   connecting, scanning, paused --> idle (finished, cancelled) or failed (error says why)
+///
+/// One scan at a time, on a thread of its own. A device that is not there (kNoDevice) is asked for every half
+/// second in connecting, for as long as a scan waits for one that goes; its devices are open while it runs
+/// and closed in idle and failed, so that other programs can use them. Safe from any thread.
+class RigKeeper {
+ public:
+  RigKeeper(capture::Rig rig, capture::OpenDevices open, RunScan run, EventLog& events, Logbook& log,
+            FramePictures& pictures);
+  ~RigKeeper();
+
+  /// Starts a scan, or resumes a session that is there. kTryAgain while one runs.
+  Result<void> begin(capture::ScanRequest request);
+  /// kTryAgain where there is nothing to pause, resume or cancel. Resuming what failed or was cancelled
+  /// begins it again.
+  Result<void> pause();
+  Result<void> resume();
+  Result<void> cancel();
+
+  RigStatus status() const;
+  /// The name of the session being scanned; empty: none.
+  std::string session() const;
+
+  /// Cancels and waits; whether the scan has ended. It cannot begin another one after that.
+  bool stop(std::chrono::milliseconds most);
+
+ private:
+  Result<capture::RigDevices> open_devices(const std::stop_token& cancel);
+  Result<capture::ScanOutcome> scan_with_devices(const capture::ScanRequest& request,
+                                                 const std::stop_token& cancel);
+  void on_status(const capture::ScanStatus& status);
+  void on_kept(const capture::ScanRequest& request, const capture::KeptFrame& frame);
+  void on_refused(const capture::ScanRequest& request, const capture::RefusedFrame& frame);
+  void on_facts(const capture::CameraFacts& facts);
+  void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome);
+  void log_once(const char* event, const std::string& why);
+  void tell_status_locked() { events_.add("status", to_json(status_, rig_)); }
+
+  const capture::Rig rig_;
+  const capture::OpenDevices open_;
+  const RunScan run_;
+  EventLog& events_;
+  Logbook& log_;
+  FramePictures& pictures_;
+
+  mutable std::mutex mutex_;
+  std::condition_variable_any ended_;  ///< or asked to end
+  bool running_ = false;
+  bool stopping_ = false;
+  RigStatus status_;
+  std::optional<capture::ScanRequest> request_;  ///< the last one
+  std::atomic<bool> pause_ = false;
+  std::string logged_;  ///< the last trouble that log_once() wrote; the scan's own
+  std::jthread scan_;
+};
+
+}  // namespace weft::app

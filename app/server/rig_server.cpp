@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/rig_server.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <utility>
+
+#include "app/server/api/api.h"
+#include "app/server/http/event_log.h"
+#include "app/server/rig/frame_pictures.h"
+#include "app/server/rig/rig_lock.h"
+#include "library/session_catalog.h"
+
+namespace weft::app {
+
+struct RigServer::State {
+  State(const capture::Rig& its_rig, RigLock its_lock, capture::OpenDevices open, RunScan run,
+        Logbook::Say say)
+      : rig(its_rig),
+        lock(std::move(its_lock)),
+        log(lock.folder() / "log", std::move(say)),
+        pictures(lock.folder() / "pictures"),
+        sessions(rig.scan.sessions, rig.name),
+        keeper(rig, std::move(open), std::move(run), events, log, pictures),
+        parts{rig, lock.folder(), keeper, sessions, pictures} {}
+
+  const capture::Rig rig;
+  RigLock lock;
+  EventLog events;
+  Logbook log;
+  FramePictures pictures;
+  library::SessionCatalog sessions;
+  RigKeeper keeper;
+  RigParts parts;
+  std::string token, address;
+  std::unique_ptr<HttpServer> http;
+};
+
+Result<std::unique_ptr<RigServer>> RigServer::start(const capture::Rig& rig, capture::OpenDevices open,
+                                                    RunScan run, const RigServerOptions& options) {
+  Result<RigLock> lock = RigLock::take(rig);
+  if (!lock) return std::move(lock).error();
+  const bool is_own = rig.daemon.token.empty() && options.own_token;
+  Result<std::string> token = is_own                     ? new_token()
+                              : rig.daemon.token.empty() ? std::string()
+                                                         : read_token(rig.daemon.token.string());
+  if (!token) return std::move(token).error();
+  auto state = std::make_unique<State>(rig, std::move(*lock), std::move(open), std::move(run), options.say);
+  state->token = *token;
+  Result<std::unique_ptr<HttpServer>> http = HttpServer::start(
+      rig.daemon.port, {rig.daemon.host, *token}, api_routes(state->parts), state->events, options.limits);
+  if (!http) return std::move(http).error();
+  state->http = std::move(*http);
+  const bool v6 = rig.daemon.host.find(':') != std::string::npos;
+  const std::string host = v6 ? "[" + rig.daemon.host + "]" : rig.daemon.host;
+  state->address = fmt::format("http://{}:{}", host, state->http->port());
+  if (Result<void> told = state->lock.publish(state->address, is_own ? *token : ""); !told)
+    return std::move(told).error();
+  state->log.add("daemon_began", fmt::format("rig {} is served at {}", rig.name, state->address),
+                 {{"rig", rig.name}, {"pid", getpid()}});
+  return std::unique_ptr<RigServer>(new RigServer(std::move(state)));
+}
+
+RigServer::RigServer(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+RigServer::~RigServer() {
+  stop();
+}
+
+int RigServer::port() const {
+  return state_->http->port();
+}
+const std::string& RigServer::address() const {
+  return state_->address;
+}
+const std::string& RigServer::token() const {
+  return state_->token;
+}
+
+std::vector<std::string> RigServer::calls() const {
+  std::vector<std::string> calls;
+  for (const Route& route : api_routes(state_->parts)) calls.push_back(route.method + " " + route.path);
+  return calls;
+}
+
+bool RigServer::stop(std::chrono::milliseconds most) {
+  const bool ended = state_->keeper.stop(most);
+  if (!state_->events.closed()) {
+    state_->log.add("daemon_ended",
+                    ended ? "it was told to" : "it was told to, and a device does not answer");
+  }
+  state_->events.close();
+  state_->pictures.stop();
+  state_->http->stop();
+  return ended;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// The OpenAPI file, put together from the parts in app/server/api, against the running daemon.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "tests/app/server/api/json_schema.h"
+#include "tests/app/server/raw_client.h"
+#include "tests/app/server/scripted_rig.h"
+
+namespace weft::app {
+namespace {
+
+using std::chrono::seconds;
+using testing::IsEmpty;
+
+TEST(JsonSchema, FindsWhatDoesNotFit) {
+  const Json document = {{"defs", {{"Led", {{"type", "integer"}, {"minimum", 1}}}}}};
+  const Json schema = {{"type", "object"},
+                       {"required", Json::array({"led"})},
+                       {"additionalProperties", false},
+                       {"properties",
+                        {{"led", {{"$ref", "#/defs/Led"}}},
+                         {"role", {{"type", "string"}, {"enum", {"lit", "dark"}}}},
+                         {"why", {{"type", "string"}, {"nullable", true}}},
+                         {"bins", {{"type", "array"}, {"items", {{"type", "number"}}}}}}}};
+  const auto found = [&](const char* text) { return misfits(Json::parse(text), schema, document); };
+  EXPECT_THAT(found(R"({"led": 2, "role": "lit", "why": null, "bins": [1, 2.5]})"), IsEmpty());
+  for (const char* wrong :
+       {R"({})", R"([])", R"({"led": 0})", R"({"led": 1.5})", R"({"led": 1, "role": "red"})",
+        R"({"led": 1, "role": null})", R"({"led": 1, "bins": ["a"]})", R"({"led": 1, "x": 1})"}) {
+    EXPECT_EQ(found(wrong).size(), 1U) << wrong;
+  }
+  EXPECT_EQ(misfits(1, {{"type", "integer"}, {"oneOf", Json::array()}}, document).size(), 1U);
+}
+
+/// A daemon with a finished session "done", an unfinished one, and its own description.
+class OpenApi : public testing::Test {
+ protected:
+  void SetUp() override {
+    scripted_.before = [this](int frame) -> Result<void> {
+      if (frame == 2 && holding_) gate_.pass();
+      return {};
+    };
+    scripted_.refuse = {2, 2, ShotRole::kLit, {"swapped", 0.9, 0.2}, "LED 2 lights where LED 3 should"};
+    server_ = scripted_.started();
+    port_ = server_->port();
+    document_ = ask(port_, "GET", "/api/v1/openapi.json").json();
+    ASSERT_EQ(ask(port_, "POST", "/api/v1/scan", R"({"fabric": "satin", "session": "done"})").status, 202);
+    wait_for_state(port_, "idle");
+    scripted_.leave_unfinished("left");
+  }
+  void TearDown() override { gate_.open(); }
+
+  const Json& operation(const std::string& method, const std::string& path) const {
+    std::string lower = method;
+    std::ranges::transform(lower, lower.begin(), [](char c) { return static_cast<char>(c | 0x20); });
+    return document_.at("paths").at(path).at(lower);
+  }
+
+  /// Asks, and holds the answer against what the file says of this call.
+  Answer conforming(const std::string& method, const std::string& path, const std::string& target,
+                    const std::string& body = "", const HeaderLines& headers = {}) {
+    SCOPED_TRACE(method + " " + target + " " + body);
+    const Answer answer = ask(port_, method, target, body, headers);
+    const Json& responses = operation(method, path).at("responses");
+    const std::string status = std::to_string(answer.status);
+    if (!responses.contains(status)) {
+      ADD_FAILURE() << status << " is not described: " << answer.body;
+      return answer;
+    }
+    const Json& content = followed(responses[status], document_).at("content");
+    const std::string type = content.begin().key();
+    EXPECT_THAT(answer.head, testing::HasSubstr("Content-Type: " + type));
+    if (type == "application/json") {
+      EXPECT_THAT(misfits(answer.json(), content[type]["schema"], document_), IsEmpty()) << answer.body;
+    }
+    return answer;
+  }
+
+  ScriptedRig scripted_{"openapi"};
+  bool holding_ = false;
+  Gate gate_;
+  std::unique_ptr<RigServer> server_;
+  int port_ = 0;
+  Json document_;
+};
+
+TEST_F(OpenApi, NamesEveryCallAndNoOther) {
+  std::vector<std::string> described;
+  for (const auto& [path, operations] : document_["paths"].items()) {
+    for (const auto& [method, operation] : operations.items()) {
+      std::string upper = method;
+      std::ranges::transform(upper, upper.begin(), [](char c) { return static_cast<char>(c & ~0x20); });
+      described.push_back(upper + " " + path);
+      EXPECT_TRUE(operation.contains("summary")) << path;
+    }
+  }
+  EXPECT_THAT(described, testing::UnorderedElementsAreArray(server_->calls()));
+}
+
+TEST_F(OpenApi, DescribesEveryAnswerOfEveryCall) {
+  const std::string session = "/api/v1/sessions/{name}", frame = session + "/frames/{index}";
+  const std::string here = "/api/v1/sessions/done", first = here + "/frames/0";
+  for (const char* path : {"/api/v1/healthz", "/api/v1/openapi.json", "/api/v1/rig", "/api/v1/sessions"}) {
+    EXPECT_EQ(conforming("GET", path, path).status, 200);
+  }
+  EXPECT_EQ(conforming("GET", "/api/v1/next-name", "/api/v1/next-name?fabric=blue%20wool").status, 200);
+  EXPECT_EQ(conforming("GET", session, here).status, 200);
+  EXPECT_EQ(conforming("GET", session, "/api/v1/sessions/none").status, 404);
+  EXPECT_EQ(conforming("GET", session, "/api/v1/sessions/.none").status, 400);
+  for (const char* what : {"/thumbnail", "/histogram"}) {
+    EXPECT_EQ(conforming("GET", frame + what, first + what).status, 200);
+    EXPECT_EQ(conforming("GET", frame + what, here + "/frames/77" + what).status, 404);
+    EXPECT_EQ(conforming("GET", frame + what, here + "/frames/x" + what).status, 400);
+  }
+  EXPECT_EQ(conforming("GET", session, here).json()["frames"][0]["histogram"].is_object(), true);
+
+  const Session left = read_session(scripted_.session("left")).value();
+  std::filesystem::resize_file(left.path_of(left.shots[0]), 100);
+  std::error_code still_written_to;
+  std::filesystem::remove_all(scripted_.rig.daemon.state / "pictures", still_written_to);
+  EXPECT_EQ(conforming("GET", frame + "/thumbnail", "/api/v1/sessions/left/frames/0/thumbnail").status, 422);
+
+  holding_ = true;
+  const char* const scan = "/api/v1/scan";
+  EXPECT_EQ(conforming("POST", scan, scan, "{}").status, 400);
+  EXPECT_EQ(conforming("POST", scan, scan, std::string(70000, ' ')).status, 413);
+  EXPECT_EQ(conforming("POST", scan, scan, R"({"fabric": "a", "session": "done"})").status, 409);
+  for (const char* step : {"/api/v1/scan/pause", "/api/v1/scan/resume", "/api/v1/scan/cancel"}) {
+    EXPECT_EQ(conforming("POST", step, step, "[]").status, 400);
+  }
+  EXPECT_EQ(conforming("POST", "/api/v1/scan/pause", "/api/v1/scan/pause").status, 409);
+  EXPECT_EQ(conforming("POST", scan, scan, R"({"fabric": "wool"})").status, 202);
+  EXPECT_EQ(conforming("POST", scan, scan, R"({"fabric": "wool"})").status, 409);
+  for (const char* step : {"/api/v1/scan/pause", "/api/v1/scan/resume", "/api/v1/scan/cancel"}) {
+    EXPECT_EQ(conforming("POST", step, step, "{}").status, 202);
+  }
+  gate_.open();
+  wait_for_state(port_, "idle");
+}
+
+TEST_F(OpenApi, DescribesHowEachCallIsGuarded) {
+  for (const std::string& call : server_->calls()) {
+    const std::string method = call.substr(0, call.find(' ')), path = call.substr(call.find(' ') + 1);
+    std::string target = path;
+    if (const auto at = target.find("{name}"); at != target.npos) target.replace(at, 6, "done");
+    if (const auto at = target.find("{index}"); at != target.npos) target.replace(at, 7, "0");
+    EXPECT_EQ(conforming(method, path, target, "", {{"Host", "evil.example"}}).status, 421);
+    EXPECT_EQ(conforming(method, path, target, "", {{"Origin", "http://evil.example"}}).status, 403);
+    EXPECT_EQ(conforming(method, path, target, "", {{"Content-Length", "x"}}).status, 400);
+    if (method == "POST") {
+      EXPECT_EQ(conforming(method, path, target, "", {{"Content-Type", "text/plain"}}).status, 415);
+    }
+  }
+}
+
+TEST_F(OpenApi, DescribesItsEvents) {
+  RawClient follower(port_);
+  follower.say(request_text(port_, "GET", "/api/v1/events", "", {{"Last-Event-ID", "0"}}));
+  const std::string heard = follower.hear(seconds(5), "\"phase\":\"complete\"");
+  EXPECT_THAT(heard, testing::HasSubstr("Content-Type: text/event-stream"));
+  int frames = 0, statuses = 0;
+  for (std::size_t at = heard.find("event: "); at != heard.npos; at = heard.find("event: ", at + 1)) {
+    const std::string name = heard.substr(at + 7, heard.find('\n', at) - at - 7);
+    const std::size_t data = heard.find("data: ", at) + 6, end = heard.find('\n', data);
+    if (end == heard.npos) break;
+    const Json event = Json::parse(heard.substr(data, end - data), nullptr, false);
+    const char* const schema = name == "frame" ? "FrameEvent" : "Status";
+    (name == "frame" ? frames : statuses)++;
+    EXPECT_THAT(misfits(event, document_["components"]["schemas"][schema], document_), IsEmpty()) << event;
+  }
+  EXPECT_EQ(frames, 5) << "four that are kept and one that is refused";
+  EXPECT_GE(statuses, 5);
+}
+
+/// Fields of the request that the file names are those that the daemon takes.
+TEST_F(OpenApi, DescribesEveryFieldOfARequest) {
+  holding_ = true;
+  for (const auto& [field, schema] :
+       document_["components"]["schemas"]["ScanRequest"]["properties"].items()) {
+    const Json body = {{field, nullptr}};
+    const Answer answer = ask(port_, "POST", "/api/v1/scan", body.dump());
+    EXPECT_EQ(answer.status, 400) << answer.body;
+    EXPECT_EQ(answer.json()["error"]["where"], "fabric")
+        << field << " is known, and what is missing is the fabric";
+  }
+  EXPECT_EQ(ask(port_, "POST", "/api/v1/scan", R"({"colour": 1})").json()["error"]["where"], "colour");
+}
+
+}  // namespace
+}  // namespace weft::app

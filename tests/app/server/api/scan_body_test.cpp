@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/api/scan_body.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace weft::app {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Result<ScanWish> read(const std::string& body, const capture::ScanRequest& otherwise = {}) {
+  const Result<Json> json = parse_body(body);
+  if (!json) return json.error();
+  return read_scan_body(*json, 10, otherwise);
+}
+
+TEST(ScanBody, SaysEverythingAScanMayBe) {
+  const Result<ScanWish> wish =
+      read(R"({"session": "satin_1", "fabric": "Satin, schräg", "cloth_height_mm": 1.5,
+      "metadata": {"tags": ["red"], "weight": 120}, "exposure_us": 20000, "iso": 200, "f_number": 11,
+      "leds": [3, 1], "repeat": false, "bracket": 0.25, "copy": false})");
+  ASSERT_TRUE(wish) << wish.error().message();
+  EXPECT_EQ(wish->session, "satin_1");
+  EXPECT_EQ(wish->request.fabric, "Satin, schräg");
+  EXPECT_EQ(wish->request.cloth_height_mm, 1.5);
+  EXPECT_EQ(wish->request.metadata["weight"], 120);
+  EXPECT_EQ(wish->request.exposure, (capture::ExposureSettings{20000, 200, 11}));
+  EXPECT_THAT(wish->request.leds, ElementsAre(3, 1));
+  EXPECT_FALSE(wish->request.repeat);
+  EXPECT_EQ(wish->request.bracket, 0.25);
+}
+
+TEST(ScanBody, LeavesWhatItDoesNotNameAsItWas) {
+  capture::Rig rig;
+  rig.name = "north";
+  rig.scan.exposure_us = 5000;
+  rig.scan.cloth_height_mm = 2;
+  rig.scan.copy = "backup";
+  const Result<ScanWish> wish = read(R"({"fabric": "wool", "iso": null})", request_of_rig(rig));
+  ASSERT_TRUE(wish) << wish.error().message();
+  EXPECT_EQ(wish->request.rig, "north");
+  EXPECT_EQ(wish->request.exposure, (capture::ExposureSettings{5000, 100, 8}));
+  EXPECT_EQ(wish->request.cloth_height_mm, 2);
+  EXPECT_EQ(wish->request.copy, "backup");
+  EXPECT_TRUE(read(R"({"copy": false})", request_of_rig(rig))->request.copy.empty());
+  EXPECT_EQ(wish->request.leds.size(), 10u);
+  rig.leds = 3;
+  EXPECT_THAT(read("{}", request_of_rig(rig))->request.leds, ElementsAre(1, 2, 3)) << "those of the rig file";
+}
+
+TEST(ScanBody, GoesOnAsItsSessionWasBegun) {
+  Session session;
+  session.fabric = "linen";
+  session.cloth_height_mm = 3;
+  session.document = {{"plan", {{"leds", {2, 5}}, {"repeat", false}, {"bracket", 4}}},
+                      {"metadata", {{"id", "7"}}}};
+  const Result<ScanWish> wish = read(R"({"session": "a"})", request_of_session(session, {}));
+  ASSERT_TRUE(wish) << wish.error().message();
+  EXPECT_EQ(wish->request.fabric, "linen");
+  EXPECT_EQ(wish->request.cloth_height_mm, 3);
+  EXPECT_THAT(wish->request.leds, ElementsAre(2, 5));
+  EXPECT_FALSE(wish->request.repeat);
+  EXPECT_EQ(wish->request.bracket, 4);
+  EXPECT_EQ(wish->request.metadata["id"], "7");
+}
+
+TEST(ScanBody, RefusesEachFieldThatIsWrongByName) {
+  for (const auto& [body, field] : std::vector<std::pair<std::string, std::string>>{
+           {R"({"fabric": ""})", "fabric"},
+           {R"({"fabric": 7})", "fabric"},
+           {R"({"fabric": "a\nb"})", "fabric"},
+           {R"({"fabric": ")" + std::string(201, 'a') + R"("})", "fabric"},
+           {R"({"session": "../a"})", "session"},
+           {R"({"session": ".hidden"})", "session"},
+           {R"({"session": "a/b"})", "session"},
+           {R"({"session": "a\u0000b"})", "session"},
+           {R"({"cloth_height_mm": "2"})", "cloth_height_mm"},
+           {R"({"cloth_height_mm": 1e4})", "cloth_height_mm"},
+           {R"({"exposure_us": -1})", "exposure_us"},
+           {R"({"iso": 0})", "iso"},
+           {R"({"f_number": []})", "f_number"},
+           {R"({"metadata": [1]})", "metadata"},
+           {R"({"leds": []})", "leds"},
+           {R"({"leds": [0]})", "leds"},
+           {R"({"leds": [11]})", "leds"},
+           {R"({"leds": [1, 1]})", "leds"},
+           {R"({"leds": [1.5]})", "leds"},
+           {R"({"leds": [99999999999]})", "leds"},
+           {R"({"repeat": 1})", "repeat"},
+           {R"({"bracket": 0})", "bracket"},
+           {R"({"copy": "/etc"})", "copy"}}) {
+    const Result<ScanWish> wish = read(body);
+    ASSERT_FALSE(wish) << body;
+    EXPECT_EQ(wish.error().kind, ErrorKind::kUsage) << body;
+    EXPECT_EQ(wish.error().where, field) << body;
+    EXPECT_FALSE(wish.error().remedy.empty()) << body;
+  }
+}
+
+TEST(ScanBody, ProposesTheFieldThatWasMeant) {
+  const Result<ScanWish> wish = read(R"({"fabrik": "wool"})");
+  ASSERT_FALSE(wish);
+  EXPECT_THAT(wish.error().remedy, HasSubstr("'fabric'"));
+}
+
+TEST(ScanBody, RefusesWhatIsNoFlatJsonObject) {
+  const std::string deep = std::string(30000, '[') + std::string(30000, ']');
+  for (const std::string& body : std::vector<std::string>{
+           "{", "[]", "1", "null", "{\"a\": 1} x", "{'a': 1}", "\xff", "{\"fabric\": \"\xff\"}",
+           "{\"iso\": 1e999}", "{\"metadata\": " + deep + "}", deep, std::string(60000, '{')}) {
+    const Result<ScanWish> wish = read(body);
+    ASSERT_FALSE(wish) << body.substr(0, 40);
+    EXPECT_EQ(wish.error().kind, ErrorKind::kUsage);
+    EXPECT_EQ(wish.error().where, "body") << body.substr(0, 40);
+  }
+  EXPECT_TRUE(read(""));
+  EXPECT_TRUE(read(" \r\n"));
+}
+
+}  // namespace
+}  // namespace weft::app

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// libFuzzer program: any bytes as a request's frame and, after its first empty line, as the body of a scan.
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "app/server/api/scan_body.h"
+#include "app/server/http/error_json.h"
+#include "app/server/http/request_frame.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace weft::app;
+  const std::string_view text(reinterpret_cast<const char*>(data), size);
+  const RequestFrame frame = frame_request(text, {});
+  if (frame.bytes > size || (frame.status != 0 && frame.why.empty())) std::abort();
+
+  const std::size_t head_end = text.find("\r\n\r\n");
+  const auto body = parse_body(head_end == std::string_view::npos ? text : text.substr(head_end + 4));
+  if (!body) return line_of(error_document(body.error())).empty();
+  const auto wish = read_scan_body(*body, 10, {});
+  if (!wish) return line_of(error_document(wish.error())).empty();
+  if (wish->request.leds.size() > 10 || wish->request.fabric.size() > 200) std::abort();
+  return wish->request.metadata.dump().empty();
+}
