@@ -25,6 +25,9 @@ constexpr double kSettled = 0.3;          // sigmas that one more step may chang
 constexpr double kFlickerCounts = 0.1;    // shots that the flicker that was expected counts for
 constexpr double kToldFrom = 1e-3;        // of a shot's light: by readings, not by the prior
 constexpr int kFlickerRounds = 20;
+constexpr double kFarReach = 1e8;   // valleys are long and nearly straight: begin with Gauss-Newton
+constexpr double kNear = 1e-5;      // share of the cost that a stage's last step takes away
+constexpr double kThere = 1e-8;     // and the last stage's
 constexpr double kCapFlicker = 2;   // times what was expected: where LEDs have gains it runs away
 constexpr double kHuberFrom = 3.5;  // of the length of three residuals, which 99 percent stay below
 
@@ -98,7 +101,10 @@ class Fit {
   void add_priors();
   void expect_flicker(double sigma);
   void solve();
-  void minimise();
+  void minimise(double tolerance);
+  void take_steps(double tolerance);
+  void begin_again();
+  void free_lobes();
   void find_flicker();
   bool leds_have_gains();
   void measure_misfit();
@@ -123,7 +129,8 @@ class Fit {
   std::span<const PaperReading> readings_;
   const LightFitOptions& options_;
   std::vector<std::array<double, 3>> sigmas_;  // of the readings
-  Parameters p_;
+  Parameters p_, tape_;                        // as they are, and as the fit began
+  double reach_ = kFarReach;                   // of steps, in Ceres's measure
   ceres::LossFunctionWrapper loss_{nullptr, ceres::TAKE_OWNERSHIP};
   ceres::Problem problem_{shared_loss()};
   std::vector<ceres::ResidualBlockId> reading_blocks_, prior_blocks_;
@@ -194,6 +201,7 @@ Result<void> Fit::begin() {
   }
   p_.shots.resize(p_.sheets.size() * p_.leds.size());
   p_.paper[5] = options_.lambertian ? 0 : start_.paper.delta;
+  tape_ = p_;
   return {};
 }
 
@@ -210,7 +218,6 @@ void Fit::add_readings() {
   }
   for (LedParameters& led : p_.leds) {
     problem_.SetManifold(led.aim.data(), new ceres::SphereManifold<3>());
-    problem_.SetParameterLowerBound(&led.mu, 0, 0);
   }
   if (options_.lambertian) problem_.SetManifold(p_.paper.data(), new ceres::SubsetManifold(6, {5}));
 }
@@ -276,7 +283,8 @@ void Fit::expect_flicker(double sigma) {
 
 // From a tape ten millimetres wrong every reading looks like an outlier: plain squares lead near, Huber's
 // loss to the end. LEDs get gains of their own only where the readings ask for them, as those take away most
-// of what tells how far a LED is.
+// of what tells how far a LED is. A fit with gains begins at the tape again: where one without them came to
+// lie is far off along a bent valley, and the way back takes hundreds of steps.
 void Fit::solve() {
   const auto hold_gains = [&](bool hold) {
     for (LedParameters& led : p_.leds) {
@@ -285,20 +293,32 @@ void Fit::solve() {
     }
   };
   hold_gains(true);
-  minimise();
+  minimise(kNear);
   loss_.Reset(new ceres::HuberLoss(kHuberFrom), ceres::TAKE_OWNERSHIP);
-  minimise();
+  minimise(kNear);
   find_flicker();
-  minimise();
+  minimise(kNear);
   hold_gains(false);
   fit_.leds_have_gains = leds_have_gains();
   if (fit_.leds_have_gains) {
-    minimise();
+    begin_again();
+    minimise(kNear);
     find_flicker();  // of which gains had been a part
-    minimise();
   } else {
     hold_gains(true);
   }
+  minimise(kThere);
+  free_lobes();
+}
+
+void Fit::begin_again() {
+  p_ = tape_;
+  reach_ = kFarReach;
+  free_lobes();
+}
+
+void Fit::free_lobes() {
+  for (LedParameters& led : p_.leds) problem_.SetParameterBlockVariable(&led.mu);
 }
 
 // The flicker under which the shots' gains are as large as they were found, each counted by how far readings
@@ -327,18 +347,34 @@ void Fit::find_flicker() {
   expect_flicker(std::sqrt(std::min(variance, kCapFlicker * kCapFlicker * expected)));
 }
 
-void Fit::minimise() {
+// A lobe is no flatter than none. Ceres keeps to bounds by shortening whole steps, which crawls where one
+// holds; so all lobes are free, and those that end below 0 are held there.
+void Fit::minimise(double tolerance) {
+  for (bool again = true; again;) {
+    take_steps(tolerance);
+    again = false;
+    for (LedParameters& led : p_.leds) {
+      if (led.mu >= 0) continue;
+      led.mu = 0;
+      problem_.SetParameterBlockConstant(&led.mu);
+      again = true;
+    }
+  }
+}
+
+void Fit::take_steps(double tolerance) {
   ceres::Solver::Options how;
   how.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
   how.max_num_iterations = options_.most_iterations;
-  how.initial_trust_region_radius = 1e8;  // valleys are long and nearly straight: begin with Gauss-Newton
-  how.function_tolerance = 1e-9;
+  how.initial_trust_region_radius = reach_;
+  how.function_tolerance = tolerance;
   how.parameter_tolerance = 1e-9;
   how.num_threads = options_.threads;
   how.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;
   ceres::Solve(how, &problem_, &summary);
   fit_.iterations += static_cast<int>(summary.iterations.size()) - 1;
+  reach_ = std::clamp(summary.iterations.back().trust_region_radius, 1.0, kFarReach);
   fit_.settled = summary.IsSolutionUsable();
 }
 
@@ -505,6 +541,10 @@ void Fit::find_covariance() {
   Eigen::MatrixXd sigma = inverse_of_normal_matrix();
   const Eigen::Index size = sigma.rows();
   find_other_shot(sigma);
+  for (LedParameters& led : p_.leds) {  // what is held at its bound would not follow a step below it
+    double& along = gradient_[begin_[&led.mu]];
+    if (led.mu == 0) along = std::min(along, 0.0);
+  }
   fit_.inflation = std::max({1.0, fit_.chi_square, likeness_of_neighbours(sigma)});
   sigma *= fit_.inflation;
   // Newton's decrement bounds what a step changes, in sigmas of whatever parameter.

@@ -184,6 +184,7 @@ TEST(PhysicalLights, HaveGainsOfTheirOwnWhereReadingsAskForThem) {
   const LightFit& real = fit_with_gains();
   EXPECT_TRUE(real.leds_have_gains);
   EXPECT_FALSE(real.misfits()) << real.chi_square;
+  EXPECT_LE(real.iterations, 80) << "it begins at the tape again";
   EXPECT_LT(test::position_error_mm(real.scene.lights, rig.lights), 1.5 * real.worst_position_sigma_mm());
 }
 
@@ -256,6 +257,8 @@ TEST(PhysicalLights, KeepTheirPlaceUnderALobeOfNothing) {
   const LightFit fit = fitted(small_captures(rig));
   EXPECT_LT(test::position_error_mm(fit.scene.lights, rig.lights), 0.5);
   for (const NearLight& led : fit.scene.lights.leds) EXPECT_GE(led.mu, 0);
+  EXPECT_TRUE(fit.settled);
+  EXPECT_LE(fit.iterations, 60) << "bounds that hold are no reason to crawl";
 }
 
 TEST(PhysicalLights, AreRefusedWhereReadingsAreNone) {
