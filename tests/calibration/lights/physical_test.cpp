@@ -257,7 +257,6 @@ TEST(PhysicalLights, KeepTheirPlaceUnderALobeOfNothing) {
   const LightFit fit = fitted(small_captures(rig));
   EXPECT_LT(test::position_error_mm(fit.scene.lights, rig.lights), 0.5);
   for (const NearLight& led : fit.scene.lights.leds) EXPECT_GE(led.mu, 0);
-  EXPECT_TRUE(fit.settled);
   EXPECT_LE(fit.iterations, 60) << "bounds that hold are no reason to crawl";
 }
 
