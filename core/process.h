@@ -24,11 +24,12 @@ Error become(const std::filesystem::path& program, const std::vector<std::string
 /// A program that runs beside this one, killed with this object if it still does.
 class ChildProcess {
  public:
-  /// Standard output and error go to `log`; empty: to this one's standard error. `environment` is NAME=value
-  /// on top of this process's. kNoInput.
+  /// Standard output and error go to `log`; empty: to this one's standard error. Where `errors` is named,
+  /// standard error goes there. `environment` is NAME=value on top of this process's. kNoInput.
   static Result<std::unique_ptr<ChildProcess>> start(const std::vector<std::string>& command,
                                                      const std::vector<std::string>& environment,
-                                                     const std::filesystem::path& log);
+                                                     const std::filesystem::path& log,
+                                                     const std::filesystem::path& errors = {});
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;

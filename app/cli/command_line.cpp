@@ -27,6 +27,8 @@ struct RunOfVerb {
 void add_common(Options& options, CommonArguments& common) {
   options.add_flag("--json", &common.json, "Print one JSON document on standard output");
   options.add_flag("-q,--quiet", &common.quiet, "No progress on standard error");
+  options.add_flag("--json-events", &common.events,
+                   "Progress, notes, errors and the end as lines of JSON on standard error");
   options.add("--threads", &common.threads, "Threads; 0 is all the machine has")
       .shows_default()
       .in_range(0, 1024);
@@ -103,7 +105,10 @@ int run_program(const Program& program, int argc, char** argv) {
   add_verbs(cli, program.verbs, common, runs);
   if (const std::optional<int> code = read(cli, argc, argv)) return *code;
   const auto chosen = std::ranges::find_if(runs, [](const RunOfVerb& each) { return each.verb->parsed(); });
-  return finish(chosen->run, common);
+  if (common.events) speak_events();
+  const int code = finish(chosen->run, common);
+  tell_end(code);
+  return code;
 }
 
 }  // namespace weft::app

@@ -7,8 +7,10 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <optional>
 #include <thread>
 
+#include "core/error_json.h"
 #include "core/files.h"
 
 namespace weft::app {
@@ -23,13 +25,34 @@ extern "C" void on_signal(int) {
   signals_seen = 1;
 }
 
+bool speaks_events = false;
+
 void write_all(std::FILE* stream, std::string_view text) {
   std::fwrite(text.data(), 1, text.size(), stream);
 }
 
+// Texts that are no UTF-8, a file's name say, are mended rather than lost.
+void tell(const Json& event) {
+  write_all(stderr, event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+// Of a phase that began so many seconds ago; nothing where it is too early to say.
+std::optional<double> seconds_left(double share, double seconds) {
+  if (share <= 0.02 || seconds <= 0.5) return std::nullopt;
+  return seconds / share * (1 - share);
+}
+
 }  // namespace
 
-ProgressLine::ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
+void speak_events() {
+  speaks_events = true;
+}
+void tell_end(int exit_code) {
+  if (speaks_events) tell({{"event", "end"}, {"exit_code", exit_code}});
+}
+
+ProgressLine::ProgressLine(bool quiet)
+    : quiet_(quiet && !speaks_events), terminal_(!speaks_events && isatty(STDERR_FILENO) == 1) {}
 
 ProgressLine::~ProgressLine() {
   if (drawn_ && terminal_) write_all(stderr, "\r\x1b[K");
@@ -48,7 +71,7 @@ void ProgressLine::update(std::string_view phase, double share) {
     phase_ = phase;
     phase_began_ = now;
   }
-  const auto pause = terminal_ ? std::chrono::milliseconds(100) : std::chrono::milliseconds(10000);
+  const std::chrono::milliseconds pause(speaks_events ? 200 : terminal_ ? 100 : 10000);
   if (!new_phase && now - last_drawn_ < pause && share < 1) return;
   if (!terminal_ && !new_phase && share >= 1) return;
   last_drawn_ = now;
@@ -58,8 +81,15 @@ void ProgressLine::update(std::string_view phase, double share) {
 void ProgressLine::draw(double share, Clock::time_point now) {
   drawn_ = true;
   const double seconds = std::chrono::duration<double>(now - phase_began_).count();
-  const std::string left =
-      share > 0.02 && seconds > 0.5 ? fmt::format("  {:.0f} s left", seconds / share * (1 - share)) : "";
+  const std::optional<double> left_s = seconds_left(share, seconds);
+  if (speaks_events) {
+    tell({{"event", "progress"},
+          {"phase", phase_},
+          {"share", share},
+          {"left_s", left_s ? Json(*left_s) : Json()}});
+    return;
+  }
+  const std::string left = left_s ? fmt::format("  {:.0f} s left", *left_s) : "";
   if (!terminal_) {
     write_all(stderr, fmt::format("{} {:.0f} %{}\n", phase_, 100 * share, left));
     return;
@@ -101,9 +131,13 @@ Result<void> flush_output() {
   return cannot_write("standard output", errno != 0 ? errno : EIO);
 }
 void complain(const Error& error) {
-  note("weft: " + error.message());
+  if (!speaks_events) return note("weft: " + error.message());
+  Json event = {{"event", "error"}};
+  event.update(json_of(error));
+  tell(event);
 }
 void note(std::string_view text) {
+  if (speaks_events) return tell({{"event", "note"}, {"text", text}});
   write_all(stderr, fmt::format("{}\n", text));
 }
 

@@ -12,6 +12,12 @@
 
 namespace weft::app {
 
+/// From now on standard error is for programs: a line of JSON for each change of progress (at most five a
+/// second), each note, each error and the end (docs/http.md).
+void speak_events();
+/// {"event": "end", "exit_code": 0}, where events are spoken.
+void tell_end(int exit_code);
+
 /// Progress on standard error: one bar with an estimate on a terminal, a plain line a phase and every ten
 /// seconds elsewhere, nothing at all when quiet.
 class ProgressLine {

@@ -13,9 +13,10 @@ class Options;
 
 /// What every verb understands.
 struct CommonArguments {
-  bool json = false;   ///< one JSON document on standard output
-  bool quiet = false;  ///< no progress
-  int threads = 0;     ///< 0: all the machine has
+  bool json = false;    ///< one JSON document on standard output
+  bool quiet = false;   ///< no progress
+  int threads = 0;      ///< 0: all the machine has
+  bool events = false;  ///< progress, notes and the end as lines of JSON on standard error
 };
 
 /// Runs a verb by what its options have read, prints its result, and returns the exit code of a success.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -49,6 +50,28 @@ TEST_F(CommandLine, SolvePrintsOneJsonDocument) {
     EXPECT_TRUE(json.at("status").at(name).is_number_integer()) << name;
   }
   EXPECT_THAT(run.error, testing::HasSubstr("solve"));  // progress keeps off standard output
+}
+
+TEST_F(CommandLine, TellsItsProgressItsErrorsAndItsEndAsLinesOfJson) {
+  const auto events_of = [&](const Words& words) {
+    std::vector<Json> events;
+    std::istringstream lines(run_weft(words, {.folder = work_.path()}).error);
+    for (std::string line; std::getline(lines, line);) events.push_back(Json::parse(line, nullptr, false));
+    return events;
+  };
+  const std::vector<Json> solved = events_of({"solve", "cloth.weft", "--json-events"});
+  ASSERT_GE(solved.size(), 2U);
+  EXPECT_EQ(solved.front()["event"], "progress");
+  EXPECT_EQ(solved.front()["phase"], "read");
+  EXPECT_GE(solved.front()["share"], 0);
+  EXPECT_EQ(solved.back(), Json({{"event", "end"}, {"exit_code", 0}}));
+
+  const std::vector<Json> failed = events_of({"solve", "nothing.weft", "--json-events"});
+  ASSERT_EQ(failed.size(), 2U);
+  EXPECT_EQ(failed[0]["event"], "error");
+  EXPECT_EQ(failed[0]["kind"], "no_input");
+  EXPECT_NE(failed[0]["remedy"], "");
+  EXPECT_EQ(failed[1]["exit_code"], 66);
 }
 
 TEST_F(CommandLine, ASolveHasAllItsFiles) {

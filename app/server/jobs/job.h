@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// What a job is to do: a verb of weft with its arguments, as a process of its own.
+struct JobSpec {
+  std::string kind;                    ///< "solve", "rectify", "calibrate lights", ...
+  std::string of;                      ///< what it works on, for people: the name of a session
+  std::vector<std::string> arguments;  ///< of weft: {"solve", "/data/a.weft", "--quality", "robust"}
+  std::string by;                      ///< who asked for it
+  std::string request_id;              ///< the same again is the same job; empty: none
+};
+
+enum class JobState { kQueued, kRunning, kDone, kFailed, kCancelled };
+const char* name_of(JobState state);  ///< "queued"
+
+/// How a job is.
+struct JobStatus {
+  std::string id;  ///< "000042", in the order they were asked for
+  JobSpec spec;
+  JobState state = JobState::kQueued;
+  bool is_held = false;  ///< it runs, and waits until a scan lets it go on
+  std::string phase;     ///< of a running one, as its verb calls it; and how much of it is done
+  double share = 0;
+  std::optional<double> left_s;     ///< of the phase
+  std::string asked, began, ended;  ///< ISO 8601; empty: not yet
+  double seconds = 0;               ///< that it ran
+  std::optional<int> exit_code;
+  std::vector<std::string> notes;  ///< what it said to people
+  Json error;                      ///< as core/error_json.h has it; null where there was none
+  Json result;                     ///< the document that its verb prints with --json; null until it is done
+};
+
+/// {"id", "kind", "of", "by", "state", "held", "phase", "share", "left_s", "asked", "began", "ended",
+/// "seconds", "exit_code", "notes", "error", "result"}.
+Json json_of(const JobStatus& job);
+
+/// A job as it lies on the disk (weft.job/1): json_of() with "arguments" and "request_id". kBadData.
+Json document_of(const JobStatus& job);
+Result<JobStatus> job_from_json(const Json& document, const std::string& where);
+
+}  // namespace weft::app

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/jobs/job_queue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "core/error_json.h"
+#include "core/files.h"
+#include "core/iso_time.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kJobSchema = "weft.job";
+constexpr auto kLook = std::chrono::milliseconds(100);
+constexpr double kPatience_s = 10;  // for a cancelled job to put away what it has begun
+constexpr std::size_t kMostNotes = 50, kLongestNote = 1000;
+
+bool has_ended(JobState state) {
+  return state != JobState::kQueued && state != JobState::kRunning;
+}
+
+Error no_job(const std::string& id) {
+  return {ErrorKind::kNoInput, "there is no such job", id.substr(0, 20), "", "see the list of jobs"};
+}
+
+Error not_now(const JobStatus& job, const char* what, const char* remedy) {
+  return {ErrorKind::kUsage, what, job.id, fmt::format("it is {}", name_of(job.state)), remedy};
+}
+
+std::string bytes_from(const fs::path& file, std::size_t at) {
+  std::ifstream stream(file, std::ios::binary);
+  stream.seekg(static_cast<std::streamoff>(at));
+  std::ostringstream bytes;
+  bytes << stream.rdbuf();
+  return bytes.str();
+}
+
+// The document that a verb printed; null where it printed none.
+Json printed(const fs::path& file) {
+  const Result<std::string> text = read_text(file);
+  const Json document = text ? Json::parse(*text, nullptr, false) : Json();
+  return document.is_discarded() ? Json() : document;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<JobQueue>> JobQueue::open(JobQueueOptions options) {
+  if (Result<void> ok = make_writable_folder(options.folder); !ok) return std::move(ok).error();
+  std::unique_ptr<JobQueue> queue(new JobQueue(std::move(options)));
+  if (Result<void> ok = queue->load(); !ok) return std::move(ok).error();
+  queue->worker_ = std::jthread([q = queue.get()](const std::stop_token& stop) { q->work(stop); });
+  return queue;
+}
+
+JobQueue::~JobQueue() {
+  worker_.request_stop();
+  woken_.notify_all();
+  if (worker_.joinable()) worker_.join();
+}
+
+Result<void> JobQueue::load() {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(options_.folder, error)) {
+    if (entry.path().extension() != ".json") continue;
+    const Result<Json> document = read_json(entry.path(), kJobSchema, 1);
+    if (!document) continue;
+    Result<JobStatus> job = job_from_json(*document, entry.path().string());
+    if (!job || job->id != entry.path().stem()) continue;
+    int number = 0;
+    std::from_chars(job->id.data(), job->id.data() + job->id.size(), number);
+    last_ = std::max(last_, number);
+    jobs_[job->id] = std::move(*job);
+  }
+  if (error) return cannot_read(options_.folder, error.value());
+  for (auto& [id, job] : jobs_) {
+    if (job.state == JobState::kQueued) waiting_.push_back(id);
+  }
+  for (auto& [id, job] : jobs_) {
+    if (job.state != JobState::kRunning) continue;
+    job.state = JobState::kQueued;
+    waiting_.insert(waiting_.begin(), id);
+  }
+  return {};
+}
+
+fs::path JobQueue::file_of(const std::string& id, const char* ending) const {
+  return options_.folder / (id + ending);
+}
+
+Result<void> JobQueue::write(const JobStatus& job) const {
+  return write_json(file_of(job.id, ".json"), document_of(job));
+}
+
+Result<JobStatus> JobQueue::add(const JobSpec& spec) {
+  const std::lock_guard lock(mutex_);
+  if (!spec.request_id.empty()) {
+    for (const auto& [id, job] : jobs_) {
+      if (job.spec.request_id == spec.request_id) return job;
+    }
+  }
+  JobStatus job;
+  job.id = fmt::format("{:06}", ++last_);
+  job.spec = spec;
+  job.asked = iso_time_now();
+  if (Result<void> ok = write(job); !ok) return std::move(ok).error();
+  jobs_[job.id] = job;
+  waiting_.push_back(job.id);
+  options_.changed(job);
+  woken_.notify_all();
+  return job;
+}
+
+std::vector<JobStatus> JobQueue::list() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<JobStatus> jobs;
+  for (const auto& [id, job] : jobs_) jobs.push_back(job);
+  std::ranges::reverse(jobs);
+  return jobs;
+}
+
+Result<JobStatus> JobQueue::find(const std::string& id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = jobs_.find(id);
+  if (found == jobs_.end()) return no_job(id);
+  return found->second;
+}
+
+Result<std::string> JobQueue::log(const std::string& id) const {
+  const Result<JobStatus> job = find(id);
+  if (!job) return job.error();
+  return bytes_from(file_of(id, ".log"), 0);
+}
+
+Result<JobStatus> JobQueue::cancel(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = jobs_.find(id);
+  if (found == jobs_.end()) return no_job(id);
+  JobStatus& job = found->second;
+  if (has_ended(job.state)) return not_now(job, "job cannot be cancelled", "retry begins it anew");
+  if (job.state == JobState::kRunning) {
+    is_cancelled_ = true;
+    woken_.notify_all();
+    return job;
+  }
+  JobStatus ended = job;
+  ended.state = JobState::kCancelled;
+  ended.ended = iso_time_now();
+  if (Result<void> ok = write(ended); !ok) return std::move(ok).error();
+  job = ended;
+  std::erase(waiting_, id);
+  options_.changed(job);
+  return job;
+}
+
+Result<JobStatus> JobQueue::retry(const std::string& id) {
+  const Result<JobStatus> job = find(id);
+  if (!job) return job;
+  if (!has_ended(job->state)) return not_now(*job, "job cannot be retried", "cancel it first, or wait");
+  JobSpec spec = job->spec;
+  spec.request_id.clear();
+  return add(spec);
+}
+
+Result<JobStatus> JobQueue::first(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = jobs_.find(id);
+  if (found == jobs_.end()) return no_job(id);
+  if (found->second.state != JobState::kQueued) return not_now(found->second, "job does not wait", "");
+  std::erase(waiting_, id);
+  waiting_.insert(waiting_.begin(), id);
+  options_.changed(found->second);
+  return found->second;
+}
+
+void JobQueue::hold(bool is_held) {
+  const std::lock_guard lock(mutex_);
+  if (is_held_ == is_held) return;
+  is_held_ = is_held;
+  if (child_) {
+    child_->signal(is_held ? SIGSTOP : SIGCONT);
+    JobStatus& job = jobs_[running_];
+    job.is_held = is_held;
+    options_.changed(job);
+  }
+  woken_.notify_all();
+}
+
+void JobQueue::work(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    std::string next;
+    {
+      std::unique_lock lock(mutex_);
+      woken_.wait(lock, stop, [&] { return !waiting_.empty() && !is_held_; });
+      if (stop.stop_requested()) return;
+      next = waiting_.front();
+      waiting_.erase(waiting_.begin());
+    }
+    run(next, stop);
+  }
+}
+
+void JobQueue::run(const std::string& id, const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  JobStatus& job = jobs_[id];
+  // setpriv: the job ends when this process is killed.
+  std::vector<std::string> command = {"/usr/bin/setpriv", "--pdeathsig", "KILL",
+                                      "/usr/bin/nice",    "-n",          std::to_string(options_.niceness)};
+  if (options_.memory_bytes > 0) {
+    command.insert(command.end(), {"/usr/bin/prlimit", fmt::format("--data={}", options_.memory_bytes)});
+  }
+  command.push_back(options_.program.string());
+  command.insert(command.end(), job.spec.arguments.begin(), job.spec.arguments.end());
+  command.insert(command.end(), {"--json", "--json-events"});
+  const fs::path output = file_of(id, ".out");
+  Result<std::unique_ptr<ChildProcess>> started =
+      ChildProcess::start(command, {}, output, file_of(id, ".log"));
+  job.state = started ? JobState::kRunning : JobState::kFailed;
+  job.began = iso_time_now();
+  job.phase.clear();
+  job.share = 0;
+  if (!started) job.error = weft::json_of(started.error());
+  (void)write(job);
+  options_.changed(job);
+  if (!started) return;
+  child_ = std::move(*started);
+  running_ = id;
+  if (is_held_) child_->signal(SIGSTOP);
+
+  const auto began = std::chrono::steady_clock::now();
+  std::size_t read = 0;
+  std::optional<std::chrono::steady_clock::time_point> told;  // to end
+  while (child_->runs()) {
+    if ((is_cancelled_ || stop.stop_requested()) && !told) {
+      child_->signal(SIGCONT);
+      child_->signal(SIGTERM);
+      told = std::chrono::steady_clock::now();
+    }
+    if (told && std::chrono::steady_clock::now() - *told > std::chrono::duration<double>(kPatience_s))
+      child_->signal(SIGKILL);
+    woken_.wait_for(lock, kLook);
+    follow(id, read);
+  }
+  follow(id, read);
+  job.exit_code = child_->wait(0);
+  job.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+  child_.reset();
+  running_.clear();
+  job.is_held = false;
+  job.left_s.reset();
+  if (std::exchange(is_cancelled_, false)) {
+    job.state = JobState::kCancelled;
+  } else if (stop.stop_requested()) {
+    job.state = JobState::kQueued;
+  } else {
+    job.state = job.exit_code == 0 || job.exit_code == 2 ? JobState::kDone : JobState::kFailed;
+    job.result = printed(output);
+    if (job.state == JobState::kFailed && job.error.is_null()) {
+      job.error = weft::json_of(Error{ErrorKind::kInternal, "job ended without a word", job.spec.kind,
+                                      fmt::format("exit code {}", job.exit_code.value_or(-1)),
+                                      "its memory limit may have ended it: try a cheaper level"});
+    }
+  }
+  if (job.state != JobState::kQueued) job.ended = iso_time_now();
+  (void)write(job);
+  options_.changed(job);
+  forget_old();
+}
+
+// Reads what the verb has said since.
+void JobQueue::follow(const std::string& id, std::size_t& read) {
+  const std::string said = bytes_from(file_of(id, ".log"), read);
+  const std::size_t whole = said.rfind('\n') + 1;
+  if (whole == 0) return;
+  read += whole;
+  JobStatus& job = jobs_[id];
+  std::istringstream lines(said.substr(0, whole));
+  for (std::string line; std::getline(lines, line);) hear(job, line);
+  options_.changed(job);
+}
+
+void JobQueue::hear(JobStatus& job, const std::string& line) {
+  // A library may have written a line of its own between them.
+  Json event = Json::parse(line, nullptr, false);
+  const auto text = [&](const char* key) {
+    const Json value = event.is_object() ? event.value(key, Json()) : Json();
+    return value.is_string() ? value.get<std::string>() : std::string();
+  };
+  const auto number = [&](const char* key) {
+    const Json value = event.value(key, Json());
+    return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+  };
+  const std::string kind = text("event");
+  if (kind == "progress") {
+    job.phase = text("phase");
+    job.share = number("share").value_or(0);
+    job.left_s = number("left_s");
+  } else if (kind == "error") {
+    event.erase("event");
+    job.error = std::move(event);
+  } else if (kind != "end" && job.notes.size() < kMostNotes) {
+    job.notes.push_back(kind == "note" ? text("text") : line.substr(0, kLongestNote));
+  }
+}
+
+void JobQueue::forget_old() {
+  std::size_t ended = 0;
+  for (auto it = jobs_.rbegin(); it != jobs_.rend(); ++it) ended += has_ended(it->second.state);
+  for (auto it = jobs_.begin(); it != jobs_.end() && ended > options_.most_remembered;) {
+    if (!has_ended(it->second.state)) {
+      ++it;
+      continue;
+    }
+    std::error_code ignored;
+    for (const char* ending : {".json", ".log", ".out"}) fs::remove(file_of(it->first, ending), ignored);
+    it = jobs_.erase(it);
+    --ended;
+  }
+}
+
+}  // namespace weft::app

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// Jobs are shell scripts here: what a verb says on its two streams, as it says it.
+#include "app/server/jobs/job_queue.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include "core/files.h"
+#include "core/temporary_folder.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Jobs : public testing::Test {
+ protected:
+  Jobs() { open(); }
+  void open(std::uint64_t memory_bytes = 0, std::size_t most_remembered = 200) {
+    queue_.reset();
+    JobQueueOptions options;
+    options.folder = folder();
+    options.program = "/bin/sh";
+    options.memory_bytes = memory_bytes;
+    options.most_remembered = most_remembered;
+    Result<std::unique_ptr<JobQueue>> queue = JobQueue::open(std::move(options));
+    ASSERT_TRUE(queue) << queue.error().message();
+    queue_ = std::move(*queue);
+  }
+  fs::path folder() const { return work_.path() / "jobs"; }
+  fs::path file(const std::string& name) const { return work_.path() / name; }
+
+  std::string add(const std::string& script, const std::string& request = "") {
+    const Result<JobStatus> job = queue_->add({"solve", "satin", {"-c", script}, "Ann", request});
+    EXPECT_TRUE(job) << (job ? "" : job.error().message());
+    return job->id;
+  }
+  // Waits until a job is so, and says how it is.
+  JobStatus when(const std::string& id, const std::function<bool(const JobStatus&)>& is_so) {
+    for (int i = 0; i < 2000; ++i) {
+      const JobStatus job = *queue_->find(id);
+      if (is_so(job)) return job;
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    ADD_FAILURE() << "job " << id << " stays " << json_of(*queue_->find(id)).dump();
+    return *queue_->find(id);
+  }
+  JobStatus ended(const std::string& id) {
+    return when(id, [](const JobStatus& job) { return !job.ended.empty(); });
+  }
+  JobStatus running(const std::string& id) {
+    return when(id, [](const JobStatus& job) { return job.phase == "solve"; });
+  }
+
+  static constexpr const char* kBegin =
+      R"(echo '{"event":"progress","phase":"solve","share":0.25,"left_s":3}' >&2;)";
+  TemporaryFolder work_;
+  std::unique_ptr<JobQueue> queue_;
+};
+
+TEST_F(Jobs, KeepWhatTheirVerbSaid) {
+  const std::string id =
+      add(std::string(kBegin) +
+          R"(echo 'a line of some library' >&2; echo '{"event":"note","text":"a warning"}' >&2;
+                                echo '{"folder": "/data/satin.weft"}')");
+  const JobStatus job = ended(id);
+  EXPECT_EQ(job.state, JobState::kDone);
+  EXPECT_EQ(job.exit_code, 0);
+  EXPECT_EQ(job.phase, "solve");
+  EXPECT_EQ(job.share, 0.25);
+  EXPECT_EQ(job.notes, (std::vector<std::string>{"a line of some library", "a warning"}));
+  EXPECT_EQ(job.result["folder"], "/data/satin.weft");
+  EXPECT_EQ(job.spec.by, "Ann");
+  EXPECT_NE(queue_->log(id)->find("a warning"), std::string::npos);
+}
+
+TEST_F(Jobs, ThatFailKeepTheErrorOfTheirVerb) {
+  const JobStatus job = ended(add(
+      R"(echo '{"event":"error","kind":"bad_data","what":"frame is truncated","where":"a","why":"b","remedy":"c"}' >&2; exit 65)"));
+  EXPECT_EQ(job.state, JobState::kFailed);
+  EXPECT_EQ(job.exit_code, 65);
+  EXPECT_EQ(job.error["what"], "frame is truncated");
+  const JobStatus silent = ended(add("kill -SEGV $$"));
+  EXPECT_EQ(silent.exit_code, 128 + 11);
+  EXPECT_EQ(silent.error["what"], "job ended without a word");
+}
+
+TEST_F(Jobs, RunOneAfterAnotherInTheirOrderUnlessOneIsPutFirst) {
+  const std::string out = file("order").string();
+  queue_->hold(true);
+  std::vector<std::string> ids;
+  for (int i = 1; i <= 3; ++i)
+    ids.push_back(add("echo " + std::to_string(i) + " >> " + out + "; sleep 0.05; echo . >> " + out));
+  ASSERT_TRUE(queue_->first(ids[2]));
+  queue_->hold(false);
+  for (const std::string& id : ids) ended(id);
+  EXPECT_EQ(*read_text(out), "3\n.\n1\n.\n2\n.\n");
+  EXPECT_EQ(queue_->list().front().id, ids[2]) << "the newest first";
+  EXPECT_FALSE(queue_->first(ids[0]));
+}
+
+TEST_F(Jobs, OfOneRequestAreOneJob) {
+  const std::string id = add("true", "two clicks");
+  EXPECT_EQ(add("true", "two clicks"), id);
+  EXPECT_NE(add("true", "another"), id);
+}
+
+TEST_F(Jobs, AreCancelledWhereverTheyAre) {
+  const std::string one =
+      add(std::string("trap 'exit 130' TERM; ") + kBegin + "while :; do sleep 0.05; done");
+  const std::string two = add("true");
+  running(one);
+  ASSERT_TRUE(queue_->cancel(two));
+  EXPECT_EQ(ended(two).state, JobState::kCancelled);
+  ASSERT_TRUE(queue_->cancel(one));
+  EXPECT_EQ(ended(one).state, JobState::kCancelled);
+  EXPECT_EQ(queue_->find(one)->exit_code, 130);
+  EXPECT_FALSE(queue_->cancel(one));
+  const Result<JobStatus> again = queue_->retry(two);
+  ASSERT_TRUE(again);
+  EXPECT_EQ(ended(again->id).state, JobState::kDone);
+  EXPECT_EQ(queue_->cancel("000099").error().kind, ErrorKind::kNoInput);
+  EXPECT_EQ(queue_->retry("../../etc/passwd").error().kind, ErrorKind::kNoInput);
+}
+
+TEST_F(Jobs, StandStillWhileTheyAreHeld) {
+  const std::string ticks = file("ticks").string();
+  const std::string id = add(std::string(kBegin) + "while :; do echo . >> " + ticks + "; sleep 0.02; done");
+  running(id);
+  queue_->hold(true);
+  EXPECT_TRUE(queue_->find(id)->is_held);
+  std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  const auto before = fs::file_size(ticks);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(fs::file_size(ticks), before);
+  queue_->hold(false);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_GT(fs::file_size(ticks), before);
+  ASSERT_TRUE(queue_->cancel(id));
+  EXPECT_EQ(ended(id).state, JobState::kCancelled);
+}
+
+TEST_F(Jobs, OutliveARestartAndTheRunningOneBeginsAgainFirst) {
+  const std::string done = add("echo '{\"a\": 1}'");
+  ended(done);
+  const std::string one = add(std::string(kBegin) + "[ -e " + file("go").string() + " ] || sleep 60");
+  const std::string two = add("true");
+  running(one);
+  open();
+  std::ofstream(file("go")) << "";
+  EXPECT_EQ(queue_->find(done)->result["a"], 1);
+  EXPECT_EQ(ended(two).state, JobState::kDone);
+  EXPECT_EQ(queue_->find(one)->state, JobState::kDone);
+  EXPECT_EQ(add("true"), "000004");
+}
+
+TEST_F(Jobs, AreNotStoppedByFilesThatAreNone) {
+  queue_.reset();
+  std::ofstream(folder() / "000001.json") << "{";
+  std::ofstream(folder() / "000002.json") << R"({"schema":"weft.job/1","id":"other"})";
+  std::ofstream(folder() / "notes.txt") << "x";
+  open();
+  EXPECT_TRUE(queue_->list().empty());
+  EXPECT_EQ(ended(add("true")).state, JobState::kDone);
+}
+
+TEST_F(Jobs, MayNotTakeMoreMemoryThanTheyAreGiven) {
+  open(std::uint64_t{30} << 20);
+  EXPECT_EQ(ended(add("dd if=/dev/zero of=/dev/null bs=100M count=1")).state, JobState::kFailed);
+  EXPECT_EQ(ended(add("true")).state, JobState::kDone);
+}
+
+TEST_F(Jobs, ThatEndedLongAgoAreForgotten) {
+  open(0, 2);
+  std::vector<std::string> ids;
+  for (int i = 0; i < 4; ++i) ids.push_back(add("true"));
+  when(ids[3], [&](const JobStatus& job) { return !job.ended.empty() && queue_->list().size() == 2; });
+  EXPECT_FALSE(queue_->find(ids[1]));
+  EXPECT_FALSE(fs::exists(folder() / (ids[1] + ".log")));
+  EXPECT_TRUE(queue_->find(ids[2]));
+}
+
+}  // namespace
+}  // namespace weft::app

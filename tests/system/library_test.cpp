@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library as a person uses it: found, tagged, undone, pruned.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/system/session_test.h"
+
+namespace weft::test {
+namespace {
+
+class Library : public SessionTest {
+ protected:
+  Library() {
+    setenv("XDG_CACHE_HOME", (work_ / "cache").c_str(), 1);
+    setenv("XDG_STATE_HOME", (work_ / "state").c_str(), 1);
+    setenv("WEFT_LIBRARY", work_.path().c_str(), 1);
+  }
+  ~Library() override {
+    for (const char* name : {"XDG_CACHE_HOME", "XDG_STATE_HOME", "WEFT_LIBRARY"}) unsetenv(name);
+  }
+  static Outcome library(std::vector<std::string> words) {
+    words.insert(words.begin(), "library");
+    words.emplace_back("--json");
+    return run_weft(words);
+  }
+  static std::vector<std::string> found(std::vector<std::string> words) {
+    words.insert(words.begin(), "find");
+    std::vector<std::string> names;
+    for (const Json& session : library(words).json()["sessions"]) names.push_back(session["name"]);
+    return names;
+  }
+};
+
+using Names = std::vector<std::string>;
+
+TEST_F(Library, FindsASessionByATagThatWasGivenUndoneAndGivenAgain) {
+  EXPECT_EQ(found({"--tag", "autumn"}), Names{});
+  ASSERT_EQ(library({"tag", "cloth", "--add", "autumn,red", "--set", "id=4006381333931"}).exit_code, 0);
+  EXPECT_EQ(found({"--tag", "autumn"}), Names{"cloth"});
+  EXPECT_EQ(found({"--id", "4006381333931"}), Names{"cloth"});
+  ASSERT_EQ(library({"undo"}).exit_code, 0);
+  EXPECT_EQ(found({"--tag", "autumn"}), Names{});
+  EXPECT_EQ(library({"undo"}).exit_code, 64) << "there is nothing more";
+  ASSERT_EQ(library({"redo"}).exit_code, 0);
+  EXPECT_EQ(found({"autumn", "red"}), Names{"cloth"});
+}
+
+TEST_F(Library, ChangesNoSolveWithWhatIsSaidOfACloth) {
+  const Outcome before = run_weft({"solve", session_.string(), "-q", "--json"});
+  ASSERT_EQ(library({"tag", "cloth", "--set", "fabric=<b>new</b>", "--add", "=cmd|' /C calc'!A0"}).exit_code,
+            0);
+  const Outcome after = run_weft({"solve", session_.string(), "-q", "--json"});
+  EXPECT_EQ(after.json()["id"], before.json()["id"]);
+  EXPECT_EQ(library({"show", "cloth"}).json()["current_solve"], before.json()["id"]);
+}
+
+TEST_F(Library, ListsWhatItWouldPruneAndPrunesOnRequestAlone) {
+  for (const char* level : {"preview", "fast", "standard"})
+    ASSERT_EQ(run_weft({"solve", session_.string(), "-q", "--quality", level}).exit_code, 0);
+  const Json listed = library({"prune"}).json();
+  EXPECT_EQ(listed["solves"].size(), 1U) << "the first is current, the last the newest";
+  EXPECT_GT(listed["bytes"], 0);
+  EXPECT_EQ(library({"show", "cloth"}).json()["solves"], 3);
+  EXPECT_EQ(library({"prune", "--yes"}).json()["bytes"], listed["bytes"]);
+  EXPECT_EQ(library({"show", "cloth"}).json()["solves"], 2);
+}
+
+TEST_F(Library, RefusesWhatItDoesNotKnow) {
+  EXPECT_EQ(library({"show", "nothing"}).exit_code, 66);
+  EXPECT_EQ(library({"tag", "cloth", "--set", "side=left"}).exit_code, 64);
+  EXPECT_EQ(library({"tag", "cloth", "--set", "shots=none"}).exit_code, 64);
+  EXPECT_EQ(library({"tag", "cloth", "--set", "current_solve=0000000000000000"}).exit_code, 66);
+  EXPECT_EQ(library({"find", "--limit", "0"}).exit_code, 64);
+}
+
+}  // namespace
+}  // namespace weft::test
