@@ -159,7 +159,12 @@ Result<void> check_memory(const SessionPlan& plan, int threads) {
 Json description_of(const SessionPlan& plan) {
   Json shots = Json::array();
   for (const Shot& shot : plan.frames())
-    shots.push_back({{"led", shot.led}, {"file", shot.file}, {"sha256", shot.sha256}});
+    shots.push_back({{"led", shot.led},
+                     {"file", shot.file},
+                     {"sha256", shot.sha256},
+                     {"exposure_us", shot.exposure_us},
+                     {"iso", shot.iso},
+                     {"f_number", shot.f_number}});
   return {{"session", plan.session.fabric},
           {"calibration", plan.calibration.id},
           {"cloth_height_mm", plan.session.cloth_height_mm},

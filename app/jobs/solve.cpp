@@ -55,7 +55,9 @@ class StatusTally {
 
 // All that the bytes of the maps depend on.
 Json inputs_of(const Json& input, const SolveOptions& options) {
-  Json inputs = {{"input", input},
+  Json read = input;
+  read.erase("session");  // the cloth's name is for people, who may change it
+  Json inputs = {{"input", std::move(read)},
                  {"method", options.method},
                  {"compression", name_of(options.compression)},
                  {"solver_version", kSolverVersion}};

@@ -30,7 +30,8 @@ class Library : public SessionTest {
   static std::vector<std::string> found(std::vector<std::string> words) {
     words.insert(words.begin(), "find");
     std::vector<std::string> names;
-    for (const Json& session : library(words).json()["sessions"]) names.push_back(session["name"]);
+    const Json page = library(words).json();
+    for (const Json& session : page["sessions"]) names.push_back(session["name"]);
     return names;
   }
 };
