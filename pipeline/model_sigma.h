@@ -6,8 +6,8 @@
 
 #include "core/image.h"
 #include "pipeline/photographs.h"
+#include "solver/kernels/model_angles.h"
 #include "solver/left_out/block_choice.h"
-#include "solver/uncertainty/model_angles.h"
 
 namespace weft::pipeline {
 
@@ -19,7 +19,7 @@ struct SolvedRows {
   View<const float> albedo;  ///< of each photosite of a mosaic, or of green
 };
 
-/// The model's part of sigma (solver/uncertainty/model_angles.h) over a frame that is solved band by band: of
+/// The model's part of sigma (solver/kernels/model_angles.h) over a frame that is solved band by band: of
 /// each pixel by itself, the 3 x 3 cells of 2 x 2 pixels around it, as far as they lie in its band, and a
 /// block of 64 columns and the band's rows. One pixel speaks for a cell. What lies within the pixels of a
 /// preview is told by their neighbours in the band. The same bytes for any number of threads.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/uncertainty/model_angles.h"
+#include "solver/kernels/model_angles.h"
 
 #include <gtest/gtest.h>
 

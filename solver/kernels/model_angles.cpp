@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/uncertainty/model_angles.h"
+#include "solver/kernels/model_angles.h"
 
 #include "core/solve_record.h"
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "solver/uncertainty/model_angles.cpp"
+#define HWY_TARGET_INCLUDE "solver/kernels/model_angles.cpp"
 #include <hwy/foreach_target.h>
 // foreach_target.h comes first.
 #include <hwy/highway.h>
