@@ -10,13 +10,16 @@
 #include <functional>
 #include <numeric>
 #include <optional>
+#include <set>
 
 #include "app/jobs/calibrate/lights.h"
 #include "bench/oracles/paper_oracle.h"
+#include "bench/oracles/rig.h"
 #include "calibration/lights/per_pixel.h"
 #include "calibration/lights/physical.h"
 #include "calibration/lights/seed_iteration.h"
 #include "capture/raw/decode.h"
+#include "core/calibration.h"
 #include "core/files.h"
 #include "core/light_field.h"
 #include "core/parallel.h"
@@ -312,6 +315,11 @@ Result<void> methods(const CalibrationLightsBenchOptions& options, Rows& rows) {
 
 constexpr std::array<std::array<double, 2>, 4> kTags_mm = {{{-70, 38}, {70, 38}, {-70, -38}, {70, -38}}};
 constexpr double kSheetTag_mm = 15;
+constexpr double kProductMegapixels = 0.15;
+constexpr double kTape_mm = 10;
+constexpr int kProductSeeds = 3;
+constexpr int kRunsOfOne = 5;
+constexpr double kAskedFlicker_percent = 0.3;
 
 // A sheet that is larger than the frame.
 simulator::Scene sheet_scene(const PaperRig::Lie& lie, double megapixels) {
@@ -340,9 +348,10 @@ simulator::Scene sheet_scene(const PaperRig::Lie& lie, double megapixels) {
   return scene;
 }
 
-Result<void> time_job(const CalibrationLightsBenchOptions& options, Rows& rows) {
-  const TemporaryFolder scratch;
-  const fs::path lights = scratch.path() / "lights";
+// Five sessions of a sheet in `lights`, with sheet.toml; LEDs flicker by so many percent, and fade where they
+// do.
+Result<void> write_captures(const fs::path& lights, double megapixels, double flicker_percent, int seed,
+                            int threads) {
   std::string text = "width_mm = 300\nheight_mm = 220\nreflectance = 0.9\n";
   for (std::size_t i = 0; i < kTags_mm.size(); ++i)
     text += fmt::format("[[tag]]\nid = {}\nside_mm = {}\ncentre_mm = [{}, {}]\n", i, kSheetTag_mm,
@@ -350,15 +359,103 @@ Result<void> time_job(const CalibrationLightsBenchOptions& options, Rows& rows) 
   fs::create_directories(lights);
   if (Result<void> ok = write_file(lights / "sheet.toml", text); !ok) return ok;
   const std::vector<PaperRig::Lie> lies = test::lies(5);
-  std::vector<fs::path> files;
   for (std::size_t i = 0; i < lies.size(); ++i) {
+    simulator::Scene scene = sheet_scene(lies[i], megapixels);
+    scene.seed = 100 * seed + static_cast<int>(i);
+    scene.effects.led_drift = flicker_percent > 0;
+    scene.lights.flicker = flicker_percent / 100;
     simulator::SimulateOptions how;
     how.truth = false;
-    how.tiles.threads = options.threads;
-    const fs::path folder = lights / fmt::format("sheet{}.weft", i + 1);
-    const auto made = simulator::simulate_session(sheet_scene(lies[i], options.megapixels), folder, how);
+    how.tiles.threads = threads;
+    const auto made = simulator::simulate_session(scene, lights / fmt::format("sheet{}.weft", i + 1), how);
     if (!made) return made.error();
-    const Result<Session> session = read_session(folder);
+  }
+  const Result<Calibration> exact = read_calibration(lights / "sheet1.weft" / "calibration");
+  if (!exact) return exact.error();
+  std::string rig;
+  test::Random random(static_cast<std::uint64_t>(seed));
+  for (const NearLight& led : std::get<NearLights>(*exact->lights).leds) {
+    const Vec3 p =
+        led.position_mm + kTape_mm * normalized({random.normal(), random.normal(), random.normal()});
+    rig += fmt::format("[[led]]\nposition_mm = [{:.1f}, {:.1f}, {:.1f}]\n", p.x, p.y, p.z);
+  }
+  return write_file(lights / "rig.toml", rig);
+}
+
+app::CalibrateLightsOptions job_on(const fs::path& lights) {
+  app::CalibrateLightsOptions job;
+  job.input = lights;
+  job.from = lights / "sheet1.weft" / "calibration";
+  job.output = lights.parent_path() / "new";
+  return job;
+}
+
+// Errors of positions over what the calibration's covariance says of them.
+std::vector<double> normalised_errors(const Calibration& found, const NearLights& truth) {
+  const ParameterCovariance& covariance = *found.light_covariance;
+  const NearLights& lights = std::get<NearLights>(*found.lights);
+  std::vector<double> errors;
+  for (std::size_t k = 0; k < truth.leds.size(); ++k) {
+    const Vec3 off = lights.leds[k].position_mm - truth.leds[k].position_mm;
+    const auto first = std::ranges::find(covariance.parameters, fmt::format("led{:02}.position_mm.x", k + 1));
+    const auto at = static_cast<std::size_t>(first - covariance.parameters.begin());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t diagonal = (at + axis) * (covariance.parameters.size() + 1);
+      errors.push_back(std::array{off.x, off.y, off.z}[axis] / std::sqrt(covariance.matrix[diagonal]));
+    }
+  }
+  return errors;
+}
+
+Result<void> product_flicker(const CalibrationLightsBenchOptions& options, double percent, Rows& rows) {
+  std::vector<double> errors;
+  const int seeds = std::min(options.seeds, kProductSeeds);
+  double accepted = 0;
+  std::set<std::string> ids;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const TemporaryFolder scratch;
+    const app::CalibrateLightsOptions job = job_on(scratch.path() / "lights");
+    if (Result<void> ok = write_captures(job.input, kProductMegapixels, percent, seed, options.threads); !ok)
+      return ok;
+    const auto truth = read_calibration(job.from);
+    if (!truth) return truth.error();
+    const int runs = percent == kAskedFlicker_percent && seed == 1 ? kRunsOfOne : 1;
+    for (int run = 0; run < runs; ++run) {
+      fs::remove_all(job.output);
+      const auto outcome = calibrate_lights(job, {.threads = options.threads});
+      if (!outcome) {
+        if (outcome.error().kind != ErrorKind::kBadData) return outcome.error();
+        break;
+      }
+      if (runs > 1) {
+        const auto id = sha256_of_file(job.output / "lights.json");
+        if (!id) return id.error();
+        ids.insert(*id);
+      }
+      if (run > 0) continue;
+      ++accepted;
+      const auto of_seed = normalised_errors(outcome->calibration, std::get<NearLights>(*truth->lights));
+      errors.insert(errors.end(), of_seed.begin(), of_seed.end());
+    }
+  }
+  const bool asked = percent <= kAskedFlicker_percent;
+  const std::string name = fmt::format("weft calibrate lights, flicker of {:g} percent", percent);
+  rows.push_back(row(name, "share accepted", asked ? "1" : "", accepted / seeds));
+  rows.push_back(row(name, "position, error over sigma", asked ? "1.5" : "", rms(errors)));
+  if (!ids.empty()) {
+    rows.push_back(row(fmt::format("{}, one input {} times", name, kRunsOfOne), "different lights.json", "1",
+                       static_cast<double>(ids.size())));
+  }
+  return {};
+}
+
+Result<void> time_job(const CalibrationLightsBenchOptions& options, Rows& rows) {
+  const TemporaryFolder scratch;
+  const app::CalibrateLightsOptions job = job_on(scratch.path() / "lights");
+  if (Result<void> ok = write_captures(job.input, options.megapixels, 0, 1, options.threads); !ok) return ok;
+  std::vector<fs::path> files;
+  for (int sheet = 1; sheet <= 5; ++sheet) {
+    const Result<Session> session = read_session(job.input / fmt::format("sheet{}.weft", sheet));
     if (!session) return session.error();
     for (const Shot& shot : session->shots) files.push_back(session->path_of(shot));
   }
@@ -366,10 +463,6 @@ Result<void> time_job(const CalibrationLightsBenchOptions& options, Rows& rows) 
   const double decode = least_seconds(1, [&] {
     parallel_for(files.size(), threads, [&](std::size_t i, int) { (void)capture::decode_raw(files[i]); });
   });
-  app::CalibrateLightsOptions job;
-  job.input = lights;
-  job.from = lights / "sheet1.weft" / "calibration";
-  job.output = scratch.path() / "new";
   Result<app::CalibrateOutcome> outcome = Error{};
   const double seconds =
       least_seconds(1, [&] { outcome = calibrate_lights(job, {.threads = options.threads}); });
@@ -391,6 +484,9 @@ Result<Rows> calibration_lights_table(const CalibrationLightsBenchOptions& optio
   }
   for (const double percent : {0.0, 0.03, 0.1, 0.2, 0.3, 0.5}) {
     if (Result<void> ok = flicker(options, percent, rows); !ok) return std::move(ok).error();
+  }
+  for (const double percent : {0.0, 0.1, 0.3, 0.5}) {
+    if (Result<void> ok = product_flicker(options, percent, rows); !ok) return std::move(ok).error();
   }
   if (Result<void> ok = methods(options, rows); !ok) return std::move(ok).error();
   if (Result<void> ok = pose_curve(options, rows); !ok) return std::move(ok).error();

@@ -24,6 +24,9 @@ struct CalibrationLightsBenchOptions {
 ///   in how many seeds the gate fires where delta is held at 0.
 /// - "flicker": LEDs that differ from shot to shot: how many seeds are accepted, the error of positions, what
 ///   it is predicted to be, the error over its sigma, and the flicker that was found.
+/// - "weft calibrate lights, flicker": the program on simulated sessions of five poses whose LEDs flicker and
+///   fade, up to three seeds: how many are accepted, the error of positions over their sigma, and how many
+///   different lights.json one input makes in five runs.
 /// - "method": what lights by the tape alone, by the seed, by the pixel and by ours make of a slope of 20
 ///   degrees at the centre, in the corners and over the frame, the gain of slopes, and the minutes they take:
 ///   two a pose at the rig (an estimate), and the fit.
