@@ -50,6 +50,7 @@ Result<Photographs> cut(const Photographs& whole, Rect area) {
   part.light_covariance = whole.light_covariance;
   part.albedo_scale = whole.albedo_scale;
   part.color = whole.color;
+  part.plane_weights = whole.plane_weights;
   part.spread = whole.spread;
   part.camera = whole.camera;
   if (part.camera) {

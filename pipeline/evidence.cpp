@@ -27,7 +27,7 @@ int step_for(const std::vector<Rect>& tiles, std::size_t most_pixels) {
   return step;
 }
 
-// One photosite, or the luminance of three channels over their strength.
+// One photosite, or the weighted sum of three channels over their strength.
 solver::EvidenceRow row_at(const solver::TileInput& input, std::size_t k, int x, int y) {
   const int column = x - input.tile.x0, line = y - input.tile.y0;
   if (input.planes == 1) {
@@ -38,7 +38,7 @@ solver::EvidenceRow row_at(const solver::TileInput& input, std::size_t k, int x,
   for (std::size_t c = 0; c < 3; ++c) {
     const LightField::Light light = input.field->at(k, static_cast<int>(c), x, y);
     row.direction = light.direction;
-    row.reading += solver::kLuminance[c] * input.readings[3 * k + c](column, line) / light.strength;
+    row.reading += input.plane_weights[c] * input.readings[3 * k + c](column, line) / light.strength;
     if (!(light.strength > 0)) row.strength = 0;
   }
   return row;

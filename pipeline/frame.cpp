@@ -161,6 +161,7 @@ Result<Photographs> half_size(const Photographs& photographs, int threads) {
       halve_rows(planes, readings.subspan(k * count, count), y, rgb[k]);
   });
   half.frames = Developed{std::move(rgb)};
+  half.plane_weights = photographs.plane_weights;
   return half;
 }
 

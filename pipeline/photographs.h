@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <span>
@@ -17,6 +18,7 @@
 #include "core/radiometry.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
+#include "solver/method.h"
 
 namespace weft::pipeline {
 
@@ -94,6 +96,7 @@ struct Photographs {
   std::optional<PointSpread> spread;                    ///< of the lens, to be undone; none: left as it is
   std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
   AlbedoScale albedo_scale = AlbedoScale::kRelative;
+  std::array<double, 3> plane_weights = solver::kLuminance;  ///< of RGB, as of solver::TileInput
   std::optional<ColorTransform> color;  ///< of solved albedo, where the calibration has one
 
   std::size_t count() const;

@@ -41,8 +41,13 @@ solver::TileInput TileReader::read(Rect tile) {
       views_.insert(views_.end(), taken.begin(), taken.end());
     }
   }
-  return {tile,   planes_.count,         planes_.cfa,
-          views_, &*photographs_->field, planes_.count == 1 ? photographs_->noise() : std::nullopt};
+  return {tile,
+          planes_.count,
+          planes_.cfa,
+          views_,
+          &*photographs_->field,
+          planes_.count == 1 ? photographs_->noise() : std::nullopt,
+          photographs_->plane_weights};
 }
 
 // Demosaics frame k before solving, white-balanced by the flux of its light as the filters expect.

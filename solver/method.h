@@ -18,15 +18,16 @@
 
 namespace weft::solver {
 
-/// Rec.709 luminance weights of linear R, G, B: what one normal for three channels is solved from.
+/// Rec.709 luminance weights of linear R, G, B: what one normal for three channels is solved from where
+/// nothing is known of them.
 inline constexpr std::array<double, 3> kLuminance = {0.2126, 0.7152, 0.0722};
 
 /// K frames of one tile as readings (core/radiometry.h: +infinity is saturated, NaN is missing; -infinity is
 /// known to be in shadow).
 ///
 /// One plane is a mosaic: each photosite is solved alone, with its own direction and its colour's strength,
-/// so that the normal needs no demosaicing. Three planes are RGB and share one normal, solved from their
-/// luminance after each channel was divided by its strength.
+/// so that the normal needs no demosaicing. Three planes are RGB and share one normal, solved from the sum
+/// of the channels, each divided by its strength and times its weight.
 struct TileInput {
   Rect tile;       ///< absolute pixels; tile.x0 is a multiple of kRowGroup
   int planes = 1;  ///< 1 or 3
@@ -35,6 +36,7 @@ struct TileInput {
       readings;  ///< [k * planes + p], (0, 0) is the tile's corner, rows padded
   const LightField* field = nullptr;
   std::optional<NoiseModel> noise;  ///< of a mosaic; without one the scatter of the residuals stands for it
+  std::array<double, 3> plane_weights = kLuminance;  ///< of RGB; none below 0, their sum is 1
 };
 
 /// How many pixels were solved in which way, and readings rejected on the way.

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "core/files.h"
+#include "pipeline/plane_weights.h"
 
 namespace weft::app {
 namespace {
@@ -226,6 +227,9 @@ Result<pipeline::Photographs> load_photos(const PhotoPlan& plan, const JobContex
     return std::move(read).error();
   }
   photographs.frames = pipeline::Developed{std::move(rgb)};
+  // Figures were published of luminance.
+  if (plan.clipped == Clipped::kMark)
+    photographs.plane_weights = pipeline::measure_plane_weights(photographs);
   return photographs;
 }
 

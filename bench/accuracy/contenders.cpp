@@ -179,14 +179,15 @@ Result<std::vector<Contender>> contenders_named(const std::vector<std::string>& 
 
 Result<void> solve_images(const solver::Method& method, const std::vector<View<const float>>& readings,
                           const LightField& field, const CfaPattern& cfa,
-                          const std::optional<NoiseModel>& noise, int threads, SolvedMaps& maps) {
+                          const std::optional<NoiseModel>& noise, int threads, SolvedMaps& maps,
+                          const std::array<double, 3>& plane_weights) {
   TileOptions tiles = pipeline::kSolveTile;
   tiles.threads = threads;
   const Size size = maps.status.size();
   return for_each_tile({0, 0, size.width, size.height}, tiles, {}, [&](Rect tile, int) {
     std::vector<View<const float>> cropped;
     for (const View<const float>& view : readings) cropped.push_back(view.crop(tile));
-    method.solve({tile, maps.planes, cfa, cropped, &field, noise}, maps.output(tile));
+    method.solve({tile, maps.planes, cfa, cropped, &field, noise, plane_weights}, maps.output(tile));
   });
 }
 

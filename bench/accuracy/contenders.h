@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -45,9 +46,11 @@ SolvePatch by_level(const solver::MethodName& level);
 SolvePatch as_product(std::shared_ptr<const solver::Method> method);
 
 /// A method over whole images in the tiles of `weft solve`; `readings` holds `maps.planes` views a light.
+/// Three planes are weighed as `plane_weights` say.
 Result<void> solve_images(const solver::Method& method, const std::vector<View<const float>>& readings,
                           const LightField& field, const CfaPattern& cfa,
-                          const std::optional<NoiseModel>& noise, int threads, SolvedMaps& maps);
+                          const std::optional<NoiseModel>& noise, int threads, SolvedMaps& maps,
+                          const std::array<double, 3>& plane_weights = solver::kLuminance);
 
 std::vector<View<const float>> planes_of(const Image<float>& readings);
 

@@ -15,6 +15,8 @@
 #include "bench/base/solved_maps.h"
 #include "core/image_io/image_io.h"
 #include "core/parallel.h"
+#include "pipeline/cut.h"
+#include "pipeline/plane_weights.h"
 #include "simulator/sampling/random.h"
 #include "solver/method.h"
 
@@ -73,26 +75,34 @@ struct Solved {
   double seconds = 0;
 };
 
-Result<Solved> solve(const solver::Method& method, const pipeline::Photographs& photographs,
-                     const std::vector<int>& numbers, const Truth& truth, int threads) {
-  Result<Lights> lights = select_lights(photographs.field->lights(), numbers);
-  if (!lights) return std::move(lights).error();
-  const Rect part = truth.around;
-  const Size size = {part.width(), part.height()};
-  const Result<LightField> field = LightField::make(std::move(*lights), std::nullopt, size, 0);
-  if (!field) return field.error();
-  std::vector<View<const float>> readings;
-  for (const int number : numbers) {
-    const Image<float>& photo =
-        std::get<pipeline::Developed>(photographs.frames).rgb[static_cast<std::size_t>(number) - 1];
-    for (int c = 0; c < 3; ++c) readings.push_back(photo.plane(c).crop(part));
+// The photographs of these numbers, from 1, where there is truth.
+Result<pipeline::Photographs> choose(const pipeline::Photographs& all, const std::vector<int>& numbers,
+                                     const Truth& truth) {
+  std::vector<std::size_t> others;
+  for (std::size_t k = 0; k < all.count(); ++k) {
+    if (std::ranges::count(numbers, static_cast<int>(k) + 1) == 0) others.push_back(k);
   }
-  SolvedMaps maps(size);
+  Result<pipeline::Photographs> chosen = pipeline::cut(all, truth.around);
+  if (!chosen) return chosen;
+  if (Result<void> ok = pipeline::leave_out(others, *chosen); !ok) return std::move(ok).error();
+  return chosen;
+}
+
+Result<Solved> solve(const solver::Method& method, const pipeline::Photographs& photographs,
+                     const Truth& truth, int threads) {
+  const Rect part = truth.around;
+  std::vector<View<const float>> readings;
+  for (const Image<float>& photo : std::get<pipeline::Developed>(photographs.frames).rgb) {
+    for (const View<const float>& plane : planes_of(photo)) readings.push_back(plane);
+  }
+  SolvedMaps maps(photographs.size);
   maps.planes = 3;
   Result<void> solved;
   Solved result;
-  result.seconds = least_seconds(
-      1, [&] { solved = solve_images(method, readings, *field, {}, std::nullopt, threads, maps); });
+  result.seconds = least_seconds(1, [&] {
+    solved = solve_images(method, readings, *photographs.field, {}, std::nullopt, threads, maps,
+                          photographs.plane_weights);
+  });
   if (!solved) return std::move(solved).error();
   double sum = 0;
   for (int y = part.y0; y < part.y1; ++y) {
@@ -114,7 +124,10 @@ Result<Json> row_of(const solver::MethodName& name, const pipeline::Photographs&
   std::vector<double> means;
   double seconds = 0;
   for (const std::vector<int>& numbers : subsets) {
-    const Result<Solved> solved = solve(*method, photographs, numbers, truth, threads);
+    Result<pipeline::Photographs> chosen = choose(photographs, numbers, truth);
+    if (!chosen) return std::move(chosen).error();
+    if (!name.keeps_clipped) chosen->plane_weights = pipeline::measure_plane_weights(*chosen);
+    const Result<Solved> solved = solve(*method, *chosen, truth, threads);
     if (!solved) return solved.error();
     means.push_back(solved->mean_deg);
     seconds += solved->seconds;

@@ -76,7 +76,7 @@ struct PixelSolver::Work {
         missing |= std::isnan(row.reading[p]);
         unlit |= !(row.strength[p] > 0) || row.reading[p] == -kInfinity;
         r.x[p] = row.reading[p] / row.strength[p];
-        r.light += (planes() == 1 ? 1.0 : kLuminance[p]) * r.x[p];
+        r.light += (planes() == 1 ? 1.0 : options.plane_weights[p]) * r.x[p];
       }
       if (missing) {
         status |= kInvalidReading;

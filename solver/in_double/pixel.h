@@ -10,6 +10,7 @@
 #include "core/radiometry.h"
 #include "core/solve_record.h"
 #include "core/vec.h"
+#include "solver/method.h"
 
 namespace weft::solver {
 
@@ -44,6 +45,7 @@ struct PixelOptions {
   std::optional<NoiseModel> noise;  ///< of a mosaic; without one the scatter of the residuals stands for it
   Estimator estimator = Estimator::kLeastSquares;
   double trim_from = kTrimFrom;  ///< kTrimmed: scatter over what noise explains, from which it starts anew
+  std::array<double, 3> plane_weights = kLuminance;  ///< as of TileInput
 };
 
 /// How a system of equations was solved, by its condition number.

@@ -273,7 +273,7 @@ HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const C
       if constexpr (kPlanes == 1) {
         light_sum = ratio;
       } else {
-        light_sum = hn::MulAdd(hn::Set(d, static_cast<float>(kLuminance[p])), ratio, light_sum);
+        light_sum = hn::MulAdd(hn::Set(d, task.plane_weight[p]), ratio, light_sum);
         scratch.store_plane(k, p, ratio);
         add_scaled(sums.plane_rhs[p], ratio, here.l);
       }

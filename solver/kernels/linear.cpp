@@ -22,7 +22,11 @@ HWY_EXPORT(solve_bare_row);
 
 void solve_linear(const TileInput& input, const TileOutput& output, const LinearOptions& options) {
   solve_rows(
-      input, output, {input.planes, options.shadow_mask, input.noise},
+      input, output,
+      {.planes = input.planes,
+       .shadow_mask = options.shadow_mask,
+       .noise = input.noise,
+       .plane_weights = input.plane_weights},
       input.planes == 1 ? HWY_DYNAMIC_DISPATCH(solve_mosaic_row) : HWY_DYNAMIC_DISPATCH(solve_rgb_row));
 }
 

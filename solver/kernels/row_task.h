@@ -47,6 +47,7 @@ struct RowTask {
   float* scratch = nullptr;                ///< row_scratch_floats()
   std::size_t width = 0;
   std::size_t channel[2] = {};  ///< of even and odd columns of a mosaic
+  float plane_weight[3] = {};   ///< of RGB
 
   bool shadow_mask = false;
   std::size_t bright_rank = 0;   ///< how many of the brightest readings are kept sorted

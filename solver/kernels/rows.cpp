@@ -40,6 +40,7 @@ RowTask task_of(const TileInput& input, const PixelOptions& options) {
   task.bright_index = static_cast<std::size_t>(bright_rank(lights)) - 1;
   task.estimator = options.estimator;
   task.trim_from = static_cast<float>(options.trim_from);
+  for (std::size_t p = 0; p < 3; ++p) task.plane_weight[p] = static_cast<float>(options.plane_weights[p]);
   task.has_noise = input.planes == 1 && options.noise.has_value();
   if (task.has_noise) {
     task.noise_per_reading = static_cast<float>(options.noise->per_reading);

@@ -18,7 +18,7 @@ HWY_EXPORT(solve_weighted_mosaic_row);
 HWY_EXPORT(solve_weighted_rgb_row);
 
 void solve_weighted(const TileInput& input, const TileOutput& output, Estimator estimator, double trim_from) {
-  const PixelOptions options = {input.planes, true, input.noise, estimator, trim_from};
+  const PixelOptions options = {input.planes, true, input.noise, estimator, trim_from, input.plane_weights};
   solve_rows(input, output, options,
              input.planes == 1 ? HWY_DYNAMIC_DISPATCH(solve_weighted_mosaic_row)
                                : HWY_DYNAMIC_DISPATCH(solve_weighted_rgb_row));

@@ -47,7 +47,7 @@ TileInput part_of(const TileInput& input, Rect part, std::vector<View<const floa
                       part.y1 - input.tile.y0};
   readings.clear();
   for (const View<const float>& reading : input.readings) readings.push_back(reading.crop(local));
-  return {part, input.planes, input.cfa, readings, input.field, input.noise};
+  return {part, input.planes, input.cfa, readings, input.field, input.noise, input.plane_weights};
 }
 
 TileOutput part_of(const TileOutput& output, Rect tile, Rect part) {

@@ -10,7 +10,11 @@ class InDouble : public Method {
  public:
   InDouble(Estimator estimator, bool shadow_mask) : estimator_(estimator), shadow_mask_(shadow_mask) {}
   void solve(const TileInput& input, const TileOutput& output) const override {
-    PixelSolver solver({input.planes, shadow_mask_, input.noise, estimator_});
+    PixelSolver solver({.planes = input.planes,
+                        .shadow_mask = shadow_mask_,
+                        .noise = input.noise,
+                        .estimator = estimator_,
+                        .plane_weights = input.plane_weights});
     solve_each_pixel(input, output, [&](std::span<const PixelRow> rows) { return solver.solve(rows); });
   }
 
