@@ -4,15 +4,29 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <optional>
 #include <utility>
 
 #include "app/server/api/api.h"
 #include "app/server/http/event_log.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_lock.h"
+#include "core/files.h"
+#include "core/process.h"
 #include "library/session_catalog.h"
 
 namespace weft::app {
+namespace {
+
+// A job without what it made, which is asked for by its id.
+Json event_of(const JobStatus& job) {
+  Json event = json_of(job);
+  event.erase("result");
+  event.erase("notes");
+  return event;
+}
+
+}  // namespace
 
 struct RigServer::State {
   State(const capture::Rig& its_rig, RigLock its_lock, capture::OpenDevices open, RunScan run,
@@ -22,8 +36,21 @@ struct RigServer::State {
         log(lock.folder() / "log", std::move(say)),
         pictures(lock.folder() / "pictures"),
         sessions(rig.scan.sessions, rig.name),
-        keeper(rig, std::move(open), std::move(run), events, log, pictures),
-        parts{rig, lock.folder(), keeper, sessions, pictures} {}
+        keeper(rig, std::move(open), std::move(run), events, log, pictures) {}
+
+  Result<void> open_jobs(const std::filesystem::path& weft) {
+    JobQueueOptions options;
+    options.folder = lock.folder() / "jobs";
+    options.program = weft.empty() ? program_beside("weft") : weft;
+    options.memory_bytes = available_memory_bytes() / 4 * 3;
+    options.changed = [this](const JobStatus& job) { events.add("job", event_of(job)); };
+    Result<std::unique_ptr<JobQueue>> opened = JobQueue::open(std::move(options));
+    if (!opened) return std::move(opened).error();
+    jobs = std::move(*opened);
+    keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
+    parts.emplace(RigParts{rig, lock.folder(), keeper, sessions, pictures, *jobs});
+    return {};
+  }
 
   const capture::Rig rig;
   RigLock lock;
@@ -31,8 +58,9 @@ struct RigServer::State {
   Logbook log;
   FramePictures pictures;
   library::SessionCatalog sessions;
+  std::unique_ptr<JobQueue> jobs;
   RigKeeper keeper;
-  RigParts parts;
+  std::optional<RigParts> parts;
   std::string token, address;
   std::unique_ptr<HttpServer> http;
 };
@@ -48,8 +76,9 @@ Result<std::unique_ptr<RigServer>> RigServer::start(const capture::Rig& rig, cap
   if (!token) return std::move(token).error();
   auto state = std::make_unique<State>(rig, std::move(*lock), std::move(open), std::move(run), options.say);
   state->token = *token;
+  if (Result<void> ok = state->open_jobs(options.weft); !ok) return std::move(ok).error();
   Result<std::unique_ptr<HttpServer>> http = HttpServer::start(
-      rig.daemon.port, {rig.daemon.host, *token}, api_routes(state->parts), state->events, options.limits);
+      rig.daemon.port, {rig.daemon.host, *token}, api_routes(*state->parts), state->events, options.limits);
   if (!http) return std::move(http).error();
   state->http = std::move(*http);
   const bool v6 = rig.daemon.host.find(':') != std::string::npos;
@@ -80,7 +109,7 @@ const std::string& RigServer::token() const {
 
 std::vector<std::string> RigServer::calls() const {
   std::vector<std::string> calls;
-  for (const Route& route : api_routes(state_->parts)) calls.push_back(route.method + " " + route.path);
+  for (const Route& route : api_routes(*state_->parts)) calls.push_back(route.method + " " + route.path);
   return calls;
 }
 

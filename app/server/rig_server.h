@@ -18,7 +18,8 @@ struct RigServerOptions {
   HttpLimits limits = {};
   /// Where the rig file names no token, the server makes one that clients of this user can read.
   bool own_token = false;
-  Logbook::Say say = {};  ///< hears each line of its log; empty: nobody does
+  std::filesystem::path weft = {};  ///< the program that jobs run; empty: weft beside this one
+  Logbook::Say say = {};            ///< hears each line of its log; empty: nobody does
 };
 
 /// One rig behind HTTP (docs/http.md): its lock, its scan, its sessions. Run by weft serve for as long as the

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "app/server/http/routes.h"
+#include "app/server/jobs/job_queue.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_keeper.h"
 #include "capture/rig.h"
@@ -20,7 +21,11 @@ struct RigParts {
   RigKeeper& keeper;
   library::SessionCatalog& sessions;
   FramePictures& pictures;
+  JobQueue& jobs;
 };
+
+/// What is asked for begins: the answer tells how to follow it.
+inline constexpr int kAccepted = 202;
 
 /// The calls of one resource, and its part of the OpenAPI file.
 struct Resource {
@@ -34,6 +39,7 @@ Resource rig_resource(const RigParts& parts);
 Resource scan_resource(const RigParts& parts);
 Resource sessions_resource(const RigParts& parts);
 Resource frames_resource(const RigParts& parts);
+Resource jobs_resource(const RigParts& parts);
 Resource events_resource();
 
 /// Every call of the interface, GET openapi.json among them.

@@ -7,6 +7,7 @@ namespace weft::app {
 const char* common_description();
 const char* events_description();
 const char* frames_description();
+const char* jobs_description();
 const char* rig_description();
 const char* scan_description();
 const char* server_description();

@@ -11,8 +11,6 @@
 namespace weft::app {
 namespace {
 
-constexpr int kAccepted = 202;
-
 Result<Reply> start_scan(const RigParts& parts, const Call& call) {
   const Result<Json> body = parse_body(call.body);
   if (!body) return body.error();

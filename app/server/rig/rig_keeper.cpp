@@ -63,6 +63,7 @@ Result<void> RigKeeper::begin(capture::ScanRequest request) {
                  "wait for its end, or cancel it"};
   }
   running_ = true;
+  busy_(true);
   status_ = {};
   status_.state = RigStatus::State::kConnecting;
   status_.session = name_of_session(request);
@@ -239,6 +240,7 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
   status_.scan.led = 0;
   status_.devices_open = false;
   running_ = false;
+  busy_(false);
   tell_status_locked();
   ended_.notify_all();
 }

@@ -41,6 +41,9 @@ class RigKeeper {
             FramePictures& pictures);
   ~RigKeeper();
 
+  /// Hears whether a scan runs; set before the first begins. Must not call the keeper.
+  void on_busy(std::function<void(bool)> busy) { busy_ = std::move(busy); }
+
   /// Starts a scan, or resumes a session that is there. kTryAgain while one runs.
   Result<void> begin(capture::ScanRequest request);
   /// kTryAgain where there is nothing to pause, resume or cancel. Resuming what failed or was cancelled
@@ -75,6 +78,7 @@ class RigKeeper {
   Logbook& log_;
   FramePictures& pictures_;
 
+  std::function<void(bool)> busy_ = [](bool) {};
   mutable std::mutex mutex_;
   std::condition_variable_any ended_;  ///< or asked to end
   bool running_ = false;

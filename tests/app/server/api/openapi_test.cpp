@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "tests/app/server/api/json_schema.h"
@@ -144,11 +145,43 @@ TEST_F(OpenApi, DescribesEveryAnswerOfEveryCall) {
   wait_for_state(port_, "idle");
 }
 
+TEST_F(OpenApi, DescribesJobs) {
+  const std::string jobs = "/api/v1/jobs", job = jobs + "/{id}";
+  EXPECT_EQ(conforming("GET", jobs, jobs).json()["jobs"], Json::array());
+  for (const char* wrong :
+       {"{}", R"({"kind": "solve"})", R"({"kind": "bake", "session": "done"})",
+        R"({"kind": "solve", "session": "done", "quality": "--help"})",
+        R"({"kind": "solve", "session": "../done"})", R"({"kind": "solve", "session": "done", "threads": 1})",
+        R"({"kind": "solve", "session": "done", "within_s": "soon"})"}) {
+    EXPECT_EQ(conforming("POST", jobs, jobs, wrong).status, 400) << wrong;
+  }
+  EXPECT_EQ(conforming("POST", jobs, jobs, R"({"kind": "solve", "session": "none"})").status, 404);
+
+  const char* body = R"({"kind": "solve", "session": "done", "quality": "fast", "request_id": "a"})";
+  const Answer asked = conforming("POST", jobs, jobs, body);
+  ASSERT_EQ(asked.status, 202) << asked.body;
+  const std::string id = asked.json()["id"], here = jobs + "/" + id;
+  EXPECT_EQ(conforming("POST", jobs, jobs, body).json()["id"], id) << "the same request";
+  EXPECT_EQ(conforming("GET", job, here).json()["of"], "done");
+  EXPECT_EQ(conforming("GET", jobs, jobs + "?limit=1").json()["jobs"].size(), 1U);
+  EXPECT_EQ(conforming("GET", jobs, jobs + "?limit=many").status, 400);
+  EXPECT_EQ(conforming("GET", job + "/log", here + "/log").status, 200);
+  EXPECT_EQ(conforming("GET", job, jobs + "/000099").status, 404);
+  // The scripted frames are no photographs: however it ends, it ends.
+  for (int i = 0; i < 500 && ask(port_, "GET", here).json()["ended"] == ""; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(conforming("GET", job, here).json()["state"], "failed");
+  EXPECT_EQ(conforming("POST", job + "/first", here + "/first").status, 400) << "it has ended";
+  EXPECT_EQ(conforming("POST", job + "/cancel", here + "/cancel").status, 400);
+  EXPECT_EQ(conforming("POST", job + "/retry", here + "/retry").status, 202);
+}
+
 TEST_F(OpenApi, DescribesHowEachCallIsGuarded) {
   for (const std::string& call : server_->calls()) {
     const std::string method = call.substr(0, call.find(' ')), path = call.substr(call.find(' ') + 1);
     std::string target = path;
     if (const auto at = target.find("{name}"); at != target.npos) target.replace(at, 6, "done");
+    if (const auto at = target.find("{id}"); at != target.npos) target.replace(at, 4, "000001");
     if (const auto at = target.find("{index}"); at != target.npos) target.replace(at, 7, "0");
     EXPECT_EQ(conforming(method, path, target, "", {{"Host", "evil.example"}}).status, 421);
     EXPECT_EQ(conforming(method, path, target, "", {{"Origin", "http://evil.example"}}).status, 403);
