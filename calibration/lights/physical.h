@@ -37,7 +37,7 @@ struct LightFitOptions {
   double unevenness = 0;            ///< of the paper's albedo, relative, over a few millimetres
   double flatness_deg = 0;          ///< of the paper: its waves, which count most under grazing light
   bool lambertian = false;          ///< holds delta at 0
-  int most_iterations = 100;        ///< of each of up to five stages
+  int most_iterations = 60;         ///< of each of up to five stages
   int threads = 1;
 };
 
