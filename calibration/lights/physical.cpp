@@ -4,7 +4,6 @@
 #include <ceres/ceres.h>
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include <map>
 #include <numeric>
 
+#include "calibration/lights/light_parameters.h"
 #include "calibration/lights/reading_cost.h"
 
 namespace weft::calibration {
@@ -31,50 +31,10 @@ constexpr double kThere = 1e-8;     // and the last stage's
 constexpr double kCapFlicker = 2;   // times what was expected: where LEDs have gains it runs away
 constexpr double kHuberFrom = 3.5;  // of the length of three residuals, which 99 percent stay below
 
-// All parameters, in blocks as Ceres wants them.
-struct LedParameters {
-  std::array<double, 3> position_mm, aim, log_flux;
-  double mu = 1;
-  std::array<double, kOwnGains> quadratic = {};
-};
-struct Parameters {
-  std::vector<LedParameters> leds;
-  std::array<std::vector<double>, 3> splines;
-  std::array<double, 6> paper = {};           // log albedo, delta
-  std::vector<std::array<double, 6>> sheets;  // turn and shift from the pose that the tags gave
-  std::vector<double> shots;                  // log gain of each, sheet by sheet
-};
-
-NearLight led_of(const LedParameters& p) {
-  NearLight led;
-  led.position_mm = vec_of(p.position_mm.data());
-  led.aim = vec_of(p.aim.data());
-  led.mu = p.mu;
-  for (std::size_t c = 0; c < 3; ++c) led.flux_rgb[c] = std::exp(p.log_flux[c]);
-  std::copy(p.quadratic.begin(), p.quadratic.end(), led.log_gain_quadratic.begin() + 1);
-  return led;
-}
-
 Error cannot_fit(std::string where, std::string why, std::string remedy) {
   return {ErrorKind::kBadData, "lights cannot be fitted", std::move(where), std::move(why),
           std::move(remedy)};
 }
-
-// A whitening matrix W with W^T W the inverse of the covariance; widths of nothing become tiny ones.
-RowMatrix whitening(const SheetPose& pose) {
-  Eigen::Matrix<double, 6, 6> covariance;
-  for (int i = 0; i < 36; ++i) covariance(i / 6, i % 6) = pose.covariance[static_cast<std::size_t>(i)];
-  for (int i = 0; i < 6; ++i) covariance(i, i) += i < 3 ? 1e-12 : 1e-8;
-  const Eigen::LLT<Eigen::Matrix<double, 6, 6>> factor(covariance);
-  if (factor.info() != Eigen::Success) return {};
-  return factor.matrixL().solve(Eigen::Matrix<double, 6, 6>::Identity());
-}
-
-// Rows of the parameters that the covariance names, from those of the fit.
-struct Named {
-  std::string name;
-  Eigen::VectorXd row;
-};
 
 class Fit {
  public:
@@ -603,10 +563,9 @@ void Fit::settle() {
   for (std::size_t k = 0; k < p_.leds.size(); ++k) fit_.scene.lights.leds[k] = led_of(p_.leds[k]);
   std::copy_n(p_.paper.begin(), 5, fit_.scene.paper.log_albedo.begin());
   fit_.scene.paper.delta = p_.paper[5];
-  for (std::size_t j = 0; j < p_.sheets.size(); ++j)
-    fit_.scene.sheets[j].rig_from_sheet = pose_of(start_.sheets[j].rig_from_sheet, p_.sheets[j].data());
   fit_.scene.shot_log_gains.resize(p_.sheets.size());
   for (std::size_t j = 0; j < p_.sheets.size(); ++j) {
+    fit_.scene.sheets[j].rig_from_sheet = pose_of(start_.sheets[j].rig_from_sheet, p_.sheets[j].data());
     for (std::size_t k = 0; k < p_.leds.size(); ++k) fit_.scene.shot_log_gains[j].push_back(shot(j, k));
   }
 }
