@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
+#include <string_view>
 #include <vector>
 
 #include "core/calibration.h"
@@ -101,12 +103,38 @@ Result<void> read_scan(const toml::table& table, Rig& rig) {
   return keys.status();
 }
 
+bool is_host_name(std::string_view name) {
+  return !name.empty() && name.size() <= 253 && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '.' || c == '-';
+  });
+}
+
+bool is_origin(std::string_view origin) {
+  const bool plain = origin.starts_with("http://");
+  if (!plain && !origin.starts_with("https://")) return false;
+  const std::string_view host = origin.substr(plain ? 7 : 8);
+  const std::size_t colon = host.find(':');
+  return is_host_name(host.substr(0, colon)) &&
+         (colon == host.npos || host.find_first_not_of("0123456789", colon + 1) == host.npos);
+}
+
 Result<void> read_daemon(const toml::table& table, Rig& rig) {
   TomlKeys keys(table, place(rig.file, "daemon"), kPage);
-  keys.know({"host", "port", "token", "state"});
+  keys.know({"host", "port", "token", "look_token", "names", "origins", "state"});
   rig.daemon.host = keys.text_or("host", rig.daemon.host);
   rig.daemon.port = keys.integer_or("port", rig.daemon.port, 0, 65535);
   rig.daemon.token = beside(rig.file, keys.text_or("token", ""));
+  rig.daemon.look_token = beside(rig.file, keys.text_or("look_token", ""));
+  if (!rig.daemon.look_token.empty() && rig.daemon.token.empty())
+    keys.reject("look_token", "it needs daemon.token beside it: without one everybody operates");
+  rig.daemon.names = keys.texts_or("names", {});
+  for (const std::string& name : rig.daemon.names) {
+    if (!is_host_name(name)) keys.reject("names", "each is a name without a port, as in [\"rig.local\"]");
+  }
+  rig.daemon.origins = keys.texts_or("origins", {});
+  for (const std::string& origin : rig.daemon.origins) {
+    if (!is_origin(origin)) keys.reject("origins", "each is as in [\"https://rig.local\"], without a path");
+  }
   rig.daemon.state = beside(rig.file, keys.text_or("state", rig.name + ".state"));
   return keys.status();
 }

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/lights.h"
 #include "core/result.h"
@@ -42,10 +43,13 @@ struct Rig {
   } scan;
 
   struct Daemon {
-    std::string host = "127.0.0.1";  ///< another one needs a token
-    int port = 8470;                 ///< 0: any free one, written to `state`/address
-    std::filesystem::path token;     ///< a file that holds it; empty: none
-    std::filesystem::path state;     ///< folder for its lock, address and log; empty: beside the rig file
+    std::string host = "127.0.0.1";    ///< another one needs a token
+    int port = 8470;                   ///< 0: any free one, written to `state`/address
+    std::filesystem::path token;       ///< a file that holds it; empty: none
+    std::filesystem::path look_token;  ///< a file with that of who may only look; empty: nobody
+    std::vector<std::string> names;    ///< more names that lead to it: "rig.local"
+    std::vector<std::string> origins;  ///< of pages behind a proxy: "https://rig.local"
+    std::filesystem::path state;       ///< folder for its lock, address and log; empty: beside the rig file
   } daemon;
 };
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <thread>
 
 #include "app/cli/exit_code.h"
@@ -37,11 +39,22 @@ Result<capture::ScanOutcome> run_scan_of(const capture::ScanRequest& request, ca
   return capture::scan(request, lamps, camera, events, control);
 }
 
+std::string percent_encoded(std::string_view text) {
+  std::string encoded;
+  for (const char c : text) {
+    const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z');
+    encoded += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return encoded;
+}
+
 Result<void> say_address(const RigServer& server, const std::string& rig, bool json) {
   if (json) {
     print_json({{"rig", rig}, {"address", server.address()}, {"port", server.port()}});
   } else {
-    print(server.address());
+    // A log is no place for a token.
+    const bool read_by_a_person = isatty(STDOUT_FILENO) != 0 && !server.token().empty();
+    print(server.address() + (read_by_a_person ? "/#" + percent_encoded(server.token()) : ""));
   }
   return flush_output();
 }

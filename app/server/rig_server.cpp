@@ -48,7 +48,7 @@ struct RigServer::State {
     if (!opened) return std::move(opened).error();
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
-    parts.emplace(RigParts{rig, lock.folder(), keeper, sessions, pictures, *jobs});
+    parts.emplace(RigParts{rig, lock.folder(), keeper, sessions, pictures, *jobs, guard});
     return {};
   }
 
@@ -61,30 +61,53 @@ struct RigServer::State {
   std::unique_ptr<JobQueue> jobs;
   RigKeeper keeper;
   std::optional<RigParts> parts;
-  std::string token, address;
+  GuardRules guard;
+  std::string address;
   std::unique_ptr<HttpServer> http;
 };
+
+namespace {
+
+Result<GuardRules> rules_of(const capture::Rig& rig, bool own_token) {
+  GuardRules rules;
+  rules.listening_host = rig.daemon.host;
+  rules.names = rig.daemon.names;
+  rules.origins = rig.daemon.origins;
+  if (own_token || !rig.daemon.token.empty()) {
+    Result<std::string> token = own_token ? new_token() : read_token(rig.daemon.token.string());
+    if (!token) return std::move(token).error();
+    rules.token = std::move(*token);
+  }
+  if (!rig.daemon.look_token.empty()) {
+    Result<std::string> token = read_token(rig.daemon.look_token.string());
+    if (!token) return std::move(token).error();
+    rules.look_token = std::move(*token);
+  }
+  return rules;
+}
+
+}  // namespace
 
 Result<std::unique_ptr<RigServer>> RigServer::start(const capture::Rig& rig, capture::OpenDevices open,
                                                     RunScan run, const RigServerOptions& options) {
   Result<RigLock> lock = RigLock::take(rig);
   if (!lock) return std::move(lock).error();
   const bool is_own = rig.daemon.token.empty() && options.own_token;
-  Result<std::string> token = is_own                     ? new_token()
-                              : rig.daemon.token.empty() ? std::string()
-                                                         : read_token(rig.daemon.token.string());
-  if (!token) return std::move(token).error();
+  Result<GuardRules> rules = rules_of(rig, is_own);
+  if (!rules) return std::move(rules).error();
   auto state = std::make_unique<State>(rig, std::move(*lock), std::move(open), std::move(run), options.say);
-  state->token = *token;
+  state->guard = *rules;
   if (Result<void> ok = state->open_jobs(options.weft); !ok) return std::move(ok).error();
-  Result<std::unique_ptr<HttpServer>> http = HttpServer::start(
-      rig.daemon.port, {rig.daemon.host, *token}, api_routes(*state->parts), state->events, options.limits);
+  std::vector<Route> routes = api_routes(*state->parts);
+  for (Route& route : page_routes()) routes.push_back(std::move(route));
+  Result<std::unique_ptr<HttpServer>> http =
+      HttpServer::start(rig.daemon.port, std::move(*rules), std::move(routes), state->events, options.limits);
   if (!http) return std::move(http).error();
   state->http = std::move(*http);
   const bool v6 = rig.daemon.host.find(':') != std::string::npos;
   const std::string host = v6 ? "[" + rig.daemon.host + "]" : rig.daemon.host;
   state->address = fmt::format("http://{}:{}", host, state->http->port());
-  if (Result<void> told = state->lock.publish(state->address, is_own ? *token : ""); !told)
+  if (Result<void> told = state->lock.publish(state->address, is_own ? state->guard.token : ""); !told)
     return std::move(told).error();
   state->log.add("daemon_began", fmt::format("rig {} is served at {}", rig.name, state->address),
                  {{"rig", rig.name}, {"pid", getpid()}});
@@ -104,7 +127,7 @@ const std::string& RigServer::address() const {
   return state_->address;
 }
 const std::string& RigServer::token() const {
-  return state_->token;
+  return state_->guard.token;
 }
 
 std::vector<std::string> RigServer::calls() const {

@@ -89,6 +89,10 @@ TEST(RigFile, NamesTheKeyThatIsWrong) {
       {"[scan]\nexposure_us = 0", "[scan]: exposure_us"},
       {"[scan]\nsession_name = \"../x\"", "[scan]: session_name"},
       {"[daemon]\nport = 70000", "[daemon]: port"},
+      {"[daemon]\nlook_token = \"look\"", "[daemon]: look_token"},
+      {"[daemon]\nnames = [\"rig.local:8470\"]", "[daemon]: names"},
+      {"[daemon]\norigins = [\"rig.local\"]", "[daemon]: origins"},
+      {"[daemon]\norigins = [\"https://rig.local/\"]", "[daemon]: origins"},
       {"[daemon", "line 1"},
   };
   for (const auto& each : cases) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "app/server/http/http_guard.h"
 #include "app/server/http/routes.h"
 #include "app/server/jobs/job_queue.h"
 #include "app/server/rig/frame_pictures.h"
@@ -22,6 +23,7 @@ struct RigParts {
   library::SessionCatalog& sessions;
   FramePictures& pictures;
   JobQueue& jobs;
+  GuardRules guard;  ///< who may come in
 };
 
 /// What is asked for begins: the answer tells how to follow it.
@@ -35,12 +37,16 @@ struct Resource {
 
 // One file each. The parts must outlive the routes.
 Resource server_resource();
+Resource login_resource(const RigParts& parts);
 Resource rig_resource(const RigParts& parts);
 Resource scan_resource(const RigParts& parts);
 Resource sessions_resource(const RigParts& parts);
 Resource frames_resource(const RigParts& parts);
 Resource jobs_resource(const RigParts& parts);
 Resource events_resource();
+
+/// The page that a browser is led to, by a link that ends in #TOKEN: it logs in and shows the rig's state.
+std::vector<Route> page_routes();
 
 /// Every call of the interface, GET openapi.json among them.
 std::vector<Route> api_routes(const RigParts& parts);

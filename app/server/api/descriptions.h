@@ -8,9 +8,14 @@ const char* common_description();
 const char* events_description();
 const char* frames_description();
 const char* jobs_description();
+const char* login_description();
 const char* rig_description();
 const char* scan_description();
 const char* server_description();
 const char* sessions_description();
+
+/// index.html and enter.js.
+const char* index_text();
+const char* enter_text();
 
 }  // namespace weft::app

@@ -7,7 +7,7 @@ file(WRITE ${OUTPUT} "// SPDX-License-Identifier: Apache-2.0
 namespace weft::app {
 
 const char* ${FUNCTION}() {
-  return R\"openapi(${text})openapi\";
+  return R\"text(${text})text\";
 }
 
 }  // namespace weft::app

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/http/event_log.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <charconv>
 
 #include "app/server/http/error_json.h"
 
@@ -12,11 +15,10 @@ constexpr std::size_t kHeld = 512;
 
 }  // namespace
 
-// Milliseconds since 1970 pass faster than events come, so an id of an earlier daemon is always the smaller.
 EventLog::EventLog()
-    : newest_(static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
-                                             std::chrono::system_clock::now().time_since_epoch())
-                                             .count())) {}
+    : boot_(static_cast<std::uint64_t>(std::chrono::duration_cast<std::chrono::milliseconds>(
+                                           std::chrono::system_clock::now().time_since_epoch())
+                                           .count())) {}
 
 void EventLog::add(const std::string& name, const Json& data) {
   std::string line = line_of(data);
@@ -34,11 +36,29 @@ EventLog::Event EventLog::current() const {
   return {newest_, "status", status_};
 }
 
-std::vector<EventLog::Event> EventLog::wait_after(std::uint64_t id, std::chrono::milliseconds timeout) const {
+std::string EventLog::id_of(const Event& event) const {
+  return fmt::format("{}.{}", boot_, event.number);
+}
+
+std::optional<std::uint64_t> EventLog::number_of(std::string_view id) const {
+  const std::string ours = fmt::format("{}.", boot_);
+  if (!id.starts_with(ours)) return std::nullopt;
+  id.remove_prefix(ours.size());
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(id.data(), id.data() + id.size(), number);
+  if (error != std::errc() || end != id.data() + id.size()) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  const bool next_is_held = number == newest_ || (!events_.empty() && number + 1 >= events_.front().number);
+  if (number > newest_ || !next_is_held) return std::nullopt;
+  return number;
+}
+
+std::vector<EventLog::Event> EventLog::wait_after(std::uint64_t number,
+                                                  std::chrono::milliseconds timeout) const {
   std::unique_lock lock(mutex_);
-  added_.wait_for(lock, timeout, [&] { return closed_ || newest_ > id; });
+  added_.wait_for(lock, timeout, [&] { return closed_ || newest_ > number; });
   if (closed_) return {};
-  const auto first = std::ranges::upper_bound(events_, id, {}, &Event::id);
+  const auto first = std::ranges::upper_bound(events_, number, {}, &Event::number);
   return {first, events_.end()};
 }
 

@@ -4,6 +4,8 @@
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <openssl/crypto.h>
+#include <openssl/evp.h>
+#include <openssl/hmac.h>
 #include <openssl/rand.h>
 #include <sys/stat.h>
 
@@ -11,6 +13,7 @@
 #include <array>
 #include <cctype>
 
+#include "app/server/http/cookies.h"
 #include "core/files.h"
 
 namespace weft::app {
@@ -36,17 +39,75 @@ bool is_address(const std::string& name) {
          inet_pton(AF_INET6, name.c_str(), bytes.data()) == 1;
 }
 
-bool is_our_name(const std::string& host, const std::string& listening_host) {
-  const std::string name = lower(name_in(host)), ours = lower(listening_host);
+bool is_our_name(const std::string& host, const GuardRules& rules) {
+  const std::string name = lower(name_in(host)), ours = lower(rules.listening_host);
+  const auto is_name = [&](const std::string& each) { return lower(each) == name; };
+  if (std::ranges::any_of(rules.names, is_name)) return true;
   // A page's own name can be made to lead here, a bare address cannot.
   const bool on_all_addresses = ours == "0.0.0.0" || ours == "::";
   return name == "localhost" || name == ours || (on_all_addresses && is_address(name));
 }
 
-bool is_token(const std::string& authorization, const std::string& token) {
-  const std::string wanted = "Bearer " + token;
-  return authorization.size() == wanted.size() &&
-         CRYPTO_memcmp(authorization.data(), wanted.data(), wanted.size()) == 0;
+bool is_our_origin(const std::string& origin, const std::string& host, const GuardRules& rules) {
+  return lower(origin) == "http://" + lower(host) ||
+         std::ranges::any_of(rules.origins,
+                             [&](const std::string& each) { return lower(each) == lower(origin); });
+}
+
+/// In a time that does not tell how much of it is right.
+bool is_secret(std::string_view said, std::string_view secret) {
+  return !secret.empty() && said.size() == secret.size() &&
+         CRYPTO_memcmp(said.data(), secret.data(), secret.size()) == 0;
+}
+
+std::string cookie_name(const GuardRules& rules) {
+  return fmt::format("weft_{}", rules.port);
+}
+
+/// HMAC-SHA-256 by the role's token: whoever reads the cookie has not read the token.
+std::string cookie_value(Role role, const GuardRules& rules) {
+  const std::string& token = role == Role::kOperate ? rules.token : rules.look_token;
+  if (token.empty()) return "";
+  const std::string_view words = role == Role::kOperate ? "weft cookie: operate" : "weft cookie: look";
+  std::array<unsigned char, 32> code = {};
+  unsigned int bytes = 0;
+  HMAC(EVP_sha256(), token.data(), static_cast<int>(token.size()),
+       reinterpret_cast<const unsigned char*>(words.data()), words.size(), code.data(), &bytes);
+  return fmt::format("{:02x}", fmt::join(code, ""));
+}
+
+std::string cookie_header(const GuardRules& rules, std::string_view value, int seconds) {
+  return fmt::format("{}={}; Path=/; Max-Age={}; HttpOnly; SameSite=Strict", cookie_name(rules), value,
+                     seconds);
+}
+
+struct Credential {
+  Role role = Role::kOperate;
+  bool by_cookie = false;
+};
+
+std::optional<Credential> credential_of(const Visitor& visitor, const GuardRules& rules) {
+  constexpr std::string_view kBearer = "Bearer ";
+  if (rules.token.empty()) return Credential{};
+  if (!visitor.authorization.empty()) {
+    const std::string_view said = visitor.authorization;
+    const auto role =
+        said.starts_with(kBearer) ? role_of_token(said.substr(kBearer.size()), rules) : std::nullopt;
+    if (!role) return std::nullopt;
+    return Credential{*role};
+  }
+  const std::string_view cookie = cookie_in(visitor.cookie, cookie_name(rules));
+  for (const Role role : {Role::kOperate, Role::kLook}) {
+    if (is_secret(cookie, cookie_value(role, rules))) return Credential{role, true};
+  }
+  return std::nullopt;
+}
+
+/// What a browser fetches for a page of another site or port. Who follows a link to the page itself may.
+bool is_fetched_from_elsewhere(const Visitor& visitor) {
+  const bool elsewhere = visitor.fetch_site == "cross-site" || visitor.fetch_site == "same-site";
+  const bool to_the_page = visitor.method == "GET" && visitor.fetch_mode == "navigate" && visitor.path == "/";
+  return elsewhere && !to_the_page;
 }
 
 bool is_json(const std::string& content_type) {
@@ -64,22 +125,54 @@ std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rul
   if (visitor.method != "GET" && visitor.method != "HEAD" && visitor.method != "POST") {
     return refuse(405, "the method is not taken", visitor.method, "use GET or POST");
   }
-  if (!is_our_name(visitor.host, rules.listening_host)) {
+  if (!is_our_name(visitor.host, rules)) {
     return refuse(421, "the Host header is not this daemon's", visitor.host,
-                  "ask by the address that weft serve printed, or by localhost");
+                  "ask by the address that weft serve printed, by localhost, or by one of daemon.names");
   }
-  if (!visitor.origin.empty() && lower(visitor.origin) != "http://" + lower(visitor.host)) {
-    return refuse(403, "pages from elsewhere may not use this daemon", visitor.origin,
-                  "open the daemon's own page");
+  const bool from_elsewhere = !visitor.origin.empty() && !is_our_origin(visitor.origin, visitor.host, rules);
+  if (from_elsewhere || is_fetched_from_elsewhere(visitor)) {
+    return refuse(403, "pages from elsewhere may not use this daemon",
+                  from_elsewhere ? visitor.origin : visitor.fetch_site,
+                  "open the daemon's own page; a proxy's origin goes into daemon.origins of the rig file");
   }
-  if (!rules.token.empty() && !is_token(visitor.authorization, rules.token)) {
-    return refuse(401, "the token is missing or wrong", "", "send 'Authorization: Bearer TOKEN'");
+  const bool is_change = visitor.method == "POST";
+  if (std::ranges::find(rules.open, visitor.method + " " + visitor.path) == rules.open.end()) {
+    const auto credential = credential_of(visitor, rules);
+    if (!credential) {
+      return refuse(401, "the token is missing or wrong", "",
+                    "send 'Authorization: Bearer TOKEN', or open the link that weft serve printed");
+    }
+    if (is_change && credential->by_cookie && visitor.origin.empty()) {
+      return refuse(403, "a change by a cookie needs an Origin", "", "open the daemon's own page");
+    }
+    if (is_change && credential->role == Role::kLook) {
+      return refuse(403, "this token may only look", visitor.path, "come in with the token of daemon.token");
+    }
   }
-  if (visitor.method == "POST" && !is_json(visitor.content_type)) {
+  if (is_change && !is_json(visitor.content_type)) {
     return refuse(415, "the body is not said to be JSON", visitor.content_type,
                   "send 'Content-Type: application/json'");
   }
   return std::nullopt;
+}
+
+const char* name_of(Role role) {
+  return role == Role::kLook ? "look" : "operate";
+}
+
+std::optional<Role> role_of_token(std::string_view token, const GuardRules& rules) {
+  if (is_secret(token, rules.token)) return Role::kOperate;
+  if (is_secret(token, rules.look_token)) return Role::kLook;
+  return std::nullopt;
+}
+
+std::string entry_cookie(Role role, const GuardRules& rules) {
+  constexpr int kMonthS = 30 * 24 * 3600;
+  return cookie_header(rules, cookie_value(role, rules), kMonthS);
+}
+
+std::string exit_cookie(const GuardRules& rules) {
+  return cookie_header(rules, "", 0);
 }
 
 Result<std::string> new_token() {

@@ -23,8 +23,8 @@ using Clock = std::chrono::steady_clock;
 /// A whole request to read from, and its client to write to.
 class RequestStream : public httplib::Stream {
  public:
-  RequestStream(WholeRequest request, double write_deadline_s)
-      : request_(std::move(request)), write_deadline_s_(write_deadline_s) {}
+  RequestStream(WholeRequest request, const HttpLimits& limits)
+      : request_(std::move(request)), patience_(limits.write_deadline_s), most_(limits.answer_deadline_s) {}
 
   bool is_readable() const override { return at_ < request_.bytes.size(); }
   bool is_writable() const override {
@@ -37,11 +37,13 @@ class RequestStream : public httplib::Stream {
     return static_cast<ssize_t>(count);
   }
   ssize_t write(const char* bytes, std::size_t count) override {
-    const auto deadline = Clock::now() + std::chrono::duration<double>(write_deadline_s_);
+    const auto end = Clock::now() + most_;
+    auto deadline = std::min(end, Clock::now() + patience_);
     for (std::size_t sent = 0; sent < count;) {
       const ssize_t more = send(socket(), bytes + sent, count - sent, MSG_NOSIGNAL);
       if (more >= 0) {
         sent += static_cast<std::size_t>(more);
+        deadline = std::min(end, Clock::now() + patience_);
         continue;
       }
       const auto left =
@@ -58,7 +60,7 @@ class RequestStream : public httplib::Stream {
 
  private:
   WholeRequest request_;
-  double write_deadline_s_;
+  std::chrono::duration<double> patience_, most_;
   std::size_t at_ = 0;
 };
 
@@ -70,6 +72,7 @@ void answer(const Reply& reply, httplib::Response& response) {
   response.status = reply.status;
   response.set_header("Cache-Control", "no-store");
   response.set_header("X-Content-Type-Options", "nosniff");
+  for (const auto& [name, value] : reply.headers) response.set_header(name, value);
   response.set_content(reply.body, reply.type);
 }
 
@@ -86,9 +89,7 @@ Call call_of(const httplib::Request& request) {
   return call;
 }
 
-std::string lines_of(const EventLog::Event& event) {
-  return fmt::format("id: {}\nevent: {}\ndata: {}\n\n", event.id, event.name, event.data);
-}
+constexpr const char* kGap = "event: gap\ndata: {}\n\n";
 
 }  // namespace
 
@@ -110,7 +111,10 @@ class HttpServer::Parser : public httplib::Server {
     }));
     set_exception_handler([](const httplib::Request& request, httplib::Response& response,
                              const std::exception_ptr& thrown) { fail(request, response, thrown); });
-    for (const Route& route : routes_) add(route);
+    for (const Route& route : routes_) {
+      if (route.open) rules_.open.push_back(route.method + " " + route.path);
+      add(route);
+    }
   }
 
   /// Lets the streams of cpp-httplib run: it ends them where it does not listen.
@@ -135,7 +139,7 @@ class HttpServer::Parser : public httplib::Server {
 
  private:
   void answer_one(WholeRequest request) {
-    RequestStream stream(std::move(request), limits_.write_deadline_s);
+    RequestStream stream(std::move(request), limits_);
     bool closed = false;
     process_request(stream, true, closed, nullptr);
     shutdown(stream.socket(), SHUT_WR);
@@ -144,7 +148,9 @@ class HttpServer::Parser : public httplib::Server {
   bool guard(const httplib::Request& request, httplib::Response& response) const {
     const auto refused =
         turned_away({request.method, request.get_header_value("Host"), request.get_header_value("Origin"),
-                     request.get_header_value("Authorization"), request.get_header_value("Content-Type")},
+                     request.get_header_value("Authorization"), request.get_header_value("Content-Type"),
+                     request.path, request.get_header_value("Cookie"),
+                     request.get_header_value("Sec-Fetch-Site"), request.get_header_value("Sec-Fetch-Mode")},
                     rules_);
     if (refused) answer(refused->error, refused->status, response);
     return refused.has_value();
@@ -153,7 +159,9 @@ class HttpServer::Parser : public httplib::Server {
   void add(const Route& route) {
     const Handler handle = [this, &route](const httplib::Request& request, httplib::Response& response) {
       if (!route.handle) return stream_events(request, response);
-      const Result<Reply> reply = route.handle(call_of(request));
+      Call call = call_of(request);
+      call.port = rules_.port;
+      const Result<Reply> reply = route.handle(call);
       if (reply) return answer(*reply, response);
       answer(reply.error(), http_status_of(reply.error().kind), response);
     };
@@ -210,14 +218,17 @@ class HttpServer::Parser : public httplib::Server {
     Clock::time_point last = Clock::now();
   };
 
-  /// One that names no event it has seen is told first how things are.
+  /// One that names no event it has seen is told first how things are; so is one that names an event of an
+  /// earlier daemon, or one so old that the next are gone, and of the gap.
   Follower follower_of(const httplib::Request& request) const {
     const std::string id = request.get_header_value("Last-Event-ID");
-    const bool digits =
-        !id.empty() && id.size() < 19 && id.find_first_not_of("0123456789") == std::string::npos;
-    if (digits) return {std::stoull(id)};
+    if (const auto seen = events_.number_of(id)) return {*seen};
     const EventLog::Event current = events_.current();
-    return {current.id, lines_of(current)};
+    return {current.number, (id.empty() ? "" : kGap) + lines_of(current)};
+  }
+
+  std::string lines_of(const EventLog::Event& event) const {
+    return fmt::format("id: {}\nevent: {}\ndata: {}\n\n", events_.id_of(event), event.name, event.data);
   }
 
   bool send_next(Follower& follower, httplib::DataSink& sink) const {
@@ -229,11 +240,16 @@ class HttpServer::Parser : public httplib::Server {
       sink.done();
       return true;
     }
-    for (const EventLog::Event& event : events) text += lines_of(event);
+    const bool missed_some = !events.empty() && events.front().number != follower.seen + 1;
+    const EventLog::Event now = missed_some ? events_.current() : EventLog::Event();
+    if (missed_some) text += kGap + lines_of(now);
+    for (const EventLog::Event& event : events) {
+      if (!missed_some) text += lines_of(event);
+    }
     const auto silence = std::chrono::duration<double>(Clock::now() - follower.last);
     if (text.empty() && silence.count() >= limits_.heartbeat_s) text = "event: heartbeat\ndata: {}\n\n";
     if (text.empty()) return true;
-    if (!events.empty()) follower.seen = events.back().id;
+    if (!events.empty()) follower.seen = missed_some ? now.number : events.back().number;
     follower.last = Clock::now();
     return sink.write(text.data(), text.size());
   }
@@ -255,6 +271,7 @@ Result<std::unique_ptr<HttpServer>> HttpServer::start(int port, GuardRules rules
   }
   Result<std::unique_ptr<HttpDoor>> door = HttpDoor::open(rules.listening_host, port, limits.door);
   if (!door) return std::move(door).error();
+  rules.port = (*door)->port();
   auto parser = std::make_unique<Parser>(std::move(rules), std::move(routes), events, limits);
   return std::unique_ptr<HttpServer>(new HttpServer(std::move(*door), std::move(parser)));
 }

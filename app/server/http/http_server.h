@@ -17,9 +17,10 @@ namespace weft::app {
 struct HttpLimits {
   DoorLimits door;
   std::size_t workers = 64;
-  std::size_t streams = 16;     ///< of events at once; one more is answered with 503
-  double write_deadline_s = 2;  ///< for one piece of an answer to leave
-  double heartbeat_s = 10;      ///< between events of a stream at most
+  std::size_t streams = 16;        ///< of events at once; one more is answered with 503
+  double write_deadline_s = 2;     ///< without a byte of an answer leaving
+  double answer_deadline_s = 300;  ///< for one piece of it to leave, however slowly
+  double heartbeat_s = 10;         ///< between events of a stream at most
 };
 
 /// The HTTP interface over a table of routes: HttpDoor before cpp-httplib, which parses, routes and answers.

@@ -63,8 +63,9 @@ std::optional<RequestFrame> judge_request_line(std::string_view line, const Fram
 }
 
 // With two of these, two readers of one request could see two different ones.
-constexpr std::array<std::string_view, 5> kOnlyOnce = {"host", "origin", "authorization", "content-type",
-                                                       "content-length"};
+constexpr std::array<std::string_view, 9> kOnlyOnce = {"host",           "origin",         "authorization",
+                                                       "content-type",   "content-length", "cookie",
+                                                       "sec-fetch-site", "sec-fetch-mode", "last-event-id"};
 
 /// What the headers have said so far.
 struct Head {

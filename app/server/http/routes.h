@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/json_document.h"
@@ -16,6 +17,7 @@ struct Call {
   std::vector<std::string> segments;         ///< what stands for {...} in the path, decoded
   std::map<std::string, std::string> query;  ///< decoded
   std::string body;
+  int port = 0;  ///< that the server listens on
 };
 
 /// What is answered.
@@ -23,6 +25,7 @@ struct Reply {
   int status = 200;
   std::string type = "application/json";
   std::string body = {};
+  std::vector<std::pair<std::string, std::string>> headers = {};  ///< further ones
 };
 
 Reply json_reply(const Json& document, int status = 200);
@@ -32,6 +35,7 @@ struct Route {
   std::string method;
   std::string path;
   std::function<Result<Reply>(const Call&)> handle;  ///< empty: the stream of events
+  bool open = false;                                 ///< needs no token
 };
 
 }  // namespace weft::app

@@ -8,8 +8,10 @@
 #include <poll.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+#include <vector>
 
 namespace weft::app {
 namespace {
@@ -54,6 +56,18 @@ std::string RawClient::hear(std::chrono::milliseconds most, std::string_view end
   pollfd readable = {socket_.get(), POLLIN, 0};
   while (heard.find(end) == std::string::npos && poll(&readable, 1, milliseconds_until(deadline)) > 0) {
     const ssize_t bytes = recv(socket_.get(), block.data(), block.size(), 0);
+    if (bytes <= 0) break;
+    heard.append(block.data(), static_cast<std::size_t>(bytes));
+  }
+  return heard;
+}
+
+std::string RawClient::hear_some(std::size_t most) {
+  std::string heard;
+  std::vector<char> block(65536);
+  pollfd readable = {socket_.get(), POLLIN, 0};
+  while (heard.size() < most && poll(&readable, 1, 100) > 0) {
+    const ssize_t bytes = recv(socket_.get(), block.data(), std::min(block.size(), most - heard.size()), 0);
     if (bytes <= 0) break;
     heard.append(block.data(), static_cast<std::size_t>(bytes));
   }

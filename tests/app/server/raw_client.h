@@ -23,6 +23,8 @@ class RawClient {
   void end_of_words();
   /// What arrives until `end` has been seen, the server closes, or the time is over.
   std::string hear(std::chrono::milliseconds most, std::string_view end = "\n\n\n\n never");
+  /// At most so many bytes, as many as come within a tenth of a second.
+  std::string hear_some(std::size_t most);
   /// Whether the server has closed the connection by then.
   bool closed_within(std::chrono::milliseconds most);
 

@@ -127,6 +127,10 @@ TEST_F(OpenApi, DescribesEveryAnswerOfEveryCall) {
   std::filesystem::remove_all(scripted_.rig.daemon.state / "pictures", still_written_to);
   EXPECT_EQ(conforming("GET", frame + "/thumbnail", "/api/v1/sessions/left/frames/0/thumbnail").status, 422);
 
+  EXPECT_EQ(conforming("POST", "/api/v1/login", "/api/v1/login", R"({"token": "any"})").status, 200);
+  EXPECT_EQ(conforming("POST", "/api/v1/login", "/api/v1/login", "{}").status, 400);
+  EXPECT_EQ(conforming("POST", "/api/v1/logout", "/api/v1/logout").status, 200);
+
   holding_ = true;
   const char* const scan = "/api/v1/scan";
   EXPECT_EQ(conforming("POST", scan, scan, "{}").status, 400);
@@ -193,8 +197,13 @@ TEST_F(OpenApi, DescribesHowEachCallIsGuarded) {
 }
 
 TEST_F(OpenApi, DescribesItsEvents) {
+  RawClient greeted(port_);
+  greeted.say(request_text(port_, "GET", "/api/v1/events"));
+  const std::string greeting = greeted.hear(seconds(5), "event: ");
+  const std::size_t boot = greeting.find("id: ") + 4;
+  const std::string first = greeting.substr(boot, greeting.find('.', boot) - boot) + ".0";
   RawClient follower(port_);
-  follower.say(request_text(port_, "GET", "/api/v1/events", "", {{"Last-Event-ID", "0"}}));
+  follower.say(request_text(port_, "GET", "/api/v1/events", "", {{"Last-Event-ID", first}}));
   const std::string heard = follower.hear(seconds(5), "\"phase\":\"complete\"");
   EXPECT_THAT(heard, testing::HasSubstr("Content-Type: text/event-stream"));
   int frames = 0, statuses = 0;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// libFuzzer program: any bytes as a request's frame and, after its first empty line, as the body of a scan.
+// libFuzzer program: any bytes as a request's frame, as its cookies and, after its first empty line, as the
+// body of a scan.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
 
 #include "app/server/api/scan_body.h"
+#include "app/server/http/cookies.h"
 #include "app/server/http/error_json.h"
 #include "app/server/http/request_frame.h"
 
@@ -14,6 +16,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   const RequestFrame frame = frame_request(text, {});
   if (frame.bytes > size || (frame.status != 0 && frame.why.empty())) std::abort();
+
+  if (cookie_in(text, "weft_8470").size() > size) std::abort();
 
   const std::size_t head_end = text.find("\r\n\r\n");
   const auto body = parse_body(head_end == std::string_view::npos ? text : text.substr(head_end + 4));

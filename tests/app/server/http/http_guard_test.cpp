@@ -71,6 +71,72 @@ TEST(HttpGuard, WantsTheWholeTokenWhereThereIsOne) {
   }
 }
 
+TEST(HttpGuard, LetsInTheNamesAndOriginsOfTheRigFile) {
+  GuardRules rules = kLoopback;
+  rules.names = {"rig.local"};
+  rules.origins = {"https://rig.local"};
+  EXPECT_EQ(status_of(getting("Rig.local:8470"), rules), 0);
+  EXPECT_EQ(status_of(getting("rig.local", "https://rig.local"), rules), 0);
+  EXPECT_EQ(status_of(getting("rig.local.evil.example"), rules), 421);
+  EXPECT_EQ(status_of(getting("rig.local", "https://rig.local:8471"), rules), 403);
+}
+
+/// An <img> or a link of another page sends no Origin; its browser says where it comes from.
+TEST(HttpGuard, TurnsAwayWhatOtherPagesFetch) {
+  const auto fetched = [](const std::string& site, const std::string& mode, const std::string& path) {
+    Visitor visitor = getting("localhost:8470");
+    visitor.path = path, visitor.fetch_site = site, visitor.fetch_mode = mode;
+    return status_of(visitor, kLoopback);
+  };
+  for (const char* site : {"cross-site", "same-site"}) {
+    EXPECT_EQ(fetched(site, "no-cors", "/api/v1/events"), 403) << site;
+    EXPECT_EQ(fetched(site, "navigate", "/api/v1/rig"), 403) << site;
+    EXPECT_EQ(fetched(site, "navigate", "/"), 0) << "a link to the page, " << site;
+  }
+  EXPECT_EQ(fetched("same-origin", "cors", "/api/v1/events"), 0);
+  EXPECT_EQ(fetched("none", "navigate", "/api/v1/rig"), 0) << "typed into the address bar";
+}
+
+TEST(HttpGuard, LetsWhoMayOnlyLookChangeNothing) {
+  GuardRules rules = kWithToken;
+  rules.look_token = "only-looking-around";
+  const auto asked = [&](const std::string& method, const std::string& token) {
+    return status_of({method, "192.168.7.5", "", "Bearer " + token, "application/json"}, rules);
+  };
+  EXPECT_EQ(asked("GET", "only-looking-around"), 0);
+  EXPECT_EQ(asked("POST", "only-looking-around"), 403);
+  EXPECT_EQ(asked("POST", "correct-horse-battery"), 0);
+  EXPECT_EQ(asked("GET", ""), 401);
+}
+
+TEST(HttpGuard, TakesACookieOfThisPortAndTokenWithAnOrigin) {
+  GuardRules rules = kWithToken;
+  rules.look_token = "only-looking-around";
+  rules.port = 8470;
+  const auto pair_of = [](const std::string& header) { return header.substr(0, header.find(';')); };
+  const std::string host = "192.168.7.5:8470", own = "http://" + host;
+  const auto asked = [&](const std::string& method, const std::string& origin, const std::string& cookie) {
+    Visitor visitor = {method, host, origin, "", "application/json"};
+    visitor.cookie = cookie;
+    return status_of(visitor, rules);
+  };
+  const std::string operate = pair_of(entry_cookie(Role::kOperate, rules));
+  const std::string look = pair_of(entry_cookie(Role::kLook, rules));
+  EXPECT_EQ(operate.find("correct-horse"), std::string::npos);
+  EXPECT_EQ(asked("GET", "", operate), 0);
+  EXPECT_EQ(asked("POST", own, "other=1; " + operate), 0);
+  EXPECT_EQ(asked("POST", "", operate), 403) << "no Origin: another port of this host could send it";
+  EXPECT_EQ(asked("GET", own, look), 0);
+  EXPECT_EQ(asked("POST", own, look), 403);
+  EXPECT_EQ(asked("GET", "", "weft_8470="), 401);
+  GuardRules elsewhere = rules;
+  elsewhere.port = 8471;
+  EXPECT_EQ(asked("GET", "", pair_of(entry_cookie(Role::kOperate, elsewhere))), 401) << "of another rig";
+  GuardRules later = rules;
+  later.token = "another-horse-battery";
+  EXPECT_EQ(asked("GET", "", pair_of(entry_cookie(Role::kOperate, later))), 401) << "of another token";
+}
+
 TEST(HttpGuard, TakesOnlyJsonInAPost) {
   const auto posted = [](const std::string& type) {
     return status_of({"POST", "localhost", "", "", type}, kLoopback);
