@@ -28,7 +28,8 @@ std::vector<Route> api_routes(const RigParts& parts) {
   routes.push_back({"GET", "/api/v1/openapi.json",
                     [description = whole_description(resources)](const Call&) -> Result<Reply> {
                       return json_reply(description);
-                    }});
+                    },
+                    false, Pool::kQuick});
   for (Resource& resource : resources) {
     for (Route& route : resource.routes) routes.push_back(std::move(route));
   }

@@ -5,7 +5,7 @@
 namespace weft::app {
 
 Resource events_resource() {
-  return {{{"GET", "/api/v1/events", {}}}, events_description()};
+  return {{{"GET", "/api/v1/events", {}, false, Pool::kStreams}}, events_description()};
 }
 
 }  // namespace weft::app

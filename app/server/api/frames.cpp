@@ -42,9 +42,9 @@ Result<Reply> histogram(const RigParts& parts, const Call& call) {
 
 Resource frames_resource(const RigParts& parts) {
   return {{{"GET", "/api/v1/sessions/{name}/frames/{index}/thumbnail",
-            [&parts](const Call& call) { return thumbnail(parts, call); }},
+            [&parts](const Call& call) { return thumbnail(parts, call); }, false, Pool::kPictures},
            {"GET", "/api/v1/sessions/{name}/frames/{index}/histogram",
-            [&parts](const Call& call) { return histogram(parts, call); }}},
+            [&parts](const Call& call) { return histogram(parts, call); }, false, Pool::kPictures}},
           frames_description()};
 }
 

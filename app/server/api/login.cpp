@@ -46,8 +46,10 @@ Result<Reply> logout(const RigParts& parts, const Call& call) {
 }  // namespace
 
 Resource login_resource(const RigParts& parts) {
-  return {{{"POST", "/api/v1/login", [&parts](const Call& call) { return login(parts, call); }, true},
-           {"POST", "/api/v1/logout", [&parts](const Call& call) { return logout(parts, call); }, true}},
+  return {{{"POST", "/api/v1/login", [&parts](const Call& call) { return login(parts, call); }, true,
+            Pool::kQuick},
+           {"POST", "/api/v1/logout", [&parts](const Call& call) { return logout(parts, call); }, true,
+            Pool::kQuick}},
           login_description()};
 }
 

@@ -16,7 +16,7 @@ Route page_file(const char* path, const char* type, const char* text) {
                        {{"Content-Security-Policy", kPolicy},
                         {"Referrer-Policy", "no-referrer"},
                         {"Cross-Origin-Opener-Policy", "same-origin"}}};
-  return {"GET", path, [reply](const Call&) -> Result<Reply> { return reply; }, true};
+  return {"GET", path, [reply](const Call&) -> Result<Reply> { return reply; }, true, Pool::kQuick};
 }
 
 }  // namespace

@@ -34,15 +34,17 @@ Result<Reply> after(const RigParts& parts, const Call& call, const Step& step) {
 }  // namespace
 
 Resource scan_resource(const RigParts& parts) {
-  return {
-      {{"POST", "/api/v1/scan", [&parts](const Call& call) { return start_scan(parts, call); }},
-       {"POST", "/api/v1/scan/pause",
-        [&parts](const Call& call) { return after(parts, call, [&] { return parts.keeper.pause(); }); }},
-       {"POST", "/api/v1/scan/resume",
-        [&parts](const Call& call) { return after(parts, call, [&] { return parts.keeper.resume(); }); }},
-       {"POST", "/api/v1/scan/cancel",
-        [&parts](const Call& call) { return after(parts, call, [&] { return parts.keeper.cancel(); }); }}},
-      scan_description()};
+  return {{{"POST", "/api/v1/scan", [&parts](const Call& call) { return start_scan(parts, call); }},
+           {"POST", "/api/v1/scan/pause",
+            [&parts](const Call& call) { return after(parts, call, [&] { return parts.keeper.pause(); }); },
+            false, Pool::kQuick},
+           {"POST", "/api/v1/scan/resume",
+            [&parts](const Call& call) { return after(parts, call, [&] { return parts.keeper.resume(); }); },
+            false, Pool::kQuick},
+           {"POST", "/api/v1/scan/cancel",
+            [&parts](const Call& call) { return after(parts, call, [&] { return parts.keeper.cancel(); }); },
+            false, Pool::kQuick}},
+          scan_description()};
 }
 
 }  // namespace weft::app

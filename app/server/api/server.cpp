@@ -8,7 +8,8 @@ Resource server_resource() {
   return {{{"GET", "/api/v1/healthz",
             [](const Call&) -> Result<Reply> {
               return json_reply({{"status", "ok"}});
-            }}},
+            },
+            false, Pool::kAtOnce}},
           server_description()};
 }
 

@@ -73,6 +73,8 @@ int port_of(int socket) {
   return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
 }
 
+}  // namespace
+
 std::string refusal(int status, std::string_view why) {
   const std::string body = line_of(
       error_document({status == 503 ? ErrorKind::kTryAgain : ErrorKind::kUsage, "the request is refused", "",
@@ -82,8 +84,6 @@ std::string refusal(int status, std::string_view why) {
       "close\r\n\r\n{}",
       status, body.size(), body);
 }
-
-}  // namespace
 
 bool is_loopback(const std::string& host) {
   const Addresses addresses = addresses_of(host, 0);

@@ -7,6 +7,7 @@
 #include <list>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "app/server/http/request_frame.h"
@@ -77,6 +78,9 @@ class HttpDoor {
   std::atomic<bool> closing_ = false;
   std::thread thread_;
 };
+
+/// The whole answer to who is refused before anything is parsed.
+std::string refusal(int status, std::string_view why);
 
 /// Whether `host`, as it is listened on, can be reached from this machine only.
 bool is_loopback(const std::string& host);

@@ -10,7 +10,10 @@
 #include <atomic>
 #include <cerrno>
 #include <chrono>
+#include <map>
+#include <memory>
 #include <regex>
+#include <string_view>
 #include <utility>
 
 #include "app/server/http/error_json.h"
@@ -23,8 +26,11 @@ using Clock = std::chrono::steady_clock;
 /// A whole request to read from, and its client to write to.
 class RequestStream : public httplib::Stream {
  public:
-  RequestStream(WholeRequest request, const HttpLimits& limits)
-      : request_(std::move(request)), patience_(limits.write_deadline_s), most_(limits.answer_deadline_s) {}
+  RequestStream(WholeRequest request, const HttpLimits& limits, const std::atomic<bool>& ending)
+      : request_(std::move(request)),
+        patience_(limits.write_deadline_s),
+        most_(limits.answer_deadline_s),
+        ending_(ending) {}
 
   bool is_readable() const override { return at_ < request_.bytes.size(); }
   bool is_writable() const override {
@@ -43,7 +49,7 @@ class RequestStream : public httplib::Stream {
       const ssize_t more = send(socket(), bytes + sent, count - sent, MSG_NOSIGNAL);
       if (more >= 0) {
         sent += static_cast<std::size_t>(more);
-        deadline = std::min(end, Clock::now() + patience_);
+        if (!ending_) deadline = std::min(end, Clock::now() + patience_);
         continue;
       }
       const auto left =
@@ -61,11 +67,24 @@ class RequestStream : public httplib::Stream {
  private:
   WholeRequest request_;
   std::chrono::duration<double> patience_, most_;
+  const std::atomic<bool>& ending_;  ///< the server is: no deadline begins again
   std::size_t at_ = 0;
 };
 
 std::string pattern_of(const std::string& path) {
   return std::regex_replace(path, std::regex(R"(\{[a-z]+\})"), "([^/]+)");
+}
+
+/// Whether a path, not decoded, is of this pattern: {...} stands for one segment.
+bool fits(std::string_view pattern, std::string_view path) {
+  while (!pattern.empty() && !path.empty()) {
+    const std::string_view wanted = pattern.substr(0, pattern.find('/', 1));
+    const std::string_view is = path.substr(0, path.find('/', 1));
+    if (!wanted.starts_with("/{") && wanted != is) return false;
+    pattern.remove_prefix(wanted.size());
+    path.remove_prefix(is.size());
+  }
+  return pattern.empty() && path.empty();
 }
 
 void answer(const Reply& reply, httplib::Response& response) {
@@ -120,26 +139,65 @@ class HttpServer::Parser : public httplib::Server {
   /// Lets the streams of cpp-httplib run: it ends them where it does not listen.
   void begin(HttpDoor& door) {
     svr_sock_ = door.socket();
-    workers_ = std::make_unique<httplib::ThreadPool>(limits_.workers);
-    door.begin([this, &door](WholeRequest request) {
-      // std::function wants to copy what it holds.
-      auto held = std::make_shared<WholeRequest>(std::move(request));
-      workers_->enqueue([this, &door, held] {
-        answer_one(std::move(*held));
-        door.left();
-      });
-    });
+    for (const auto& [pool, threads] :
+         {std::pair(Pool::kQuick, limits_.quick), std::pair(Pool::kDisk, limits_.disk),
+          std::pair(Pool::kPictures, limits_.pictures), std::pair(Pool::kStreams, limits_.streams + 1)}) {
+      pools_[pool] = std::make_unique<Threads>(threads, threads + limits_.waiting);
+    }
+    door.begin([this, &door](WholeRequest request) { enter(std::move(request), door); });
   }
 
   void end() {
+    ending_ = true;
     svr_sock_ = INVALID_SOCKET;
-    if (workers_) workers_->shutdown();
-    workers_.reset();
+    for (const auto& [kind, threads] : pools_) threads->pool.shutdown();
+    pools_.clear();
   }
 
  private:
+  /// Threads, and the requests that are theirs.
+  struct Threads {
+    Threads(std::size_t threads, std::size_t most_requests) : pool(threads), most(most_requests) {}
+    httplib::ThreadPool pool;
+    const std::size_t most;
+    std::atomic<std::size_t> requests = 0;
+  };
+
+  /// On the door's thread.
+  void enter(WholeRequest request, HttpDoor& door) {
+    const Pool pool = pool_of(request.bytes);
+    if (pool == Pool::kAtOnce) {
+      answer_one(std::move(request));
+      return door.left();
+    }
+    Threads& threads = *pools_.at(pool);
+    if (threads.requests >= threads.most) {
+      RequestStream stream(std::move(request), limits_, ending_);
+      const std::string answer = refusal(503, "too many requests of this kind wait already: ask again");
+      stream.write(answer.data(), answer.size());
+      shutdown(stream.socket(), SHUT_WR);
+      return door.left();
+    }
+    ++threads.requests;
+    // std::function wants to copy what it holds.
+    auto held = std::make_shared<WholeRequest>(std::move(request));
+    threads.pool.enqueue([this, &door, &threads, held] {
+      answer_one(std::move(*held));
+      --threads.requests;
+      door.left();
+    });
+  }
+
+  Pool pool_of(std::string_view request) const {
+    const std::size_t space = request.find(' ') + 1;
+    const std::string_view path = request.substr(space, request.find_first_of(" ?", space) - space);
+    const auto route =
+        std::ranges::find_if(routes_, [&](const Route& each) { return fits(each.path, path); });
+    return route == routes_.end() ? Pool::kQuick : route->pool;
+  }
+
   void answer_one(WholeRequest request) {
-    RequestStream stream(std::move(request), limits_);
+    RequestStream stream(std::move(request), limits_, ending_);
     bool closed = false;
     process_request(stream, true, closed, nullptr);
     shutdown(stream.socket(), SHUT_WR);
@@ -259,7 +317,8 @@ class HttpServer::Parser : public httplib::Server {
   EventLog& events_;
   HttpLimits limits_;
   std::atomic<std::size_t> streams_ = 0;
-  std::unique_ptr<httplib::ThreadPool> workers_;
+  std::atomic<bool> ending_ = false;
+  std::map<Pool, std::unique_ptr<Threads>> pools_;
 };
 
 Result<std::unique_ptr<HttpServer>> HttpServer::start(int port, GuardRules rules, std::vector<Route> routes,

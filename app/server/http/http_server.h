@@ -16,8 +16,9 @@ namespace weft::app {
 /// What clients may take of the server, so that no number of them keeps the others out.
 struct HttpLimits {
   DoorLimits door;
-  std::size_t workers = 64;
-  std::size_t streams = 16;        ///< of events at once; one more is answered with 503
+  std::size_t quick = 8, disk = 16, pictures = 24;  ///< threads of each pool
+  std::size_t waiting = 32;  ///< requests that wait for a thread of their pool; one more is answered with 503
+  std::size_t streams = 16;  ///< of events at once; one more is answered with 503
   double write_deadline_s = 2;     ///< without a byte of an answer leaving
   double answer_deadline_s = 300;  ///< for one piece of it to leave, however slowly
   double heartbeat_s = 10;         ///< between events of a stream at most

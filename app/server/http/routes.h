@@ -30,12 +30,22 @@ struct Reply {
 
 Reply json_reply(const Json& document, int status = 200);
 
+/// The threads that answer a call: what one kind waits for, others do not.
+enum class Pool {
+  kAtOnce,    ///< the door's own thread: nothing that could wait
+  kQuick,     ///< what is in memory
+  kDisk,      ///< files, on a disk that may hang
+  kPictures,  ///< raw frames to be decoded
+  kStreams,   ///< of events
+};
+
 /// One call of the interface. `path` has {names} for segments. An Error is answered by error_document().
 struct Route {
   std::string method;
   std::string path;
   std::function<Result<Reply>(const Call&)> handle;  ///< empty: the stream of events
   bool open = false;                                 ///< needs no token
+  Pool pool = Pool::kDisk;
 };
 
 }  // namespace weft::app

@@ -71,7 +71,7 @@ TEST_F(Login, LetsABrowserFollowEventsAndScan) {
   EXPECT_EQ(ask(port, "GET", "/api/v1/rig", "", {{"Cookie", cookie}}).status, 200);
   RawClient follower(port);
   follower.say(request_text(port, "GET", "/api/v1/events", "", {{"Cookie", cookie}}));
-  EXPECT_THAT(follower.hear(std::chrono::seconds(5), "\n\nid: "), HasSubstr("200 OK"));
+  EXPECT_THAT(follower.hear(std::chrono::seconds(5), "event: status"), HasSubstr("200 OK"));
   const std::string scan = R"({"fabric": "satin"})";
   EXPECT_EQ(ask(port, "POST", "/api/v1/scan", scan, {{"Cookie", cookie}}).status, 403) << "no Origin";
   EXPECT_EQ(
