@@ -166,6 +166,11 @@ Entry read_entry(const Found& found) {
   return entry;
 }
 
+// Null where nobody said.
+Json amount(double value) {
+  return value > 0 ? Json(value) : Json();
+}
+
 Error unusable(const std::string& where, std::string why, std::string remedy) {
   return {ErrorKind::kUsage, "sessions cannot be searched so", where, std::move(why), std::move(remedy)};
 }
@@ -217,6 +222,30 @@ Result<Database> with_tables(const fs::path& file) {
 }
 
 }  // namespace
+
+Json json_of(const Entry& e) {
+  return {{"key", e.key},
+          {"name", e.name},
+          {"folder", e.folder.string()},
+          {"fabric", e.fabric},
+          {"id", e.metadata.id},
+          {"tags", e.metadata.tags},
+          {"composition", e.metadata.composition},
+          {"construction", e.metadata.construction},
+          {"side", e.metadata.side},
+          {"notes", e.metadata.notes},
+          {"weight_g_m2", amount(e.metadata.weight_g_m2)},
+          {"thickness_mm", amount(e.metadata.thickness_mm)},
+          {"revision", e.metadata.revision},
+          {"rig", e.rig},
+          {"calibration", e.calibration},
+          {"state", e.state},
+          {"taken", e.taken},
+          {"shots", e.shots},
+          {"solves", e.solves},
+          {"current_solve", e.current_solve},
+          {"error", e.error}};
+}
 
 Result<Catalogue> Catalogue::open(const fs::path& file) {
   std::error_code error;

@@ -30,6 +30,10 @@ struct Entry {
   std::string taken;          ///< ISO 8601, of the first shot, else when session.json was written
 };
 
+/// {"key", "name", "folder", "fabric", "id", "tags", ... "current_solve", "error"}; amounts that nobody said
+/// are null.
+Json json_of(const Entry& entry);
+
 /// What to look for. Empty fields ask for nothing.
 struct Query {
   /// All of these must occur in name, fabric, tags, composition, notes or id, each as the beginning of a

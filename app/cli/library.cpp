@@ -92,35 +92,6 @@ Result<Catalogue> fresh_catalogue(const Place& place, const CommonArguments& com
   return catalogue;
 }
 
-// Null where nobody said.
-Json amount(double value) {
-  return value > 0 ? Json(value) : Json();
-}
-
-Json json_of(const Entry& e) {
-  return {{"key", e.key},
-          {"name", e.name},
-          {"folder", e.folder.string()},
-          {"fabric", e.fabric},
-          {"id", e.metadata.id},
-          {"tags", e.metadata.tags},
-          {"composition", e.metadata.composition},
-          {"construction", e.metadata.construction},
-          {"side", e.metadata.side},
-          {"notes", e.metadata.notes},
-          {"weight_g_m2", amount(e.metadata.weight_g_m2)},
-          {"thickness_mm", amount(e.metadata.thickness_mm)},
-          {"revision", e.metadata.revision},
-          {"rig", e.rig},
-          {"calibration", e.calibration},
-          {"state", e.state},
-          {"taken", e.taken},
-          {"shots", e.shots},
-          {"solves", e.solves},
-          {"current_solve", e.current_solve},
-          {"error", e.error}};
-}
-
 // A text on one line of a terminal.
 std::string in_line(std::string text) {
   for (char& c : text) {

@@ -38,7 +38,7 @@ struct RigServer::State {
         sessions(rig.scan.sessions, rig.name),
         keeper(rig, std::move(open), std::move(run), events, log, pictures) {}
 
-  Result<void> open_jobs(const std::filesystem::path& weft) {
+  Result<void> open_jobs_and_library(const std::filesystem::path& weft) {
     JobQueueOptions options;
     options.folder = lock.folder() / "jobs";
     options.program = weft.empty() ? program_beside("weft") : weft;
@@ -48,7 +48,11 @@ struct RigServer::State {
     if (!opened) return std::move(opened).error();
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
-    parts.emplace(RigParts{rig, lock.folder(), keeper, sessions, pictures, *jobs, guard});
+    Result<std::unique_ptr<LibraryService>> shelves =
+        LibraryService::open(lock.folder(), {rig.scan.sessions});
+    if (!shelves) return std::move(shelves).error();
+    library = std::move(*shelves);
+    parts.emplace(RigParts{rig, lock.folder(), keeper, sessions, pictures, *jobs, *library, guard});
     return {};
   }
 
@@ -59,6 +63,7 @@ struct RigServer::State {
   FramePictures pictures;
   library::SessionCatalog sessions;
   std::unique_ptr<JobQueue> jobs;
+  std::unique_ptr<LibraryService> library;
   RigKeeper keeper;
   std::optional<RigParts> parts;
   GuardRules guard;
@@ -97,7 +102,7 @@ Result<std::unique_ptr<RigServer>> RigServer::start(const capture::Rig& rig, cap
   if (!rules) return std::move(rules).error();
   auto state = std::make_unique<State>(rig, std::move(*lock), std::move(open), std::move(run), options.say);
   state->guard = *rules;
-  if (Result<void> ok = state->open_jobs(options.weft); !ok) return std::move(ok).error();
+  if (Result<void> ok = state->open_jobs_and_library(options.weft); !ok) return std::move(ok).error();
   std::vector<Route> routes = api_routes(*state->parts);
   for (Route& route : page_routes()) routes.push_back(std::move(route));
   Result<std::unique_ptr<HttpServer>> http =

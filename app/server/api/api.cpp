@@ -23,7 +23,7 @@ Json whole_description(const std::vector<Resource>& resources) {
 std::vector<Route> api_routes(const RigParts& parts) {
   std::vector<Resource> resources = {server_resource(),    login_resource(parts),    rig_resource(parts),
                                      scan_resource(parts), sessions_resource(parts), frames_resource(parts),
-                                     jobs_resource(parts), events_resource()};
+                                     jobs_resource(parts), library_resource(parts),  events_resource()};
   std::vector<Route> routes;
   routes.push_back({"GET", "/api/v1/openapi.json",
                     [description = whole_description(resources)](const Call&) -> Result<Reply> {

@@ -7,6 +7,7 @@
 #include "app/server/http/http_guard.h"
 #include "app/server/http/routes.h"
 #include "app/server/jobs/job_queue.h"
+#include "app/server/library/library_service.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_keeper.h"
 #include "capture/rig.h"
@@ -23,6 +24,7 @@ struct RigParts {
   library::SessionCatalog& sessions;
   FramePictures& pictures;
   JobQueue& jobs;
+  LibraryService& library;
   GuardRules guard;  ///< who may come in
 };
 
@@ -43,6 +45,7 @@ Resource scan_resource(const RigParts& parts);
 Resource sessions_resource(const RigParts& parts);
 Resource frames_resource(const RigParts& parts);
 Resource jobs_resource(const RigParts& parts);
+Resource library_resource(const RigParts& parts);
 Resource events_resource();
 
 /// The page that a browser is led to, by a link that ends in #TOKEN: it logs in and shows the rig's state.

@@ -8,6 +8,7 @@ const char* common_description();
 const char* events_description();
 const char* frames_description();
 const char* jobs_description();
+const char* library_description();
 const char* login_description();
 const char* rig_description();
 const char* scan_description();

@@ -172,12 +172,45 @@ TEST_F(OpenApi, DescribesJobs) {
   EXPECT_EQ(conforming("GET", job + "/log", here + "/log").status, 200);
   EXPECT_EQ(conforming("GET", job, jobs + "/000099").status, 404);
   // The scripted frames are no photographs: however it ends, it ends.
-  for (int i = 0; i < 500 && ask(port_, "GET", here).json()["ended"] == ""; ++i)
+  for (int i = 0; i < 3000 && ask(port_, "GET", here).json()["ended"] == ""; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(conforming("GET", job, here).json()["state"], "failed");
   EXPECT_EQ(conforming("POST", job + "/first", here + "/first").status, 400) << "it has ended";
   EXPECT_EQ(conforming("POST", job + "/cancel", here + "/cancel").status, 400);
   EXPECT_EQ(conforming("POST", job + "/retry", here + "/retry").status, 202);
+}
+
+TEST_F(OpenApi, DescribesTheLibrary) {
+  const std::string library = "/api/v1/library", metadata = "/api/v1/sessions/{name}/metadata";
+  const std::string done = "/api/v1/sessions/done/metadata", undo = "/api/v1/undo", redo = "/api/v1/redo";
+  EXPECT_EQ(conforming("POST", undo, undo, "{}").status, 400) << "there is nothing yet";
+  const Answer changed =
+      conforming("POST", metadata, done, R"({"tags": ["autumn", "<b>"], "weight_g_m2": 210, "revision": 0})");
+  EXPECT_EQ(changed.status, 200) << changed.body;
+  EXPECT_EQ(changed.json()["words"], "tags: <b>, autumn; weight_g_m2: 210 of done");
+  EXPECT_EQ(conforming("POST", metadata, done, R"({"notes": "x", "revision": 0})").status, 409);
+  EXPECT_EQ(conforming("POST", metadata, "/api/v1/sessions/none/metadata", R"({"notes": "x"})").status, 404);
+  EXPECT_EQ(conforming("POST", metadata, done, R"({"current_solve": "0000000000000000"})").status, 404);
+  for (const char* wrong :
+       {"{}", R"({"side": "left"})", R"({"shots": []})", R"({"revision": -1, "notes": ""})"})
+    EXPECT_EQ(conforming("POST", metadata, done, wrong).status, 400) << wrong;
+
+  const auto found = [&](const std::string& query) {
+    return conforming("GET", library, library + "?" + query).json()["total"];
+  };
+  EXPECT_EQ(found("tag=autumn"), 1);
+  EXPECT_EQ(found("query=autumn%20sat"), 1);
+  // What others put there is seen within a second.
+  for (int i = 0; i < 200 && found("limit=1") != 2; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(found("limit=1"), 2) << "the unfinished one is another";
+  EXPECT_EQ(conforming("GET", library, library + "?limit=0").status, 400);
+  EXPECT_EQ(conforming("GET", library, library + "?colour=red").status, 400);
+  EXPECT_EQ(conforming("GET", library + "/tags", library + "/tags").json()["tags"].size(), 2U);
+  EXPECT_EQ(conforming("POST", undo, undo, "{}").status, 200);
+  EXPECT_EQ(found("tag=autumn"), 0);
+  EXPECT_EQ(conforming("POST", redo, redo, "{}").status, 200);
+  EXPECT_EQ(found("tag=autumn"), 1);
 }
 
 TEST_F(OpenApi, DescribesHowEachCallIsGuarded) {
