@@ -161,6 +161,17 @@ Json json_of(const SessionConditions& conditions) {
     const char* from = conditions.drift_source == Drift::Source::kPatches ? "patches" : "repeat";
     json["drift"].push_back({{"led", drift.led}, {"factor", drift.factor}, {"from", from}});
   }
+  if (conditions.cloth_gains) {
+    const pipeline::LedGains& told = *conditions.cloth_gains;
+    Json leds = Json::array();
+    for (std::size_t k = 0; k < conditions.leds.size(); ++k)
+      leds.push_back({{"led", conditions.leds[k]}, {"factor", told.gain[k]}, {"sigma", told.sigma[k]}});
+    json["cloth_gains"] = {{"leds", std::move(leds)},
+                           {"misfit_before", told.misfit_before},
+                           {"misfit_after", told.misfit_after},
+                           {"left_out_gain", told.left_out->mean},
+                           {"left_out_sigma", told.left_out->sigma}};
+  }
   return json;
 }
 
@@ -232,6 +243,22 @@ Result<void> follow_drift(const SessionPlan& plan, const JobContext& context, Lo
     loaded.conditions.drift.push_back({photographs.leds[k], drift.factor(k)});
   }
   return pipeline::follow(drift, photographs);
+}
+
+Result<void> follow_cloth(const JobContext& context, LoadedSession& loaded) {
+  if (loaded.conditions.drift_source == Drift::Source::kPatches) return {};
+  pipeline::Photographs& photographs = loaded.photographs;
+  Result<std::optional<pipeline::LedGains>> found = pipeline::find_led_gains(photographs, {}, context);
+  if (!found) return std::move(found).error();
+  if (!*found || !(*found)->is_kept()) return {};
+  Result<LightField> field =
+      LightField::make(brightened(photographs.field->lights(), (*found)->gain), photographs.camera,
+                       photographs.size, photographs.field->cloth_height_mm());
+  if (!field) return std::move(field).error();
+  photographs.field = std::move(*field);
+  loaded.conditions.cloth_gains = std::move(**found);
+  loaded.conditions.leds = photographs.leds;
+  return {};
 }
 
 }  // namespace weft::app

@@ -39,4 +39,8 @@ Result<void> leave_out_useless_lights(const SessionPlan& plan, LoadedSession& lo
 Result<void> follow_drift(const SessionPlan& plan, const JobContext& context, LoadedSession& loaded,
                           MoreFrames& more);
 
+/// Asks the cloth how bright each LED was (pipeline/conditions/led_gains.h), where no white patch has told,
+/// and gives the field's lights that brightness where left-out light is predicted better for it.
+Result<void> follow_cloth(const JobContext& context, LoadedSession& loaded);
+
 }  // namespace weft::app

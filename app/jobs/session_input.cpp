@@ -264,6 +264,7 @@ Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& co
   join_brackets(plan, loaded, more);
   if (Result<void> ok = leave_out_useless_lights(plan, loaded); !ok) return std::move(ok).error();
   if (Result<void> ok = follow_drift(plan, context, loaded, more); !ok) return std::move(ok).error();
+  if (Result<void> ok = follow_cloth(context, loaded); !ok) return std::move(ok).error();
   photographs.plane_weights = pipeline::measure_plane_weights(photographs);
   return loaded;
 }

@@ -13,6 +13,7 @@
 #include "core/result.h"
 #include "core/session.h"
 #include "pipeline/conditions/drift.h"
+#include "pipeline/conditions/led_gains.h"
 #include "pipeline/conditions/useless_lights.h"
 #include "pipeline/photographs.h"
 #include "solver/method.h"
@@ -69,8 +70,10 @@ struct SessionConditions {
   std::vector<LeftOutLed> left_out;                ///< by LED
   pipeline::Drift::Source drift_source = pipeline::Drift::Source::kNone;
   std::vector<LedDrift> drift;  ///< of every LED that is solved from, where there is a source
+  std::optional<pipeline::LedGains> cloth_gains;  ///< that the cloth told, where they were applied
+  std::vector<int> leds;                          ///< of cloth_gains
 };
-/// {"hot_photosites", "brackets", "left_out", "drift"}, those that there are, for solve.json.
+/// {"hot_photosites", "brackets", "left_out", "drift", "cloth_gains"}, those that there are, for solve.json.
 Json json_of(const SessionConditions& conditions);
 
 /// A session in memory, corrected and ready to be solved.

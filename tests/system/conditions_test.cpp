@@ -232,6 +232,34 @@ TEST_F(Conditions, PhotositesThatHotPngNamesAreReplacedEverywhere) {
                  {"changed after it was measured", "hot.png", "calibrate again"});
 }
 
+// The fluxes of the calibration are off by up to 3 percent, each by its own.
+TEST_F(Conditions, LedsThatChangedSinceTheirCalibrationAreToldByTheCloth) {
+  simulator::Scene scene = scene_named("smooth", {320, 256});
+  simulate(scene, session_);
+  const fs::path other = other_calibration([](Calibration& c) {
+    auto& leds = std::get<NearLights>(*c.lights).leds;
+    for (std::size_t k = 0; k < leds.size(); ++k) {
+      for (double& flux : leds[k].flux_rgb) flux *= 1 + 0.03 * std::sin(2.4 * static_cast<double>(k));
+    }
+  });
+  const Solved right = solve(session_), told = solve(session_, other);
+  EXPECT_FALSE(right.conditions.contains("cloth_gains"));
+  ASSERT_TRUE(told.conditions.contains("cloth_gains")) << told.conditions;
+  EXPECT_EQ(told.conditions["cloth_gains"]["leds"].size(), 10U);
+  app::LoadedSession as_calibrated =
+      need(app::load_session(need(app::plan_session({session_, other, {}})), {}));
+  as_calibrated.photographs.field = need(
+      LightField::make(*need(read_calibration(other)).lights, as_calibrated.photographs.camera,
+                       as_calibrated.photographs.size, as_calibrated.photographs.field->cloth_height_mm()));
+  const double alone = mean_error_deg(solve(as_calibrated), session_);
+  const double with = mean_error_deg(told, session_), best = mean_error_deg(right, session_);
+  RecordProperty("off_deg", std::to_string(alone));
+  RecordProperty("told_deg", std::to_string(with));
+  RecordProperty("right_deg", std::to_string(best));
+  EXPECT_LT(with, best + 0.3 * (alone - best)) << alone << " by the calibration, " << best << " by right fluxes";
+  EXPECT_GT(alone, 1.3 * best);
+}
+
 TEST_F(Conditions, DriftIsTakenFromTheRepeatShot) {
   simulator::Scene scene = scene_named("drift", {320, 240});
   scene.lights.drift = 0.05;
