@@ -256,7 +256,8 @@ TEST_F(Conditions, LedsThatChangedSinceTheirCalibrationAreToldByTheCloth) {
   RecordProperty("off_deg", std::to_string(alone));
   RecordProperty("told_deg", std::to_string(with));
   RecordProperty("right_deg", std::to_string(best));
-  EXPECT_LT(with, best + 0.3 * (alone - best)) << alone << " by the calibration, " << best << " by right fluxes";
+  EXPECT_LT(with, best + 0.3 * (alone - best))
+      << alone << " by the calibration, " << best << " by right fluxes";
   EXPECT_GT(alone, 1.3 * best);
 }
 
