@@ -27,6 +27,17 @@ struct ExposureRatio {
   friend bool operator==(const ExposureRatio&, const ExposureRatio&) = default;
 };
 
+/// Veiling glare (ISO 9358): what the lens scatters over the frame of all the light that it takes in. Each
+/// point's goes by a Gaussian; light from beyond the frame counts as that within, so even light has `share`
+/// of itself everywhere.
+struct Veil {
+  double share = 0;        ///< of the light, 0 to 0.2
+  double sigma_share = 0;  ///< its standard deviation
+  double spread = 0.5;     ///< of the Gaussian, frame diagonals, 0.05 to 10; assumed, not measured
+
+  friend bool operator==(const Veil&, const Veil&) = default;
+};
+
 /// How counts follow light: variance of one reading and departure from a straight line.
 struct Response {
   double electrons_per_count = 1;  ///< photon noise: variance of s counts of light is s / electrons_per_count
@@ -36,6 +47,7 @@ struct Response {
   std::vector<ExposureRatio> exposure_ratios = {};  ///< at one ISO and aperture
   std::optional<double> black_counts = {};  ///< measured, where the file's own level is not to be trusted
   std::optional<double> iso = {};           ///< of the frames it was measured on
+  std::optional<Veil> veil = {};            ///< of the lens, taken from readings (core/veil.h)
 
   /// The measured ratio between two exposure times (by same_setting()), whichever way it was measured.
   std::optional<double> exposure_ratio(double exposure_us, double to_exposure_us) const;

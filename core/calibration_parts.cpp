@@ -342,6 +342,17 @@ Result<std::optional<PointSpread>> optional_spread(const Json& json, const std::
   return std::optional<PointSpread>(spread);
 }
 
+Result<std::optional<Veil>> optional_veil(const Json& json, const std::string& where) {
+  if (!JsonFields(json, where).has("veil")) return std::optional<Veil>();
+  JsonFields fields(json["veil"], where + ": veil");
+  const Veil veil = {fields.number("share"), fields.number("sigma_share"), fields.number("spread")};
+  if (!(veil.share >= 0 && veil.share <= 0.2)) fields.reject("share", "must be 0 to 0.2");
+  if (!(veil.sigma_share >= 0)) fields.reject("sigma_share", "must not be negative");
+  if (!(veil.spread >= 0.05 && veil.spread <= 10)) fields.reject("spread", "must be 0.05 to 10");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  return std::optional<Veil>(veil);
+}
+
 }  // namespace
 
 Json json_of(const CameraPart& part) {
@@ -369,7 +380,11 @@ Result<CameraPart> camera_part_from_json(const Json& json, const std::string& wh
 }
 
 Json json_of(const Response& r) {
-  const char* version = r.iso ? "1.3" : r.black_counts ? "1.2" : r.exposure_ratios.empty() ? "1" : "1.1";
+  const char* version = r.veil                      ? "1.4"
+                        : r.iso                     ? "1.3"
+                        : r.black_counts            ? "1.2"
+                        : r.exposure_ratios.empty() ? "1"
+                                                    : "1.1";
   Json json = {{"schema", std::string("weft.response/") + version},
                {"electrons_per_count", r.electrons_per_count},
                {"read_noise_counts", r.read_noise_counts},
@@ -380,6 +395,10 @@ Json json_of(const Response& r) {
   }
   if (r.black_counts) json["black_counts"] = *r.black_counts;
   if (r.iso) json["iso"] = *r.iso;
+  if (r.veil) {
+    json["veil"] = {
+        {"share", r.veil->share}, {"sigma_share", r.veil->sigma_share}, {"spread", r.veil->spread}};
+  }
   return json;
 }
 
@@ -411,6 +430,9 @@ Result<Response> response_from_json(const Json& json, const std::string& where) 
     if (!read) return std::move(read).error();
     r.exposure_ratios = std::move(*read);
   }
+  Result<std::optional<Veil>> veil = optional_veil(json, where);
+  if (!veil) return std::move(veil).error();
+  r.veil = *veil;
   return r;
 }
 

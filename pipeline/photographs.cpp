@@ -24,23 +24,41 @@ Mosaics::Mosaics(std::vector<RawFrame> mosaics, std::optional<RawFrame> dark_sho
       response(response_of_camera),
       exposure(exposure_of_all),
       radiometry(frames.front(), dark ? &*dark : nullptr, response, exposure),
-      noise(radiometry.noise()) {}
+      noise(radiometry.noise()) {
+  measure_veils();
+}
 
 Mosaics::Mosaics(std::vector<RawFrame> others, const Mosaics& like)
     : frames(std::move(others)),
       response(like.response),
       exposure(like.exposure),
       radiometry(like.radiometry),
-      noise(like.radiometry.noise()) {}
+      noise(like.radiometry.noise()) {
+  measure_veils();
+}
 
 Mosaics Mosaics::alike(std::vector<RawFrame> others) const {
   return {std::move(others), *this};
 }
 
+void Mosaics::measure_veils() {
+  if (!response.veil) return;
+  for (const RawFrame& frame : frames) {
+    veils.emplace_back(*response.veil, frame.counts.size(), radiometry.cfa(),
+                       [&](Rect rows, View<float> out) { radiometry.read(frame.counts.plane(), rows, out); });
+  }
+}
+
 std::vector<View<const float>> Mosaics::readings(std::size_t k, Rect part, View<float> scratch) const {
   const View<float> out = scratch.crop({0, 0, part.width(), part.height()});
   radiometry.read(frames[k].counts.plane(), part, out);
-  if (brackets.empty() || brackets[k].empty()) return {out};
+  if (!brackets.empty() && !brackets[k].empty()) add_brackets(k, part, out);
+  if (!veils.empty()) veils[k].take_off(part, out);
+  return {out};
+}
+
+// The veil is as bright in all of them.
+void Mosaics::add_brackets(std::size_t k, Rect part, View<float> out) const {
   Image<float> others({part.width(), 1}, static_cast<int>(brackets[k].size()));
   std::vector<NoiseModel> noise_of = {radiometry.noise()};
   for (const Bracket& bracket : brackets[k]) noise_of.push_back(bracket.radiometry.noise());
@@ -55,12 +73,12 @@ std::vector<View<const float>> Mosaics::readings(std::size_t k, Rect part, View<
     }
     merge_exposures(exposures, noise_of, here);
   }
-  return {out};
 }
 
 void Mosaics::erase(std::size_t k) {
   frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(k));
   if (!brackets.empty()) brackets.erase(brackets.begin() + static_cast<std::ptrdiff_t>(k));
+  if (!veils.empty()) veils.erase(veils.begin() + static_cast<std::ptrdiff_t>(k));
 }
 
 std::vector<View<const float>> readings_of(const Frames& frames, std::size_t k, Rect part,

@@ -18,6 +18,7 @@
 #include "core/radiometry.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
+#include "core/veil.h"
 #include "solver/method.h"
 
 namespace weft::pipeline {
@@ -66,6 +67,7 @@ struct Mosaics {
   NoiseModel noise;                            ///< of brackets the worst
   std::vector<std::vector<Bracket>> brackets;  ///< of each frame; empty where there are none at all
   std::vector<Photosite> replaced;             ///< sorted: their counts are what their neighbours say
+  std::vector<VeilOverFrame> veils;            ///< of each frame, taken off; empty where the lens has none
 
   std::size_t count() const { return frames.size(); }
   Planes planes() const { return {1, radiometry.cfa()}; }
@@ -75,6 +77,8 @@ struct Mosaics {
 
  private:
   Mosaics(std::vector<RawFrame> others, const Mosaics& like);
+  void measure_veils();
+  void add_brackets(std::size_t k, Rect part, View<float> out) const;
 };
 
 using Frames = std::variant<Developed, Mosaics>;

@@ -27,6 +27,7 @@ constexpr double kTableAlbedo = 0.08;
 constexpr double kThickness_mm = 3;  // of the board
 constexpr double kWhite = 0.88;      // of paper, where the scene has none
 constexpr double kBright = 0.85;     // of full scale: the brightest spot of white paper
+constexpr double kTrapShare = 0.15;  // of the frame's height
 constexpr CapturePose kTurned = {.rotation_deg = 90};
 constexpr CapturePose kPlane = {.tilt_deg = 15, .azimuth_deg = 210};
 
@@ -196,7 +197,8 @@ class CaptureWriter {
         if (Result<void> ok = pair(still, lit, exposure_us, folder / name); !ok) return ok;
       }
     }
-    return write_scale(folder / "scale");
+    if (Result<void> ok = write_scale(folder / "scale"); !ok) return ok;
+    return scene_.effects.veil ? write_trap(folder / "trap", sheet) : Result<void>();
   }
 
   Result<void> write_color(const fs::path& folder) {
@@ -322,6 +324,19 @@ class CaptureWriter {
     return write_file(folder / "scale.toml",
                       fmt::format("reflectances = [{}]\ncorners_px = [{}]\n",
                                   fmt::join(pattern.reflectances, ", "), corners_px(scale, pattern)));
+  }
+
+  /// The sheet with a hole in its middle that sends nothing back.
+  Result<void> write_trap(const fs::path& folder, std::vector<TargetSettings> things) {
+    TargetSettings trap;
+    const double height_mm = scene_.camera.height * scene_.camera.mm_per_pixel;
+    trap.pattern = GreyScaleSettings{
+        .reflectances = {0}, .patch_mm = kTrapShare * height_mm, .gap_mm = 0, .margin_mm = 0};
+    trap.white = 0;
+    trap.centre_mm.z = 1;
+    const double exposure_us = exposure_for(scene_, rig_, {things.front()}, {1}, kBright);
+    things.insert(things.begin(), std::move(trap));
+    return pair(with(things), {1}, exposure_us, folder);
   }
 
   /// Of the row of patches, clockwise from the upper left of the first.

@@ -41,7 +41,7 @@ struct CapturesReport {
 ///   table's tags, and board.toml.
 /// - response: dark/, led01/, led02/, led01+led02/: pairs of a white sheet at four exposures, of which the
 ///   shorter ones gather [camera.retakes] shutter_error more than their time says; scale/: a grey scale, with
-///   scale.toml.
+///   scale.toml; trap/: the sheet with a black trap in its middle, where the lens has a veil.
 /// - color: chart.weft, a session of the 24-patch chart; for scenes with spectra.chart and the effect
 ///   spectral.
 /// - lights: sheet01.weft to sheet05.weft, a sheet of white paper flat and tilted by 20 degrees about x and

@@ -1,16 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/raw_picture.h"
 
+#include <optional>
+
 #include "core/radiometry.h"
+#include "core/veil.h"
 
 namespace weft::app {
 
 Image<float> half_size_picture(const RawFrame& frame, const Response& response) {
   const Radiometry radiometry(frame, nullptr, response, {1e6, 100});
   const Size size = frame.counts.size();
+  const auto read = [&](Rect rows, View<float> out) { radiometry.read(frame.counts.plane(), rows, out); };
+  std::optional<VeilOverFrame> veil;
+  if (response.veil) veil.emplace(*response.veil, size, frame.cfa, read);
   Image<float> half({size.width / 2, size.height / 2}, 3), rows({size.width, 2});
   for (int y = 0; y < half.height(); ++y) {
-    radiometry.read(frame.counts.plane(), {0, 2 * y, size.width, 2 * y + 2}, rows.plane());
+    const Rect two = {0, 2 * y, size.width, 2 * y + 2};
+    read(two, rows.plane());
+    if (veil) veil->take_off(two, rows.plane());
     for (int x = 0; x < half.width(); ++x) {
       std::array<float, 3> sum = {}, count = {};
       for (int j = 0; j < 2; ++j) {

@@ -152,6 +152,7 @@ std::string words_of(const UselessLight& light) {
 Json json_of(const SessionConditions& conditions) {
   Json json = Json::object();
   if (conditions.replaced_photosites) json["hot_photosites"] = *conditions.replaced_photosites;
+  if (conditions.veil) json["veil"] = *conditions.veil;
   if (conditions.brackets > 0) json["brackets"] = conditions.brackets;
   for (const LeftOutLed& left_out : conditions.left_out) {
     const char* why = left_out.why == UselessLight::Why::kSaturated ? "saturated" : "not lit";

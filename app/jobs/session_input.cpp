@@ -258,6 +258,8 @@ Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& co
       plan.raw ? read_mosaics(plan, shots, context, more) : read_developed(plan, shots, context, more);
   if (!frames) return std::move(frames).error();
   photographs.frames = std::move(*frames);
+  if (plan.raw && plan.calibration.response->veil)
+    loaded.conditions.veil = plan.calibration.response->veil->share;
   if (Result<void> ok = replace_bad_photosites(plan, context, loaded, more); !ok) {
     return std::move(ok).error();
   }

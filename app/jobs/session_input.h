@@ -66,6 +66,7 @@ struct LedDrift {
 /// What was found in the frames and corrected: docs/conditions.md.
 struct SessionConditions {
   std::optional<std::size_t> replaced_photosites;  ///< of raw frames
+  std::optional<double> veil;                      ///< share of the light that was taken from every reading
   std::size_t brackets = 0;                        ///< shots that were joined
   std::vector<LeftOutLed> left_out;                ///< by LED
   pipeline::Drift::Source drift_source = pipeline::Drift::Source::kNone;
@@ -73,7 +74,7 @@ struct SessionConditions {
   std::optional<pipeline::LedGains> cloth_gains;  ///< that the cloth told, where they were applied
   std::vector<int> leds;                          ///< of cloth_gains
 };
-/// {"hot_photosites", "brackets", "left_out", "drift", "cloth_gains"}, those that there are, for solve.json.
+/// {"hot_photosites", "veil", "brackets", "left_out", "drift", "cloth_gains"}, those that there are, for solve.json.
 Json json_of(const SessionConditions& conditions);
 
 /// A session in memory, corrected and ready to be solved.

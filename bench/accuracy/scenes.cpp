@@ -184,7 +184,6 @@ Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
   const Size size = {area.width(), area.height()};
   const auto lights = static_cast<int>(field->count());
   Patch patch;
-  patch.camera = camera;
   patch.photographs.camera = camera;
   patch.readings = Image<float>(size, lights);
   patch.visible = Image<float>(size, lights);
@@ -210,17 +209,17 @@ Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
 Result<Patch> with_lights(const Patch& patch, const std::vector<int>& numbers) {
   Result<Lights> lights = select_lights(patch.field().lights(), numbers);
   if (!lights) return std::move(lights).error();
-  Result<LightField> field =
-      LightField::make(std::move(*lights), patch.camera, patch.size(), patch.field().cloth_height_mm());
+  Result<LightField> field = LightField::make(std::move(*lights), patch.photographs.camera, patch.size(),
+                                              patch.field().cloth_height_mm());
   if (!field) return std::move(field).error();
   Patch fewer;
-  fewer.camera = patch.camera;
   fewer.normal = copy_of(patch.normal);
   fewer.albedo = copy_of(patch.albedo);
   fewer.openness = copy_of(patch.openness);
   fewer.readings = Image<float>(patch.size(), static_cast<int>(numbers.size()));
   fewer.visible = Image<float>(patch.size(), static_cast<int>(numbers.size()));
   fewer.photographs.size = patch.size();
+  fewer.photographs.camera = patch.photographs.camera;
   fewer.photographs.field = std::move(*field);
   fewer.photographs.albedo_scale = patch.photographs.albedo_scale;
   const pipeline::Mosaics& all = *patch.photographs.mosaics();

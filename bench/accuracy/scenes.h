@@ -43,7 +43,6 @@ struct Patch {
   Image<float> normal;                ///< planes X, Y, Z
   Image<float> albedo;                ///< planes R, G, B: the diffuse part
   Image<float> openness;              ///< share of an even sky that the point sees; 1 without interreflection
-  CameraModel camera;                 ///< of the patch
 
   const LightField& field() const { return *photographs.field; }
   Size size() const { return photographs.size; }

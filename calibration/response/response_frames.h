@@ -32,6 +32,7 @@ struct ResponseFrames {
   double file_white = 0;
   std::map<std::vector<int>, std::vector<ExposureFrames>> by_leds;  ///< by rising exposure; {} is dark
   std::vector<std::filesystem::path> scale;                         ///< frames of the grey scale
+  std::vector<std::filesystem::path> trap;                          ///< frames of a black trap in white paper
   std::vector<TransferPoint> transfer;                              ///< of all pairs of frames
   int pairs = 0;                                                    ///< of frames
   Image<std::uint8_t> bad;  ///< hot and dead photosites are 255; empty without dark frames

@@ -198,6 +198,7 @@ Calibration exact_calibration(const Scene& scene, const SceneRig& rig) {
   calibration.camera = rig.camera;
   if (scene.effects.defocus) calibration.spread.emplace().sigma_px.fill(spread_px(scene.camera.blur));
   calibration.response = response_of(rig.sensor);
+  if (scene.effects.veil) calibration.response->veil = {scene.camera.veil.share, 0, scene.camera.veil.spread};
   if (scene.effects.nonlinearity) calibration.response->linearity.fill(scene.camera.linearity);
   if (const RetakeSettings& retakes = scene.camera.retakes; retakes.bracket) {
     calibration.response->exposure_ratios = {{bracket_exposure_us(retakes, rig, false), rig.exposure_us,

@@ -269,9 +269,9 @@ Result<ResponseFrames> read_response_frames(const fs::path& folder, const Calibr
     const std::string name = entry.filename().string();
     if (!fs::is_directory(entry, failed)) continue;
     const std::optional<std::vector<int>> leds = leds_of(name);
-    if (!leds && name != "scale") {
-      out.warnings.push_back(
-          fmt::format("{} was left out: it is none of dark, ledNN, ledNN+ledMM and scale", entry.string()));
+    if (!leds && name != "scale" && name != "trap") {
+      out.warnings.push_back(fmt::format(
+          "{} was left out: it is none of dark, ledNN, ledNN+ledMM, scale and trap", entry.string()));
       continue;
     }
     Result<std::vector<ExposureFrames>> exposures = listed(entry, body);
@@ -281,9 +281,8 @@ Result<ResponseFrames> read_response_frames(const fs::path& folder, const Calibr
     } else if (leds) {
       out.by_leds[*leds] = std::move(*exposures);
     } else {
-      for (const ExposureFrames& e : *exposures) {
-        out.scale.insert(out.scale.end(), e.files.begin(), e.files.end());
-      }
+      std::vector<fs::path>& files = name == "scale" ? out.scale : out.trap;
+      for (const ExposureFrames& e : *exposures) files.insert(files.end(), e.files.begin(), e.files.end());
     }
   }
   const bool has_lit = std::any_of(out.by_leds.begin(), out.by_leds.end(),

@@ -10,7 +10,7 @@
 
 namespace weft::app {
 
-/// Reads dark/, ledNN/, ledNN+ledMM/ of `folder` and lists scale/: raw frames of one body, ISO and aperture,
+/// Reads dark/, ledNN/, ledNN+ledMM/ of `folder` and lists scale/ and trap/: raw frames of one body, ISO and aperture,
 /// in each folder sorted by their exposure. A frame more than nine tenths of which are full in every channel
 /// is left out. Memory: eight frames, and 100 bytes for 32 x 32 photosites a pair. Errors: kNoInput (no such
 /// folder, no frames), kBadData (a frame of another body, ISO, aperture or size, or not that of the

@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "core/radiometry.h"
 #include "core/session.h"
+#include "core/veil.h"
 
 namespace weft::app {
 namespace {
@@ -146,11 +147,16 @@ Result<Image<std::uint8_t>> SessionReader::read_mosaics(std::vector<BlockGrid>& 
     if (!frame) return std::move(frame).error();
     const Radiometry radiometry(*frame, dark ? &*dark : nullptr, *options_.calibration.response,
                                 {shot.exposure_us, shot.iso});
+    const auto read = [&](Rect rows, View<float> out) { radiometry.read(frame->counts.plane(), rows, out); };
+    std::optional<VeilOverFrame> veil;
+    if (const auto& measured = options_.calibration.response->veil)
+      veil.emplace(*measured, size(), frame->cfa, read);
     BlockGrid grid(size(), block_px_);
     Image<float> band({size().width, block_px_});
     for (int row = 0; row < grid.rows; ++row) {
-      radiometry.read(frame->counts.plane(), {0, row * block_px_, size().width, (row + 1) * block_px_},
-                      band.plane());
+      const Rect rows = {0, row * block_px_, size().width, (row + 1) * block_px_};
+      read(rows, band.plane());
+      if (veil) veil->take_off(rows, band.plane());
       average_row(grid, row, band.plane(), frame->cfa);
     }
     leds[static_cast<std::size_t>(shot.led - 1)] = std::move(grid);
