@@ -469,9 +469,17 @@ Eigen::MatrixXd Fit::inverse_of_normal_matrix() const {
   return scale.asDiagonal() * (0.5 * (inverse + inverse.transpose())) * scale.asDiagonal();
 }
 
+// The normal deviate as rare as Student's t = sqrt(square (f - 1) / (f - square)) of f - 1 degrees of freedom
+// (Wallace 1959).
+double normal_of_student(double square, double freedom) {
+  const double rest = freedom - 1;
+  return (8 * rest + 1) / (8 * rest + 3) * std::sqrt(rest * std::log(freedom / (freedom - square)));
+}
+
 // Each shot against what all others say of it. Where readings tell a share `told` of a gain and the prior the
 // rest, readings alone say 1 / told times what was found, and gains of mere flicker scatter by the root of
-// told. Sigmas are of Student's residual, which has no part in the flicker that it is held against.
+// told. Sigmas are those of a normal deviate as rare as Student's residual, which has no part in the flicker
+// that it is held against: of few shots a large one is not rare.
 void Fit::find_other_shot(const Eigen::MatrixXd& sigma) {
   const double variance = fit_.flicker * fit_.flicker;
   const auto told_of = [&](double* shot) {
@@ -487,8 +495,8 @@ void Fit::find_other_shot(const Eigen::MatrixXd& sigma) {
       const double told = begin_.contains(gain) ? told_of(gain) : 0;
       if (!(told > kToldFrom && freedom > 1)) continue;
       const double square = *gain * *gain / (told * variance);
-      const double sigmas = square < freedom ? std::sqrt(square * (freedom - 1) / (freedom - square))
-                                             : std::numeric_limits<double>::infinity();
+      const double sigmas =
+          square < freedom ? normal_of_student(square, freedom) : std::numeric_limits<double>::infinity();
       if (sigmas <= worst || std::abs(*gain / told) <= kOtherShotFrom * options_.flicker) continue;
       worst = sigmas;
       fit_.other_shot = {j, k, *gain / told};
