@@ -355,5 +355,42 @@ TEST(CalibrateResponse, NamesFoldersThatMeanNothing) {
   EXPECT_THAT(outcome->warnings, SizeIs(3));
 }
 
+TEST(CalibrateResponse, MeasuresTheVeilOfALensInABlackTrap) {
+  const Workspace work;
+  Frames frames;
+  frames.add_all(work / "response");
+  fs::create_directories(work / "response" / "trap");
+  for (int i = 0; i < 2; ++i) {
+    const RawFrame frame = frames.sensor.frame(kSize, ++frames.take, kExposures_us[2], [](int x, int y, int) {
+      const bool in_trap = std::abs(x - 96) < 20 && std::abs(y - 64) < 20;
+      return in_trap ? 0.6 * 0.008
+                     : 0.6 * 1.008;  // of even light a lens that spreads far adds the same everywhere
+    });
+    ASSERT_TRUE(simulator::write_dng(work / "response" / "trap" / fmt::format("{}.dng", i), frame));
+  }
+  const auto outcome = calibrate(work);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  // A twelfth of the sheet is the trap, which sends nothing.
+  const Veil veil = *outcome->calibration.response->veil;
+  EXPECT_NEAR(veil.share, 0.0085, 0.0003);
+  EXPECT_LT(veil.sigma_share, 0.0003);
+  EXPECT_THAT(outcome->report.summary, HasSubstr("a veil of 0.8"));
+  EXPECT_EQ(read_calibration(work / "new")->response->veil, veil);
+
+  fs::remove_all(work / "response" / "trap");
+  CalibrateResponseOptions again = {work / "response", work / "new", work / "again", {}};
+  const auto kept = calibrate_response(again, {});
+  ASSERT_TRUE(kept) << kept.error().message();
+  EXPECT_EQ(kept->calibration.response->veil, veil) << "what was not photographed again stays";
+}
+
+TEST(CalibrateResponse, RefusesATrapThatIsNotThere) {
+  const Workspace work;
+  Frames frames;
+  frames.add_all(work / "response");
+  frames.add(work / "response", "trap", 1, 0, kExposures_us[3]);
+  EXPECT_THAT(refusal(work), HasSubstr("no black trap was found"));
+}
+
 }  // namespace
 }  // namespace weft::app

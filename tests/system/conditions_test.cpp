@@ -460,5 +460,31 @@ TEST_F(Conditions, CalibrationsShareOfSigmaIsWorkedOutOnAGridAndBlended) {
   EXPECT_NEAR(one(0, 0, 0), 0.28, 0.15) << "1 percent of each LED";
 }
 
+// Dark cloth between two white sheets, behind a lens that spreads one percent of the light.
+TEST_F(Conditions, AVeilOverDarkClothIsTakenOff) {
+  simulator::Scene scene = scene_named("twill", {160, 96});
+  scene.material = {};
+  scene.material.albedo.fill(0.04);
+  for (const double side : {-1.0, 1.0}) {
+    simulator::TargetSettings sheet;
+    sheet.pattern = simulator::GreyScaleSettings{
+        .reflectances = {0.9}, .patch_mm = 96 * scene.camera.mm_per_pixel, .margin_mm = 0};
+    sheet.centre_mm = {side * 80 * scene.camera.mm_per_pixel, 0, 1};
+    scene.targets.push_back(sheet);
+  }
+  scene.camera.veil.share = 0.01;
+  scene.effects.veil = scene.effects.noise = true;
+  simulate(scene, session_);
+  const auto on_cloth = [](int x, int) { return x >= 52 && x < 108; };
+  const Solved known = solve(session_);
+  const Solved unknown = solve(
+      session_, other_calibration([](Calibration& calibration) { calibration.response->veil.reset(); }));
+  EXPECT_EQ(known.conditions["veil"], 0.01);
+  EXPECT_FALSE(unknown.conditions.contains("veil"));
+  const double with_deg = mean_error_deg(known, session_, on_cloth);
+  const double without_deg = mean_error_deg(unknown, session_, on_cloth);
+  EXPECT_GT(without_deg, 2 * with_deg) << with_deg << " degrees with it taken off";
+}
+
 }  // namespace
 }  // namespace weft::test
