@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "app/server/api/descriptions.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -25,11 +26,12 @@ std::vector<Route> api_routes(const RigParts& parts) {
                                      scan_resource(parts), sessions_resource(parts), frames_resource(parts),
                                      jobs_resource(parts), library_resource(parts),  events_resource()};
   std::vector<Route> routes;
+  Reply description = json_reply(whole_description(resources));
+  description.keeping = Keeping::kAskAgain;
+  description.tag = sha256_of(description.body);
   routes.push_back({"GET", "/api/v1/openapi.json",
-                    [description = whole_description(resources)](const Call&) -> Result<Reply> {
-                      return json_reply(description);
-                    },
-                    false, Pool::kQuick});
+                    [description](const Call&) -> Result<Reply> { return description; }, false,
+                    Pool::kQuick});
   for (Resource& resource : resources) {
     for (Route& route : resource.routes) routes.push_back(std::move(route));
   }

@@ -1,4 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 #include "app/server/api/api.h"
@@ -22,12 +26,56 @@ Result<FrameFile> frame_of(const RigParts& parts, const Call& call) {
   return FrameFile{std::move(frame->file), std::move(frame->sha256)};
 }
 
+/// How long a reply about this frame may be kept, and by which tag. A frame that leaves its session gives its
+/// index to another one, so that only a digest names for ever.
+Result<Reply> kept_reply(const Call& call, const FrameFile& frame, const char* type, const char* tag) {
+  Reply reply = {200, type};
+  const bool is_digest = frame.sha256.size() == 64 &&
+                         std::ranges::all_of(frame.sha256, [](unsigned char c) { return std::isxdigit(c); });
+  if (is_digest) {
+    reply.tag = tag + frame.sha256;
+    reply.keeping = Keeping::kAskAgain;
+  }
+  const auto wanted = call.query.find("sha256");
+  if (wanted == call.query.end()) return reply;
+  if (!is_digest || wanted->second != frame.sha256) {
+    return Error{ErrorKind::kNoInput, "there is no such frame", "sha256",
+                 "the frame of this index is another one", "see the session for the frames there are"};
+  }
+  reply.keeping = Keeping::kForever;
+  return reply;
+}
+
 Result<Reply> thumbnail(const RigParts& parts, const Call& call) {
   const Result<FrameFile> frame = frame_of(parts, call);
   if (!frame) return frame.error();
+  Result<Reply> reply = kept_reply(call, *frame, "image/png", "thumbnail-");
+  if (!reply || call.has(reply->tag)) return reply;
   Result<std::string> png = parts.pictures.thumbnail(*frame);
   if (!png) return busy_or(png.error());
-  return Reply{200, "image/png", std::move(*png)};
+  reply->body = std::move(*png);
+  return reply;
+}
+
+/// The name that a downloaded frame gets: of its session and its file, without what a header does not take.
+std::string file_name_of(const std::string& session, const std::filesystem::path& file) {
+  std::string name = session + "_" + file.filename().string();
+  std::ranges::replace_if(
+      name, [](unsigned char c) { return std::isalnum(c) == 0 && c != '.' && c != '-'; }, '_');
+  return name;
+}
+
+Result<Reply> raw(const RigParts& parts, const Call& call) {
+  const Result<FrameFile> frame = frame_of(parts, call);
+  if (!frame) return frame.error();
+  Result<Reply> reply = kept_reply(call, *frame, "application/octet-stream", "");
+  if (!reply) return reply;
+  Result<std::shared_ptr<const FileBody>> file = open_file_body(frame->file);
+  if (!file) return std::move(file).error();
+  const std::string name = file_name_of(call.segments.at(0), frame->file);
+  reply->headers.emplace_back("Content-Disposition", fmt::format("attachment; filename=\"{}\"", name));
+  reply->file = std::move(*file);
+  return reply;
 }
 
 Result<Reply> histogram(const RigParts& parts, const Call& call) {
@@ -44,7 +92,9 @@ Resource frames_resource(const RigParts& parts) {
   return {{{"GET", "/api/v1/sessions/{name}/frames/{index}/thumbnail",
             [&parts](const Call& call) { return thumbnail(parts, call); }, false, Pool::kPictures},
            {"GET", "/api/v1/sessions/{name}/frames/{index}/histogram",
-            [&parts](const Call& call) { return histogram(parts, call); }, false, Pool::kPictures}},
+            [&parts](const Call& call) { return histogram(parts, call); }, false, Pool::kPictures},
+           {"GET", "/api/v1/sessions/{name}/frames/{index}/raw",
+            [&parts](const Call& call) { return raw(parts, call); }, false, Pool::kFiles}},
           frames_description()};
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -15,7 +16,9 @@ Route page_file(const char* path, const char* type, const char* text) {
                        text,
                        {{"Content-Security-Policy", kPolicy},
                         {"Referrer-Policy", "no-referrer"},
-                        {"Cross-Origin-Opener-Policy", "same-origin"}}};
+                        {"Cross-Origin-Opener-Policy", "same-origin"}},
+                       Keeping::kAskAgain,
+                       sha256_of(text)};
   return {"GET", path, [reply](const Call&) -> Result<Reply> { return reply; }, true, Pool::kQuick};
 }
 

@@ -31,7 +31,8 @@ Json to_json(const Shot& shot, const std::string& name) {
           {"iso", shot.iso},
           {"f_number", shot.f_number},
           {"time", shot.time},
-          {"thumbnail", path + "/thumbnail"},
+          {"thumbnail", path + "/thumbnail?sha256=" + shot.sha256},
+          {"raw", path + "/raw?sha256=" + shot.sha256},
           {"warnings", warnings}};
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <netdb.h>
 #include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -21,7 +22,7 @@ namespace weft::app {
 namespace {
 
 constexpr int kBacklog = 512;
-constexpr auto kFarewell = std::chrono::seconds(1);  // for a refused client to take its answer
+constexpr auto kFarewell = std::chrono::seconds(1);  // for a client to take its last answer
 
 struct FreeAddresses {
   void operator()(addrinfo* first) const { freeaddrinfo(first); }
@@ -63,6 +64,12 @@ Result<Descriptor> listen_on(const addrinfo& address, const std::string& where) 
     return cannot_listen(where, errno);
   }
   return socket;
+}
+
+std::chrono::steady_clock::time_point in_s(double seconds) {
+  const std::chrono::duration<double> patience(seconds);
+  return std::chrono::steady_clock::now() +
+         std::chrono::duration_cast<std::chrono::steady_clock::duration>(patience);
 }
 
 int port_of(int socket) {
@@ -123,20 +130,38 @@ void HttpDoor::close() {
   closing_ = true;
   eventfd_write(wake_.get(), 1);
   if (thread_.joinable()) thread_.join();
+  const std::lock_guard lock(mutex_);
+  returned_.clear();
+}
+
+void HttpDoor::take_back(AnsweredRequest answered) {
+  Waiting client = {std::move(answered.socket), std::move(answered.rest)};
+  client.last = answered.last;
+  begin_answer(client, std::move(answered.answer));
+  --in_service_;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!client.gone && !closing_) returned_.push_back(std::move(client));
+  }
+  eventfd_write(wake_.get(), 1);
 }
 
 void HttpDoor::run() {
-  constexpr int kTickMs = 100;  // how late a deadline may be noticed
   std::vector<pollfd> watched;
   while (!closing_) {
+    take_returned();
     const bool room = in_service_ < limits_.in_service;
     watched = {{wake_.get(), POLLIN, 0}, {room ? listening_.get() : -1, POLLIN, 0}};
-    for (const Waiting& client : waiting_) watched.push_back({client.socket.get(), POLLIN, 0});
-    const bool idle = waiting_.empty() && room;
-    if (poll(watched.data(), watched.size(), idle ? -1 : kTickMs) < 0) continue;
+    for (const Waiting& client : waiting_) {
+      watched.push_back(
+          {client.socket.get(), static_cast<short>(client.answer.empty() ? POLLIN : POLLOUT), 0});
+    }
+    if (poll(watched.data(), watched.size(), next_deadline_ms()) < 0) continue;
+    eventfd_t woken = 0;
+    if (watched[0].revents != 0) eventfd_read(wake_.get(), &woken);
     std::size_t at = 2;
     for (Waiting& client : waiting_) {
-      if (watched[at++].revents != 0) receive(client);
+      if (const short events = watched[at++].revents; events != 0) attend(client, events);
     }
     if (watched[1].revents != 0) accept_all();
     drop_overdue();
@@ -144,20 +169,61 @@ void HttpDoor::run() {
   waiting_.clear();
 }
 
+int HttpDoor::next_deadline_ms() const {
+  if (waiting_.empty()) return -1;
+  const Clock::time_point next = std::ranges::min_element(waiting_, {}, &Waiting::deadline)->deadline;
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now()).count();
+  return static_cast<int>(std::max<std::int64_t>(left, 0));
+}
+
+void HttpDoor::take_returned() {
+  std::vector<Waiting> returned;
+  {
+    const std::lock_guard lock(mutex_);
+    returned.swap(returned_);
+  }
+  for (Waiting& client : returned) go_on(admit(std::move(client)));
+  waiting_.remove_if([](const Waiting& client) { return client.gone; });
+}
+
 void HttpDoor::accept_all() {
   for (int taken = 0; taken < kBacklog; ++taken) {
     Descriptor socket(accept4(listening_.get(), nullptr, nullptr, SOCK_CLOEXEC | SOCK_NONBLOCK));
     const bool out_of_descriptors = !socket && (errno == EMFILE || errno == ENFILE);
-    if (!socket && !out_of_descriptors) return;
-    if (waiting_.size() >= limits_.waiting || (out_of_descriptors && !waiting_.empty())) {
-      waiting_.pop_front();
-    }
+    if (out_of_descriptors && !waiting_.empty()) waiting_.pop_front();
     if (!socket) return;
-    const auto patience = std::chrono::duration<double>(limits_.request_deadline_s);
-    const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(patience);
-    waiting_.push_back({std::move(socket), {}, deadline});
-    receive(waiting_.back());
+    const int yes = 1;  // the pieces of a stream leave as they come
+    setsockopt(socket.get(), IPPROTO_TCP, TCP_NODELAY, &yes, sizeof yes);
+    Waiting client = {std::move(socket), {}};
+    client.deadline = in_s(limits_.request_deadline_s);
+    receive(admit(std::move(client)));
   }
+}
+
+/// The oldest gives way where there are too many, or too much that they do not take.
+HttpDoor::Waiting& HttpDoor::admit(Waiting client) {
+  if (waiting_.size() >= limits_.waiting) waiting_.pop_front();
+  if (!client.answer.empty()) {
+    std::size_t bytes = client.answer.size();
+    for (const Waiting& other : waiting_) bytes += other.answer.size();
+    while (bytes > limits_.answer_bytes) {
+      const auto oldest = std::ranges::find_if_not(waiting_, &std::string::empty, &Waiting::answer);
+      if (oldest == waiting_.end()) break;
+      bytes -= oldest->answer.size();
+      waiting_.erase(oldest);
+    }
+  }
+  return waiting_.emplace_back(std::move(client));
+}
+
+void HttpDoor::attend(Waiting& client, short events) {
+  if (client.answer.empty()) return receive(client);
+  if ((events & (POLLERR | POLLHUP)) != 0) {
+    client.gone = true;
+    return;
+  }
+  send_some(client);
+  if (client.answer.empty()) go_on(client);
 }
 
 void HttpDoor::receive(Waiting& client) {
@@ -168,31 +234,73 @@ void HttpDoor::receive(Waiting& client) {
     client.gone = true;
     return;
   }
-  if (client.answered) return;
+  if (client.ended) return;
+  if (std::exchange(client.idle, false)) client.deadline = in_s(limits_.request_deadline_s);
   client.received.append(block.data(), static_cast<std::size_t>(bytes));
+  take_in(client);
+}
+
+void HttpDoor::take_in(Waiting& client) {
   const RequestFrame frame = frame_request(client.received, limits_.frame);
   if (frame.status != 0) return refuse(client, frame.status, frame.why);
   if (frame.bytes == 0) return;
+  std::string rest = client.received.substr(frame.bytes);
   client.received.resize(frame.bytes);
   client.gone = true;
   ++in_service_;
-  enter_({std::move(client.socket), std::move(client.received)});
+  enter_({std::move(client.socket), std::move(client.received), std::move(rest), frame.last});
 }
 
 void HttpDoor::refuse(Waiting& client, int status, std::string_view why) {
-  const std::string answer = refusal(status, why);
-  if (send(client.socket.get(), answer.data(), answer.size(), MSG_NOSIGNAL) < 0) client.gone = true;
-  shutdown(client.socket.get(), SHUT_WR);
-  client.answered = true;
-  client.received = {};
-  client.deadline = Clock::now() + kFarewell;
+  client.last = true;
+  begin_answer(client, refusal(status, why));
+  go_on(client);
+}
+
+void HttpDoor::begin_answer(Waiting& client, std::string answer) const {
+  client.answer = std::move(answer);
+  client.answer_end = in_s(limits_.answer_deadline_s);
+  client.deadline = std::min(in_s(limits_.write_deadline_s), client.answer_end);
+  send_some(client);
+}
+
+void HttpDoor::send_some(Waiting& client) const {
+  while (client.sent < client.answer.size()) {
+    const ssize_t more = send(client.socket.get(), client.answer.data() + client.sent,
+                              client.answer.size() - client.sent, MSG_NOSIGNAL);
+    if (more < 0 && errno == EINTR) continue;
+    if (more < 0 && errno == EAGAIN) return;
+    if (more < 0) {
+      client.gone = true;
+      return;
+    }
+    client.sent += static_cast<std::size_t>(more);
+    client.deadline = std::min(in_s(limits_.write_deadline_s), client.answer_end);
+  }
+  client.answer = {};
+  client.sent = 0;
+}
+
+/// With what comes after an answer.
+void HttpDoor::go_on(Waiting& client) {
+  if (client.gone || !client.answer.empty()) return;
+  if (client.last) {
+    shutdown(client.socket.get(), SHUT_WR);
+    client.ended = true;
+    client.received = {};
+    client.deadline = Clock::now() + kFarewell;
+    return;
+  }
+  client.idle = client.received.empty();
+  client.deadline = in_s(client.idle ? limits_.idle_s : limits_.request_deadline_s);
+  if (!client.idle) take_in(client);
 }
 
 void HttpDoor::drop_overdue() {
   const Clock::time_point now = Clock::now();
   for (Waiting& client : waiting_) {
     if (client.gone || now < client.deadline) continue;
-    const bool began = !client.answered && !client.received.empty();
+    const bool began = !client.received.empty() && client.answer.empty();
     if (began) {
       refuse(client, 408, "the request did not come in time");
     } else {

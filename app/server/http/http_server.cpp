@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/http/http_server.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <httplib.h>
 #include <poll.h>
 #include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -16,24 +20,36 @@
 #include <string_view>
 #include <utility>
 
+#include "app/server/http/conditions.h"
 #include "app/server/http/error_json.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A whole request to read from, and its client to write to.
+constexpr int kNotModified = 304;
+
+/// A whole request to read from, and its client to write to: at once, where an answer is made as it leaves,
+/// or once it is whole.
 class RequestStream : public httplib::Stream {
  public:
-  RequestStream(WholeRequest request, const HttpLimits& limits, const std::atomic<bool>& ending)
+  RequestStream(WholeRequest request, bool at_once, const DoorLimits& limits, const std::atomic<bool>& ending)
       : request_(std::move(request)),
+        at_once_(at_once),
         patience_(limits.write_deadline_s),
         most_(limits.answer_deadline_s),
         ending_(ending) {}
 
+  bool is_last() const { return request_.last; }
+  AnsweredRequest answered(bool last) {
+    return {std::move(request_.socket), std::move(request_.rest), std::move(answer_), last};
+  }
+
   bool is_readable() const override { return at_ < request_.bytes.size(); }
   bool is_writable() const override {
+    if (!at_once_) return true;
     pollfd socket = {request_.socket.get(), POLLRDHUP, 0};
     return poll(&socket, 1, 0) == 0;
   }
@@ -43,6 +59,10 @@ class RequestStream : public httplib::Stream {
     return static_cast<ssize_t>(count);
   }
   ssize_t write(const char* bytes, std::size_t count) override {
+    if (!at_once_) {
+      answer_.append(bytes, count);
+      return static_cast<ssize_t>(count);
+    }
     const auto end = Clock::now() + most_;
     auto deadline = std::min(end, Clock::now() + patience_);
     for (std::size_t sent = 0; sent < count;) {
@@ -66,9 +86,11 @@ class RequestStream : public httplib::Stream {
 
  private:
   WholeRequest request_;
+  const bool at_once_;
   std::chrono::duration<double> patience_, most_;
   const std::atomic<bool>& ending_;  ///< the server is: no deadline begins again
   std::size_t at_ = 0;
+  std::string answer_;
 };
 
 std::string pattern_of(const std::string& path) {
@@ -87,17 +109,71 @@ bool fits(std::string_view pattern, std::string_view path) {
   return pattern.empty() && path.empty();
 }
 
-void answer(const Reply& reply, httplib::Response& response) {
-  response.status = reply.status;
-  response.set_header("Cache-Control", "no-store");
-  response.set_header("X-Content-Type-Options", "nosniff");
-  for (const auto& [name, value] : reply.headers) response.set_header(name, value);
-  response.set_content(reply.body, reply.type);
+/// From a file, or from a text that is not to be compressed: its tag names these bytes.
+void give_bytes(const Reply& reply, std::uint64_t first, std::uint64_t bytes, httplib::Response& response) {
+  if (const std::shared_ptr<const FileBody> file = reply.file) {
+    response.set_content_provider(bytes, reply.type, [file, first](auto at, auto left, auto& sink) {
+      std::array<char, 65536> block = {};
+      const ssize_t read =
+          pread(file->file.get(), block.data(), std::min(left, block.size()), static_cast<off_t>(first + at));
+      return read > 0 && sink.write(block.data(), static_cast<std::size_t>(read));
+    });
+    return;
+  }
+  response.set_content_provider(bytes, reply.type, [text = reply.body](auto at, auto left, auto& sink) {
+    return sink.write(text.data() + at, left);
+  });
 }
 
-void answer(const Error& error, int status, httplib::Response& response) {
+/// A file, or the range of it that is asked for.
+void answer_file(const Reply& reply, const httplib::Request& request, httplib::Response& response) {
+  const std::uint64_t size = reply.file->bytes;
+  response.set_header("Accept-Ranges", "bytes");
+  const std::string same = request.get_header_value("If-Range");
+  const bool takes_part = same.empty() || same == '"' + reply.tag + '"';
+  const AskedRange asked = asked_range(takes_part ? request.get_header_value("Range") : "", size);
+  switch (asked.is) {
+    case AskedRange::Is::kWhole:
+      return give_bytes(reply, 0, size, response);
+    case AskedRange::Is::kPart:
+      response.status = 206;
+      response.set_header("Content-Range",
+                          fmt::format("bytes {}-{}/{}", asked.first, asked.first + asked.bytes - 1, size));
+      return give_bytes(reply, asked.first, asked.bytes, response);
+    case AskedRange::Is::kBeyond:
+      response.status = 416;
+      response.set_header("Content-Range", fmt::format("bytes */{}", size));
+      response.set_content(
+          line_of(error_document({ErrorKind::kUsage, "the range is beyond the file", request.path,
+                                  fmt::format("it has {} bytes", size), "ask for a range within it"})),
+          "application/json");
+  }
+}
+
+/// `who` may keep it: "private", or "public" for what needs no token.
+void answer(const Reply& reply, const char* who, const httplib::Request& request,
+            httplib::Response& response) {
+  response.status = reply.status;
+  response.set_header("X-Content-Type-Options", "nosniff");
+  const bool is_kept = reply.keeping == Keeping::kForever;
+  response.set_header("Cache-Control", reply.keeping == Keeping::kNever ? std::string("no-store")
+                                       : is_kept ? fmt::format("{}, max-age=31536000, immutable", who)
+                                                 : fmt::format("{}, no-cache", who));
+  for (const auto& [name, value] : reply.headers) response.set_header(name, value);
+  if (!reply.tag.empty()) response.set_header("ETag", '"' + reply.tag + '"');
+  const bool has_it = !reply.tag.empty() && names_tag(request.get_header_value("If-None-Match"), reply.tag);
+  if (has_it) {
+    response.status = kNotModified;
+    return;
+  }
+  if (reply.file) return answer_file(reply, request, response);
+  if (reply.tag.empty()) return response.set_content(reply.body, reply.type);
+  give_bytes(reply, 0, reply.body.size(), response);
+}
+
+void answer(const Error& error, int status, const httplib::Request& request, httplib::Response& response) {
   if (status == 401) response.set_header("WWW-Authenticate", "Bearer");
-  answer(json_reply(error_document(error), status), response);
+  answer(json_reply(error_document(error), status), "private", request, response);
 }
 
 Call call_of(const httplib::Request& request) {
@@ -105,7 +181,14 @@ Call call_of(const httplib::Request& request) {
   for (std::size_t i = 1; i < request.matches.size(); ++i) call.segments.push_back(request.matches[i].str());
   for (const auto& [key, value] : request.params) call.query.emplace(key, value);
   call.body = request.body;
+  call.if_none_match = request.get_header_value("If-None-Match");
   return call;
+}
+
+/// How cpp-httplib answers, put right: its Keep-Alive counts requests, and no body is not an empty one.
+void finish_headers(const httplib::Request&, httplib::Response& response) {
+  response.headers.erase("Keep-Alive");
+  if (response.status == kNotModified) response.headers.erase("Content-Length");
 }
 
 constexpr const char* kGap = "event: gap\ndata: {}\n\n";
@@ -116,15 +199,27 @@ Reply json_reply(const Json& document, int status) {
   return {status, "application/json", line_of(document)};
 }
 
+Result<std::shared_ptr<const FileBody>> open_file_body(const std::filesystem::path& file) {
+  auto body = std::make_shared<FileBody>();
+  body->file = Descriptor(file, O_RDONLY | O_NONBLOCK);
+  if (!body->file) return cannot_read(file, errno);
+  struct stat about = {};
+  if (fstat(body->file.get(), &about) != 0 || !S_ISREG(about.st_mode)) {
+    return Error{ErrorKind::kNoInput, "this is no file", file.string(), "", "name another"};
+  }
+  body->bytes = static_cast<std::uint64_t>(about.st_size);
+  return std::shared_ptr<const FileBody>(std::move(body));
+}
+
 class HttpServer::Parser : public httplib::Server {
  public:
   Parser(GuardRules rules, std::vector<Route> routes, EventLog& events, const HttpLimits& limits)
       : rules_(std::move(rules)), routes_(std::move(routes)), events_(events), limits_(limits) {
-    set_keep_alive_max_count(1);
     set_payload_max_length(limits.door.frame.body_bytes);
     set_pre_routing_handler([this](const httplib::Request& request, httplib::Response& response) {
       return guard(request, response) ? HandlerResponse::Handled : HandlerResponse::Unhandled;
     });
+    set_post_routing_handler(finish_headers);
     set_error_handler(Handler([this](const httplib::Request& request, httplib::Response& response) {
       if (response.body.empty()) explain(request, response);
     }));
@@ -141,7 +236,8 @@ class HttpServer::Parser : public httplib::Server {
     svr_sock_ = door.socket();
     for (const auto& [pool, threads] :
          {std::pair(Pool::kQuick, limits_.quick), std::pair(Pool::kDisk, limits_.disk),
-          std::pair(Pool::kPictures, limits_.pictures), std::pair(Pool::kStreams, limits_.streams + 1)}) {
+          std::pair(Pool::kPictures, limits_.pictures), std::pair(Pool::kFiles, limits_.files),
+          std::pair(Pool::kStreams, limits_.streams + 1)}) {
       pools_[pool] = std::make_unique<Threads>(threads, threads + limits_.waiting);
     }
     door.begin([this, &door](WholeRequest request) { enter(std::move(request), door); });
@@ -166,25 +262,21 @@ class HttpServer::Parser : public httplib::Server {
   /// On the door's thread.
   void enter(WholeRequest request, HttpDoor& door) {
     const Pool pool = pool_of(request.bytes);
-    if (pool == Pool::kAtOnce) {
-      answer_one(std::move(request));
-      return door.left();
-    }
+    if (pool == Pool::kAtOnce) return door.take_back(answered(std::move(request), pool));
     Threads& threads = *pools_.at(pool);
     if (threads.requests >= threads.most) {
-      RequestStream stream(std::move(request), limits_, ending_);
-      const std::string answer = refusal(503, "too many requests of this kind wait already: ask again");
-      stream.write(answer.data(), answer.size());
-      shutdown(stream.socket(), SHUT_WR);
-      return door.left();
+      return door.take_back({std::move(request.socket),
+                             {},
+                             refusal(503, "too many requests of this kind wait already: ask again"),
+                             true});
     }
     ++threads.requests;
     // std::function wants to copy what it holds.
     auto held = std::make_shared<WholeRequest>(std::move(request));
-    threads.pool.enqueue([this, &door, &threads, held] {
-      answer_one(std::move(*held));
+    threads.pool.enqueue([this, &door, &threads, pool, held] {
+      AnsweredRequest whole = answered(std::move(*held), pool);
       --threads.requests;
-      door.left();
+      door.take_back(std::move(whole));
     });
   }
 
@@ -193,14 +285,18 @@ class HttpServer::Parser : public httplib::Server {
     const std::string_view path = request.substr(space, request.find_first_of(" ?", space) - space);
     const auto route =
         std::ranges::find_if(routes_, [&](const Route& each) { return fits(each.path, path); });
-    return route == routes_.end() ? Pool::kQuick : route->pool;
+    if (route == routes_.end()) return Pool::kQuick;
+    return route->handle ? route->pool : Pool::kStreams;
   }
 
-  void answer_one(WholeRequest request) {
-    RequestStream stream(std::move(request), limits_, ending_);
-    bool closed = false;
-    process_request(stream, true, closed, nullptr);
-    shutdown(stream.socket(), SHUT_WR);
+  AnsweredRequest answered(WholeRequest request, Pool pool) {
+    const bool is_stream = pool == Pool::kStreams, last = request.last || is_stream;
+    RequestStream stream(std::move(request), is_stream || pool == Pool::kFiles, limits_.door, ending_);
+    bool asked_to_close = false;
+    const bool is_whole = process_request(stream, last, asked_to_close, [](httplib::Request& parsed) {
+      parsed.ranges.clear();  // it would cut every answer by them
+    });
+    return stream.answered(last || !is_whole);
   }
 
   bool guard(const httplib::Request& request, httplib::Response& response) const {
@@ -210,7 +306,7 @@ class HttpServer::Parser : public httplib::Server {
                      request.path, request.get_header_value("Cookie"),
                      request.get_header_value("Sec-Fetch-Site"), request.get_header_value("Sec-Fetch-Mode")},
                     rules_);
-    if (refused) answer(refused->error, refused->status, response);
+    if (refused) answer(refused->error, refused->status, request, response);
     return refused.has_value();
   }
 
@@ -220,11 +316,13 @@ class HttpServer::Parser : public httplib::Server {
       Call call = call_of(request);
       call.port = rules_.port;
       const Result<Reply> reply = route.handle(call);
-      if (reply) return answer(*reply, response);
-      answer(reply.error(), http_status_of(reply.error().kind), response);
+      if (reply) return answer(*reply, route.open ? "public" : "private", request, response);
+      answer(reply.error(), http_status_of(reply.error().kind), request, response);
     };
     if (route.method == "GET") Get(pattern_of(route.path), handle);
     if (route.method == "POST") Post(pattern_of(route.path), handle);
+    if (route.method == "PATCH") Patch(pattern_of(route.path), handle);
+    if (route.method == "DELETE") Delete(pattern_of(route.path), handle);
   }
 
   /// An error of cpp-httplib's own.
@@ -238,7 +336,7 @@ class HttpServer::Parser : public httplib::Server {
         Error{absent ? ErrorKind::kNoInput : ErrorKind::kUsage,
               absent ? "there is no such call" : "the request is refused", request.path,
               fmt::format("HTTP status {}", response.status), "see /api/v1/openapi.json for what there is"},
-        response.status, response);
+        response.status, request, response);
   }
 
   static void fail(const httplib::Request& request, httplib::Response& response,
@@ -251,7 +349,7 @@ class HttpServer::Parser : public httplib::Server {
     } catch (...) {
     }
     answer(Error{ErrorKind::kInternal, "a bug in weft", request.path, why, "report it with the request"}, 500,
-           response);
+           request, response);
   }
 
   void stream_events(const httplib::Request& request, httplib::Response& response) {
@@ -259,7 +357,7 @@ class HttpServer::Parser : public httplib::Server {
       --streams_;
       return answer(Error{ErrorKind::kTryAgain, "too many clients follow this rig", request.path,
                           fmt::format("{} streams are open", limits_.streams), "close one of them"},
-                    503, response);
+                    503, request, response);
     }
     response.set_header("Cache-Control", "no-store");
     response.set_chunked_content_provider(

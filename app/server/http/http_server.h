@@ -16,16 +16,13 @@ namespace weft::app {
 /// What clients may take of the server, so that no number of them keeps the others out.
 struct HttpLimits {
   DoorLimits door;
-  std::size_t quick = 8, disk = 16, pictures = 24;  ///< threads of each pool
+  std::size_t quick = 8, disk = 16, pictures = 24, files = 8;  ///< threads of each pool
   std::size_t waiting = 32;  ///< requests that wait for a thread of their pool; one more is answered with 503
   std::size_t streams = 16;  ///< of events at once; one more is answered with 503
-  double write_deadline_s = 2;     ///< without a byte of an answer leaving
-  double answer_deadline_s = 300;  ///< for one piece of it to leave, however slowly
-  double heartbeat_s = 10;         ///< between events of a stream at most
+  double heartbeat_s = 10;   ///< between events of a stream at most
 };
 
 /// The HTTP interface over a table of routes: HttpDoor before cpp-httplib, which parses, routes and answers.
-/// Each connection is answered once and closed.
 class HttpServer {
  public:
   static Result<std::unique_ptr<HttpServer>> start(int port, GuardRules rules, std::vector<Route> routes,
@@ -33,7 +30,7 @@ class HttpServer {
   ~HttpServer();
 
   int port() const;
-  /// Ends every stream and connection and joins all threads, within write_deadline_s.
+  /// Ends every stream and connection and joins all threads, within door.write_deadline_s.
   void stop();
 
  private:

@@ -10,7 +10,7 @@ namespace weft::app {
 namespace {
 
 RequestFrame refuse(int status, std::string_view why) {
-  return {0, status, why};
+  return {0, true, status, why};
 }
 
 // A token of RFC 9110, section 5.6.2: ASCII in any locale.
@@ -63,16 +63,27 @@ std::optional<RequestFrame> judge_request_line(std::string_view line, const Fram
 }
 
 // With two of these, two readers of one request could see two different ones.
-constexpr std::array<std::string_view, 9> kOnlyOnce = {"host",           "origin",         "authorization",
-                                                       "content-type",   "content-length", "cookie",
-                                                       "sec-fetch-site", "sec-fetch-mode", "last-event-id"};
+constexpr std::array<std::string_view, 12> kOnlyOnce = {
+    "host",           "origin",         "authorization", "content-type", "content-length", "cookie",
+    "sec-fetch-site", "sec-fetch-mode", "last-event-id", "range",        "if-range",       "if-none-match"};
 
 /// What the headers have said so far.
 struct Head {
   std::size_t headers = 0;
   std::array<bool, kOnlyOnce.size()> seen = {};
   std::size_t body_bytes = 0;
+  bool last = false;
 };
+
+/// Whether a list of words, which commas separate, has this one.
+bool names(std::string_view list, std::string_view word) {
+  while (!list.empty()) {
+    const std::string_view each = list.substr(0, list.find(','));
+    if (is_name(trimmed(each), word)) return true;
+    list.remove_prefix(std::min(each.size() + 1, list.size()));
+  }
+  return false;
+}
 
 std::optional<RequestFrame> judge_length(std::string_view value, const FrameLimits& limits, Head& head) {
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), head.body_bytes);
@@ -96,7 +107,8 @@ std::optional<RequestFrame> judge_header(std::string_view line, const FrameLimit
   const std::string_view name = line.substr(0, colon), value = trimmed(line.substr(colon + 1));
   if (is_name(name, "transfer-encoding")) return refuse(411, "the body needs a Content-Length");
   if (is_name(name, "content-encoding")) return refuse(415, "compressed bodies are not taken");
-  if (is_name(name, "range")) return refuse(416, "ranges are not served");
+  if (is_name(name, "range") && value.size() > limits.range_bytes) return refuse(416, "one range is served");
+  if (is_name(name, "connection") && names(value, "close")) head.last = true;
   for (std::size_t i = 0; i < kOnlyOnce.size(); ++i) {
     if (!is_name(name, kOnlyOnce[i])) continue;
     if (head.seen[i]) return refuse(400, "a header is there twice that must be one");
@@ -117,15 +129,17 @@ RequestFrame frame_request(std::string_view received, const FrameLimits& limits)
   if (!is_token(head.substr(0, 1)) && !head.empty()) return refuse(400, "this is no HTTP");
   if (!whole_head) return {};
 
-  if (const auto refused = judge_request_line(cut_line(head), limits)) return *refused;
+  const std::string_view request_line = cut_line(head);
+  if (const auto refused = judge_request_line(request_line, limits)) return *refused;
   Head found;
+  found.last = request_line.ends_with("HTTP/1.0");
   while (!head.empty()) {
     const std::string_view line = cut_line(head);
     if (!is_printable(line)) return refuse(400, "a header holds control characters");
     if (const auto refused = judge_header(line, limits, found)) return *refused;
   }
   const std::size_t bytes = head_end + 4 + found.body_bytes;
-  return {received.size() >= bytes ? bytes : 0, 0, {}};
+  return {received.size() >= bytes ? bytes : 0, found.last, 0, {}};
 }
 
 }  // namespace weft::app

@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
+#include "app/server/http/conditions.h"
+#include "core/descriptor.h"
 #include "core/json_document.h"
 #include "core/result.h"
 
@@ -17,7 +23,26 @@ struct Call {
   std::vector<std::string> segments;         ///< what stands for {...} in the path, decoded
   std::map<std::string, std::string> query;  ///< decoded
   std::string body;
-  int port = 0;  ///< that the server listens on
+  int port = 0;                    ///< that the server listens on
+  std::string if_none_match = {};  ///< the header
+
+  /// Whether the client has what is tagged so: a reply of that tag needs no body.
+  bool has(std::string_view tag) const { return !tag.empty() && names_tag(if_none_match, tag); }
+};
+
+/// A file that is answered with, open. Clients may ask for a range of it.
+struct FileBody {
+  Descriptor file;
+  std::uint64_t bytes = 0;
+};
+/// kNoInput where it is no plain file or may not be read.
+Result<std::shared_ptr<const FileBody>> open_file_body(const std::filesystem::path& file);
+
+/// Whether clients may keep what they were answered.
+enum class Keeping {
+  kNever,
+  kAskAgain,  ///< and ask by its tag each time whether it still holds
+  kForever,   ///< another content would have another address
 };
 
 /// What is answered.
@@ -26,6 +51,9 @@ struct Reply {
   std::string type = "application/json";
   std::string body = {};
   std::vector<std::pair<std::string, std::string>> headers = {};  ///< further ones
+  Keeping keeping = Keeping::kNever;
+  std::string tag = {};  ///< names the bytes (ETag, without quotes): who has them is answered with 304
+  std::shared_ptr<const FileBody> file = {};  ///< instead of a body
 };
 
 Reply json_reply(const Json& document, int status = 200);
@@ -36,6 +64,7 @@ enum class Pool {
   kQuick,     ///< what is in memory
   kDisk,      ///< files, on a disk that may hang
   kPictures,  ///< raw frames to be decoded
+  kFiles,     ///< files to be sent, for as long as their clients take
   kStreams,   ///< of events
 };
 

@@ -98,14 +98,22 @@ Answer parsed(const std::string& response) {
   std::from_chars(response.data() + kVersion.size(), response.data() + response.size(), answer.status);
   answer.head = response.substr(0, end);
   answer.body = response.substr(end + 4);
+  constexpr std::string_view kLength = "Content-Length: ";
+  if (const std::size_t at = answer.head.find(kLength); at != std::string::npos) {
+    std::size_t bytes = answer.body.size();
+    std::from_chars(answer.head.data() + at + kLength.size(), answer.head.data() + end, bytes);
+    answer.body.resize(std::min(bytes, answer.body.size()));
+  }
   return answer;
 }
 
 std::string request_text(int port, const std::string& method, const std::string& target,
                          const std::string& body, const HeaderLines& headers) {
-  HeaderLines all = {{"Host", fmt::format("127.0.0.1:{}", port)}};
-  if (method == "POST") all["Content-Type"] = "application/json";
-  if (method == "POST") all["Content-Length"] = std::to_string(body.size());
+  HeaderLines all = {{"Host", fmt::format("127.0.0.1:{}", port)}, {"Connection", "close"}};
+  if (method == "POST" || method == "PATCH") {
+    all["Content-Type"] = "application/json";
+    all["Content-Length"] = std::to_string(body.size());
+  }
   for (const auto& [name, value] : headers) all[name] = value;
   std::string text = fmt::format("{} {} HTTP/1.1\r\n", method, target);
   for (const auto& [name, value] : all) text += fmt::format("{}: {}\r\n", name, value);

@@ -38,11 +38,13 @@ struct Answer {
   /// The body as JSON; a failed expectation where it is none.
   Json json() const;
 };
+/// The first answer of what was heard.
 Answer parsed(const std::string& response);
 
 using HeaderLines = std::map<std::string, std::string>;
 
-/// One whole request, with the headers that a well-behaved client sends; `headers` replace or add to them.
+/// One whole request, with the headers that a well-behaved client of one request sends; `headers` replace or
+/// add to them.
 std::string request_text(int port, const std::string& method, const std::string& target,
                          const std::string& body = "", const HeaderLines& headers = {});
 Answer ask(int port, const std::string& method, const std::string& target, const std::string& body = "",

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// libFuzzer program: any bytes as a request's frame, as its cookies and, after its first empty line, as the
-// body of a scan.
+// libFuzzer program: any bytes as a request's frame, as its cookies, tags and range and, after its first
+// empty line, as the body of a scan.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <string>
 #include <string_view>
 
 #include "app/server/api/scan_body.h"
+#include "app/server/http/conditions.h"
 #include "app/server/http/cookies.h"
 #include "app/server/http/error_json.h"
 #include "app/server/http/request_frame.h"
@@ -18,6 +20,23 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (frame.bytes > size || (frame.status != 0 && frame.why.empty())) std::abort();
 
   if (cookie_in(text, "weft_8470").size() > size) std::abort();
+
+  constexpr std::uint64_t kFileBytes = 1000;
+  for (const std::string& header : {std::string(text), "bytes=" + std::string(text)}) {
+    const AskedRange range = asked_range(header, kFileBytes);
+    const bool is_part = range.is == AskedRange::Is::kPart;
+    if (is_part && (range.bytes == 0 || range.first + range.bytes > kFileBytes)) std::abort();
+  }
+  // Who has a tag names it, whatever else the list holds before.
+  const bool is_list = names_tag(std::string(text) + ", \"weft\"", "weft");
+  if (names_tag(text, "weft") && text.find("weft") == std::string_view::npos &&
+      text.find('*') == std::string_view::npos) {
+    std::abort();
+  }
+  if (is_list && size > 0 && text.find('"') == std::string_view::npos &&
+      text.find_first_not_of(" \t,") != std::string_view::npos) {
+    std::abort();
+  }
 
   const std::size_t head_end = text.find("\r\n\r\n");
   const auto body = parse_body(head_end == std::string_view::npos ? text : text.substr(head_end + 4));

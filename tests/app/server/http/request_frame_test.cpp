@@ -53,7 +53,8 @@ TEST(RequestFrame, RefusesWhatItNeedNotTake) {
            {with_header("Host: b"), 400},
            {with_header("Transfer-Encoding: chunked"), 411},
            {with_header("Content-Encoding: gzip"), 415},
-           {with_header("Range: bytes=0-1"), 416},
+           {with_header("Range: bytes=" + std::string(100, '1') + "-"), 416},
+           {with_header("Range: bytes=0-1\r\nRange: bytes=0-1"), 400},
            {with_header("Content-Length: -1"), 400},
            {with_header("Content-Length: 1x"), 400},
            {with_header("Content-Length:"), 400},
@@ -65,6 +66,15 @@ TEST(RequestFrame, RefusesWhatItNeedNotTake) {
     EXPECT_FALSE(frame.why.empty()) << request.substr(0, 100);
     EXPECT_EQ(frame.bytes, 0U) << request.substr(0, 100);
   }
+}
+
+TEST(RequestFrame, TellsWhichIsTheLastOfItsConnection) {
+  EXPECT_FALSE(frame_request(with_header("X: close"), kLimits).last);
+  EXPECT_FALSE(frame_request(with_header("Connection: keep-alive"), kLimits).last);
+  EXPECT_FALSE(frame_request(with_header("Connection: closed"), kLimits).last);
+  EXPECT_TRUE(frame_request(with_header("Connection: close"), kLimits).last);
+  EXPECT_TRUE(frame_request(with_header("connection: TE , Close"), kLimits).last);
+  EXPECT_TRUE(frame_request("GET / HTTP/1.0\r\nConnection: keep-alive\r\n\r\n", kLimits).last);
 }
 
 TEST(RequestFrame, TakesTheLargestBodyAllowed) {
