@@ -136,6 +136,12 @@ Result<Reply> one_job(const RigParts& parts, const Call& call) {
   return json_reply(json_of(*job));
 }
 
+Result<Reply> forget_job(const RigParts& parts, const Call& call) {
+  const Result<JobStatus> job = parts.jobs.forget(call.segments.at(0));
+  if (!job) return job.error();
+  return json_reply(json_of(*job));
+}
+
 Result<Reply> log_of_job(const RigParts& parts, const Call& call) {
   Result<std::string> log = parts.jobs.log(call.segments.at(0));
   if (!log) return std::move(log).error();
@@ -159,6 +165,7 @@ Resource jobs_resource(const RigParts& parts) {
   return {{{"GET", "/api/v1/jobs", [&parts](const Call& call) { return list_jobs(parts, call); }},
            {"POST", "/api/v1/jobs", [&parts](const Call& call) { return add_job(parts, call); }},
            {"GET", "/api/v1/jobs/{id}", [&parts](const Call& call) { return one_job(parts, call); }},
+           {"DELETE", "/api/v1/jobs/{id}", [&parts](const Call& call) { return forget_job(parts, call); }},
            {"GET", "/api/v1/jobs/{id}/log", [&parts](const Call& call) { return log_of_job(parts, call); }},
            step_route(parts, "/api/v1/jobs/{id}/cancel", &JobQueue::cancel),
            step_route(parts, "/api/v1/jobs/{id}/retry", &JobQueue::retry),

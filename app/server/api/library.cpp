@@ -104,6 +104,8 @@ Route step_back(const RigParts& parts, const char* path, Result<library::Change>
 Resource library_resource(const RigParts& parts) {
   return {{{"GET", "/api/v1/library", [&parts](const Call& call) { return find_sessions(parts, call); }},
            {"GET", "/api/v1/library/tags", [&parts](const Call&) { return list_tags(parts); }},
+           {"PATCH", "/api/v1/sessions/{name}/metadata",
+            [&parts](const Call& call) { return change_session(parts, call); }},
            {"POST", "/api/v1/sessions/{name}/metadata",
             [&parts](const Call& call) { return change_session(parts, call); }},
            step_back(parts, "/api/v1/undo", &LibraryService::undo),

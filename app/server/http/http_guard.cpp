@@ -122,8 +122,9 @@ std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rul
     return Refused{status,
                    {ErrorKind::kUsage, std::move(what), "request", std::move(why), std::move(remedy)}};
   };
-  if (visitor.method != "GET" && visitor.method != "HEAD" && visitor.method != "POST") {
-    return refuse(405, "the method is not taken", visitor.method, "use GET or POST");
+  const bool is_change = visitor.method == "POST" || visitor.method == "PATCH" || visitor.method == "DELETE";
+  if (visitor.method != "GET" && visitor.method != "HEAD" && !is_change) {
+    return refuse(405, "the method is not taken", visitor.method, "use GET, POST, PATCH or DELETE");
   }
   if (!is_our_name(visitor.host, rules)) {
     return refuse(421, "the Host header is not this daemon's", visitor.host,
@@ -135,7 +136,6 @@ std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rul
                   from_elsewhere ? visitor.origin : visitor.fetch_site,
                   "open the daemon's own page; a proxy's origin goes into daemon.origins of the rig file");
   }
-  const bool is_change = visitor.method == "POST";
   if (std::ranges::find(rules.open, visitor.method + " " + visitor.path) == rules.open.end()) {
     const auto credential = credential_of(visitor, rules);
     if (!credential) {
@@ -149,7 +149,7 @@ std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rul
       return refuse(403, "this token may only look", visitor.path, "come in with the token of daemon.token");
     }
   }
-  if (is_change && !is_json(visitor.content_type)) {
+  if (is_change && visitor.method != "DELETE" && !is_json(visitor.content_type)) {
     return refuse(415, "the body is not said to be JSON", visitor.content_type,
                   "send 'Content-Type: application/json'");
   }

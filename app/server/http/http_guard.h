@@ -37,13 +37,13 @@ struct Refused {
   Error error;
 };
 
-/// Nothing where the visitor may come in. Refused are: methods but GET, HEAD and POST (405); a Host that is
-/// neither localhost nor the address that is listened on nor one of `names`, since a page from elsewhere can
-/// have its own name lead to this machine (DNS rebinding, 421); an Origin that is not this very server (403);
-/// what a page of another site or port has its browser fetch, but for a way to `/` (403); a missing or wrong
-/// token or cookie (401); a change by a cookie without an Origin, or by who may only look (403); a POST that
-/// is not JSON, which a page from elsewhere could send without asking (415). The port in Host is not looked
-/// at, so that a tunnel may begin at another one.
+/// Nothing where the visitor may come in. Refused are: methods but GET, HEAD, POST, PATCH and DELETE (405); a
+/// Host that is neither localhost nor the address that is listened on nor one of `names`, since a page from
+/// elsewhere can have its own name lead to this machine (DNS rebinding, 421); an Origin that is not this very
+/// server (403); what a page of another site or port has its browser fetch, but for a way to `/` (403); a
+/// missing or wrong token or cookie (401); a change by a cookie without an Origin, or by who may only look
+/// (403); a POST or PATCH that is not JSON, which a page from elsewhere could send without asking (415). The
+/// port in Host is not looked at, so that a tunnel may begin at another one.
 std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rules);
 
 /// Whose token it is; nothing: nobody's.

@@ -182,6 +182,22 @@ Result<JobStatus> JobQueue::first(const std::string& id) {
   return found->second;
 }
 
+Result<JobStatus> JobQueue::forget(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  const auto found = jobs_.find(id);
+  if (found == jobs_.end()) return no_job(id);
+  JobStatus job = found->second;
+  if (!has_ended(job.state)) return not_now(job, "job cannot be forgotten", "cancel it first, or wait");
+  remove_files(id);
+  jobs_.erase(found);
+  return job;
+}
+
+void JobQueue::remove_files(const std::string& id) const {
+  std::error_code ignored;
+  for (const char* ending : {".json", ".log", ".out"}) fs::remove(file_of(id, ending), ignored);
+}
+
 void JobQueue::hold(bool is_held) {
   const std::lock_guard lock(mutex_);
   if (is_held_ == is_held) return;
@@ -320,8 +336,7 @@ void JobQueue::forget_old() {
       ++it;
       continue;
     }
-    std::error_code ignored;
-    for (const char* ending : {".json", ".log", ".out"}) fs::remove(file_of(it->first, ending), ignored);
+    remove_files(it->first);
     it = jobs_.erase(it);
     --ended;
   }

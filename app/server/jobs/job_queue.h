@@ -53,6 +53,8 @@ class JobQueue {
   Result<JobStatus> retry(const std::string& id);
   /// Puts it before all others that wait. kUsage where it does not wait.
   Result<JobStatus> first(const std::string& id);
+  /// Forgets one that has ended, with its files; how it was. kUsage where it has not ended.
+  Result<JobStatus> forget(const std::string& id);
   /// While a scan exposes: the running job stands still, and none begins.
   void hold(bool is_held);
 
@@ -64,6 +66,7 @@ class JobQueue {
   void follow(const std::string& id, std::size_t& read);
   void hear(JobStatus& job, const std::string& line);
   void forget_old();
+  void remove_files(const std::string& id) const;
   std::filesystem::path file_of(const std::string& id, const char* ending) const;
   Result<void> write(const JobStatus& job) const;
 
