@@ -19,21 +19,6 @@
 namespace weft::app {
 namespace {
 
-// Of an uncompressed frame of 16 megapixels: what a session is reckoned with before one was taken.
-constexpr std::uint64_t kFrameBytes = 33'000'000;
-
-const char* word_of(SetupFinding::Verdict verdict) {
-  switch (verdict) {
-    case SetupFinding::Verdict::kFine:
-      return "fine";
-    case SetupFinding::Verdict::kWarning:
-      return "warning";
-    case SetupFinding::Verdict::kFault:
-      return "fault";
-  }
-  return "";
-}
-
 bool is_fault(const SetupFinding& finding) {
   return finding.verdict == SetupFinding::Verdict::kFault;
 }
@@ -95,10 +80,9 @@ Result<int> examine_and_print(const std::filesystem::path& rig_file, const Commo
   const std::vector<SetupFinding> found = examine(*rig);
   Json rows = Json::array();
   for (const SetupFinding& f : found) {
-    rows.push_back(
-        {{"part", f.part}, {"verdict", word_of(f.verdict)}, {"says", f.says}, {"remedy", f.remedy}});
+    rows.push_back(json_of(f));
     if (common.json) continue;
-    print(fmt::format("{:8} {:12} {}", word_of(f.verdict), f.part, f.says));
+    print(fmt::format("{:8} {:12} {}", name_of(f.verdict), f.part, f.says));
     if (!f.remedy.empty()) print(fmt::format("{:21} -> {}", "", f.remedy));
   }
   if (common.json) print_json({{"rig", rig->name}, {"findings", rows}});

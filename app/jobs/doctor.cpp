@@ -27,7 +27,6 @@ using SetupVerdict = SetupFinding::Verdict;
 
 constexpr double kLowBattery = 0.2;
 constexpr double kMegabyte = 1e6;
-constexpr int kSessionFrames = 12;
 constexpr std::string_view kVirtualRig = "weft-virtual-ri";  // as /proc/PID/comm has it
 
 /// Programs that take devices of a rig away, and what keeps them off.
@@ -131,7 +130,7 @@ void examine_board(const capture::Rig& rig, const Opened& open, const SystemPlac
                    std::vector<SetupFinding>& found) {
   const std::size_t before = found.size();
   examine_board_port(rig, places, found);
-  if (has_fault(found, before)) return report_thieves("board", false, places, found);
+  if (has_fault(found, before) || !open.board) return report_thieves("board", false, places, found);
   const Result<std::string> greeting = open.board();
   const bool seems_taken = !greeting && (greeting.error().kind == ErrorKind::kTryAgain ||  // silent
                                          greeting.error().kind == ErrorKind::kNoDevice);   // busy
@@ -185,7 +184,7 @@ void examine_camera(const capture::Rig& rig, const Opened& open, const SystemPla
                     std::vector<SetupFinding>& found) {
   const std::size_t before = found.size();
   if (!rig.camera.port.starts_with("ptpip:")) examine_usb(places, found);
-  if (has_fault(found, before)) return;
+  if (has_fault(found, before) || !open.camera) return;
   const Result<capture::CameraFacts> facts = open.camera();
   if (!facts) {
     found.push_back(fault_of("camera", facts.error()));
@@ -270,6 +269,25 @@ void examine_clock(std::vector<SetupFinding>& found) {
 }
 
 }  // namespace
+
+const char* name_of(SetupFinding::Verdict verdict) {
+  switch (verdict) {
+    case SetupFinding::Verdict::kFine:
+      return "fine";
+    case SetupFinding::Verdict::kWarning:
+      return "warning";
+    case SetupFinding::Verdict::kFault:
+      return "fault";
+  }
+  return "";
+}
+
+Json json_of(const SetupFinding& finding) {
+  return {{"part", finding.part},
+          {"verdict", name_of(finding.verdict)},
+          {"says", finding.says},
+          {"remedy", finding.remedy}};
+}
 
 SetupFinding fault_of(std::string part, const Error& error) {
   return fault(std::move(part), error.message(), error.remedy, error.kind);

@@ -9,6 +9,7 @@
 
 #include "capture/devices.h"
 #include "capture/rig.h"
+#include "core/json_document.h"
 #include "core/result.h"
 
 namespace weft::app {
@@ -22,6 +23,14 @@ struct SetupFinding {
   std::string remedy;  ///< the command that mends it, or what to do; empty where all is well
   ErrorKind kind = ErrorKind::kNoDevice;  ///< of a fault
 };
+
+const char* name_of(SetupFinding::Verdict verdict);  ///< "fine", "warning", "fault"
+/// {"part", "verdict", "says", "remedy"}
+Json json_of(const SetupFinding& finding);
+
+/// What a session is reckoned with before one was taken: uncompressed frames of 16 megapixels.
+inline constexpr std::uint64_t kFrameBytes = 33'000'000;
+inline constexpr int kSessionFrames = 12;
 
 /// A fault that an error is.
 SetupFinding fault_of(std::string part, const Error& error);
@@ -47,7 +56,7 @@ struct Holder {
 /// The processes that hold `file` open, by what this user may see of them.
 std::vector<Holder> holders_of(const std::filesystem::path& file, const SystemPlaces& places);
 
-/// What the devices say of themselves when they are opened.
+/// What the devices say of themselves when they are opened. Empty functions: they are looked at from outside.
 struct Opened {
   std::function<Result<std::string>()> board;  ///< its greeting in words
   std::function<Result<capture::CameraFacts>()> camera;

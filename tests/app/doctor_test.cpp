@@ -58,9 +58,9 @@ class Machine {
   }
   void use_usb() { rig_.camera.port.clear(); }
   std::vector<SetupFinding> examine() const {
-    return examine_rig(rig_, {[&] { return board; }, [&] { return camera; }},
-                       {root_ / "proc", root_ / "sys", root_ / "dev", {root_ / "etc", root_ / "lib"}});
+    return examine_rig(rig_, {[&] { return board; }, [&] { return camera; }}, places());
   }
+  std::vector<SetupFinding> examine_outside() const { return examine_rig(rig_, {}, places()); }
   const fs::path& root() const { return root_; }
   capture::Rig& rig() { return rig_; }
 
@@ -69,6 +69,9 @@ class Machine {
   Result<capture::CameraFacts> camera = capture::CameraFacts();
 
  private:
+  SystemPlaces places() const {
+    return {root_ / "proc", root_ / "sys", root_ / "dev", {root_ / "etc", root_ / "lib"}};
+  }
   fs::path root_;
   capture::Rig rig_;
 };
@@ -82,6 +85,16 @@ auto faults(const std::string& part, const std::string& says, const std::string&
 TEST(Doctor, FindsNothingWrongWithAFreePort) {
   const Machine machine("free");
   EXPECT_THAT(machine.examine(), Each(Field("verdict", &SetupFinding::verdict, Verdict::kFine)));
+}
+
+TEST(Doctor, LooksAtDevicesFromOutsideWhereItMayNotOpenThem) {
+  Machine machine("outside");
+  EXPECT_THAT(machine.examine_outside(), IsEmpty());
+  machine.runs(421, "ModemManager", "dev/ttyACM0");
+  EXPECT_THAT(machine.examine_outside(),
+              Contains(faults("board", "ModemManager (process 421)", "disable --now")));
+  machine.rig().board.port = (machine.root() / "dev/none").string();
+  EXPECT_THAT(machine.examine_outside(), Contains(faults("board", "there is no port", "plug the board in")));
 }
 
 TEST(Doctor, NamesTheModemManagerThatHoldsTheBoard) {

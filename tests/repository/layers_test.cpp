@@ -51,7 +51,7 @@ const std::vector<Layer> kLayers = {
     {"app/jobs/",
      {"batch/", "calibration/", "capture/", "core/", "exchange/", "library/", "material/", "pipeline/",
       "report/", "solver/"}},
-    {"app/server/", {"app/jobs/", "capture/", "core/", "library/", "report/"}},
+    {"app/server/", {"app/jobs/", "capture/", "core/", "firmware/protocol/", "library/", "report/"}},
     {"app/camera/", {"capture/camera/", "core/"}},
     {"app/cli/",
      {"app/jobs/", "app/server/", "batch/", "capture/", "core/", "library/", "report/", "simulator/",

@@ -38,7 +38,7 @@ struct Resource {
 };
 
 // One file each. The parts must outlive the routes.
-Resource server_resource();
+Resource server_resource(const RigParts& parts);
 Resource login_resource(const RigParts& parts);
 Resource rig_resource(const RigParts& parts);
 Resource scan_resource(const RigParts& parts);

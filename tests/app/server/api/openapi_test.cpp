@@ -171,6 +171,50 @@ TEST_F(OpenApi, DescribesEveryAnswerOfEveryCall) {
   wait_for_state(port_, "idle");
 }
 
+TEST_F(OpenApi, DescribesTheMachine) {
+  const Json version = conforming("GET", "/api/v1/version", "/api/v1/version").json();
+  EXPECT_EQ(version["camera"]["serial"], "SN-0042") << "of the scan before";
+  EXPECT_EQ(version["firmware_protocol"], 1);
+
+  const std::string log = "/api/v1/log";
+  const Json whole = conforming("GET", log, log).json();
+  EXPECT_EQ(whole["lines"][0]["event"], "daemon_began");
+  EXPECT_EQ(whole["lines"].back()["event"], "scan_complete");
+  EXPECT_EQ(whole["after"], Json());
+  const Json first = conforming("GET", log, log + "?after=0&limit=2").json();
+  ASSERT_EQ(first["lines"].size(), 2U);
+  EXPECT_EQ(first["after"], first["lines"][1]["number"]);
+  const Json next = conforming("GET", log, log + "?after=" + first["after"].dump()).json();
+  EXPECT_EQ(next["lines"].size(), whole["lines"].size() - 2);
+  for (const char* wrong : {"?after=-1", "?after=x", "?limit=0", "?limit=9x"})
+    EXPECT_EQ(conforming("GET", log, log + wrong).status, 400) << wrong;
+
+  const Json disk = conforming("GET", "/api/v1/disk", "/api/v1/disk").json();
+  EXPECT_EQ(disk["sessions"]["folder"], scripted_.rig.scan.sessions.string());
+  EXPECT_EQ(disk["copy"], Json());
+  EXPECT_EQ(disk["state"]["scans_left"], disk["state"]["free_bytes"].get<std::uint64_t>() / 396'000'000);
+
+  const auto part = [](const Json& doctor, const std::string& name) {
+    for (const Json& finding : doctor["findings"]) {
+      if (finding["part"] == name) return finding;
+    }
+    return Json();
+  };
+  Json doctor = conforming("GET", "/api/v1/doctor", "/api/v1/doctor").json();
+  EXPECT_EQ(doctor["leaves_alone"], false);
+  EXPECT_EQ(part(doctor, "board")["verdict"], "fault") << "there is none here";
+  EXPECT_EQ(part(doctor, "calibration")["verdict"], "warning");
+  holding_ = true;
+  ASSERT_EQ(ask(port_, "POST", "/api/v1/scan", R"({"fabric": "wool"})").status, 202);
+  wait_for_state(port_, "scanning");
+  doctor = conforming("GET", "/api/v1/doctor", "/api/v1/doctor").json();
+  EXPECT_EQ(doctor["leaves_alone"], true);
+  EXPECT_EQ(part(doctor, "board"), Json());
+  EXPECT_NE(part(doctor, "disk"), Json());
+  gate_.open();
+  wait_for_state(port_, "idle");
+}
+
 TEST_F(OpenApi, DescribesJobs) {
   const std::string jobs = "/api/v1/jobs", job = jobs + "/{id}";
   EXPECT_EQ(conforming("GET", jobs, jobs).json()["jobs"], Json::array());

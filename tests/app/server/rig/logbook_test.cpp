@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,34 @@ TEST_F(LogbookFolder, IsGoneOnWithAndKeepsFiveFilesOfFourMegabytes) {
   }
   EXPECT_EQ(files, 5);
   EXPECT_LE(bytes, 5U << 22);
+}
+
+TEST_F(LogbookFolder, IsReadByPagesOfNumberedLines) {
+  const auto numbers = [&](std::optional<std::int64_t> after, std::size_t limit) {
+    std::vector<int> found;
+    for (const Json& line : read_log(folder_, after, limit).lines) found.push_back(line["number"].get<int>());
+    return found;
+  };
+  EXPECT_THAT(numbers({}, 10), testing::IsEmpty());
+  for (int run = 0; run < 2; ++run) {
+    Logbook log(folder_, {});
+    for (int i = 0; i < 3; ++i) log.add("step", "");
+  }
+  std::ofstream(folder_ / "weft.jsonl", std::ios::app) << "half a li";
+  EXPECT_THAT(numbers({}, 10), testing::ElementsAre(1, 2, 3, 4, 5, 6)) << "numbers go on after a restart";
+  EXPECT_THAT(numbers({}, 2), testing::ElementsAre(5, 6)) << "the newest";
+  EXPECT_THAT(numbers(0, 2), testing::ElementsAre(1, 2));
+  EXPECT_THAT(numbers(4, 2), testing::ElementsAre(5, 6));
+  EXPECT_TRUE(read_log(folder_, 3, 2).more);
+  EXPECT_FALSE(read_log(folder_, 4, 2).more);
+  EXPECT_THAT(numbers(6, 2), testing::IsEmpty());
+
+  Logbook log(folder_, {});
+  log.add("step", "");
+  for (int i = 0; i < 60; ++i) log.add("much", std::string(100'000, 'x'));
+  ASSERT_TRUE(fs::exists(folder_ / "weft.1.jsonl"));
+  EXPECT_EQ(numbers(1, 1000).front(), 2) << "of a file before";
+  EXPECT_EQ(numbers({}, 1).front(), 67);
 }
 
 TEST_F(LogbookFolder, ThatCannotBeWrittenKeepsNobodyFromScanning) {
