@@ -10,11 +10,13 @@
 #include <unordered_map>
 #include <utility>
 
+#include "core/error_json.h"
 #include "core/files.h"
 #include "core/iso_time.h"
 #include "core/parallel.h"
 #include "core/solve.h"
 #include "library/current.h"
+#include "library/session_files.h"
 
 namespace weft::library {
 
@@ -32,9 +34,10 @@ struct Found {
 namespace {
 
 // Raised whenever the tables change.
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::size_t kMostRanked = 20'000;
 constexpr int kMostLimit = 1000;
+constexpr std::size_t kBatch = 500;  // of sessions that are written together, so that others write between
 constexpr int kMostWords = 16;
 constexpr const char* kEnding = ".weft";
 
@@ -45,7 +48,8 @@ CREATE TABLE session(
   fabric TEXT, rig TEXT, calibration TEXT, state TEXT, error TEXT,
   revision INTEGER, id TEXT, tags TEXT, composition TEXT, construction TEXT, side TEXT, notes TEXT,
   weight_g_m2 REAL, thickness_mm REAL,
-  shots INTEGER, solves INTEGER, current_solve TEXT, taken TEXT);
+  shots INTEGER, solves INTEGER, current_solve TEXT, taken TEXT, all_bytes INTEGER, warnings TEXT);
+CREATE INDEX session_unfinished ON session(rig, taken DESC, key DESC) WHERE state NOT IN ('complete', 'unreadable');
 CREATE INDEX session_taken ON session(taken DESC, key DESC);
 CREATE INDEX session_name ON session(name);
 CREATE INDEX session_id ON session(id);
@@ -74,17 +78,19 @@ END;
 constexpr const char* kPut = R"(
 INSERT INTO session(folder, name, bytes, written, solved, fabric, rig, calibration, state, error, revision,
   id, tags, composition, construction, side, notes, weight_g_m2, thickness_mm, shots, solves,
-  current_solve, taken)
-VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23)
+  current_solve, taken, all_bytes, warnings)
+VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23,
+  ?24, ?25)
 ON CONFLICT(folder) DO UPDATE SET
   bytes = ?3, written = ?4, solved = ?5, fabric = ?6, rig = ?7, calibration = ?8, state = ?9, error = ?10,
   revision = ?11, id = ?12, tags = ?13, composition = ?14, construction = ?15, side = ?16, notes = ?17,
-  weight_g_m2 = ?18, thickness_mm = ?19, shots = ?20, solves = ?21, current_solve = ?22, taken = ?23)";
+  weight_g_m2 = ?18, thickness_mm = ?19, shots = ?20, solves = ?21, current_solve = ?22, taken = ?23,
+  all_bytes = ?24, warnings = ?25)";
 
 constexpr const char* kGet =
     "SELECT key, folder, name, fabric, rig, calibration, state, error, revision, id, tags, composition, "
-    "construction, side, notes, weight_g_m2, thickness_mm, shots, solves, current_solve, taken FROM session "
-    "WHERE key = ?";
+    "construction, side, notes, weight_g_m2, thickness_mm, shots, solves, current_solve, taken, written, "
+    "all_bytes, warnings FROM session WHERE key = ?";
 
 std::int64_t nanoseconds(fs::file_time_type time) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -106,13 +112,14 @@ std::optional<Found> look_at(const fs::path& folder) {
 }
 
 // Adds the sessions at and below a folder. Whether it could be listed.
-bool walk(const fs::path& folder, std::vector<Found>& found) {
+bool walk(const fs::path& folder, const JobContext& context, std::vector<Found>& found) {
   std::error_code error;
   fs::directory_iterator entries(folder, error);
   if (error) return false;
   std::vector<fs::path> below;
   for (; entries != fs::directory_iterator(); entries.increment(error)) {
     if (error) return false;
+    if (context.stop.stop_requested()) return true;
     std::error_code ignored;
     const fs::path& path = entries->path();
     if (!entries->is_directory(ignored) || entries->is_symlink(ignored)) continue;
@@ -122,8 +129,10 @@ bool walk(const fs::path& folder, std::vector<Found>& found) {
     } else if (std::optional<Found> session = look_at(path)) {
       found.push_back(std::move(*session));
     }
+    // How many there will be is not known.
+    if (found.size() % kBatch == 0) context.progress("look", 0);
   }
-  for (const fs::path& each : below) walk(each, found);
+  for (const fs::path& each : below) walk(each, context, found);
   return true;
 }
 
@@ -142,16 +151,20 @@ Entry read_entry(const Found& found) {
   Entry entry;
   entry.folder = found.folder;
   entry.name = found.folder.stem().string();
-  entry.taken = iso_time(static_cast<double>(found.written) * 1e-9);
+  entry.taken = entry.written = iso_time(static_cast<double>(found.written) * 1e-9);
+  entry.bytes = bytes_below(found.folder);
   const Result<Session> session = read_session(found.folder);
   if (!session) {
     entry.state = "unreadable";
-    entry.error = session.error().message();
+    entry.error = session.error();
     return entry;
   }
   Result<Metadata> metadata = metadata_of(*session);
+  if (!metadata) entry.error = metadata.error();
   if (metadata) entry.metadata = std::move(*metadata);
-  if (!metadata) entry.error = metadata.error().message();
+  for (const Shot& shot : session->shots) {
+    for (const std::string& warning : warnings_of(shot)) entry.warnings.push_back(warning);
+  }
   entry.fabric = session->fabric;
   entry.rig = session->rig;
   entry.calibration = session->calibration_id;
@@ -169,6 +182,32 @@ Entry read_entry(const Found& found) {
 // Null where nobody said.
 Json amount(double value) {
   return value > 0 ? Json(value) : Json();
+}
+
+// Paths may hold bytes that are no UTF-8.
+std::string text_of(const Error& error) {
+  return weft::json_of(error).dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<void> put_one(Statement& put, Statement& tag, const Found& found, const Entry& e) {
+  const Metadata& m = e.metadata;
+  const std::string folder = e.folder.string();
+  put.bind(folder).bind(e.name).bind(found.bytes).bind(found.written).bind(found.solved);
+  put.bind(e.fabric).bind(e.rig).bind(e.calibration).bind(e.state);
+  put.bind(e.error ? text_of(*e.error) : std::string()).bind(std::int64_t{m.revision}).bind(m.id);
+  put.bind(joined(m.tags)).bind(m.composition).bind(m.construction).bind(m.side).bind(m.notes);
+  put.bind(m.weight_g_m2).bind(m.thickness_mm).bind(std::int64_t{e.shots}).bind(std::int64_t{e.solves});
+  put.bind(e.current_solve).bind(e.taken).bind(static_cast<std::int64_t>(e.bytes)).bind(joined(e.warnings));
+  if (Result<void> ok = put.run(); !ok) return ok;
+  for (const std::string& each : m.tags) {
+    if (Result<void> ok = tag.bind(each).bind(folder).run(); !ok) return ok;
+  }
+  return {};
+}
+
+std::optional<Error> error_in(const std::string& text) {
+  if (text.empty()) return {};
+  return error_of_json(Json::parse(text, nullptr, false), "catalogue");
 }
 
 Error unusable(const std::string& where, std::string why, std::string remedy) {
@@ -244,7 +283,10 @@ Json json_of(const Entry& e) {
           {"shots", e.shots},
           {"solves", e.solves},
           {"current_solve", e.current_solve},
-          {"error", e.error}};
+          {"written", e.written},
+          {"bytes", e.bytes},
+          {"warnings", e.warnings},
+          {"error", e.error ? weft::json_of(*e.error) : Json()}};
 }
 
 Result<Catalogue> Catalogue::open(const fs::path& file) {
@@ -264,92 +306,127 @@ Result<Catalogue> Catalogue::open(const fs::path& file) {
   return Catalogue(std::move(*database));
 }
 
+Result<std::unordered_map<std::string, Found>> Catalogue::known(const std::string& folder) {
+  // Text compares by bytes, and 0 follows the slash.
+  Result<Statement> all =
+      database_.prepare("SELECT folder, bytes, written, solved FROM session WHERE folder > ? AND folder < ?");
+  if (!all) return std::move(all).error();
+  all->bind(folder + "/").bind(folder + "0");
+  std::unordered_map<std::string, Found> known;
+  for (;;) {
+    const Result<bool> row = all->step();
+    if (!row) return row.error();
+    if (!*row) return known;
+    const std::string session = all->text(0);
+    known[session] = {session, all->integer(1), all->integer(2), all->integer(3)};
+  }
+}
+
+Result<Catalogue> Catalogue::beside() const {
+  Result<Database> database = Database::open(database_.file());
+  if (!database) return std::move(database).error();
+  return Catalogue(std::move(*database));
+}
+
 Result<RefreshFacts> Catalogue::refresh(const std::vector<fs::path>& folders, const JobContext& context) {
   RefreshFacts facts;
-  std::vector<Found> found;
+  std::vector<Found> changed;
+  std::vector<std::string> gone;
   for (const fs::path& folder : folders) {
     const fs::path absolute = absolute_folder(folder);
-    if (!walk(absolute, found)) facts.unreachable.push_back(absolute);
-  }
-  facts.sessions = found.size();
-
-  // What is known, and of that what the folders no longer show.
-  std::unordered_map<std::string, Found> known;
-  {
-    Result<Statement> all = database_.prepare("SELECT folder, bytes, written, solved FROM session");
-    if (!all) return std::move(all).error();
-    for (;;) {
-      const Result<bool> row = all->step();
-      if (!row) return row.error();
-      if (!*row) break;
-      const std::string folder = all->text(0);
-      known[folder] = {folder, all->integer(1), all->integer(2), all->integer(3)};
+    std::vector<Found> found;
+    const bool is_listed = walk(absolute, context, found);
+    if (context.stop.stop_requested()) return interrupted();
+    facts.sessions += found.size();
+    if (!is_listed) facts.unreachable.push_back(absolute);
+    Result<std::unordered_map<std::string, Found>> before = known(absolute.string());
+    if (!before) return std::move(before).error();
+    for (Found& session : found) {
+      const auto same = before->find(session.folder.string());
+      const bool is_same = same != before->end() && same->second == session;
+      if (same != before->end()) before->erase(same);
+      if (!is_same) changed.push_back(std::move(session));
+    }
+    for (const auto& [session, ignored] : *before) {
+      if (is_listed) gone.push_back(session);
     }
   }
-  std::vector<Found> changed;
-  for (const Found& session : found) {
-    const auto before = known.find(session.folder.string());
-    if (before == known.end() || !(before->second == session)) changed.push_back(session);
-    if (before != known.end()) known.erase(before);
-  }
-  const auto is_out_of_sight = [&](const std::string& folder) {
-    return std::ranges::any_of(facts.unreachable,
-                               [&](const fs::path& lost) { return folder.starts_with(lost.string() + "/"); });
-  };
-  std::erase_if(known, [&](const auto& each) { return is_out_of_sight(each.first); });
 
-  std::vector<Entry> entries(changed.size());
-  parallel_for(changed.size(), context.threads, [&](std::size_t i, int) {
-    if (!context.stop.stop_requested()) entries[i] = read_entry(changed[i]);
-  });
-  if (context.stop.stop_requested()) return interrupted();
-
-  if (Result<void> ok = database_.run("BEGIN IMMEDIATE"); !ok) return std::move(ok).error();
-  Result<void> done = put(changed, entries);
-  Result<Statement> forget = database_.prepare("DELETE FROM session WHERE folder = ?");
-  if (!forget) return std::move(forget).error();
-  for (auto it = known.begin(); done && it != known.end(); ++it) done = forget->bind(it->first).run();
-  done = done ? database_.run("COMMIT") : std::move(done);
-  if (!done) {
-    (void)database_.run("ROLLBACK");
-    return std::move(done).error();
+  if (Result<void> ok = forget(gone); !ok) return std::move(ok).error();
+  facts.removed = gone.size();
+  for (const std::size_t all = changed.size(); facts.read < all;) {
+    const std::span<const Found> batch(changed.data() + facts.read, std::min(kBatch, all - facts.read));
+    std::vector<Entry> entries(batch.size());
+    parallel_for(batch.size(), context.threads, [&](std::size_t i, int) {
+      if (!context.stop.stop_requested()) entries[i] = read_entry(batch[i]);
+    });
+    if (context.stop.stop_requested()) return interrupted();
+    if (Result<void> ok = put(batch, entries); !ok) return std::move(ok).error();
+    facts.read += batch.size();
+    context.progress("read", static_cast<double>(facts.read) / static_cast<double>(all));
   }
-  facts.read = changed.size();
-  facts.removed = known.size();
   return facts;
 }
 
 Result<void> Catalogue::refresh(const fs::path& session) {
-  const std::optional<Found> found = look_at(absolute_folder(session));
-  if (!found) {
-    Result<Statement> forget = database_.prepare("DELETE FROM session WHERE folder = ?");
-    if (!forget) return std::move(forget).error();
-    return forget->bind(absolute_folder(session).string()).run();
-  }
-  return put({*found}, {read_entry(*found)});
+  const fs::path folder = absolute_folder(session);
+  const std::optional<Found> found = look_at(folder);
+  if (!found) return forget({folder.string()});
+  const Result<bool> same = is_known(*found);
+  if (!same) return same.error();
+  if (*same) return {};
+  const Entry entry = read_entry(*found);
+  return put({&*found, 1}, {&entry, 1});
 }
 
-Result<void> Catalogue::put(const std::vector<Found>& found, const std::vector<Entry>& entries) {
-  Result<Statement> put = database_.prepare(kPut);
-  if (!put) return std::move(put).error();
-  Result<Statement> tag =
-      database_.prepare("INSERT OR IGNORE INTO tag SELECT ?, key FROM session WHERE folder = ?");
-  if (!tag) return std::move(tag).error();
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    const Entry& e = entries[i];
-    const Metadata& m = e.metadata;
-    const std::string folder = e.folder.string();
-    put->bind(folder).bind(e.name).bind(found[i].bytes).bind(found[i].written).bind(found[i].solved);
-    put->bind(e.fabric).bind(e.rig).bind(e.calibration).bind(e.state).bind(e.error);
-    put->bind(std::int64_t{m.revision}).bind(m.id).bind(joined(m.tags)).bind(m.composition);
-    put->bind(m.construction).bind(m.side).bind(m.notes).bind(m.weight_g_m2).bind(m.thickness_mm);
-    put->bind(std::int64_t{e.shots}).bind(std::int64_t{e.solves}).bind(e.current_solve).bind(e.taken);
-    if (Result<void> ok = put->run(); !ok) return ok;
-    for (const std::string& each : m.tags) {
-      if (Result<void> ok = tag->bind(each).bind(folder).run(); !ok) return ok;
-    }
+Result<bool> Catalogue::is_known(const Found& found) {
+  Result<Statement> same = database_.prepare(
+      "SELECT 1 FROM session WHERE folder = ? AND bytes = ? AND written = ? AND solved = ?");
+  if (!same) return std::move(same).error();
+  return same->bind(found.folder.string()).bind(found.bytes).bind(found.written).bind(found.solved).step();
+}
+
+Result<void> Catalogue::keep_only(const std::vector<fs::path>& folders) {
+  Result<Statement> all = database_.prepare("SELECT folder FROM session");
+  if (!all) return std::move(all).error();
+  std::vector<std::string> gone;
+  for (;;) {
+    const Result<bool> row = all->step();
+    if (!row) return row.error();
+    if (!*row) break;
+    const std::string session = all->text(0);
+    const bool is_kept = std::ranges::any_of(folders, [&](const fs::path& folder) {
+      return session.starts_with(absolute_folder(folder).string() + "/");
+    });
+    if (!is_kept) gone.push_back(session);
   }
-  return {};
+  return forget(gone);
+}
+
+Result<void> Catalogue::forget(const std::vector<std::string>& folders) {
+  if (folders.empty()) return {};
+  return database_.together([&]() -> Result<void> {
+    Result<Statement> forget = database_.prepare("DELETE FROM session WHERE folder = ?");
+    if (!forget) return std::move(forget).error();
+    for (const std::string& folder : folders) {
+      if (Result<void> ok = forget->bind(folder).run(); !ok) return ok;
+    }
+    return {};
+  });
+}
+
+Result<void> Catalogue::put(std::span<const Found> found, std::span<const Entry> entries) {
+  return database_.together([&]() -> Result<void> {
+    Result<Statement> put = database_.prepare(kPut);
+    if (!put) return std::move(put).error();
+    Result<Statement> tag =
+        database_.prepare("INSERT OR IGNORE INTO tag SELECT ?, key FROM session WHERE folder = ?");
+    if (!tag) return std::move(tag).error();
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      if (Result<void> ok = put_one(*put, *tag, found[i], entries[i]); !ok) return ok;
+    }
+    return {};
+  });
 }
 
 Result<std::vector<std::int64_t>> Catalogue::keys_of(const Query& query) {
@@ -359,25 +436,30 @@ Result<std::vector<std::int64_t>> Catalogue::keys_of(const Query& query) {
   std::vector<std::string> values;
   const auto with = [&](const char* condition, const std::string& value) {
     if (value.empty()) return;
-    sql += values.empty() ? " WHERE " : " AND ";
+    sql += sql.find(" WHERE ") == std::string::npos ? " WHERE " : " AND ";
     sql += condition;
     values.push_back(value);
   };
   if (!match->empty()) {
     sql = fmt::format(
         "SELECT s.key FROM (SELECT rowid, rank FROM words WHERE words MATCH ? LIMIT {}) hit JOIN session s "
-        "ON "
-        "s.key = hit.rowid WHERE 1",
+        "ON s.key = hit.rowid WHERE 1",
         kMostRanked);
     values.push_back(*match);
+  }
+  if (query.unfinished) {
+    sql += match->empty() ? " WHERE " : " AND ";
+    sql += "s.state NOT IN ('complete', 'unreadable')";
   }
   with("s.id = ?", query.id);
   with("s.key IN (SELECT key FROM tag WHERE tag = ?)", query.tag);
   with("s.state = ?", query.state);
+  with("s.fabric = ?", query.fabric);
   with("s.rig = ?", query.rig);
   with("s.calibration = ?", query.calibration);
   with("s.taken >= ?", query.from);
   with("s.taken < ?", query.before);
+  with("s.folder = ? || '/' || s.name || '.weft'", query.in.string());
   sql +=
       match->empty() ? " ORDER BY s.taken DESC, s.key DESC" : " ORDER BY hit.rank, s.taken DESC, s.key DESC";
   Result<Statement> rows = database_.prepare(sql);
@@ -409,7 +491,7 @@ Result<Entry> Catalogue::entry(std::int64_t key) {
   e.rig = get->text(4);
   e.calibration = get->text(5);
   e.state = get->text(6);
-  e.error = get->text(7);
+  e.error = error_in(get->text(7));
   e.metadata = {.revision = static_cast<int>(get->integer(8)),
                 .id = get->text(9),
                 .tags = parted(get->text(10)),
@@ -423,6 +505,9 @@ Result<Entry> Catalogue::entry(std::int64_t key) {
   e.solves = static_cast<int>(get->integer(18));
   e.current_solve = get->text(19);
   e.taken = get->text(20);
+  e.written = iso_time(static_cast<double>(get->integer(21)) * 1e-9);
+  e.bytes = static_cast<std::uint64_t>(get->integer(22));
+  e.warnings = parted(get->text(23));
   return e;
 }
 

@@ -84,6 +84,14 @@ Result<void> Database::run(const char* sql) {
   return {};
 }
 
+Result<void> Database::together(const std::function<Result<void>()>& write) {
+  if (Result<void> ok = run("BEGIN IMMEDIATE"); !ok) return ok;
+  Result<void> done = write();
+  if (done) done = run("COMMIT");
+  if (!done) (void)run("ROLLBACK");
+  return done;
+}
+
 Result<Statement> Database::prepare(std::string_view sql) const {
   sqlite3_stmt* statement = nullptr;
   if (sqlite3_prepare_v2(database_.get(), sql.data(), static_cast<int>(sql.size()), &statement, nullptr) !=

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -58,8 +59,11 @@ class Database {
 
   /// Statements without parameters and rows.
   Result<void> run(const char* sql);
+  /// Runs `write` as one transaction, which an error takes back.
+  Result<void> together(const std::function<Result<void>()>& write);
   /// `sql` is one of this program's own: a mistake in it is kInternal.
   Result<Statement> prepare(std::string_view sql) const;
+  const std::filesystem::path& file() const { return file_; }
   /// The error of the last call.
   Error error() const;
 

@@ -9,22 +9,13 @@
 #include "core/json_document.h"
 #include "core/solve.h"
 #include "library/current.h"
+#include "library/session_files.h"
 #include "library/session_lock.h"
 
 namespace weft::library {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::uint64_t bytes_below(const fs::path& folder) {
-  std::uint64_t bytes = 0;
-  std::error_code error;
-  for (const auto& entry : fs::recursive_directory_iterator(folder, error)) {
-    std::error_code ignored;
-    if (entry.is_regular_file(ignored) && !entry.is_symlink(ignored)) bytes += entry.file_size(ignored);
-  }
-  return bytes;
-}
 
 // Rectified maps of a solve.
 std::vector<fs::path> made_from(const fs::path& session, const std::string& solve) {

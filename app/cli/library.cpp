@@ -82,9 +82,11 @@ fs::path catalogue_of(const Place& place) {
 Result<Catalogue> fresh_catalogue(const Place& place, const CommonArguments& common) {
   Result<Catalogue> catalogue = Catalogue::open(catalogue_of(place));
   if (!catalogue) return catalogue;
+  const std::vector<fs::path> folders = folders_of(place);
+  if (Result<void> ok = catalogue->keep_only(folders); !ok) return std::move(ok).error();
   const Result<library::RefreshFacts> facts = [&] {
     ProgressLine line(common.quiet);
-    return catalogue->refresh(folders_of(place), {common.threads, stop_on_signal(), line.callback()});
+    return catalogue->refresh(folders, {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!facts) return facts.error();
   for (const fs::path& lost : facts->unreachable)
@@ -141,7 +143,10 @@ Result<int> show(const Place& place, const std::string& session, const CommonArg
   }
   for (const auto& [key, value] : document.items()) {
     if (value.is_null() || value == "" || value == 0 || value == Json::array()) continue;
-    print(fmt::format("{:<14} {}", key, value.is_string() ? value.get<std::string>() : value.dump()));
+    const std::string said = key == "error"      ? entry->error->message()
+                             : value.is_string() ? value.get<std::string>()
+                                                 : value.dump();
+    print(fmt::format("{:<14} {}", key, in_line(said)));
   }
   return kDone;
 }

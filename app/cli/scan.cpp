@@ -16,7 +16,6 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/solve.h"
-#include "app/server/api/session_choice.h"
 #include "app/server/http/error_json.h"
 #include "app/server/rig/rig_lock.h"
 #include "app/server/rig_server.h"
@@ -183,16 +182,20 @@ void say_choice(const Json& choice, const capture::Rig& rig) {
                    (rig.scan.sessions / (other + ".weft")).string()));
 }
 
-Result<int> name_only(const capture::Rig& rig, const Json& body, const CommonArguments& common) {
-  const Result<SessionChoice> choice = choose_session(body, rig, std::chrono::system_clock::now());
-  if (!choice) return choice.error();
-  Json document = to_json(*choice);
-  if (!body.contains("session")) say_choice(document, rig);
-  document["session"] = choice->request.session.string();
+Result<int> name_only(const capture::Rig& rig, const std::optional<std::string>& owner, Json body,
+                      const CommonArguments& common) {
+  const Result<Scanner> scanner = find_scanner(rig, owner);
+  if (!scanner) return scanner.error();
+  body["dry_run"] = true;
+  Result<Json> choice = scanner->client.post("/api/v1/scan", body);
+  if (!choice) return std::move(choice).error();
+  if (!body.contains("session")) say_choice(*choice, rig);
+  const fs::path session = rig.scan.sessions / (choice->at("session").get<std::string>() + ".weft");
+  (*choice)["session"] = session.string();
   if (common.json) {
-    print_json(document);
+    print_json(*choice);
   } else {
-    print(choice->request.session.string());
+    print(session.string());
   }
   return kDone;
 }
@@ -255,7 +258,7 @@ Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
   } else if (!arguments.output.empty()) {
     rig->scan.sessions = fs::absolute(arguments.output).parent_path();
   }
-  if (arguments.dry_run) return name_only(*rig, *body, common);
+  if (arguments.dry_run) return name_only(*rig, *owner, *body, common);
   Result<Json> ended = photograph(*rig, *owner, *body, common);
   if (!ended) return std::move(ended).error();
   Json& status = *ended;

@@ -13,7 +13,6 @@
 #include "app/server/rig/rig_lock.h"
 #include "core/files.h"
 #include "core/process.h"
-#include "library/session_catalog.h"
 
 namespace weft::app {
 namespace {
@@ -35,24 +34,25 @@ struct RigServer::State {
         lock(std::move(its_lock)),
         log(lock.folder() / "log", std::move(say)),
         pictures(lock.folder() / "pictures"),
-        sessions(rig.scan.sessions, rig.name),
         keeper(rig, std::move(open), std::move(run), events, log, pictures) {}
 
   Result<void> open_jobs_and_library(const std::filesystem::path& weft) {
+    Result<std::unique_ptr<LibraryService>> shelves = LibraryService::open(lock.folder(), rig.scan.sessions);
+    if (!shelves) return std::move(shelves).error();
+    library = std::move(*shelves);
     JobQueueOptions options;
     options.folder = lock.folder() / "jobs";
     options.program = weft.empty() ? program_beside("weft") : weft;
     options.memory_bytes = available_memory_bytes() / 4 * 3;
-    options.changed = [this](const JobStatus& job) { events.add("job", event_of(job)); };
+    options.changed = [this](const JobStatus& job) {
+      if (!job.ended.empty()) library->expire();
+      events.add("job", event_of(job));
+    };
     Result<std::unique_ptr<JobQueue>> opened = JobQueue::open(std::move(options));
     if (!opened) return std::move(opened).error();
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
-    Result<std::unique_ptr<LibraryService>> shelves =
-        LibraryService::open(lock.folder(), {rig.scan.sessions});
-    if (!shelves) return std::move(shelves).error();
-    library = std::move(*shelves);
-    parts.emplace(RigParts{rig, lock.folder(), keeper, sessions, pictures, *jobs, *library, guard});
+    parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, *jobs, *library, guard});
     return {};
   }
 
@@ -61,9 +61,8 @@ struct RigServer::State {
   EventLog events;
   Logbook log;
   FramePictures pictures;
-  library::SessionCatalog sessions;
-  std::unique_ptr<JobQueue> jobs;
   std::unique_ptr<LibraryService> library;
+  std::unique_ptr<JobQueue> jobs;
   RigKeeper keeper;
   std::optional<RigParts> parts;
   GuardRules guard;

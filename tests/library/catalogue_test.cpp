@@ -132,15 +132,74 @@ TEST(Catalogue, ShowsASessionThatCannotBeReadWithItsError) {
   Catalogue catalogue = opened(shelf);
   EXPECT_EQ(refreshed(catalogue, {shelf.path()}).sessions, 2U) << "a link is not followed";
   EXPECT_EQ(found(catalogue, {.state = "unreadable"}), Names{"broken"});
-  EXPECT_NE(catalogue.find_one("broken")->error, "");
+  EXPECT_EQ(catalogue.find_one("broken")->error->kind, ErrorKind::kBadData);
 
   const auto odd = shelf.put("odd", {{"metadata", {{"tags", "red"}}}});
   refreshed(catalogue, {shelf.path()});
   EXPECT_EQ(catalogue.find_one("odd")->state, "complete");
-  EXPECT_NE(catalogue.find_one("odd")->error.find("list of texts"), std::string::npos);
+  EXPECT_EQ(catalogue.find_one("odd")->error->why, "must be a list of texts");
   ASSERT_TRUE(change_metadata(odd, {{"tags", {"red"}}})) << "it can be mended";
   refreshed(catalogue, {shelf.path()});
-  EXPECT_EQ(catalogue.find_one("odd")->error, "");
+  EXPECT_FALSE(catalogue.find_one("odd")->error);
+}
+
+TEST(Catalogue, TellsWhichSessionsOfAFolderAScanCouldFinish) {
+  const Shelf shelf;
+  shelf.put("done");
+  shelf.put("left", {{"state", "capturing"}});
+  shelf.put("velvet", {{"state", "capturing"}, {"fabric", "velvet"}});
+  shelf.put("below/left_too", {{"state", "capturing"}});
+  shelf.put("of_another", {{"state", "capturing"}, {"rig", "bench-2"}});
+  std::ofstream(shelf.put("broken") / "session.json", std::ios::trunc) << "{";
+  Catalogue catalogue = opened(shelf);
+  refreshed(catalogue, {shelf.path()});
+  const Query query = {.fabric = "twill", .rig = "bench-1", .unfinished = true, .in = shelf.path()};
+  EXPECT_EQ(found(catalogue, query), Names{"left"});
+}
+
+TEST(Catalogue, TellsBytesAndWarningsOfASession) {
+  const Shelf shelf;
+  Json shots = Json::array({taken("2026-11-03T08:00:00Z")[0]});
+  shots[0]["warnings"] = {"the dark shot is not quite dark"};
+  const auto folder = shelf.put("a", {{"shots", shots}});
+  std::filesystem::create_directories(folder / "raw");
+  std::ofstream(folder / "raw" / "0.dng") << std::string(1000, 'x');
+  std::ofstream(shelf.beside("outside")) << std::string(5000, 'x');
+  std::filesystem::create_symlink(shelf.beside("outside"), folder / "raw" / "link.dng");
+  Catalogue catalogue = opened(shelf);
+  refreshed(catalogue, {shelf.path()});
+  const Entry entry = *catalogue.find_one("a");
+  EXPECT_EQ(entry.bytes, 1000 + std::filesystem::file_size(folder / "session.json"));
+  EXPECT_EQ(entry.warnings, Names{"the dark shot is not quite dark"});
+}
+
+TEST(Catalogue, ForgetsWhatLiesInNoFolderAnyMore) {
+  const Shelf near, far;
+  near.put("a");
+  far.put("b");
+  Catalogue catalogue = opened(near);
+  refreshed(catalogue, {near.path(), far.path()});
+  EXPECT_EQ(refreshed(catalogue, {near.path()}).removed, 0U) << "nothing is known of the other folder";
+  EXPECT_EQ(found(catalogue, {}).size(), 2U);
+  ASSERT_TRUE(catalogue.keep_only({near.path()}));
+  EXPECT_EQ(found(catalogue, {}), Names{"a"});
+}
+
+TEST(Catalogue, TellsHowFarItsReadingIs) {
+  const Shelf shelf;
+  for (int i = 0; i < 600; ++i) {
+    const auto folder = shelf.folder_of(fmt::format("s{:03}", i));
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "session.json") << "{}";
+  }
+  Catalogue catalogue = opened(shelf);
+  std::vector<double> shares;
+  JobContext context;
+  context.progress = [&](std::string_view phase, double share) {
+    if (phase == "read") shares.push_back(share);
+  };
+  ASSERT_TRUE(catalogue.refresh({shelf.path()}, context));
+  EXPECT_EQ(shares, (std::vector<double>{500.0 / 600, 1.0}));
 }
 
 TEST(Catalogue, LooksIntoFoldersBelowAndKeepsWhatItKnewOfAFolderThatCannotBeListed) {

@@ -12,7 +12,6 @@
 #include "app/server/rig/rig_keeper.h"
 #include "capture/rig.h"
 #include "core/json_document.h"
-#include "library/session_catalog.h"
 
 namespace weft::app {
 
@@ -21,7 +20,6 @@ struct RigParts {
   const capture::Rig& rig;
   std::filesystem::path state;
   RigKeeper& keeper;
-  library::SessionCatalog& sessions;
   FramePictures& pictures;
   JobQueue& jobs;
   LibraryService& library;

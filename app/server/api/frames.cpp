@@ -8,6 +8,7 @@
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
 #include "app/server/http/error_json.h"
+#include "library/session_files.h"
 
 namespace weft::app {
 namespace {
@@ -21,7 +22,9 @@ Result<Reply> busy_or(const Error& error) {
 }
 
 Result<FrameFile> frame_of(const RigParts& parts, const Call& call) {
-  Result<library::StoredFrame> frame = parts.sessions.frame(call.segments.at(0), call.segments.at(1));
+  const Result<Session> session = parts.library.session(call.segments.at(0));
+  if (!session) return session.error();
+  Result<library::StoredFrame> frame = library::stored_frame(*session, call.segments.at(1));
   if (!frame) return std::move(frame).error();
   return FrameFile{std::move(frame->file), std::move(frame->sha256)};
 }

@@ -66,7 +66,7 @@ Result<JobSpec> spec_of(const RigParts& parts, const Json& body) {
   if (known == job_kinds().end()) return refused("kind", "must be solve, price or rectify");
   const Result<std::string> name = word_of(body, "session");
   if (!name) return name.error();
-  const Result<Session> session = parts.sessions.find(*name);
+  const Result<Session> session = parts.library.session(*name);
   if (!session) return session.error();
   JobSpec spec = {*kind, *name, {known->verb, session->folder.string()}, "", ""};
   spec.arguments.insert(spec.arguments.end(), known->always.begin(), known->always.end());

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <array>
-#include <charconv>
 #include <utility>
 
 #include "app/server/api/api.h"
@@ -9,54 +7,6 @@
 
 namespace weft::app {
 namespace {
-
-Error no_query(const std::string& key, const std::string& rule) {
-  return {ErrorKind::kUsage, "sessions cannot be searched so", key, rule, "see GET library in openapi.json"};
-}
-
-Result<std::int64_t> count_in(const std::string& key, const std::string& text) {
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc() && end == text.data() + text.size() && number > 0) return number;
-  return no_query(key, "must be a number from 1");
-}
-
-Result<library::Query> query_of(const Call& call) {
-  library::Query query;
-  const std::array<std::pair<const char*, std::string*>, 8> texts = {{{"query", &query.words},
-                                                                      {"id", &query.id},
-                                                                      {"tag", &query.tag},
-                                                                      {"state", &query.state},
-                                                                      {"rig", &query.rig},
-                                                                      {"calibration", &query.calibration},
-                                                                      {"from", &query.from},
-                                                                      {"before", &query.before}}};
-  for (const auto& [key, value] : call.query) {
-    const auto text = std::ranges::find(texts, key, [](const auto& each) { return std::string(each.first); });
-    if (text != texts.end()) {
-      *text->second = value;
-      continue;
-    }
-    if (key != "limit" && key != "after") return no_query(key.substr(0, 40), "there is no such filter");
-    const Result<std::int64_t> number = count_in(key, value);
-    if (!number) return number.error();
-    if (key == "after") query.after = *number;
-    if (key == "limit") query.limit = static_cast<int>(std::min<std::int64_t>(*number, 1000));
-  }
-  return query;
-}
-
-Result<Reply> find_sessions(const RigParts& parts, const Call& call) {
-  const Result<library::Query> query = query_of(call);
-  if (!query) return query.error();
-  const Result<library::Page> page = parts.library.find(*query);
-  if (!page) return page.error();
-  Json sessions = Json::array();
-  for (const library::Entry& entry : page->entries) sessions.push_back(library::json_of(entry));
-  return json_reply({{"sessions", std::move(sessions)},
-                     {"total", page->total},
-                     {"after", page->after ? Json(*page->after) : Json()}});
-}
 
 Result<Reply> list_tags(const RigParts& parts) {
   const Result<std::vector<std::pair<std::string, int>>> tags = parts.library.tags();
@@ -78,7 +28,7 @@ Result<Reply> reply_of(const Result<library::Change>& change) {
 Result<Reply> change_session(const RigParts& parts, const Call& call) {
   Result<Json> body = parse_body(call.body);
   if (!body) return std::move(body).error();
-  const Result<Session> session = parts.sessions.find(call.segments.at(0));
+  const Result<Session> session = parts.library.session(call.segments.at(0));
   if (!session) return session.error();
   library::Provided provided;
   if (const auto revision = body->find("revision"); revision != body->end()) {
@@ -102,8 +52,7 @@ Route step_back(const RigParts& parts, const char* path, Result<library::Change>
 }  // namespace
 
 Resource library_resource(const RigParts& parts) {
-  return {{{"GET", "/api/v1/library", [&parts](const Call& call) { return find_sessions(parts, call); }},
-           {"GET", "/api/v1/library/tags", [&parts](const Call&) { return list_tags(parts); }},
+  return {{{"GET", "/api/v1/library/tags", [&parts](const Call&) { return list_tags(parts); }},
            {"PATCH", "/api/v1/sessions/{name}/metadata",
             [&parts](const Call& call) { return change_session(parts, call); }},
            {"POST", "/api/v1/sessions/{name}/metadata",

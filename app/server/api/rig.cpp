@@ -5,16 +5,23 @@
 
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
+#include "app/server/api/session_choice.h"
 
 namespace weft::app {
 namespace {
 
+constexpr int kMostResumable = 100;
+
 Result<Reply> whole_status(const RigParts& parts) {
   Json status = to_json(parts.keeper.status(), parts.rig);
   const std::string session = parts.keeper.session();
+  library::Query query = unfinished_of(parts.rig);
+  query.limit = kMostResumable;
+  const Result<library::Page> unfinished = parts.library.find(query);
+  if (!unfinished) return unfinished.error();
   Json resumable = Json::array();
-  for (const Json& name : parts.sessions.resumable()) {
-    if (name != session) resumable.push_back(name);
+  for (const library::Entry& each : unfinished->entries) {
+    if (each.name != session) resumable.push_back(each.name);
   }
   status["resumable"] = std::move(resumable);
   status["lock"] = {{"pid", getpid()}, {"folder", parts.state.string()}};

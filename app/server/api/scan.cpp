@@ -14,12 +14,17 @@ namespace {
 Result<Reply> start_scan(const RigParts& parts, const Call& call) {
   const Result<Json> body = parse_body(call.body);
   if (!body) return body.error();
-  Result<SessionChoice> choice = choose_session(*body, parts.rig, std::chrono::system_clock::now());
+  Result<SessionChoice> choice =
+      choose_session(*body, parts.rig, parts.library, std::chrono::system_clock::now());
   if (!choice) return std::move(choice).error();
+  if (const auto dry = body->find("dry_run"); dry != body->end() && *dry == true)
+    return json_reply(to_json(*choice));
   if (Result<void> made = make_writable_folder(parts.rig.scan.sessions); !made)
     return std::move(made).error();
+  const std::filesystem::path folder = choice->request.session;
   if (Result<void> begun = parts.keeper.begin(std::move(choice->request)); !begun)
     return std::move(begun).error();
+  parts.library.watch(folder);
   return json_reply(to_json(*choice), kAccepted);
 }
 

@@ -17,9 +17,9 @@ namespace {
 
 constexpr int kMostDepth = 32;
 constexpr std::size_t kMostFabricBytes = 200;
-constexpr std::array<std::string_view, 11> kFields = {
+constexpr std::array<std::string_view, 12> kFields = {
     "session",  "fabric", "cloth_height_mm", "metadata", "exposure_us", "iso",
-    "f_number", "leds",   "repeat",          "bracket",  "copy"};
+    "f_number", "leds",   "repeat",          "bracket",  "copy",        "dry_run"};
 
 Error refuse(const std::string& where, std::string why, std::string remedy) {
   return {ErrorKind::kUsage, "the request cannot be used", where, std::move(why), std::move(remedy)};
@@ -175,6 +175,7 @@ Result<ScanWish> read_scan_body(const Json& body, int leds, capture::ScanRequest
   });
   read_plan(fields, leds, request);
   fields.flag("copy", copy);
+  fields.flag("dry_run", wish.dry_run);
   if (fields.error()) return *fields.error();
   if (!copy) request.copy.clear();
   return wish;

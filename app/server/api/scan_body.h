@@ -20,6 +20,7 @@ Result<Json> parse_body(std::string_view body);
 struct ScanWish {
   std::string session;  ///< name of a new or unfinished one; empty: by the rig's template
   capture::ScanRequest request;
+  bool dry_run = false;  ///< nothing is to begin: only say which session it would be
 };
 
 /// The name under "session"; empty where there is none. kUsage.
@@ -30,9 +31,9 @@ capture::ScanRequest request_of_rig(const capture::Rig& rig);
 capture::ScanRequest request_of_session(const Session& session, const capture::Rig& rig);
 
 /// The body of POST /api/v1/scan over `otherwise`, every field optional: {"session", "fabric",
-/// "cloth_height_mm", "metadata", "exposure_us", "iso", "f_number", "leds", "repeat", "bracket", "copy"}.
-/// kUsage with the field and what is allowed there; a field that is not known is refused, with the nearest
-/// that is.
+/// "cloth_height_mm", "metadata", "exposure_us", "iso", "f_number", "leds", "repeat", "bracket", "copy",
+/// "dry_run"}. kUsage with the field and what is allowed there; a field that is not known is refused, with
+/// the nearest that is.
 Result<ScanWish> read_scan_body(const Json& body, int leds, capture::ScanRequest otherwise);
 
 }  // namespace weft::app

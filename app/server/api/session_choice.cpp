@@ -10,9 +10,9 @@
 #include "capture/scan/plan.h"
 #include "core/calibration.h"
 #include "core/files.h"
+#include "core/iso_time.h"
 #include "core/session.h"
 #include "library/session_name.h"
-#include "library/unfinished_sessions.h"
 
 namespace weft::app {
 namespace {
@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 constexpr auto kRecent = std::chrono::hours(1);
 constexpr double kSameExposure = 0.2;  // octaves: a camera's times are a third apart
 constexpr const char* kComplete = "complete";
+constexpr int kMostUnfinished = 1000;
 
 /// The calibration that this rig's sessions are begun with now.
 std::string calibration_id(const capture::Rig& rig) {
@@ -30,13 +31,19 @@ std::string calibration_id(const capture::Rig& rig) {
   return calibration ? calibration->id : "";
 }
 
-/// Those of this rig, cloth and calibration that a scan could finish, newest first.
-std::vector<library::UnfinishedSession> unfinished_of(const std::string& fabric, const capture::Rig& rig) {
-  auto found = library::unfinished_sessions(rig.scan.sessions, rig.name, fabric);
+/// Those of this rig, cloth and calibration that a scan could finish, the newest first.
+Result<std::vector<library::Entry>> unfinished_of_cloth(const std::string& fabric, const capture::Rig& rig,
+                                                        LibraryService& library) {
+  if (fabric.empty()) return std::vector<library::Entry>();
+  library::Query query = unfinished_of(rig);
+  query.fabric = fabric;
+  query.limit = kMostUnfinished;
+  Result<library::Page> page = library.find(query);
+  if (!page) return std::move(page).error();
+  std::vector<library::Entry> found = std::move(page->entries);
   if (found.empty()) return found;
-  std::erase_if(found, [id = calibration_id(rig)](const library::UnfinishedSession& each) {
-    return each.session.calibration_id != id;
-  });
+  std::erase_if(found, [id = calibration_id(rig)](const auto& each) { return each.calibration != id; });
+  std::ranges::sort(found, std::greater{}, &library::Entry::written);
   return found;
 }
 
@@ -99,22 +106,25 @@ Result<SessionChoice> named(const std::string& name, const Json& body, const cap
   return resumed(name, *session, body, rig);
 }
 
-Result<SessionChoice> by_cloth(const Json& body, const capture::Rig& rig,
+Result<SessionChoice> by_cloth(const Json& body, const capture::Rig& rig, LibraryService& library,
                                std::chrono::system_clock::time_point now) {
   Result<ScanWish> wish = read_scan_body(body, rig.leds, request_of_rig(rig));
   if (!wish) return std::move(wish).error();
   const std::string fabric = wish->request.fabric;
-  const std::vector<library::UnfinishedSession> unfinished =
-      fabric.empty() ? std::vector<library::UnfinishedSession>() : unfinished_of(fabric, rig);
-  for (const library::UnfinishedSession& each : unfinished) {
-    const bool recent = now - std::chrono::file_clock::to_sys(each.written) <= kRecent;
-    if (recent && is_asked_for(each.session, body, rig)) return resumed(each.name, each.session, body, rig);
+  const Result<std::vector<library::Entry>> unfinished = unfinished_of_cloth(fabric, rig, library);
+  if (!unfinished) return unfinished.error();
+  const std::string recent =
+      iso_time(std::chrono::duration<double>((now - kRecent).time_since_epoch()).count());
+  for (const library::Entry& each : *unfinished) {
+    if (each.written < recent) break;
+    const Result<Session> session = read_session(each.folder);
+    if (session && is_asked_for(*session, body, rig)) return resumed(each.name, *session, body, rig);
   }
   Result<std::string> name =
       library::next_session_name(rig.scan.session_name, fabric, rig.name, rig.scan.sessions, now);
   if (!name) return std::move(name).error();
   Result<SessionChoice> choice = new_one(std::move(*name), std::move(wish->request), rig);
-  if (choice && !unfinished.empty()) choice->unfinished = unfinished.front().name;
+  if (choice && !unfinished->empty()) choice->unfinished = unfinished->front().name;
   return choice;
 }
 
@@ -130,11 +140,23 @@ Json to_json(const SessionChoice& choice) {
   return json;
 }
 
-Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig,
+bool is_resumable(const capture::Rig& rig, const std::string& of, const std::string& state) {
+  return of == rig.name && state != kComplete && state != "unreadable";
+}
+
+library::Query unfinished_of(const capture::Rig& rig) {
+  library::Query query;
+  query.rig = rig.name;
+  query.unfinished = true;
+  query.in = absolute_folder(rig.scan.sessions);
+  return query;
+}
+
+Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig, LibraryService& library,
                                      std::chrono::system_clock::time_point now) {
   const Result<std::string> name = session_in_body(body);
   if (!name) return name.error();
-  Result<SessionChoice> choice = name->empty() ? by_cloth(body, rig, now) : named(*name, body, rig);
+  Result<SessionChoice> choice = name->empty() ? by_cloth(body, rig, library, now) : named(*name, body, rig);
   if (choice && choice->request.fabric.empty()) {
     return Error{ErrorKind::kUsage, "the scan has no fabric", "fabric", "",
                  "name the cloth: --fabric satin, or {\"fabric\": \"satin\"}"};

@@ -4,10 +4,12 @@
 #include <chrono>
 #include <string>
 
+#include "app/server/library/library_service.h"
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
 #include "core/json_document.h"
 #include "core/result.h"
+#include "library/catalogue.h"
 
 namespace weft::app {
 
@@ -25,12 +27,17 @@ struct SessionChoice {
 /// one.
 Json to_json(const SessionChoice& choice);
 
+/// Whether this rig could finish a session of that rig in that state.
+bool is_resumable(const capture::Rig& rig, const std::string& of, const std::string& state);
+/// The sessions in its folder that this rig could finish.
+library::Query unfinished_of(const capture::Rig& rig);
+
 /// What the body of POST /api/v1/scan asks for: the session it names, new or unfinished. Where it names none:
 /// the newest unfinished one of this rig, fabric and calibration, begun as the body says as far as it says
 /// it, that was written at most an hour before `now`; else a new one by the rig's template. Errors: those of
 /// read_scan_body(), kUsage (no fabric), kCannotCreate (the session is finished, or another rig's), kNoInput
 /// and kBadData (its session.json). Nothing is made.
-Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig,
+Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig, LibraryService& library,
                                      std::chrono::system_clock::time_point now);
 
 }  // namespace weft::app

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <array>
+#include <charconv>
 #include <chrono>
 #include <utility>
 
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
+#include "app/server/api/session_choice.h"
+#include "library/session_files.h"
 #include "library/session_name.h"
 
 namespace weft::app {
@@ -18,10 +22,6 @@ Json clipped_of(const Json& histogram) {
 
 Json to_json(const Shot& shot, const std::string& name) {
   const std::string path = fmt::format("/api/v1/sessions/{}/frames/{}", name, shot.index);
-  Json warnings = Json::array();
-  if (shot.document.contains("warnings") && shot.document["warnings"].is_array()) {
-    warnings = shot.document["warnings"];
-  }
   return {{"index", shot.index},
           {"led", shot.led},
           {"role", library::name_of(shot.role)},
@@ -33,14 +33,69 @@ Json to_json(const Shot& shot, const std::string& name) {
           {"time", shot.time},
           {"thumbnail", path + "/thumbnail?sha256=" + shot.sha256},
           {"raw", path + "/raw?sha256=" + shot.sha256},
-          {"warnings", warnings}};
+          {"warnings", library::warnings_of(shot)}};
+}
+
+Error no_query(const std::string& key, const std::string& rule) {
+  return {ErrorKind::kUsage, "sessions cannot be searched so", key, rule, "see GET sessions in openapi.json"};
+}
+
+Result<std::int64_t> count_in(const std::string& key, const std::string& text) {
+  std::int64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error == std::errc() && end == text.data() + text.size() && number > 0) return number;
+  return no_query(key, "must be a number from 1");
+}
+
+Result<library::Query> query_of(const Call& call) {
+  library::Query query;
+  const std::array<std::pair<const char*, std::string*>, 8> texts = {{{"query", &query.words},
+                                                                      {"id", &query.id},
+                                                                      {"tag", &query.tag},
+                                                                      {"state", &query.state},
+                                                                      {"rig", &query.rig},
+                                                                      {"calibration", &query.calibration},
+                                                                      {"from", &query.from},
+                                                                      {"to", &query.before}}};
+  for (const auto& [key, value] : call.query) {
+    const auto text = std::ranges::find(texts, key, [](const auto& each) { return std::string(each.first); });
+    if (text != texts.end()) {
+      *text->second = value;
+      continue;
+    }
+    if (key != "limit" && key != "after") return no_query(key.substr(0, 40), "there is no such filter");
+    const Result<std::int64_t> number = count_in(key, value);
+    if (!number) return number.error();
+    if (key == "after") query.after = *number;
+    if (key == "limit") query.limit = static_cast<int>(std::min<std::int64_t>(*number, 1000));
+  }
+  // Nothing in a time follows this sign: all that begins with what is said is within.
+  if (!query.before.empty()) query.before += '~';
+  return query;
+}
+
+Result<Reply> find_sessions(const RigParts& parts, const Call& call) {
+  const Result<library::Query> query = query_of(call);
+  if (!query) return query.error();
+  const Result<library::Page> page = parts.library.find(*query);
+  if (!page) return page.error();
+  Json sessions = Json::array();
+  for (const library::Entry& entry : page->entries) {
+    Json session = library::json_of(entry);
+    session["resumable"] = is_resumable(parts.rig, entry.rig, entry.state);
+    session["frames"] = entry.shots;
+    sessions.push_back(std::move(session));
+  }
+  return json_reply({{"sessions", std::move(sessions)},
+                     {"total", page->total},
+                     {"after", page->after ? Json(*page->after) : Json()}});
 }
 
 /// The session with its frames, and what is known of each without decoding it; what is not known yet is made
 /// in the background.
 Result<Reply> one_session(const RigParts& parts, const Call& call) {
   const std::string& name = call.segments.at(0);
-  const Result<Session> session = parts.sessions.find(name);
+  const Result<Session> session = parts.library.session(name);
   if (!session) return session.error();
   Json frames = Json::array(), by_led = Json::array(), warnings = Json::array();
   bool whole = true;
@@ -62,7 +117,7 @@ Result<Reply> one_session(const RigParts& parts, const Call& call) {
                      {"fabric", session->fabric},
                      {"rig", session->rig},
                      {"state", session->state},
-                     {"resumable", parts.sessions.is_resumable(*session)},
+                     {"resumable", is_resumable(parts.rig, session->rig, session->state)},
                      {"cloth_height_mm", session->cloth_height_mm},
                      {"calibration", session->calibration_id},
                      {"frames", std::move(frames)},
@@ -84,10 +139,7 @@ Result<Reply> next_name(const RigParts& parts, const Call& call) {
 
 Resource sessions_resource(const RigParts& parts) {
   return {
-      {{"GET", "/api/v1/sessions",
-        [&parts](const Call&) -> Result<Reply> {
-          return json_reply({{"sessions", parts.sessions.list()}});
-        }},
+      {{"GET", "/api/v1/sessions", [&parts](const Call& call) { return find_sessions(parts, call); }},
        {"GET", "/api/v1/sessions/{name}", [&parts](const Call& call) { return one_session(parts, call); }},
        {"GET", "/api/v1/next-name", [&parts](const Call& call) { return next_name(parts, call); }}},
       sessions_description()};

@@ -1,86 +1,134 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/library/library_service.h"
 
+#include <fmt/format.h>
+
 #include <utility>
+
+#include "core/files.h"
+#include "library/session_name.h"
 
 namespace weft::app {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Clock = Looker::Clock;
 
 constexpr auto kFresh = std::chrono::seconds(1);
-constexpr auto kBlink = std::chrono::milliseconds(30);
-constexpr auto kAtLeast = std::chrono::seconds(60);  // without being asked
+constexpr auto kBlink = std::chrono::milliseconds(20);
+constexpr auto kFirst = std::chrono::seconds(5);
+
+// What looks at a folder and writes what it finds.
+Result<std::unique_ptr<Looker>> looker_at(const library::Catalogue& beside, std::filesystem::path folder) {
+  Result<library::Catalogue> opened = beside.beside();
+  if (!opened) return std::move(opened).error();
+  auto catalogue = std::make_shared<library::Catalogue>(std::move(*opened));
+  return std::make_unique<Looker>(
+      [catalogue, folder = std::move(folder)](const std::stop_token& stop, const auto& beat) {
+        JobContext context;
+        context.threads = 1;
+        context.stop = stop;
+        context.progress = [&](std::string_view, double) { beat(); };
+        (void)catalogue->refresh({folder}, context);
+      },
+      kFresh);
+}
 
 }  // namespace
 
+// Outlives the service where its disk hangs.
+struct LibraryService::Watched {
+  explicit Watched(library::Catalogue its_catalogue) : catalogue(std::move(its_catalogue)) {}
+
+  library::Catalogue catalogue;
+  std::mutex mutex;
+  std::filesystem::path session;
+
+  void look() {
+    std::unique_lock lock(mutex);
+    const std::filesystem::path now = session;
+    lock.unlock();
+    if (!now.empty()) (void)catalogue.refresh(now);
+  }
+};
+
 Result<std::unique_ptr<LibraryService>> LibraryService::open(const std::filesystem::path& state,
-                                                             std::vector<std::filesystem::path> folders) {
-  Result<library::Catalogue> fresh = library::Catalogue::open(state / "library.sqlite");
-  if (!fresh) return std::move(fresh).error();
-  Result<library::Catalogue> asked = library::Catalogue::open(state / "library.sqlite");
+                                                             const std::filesystem::path& home) {
+  // A scan in another folder does not throw away what is known of this one.
+  const std::string of_home = sha256_of(absolute_folder(home).string()).substr(0, 16);
+  Result<library::Catalogue> asked =
+      library::Catalogue::open(state / fmt::format("library-{}.sqlite", of_home));
   if (!asked) return std::move(asked).error();
+  if (Result<void> ok = asked->keep_only({home}); !ok) return std::move(ok).error();
+  Result<library::Catalogue> edited = asked->beside();
+  if (!edited) return std::move(edited).error();
   Result<library::Edits> edits = library::Edits::open(state / "edits.json");
   if (!edits) return std::move(edits).error();
-  return std::unique_ptr<LibraryService>(
-      new LibraryService(std::move(*fresh), std::move(*asked), std::move(*edits), std::move(folders)));
+  std::unique_ptr<LibraryService> service(
+      new LibraryService(std::move(*asked), std::move(*edited), std::move(*edits), home));
+  if (Result<void> ok = service->begin_looking(); !ok) return std::move(ok).error();
+  return service;
 }
 
-LibraryService::LibraryService(library::Catalogue fresh, library::Catalogue asked, library::Edits edits,
-                               std::vector<std::filesystem::path> folders)
-    : fresh_(std::move(fresh)),
-      folders_(std::move(folders)),
+LibraryService::LibraryService(library::Catalogue asked, library::Catalogue edited, library::Edits edits,
+                               std::filesystem::path home)
+    : home_(absolute_folder(home)),
       asked_(std::move(asked)),
-      edits_(std::move(edits)),
-      thread_([this](const std::stop_token& stop) { refresh(stop); }) {}
+      edited_(std::move(edited)),
+      edits_(std::move(edits)) {}
 
-LibraryService::~LibraryService() {
-  thread_.request_stop();
-  if (thread_.joinable()) thread_.join();
-}
+LibraryService::~LibraryService() = default;
 
-void LibraryService::refresh(const std::stop_token& stop) {
-  while (!stop.stop_requested()) {
-    {
-      std::unique_lock lock(mutex_);
-      changed_.wait_for(lock, stop, kAtLeast, [&] { return is_wanted_; });
-      if (stop.stop_requested()) return;
-      is_wanted_ = false;
-    }
-    JobContext context;
-    context.threads = 1;
-    context.stop = stop;
-    (void)fresh_.refresh(folders_, context);
-    const std::lock_guard lock(mutex_);
-    looked_ = Clock::now();
-    changed_.notify_all();
-  }
+Result<void> LibraryService::begin_looking() {
+  Result<library::Catalogue> catalogue = asked_.beside();
+  if (!catalogue) return std::move(catalogue).error();
+  watched_ = std::make_shared<Watched>(std::move(*catalogue));
+  at_watched_ =
+      std::make_unique<Looker>([watched = watched_](const std::stop_token&, const auto&) { watched->look(); },
+                               Clock::duration::zero());
+  Result<std::unique_ptr<Looker>> looker = looker_at(asked_, home_);
+  if (!looker) return std::move(looker).error();
+  at_home_ = std::move(*looker);
+  return {};
 }
 
 void LibraryService::look_again() {
-  std::unique_lock lock(mutex_);
   const Clock::time_point now = Clock::now();
-  if (now - looked_ < kFresh) return;
-  is_wanted_ = true;
-  changed_.notify_all();
-  changed_.wait_for(lock, kBlink, [&] { return looked_ > now; });
+  const auto until = now + (at_home_->is_first() ? Clock::duration(kFirst) : kBlink);
+  const std::uint64_t home = at_home_->ask(), watched = at_watched_->ask();
+  at_watched_->wait(watched, until);
+  at_home_->wait(home, until);
 }
 
 Result<library::Page> LibraryService::find(const library::Query& query) {
   look_again();
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(asked_mutex_);
   return asked_.find(query);
 }
 
 Result<std::vector<std::pair<std::string, int>>> LibraryService::tags() {
   look_again();
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(asked_mutex_);
   return asked_.tags();
+}
+
+Result<Session> LibraryService::session(const std::string& name) const {
+  const Result<std::filesystem::path> folder = library::session_folder(home_, name);
+  if (!folder) return folder.error();
+  if (!is_there(*folder / "session.json")) {
+    return Error{ErrorKind::kNoInput, "there is no such session", name, "",
+                 "see /api/v1/sessions for those there are"};
+  }
+  return read_session(*folder);
+}
+
+void LibraryService::watch(const std::filesystem::path& session) {
+  const std::lock_guard lock(watched_->mutex);
+  watched_->session = session;
 }
 
 Result<library::Change> LibraryService::change(const std::filesystem::path& session, const Json& fields,
                                                const library::Provided& provided, const std::string& by) {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(edits_mutex_);
   Result<library::Change> change = library::change_metadata(session, fields, provided);
   if (!change || change->after.empty()) return change;
   if (Result<void> ok = edits_.add(*change, by); !ok) return std::move(ok).error();
@@ -88,18 +136,18 @@ Result<library::Change> LibraryService::change(const std::filesystem::path& sess
 }
 
 Result<library::Change> LibraryService::undo() {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(edits_mutex_);
   return after(edits_.undo());
 }
 
 Result<library::Change> LibraryService::redo() {
-  const std::lock_guard lock(mutex_);
+  const std::lock_guard lock(edits_mutex_);
   return after(edits_.redo());
 }
 
 // The catalogue knows of a change at once.
 Result<library::Change> LibraryService::after(Result<library::Change> change) {
-  if (change) (void)asked_.refresh(change->folder);
+  if (change) (void)edited_.refresh(change->folder);
   return change;
 }
 

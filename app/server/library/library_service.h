@@ -2,35 +2,44 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
+#include "app/server/library/looker.h"
 #include "core/result.h"
+#include "core/session.h"
 #include "library/catalogue.h"
 #include "library/edits.h"
 
 namespace weft::app {
 
-/// The library of a server: its catalogue, kept fresh by a thread of its own so that a slow disk delays
-/// nobody who asks, and the changes that people make. Safe from any thread.
+/// The library of a server: the catalogue of its folders, each looked at by a thread of its own so that a
+/// slow disk delays nobody who asks, and the changes that people make. Safe from any thread.
 class LibraryService {
  public:
-  /// Keeps library.sqlite and edits.json in `state`. Errors of Catalogue::open() and Edits::open().
+  /// Keeps a catalogue of its own for each `home`, and edits.json, in `state`. Sessions of `home`, the rig's
+  /// folder, go by their names. Errors of Catalogue::open() and Edits::open().
   static Result<std::unique_ptr<LibraryService>> open(const std::filesystem::path& state,
-                                                      std::vector<std::filesystem::path> folders);
+                                                      const std::filesystem::path& home);
   ~LibraryService();
 
   /// As the folders were at most a second ago, or, where looking through them takes longer than a blink, as
-  /// they were known.
+  /// they were known. The first question waits up to five seconds for the first look at `home`.
   Result<library::Page> find(const library::Query& query);
   Result<std::vector<std::pair<std::string, int>>> tags();
+  /// A session by its name, as its session.json is now. kUsage for what is no name, kNoInput where there is
+  /// none, errors of read_session().
+  Result<Session> session(const std::string& name) const;
+  /// The session that is written now: each question is answered as it is at that moment.
+  void watch(const std::filesystem::path& session);
+
+  /// Something was made in a session: the next question looks.
+  void expire() { at_home_->expire(); }
+
   /// Changes what is said of a session (library/metadata.h) and remembers it for undo().
   Result<library::Change> change(const std::filesystem::path& session, const Json& fields,
                                  const library::Provided& provided, const std::string& by);
@@ -38,21 +47,21 @@ class LibraryService {
   Result<library::Change> redo();
 
  private:
-  LibraryService(library::Catalogue fresh, library::Catalogue asked, library::Edits edits,
-                 std::vector<std::filesystem::path> folders);
-  void refresh(const std::stop_token& stop);
+  struct Watched;
+  LibraryService(library::Catalogue asked, library::Catalogue edited, library::Edits edits,
+                 std::filesystem::path home);
+  Result<void> begin_looking();
   void look_again();
   Result<library::Change> after(Result<library::Change> change);
 
-  library::Catalogue fresh_;  // of the thread
-  std::vector<std::filesystem::path> folders_;
-  std::mutex mutex_;  // of what follows
+  const std::filesystem::path home_;
+  std::mutex asked_mutex_;
   library::Catalogue asked_;
+  std::mutex edits_mutex_;  ///< of its own: an edit waits for its disk
+  library::Catalogue edited_;
   library::Edits edits_;
-  std::condition_variable_any changed_;
-  bool is_wanted_ = true;
-  std::chrono::steady_clock::time_point looked_ = {};
-  std::jthread thread_;
+  std::shared_ptr<Watched> watched_;
+  std::unique_ptr<Looker> at_home_, at_watched_;
 };
 
 }  // namespace weft::app

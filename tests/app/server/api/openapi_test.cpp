@@ -162,6 +162,7 @@ TEST_F(OpenApi, DescribesEveryAnswerOfEveryCall) {
     EXPECT_EQ(conforming("POST", step, step, "[]").status, 400);
   }
   EXPECT_EQ(conforming("POST", "/api/v1/scan/pause", "/api/v1/scan/pause").status, 409);
+  EXPECT_EQ(conforming("POST", scan, scan, R"({"fabric": "wool", "dry_run": true})").status, 200);
   EXPECT_EQ(conforming("POST", scan, scan, R"({"fabric": "wool"})").status, 202);
   EXPECT_EQ(conforming("POST", scan, scan, R"({"fabric": "wool"})").status, 409);
   for (const char* step : {"/api/v1/scan/pause", "/api/v1/scan/resume", "/api/v1/scan/cancel"}) {
@@ -250,7 +251,8 @@ TEST_F(OpenApi, DescribesJobs) {
 }
 
 TEST_F(OpenApi, DescribesTheLibrary) {
-  const std::string library = "/api/v1/library", metadata = "/api/v1/sessions/{name}/metadata";
+  const std::string sessions = "/api/v1/sessions", tags = "/api/v1/library/tags";
+  const std::string metadata = "/api/v1/sessions/{name}/metadata";
   const std::string done = "/api/v1/sessions/done/metadata", undo = "/api/v1/undo", redo = "/api/v1/redo";
   EXPECT_EQ(conforming("POST", undo, undo, "{}").status, 400) << "there is nothing yet";
   const Answer changed = conforming("PATCH", metadata, done,
@@ -265,17 +267,19 @@ TEST_F(OpenApi, DescribesTheLibrary) {
     EXPECT_EQ(conforming("POST", metadata, done, wrong).status, 400) << wrong;
 
   const auto found = [&](const std::string& query) {
-    return conforming("GET", library, library + "?" + query).json()["total"];
+    return conforming("GET", sessions, sessions + "?" + query).json()["total"];
   };
   EXPECT_EQ(found("tag=autumn"), 1);
   EXPECT_EQ(found("query=autumn%20sat"), 1);
+  EXPECT_EQ(found("tag=autumn&from=2000&to=2999"), 1);
+  EXPECT_EQ(found("tag=autumn&to=2001"), 0);
   // What others put there is seen within a second.
   for (int i = 0; i < 200 && found("limit=1") != 2; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(found("limit=1"), 2) << "the unfinished one is another";
-  EXPECT_EQ(conforming("GET", library, library + "?limit=0").status, 400);
-  EXPECT_EQ(conforming("GET", library, library + "?colour=red").status, 400);
-  EXPECT_EQ(conforming("GET", library + "/tags", library + "/tags").json()["tags"].size(), 2U);
+  EXPECT_EQ(conforming("GET", sessions, sessions + "?limit=0").status, 400);
+  EXPECT_EQ(conforming("GET", sessions, sessions + "?colour=red").status, 400);
+  EXPECT_EQ(conforming("GET", tags, tags).json()["tags"].size(), 2U);
   EXPECT_EQ(conforming("POST", undo, undo, "{}").status, 200);
   EXPECT_EQ(found("tag=autumn"), 0);
   EXPECT_EQ(conforming("POST", redo, redo, "{}").status, 200);

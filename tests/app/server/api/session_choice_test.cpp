@@ -2,13 +2,13 @@
 #include "app/server/api/session_choice.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <string>
 
 #include "core/files.h"
 #include "core/session.h"
+#include "core/temporary_folder.h"
 
 namespace weft::app {
 namespace {
@@ -20,12 +20,11 @@ using std::chrono::minutes;
 class SessionChoices : public testing::Test {
  protected:
   void SetUp() override {
-    fs::remove_all(folder_);
+    fs::create_directories(folder_);
     rig_.name = "north";
     rig_.scan.sessions = folder_;
     rig_.scan.session_name = "new";
   }
-  void TearDown() override { fs::remove_all(folder_); }
 
   /// A session of LEDs 1 and 2 without a repeat, with one frame at 20 ms.
   void leave(const std::string& name, minutes age, const std::string& fabric = "satin",
@@ -51,15 +50,20 @@ class SessionChoices : public testing::Test {
     ASSERT_TRUE(write_session(session));
     fs::last_write_time(session.folder / "session.json", fs::file_time_type::clock::now() - age);
   }
+  // With a library that looks at what was left for the first time.
   Result<SessionChoice> choose(const std::string& body) const {
-    return choose_session(Json::parse(body), rig_, std::chrono::system_clock::now());
+    const TemporaryFolder state;
+    const auto library = LibraryService::open(state.path(), folder_);
+    if (!library) return library.error();
+    return choose_session(Json::parse(body), rig_, **library, std::chrono::system_clock::now());
   }
   std::string name_for(const std::string& body) const {
     const Result<SessionChoice> choice = choose(body);
     return choice ? choice->name : choice.error().message();
   }
 
-  const fs::path folder_ = fs::path(testing::TempDir()) / ("weft_choice_" + std::to_string(getpid()));
+  const TemporaryFolder scratch_;
+  const fs::path folder_ = scratch_.path() / "scans";
   capture::Rig rig_;
 };
 

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "library/session_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+namespace weft::library {
+
+namespace fs = std::filesystem;
+
+Result<StoredFrame> stored_frame(const Session& session, const std::string& index) {
+  int wanted = -1;
+  const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), wanted);
+  if (error != std::errc() || end != index.data() + index.size()) {
+    return Error{ErrorKind::kUsage, "this is no number of a frame", index.substr(0, 20), "",
+                 "use a frame's index, from 0"};
+  }
+  const auto shot = std::ranges::find(session.shots, wanted, &Shot::index);
+  if (shot == session.shots.end() || !lies_in(session.path_of(*shot), session.folder)) {
+    return Error{ErrorKind::kNoInput, "there is no such frame",
+                 fmt::format("{}, frame {}", session.folder.stem().string(), wanted), "",
+                 "see the session for the frames there are"};
+  }
+  return StoredFrame{session.path_of(*shot), shot->sha256};
+}
+
+const char* name_of(ShotRole role) {
+  switch (role) {
+    case ShotRole::kLit:
+      return "lit";
+    case ShotRole::kDark:
+      return "dark";
+    case ShotRole::kRepeat:
+      return "repeat";
+    case ShotRole::kBracket:
+      return "bracket";
+  }
+  return "lit";
+}
+
+std::vector<std::string> warnings_of(const Shot& shot) {
+  std::vector<std::string> warnings;
+  const auto list = shot.document.find("warnings");
+  if (list == shot.document.end() || !list->is_array()) return warnings;
+  for (const Json& warning : *list) {
+    if (warning.is_string()) warnings.push_back(warning.get<std::string>());
+  }
+  return warnings;
+}
+
+bool lies_in(const fs::path& file, const fs::path& folder) {
+  std::error_code file_error, folder_error;
+  const auto real_file = fs::canonical(file, file_error);
+  const auto real_folder = fs::canonical(folder, folder_error);
+  if (file_error || folder_error) return false;
+  return std::mismatch(real_folder.begin(), real_folder.end(), real_file.begin(), real_file.end()).first ==
+         real_folder.end();
+}
+
+std::uint64_t bytes_below(const fs::path& folder) {
+  std::uint64_t bytes = 0;
+  std::error_code error;
+  fs::recursive_directory_iterator entries(folder, error);
+  for (; !error && entries != fs::recursive_directory_iterator(); entries.increment(error)) {
+    std::error_code ignored;
+    if (entries->is_symlink(ignored) || !entries->is_regular_file(ignored)) continue;
+    const std::uintmax_t size = entries->file_size(ignored);
+    if (!ignored) bytes += size;
+  }
+  return bytes;
+}
+
+}  // namespace weft::library

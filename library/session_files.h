@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+#include "core/session.h"
+
+// What lies in a session's folder.
+
+namespace weft::library {
+
+/// A raw frame on disk and the digest that names it.
+struct StoredFrame {
+  std::filesystem::path file;
+  std::string sha256;
+};
+
+/// The file of the frame of this index, which lies in the session. kUsage for what is no number, kNoInput.
+Result<StoredFrame> stored_frame(const Session& session, const std::string& index);
+
+/// "lit", as in session.json.
+const char* name_of(ShotRole role);
+
+/// What the scan warned of at this shot.
+std::vector<std::string> warnings_of(const Shot& shot);
+
+/// Whether a file is really there: a link in a session could lead out of it.
+bool lies_in(const std::filesystem::path& file, const std::filesystem::path& folder);
+
+/// Of all files at and below a folder; links count nothing.
+std::uint64_t bytes_below(const std::filesystem::path& folder);
+
+}  // namespace weft::library
