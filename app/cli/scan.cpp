@@ -136,7 +136,7 @@ class Narrator {
 };
 
 bool has_ended(const Json& status) {
-  return status["state"] == "idle" || status["state"] == "failed";
+  return status["state"] == "idle" || status["state"] == "attended" || status["state"] == "failed";
 }
 
 /// The last status of a scan whose events are not told, because too many clients follow them already.

@@ -9,6 +9,8 @@
 
 #include "app/server/api/api.h"
 #include "app/server/http/event_log.h"
+#include "app/server/rig/attendance.h"
+#include "app/server/rig/controls.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_lock.h"
 #include "core/files.h"
@@ -34,7 +36,21 @@ struct RigServer::State {
         lock(std::move(its_lock)),
         log(lock.folder() / "log", std::move(say)),
         pictures(lock.folder() / "pictures"),
-        keeper(rig, std::move(open), std::move(run), events, log, pictures) {}
+        controls([this](const std::string& name) { tell_controls(name); }),
+        attendance(rig, std::move(open), lock.folder() / "test-shots",
+                   {[this] { keeper.tell_status(); }, [this](const TestShot& shot) { tell_shot(shot); }}),
+        keeper(rig, attendance, std::move(run), events, log, pictures) {
+    keeper.on_controls([this] { return controls.holder(); });
+  }
+
+  void tell_controls(const std::string& name) {
+    log.add("controls", name.empty() ? "nobody holds the controls" : name + " holds the controls",
+            {{"name", name}});
+    events.add("control", {{"name", name}});
+    keeper.tell_status();
+  }
+
+  void tell_shot(const TestShot& shot) { events.add("shot", document_of(shot, pictures)); }
 
   Result<void> open_jobs_and_library(const std::filesystem::path& weft) {
     Result<std::unique_ptr<LibraryService>> shelves = LibraryService::open(lock.folder(), rig.scan.sessions);
@@ -52,7 +68,8 @@ struct RigServer::State {
     if (!opened) return std::move(opened).error();
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
-    parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, *jobs, *library, guard});
+    parts.emplace(
+        RigParts{rig, lock.folder(), keeper, pictures, attendance, controls, *jobs, *library, guard});
     return {};
   }
 
@@ -63,6 +80,8 @@ struct RigServer::State {
   FramePictures pictures;
   std::unique_ptr<LibraryService> library;
   std::unique_ptr<JobQueue> jobs;
+  Controls controls;
+  Attendance attendance;
   RigKeeper keeper;
   std::optional<RigParts> parts;
   GuardRules guard;
@@ -141,7 +160,7 @@ std::vector<std::string> RigServer::calls() const {
 }
 
 bool RigServer::stop(std::chrono::milliseconds most) {
-  const bool ended = state_->keeper.stop(most);
+  const bool ended = state_->keeper.stop(most) && state_->attendance.stop(most);
   if (!state_->events.closed()) {
     state_->log.add("daemon_ended",
                     ended ? "it was told to" : "it was told to, and a device does not answer");

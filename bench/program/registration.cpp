@@ -14,7 +14,8 @@ app::Run add_registration(app::Options&) {
 }  // namespace
 
 app::Verb registration_verb() {
-  return {"registration", "Shots registered to each other: what a moved one costs and gets back, and what gloss feigns",
+  return {"registration",
+          "Shots registered to each other: what a moved one costs and gets back, and what gloss feigns",
           add_registration};
 }
 

@@ -22,5 +22,6 @@ app::Verb registration_verb();
 app::Verb transport_verb();
 app::Verb calibration_verb();
 app::Verb capture_verb();
+app::Verb server_verb();
 
 }  // namespace weft::bench

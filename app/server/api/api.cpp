@@ -22,9 +22,10 @@ Json whole_description(const std::vector<Resource>& resources) {
 }  // namespace
 
 std::vector<Route> api_routes(const RigParts& parts) {
-  std::vector<Resource> resources = {server_resource(parts), login_resource(parts),    rig_resource(parts),
-                                     scan_resource(parts),   sessions_resource(parts), frames_resource(parts),
-                                     jobs_resource(parts),   library_resource(parts),  events_resource()};
+  std::vector<Resource> resources = {
+      server_resource(parts),   login_resource(parts),   rig_resource(parts),    scan_resource(parts),
+      sessions_resource(parts), frames_resource(parts),  jobs_resource(parts),   library_resource(parts),
+      events_resource(parts),   control_resource(parts), devices_resource(parts)};
   std::vector<Route> routes;
   Reply description = json_reply(whole_description(resources));
   description.keeping = Keeping::kAskAgain;

@@ -8,6 +8,8 @@
 #include "app/server/http/routes.h"
 #include "app/server/jobs/job_queue.h"
 #include "app/server/library/library_service.h"
+#include "app/server/rig/attendance.h"
+#include "app/server/rig/controls.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_keeper.h"
 #include "capture/rig.h"
@@ -21,6 +23,8 @@ struct RigParts {
   std::filesystem::path state;
   RigKeeper& keeper;
   FramePictures& pictures;
+  Attendance& attendance;
+  Controls& controls;
   JobQueue& jobs;
   LibraryService& library;
   GuardRules guard;  ///< who may come in
@@ -39,12 +43,14 @@ struct Resource {
 Resource server_resource(const RigParts& parts);
 Resource login_resource(const RigParts& parts);
 Resource rig_resource(const RigParts& parts);
+Resource control_resource(const RigParts& parts);
+Resource devices_resource(const RigParts& parts);
 Resource scan_resource(const RigParts& parts);
 Resource sessions_resource(const RigParts& parts);
 Resource frames_resource(const RigParts& parts);
 Resource jobs_resource(const RigParts& parts);
 Resource library_resource(const RigParts& parts);
-Resource events_resource();
+Resource events_resource(const RigParts& parts);
 
 /// The page that a browser is led to, by a link that ends in #TOKEN: it logs in and shows the rig's state.
 std::vector<Route> page_routes();

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <utility>
+
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
 
 namespace weft::app {
 
-Resource events_resource() {
-  return {{{"GET", "/api/v1/events", {}, false, Pool::kStreams}}, events_description()};
+Resource events_resource(const RigParts& parts) {
+  Route stream = {"GET", "/api/v1/events", {}, false, Pool::kStreams};
+  stream.follows = [&parts](const Call& call) { parts.controls.renew(call.control); };
+  return {{std::move(stream)}, events_description()};
 }
 
 }  // namespace weft::app

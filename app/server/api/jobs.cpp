@@ -98,8 +98,9 @@ Result<JobSpec> spec_of(const RigParts& parts, const Json& body) {
 Result<Reply> add_job(const RigParts& parts, const Call& call) {
   const Result<Json> body = parse_body(call.body);
   if (!body) return body.error();
-  const Result<JobSpec> spec = spec_of(parts, *body);
-  if (!spec) return spec.error();
+  Result<JobSpec> spec = spec_of(parts, *body);
+  if (!spec) return std::move(spec).error();
+  spec->by = parts.controls.name_of(call.control);
   const Result<JobStatus> job = parts.jobs.add(*spec);
   if (!job) return job.error();
   return json_reply(json_of(*job), kAccepted);

@@ -182,6 +182,8 @@ Call call_of(const httplib::Request& request) {
   for (const auto& [key, value] : request.params) call.query.emplace(key, value);
   call.body = request.body;
   call.if_none_match = request.get_header_value("If-None-Match");
+  call.control = request.get_header_value("X-Weft-Control");
+  if (const auto named = call.query.find("control"); named != call.query.end()) call.control = named->second;
   return call;
 }
 
@@ -237,7 +239,7 @@ class HttpServer::Parser : public httplib::Server {
     for (const auto& [pool, threads] :
          {std::pair(Pool::kQuick, limits_.quick), std::pair(Pool::kDisk, limits_.disk),
           std::pair(Pool::kPictures, limits_.pictures), std::pair(Pool::kFiles, limits_.files),
-          std::pair(Pool::kStreams, limits_.streams + 1)}) {
+          std::pair(Pool::kDevices, limits_.devices), std::pair(Pool::kStreams, limits_.streams + 1)}) {
       pools_[pool] = std::make_unique<Threads>(threads, threads + limits_.waiting);
     }
     door.begin([this, &door](WholeRequest request) { enter(std::move(request), door); });
@@ -312,7 +314,7 @@ class HttpServer::Parser : public httplib::Server {
 
   void add(const Route& route) {
     const Handler handle = [this, &route](const httplib::Request& request, httplib::Response& response) {
-      if (!route.handle) return stream_events(request, response);
+      if (!route.handle) return stream_events(route, request, response);
       Call call = call_of(request);
       call.port = rules_.port;
       const Result<Reply> reply = route.handle(call);
@@ -352,7 +354,7 @@ class HttpServer::Parser : public httplib::Server {
            request, response);
   }
 
-  void stream_events(const httplib::Request& request, httplib::Response& response) {
+  void stream_events(const Route& route, const httplib::Request& request, httplib::Response& response) {
     if (++streams_ > limits_.streams) {
       --streams_;
       return answer(Error{ErrorKind::kTryAgain, "too many clients follow this rig", request.path,
@@ -362,7 +364,9 @@ class HttpServer::Parser : public httplib::Server {
     response.set_header("Cache-Control", "no-store");
     response.set_chunked_content_provider(
         "text/event-stream",
-        [this, follower = follower_of(request)](std::size_t, httplib::DataSink& sink) mutable {
+        [this, &route, call = call_of(request), follower = follower_of(request)](
+            std::size_t, httplib::DataSink& sink) mutable {
+          if (route.follows) route.follows(call);
           return send_next(follower, sink);
         },
         [this](bool) { --streams_; });

@@ -25,6 +25,7 @@ struct Call {
   std::string body;
   int port = 0;                    ///< that the server listens on
   std::string if_none_match = {};  ///< the header
+  std::string control = {};        ///< X-Weft-Control, or the query's: the id that its client commands by
 
   /// Whether the client has what is tagged so: a reply of that tag needs no body.
   bool has(std::string_view tag) const { return !tag.empty() && names_tag(if_none_match, tag); }
@@ -65,6 +66,7 @@ enum class Pool {
   kDisk,      ///< files, on a disk that may hang
   kPictures,  ///< raw frames to be decoded
   kFiles,     ///< files to be sent, for as long as their clients take
+  kDevices,   ///< of the rig, which take seconds
   kStreams,   ///< of events
 };
 
@@ -75,6 +77,8 @@ struct Route {
   std::function<Result<Reply>(const Call&)> handle;  ///< empty: the stream of events
   bool open = false;                                 ///< needs no token
   Pool pool = Pool::kDisk;
+  std::function<void(const Call&)> follows =
+      {};  ///< of the stream: called every few moments while it is open
 };
 
 }  // namespace weft::app

@@ -25,6 +25,13 @@ Error nothing_runs(const std::string& rig, const char* remedy) {
   return {ErrorKind::kTryAgain, "no scan is running", rig, "", remedy};
 }
 
+/// Devices that go back however a scan ends.
+struct Lent {
+  Attendance& to;
+  mutable capture::RigDevices devices;
+  ~Lent() { to.take_back(std::move(devices)); }
+};
+
 /// What every frame is told with, kept or not.
 Json frame_event(const std::string& session, int index, int led, ShotRole role,
                  const capture::FrameFinding& finding) {
@@ -40,10 +47,10 @@ Json frame_event(const std::string& session, int index, int led, ShotRole role,
 
 }  // namespace
 
-RigKeeper::RigKeeper(capture::Rig rig, capture::OpenDevices open, RunScan run, EventLog& events, Logbook& log,
+RigKeeper::RigKeeper(capture::Rig rig, Attendance& attendance, RunScan run, EventLog& events, Logbook& log,
                      FramePictures& pictures)
     : rig_(std::move(rig)),
-      open_(std::move(open)),
+      attendance_(attendance),
       run_(std::move(run)),
       events_(events),
       log_(log),
@@ -55,7 +62,12 @@ RigKeeper::~RigKeeper() {
   scan_.request_stop();
 }
 
-Result<void> RigKeeper::begin(capture::ScanRequest request) {
+void RigKeeper::tell_status() {
+  const std::lock_guard lock(mutex_);
+  tell_status_locked();
+}
+
+Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& by) {
   const std::lock_guard lock(mutex_);
   if (running_ || stopping_) {
     return Error{ErrorKind::kTryAgain, "the rig is busy", rig_.name,
@@ -67,13 +79,14 @@ Result<void> RigKeeper::begin(capture::ScanRequest request) {
   status_ = {};
   status_.state = RigStatus::State::kConnecting;
   status_.session = name_of_session(request);
+  status_.by = by;
   pause_ = false;
   request_ = request;
   tell_status_locked();
   // The last one's thread has done its last deed once running_ is false: joining it here takes no time.
-  scan_ = std::jthread([this, request = std::move(request)](const std::stop_token& cancel) {
+  scan_ = std::jthread([this, request = std::move(request), by](const std::stop_token& cancel) {
     log_.add("scan_began", fmt::format("{} of {}", name_of_session(request), request.fabric),
-             {{"session", name_of_session(request)}, {"fabric", request.fabric}});
+             {{"session", name_of_session(request)}, {"fabric", request.fabric}, {"by", by}});
     logged_.clear();
     on_end(request, scan_with_devices(request, cancel));
   });
@@ -91,7 +104,7 @@ Result<void> RigKeeper::pause() {
   return {};
 }
 
-Result<void> RigKeeper::resume() {
+Result<void> RigKeeper::resume(const std::string& by) {
   std::optional<capture::ScanRequest> again;
   {
     const std::lock_guard lock(mutex_);
@@ -103,7 +116,7 @@ Result<void> RigKeeper::resume() {
     }
     pause_ = false;
   }
-  if (again) return begin(std::move(*again));
+  if (again) return begin(std::move(*again), by);
   return {};
 }
 
@@ -125,7 +138,7 @@ Result<capture::RigDevices> RigKeeper::open_devices(const std::stop_token& cance
   const auto patience = std::chrono::duration<double>(capture::ScanOptions().device_patience_s);
   const auto until = std::chrono::steady_clock::now() + patience;
   for (;;) {
-    Result<capture::RigDevices> devices = open_(rig_);
+    Result<capture::RigDevices> devices = attendance_.lend();
     if (devices || devices.error().kind != ErrorKind::kNoDevice || std::chrono::steady_clock::now() >= until)
       return devices;
     log_once("waiting", devices.error().message());
@@ -146,16 +159,17 @@ Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanReq
                                                           const std::stop_token& cancel) try {
   Result<capture::RigDevices> devices = open_devices(cancel);
   if (!devices) return std::move(devices).error();
+  const Lent lent = {attendance_, std::move(*devices)};
   {
     const std::lock_guard lock(mutex_);
     status_.devices_open = true;
   }
-  WatchedCamera camera(*devices->camera, [this](const capture::CameraFacts& facts) { on_facts(facts); });
+  WatchedCamera camera(*lent.devices.camera, [this](const capture::CameraFacts& facts) { on_facts(facts); });
   const capture::ScanEvents events = {
       [this](const capture::ScanStatus& status) { on_status(status); },
       [&](const capture::KeptFrame& frame) { on_kept(request, frame); },
       [&](const capture::RefusedFrame& frame) { on_refused(request, frame); }};
-  return run_(request, *devices->lamps, camera, events, {cancel, &pause_});
+  return run_(request, *lent.devices.lamps, camera, events, {cancel, &pause_});
 } catch (const std::exception& thrown) {
   return error_of_exception(thrown, name_of_session(request));
 }
@@ -245,9 +259,23 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
   ended_.notify_all();
 }
 
+RigStatus RigKeeper::status_locked() const {
+  RigStatus status = status_;
+  Attendance::Status attended = attendance_.status();
+  const bool is_free = status.state == RigStatus::State::kIdle || status.state == RigStatus::State::kFailed;
+  if (is_free && attended.is_open) {
+    status.state = RigStatus::State::kAttended;
+    status.devices_open = true;
+  }
+  if (attended.camera && !status.camera) status.camera = attended.camera;
+  status.lit = attended.lit;
+  status.controls = controls_();
+  return status;
+}
+
 RigStatus RigKeeper::status() const {
   const std::lock_guard lock(mutex_);
-  return status_;
+  return status_locked();
 }
 
 std::string RigKeeper::session() const {

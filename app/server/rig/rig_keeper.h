@@ -11,12 +11,12 @@
 #include <thread>
 
 #include "app/server/http/event_log.h"
+#include "app/server/rig/attendance.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/logbook.h"
 #include "app/server/rig/rig_status.h"
 #include "capture/devices.h"
 #include "capture/rig.h"
-#include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
 #include "core/result.h"
 
@@ -31,25 +31,33 @@ using RunScan =
 ///
 ///   idle, failed --begin--> connecting --> scanning <--> paused
 ///   connecting, scanning, paused --> idle (finished, cancelled) or failed (error says why)
+///   idle, failed --devices opened for a person--> attended --closed--> idle
 ///
 /// One scan at a time, on a thread of its own. A device that is not there (kNoDevice) is asked for every half
-/// second in connecting, for as long as a scan waits for one that goes; its devices are open while it runs
-/// and closed in idle and failed, so that other programs can use them. Safe from any thread.
+/// second in connecting, for as long as a scan waits for one that goes; its devices are those of
+/// the attendance, or open while it runs and closed in idle and failed, so that other programs can use them.
+/// Safe from any thread.
 class RigKeeper {
  public:
-  RigKeeper(capture::Rig rig, capture::OpenDevices open, RunScan run, EventLog& events, Logbook& log,
+  RigKeeper(capture::Rig rig, Attendance& attendance, RunScan run, EventLog& events, Logbook& log,
             FramePictures& pictures);
   ~RigKeeper();
 
   /// Hears whether a scan runs; set before the first begins. Must not call the keeper.
   void on_busy(std::function<void(bool)> busy) { busy_ = std::move(busy); }
 
-  /// Starts a scan, or resumes a session that is there. kTryAgain while one runs.
-  Result<void> begin(capture::ScanRequest request);
+  /// Hears who holds the controls; set before the first client comes. Must not call the keeper.
+  void on_controls(std::function<std::string()> controls) { controls_ = std::move(controls); }
+  /// Tells all that follow how things are.
+  void tell_status();
+
+  /// Starts a scan, or resumes a session that is there. `by`: who asked for it, if that is known. kTryAgain
+  /// while one runs.
+  Result<void> begin(capture::ScanRequest request, const std::string& by);
   /// kTryAgain where there is nothing to pause, resume or cancel. Resuming what failed or was cancelled
   /// begins it again.
   Result<void> pause();
-  Result<void> resume();
+  Result<void> resume(const std::string& by);
   Result<void> cancel();
 
   RigStatus status() const;
@@ -69,16 +77,18 @@ class RigKeeper {
   void on_facts(const capture::CameraFacts& facts);
   void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome);
   void log_once(const char* event, const std::string& why);
-  void tell_status_locked() { events_.add("status", to_json(status_, rig_)); }
+  RigStatus status_locked() const;
+  void tell_status_locked() { events_.add("status", to_json(status_locked(), rig_)); }
 
   const capture::Rig rig_;
-  const capture::OpenDevices open_;
+  Attendance& attendance_;
   const RunScan run_;
   EventLog& events_;
   Logbook& log_;
   FramePictures& pictures_;
 
   std::function<void(bool)> busy_ = [](bool) {};
+  std::function<std::string()> controls_ = [] { return std::string(); };
   mutable std::mutex mutex_;
   std::condition_variable_any ended_;  ///< or asked to end
   bool running_ = false;

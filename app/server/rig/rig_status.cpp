@@ -10,6 +10,8 @@ const char* word_of(RigStatus::State state) {
   switch (state) {
     case RigStatus::State::kIdle:
       return "idle";
+    case RigStatus::State::kAttended:
+      return "attended";
     case RigStatus::State::kConnecting:
       return "connecting";
     case RigStatus::State::kScanning:
@@ -50,6 +52,9 @@ Json to_json(const RigStatus& status, const capture::Rig& rig) {
           {"why", status.scan.why},
           {"error", status.error ? json_of(*status.error) : nothing},
           {"warnings", status.warnings},
+          {"lit", status.lit},
+          {"controls", status.controls},
+          {"by", status.by},
           {"devices",
            {{"board", {{"port", rig.board.port}, {"leds", rig.leds}, {"open", status.devices_open}}},
             {"camera",

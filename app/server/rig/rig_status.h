@@ -15,7 +15,7 @@ namespace weft::app {
 
 /// How a rig is, and how far its scan has come.
 struct RigStatus {
-  enum class State { kIdle, kConnecting, kScanning, kPaused, kFailed };
+  enum class State { kIdle, kAttended, kConnecting, kScanning, kPaused, kFailed };
 
   State state = State::kIdle;
   std::string session;                ///< being scanned, or scanned last; empty: none yet
@@ -23,11 +23,14 @@ struct RigStatus {
   std::optional<Error> error;         ///< why that scan failed
   std::vector<std::string> warnings;  ///< that it ended with
   bool devices_open = false;
+  std::vector<int> lit;                        ///< for a person to see by; a scan's own is scan.led
+  std::string controls;                        ///< who holds them; empty: nobody
+  std::string by;                              ///< who began the scan, or the last one; empty: not known
   std::optional<capture::CameraFacts> camera;  ///< what it said of itself during that scan
 };
 
 /// {"rig", "state", "phase", "session", "led", "frames", "frames_planned", "exposure_us", "why", "error",
-/// "warnings", "devices"}, as docs/http.md says.
+/// "warnings", "devices", "lit", "controls", "by"}, as docs/http.md says.
 Json to_json(const RigStatus& status, const capture::Rig& rig);
 
 }  // namespace weft::app

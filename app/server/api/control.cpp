@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <string>
+
+#include "app/server/api/api.h"
+#include "app/server/api/descriptions.h"
+#include "app/server/api/scan_body.h"
+
+namespace weft::app {
+namespace {
+
+Result<Reply> take_controls(const RigParts& parts, const Call& call) {
+  const Result<Json> body = parse_body(call.body);
+  if (!body) return body.error();
+  if (parts.controls.renew(call.control)) {
+    return json_reply({{"control", call.control},
+                       {"name", parts.controls.holder()},
+                       {"lease_s", Controls::kLease.count()}});
+  }
+  const Json name = body->value("name", Json()), take = body->value("take", Json(false));
+  if (!name.is_string() || !take.is_boolean()) {
+    return Error{ErrorKind::kUsage, "the controls cannot be taken", name.is_string() ? "take" : "name",
+                 name.is_string() ? "must be true or false" : "must be a text",
+                 "see POST control in openapi.json"};
+  }
+  const Result<std::string> id = parts.controls.take(name.get<std::string>(), take.get<bool>());
+  if (!id) return id.error();
+  return json_reply({{"control", *id}, {"name", name}, {"lease_s", Controls::kLease.count()}});
+}
+
+}  // namespace
+
+Resource control_resource(const RigParts& parts) {
+  return {{{"POST", "/api/v1/control", [&parts](const Call& call) { return take_controls(parts, call); },
+            false, Pool::kQuick},
+           {"DELETE", "/api/v1/control",
+            [&parts](const Call& call) -> Result<Reply> {
+              parts.controls.release(call.control);
+              return json_reply({{"name", parts.controls.holder()}});
+            },
+            false, Pool::kQuick}},
+          control_description()};
+}
+
+}  // namespace weft::app

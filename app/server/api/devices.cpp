@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <charconv>
+#include <string>
+#include <vector>
+
+#include "app/server/api/api.h"
+#include "app/server/api/descriptions.h"
+#include "app/server/api/scan_body.h"
+
+namespace weft::app {
+namespace {
+
+constexpr double kLongestShot_us = 30e6;
+
+Error refused(const char* field, std::string rule) {
+  return {ErrorKind::kUsage, "the devices cannot be asked for this", field, std::move(rule),
+          "see rig/devices, rig/light and rig/test-shot in openapi.json"};
+}
+
+// The body of a call by who may command the rig.
+Result<Json> command_in(const RigParts& parts, const Call& call) {
+  Result<Json> body = parse_body(call.body);
+  if (!body) return body;
+  if (const Result<std::string> by = parts.controls.commander(call.control); !by) return by.error();
+  return body;
+}
+
+Result<int> led_of(const Json& value, const RigParts& parts, int least) {
+  const bool is_there = value.is_number_integer() && value >= least && value <= parts.rig.leds;
+  if (is_there) return value.get<int>();
+  return refused("led", fmt::format("must be {} to {}", least, parts.rig.leds));
+}
+
+Json devices_of(const RigParts& parts) {
+  Json document = to_json(parts.attendance.status());
+  document.update(to_json(parts.keeper.status(), parts.rig)["devices"]);
+  return document;
+}
+
+Result<Reply> open_or_close(const RigParts& parts, const Call& call) {
+  const Result<Json> body = command_in(parts, call);
+  if (!body) return body.error();
+  const Json open = body->value("open", Json());
+  if (!open.is_boolean()) return refused("open", "must be true or false");
+  if (Result<void> done = open.get<bool>() ? parts.attendance.open() : parts.attendance.close(); !done)
+    return std::move(done).error();
+  return json_reply(devices_of(parts));
+}
+
+Result<Reply> light(const RigParts& parts, const Call& call) {
+  const Result<Json> body = command_in(parts, call);
+  if (!body) return body.error();
+  const Json list = body->value("leds", Json());
+  if (!list.is_array() || list.size() > 2) return refused("leds", "must be a list of no LED, one or two");
+  std::vector<int> leds;
+  for (const Json& each : list) {
+    const Result<int> led = led_of(each, parts, 1);
+    if (!led) return led.error();
+    leds.push_back(*led);
+  }
+  if (leds.size() == 2 && leds[0] == leds[1]) return refused("leds", "must be two different ones");
+  const Result<double> rest_s = parts.attendance.light(leds);
+  if (!rest_s) return rest_s.error();
+  const double lease_s = 1e-3 * static_cast<double>(Attendance::kLightLease.count());
+  return json_reply(
+      {{"lit", *rest_s > 0 ? std::vector<int>() : leds}, {"rest_s", *rest_s}, {"lease_s", lease_s}});
+}
+
+Result<Reply> begin_shot(const RigParts& parts, const Call& call) {
+  const Result<Json> body = command_in(parts, call);
+  if (!body) return body.error();
+  const Result<int> led = led_of(body->value("led", Json()), parts, 0);
+  if (!led) return led.error();
+  const Json exposure = body->value("exposure_us", Json());
+  if (!exposure.is_number() || !(exposure > 0) || exposure > kLongestShot_us)
+    return refused("exposure_us", fmt::format("must be above 0 and at most {:g}", kLongestShot_us));
+  const Result<int> id = parts.attendance.shoot(*led, exposure.get<double>());
+  if (!id) return id.error();
+  return json_reply({{"id", *id}}, kAccepted);
+}
+
+Result<TestShot> shot_in(const RigParts& parts, const Call& call) {
+  const std::string& text = call.segments.at(0);
+  int id = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), id);
+  return parts.attendance.shot(error == std::errc() && end == text.data() + text.size() ? id : 0);
+}
+
+Result<Reply> one_shot(const RigParts& parts, const Call& call) {
+  const Result<TestShot> shot = shot_in(parts, call);
+  if (!shot) return shot.error();
+  return json_reply(document_of(*shot, parts.pictures));
+}
+
+Result<Reply> picture(const RigParts& parts, const Call& call) {
+  const Result<TestShot> shot = shot_in(parts, call);
+  if (!shot) return shot.error();
+  if (!shot->frame) {
+    return Error{ErrorKind::kNoInput, "the test shot has no picture", call.segments.at(0),
+                 shot->error ? "it failed" : "it is being taken", "ask again, or take another one"};
+  }
+  Result<std::string> png = parts.pictures.thumbnail(*shot->frame);
+  if (!png) return std::move(png).error();
+  Reply reply;
+  reply.type = "image/png";
+  reply.body = std::move(*png);
+  reply.tag = shot->frame->sha256;
+  return reply;
+}
+
+}  // namespace
+
+Resource devices_resource(const RigParts& parts) {
+  const auto call = [&parts](const char* method, const char* path, auto handle, Pool pool) {
+    return Route{method, path, [&parts, handle](const Call& asked) { return handle(parts, asked); }, false,
+                 pool};
+  };
+  return {{call(
+               "GET", "/api/v1/rig/devices",
+               [](const RigParts& all, const Call&) -> Result<Reply> { return json_reply(devices_of(all)); },
+               Pool::kQuick),
+           call("POST", "/api/v1/rig/devices", open_or_close, Pool::kDevices),
+           call("POST", "/api/v1/rig/light", light, Pool::kDevices),
+           call("POST", "/api/v1/rig/test-shot", begin_shot, Pool::kDevices),
+           call("GET", "/api/v1/rig/test-shots/{id}", one_shot, Pool::kPictures),
+           call("GET", "/api/v1/rig/test-shots/{id}/picture", picture, Pool::kPictures)},
+          devices_description()};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/rig/attendance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "core/error_json.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLight_s = 1e-3 * static_cast<double>(Attendance::kLightLease.count());
+constexpr auto kLook = std::chrono::milliseconds(100);
+
+Error is_closed(const std::string& rig) {
+  return {ErrorKind::kTryAgain, "the devices are closed", rig, "nobody attends the rig",
+          "open them (POST rig/devices)"};
+}
+
+Error is_scanning(const std::string& rig) {
+  return {ErrorKind::kTryAgain, "a scan has the devices", rig, "", "wait for its end, or cancel it"};
+}
+
+bool may_pass(const Error& error) {
+  return error.kind == ErrorKind::kTryAgain || error.kind == ErrorKind::kProtocol;
+}
+
+}  // namespace
+
+Attendance::Attendance(capture::Rig rig, capture::OpenDevices open, fs::path folder, Told told)
+    : rig_(std::move(rig)), open_(std::move(open)), folder_(std::move(folder)), told_(std::move(told)) {
+  std::error_code ignored;
+  fs::remove_all(folder_, ignored);  // shots of a daemon before this one
+  watch_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
+}
+
+Attendance::~Attendance() {
+  watch_.request_stop();
+}
+
+bool Attendance::stop(std::chrono::milliseconds most) {
+  std::unique_lock lock(mutex_);
+  is_stopping_ = true;
+  if (!changed_.wait_for(lock, most, [&] { return !is_shooting_; })) return false;
+  lock.unlock();
+  static_cast<void>(close());
+  return true;
+}
+
+template <typename Change>
+void Attendance::change(const Change& change) {
+  {
+    const std::lock_guard lock(mutex_);
+    change(status_);
+  }
+  told_.changed();
+}
+
+void Attendance::renew() {
+  open_until_ = Clock::now() + kLease;
+}
+
+Result<void> Attendance::open() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_lent_) return is_scanning(rig_.name);
+    renew();
+    if (status_.is_open) return {};
+    status_.doing = "opening";
+  }
+  told_.changed();
+  const std::lock_guard devices(devices_mutex_);
+  Result<void> opened = devices_ ? Result<void>() : open_held();
+  change([&](Status& status) {
+    status.doing.clear();
+    status.is_open = opened.has_value();
+    status.error = opened ? std::nullopt : std::optional(opened.error());
+  });
+  return opened;
+}
+
+Result<void> Attendance::open_held() {
+  Result<capture::RigDevices> devices = open_(rig_);
+  if (!devices) return std::move(devices).error();
+  Result<capture::CameraFacts> facts = devices->camera->connect();
+  if (!facts) return std::move(facts).error();
+  devices_ = std::move(*devices);
+  set_.reset();
+  change([&](Status& status) { status.camera = std::move(*facts); });
+  return {};
+}
+
+Result<void> Attendance::close() {
+  const std::lock_guard devices(devices_mutex_);
+  Result<void> dark;
+  if (devices_) {
+    if (const Result<double> off = devices_->lamps->light({}, 1); !off) dark = off.error();
+  }
+  devices_.reset();
+  change([&](Status& status) {
+    status.is_open = false;
+    status.lit.clear();
+    open_until_ = {};
+  });
+  return dark;
+}
+
+// A device does not do what it should: closed, and why.
+void Attendance::fail_held(const Error& error) {
+  devices_.reset();
+  change([&](Status& status) {
+    status.is_open = false;
+    status.lit.clear();
+    status.error = error;
+    open_until_ = {};
+  });
+}
+
+Result<double> Attendance::light_held(const std::vector<int>& leds, double most_s) {
+  Result<double> rest = devices_->lamps->light(leds, most_s);
+  if (!rest && may_pass(rest.error())) {
+    if (Result<void> back = devices_->lamps->recover(); !back) {
+      rest = std::move(back).error();
+    } else {
+      rest = devices_->lamps->light(leds, most_s);
+    }
+  }
+  if (!rest && rest.error().kind != ErrorKind::kUsage) fail_held(rest.error());
+  return rest;
+}
+
+Result<double> Attendance::light(const std::vector<int>& leds) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_lent_) return is_scanning(rig_.name);
+    if (!status_.is_open) return is_closed(rig_.name);
+    renew();
+    wanted_ = leds;
+    lit_until_ = Clock::now() + kLightLease;
+    if (is_shooting_) return 0.0;  // lit after the shot
+  }
+  const std::lock_guard devices(devices_mutex_);
+  if (!devices_) return is_closed(rig_.name);
+  Result<double> rest = light_held(leds, kLight_s);
+  if (!rest) return rest;
+  const std::vector<int> lit = *rest > 0 ? std::vector<int>() : leds;
+  if (status().lit != lit) change([&](Status& status) { status.lit = lit; });
+  return rest;
+}
+
+Result<int> Attendance::shoot(int led, double exposure_us) {
+  const std::lock_guard lock(mutex_);
+  if (is_lent_) return is_scanning(rig_.name);
+  if (!status_.is_open || is_stopping_) return is_closed(rig_.name);
+  if (is_shooting_) {
+    return Error{ErrorKind::kTryAgain, "a test shot is being taken", rig_.name, "",
+                 "wait for its event, or ask for it by its id"};
+  }
+  renew();
+  is_shooting_ = true;
+  TestShot shot = {++newest_, led, exposure_us, {}, {}};
+  shots_.push_back(shot);
+  // The last one's thread has done its last deed once is_shooting_ is false.
+  shooter_ = std::jthread([this, shot = std::move(shot)] { take(shot); });
+  return newest_;
+}
+
+void Attendance::take(TestShot shot) {
+  change([](Status& status) { status.doing = "shooting"; });
+  {
+    const std::lock_guard devices(devices_mutex_);
+    Result<FrameFile> frame = devices_ ? photograph_held(shot) : Result<FrameFile>(is_closed(rig_.name));
+    if (frame) {
+      shot.frame = std::move(*frame);
+    } else {
+      shot.error = std::move(frame).error();
+    }
+    std::vector<int> again;
+    double left_s = 0;
+    {
+      const std::lock_guard lock(mutex_);
+      left_s = std::chrono::duration<double>(lit_until_ - Clock::now()).count();
+      if (left_s > 0) again = wanted_;
+    }
+    if (devices_ && !again.empty()) {
+      if (const Result<double> rest = light_held(again, left_s); !rest || *rest > 0) again.clear();
+    }
+    change([&](Status& status) {
+      status.doing.clear();
+      status.lit = again;
+    });
+  }
+  keep(shot);
+  told_.shot(shot);
+  const std::lock_guard lock(mutex_);
+  is_shooting_ = false;
+  changed_.notify_all();
+}
+
+Result<FrameFile> Attendance::photograph_held(const TestShot& shot) {
+  if (Result<void> made = make_writable_folder(folder_); !made) return std::move(made).error();
+  const capture::ExposureSettings exposure = {shot.exposure_us, rig_.scan.iso, rig_.scan.f_number};
+  if (set_ != exposure) {
+    set_.reset();
+    if (const Result<capture::CameraFacts> set = devices_->camera->set(exposure); !set) {
+      if (set.error().kind == ErrorKind::kNoDevice) fail_held(set.error());
+      return set.error();
+    }
+    set_ = exposure;
+  }
+  const double most_s = capture::ScanOptions().lamp_margin_s + 1e-6 * shot.exposure_us;
+  const std::vector<int> leds = shot.led > 0 ? std::vector{shot.led} : std::vector<int>();
+  const Result<double> rest = light_held(leds, most_s);
+  if (!rest) return rest.error();
+  if (*rest > 0) {
+    return Error{ErrorKind::kTryAgain, fmt::format("LED {} is too warm", shot.led), rig_.name,
+                 fmt::format("it has to rest for {:.0f} s", *rest), "take the shot after that"};
+  }
+  change([&](Status& status) { status.lit = leds; });
+  Result<capture::Photograph> photograph = devices_->camera->take(
+      folder_ / fmt::format("shot{:06}", shot.id), [&] { static_cast<void>(devices_->lamps->light({}, 1)); });
+  if (photograph) return FrameFile{photograph->file, photograph->sha256, {}};
+  static_cast<void>(devices_->lamps->light({}, 1));
+  set_.reset();
+  if (const Result<capture::CameraFacts> back = devices_->camera->recover(); !back) fail_held(back.error());
+  return std::move(photograph).error();
+}
+
+void Attendance::keep(TestShot shot) {
+  std::vector<fs::path> gone;
+  {
+    const std::lock_guard lock(mutex_);
+    shots_.back() = std::move(shot);
+    for (; shots_.size() > kKeptShots; shots_.pop_front()) {
+      if (shots_.front().frame) gone.push_back(shots_.front().frame->file);
+    }
+  }
+  std::error_code ignored;
+  for (const fs::path& file : gone) fs::remove(file, ignored);
+}
+
+Result<TestShot> Attendance::shot(int id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find(shots_, id, &TestShot::id);
+  if (found != shots_.end()) return *found;
+  return Error{ErrorKind::kNoInput, "no such test shot", std::to_string(id),
+               fmt::format("the last {} are kept", kKeptShots), "take another one"};
+}
+
+Attendance::Status Attendance::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+Result<capture::RigDevices> Attendance::lend() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_lent_ = true;
+  }
+  const std::lock_guard devices(devices_mutex_);
+  Result<capture::RigDevices> lent =
+      devices_ ? Result<capture::RigDevices>(std::move(*devices_)) : open_(rig_);
+  devices_.reset();
+  const std::lock_guard lock(mutex_);
+  is_lent_ = lent.has_value();
+  status_.is_open = false;
+  status_.lit.clear();
+  status_.error.reset();
+  if (lent) status_.doing = "scanning";
+  return lent;
+}
+
+void Attendance::take_back(capture::RigDevices devices) {
+  {
+    const std::lock_guard held(devices_mutex_);
+    const std::lock_guard lock(mutex_);
+    is_lent_ = false;
+    status_.doing.clear();
+    status_.is_open = Clock::now() < open_until_;
+    if (status_.is_open) devices_ = std::move(devices);
+    set_.reset();
+  }
+  told_.changed();
+}
+
+// Ends leases.
+void Attendance::watch(const std::stop_token& stop) {
+  std::unique_lock lock(mutex_);
+  while (!stop.stop_requested()) {
+    changed_.wait_for(lock, stop, kLook, [] { return false; });
+    const Clock::time_point now = Clock::now();
+    const bool is_idle = !is_shooting_ && !stop.stop_requested();
+    const bool went_dark = is_idle && !status_.lit.empty() && now >= lit_until_;
+    const bool ran_out = is_idle && status_.is_open && now >= open_until_;
+    if (!went_dark && !ran_out) continue;
+    if (went_dark) status_.lit.clear();
+    lock.unlock();
+    if (ran_out) {
+      static_cast<void>(close());
+    } else {
+      told_.changed();
+    }
+    lock.lock();
+  }
+}
+
+Json document_of(const TestShot& shot, FramePictures& pictures) {
+  Json document = {{"id", shot.id},
+                   {"led", shot.led},
+                   {"exposure_us", shot.exposure_us},
+                   {"state", shot.error   ? "failed"
+                             : shot.frame ? "taken"
+                                          : "taking"},
+                   {"clipped_rgb", Json()},
+                   {"histogram", Json()},
+                   {"error", shot.error ? json_of(*shot.error) : Json()}};
+  if (!shot.frame) return document;
+  const Result<Json> histogram = pictures.histogram(*shot.frame);
+  if (!histogram) {
+    document["error"] = json_of(histogram.error());
+    return document;
+  }
+  document["histogram"] = *histogram;
+  document["clipped_rgb"] = {(*histogram)["red"]["clipped"], (*histogram)["green"]["clipped"],
+                             (*histogram)["blue"]["clipped"]};
+  return document;
+}
+
+Json to_json(const Attendance::Status& status) {
+  return {{"open", status.is_open},
+          {"doing", status.doing},
+          {"lit", status.lit},
+          {"error", status.error ? json_of(*status.error) : Json()}};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/server/rig/frame_pictures.h"
+#include "capture/rig.h"
+#include "capture/rig_devices/rig_devices.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// A photograph that a person looks at and nobody keeps.
+struct TestShot {
+  int id = 0;
+  int led = 0;  ///< 0: none was lit
+  double exposure_us = 0;
+  std::optional<FrameFile> frame;  ///< once it is taken
+  std::optional<Error> error;      ///< why it is not
+};
+
+/// The devices of a rig, held open while a person attends it: to see what each LED lights, to frame, to
+/// focus. They are open until kLease after the last call, and a scan takes them over as they are and gives
+/// them back.
+///
+/// A light is lit until kLightLease after it was last asked for. The time is the board's own: it is dark then
+/// whatever becomes of the client or of this process, whose death its dead-man timer ends sooner.
+///
+/// A device that fails closes them: status().error says why. Safe from any thread.
+class Attendance {
+ public:
+  static constexpr std::chrono::minutes kLease{5};
+  static constexpr std::chrono::milliseconds kLightLease{1500};
+  static constexpr std::size_t kKeptShots = 8;
+
+  struct Status {
+    bool is_open = false;  ///< for a person: not while a scan has them
+    std::string doing;     ///< "opening", "shooting", "scanning"; empty: nothing
+    std::vector<int> lit;  ///< as asked for last, until its lease ends
+    std::optional<capture::CameraFacts> camera;
+    std::optional<Error> error;
+  };
+  struct Told {
+    std::function<void()> changed;              ///< status() is another one
+    std::function<void(const TestShot&)> shot;  ///< was taken, or failed
+  };
+
+  /// Test shots lie in `folder`, the last kKeptShots of them.
+  Attendance(capture::Rig rig, capture::OpenDevices open, std::filesystem::path folder, Told told);
+  ~Attendance();
+
+  /// Opens the devices, which takes seconds, or renews their lease. Errors: those of capture::open_devices()
+  /// and Camera::connect(); kTryAgain while a scan has them.
+  Result<void> open();
+  /// Dark and closed.
+  Result<void> close();
+
+  /// Lights these LEDs (none: all off) until kLightLease from now. Seconds that they have to rest before, 0
+  /// where they are lit. Errors: kTryAgain where the devices are closed or a scan has them, kUsage for LEDs
+  /// that are not there, those of Lamps::light().
+  Result<double> light(const std::vector<int>& leds);
+  /// Begins a test shot by this LED (0: none) and gives its id. The light that was lit comes back after it.
+  /// Errors as light(); kTryAgain while another one is taken.
+  Result<int> shoot(int led, double exposure_us);
+  /// One of the last; kNoInput where it is none of these.
+  Result<TestShot> shot(int id) const;
+
+  Status status() const;
+
+  /// The devices, for a scan: those that are open, else opened now. Waits for a test shot under way.
+  Result<capture::RigDevices> lend();
+  /// No shot begins after this; whether the last one has ended. Its board is dark once this process is gone.
+  bool stop(std::chrono::milliseconds most);
+
+  /// What lend() gave; closed where nobody attends the rig any more.
+  void take_back(capture::RigDevices devices);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Result<void> open_held();
+  Result<double> light_held(const std::vector<int>& leds, double most_s);
+  void take(TestShot shot);
+  Result<FrameFile> photograph_held(const TestShot& shot);
+  void keep(TestShot shot);
+  void fail_held(const Error& error);
+  void watch(const std::stop_token& stop);
+  void renew();
+  template <typename Change>
+  void change(const Change& change);
+
+  const capture::Rig rig_;
+  const capture::OpenDevices open_;
+  const std::filesystem::path folder_;
+  const Told told_;
+
+  std::mutex devices_mutex_;  ///< of the devices; held while one of them works
+  std::optional<capture::RigDevices> devices_;
+  std::optional<capture::ExposureSettings> set_;
+
+  mutable std::mutex mutex_;  ///< of all that follows; held for moments
+  std::condition_variable_any changed_;
+  Status status_;
+  bool is_lent_ = false, is_shooting_ = false, is_stopping_ = false;
+  Clock::time_point open_until_, lit_until_;
+  std::vector<int> wanted_;
+  std::deque<TestShot> shots_;
+  int newest_ = 0;
+  std::jthread shooter_, watch_;
+};
+
+/// {"id", "led", "exposure_us", "state" (taking, taken, failed), "clipped_rgb", "histogram", "error"}: of one
+/// that is taken the histogram is counted now, if it is not yet.
+Json document_of(const TestShot& shot, FramePictures& pictures);
+
+/// {"open", "doing", "lit", "error"}.
+Json to_json(const Attendance::Status& status);
+
+}  // namespace weft::app

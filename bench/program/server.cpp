@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "app/cli/options.h"
+#include "app/cli/terminal.h"
+#include "bench/program/rows.h"
+#include "bench/program/verbs.h"
+#include "bench/server/lease.h"
+#include "core/process.h"
+
+namespace weft::bench {
+namespace {
+
+struct ServerArguments {
+  std::string part = "lease";
+  int runs = 0;
+  std::uint64_t seed = 1;
+};
+
+Result<Rows> measure(const ServerArguments& a, bool quiet) {
+  app::ProgressLine line(quiet);
+  ServerLeaseOptions options;
+  options.programs = program_beside("weft").parent_path();
+  if (a.runs > 0) options.trials = a.runs;
+  options.seed = a.seed;
+  options.progress = [&](int done, int trials) { line.update("lease", static_cast<double>(done) / trials); };
+  return server_lease_table(options);
+}
+
+app::Run add_server(app::Options& options) {
+  const auto a = std::make_shared<ServerArguments>();
+  options.add("--part", &a->part, "lease: how soon a LED is dark once its client or the daemon has died")
+      .one_of({"lease"})
+      .shows_default();
+  options.add("--runs", &a->runs, "Trials of each death; 0 is as many as docs/reliability.md")
+      .in_range(0, 1000000);
+  options.add("--seed", &a->seed, "Of the moments").shows_default();
+  return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.quiet), common); };
+}
+
+}  // namespace
+
+app::Verb server_verb() {
+  return {"server", "The server: what it promises, measured", add_server};
+}
+
+}  // namespace weft::bench
