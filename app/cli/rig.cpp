@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -18,6 +19,8 @@
 #include "app/server/rig/rig_lock.h"
 #include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
+#include "core/error_json.h"
+#include "core/files.h"
 #include "core/temporary_folder.h"
 
 namespace weft::app {
@@ -29,6 +32,9 @@ struct RigArguments {
   fs::path rig;
   std::vector<int> leds;  ///< of `lights` and `test`; empty: all
   double seconds = 1;     ///< of `lights`, each LED
+  int led = 1;            ///< of `shot`; 0: none
+  double exposure_us = 50'000;
+  fs::path output;  ///< of `shot`: a PNG; empty: none
 };
 
 std::vector<int> chosen_leds(const capture::Rig& rig, const RigArguments& arguments) {
@@ -78,24 +84,95 @@ bool wait(double seconds, const std::stop_token& stop) {
   return !stop.stop_requested();
 }
 
+/// Devices that are open for as long as this lives.
+class OpenedDevices {
+ public:
+  static Result<std::unique_ptr<OpenedDevices>> open(const capture::Rig& rig) {
+    const Result<std::optional<std::string>> owner = address_of_owner(rig);
+    if (!owner) return owner.error();
+    Result<ReachedRig> reached = reach_rig(rig, *owner);
+    if (!reached) return std::move(reached).error();
+    const Result<Json> before = reached->client.get("/api/v1/rig/devices");
+    if (!before) return before.error();
+    std::unique_ptr<OpenedDevices> devices(new OpenedDevices(std::move(*reached), before->at("open")));
+    if (const Result<Json> opened = devices->client().post("/api/v1/rig/devices", {{"open", true}}); !opened)
+      return opened.error();
+    return devices;
+  }
+  ~OpenedDevices() {
+    static_cast<void>(were_open_ ? client().post("/api/v1/rig/light", {{"leds", Json::array()}})
+                                 : client().post("/api/v1/rig/devices", {{"open", false}}));
+  }
+
+  const RigClient& client() const { return reached_.client; }
+
+  /// Holds a LED lit; how many seconds it has to rest before, 0 once it was lit for all the time.
+  Result<double> hold(int led, double seconds, const std::stop_token& stop) const {
+    constexpr double kRenewed_s = 0.5;
+    for (double left_s = seconds; left_s > 0; left_s -= kRenewed_s) {
+      const Result<Json> lit = client().post("/api/v1/rig/light", {{"leds", {led}}});
+      if (!lit) return lit.error();
+      if (const double rest_s = lit->at("rest_s"); rest_s > 0) return rest_s;
+      if (!wait(std::min(left_s, kRenewed_s), stop)) return interrupted();
+    }
+    return 0.0;
+  }
+
+ private:
+  OpenedDevices(ReachedRig reached, bool were_open) : reached_(std::move(reached)), were_open_(were_open) {}
+  ReachedRig reached_;
+  bool were_open_;  ///< for somebody else
+};
+
 Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments,
                           const CommonArguments& common) {
-  const auto board = capture::open_board(rig);
-  if (!board) return board.error();
+  const auto devices = OpenedDevices::open(rig);
+  if (!devices) return devices.error();
   const std::stop_token stop = stop_on_signal();
-  const double most_s = arguments.seconds + 1;
   for (const int led : chosen_leds(rig, arguments)) {
-    Result<double> cools_s = (*board)->light(std::array{led}, most_s);
-    for (; cools_s && *cools_s > 0; cools_s = (*board)->light(std::array{led}, most_s)) {
-      if (!common.quiet) note(fmt::format("LED {} cools, {:.0f} s", led, std::ceil(*cools_s)));
-      if (!wait(*cools_s, stop)) return interrupted();
-    }
-    if (!cools_s) return cools_s.error();
     if (!common.json) print(fmt::format("LED {}", led));
-    if (!wait(arguments.seconds, stop)) return interrupted();
+    for (;;) {
+      const Result<double> rest_s = (*devices)->hold(led, arguments.seconds, stop);
+      if (!rest_s) return rest_s.error();
+      if (*rest_s <= 0) break;
+      if (!common.quiet) note(fmt::format("LED {} cools, {:.0f} s", led, std::ceil(*rest_s)));
+      if (!wait(*rest_s, stop)) return interrupted();
+    }
   }
-  if (const Result<double> off = (*board)->light({}, 0); !off) return off.error();
   if (common.json) print_json({{"leds", chosen_leds(rig, arguments)}});
+  return kDone;
+}
+
+/// One photograph that nobody keeps, but as a picture where one is asked for.
+Result<int> take_test_shot(const capture::Rig& rig, const RigArguments& arguments,
+                           const CommonArguments& common) {
+  const auto devices = OpenedDevices::open(rig);
+  if (!devices) return devices.error();
+  const RigClient& client = (*devices)->client();
+  const std::stop_token stop = stop_on_signal();
+  const Result<Json> asked =
+      client.post("/api/v1/rig/test-shot", {{"led", arguments.led}, {"exposure_us", arguments.exposure_us}});
+  if (!asked) return asked.error();
+  const std::string path = fmt::format("/api/v1/rig/test-shots/{}", asked->at("id").get<int>());
+  Result<Json> shot = client.get(path);
+  for (; shot && shot->at("state") == "taking"; shot = client.get(path)) {
+    if (!wait(0.1, stop)) return interrupted();
+  }
+  if (!shot) return shot.error();
+  if (shot->at("state") == "failed") return error_of_json(shot->at("error"), rig.name);
+  if (!arguments.output.empty()) {
+    const Result<std::string> picture = client.bytes(path + "/picture");
+    if (!picture) return picture.error();
+    if (Result<void> written = write_file(arguments.output, *picture); !written)
+      return std::move(written).error();
+  }
+  if (common.json) {
+    print_json(*shot);
+    return kDone;
+  }
+  const auto clipped = shot->at("clipped_rgb").get<std::array<double, 3>>();
+  print(fmt::format("LED {} at {:g} us: clipped {:.2g} {:.2g} {:.2g} %", arguments.led, arguments.exposure_us,
+                    100 * clipped[0], 100 * clipped[1], 100 * clipped[2]));
   return kDone;
 }
 
@@ -149,6 +226,15 @@ Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& argu
 using Trial = Result<int> (*)(const capture::Rig& rig, const RigArguments& arguments,
                               const CommonArguments& common);
 
+/// A trial by way of the rig's server, whoever else uses it.
+Run run_shared(Trial trial, const std::shared_ptr<RigArguments>& a) {
+  return [trial, a](const CommonArguments& common) -> Result<int> {
+    const Result<capture::Rig> rig = capture::read_rig(find_rig(a->rig));
+    if (!rig) return rig.error();
+    return trial(*rig, *a, common);
+  };
+}
+
 /// A trial of a rig that nobody else has meanwhile.
 Run run_alone(Trial trial, const std::shared_ptr<RigArguments>& a) {
   return [trial, a](const CommonArguments& common) -> Result<int> {
@@ -171,7 +257,16 @@ Run add_rig_lights(Options& options) {
   add_rig_file(options, a->rig);
   add_leds(options, a->leds);
   options.add("--seconds", &a->seconds, "That each LED is lit, s").shows_default().in_range(0.1, 30.0);
-  return run_alone(light_in_turn, a);
+  return run_shared(light_in_turn, a);
+}
+
+Run add_rig_shot(Options& options) {
+  const auto a = std::make_shared<RigArguments>();
+  add_rig_file(options, a->rig);
+  options.add("--led", &a->led, "The LED that is lit; 0: none").in_range(0, 10).shows_default();
+  options.add("--exposure", &a->exposure_us, "Shutter time, us").in_range(1.0, 30e6).shows_default();
+  options.add("-o,--output", &a->output, "Picture to write (PNG, at most 320 pixels)");
+  return run_shared(take_test_shot, a);
 }
 
 Run add_rig_test(Options& options) {
@@ -184,12 +279,13 @@ Run add_rig_test(Options& options) {
 }  // namespace
 
 Verb rig_verb() {
-  return {
-      .name = "rig",
-      .help = "Try the parts of a rig",
-      .verbs = {{"status", "What board and camera say of themselves", add_rig_status},
-                {"lights", "Light the LEDs one after another", add_rig_lights},
-                {"test", "Photograph the table under each LED: is each where it should be?", add_rig_test}}};
+  return {.name = "rig",
+          .help = "Try the parts of a rig",
+          .verbs = {
+              {"status", "What board and camera say of themselves", add_rig_status},
+              {"lights", "Light the LEDs one after another", add_rig_lights},
+              {"shot", "Take one photograph that is not kept: what is clipped, and a picture", add_rig_shot},
+              {"test", "Photograph the table under each LED: is each where it should be?", add_rig_test}}};
 }
 
 }  // namespace weft::app

@@ -18,9 +18,7 @@
 #include "app/jobs/solve.h"
 #include "app/server/http/error_json.h"
 #include "app/server/rig/rig_lock.h"
-#include "app/server/rig_server.h"
 #include "capture/rig.h"
-#include "capture/rig_devices/rig_devices.h"
 #include "core/calibration.h"
 #include "core/files.h"
 
@@ -43,12 +41,6 @@ struct ScanArguments {
   bool dry_run = false;
 };
 
-/// Who scans: the daemon that owns the rig, or one in this process for as long as this scan takes.
-struct Scanner {
-  std::unique_ptr<RigServer> own;  ///< null where a daemon runs
-  RigClient client;
-};
-
 /// A daemon keeps its sessions in one folder.
 Result<void> check_folder(const capture::Rig& rig, const fs::path& output) {
   std::error_code ignored;
@@ -58,26 +50,6 @@ Result<void> check_folder(const capture::Rig& rig, const fs::path& output) {
   }
   return Error{ErrorKind::kUsage, "the daemon of this rig keeps its sessions elsewhere", output.string(),
                "they are in " + rig.scan.sessions.string(), "give a name in that folder, or stop weft serve"};
-}
-
-Result<Scanner> find_scanner(capture::Rig rig, const std::optional<std::string>& owner) {
-  if (owner) {
-    Result<RigClient> client = connect_to_owner(rig, *owner);
-    if (!client) return std::move(client).error();
-    return Scanner{nullptr, std::move(*client)};
-  }
-  rig.daemon.host = "127.0.0.1";
-  rig.daemon.port = 0;
-  auto server = RigServer::start(
-      rig, capture::open_devices,
-      [](const auto& request, auto& lamps, auto& camera, const auto& events, const auto& control) {
-        return capture::scan(request, lamps, camera, events, control);
-      },
-      {.own_token = true});
-  if (!server) return std::move(server).error();
-  Result<RigClient> client = RigClient::connect((*server)->address(), (*server)->token());
-  if (!client) return std::move(client).error();
-  return Scanner{std::move(*server), std::move(*client)};
 }
 
 Result<Json> body_of(const ScanArguments& arguments) {
@@ -221,7 +193,7 @@ fs::path solve_preview(const fs::path& session, const CommonArguments& common, J
 /// Scans. Returns the rig's last status, once nothing of this process holds the rig any more.
 Result<Json> photograph(const capture::Rig& rig, const std::optional<std::string>& owner, const Json& body,
                         const CommonArguments& common) {
-  const Result<Scanner> scanner = find_scanner(rig, owner);
+  const Result<ReachedRig> scanner = reach_rig(rig, owner);
   if (!scanner) return scanner.error();
   const Result<Json> begun = scanner->client.post("/api/v1/scan", body);
   if (!begun) return begun.error();

@@ -91,6 +91,16 @@ Result<Json> RigClient::get(const std::string& path) const {
   return document_of(client.Get(path), fmt::format("GET http://{}:{}{}", host_, port_, path));
 }
 
+Result<std::string> RigClient::bytes(const std::string& path) const {
+  httplib::Client client(host_, port_);
+  prepare(client, token_, kAnswerS);
+  const std::string where = fmt::format("GET http://{}:{}{}", host_, port_, path);
+  httplib::Result result = client.Get(path);
+  if (!result) return no_answer(where, result.error());
+  if (result->status >= 400) return error_of_document(result->body, where);
+  return std::move(result->body);
+}
+
 Result<Json> RigClient::post(const std::string& path, const Json& body) const {
   httplib::Client client(host_, port_);
   prepare(client, token_, kAnswerS);

@@ -23,6 +23,8 @@ class RigClient {
   /// The Error that the server answered with; kTryAgain if it did not answer within 10 s, kProtocol if it
   /// answered anything but JSON.
   Result<Json> get(const std::string& path) const;
+  /// The answer as it is, such as a picture's. The same errors.
+  Result<std::string> bytes(const std::string& path) const;
   Result<Json> post(const std::string& path, const Json& body = Json::object()) const;
 
   struct Event {

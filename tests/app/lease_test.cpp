@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/server/lease.h"
+
+#include <gtest/gtest.h>
+
+namespace weft::bench {
+namespace {
+
+TEST(LightLease, EndsWithinTwoSecondsOfTheDeathOfClientAndDaemon) {
+  ServerLeaseOptions options;
+  options.programs = WEFT_PROGRAMS;
+  options.scene = WEFT_SOURCE_DIR "/testdata/scenes/satin.toml";
+  options.trials = 5;
+  const auto rows = server_lease_table(options);
+  ASSERT_TRUE(rows) << rows.error().message();
+  ASSERT_EQ(rows->size(), 2U);
+  for (const Json& row : *rows) {
+    EXPECT_EQ(row["late"], 0) << row["death"] << ": dark after " << row["worst_s"] << " s at worst";
+    EXPECT_GT(row["median_s"], 0);
+  }
+}
+
+}  // namespace
+}  // namespace weft::bench
