@@ -156,7 +156,7 @@ void say_choice(const Json& choice, const capture::Rig& rig) {
 
 Result<int> name_only(const capture::Rig& rig, const std::optional<std::string>& owner, Json body,
                       const CommonArguments& common) {
-  const Result<Scanner> scanner = find_scanner(rig, owner);
+  const Result<ReachedRig> scanner = reach_rig(rig, owner);
   if (!scanner) return scanner.error();
   body["dry_run"] = true;
   Result<Json> choice = scanner->client.post("/api/v1/scan", body);
