@@ -52,9 +52,6 @@ Resource jobs_resource(const RigParts& parts);
 Resource library_resource(const RigParts& parts);
 Resource events_resource(const RigParts& parts);
 
-/// The page that a browser is led to, by a link that ends in #TOKEN: it logs in and shows the rig's state.
-std::vector<Route> page_routes();
-
 /// Every call of the interface, GET openapi.json among them.
 std::vector<Route> api_routes(const RigParts& parts);
 

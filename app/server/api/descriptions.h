@@ -17,8 +17,4 @@ const char* scan_description();
 const char* server_description();
 const char* sessions_description();
 
-/// index.html and enter.js.
-const char* index_text();
-const char* enter_text();
-
 }  // namespace weft::app

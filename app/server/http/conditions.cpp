@@ -41,6 +41,21 @@ bool names_tag(std::string_view header, std::string_view tag) {
   return is_named;
 }
 
+bool takes_coding(std::string_view header, std::string_view coding) {
+  while (!header.empty()) {
+    const std::string_view each = header.substr(0, header.find(','));
+    header.remove_prefix(std::min(each.size() + 1, header.size()));
+    std::string_view name = each.substr(0, each.find(';'));
+    skip(name, " \t");
+    name = name.substr(0, name.find_last_not_of(" \t") + 1);
+    if (name != coding) continue;
+    const std::size_t weight = each.find("q=");
+    return weight == std::string_view::npos ||
+           each.find_first_of("123456789", weight) != std::string_view::npos;
+  }
+  return false;
+}
+
 AskedRange asked_range(std::string_view header, std::uint64_t size) {
   constexpr std::string_view kUnit = "bytes=";
   const std::size_t dash = header.find('-');

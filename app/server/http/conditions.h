@@ -10,6 +10,9 @@ namespace weft::app {
 /// Tags are compared weakly (RFC 9110, 8.8.3.2). False for what is no list of tags.
 bool names_tag(std::string_view header, std::string_view tag);
 
+/// Whether the value of an Accept-Encoding header names this coding with a weight above 0 (RFC 9110, 12.5.3).
+bool takes_coding(std::string_view header, std::string_view coding);
+
 /// What of `size` bytes the value of a Range header asks for.
 struct AskedRange {
   enum class Is {

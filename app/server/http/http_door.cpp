@@ -83,9 +83,11 @@ int port_of(int socket) {
 }  // namespace
 
 std::string refusal(int status, std::string_view why) {
-  const std::string body = line_of(
-      error_document({status == 503 ? ErrorKind::kTryAgain : ErrorKind::kUsage, "the request is refused", "",
-                      std::string(why), "see /api/v1/openapi.json for what is taken"}));
+  const bool is_busy = status == 503;
+  const std::string body =
+      line_of(error_document({is_busy ? ErrorKind::kTryAgain : ErrorKind::kUsage,
+                              is_busy ? "too many requests wait already" : "the request is refused", "",
+                              std::string(why), "see /api/v1/openapi.json for what is taken"}));
   return fmt::format(
       "HTTP/1.1 {} Refused\r\nContent-Type: application/json\r\nContent-Length: {}\r\nConnection: "
       "close\r\n\r\n{}",

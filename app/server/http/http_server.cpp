@@ -184,6 +184,7 @@ Call call_of(const httplib::Request& request) {
   call.if_none_match = request.get_header_value("If-None-Match");
   call.control = request.get_header_value("X-Weft-Control");
   if (const auto named = call.query.find("control"); named != call.query.end()) call.control = named->second;
+  call.takes_gzip = takes_coding(request.get_header_value("Accept-Encoding"), "gzip");
   return call;
 }
 
@@ -267,10 +268,7 @@ class HttpServer::Parser : public httplib::Server {
     if (pool == Pool::kAtOnce) return door.take_back(answered(std::move(request), pool));
     Threads& threads = *pools_.at(pool);
     if (threads.requests >= threads.most) {
-      return door.take_back({std::move(request.socket),
-                             {},
-                             refusal(503, "too many requests of this kind wait already: ask again"),
-                             true});
+      return door.take_back({std::move(request.socket), {}, refusal(503, "of this kind; ask again"), true});
     }
     ++threads.requests;
     // std::function wants to copy what it holds.
@@ -333,12 +331,14 @@ class HttpServer::Parser : public httplib::Server {
       return std::regex_match(request.path, std::regex(pattern_of(route.path)));
     };
     if (response.status == 404 && std::ranges::any_of(routes_, fits)) response.status = 405;
-    const bool absent = response.status == 404;
-    answer(
-        Error{absent ? ErrorKind::kNoInput : ErrorKind::kUsage,
-              absent ? "there is no such call" : "the request is refused", request.path,
-              fmt::format("HTTP status {}", response.status), "see /api/v1/openapi.json for what there is"},
-        response.status, request, response);
+    const int status = response.status;
+    answer(Error{status == 404 ? ErrorKind::kNoInput : ErrorKind::kUsage,
+                 status == 404   ? "there is no such call"
+                 : status == 405 ? "this call has no such method"
+                                 : "the request is refused",
+                 request.path, fmt::format("HTTP status {}", status),
+                 "see /api/v1/openapi.json for what there is"},
+           status, request, response);
   }
 
   static void fail(const httplib::Request& request, httplib::Response& response,

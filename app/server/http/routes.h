@@ -26,6 +26,7 @@ struct Call {
   int port = 0;                    ///< that the server listens on
   std::string if_none_match = {};  ///< the header
   std::string control = {};        ///< X-Weft-Control, or the query's: the id that its client commands by
+  bool takes_gzip = false;         ///< the client says so
 
   /// Whether the client has what is tagged so: a reply of that tag needs no body.
   bool has(std::string_view tag) const { return !tag.empty() && names_tag(if_none_match, tag); }

@@ -20,6 +20,15 @@ TEST(Conditions, NameATagByTheWholeOfIt) {
   }
 }
 
+TEST(Conditions, TakeACodingThatIsNamedWithAWeight) {
+  for (const char* header : {"gzip", "deflate, gzip", "br;q=1.0, gzip;q=0.001", " gzip ; q=0.5"}) {
+    EXPECT_TRUE(takes_coding(header, "gzip")) << header;
+  }
+  for (const char* header : {"", "br", "gzip;q=0", "gzip; q=0.000", "xgzip", "gzip2", "*"}) {
+    EXPECT_FALSE(takes_coding(header, "gzip")) << header;
+  }
+}
+
 struct Asked {
   const char* header;
   AskedRange::Is is;

@@ -21,6 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
 
   if (cookie_in(text, "weft_8470").size() > size) std::abort();
 
+  if (takes_coding(text, "gzip") && text.find("gzip") == std::string_view::npos) std::abort();
   constexpr std::uint64_t kFileBytes = 1000;
   for (const std::string& header : {std::string(text), "bytes=" + std::string(text)}) {
     const AskedRange range = asked_range(header, kFileBytes);

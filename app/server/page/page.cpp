@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/page/page.h"
+
+#include <array>
+#include <string>
+#include <utility>
+
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+// No other page may frame this one, and nothing but this server is asked for anything.
+constexpr const char* kPolicy =
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src "
+    "'self'; "
+    "worker-src 'self'; manifest-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'; "
+    "require-trusted-types-for 'script'";
+
+constexpr std::array<std::pair<std::string_view, const char*>, 7> kTypes = {{
+    {".html", "text/html; charset=utf-8"},
+    {".js", "text/javascript; charset=utf-8"},
+    {".css", "text/css; charset=utf-8"},
+    {".json", "application/json"},
+    {".svg", "image/svg+xml"},
+    {".png", "image/png"},
+    {".woff2", "font/woff2"},
+}};
+
+const char* type_of(std::string_view path) {
+  for (const auto& [ending, type] : kTypes) {
+    if (path.ends_with(ending)) return type;
+  }
+  return "application/octet-stream";
+}
+
+Route page_file(const PageFile& file) {
+  Reply plain = {200,
+                 type_of(file.path),
+                 std::string(file.bytes),
+                 {{"Content-Security-Policy", kPolicy},
+                  {"Referrer-Policy", "no-referrer"},
+                  {"Cross-Origin-Opener-Policy", "same-origin"},
+                  {"Vary", "Accept-Encoding"}}};
+  plain.keeping = file.path.starts_with("/assets/") ? Keeping::kForever : Keeping::kAskAgain;
+  plain.tag = sha256_of(plain.body);
+  Reply packed = plain;
+  if (file.gzipped.size() < file.bytes.size()) {
+    packed.body = file.gzipped;
+    packed.tag += "-gzip";
+    packed.headers.emplace_back("Content-Encoding", "gzip");
+  }
+  const std::string path(file.path == "/index.html" ? "/" : file.path);
+  return {"GET", path,
+          [plain, packed](const Call& call) -> Result<Reply> { return call.takes_gzip ? packed : plain; },
+          true, Pool::kQuick};
+}
+
+}  // namespace
+
+std::vector<Route> page_routes(const std::vector<PageFile>& files) {
+  std::vector<Route> routes;
+  for (const PageFile& file : files) routes.push_back(page_file(file));
+  return routes;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/page/page.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "app/server/http/http_server.h"
+#include "tests/app/server/raw_client.h"
+
+namespace weft::app {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Page : public testing::Test {
+ protected:
+  Page() {
+    std::vector<Route> routes = page_routes();
+    const std::vector<PageFile> built = {{"/assets/a.1f2e.js", "run();", "a long way to say run"},
+                                         {"/assets/b.77.css", "p { color: red; color: red }", "short"}};
+    for (Route& route : page_routes(built)) routes.push_back(std::move(route));
+    auto server = HttpServer::start(0, {"127.0.0.1", ""}, routes, events_, {});
+    EXPECT_TRUE(server) << server.error().message();
+    server_ = std::move(*server);
+  }
+  Answer get(const std::string& path, const HeaderLines& headers = {}) const {
+    return ask(server_->port(), "GET", path, "", headers);
+  }
+  EventLog events_;
+  std::unique_ptr<HttpServer> server_;
+};
+
+TEST_F(Page, IsGivenPackedToWhoTakesThat) {
+  const Answer plain = get("/"), packed = get("/", {{"Accept-Encoding", "gzip, br"}});
+  EXPECT_THAT(plain.body, AllOf(HasSubstr("<!doctype html>"), HasSubstr("/enter.js")));
+  EXPECT_THAT(packed.head, AllOf(HasSubstr("Content-Encoding: gzip"), HasSubstr("Vary: Accept-Encoding"),
+                                 HasSubstr("Content-Type: text/html")));
+  EXPECT_EQ(packed.body.substr(0, 2), "\x1f\x8b");
+  EXPECT_LT(packed.body.size(), plain.body.size());
+  const Answer longer = get("/assets/a.1f2e.js", {{"Accept-Encoding", "gzip"}});
+  EXPECT_EQ(longer.body, "run();") << "packed it is longer";
+  EXPECT_EQ(get("/assets/b.77.css", {{"Accept-Encoding", "gzip"}}).body, "short");
+}
+
+TEST_F(Page, IsAskedForAgainByItsTagAndItsAssetsNever) {
+  for (const char* path : {"/", "/enter.js"}) {
+    const Answer first = get(path);
+    EXPECT_THAT(first.head, HasSubstr("Cache-Control: public, no-cache")) << path;
+    const std::size_t at = first.head.find("ETag: ") + 6;
+    const std::string tag = first.head.substr(at, first.head.find('\r', at) - at);
+    EXPECT_EQ(get(path, {{"If-None-Match", tag}}).status, 304) << path;
+    EXPECT_EQ(get(path, {{"If-None-Match", tag}, {"Accept-Encoding", "gzip"}}).status, 200)
+        << path << ": packed it is other bytes";
+  }
+  EXPECT_THAT(get("/assets/a.1f2e.js").head, AllOf(HasSubstr("public, max-age=31536000, immutable"),
+                                                   HasSubstr("Content-Type: text/javascript")));
+  EXPECT_EQ(get("/assets/none.js").status, 404);
+  EXPECT_EQ(get("/index.html").status, 404) << "one file, one address";
+}
+
+TEST_F(Page, MayDoNothingButAskThisServer) {
+  const std::string head = get("/").head;
+  for (const char* rule :
+       {"default-src 'none'", "script-src 'self'", "connect-src 'self'", "frame-ancestors 'none'",
+        "base-uri 'none'", "require-trusted-types-for 'script'", "X-Content-Type-Options: nosniff",
+        "Referrer-Policy: no-referrer", "Cross-Origin-Opener-Policy: same-origin"}) {
+    EXPECT_THAT(head, HasSubstr(rule));
+  }
+  EXPECT_THAT(head, Not(HasSubstr("unsafe")));
+}
+
+}  // namespace
+}  // namespace weft::app
