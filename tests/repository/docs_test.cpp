@@ -133,6 +133,29 @@ TEST(Docs, TheReadmeHasEveryLevelInItsOrder) {
   EXPECT_EQ(rows, levels);
 }
 
+/// A code is a word for a sentence: the sentence is said somewhere, and the page has the word.
+TEST(Docs, TheCodesOfErrorsAreSaidByTheServerAndExplained) {
+  const std::string table = "app/server/http/error_json.cpp";
+  std::string page, said;
+  std::vector<std::pair<std::string, std::string>> codes;
+  static const std::regex row(R"re(\{"([^"]+)", "(\w+)"\})re");
+  for (const TextFile& file : text_files()) {
+    if (file.path == "docs/http.md") page = file.text;
+    const bool is_server = file.path.starts_with("app/server/") || file.path.starts_with("library/");
+    if (is_server && file.path != table) said += file.text;
+    if (file.path != table) continue;
+    for (std::sregex_iterator at(file.text.begin(), file.text.end(), row), end; at != end; ++at) {
+      codes.emplace_back((*at)[1], (*at)[2]);
+    }
+  }
+  EXPECT_GT(codes.size(), 20U);
+  for (const auto& [sentence, code] : codes) {
+    EXPECT_NE(said.find('"' + sentence + '"'), std::string::npos)
+        << code << ": nobody says '" << sentence << "'";
+    EXPECT_NE(page.find("| `" + code + "` |"), std::string::npos) << "docs/http.md leaves out " << code;
+  }
+}
+
 TEST(Docs, TheIndexHasEveryPage) {
   std::set<std::string> indexed = {kIndex};
   for (const TextFile& page : pages()) {

@@ -1,11 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/http/error_json.h"
 
+#include <algorithm>
+#include <array>
 #include <new>
+#include <utility>
 
 #include "core/error_json.h"
 
 namespace weft::app {
+namespace {
+
+/// What is said, and the word for it. Clients rely on the words.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 39> kCodes = {{
+    {"the token is missing or wrong", "not_logged_in"},
+    {"the token is wrong", "wrong_token"},
+    {"this token may only look", "may_only_look"},
+    {"a change by a cookie needs an Origin", "no_origin"},
+    {"pages from elsewhere may not use this daemon", "foreign_page"},
+    {"the Host header is not this daemon's", "foreign_host"},
+    {"the method is not taken", "wrong_method"},
+    {"this call has no such method", "wrong_method"},
+    {"there is no such call", "no_such_call"},
+    {"the body is not said to be JSON", "not_json"},
+    {"the request is refused", "unreadable"},
+    {"the range is beyond the file", "beyond_file"},
+    {"too many requests wait already", "too_busy"},
+    {"too many clients follow this rig", "too_many_streams"},
+    {"too many pictures are being made", "too_busy"},
+    {"the rig is busy", "rig_busy"},
+    {"somebody else holds the controls", "controls_held"},
+    {"the devices are closed", "devices_closed"},
+    {"a scan has the devices", "rig_busy"},
+    {"a test shot is being taken", "shot_on_its_way"},
+    {"no such test shot", "no_such_shot"},
+    {"the test shot has no picture", "no_such_shot"},
+    {"no scan is running", "no_scan"},
+    {"the scan is about to end", "scan_ending"},
+    {"the scan has no fabric", "no_fabric"},
+    {"there is a session of this name", "session_exists"},
+    {"there is no such session", "no_such_session"},
+    {"this is no name of a session", "no_such_session"},
+    {"there is no such frame", "no_such_frame"},
+    {"session is being written", "session_busy"},
+    {"session was changed meanwhile", "changed_meanwhile"},
+    {"there is nothing to take back", "nothing_to_undo"},
+    {"there is no such job", "no_such_job"},
+    {"job cannot be cancelled", "job_ended"},
+    {"job cannot be retried", "job_not_ended"},
+    {"job cannot be forgotten", "job_not_ended"},
+    {"job does not wait", "job_not_waiting"},
+    {"the disk does not answer", "disk_silent"},
+    {"a bug in weft", "bug"},
+}};
+
+}  // namespace
 
 int http_status_of(ErrorKind kind) {
   switch (kind) {
@@ -31,7 +80,21 @@ int http_status_of(ErrorKind kind) {
 }
 
 Json error_document(const Error& error) {
-  return {{"error", json_of(error)}};
+  Json document = json_of(error);
+  if (const std::string_view code = code_of(error); !code.empty()) document["code"] = code;
+  return {{"error", std::move(document)}};
+}
+
+std::string_view code_of(const Error& error) {
+  const auto known = std::ranges::find(kCodes, std::string_view(error.what),
+                                       &std::pair<std::string_view, std::string_view>::first);
+  return known == kCodes.end() ? std::string_view() : known->second;
+}
+
+std::vector<std::string_view> error_codes() {
+  std::vector<std::string_view> codes;
+  for (const auto& [what, code] : kCodes) codes.push_back(code);
+  return codes;
 }
 
 Error error_of_exception(const std::exception& thrown, const std::string& where) {

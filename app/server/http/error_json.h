@@ -3,6 +3,8 @@
 
 #include <exception>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/json_document.h"
 #include "core/result.h"
@@ -12,8 +14,13 @@ namespace weft::app {
 /// The status an error is answered with where nothing fits better.
 int http_status_of(ErrorKind kind);
 
-/// {"error": {"kind", "what", "where", "why", "remedy"}}
+/// {"error": {"kind", "what", "where", "why", "remedy"}}, with "code" where code_of() has one.
 Json error_document(const Error& error);
+/// A word by which a program tells what this server decided, whatever its sentences become: "rig_busy".
+/// Empty for an error of another room.
+std::string_view code_of(const Error& error);
+/// Every such word.
+std::vector<std::string_view> error_codes();
 
 /// Of an exception of the standard library, which is no reason for a daemon to end: kTryAgain where memory
 /// ran out, else kInternal.

@@ -67,7 +67,7 @@ TEST_F(Login, LetsABrowserFollowEventsAndScan) {
   const auto server = scripted_.started();
   const int port = server->port();
   const std::string cookie = cookie_of(port, "correct-horse-battery");
-  EXPECT_EQ(ask(port, "GET", "/api/v1/rig").status, 401);
+  EXPECT_EQ(ask(port, "GET", "/api/v1/rig").json()["error"]["code"], "not_logged_in");
   EXPECT_EQ(ask(port, "GET", "/api/v1/rig", "", {{"Cookie", cookie}}).status, 200);
   RawClient follower(port);
   follower.say(request_text(port, "GET", "/api/v1/events", "", {{"Cookie", cookie}}));
