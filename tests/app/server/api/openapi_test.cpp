@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "app/server/http/error_json.h"
 #include "core/files.h"
 #include "tests/app/server/api/json_schema.h"
 #include "tests/app/server/raw_client.h"
@@ -49,7 +52,9 @@ class OpenApi : public testing::Test {
       return {};
     };
     scripted_.refuse = {2, 2, ShotRole::kLit, {"swapped", 0.9, 0.2}, "LED 2 lights where LED 3 should"};
-    server_ = scripted_.started();
+    HttpLimits limits;
+    limits.heartbeat_s = 0.3;
+    server_ = scripted_.started(limits);
     port_ = server_->port();
     document_ = ask(port_, "GET", "/api/v1/openapi.json").json();
     ASSERT_EQ(ask(port_, "POST", "/api/v1/scan", R"({"fabric": "satin", "session": "done"})").status, 202);
@@ -87,6 +92,25 @@ class OpenApi : public testing::Test {
       EXPECT_THAT(misfits(answer.json(), content[type]["schema"], document_), IsEmpty()) << answer.body;
     }
     return answer;
+  }
+
+  /// Holds each event against its schema; how many there are of each name.
+  std::map<std::string, int> conforming_events(const std::string& heard) const {
+    const Json& schemas = operation("GET", "/api/v1/events").at("responses").at("200").at("x-events");
+    std::map<std::string, int> told;
+    for (std::size_t at = heard.find("event: "); at != heard.npos; at = heard.find("event: ", at + 1)) {
+      const std::string name = heard.substr(at + 7, heard.find('\n', at) - at - 7);
+      const std::size_t data = heard.find("data: ", at) + 6, end = heard.find('\n', data);
+      if (end == heard.npos) break;
+      const Json event = Json::parse(heard.substr(data, end - data), nullptr, false);
+      ++told[name];
+      if (!schemas.contains(name)) {
+        ADD_FAILURE() << name << " is not described";
+        continue;
+      }
+      EXPECT_THAT(misfits(event, schemas[name], document_), IsEmpty()) << event;
+    }
+    return told;
   }
 
   ScriptedRig scripted_{"openapi"};
@@ -286,6 +310,49 @@ TEST_F(OpenApi, DescribesTheLibrary) {
   EXPECT_EQ(found("tag=autumn"), 1);
 }
 
+/// Clients tell errors apart by these words.
+TEST_F(OpenApi, NamesTheCodeOfEveryErrorThatTheServerDecides) {
+  std::set<std::string> words;
+  for (const Json& word : document_["components"]["schemas"]["Error"]["properties"]["code"]["enum"])
+    words.insert(word);
+  const std::vector<std::string_view> codes = error_codes();
+  EXPECT_EQ(words, std::set<std::string>(codes.begin(), codes.end()));
+
+  const auto code = [&](const std::string& method, const std::string& target, const std::string& body = "",
+                        const HeaderLines& headers = {}) {
+    return ask(port_, method, target, body, headers).json()["error"].value("code", "");
+  };
+  const std::string scan = "/api/v1/scan";
+  EXPECT_EQ(code("GET", "/api/v1/rig", "", {{"Host", "evil.example"}}), "foreign_host");
+  EXPECT_EQ(code("GET", "/api/v1/rig", "", {{"Origin", "http://evil.example"}}), "foreign_page");
+  EXPECT_EQ(code("OPTIONS", "/api/v1/rig"), "wrong_method");
+  EXPECT_EQ(code("DELETE", "/api/v1/rig"), "wrong_method");
+  EXPECT_EQ(code("GET", "/api/v1/none"), "no_such_call");
+  EXPECT_EQ(code("GET", "/api/v1/rig", "", {{"Content-Length", "x"}}), "unreadable");
+  EXPECT_EQ(code("POST", scan, "{}", {{"Content-Type", "text/plain"}}), "not_json");
+  EXPECT_EQ(code("POST", scan, "{}"), "no_fabric");
+  EXPECT_EQ(code("POST", scan, R"({"fabric": "a", "session": "done"})"), "session_exists");
+  EXPECT_EQ(code("POST", scan + "/pause", "{}"), "no_scan");
+  EXPECT_EQ(code("POST", "/api/v1/rig/test-shot", R"({"led": 1, "exposure_us": 1000})"), "devices_closed");
+  EXPECT_EQ(code("GET", "/api/v1/rig/test-shots/1"), "no_such_shot");
+  EXPECT_EQ(code("POST", "/api/v1/undo", "{}"), "nothing_to_undo");
+  EXPECT_EQ(code("GET", "/api/v1/sessions/none"), "no_such_session");
+  EXPECT_EQ(code("GET", "/api/v1/sessions/done/frames/77/raw"), "no_such_frame");
+  EXPECT_EQ(code("GET", "/api/v1/sessions/done/frames/0/raw", "", {{"Range", "bytes=999999999-"}}),
+            "beyond_file");
+  EXPECT_EQ(code("GET", "/api/v1/jobs/000099"), "no_such_job");
+  EXPECT_EQ(code("PATCH", "/api/v1/sessions/done/metadata", R"({"notes": "x", "revision": 7})"),
+            "changed_meanwhile");
+  EXPECT_EQ(code("PATCH", "/api/v1/sessions/done/metadata", R"({"side": "left"})"), "") << "of another room";
+  holding_ = true;
+  ASSERT_EQ(ask(port_, "POST", scan, R"({"fabric": "wool"})").status, 202);
+  EXPECT_EQ(code("POST", scan, R"({"fabric": "wool"})"), "rig_busy");
+  ASSERT_EQ(ask(port_, "POST", "/api/v1/control", R"({"name": "Ann"})").status, 200);
+  EXPECT_EQ(code("POST", scan + "/cancel", "{}"), "controls_held");
+  gate_.open();
+  wait_for_state(port_, "idle");
+}
+
 TEST_F(OpenApi, DescribesHowEachCallIsGuarded) {
   for (const std::string& call : server_->calls()) {
     const std::string method = call.substr(0, call.find(' ')), path = call.substr(call.find(' ') + 1);
@@ -312,18 +379,27 @@ TEST_F(OpenApi, DescribesItsEvents) {
   follower.say(request_text(port_, "GET", "/api/v1/events", "", {{"Last-Event-ID", first}}));
   const std::string heard = follower.hear(seconds(5), "\"phase\":\"complete\"");
   EXPECT_THAT(heard, testing::HasSubstr("Content-Type: text/event-stream"));
-  int frames = 0, statuses = 0;
-  for (std::size_t at = heard.find("event: "); at != heard.npos; at = heard.find("event: ", at + 1)) {
-    const std::string name = heard.substr(at + 7, heard.find('\n', at) - at - 7);
-    const std::size_t data = heard.find("data: ", at) + 6, end = heard.find('\n', data);
-    if (end == heard.npos) break;
-    const Json event = Json::parse(heard.substr(data, end - data), nullptr, false);
-    const char* const schema = name == "frame" ? "FrameEvent" : "Status";
-    (name == "frame" ? frames : statuses)++;
-    EXPECT_THAT(misfits(event, document_["components"]["schemas"][schema], document_), IsEmpty()) << event;
-  }
-  EXPECT_EQ(frames, 5) << "four that are kept and one that is refused";
-  EXPECT_GE(statuses, 5);
+  const std::map<std::string, int> told = conforming_events(heard);
+  EXPECT_EQ(told.at("frame"), 5) << "four that are kept and one that is refused";
+  EXPECT_GE(told.at("status"), 5);
+
+  RawClient stranger(port_);
+  stranger.say(request_text(port_, "GET", "/api/v1/events", "", {{"Last-Event-ID", "1.1"}}));
+  const std::map<std::string, int> late =
+      conforming_events(stranger.hear(seconds(5), "event: heartbeat") + stranger.hear(seconds(5), "\n\n"));
+  EXPECT_EQ(late.at("gap"), 1);
+  EXPECT_EQ(late.at("status"), 1);
+  EXPECT_GE(late.at("heartbeat"), 1);
+
+  ASSERT_EQ(ask(port_, "POST", "/api/v1/control", R"({"name": "Ann"})").status, 200);
+  EXPECT_EQ(conforming_events(greeted.hear(seconds(5), "\"Ann\"}") + greeted.hear(seconds(5), "\n\n"))
+                .at("control"),
+            1);
+  ASSERT_EQ(ask(port_, "POST", "/api/v1/jobs", R"({"kind": "price", "session": "done"})").status, 202);
+  EXPECT_GE(
+      conforming_events(greeted.hear(seconds(5), "\"kind\":\"price\"") + greeted.hear(seconds(5), "\n\n"))
+          .at("job"),
+      1);
 }
 
 /// Fields of the request that the file names are those that the daemon takes.
