@@ -13,7 +13,6 @@
 #include "bench/capture/camera.h"
 #include "bench/capture/evidence.h"
 #include "bench/capture/fault_matrix.h"
-#include "bench/capture/http.h"
 #include "bench/capture/scans.h"
 #include "bench/program/rows.h"
 #include "bench/program/verbs.h"
@@ -28,7 +27,7 @@ namespace fs = std::filesystem;
 struct CaptureArguments {
   std::string part = "scans";  ///< board, camera, scans: of a running rig; the others: of what they start
   fs::path rig;
-  int runs = 0;  ///< commands, shots, scans, runs or requests; 0: as many as docs/reliability.md
+  int runs = 0;  ///< commands, shots, scans or runs; 0: as many as docs/reliability.md
   fs::path scene = "testdata/scenes/satin.toml";
   double megapixels = 0.2;
   int rigs = 16;
@@ -82,7 +81,6 @@ Result<Rows> measure_evidence(app::ProgressLine& line) {
 Result<Rows> measure(const CaptureArguments& a, bool quiet) {
   app::ProgressLine line(quiet);
   if (a.part == "evidence") return measure_evidence(line);
-  if (a.part == "http") return capture_http_table({.requests = a.runs > 0 ? a.runs : 200, .seed = a.seed});
   return a.part == "faults" ? measure_matrix(a, line) : measure_rig(a, line);
 }
 
@@ -91,20 +89,18 @@ app::Run add_capture(app::Options& options) {
   options
       .add("--part", &a->part,
            "board, camera, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that "
-           "it starts; http: a daemon among hostile clients; evidence: what light tells of LEDs")
-      .one_of({"board", "camera", "scans", "faults", "http", "evidence"})
+           "it starts; evidence: what light tells of LEDs")
+      .one_of({"board", "camera", "scans", "faults", "evidence"})
       .shows_default();
   options.add("--rig", &a->rig, "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
-  options
-      .add("--runs", &a->runs,
-           "Commands, shots, scans, runs or requests; 0 is as many as docs/reliability.md")
+  options.add("--runs", &a->runs, "Commands, shots, scans or runs; 0 is as many as docs/reliability.md")
       .in_range(0, 1000000);
   options.add("--scene", &a->scene, "Scene of the fault matrix").shows_default();
   options.add("--megapixels", &a->megapixels, "Size of its frames, millions of pixels")
       .in_range(0.05, 200.0)
       .shows_default();
   options.add("--rigs", &a->rigs, "Rigs side by side").in_range(1, 64).shows_default();
-  options.add("--seed", &a->seed, "Of shots and moments, or of malformed requests").shows_default();
+  options.add("--seed", &a->seed, "Of shots and moments").shows_default();
   options.add("--fault", &a->faults, "These faults alone, by their names in the table");
   options.add("--keep", &a->keep, "Folder for the sessions and logs of runs that went wrong");
   return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.quiet), common); };

@@ -7,6 +7,7 @@
 #include "app/cli/terminal.h"
 #include "bench/program/rows.h"
 #include "bench/program/verbs.h"
+#include "bench/server/door.h"
 #include "bench/server/lease.h"
 #include "core/process.h"
 
@@ -20,6 +21,7 @@ struct ServerArguments {
 };
 
 Result<Rows> measure(const ServerArguments& a, bool quiet) {
+  if (a.part == "door") return door_table({.requests = a.runs > 0 ? a.runs : 200, .seed = a.seed});
   app::ProgressLine line(quiet);
   ServerLeaseOptions options;
   options.programs = program_beside("weft").parent_path();
@@ -31,12 +33,17 @@ Result<Rows> measure(const ServerArguments& a, bool quiet) {
 
 app::Run add_server(app::Options& options) {
   const auto a = std::make_shared<ServerArguments>();
-  options.add("--part", &a->part, "lease: how soon a LED is dark once its client or the daemon has died")
-      .one_of({"lease"})
+  options
+      .add("--part", &a->part,
+           "lease: how soon a LED is dark once its client or the daemon has died; door: answers beside "
+           "malformed requests, silent clients and slow readers")
+      .one_of({"lease", "door"})
       .shows_default();
-  options.add("--runs", &a->runs, "Trials of each death; 0 is as many as docs/reliability.md")
+  options
+      .add("--runs", &a->runs,
+           "Trials of each death, or requests of each row; 0 is as many as docs/reliability.md")
       .in_range(0, 1000000);
-  options.add("--seed", &a->seed, "Of the moments").shows_default();
+  options.add("--seed", &a->seed, "Of the moments, or of malformed requests").shows_default();
   return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.quiet), common); };
 }
 
