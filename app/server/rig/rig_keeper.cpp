@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <utility>
@@ -80,6 +81,8 @@ Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& b
   status_.state = RigStatus::State::kConnecting;
   status_.session = name_of_session(request);
   status_.by = by;
+  for (const int led : request.leds) status_.leds.emplace_back().led = led;
+  first_kept_.reset();
   pause_ = false;
   request_ = request;
   tell_status_locked();
@@ -179,6 +182,13 @@ void RigKeeper::log_once(const char* event, const std::string& why) {
   if (std::exchange(logged_, why) != why) log_.add(event, why);
 }
 
+// Where the shot that lights a LED for the first time stands; null for all others.
+LedStatus* RigKeeper::lit_shot_of(int led, ShotRole role) {
+  if (role != ShotRole::kLit) return nullptr;
+  const auto found = std::ranges::find(status_.leds, led, &LedStatus::led);
+  return found != status_.leds.end() ? &*found : nullptr;
+}
+
 void RigKeeper::on_status(const capture::ScanStatus& status) {
   if (status.phase == capture::ScanPhase::kRecovering) {
     log_once("recovering", status.why);
@@ -189,6 +199,11 @@ void RigKeeper::on_status(const capture::ScanStatus& status) {
   }
   const std::lock_guard lock(mutex_);
   status_.scan = status;
+  if (LedStatus* led = lit_shot_of(status.led, ShotRole::kLit); led != nullptr) {
+    const bool is_kept = led->state == LedStatus::State::kKept;  // what follows is a repeat or a bracket
+    if (status.phase == capture::ScanPhase::kExposing && !is_kept) led->state = LedStatus::State::kExposing;
+    if (status.phase == capture::ScanPhase::kFetching && !is_kept) led->state = LedStatus::State::kChecking;
+  }
   switch (status.phase) {
     case capture::ScanPhase::kConnecting:
       status_.state = RigStatus::State::kConnecting;
@@ -211,6 +226,17 @@ void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::Kept
   event["clipped_rgb"] = {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped};
   event["warnings"] = frame.warnings;
   event["thumbnail"] = fmt::format("/api/v1/sessions/{}/frames/{}/thumbnail", name, frame.shot.index);
+  {
+    const std::lock_guard lock(mutex_);
+    if (LedStatus* led = lit_shot_of(frame.shot.led, frame.shot.role); led != nullptr) {
+      *led = {frame.shot.led, LedStatus::State::kKept, led->takes + 1, frame.finding,
+              std::max({rgb[0].clipped, rgb[1].clipped, rgb[2].clipped})};
+    }
+    if (!first_kept_) {
+      first_kept_ = std::chrono::steady_clock::now();
+      first_frames_ = status_.scan.frames;
+    }
+  }
   log_.add("frame", fmt::format("{} is kept", frame.shot.file), event);
   event["histogram"] = to_json(rgb);
   events_.add("frame", event);
@@ -220,6 +246,11 @@ void RigKeeper::on_refused(const capture::ScanRequest& request, const capture::R
   Json event = frame_event(name_of_session(request), frame.index, frame.led, frame.role, frame.finding);
   event["kept"] = false;
   event["why"] = frame.why;
+  {
+    const std::lock_guard lock(mutex_);
+    if (LedStatus* led = lit_shot_of(frame.led, frame.role); led != nullptr)
+      *led = {frame.led, LedStatus::State::kRefused, led->takes + 1, frame.finding, 0};
+  }
   log_.add("frame_refused", frame.why, event);
   events_.add("frame", event);
 }
@@ -262,6 +293,13 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
 RigStatus RigKeeper::status_locked() const {
   RigStatus status = status_;
   Attendance::Status attended = attendance_.status();
+  if (running_ && first_kept_ && status.scan.frames > first_frames_) {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - *first_kept_;
+    status.left_s = passed.count() / (status.scan.frames - first_frames_) *
+                    (status.scan.frames_planned - status.scan.frames);
+  }
+  const bool is_finished = status.scan.phase == capture::ScanPhase::kComplete;
+  status.can_go_on = !running_ && request_ && !is_finished;
   const bool is_free = status.state == RigStatus::State::kIdle || status.state == RigStatus::State::kFailed;
   if (is_free && attended.is_open) {
     status.state = RigStatus::State::kAttended;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <memory>
@@ -78,6 +79,7 @@ class RigKeeper {
   void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome);
   void log_once(const char* event, const std::string& why);
   RigStatus status_locked() const;
+  LedStatus* lit_shot_of(int led, ShotRole role);
   void tell_status_locked() { events_.add("status", to_json(status_locked(), rig_)); }
 
   const capture::Rig rig_;
@@ -95,6 +97,8 @@ class RigKeeper {
   bool stopping_ = false;
   RigStatus status_;
   std::optional<capture::ScanRequest> request_;  ///< the last one
+  int first_frames_ = 0;                         ///< kept when the scan was first told of a frame
+  std::optional<std::chrono::steady_clock::time_point> first_kept_;
   std::atomic<bool> pause_ = false;
   std::string logged_;  ///< the last trouble that log_once() wrote; the scan's own
   std::jthread scan_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/rig/rig_status.h"
 
+#include <utility>
+
 #include "core/error_json.h"
 
 namespace weft::app {
@@ -24,6 +26,52 @@ const char* word_of(RigStatus::State state) {
   return "failed";
 }
 
+const char* word_of(LedStatus::State state) {
+  switch (state) {
+    case LedStatus::State::kWaiting:
+      return "waiting";
+    case LedStatus::State::kExposing:
+      return "exposing";
+    case LedStatus::State::kChecking:
+      return "checking";
+    case LedStatus::State::kKept:
+      return "kept";
+    case LedStatus::State::kRefused:
+      return "refused";
+  }
+  return "waiting";
+}
+
+Json to_json(const LedStatus& led) {
+  const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
+  return {{"led", led.led},
+          {"state", word_of(led.state)},
+          {"takes", led.takes},
+          {"code", led.finding.code},
+          {"level", number(led.finding.level)},
+          {"misfit", number(led.finding.misfit)},
+          {"clipped", led.clipped}};
+}
+
+// What may be asked of the rig now.
+std::vector<const char*> commands_of(const RigStatus& status) {
+  using State = RigStatus::State;
+  std::vector<const char*> commands;
+  const bool is_free =
+      status.state == State::kIdle || status.state == State::kAttended || status.state == State::kFailed;
+  if (is_free) {
+    commands = {"scan", "devices"};
+    if (status.can_go_on) commands.push_back("resume");
+    if (status.state == State::kAttended) commands.insert(commands.end(), {"light", "test-shot"});
+    return commands;
+  }
+  if (status.state == State::kPaused) commands.push_back("resume");
+  if (status.state == State::kScanning && status.scan.phase != capture::ScanPhase::kFinishing)
+    commands.push_back("pause");
+  commands.push_back("cancel");
+  return commands;
+}
+
 Json to_json(const capture::CameraFacts& facts) {
   return {{"model", facts.model},
           {"serial", facts.serial},
@@ -41,6 +89,8 @@ Json to_json(const capture::CameraFacts& facts) {
 Json to_json(const RigStatus& status, const capture::Rig& rig) {
   const Json nothing;
   const bool has_session = !status.session.empty();
+  Json leds = Json::array();
+  for (const LedStatus& led : status.leds) leds.push_back(to_json(led));
   return {{"rig", rig.name},
           {"state", word_of(status.state)},
           {"phase", has_session ? Json(capture::name_of(status.scan.phase)) : nothing},
@@ -52,6 +102,9 @@ Json to_json(const RigStatus& status, const capture::Rig& rig) {
           {"why", status.scan.why},
           {"error", status.error ? json_of(*status.error) : nothing},
           {"warnings", status.warnings},
+          {"leds", std::move(leds)},
+          {"left_s", status.left_s ? Json(*status.left_s) : nothing},
+          {"can", commands_of(status)},
           {"lit", status.lit},
           {"controls", status.controls},
           {"by", status.by},

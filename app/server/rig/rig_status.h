@@ -13,6 +13,17 @@
 
 namespace weft::app {
 
+/// How the lit shot of one LED stands.
+struct LedStatus {
+  enum class State { kWaiting, kExposing, kChecking, kKept, kRefused };
+
+  int led = 0;
+  State state = State::kWaiting;
+  int takes = 0;                  ///< photographs so far
+  capture::FrameFinding finding;  ///< of the last one
+  double clipped = 0;             ///< share of its worst channel
+};
+
 /// How a rig is, and how far its scan has come.
 struct RigStatus {
   enum class State { kIdle, kAttended, kConnecting, kScanning, kPaused, kFailed };
@@ -22,6 +33,9 @@ struct RigStatus {
   capture::ScanStatus scan;           ///< of that session
   std::optional<Error> error;         ///< why that scan failed
   std::vector<std::string> warnings;  ///< that it ended with
+  std::vector<LedStatus> leds;        ///< of that scan, in the order of its plan
+  std::optional<double> left_s;       ///< of a scan that runs, once two frames were kept
+  bool can_go_on = false;             ///< what failed or was cancelled can be begun again
   bool devices_open = false;
   std::vector<int> lit;                        ///< for a person to see by; a scan's own is scan.led
   std::string controls;                        ///< who holds them; empty: nobody
@@ -30,7 +44,7 @@ struct RigStatus {
 };
 
 /// {"rig", "state", "phase", "session", "led", "frames", "frames_planned", "exposure_us", "why", "error",
-/// "warnings", "devices", "lit", "controls", "by"}, as docs/http.md says.
+/// "warnings", "leds", "left_s", "can", "lit", "controls", "by", "devices"}, as docs/http.md says.
 Json to_json(const RigStatus& status, const capture::Rig& rig);
 
 }  // namespace weft::app
