@@ -78,7 +78,7 @@ Result<void> copy_part(const fs::path& file, const fs::path& folder, const std::
 Result<void> write_parts(const fs::path& folder, const Calibration& c, Digests& digests) {
   Result<void> written;
   if (c.camera) {
-    const CameraPart part = {*c.camera, c.camera_covariance, c.fiducials, c.spread};
+    const CameraPart part = {*c.camera, c.camera_covariance, c.fiducials, c.spread, c.lateral};
     written = write_part(folder, kCameraFile, json_of(part), digests);
   }
   if (written && c.response) written = write_part(folder, kResponseFile, json_of(*c.response), digests);
@@ -196,6 +196,7 @@ Result<Calibration> read_calibration(const fs::path& folder) {
     calibration.camera_covariance = std::move((*camera)->covariance);
     calibration.fiducials = std::move((*camera)->fiducials);
     calibration.spread = (*camera)->spread;
+    calibration.lateral = (*camera)->lateral;
   }
   auto response = read_part<Response>(folder, parts, kResponseFile, "weft.response", response_from_json);
   if (!response) return std::move(response).error();

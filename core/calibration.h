@@ -11,6 +11,7 @@
 #include "core/albedo_scale.h"
 #include "core/camera.h"
 #include "core/json_document.h"
+#include "core/lateral_color.h"
 #include "core/lights.h"
 #include "core/point_spread.h"
 #include "core/result.h"
@@ -101,6 +102,7 @@ struct Calibration {
   std::optional<ParameterCovariance> camera_covariance;  ///< of camera.json
   std::vector<Fiducial> fiducials;                       ///< of camera.json
   std::optional<PointSpread> spread;                     ///< of camera.json
+  std::optional<LateralColor> lateral;                   ///< of camera.json
   std::optional<Response> response;
   std::optional<ColorTransform> color;
   std::optional<Lights> lights;

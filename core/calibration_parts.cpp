@@ -342,6 +342,44 @@ Result<std::optional<PointSpread>> optional_spread(const Json& json, const std::
   return std::optional<PointSpread>(spread);
 }
 
+constexpr std::pair<const char*, RadialShift LateralColor::*> kShiftedColors[] = {
+    {"red", &LateralColor::red}, {"blue", &LateralColor::blue}};
+
+Json lateral_json(const LateralColor& lateral) {
+  Json json = Json::object();
+  for (const auto& [name, colour] : kShiftedColors) {
+    const RadialShift& s = lateral.*colour;
+    json[name] = {{"scale", s.scale},
+                  {"cubic", s.cubic},
+                  {"sigma_scale", s.sigma_scale},
+                  {"sigma_cubic", s.sigma_cubic}};
+  }
+  return json;
+}
+
+Result<std::optional<LateralColor>> optional_lateral(const Json& json, const std::string& where) {
+  JsonFields all(json, where);
+  if (!all.has("lateral_color")) return std::optional<LateralColor>();
+  const Json& colours = all.object("lateral_color");
+  if (Result<void> ok = all.status(); !ok) return std::move(ok).error();
+  LateralColor lateral;
+  for (const auto& [name, colour] : kShiftedColors) {
+    JsonFields both(colours, where + ": lateral_color");
+    const Json& terms = both.object(name);
+    if (Result<void> ok = both.status(); !ok) return std::move(ok).error();
+    JsonFields fields(terms, fmt::format("{}: lateral_color: {}", where, name));
+    const RadialShift shift = {fields.number("scale"), fields.number("cubic"), fields.number("sigma_scale"),
+                               fields.number("sigma_cubic")};
+    if (!(std::abs(shift.scale) <= 0.01)) fields.reject("scale", "must be -0.01 to 0.01");
+    if (!(std::abs(shift.cubic) <= 1)) fields.reject("cubic", "must be -1 to 1");
+    if (!(shift.sigma_scale >= 0)) fields.reject("sigma_scale", "must not be negative");
+    if (!(shift.sigma_cubic >= 0)) fields.reject("sigma_cubic", "must not be negative");
+    if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+    lateral.*colour = shift;
+  }
+  return std::optional<LateralColor>(lateral);
+}
+
 Result<std::optional<Veil>> optional_veil(const Json& json, const std::string& where) {
   if (!JsonFields(json, where).has("veil")) return std::optional<Veil>();
   JsonFields fields(json["veil"], where + ": veil");
@@ -364,6 +402,10 @@ Json json_of(const CameraPart& part) {
     json["schema"] = "weft.camera/1.2";
     json["point_spread"] = {{"sigma_px", part.spread->sigma_px}};
   }
+  if (part.lateral) {
+    json["schema"] = "weft.camera/1.3";
+    json["lateral_color"] = lateral_json(*part.lateral);
+  }
   return json;
 }
 
@@ -376,7 +418,9 @@ Result<CameraPart> camera_part_from_json(const Json& json, const std::string& wh
   if (!fiducials) return std::move(fiducials).error();
   Result<std::optional<PointSpread>> spread = optional_spread(json, where);
   if (!spread) return std::move(spread).error();
-  return CameraPart{*model, std::move(*covariance), std::move(*fiducials), *spread};
+  Result<std::optional<LateralColor>> lateral = optional_lateral(json, where);
+  if (!lateral) return std::move(lateral).error();
+  return CameraPart{*model, std::move(*covariance), std::move(*fiducials), *spread, *lateral};
 }
 
 Json json_of(const Response& r) {

@@ -19,6 +19,7 @@ struct CameraPart {
   std::optional<ParameterCovariance> covariance;
   std::vector<Fiducial> fiducials;
   std::optional<PointSpread> spread;
+  std::optional<LateralColor> lateral;
 };
 Json json_of(const CameraPart& part);
 Result<CameraPart> camera_part_from_json(const Json& json, const std::string& where);

@@ -114,8 +114,8 @@ std::array<std::vector<Sample>, 3> samples_beside(const RawFrame& frame, PixelPo
 
 }  // namespace
 
-EdgeSpreads edge_spreads(const RawFrame& frame, const CameraModel& camera, const Pose& rig_from_board,
-                         const Board& board) {
+std::vector<BoardEdge> find_edges(const RawFrame& frame, const CameraModel& camera,
+                                  const Pose& rig_from_board, const Board& board) {
   const auto corner = [&](int i, int j) {
     const Vec3 p = project(camera, rig_from_board({(i - board.squares_x / 2.0) * board.square_mm,
                                                    (board.squares_y / 2.0 - j) * board.square_mm, 0}));
@@ -123,14 +123,17 @@ EdgeSpreads edge_spreads(const RawFrame& frame, const CameraModel& camera, const
   };
   const bool has_markers = board.kind == BoardKind::kCharuco;
   const double clear_share = has_markers ? (1 - board.marker_share) / 2 : 0.4;
-  EdgeSpreads spreads;
+  std::vector<BoardEdge> edges;
   const auto add_edge = [&](PixelPoint a, PixelPoint b) {
-    const double clear_px = clear_share * distance(a, b) - (has_markers ? kBesideMarker_px : 0);
+    const double side = distance(a, b);
+    const double clear_px = clear_share * side - (has_markers ? kBesideMarker_px : 0);
     if (clear_px < kLeastBeside_px) return;
     const auto samples = samples_beside(frame, a, b, std::min(clear_px, kMostBeside_px));
+    BoardEdge edge = {{(a.x + b.x) / 2, (a.y + b.y) / 2}, {-(b.y - a.y) / side, (b.x - a.x) / side}, {}};
     for (std::size_t c = 0; c < 3; ++c) {
-      if (const std::optional<Edge> edge = fit_edge(samples[c])) spreads[c].push_back(edge->sigma_px);
+      if (const std::optional<Edge> fit = fit_edge(samples[c])) edge.seen[c] = {fit->at_px, fit->sigma_px};
     }
+    edges.push_back(edge);
   };
   for (int j = 1; j < board.squares_y; ++j) {
     for (int i = 1; i < board.squares_x; ++i) {
@@ -138,14 +141,16 @@ EdgeSpreads edge_spreads(const RawFrame& frame, const CameraModel& camera, const
       if (j + 1 < board.squares_y) add_edge(corner(i, j), corner(i, j + 1));
     }
   }
-  return spreads;
+  return edges;
 }
 
-std::optional<PointSpread> median_spread(std::span<const EdgeSpreads> photographs) {
+std::optional<PointSpread> median_spread(std::span<const BoardEdge> edges) {
   PointSpread spread;
   for (std::size_t c = 0; c < 3; ++c) {
     std::vector<double> all;
-    for (const EdgeSpreads& one : photographs) all.insert(all.end(), one[c].begin(), one[c].end());
+    for (const BoardEdge& edge : edges) {
+      if (edge.seen[c]) all.push_back(edge.seen[c]->sigma_px);
+    }
     if (all.size() < kLeastEdges) return {};
     spread.sigma_px[c] = median(std::move(all));
   }

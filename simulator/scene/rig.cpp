@@ -197,6 +197,11 @@ Calibration exact_calibration(const Scene& scene, const SceneRig& rig) {
   calibration.subject.albedo_scale = AlbedoScale::kAbsolute;
   calibration.camera = rig.camera;
   if (scene.effects.defocus) calibration.spread.emplace().sigma_px.fill(spread_px(scene.camera.blur));
+  if (scene.effects.chromatic_aberration) {
+    const double corner_px = corner_distance_px(rig.camera);
+    calibration.lateral.emplace().red.scale = -scene.camera.chromatic.red_px / corner_px;
+    calibration.lateral->blue.scale = -scene.camera.chromatic.blue_px / corner_px;
+  }
   calibration.response = response_of(rig.sensor);
   if (scene.effects.veil) calibration.response->veil = {scene.camera.veil.share, 0, scene.camera.veil.spread};
   if (scene.effects.nonlinearity) calibration.response->linearity.fill(scene.camera.linearity);

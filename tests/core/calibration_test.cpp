@@ -154,6 +154,7 @@ TEST(Calibration, ReturnsColorFiducialsBlackAndTheCameraCovariance) {
   written.response->iso = 400;
   written.camera_covariance = ParameterCovariance{{"fx", "fy"}, {0.04, 0.01, 0.01, 0.09}};
   written.spread = PointSpread{{0.5, 0.4, 0.625}};
+  written.lateral = LateralColor{{-1e-4, 3e-4, 2e-6, 1e-5}, {2e-4, 0, 2e-6, 0}};
   written.fiducials = {{"DICT_APRILTAG_36h11", 3, {{{1, 2, 0}, {3, 2, 0}, {3, 0.1, 0}, {1, 0.1, 0}}}}};
   written.color = ColorTransform{{{{1.5, -0.4, -0.1}, {-0.2, 1.3, -0.1}, {0, -1.0 / 3, 4.0 / 3}}},
                                  std::vector<double>(81, 1e-6),
@@ -165,6 +166,7 @@ TEST(Calibration, ReturnsColorFiducialsBlackAndTheCameraCovariance) {
   EXPECT_EQ(read.response, written.response);
   EXPECT_EQ(read.fiducials, written.fiducials);
   EXPECT_EQ(read.spread, written.spread);
+  EXPECT_EQ(read.lateral, written.lateral);
   EXPECT_EQ(read.color, written.color);
   ASSERT_TRUE(read.camera_covariance);
   EXPECT_EQ(read.camera_covariance->parameters, written.camera_covariance->parameters);

@@ -12,6 +12,7 @@
 #include "app/jobs/calibrate/camera_report.h"
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/linear_image.h"
+#include "calibration/camera/lateral.h"
 #include "calibration/camera/lens.h"
 #include "calibration/camera/spread.h"
 #include "capture/raw/decode.h"
@@ -21,6 +22,7 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+using calibration::BoardEdge;
 using calibration::BoardView;
 using calibration::LensFit;
 using calibration::TagSighting;
@@ -112,21 +114,23 @@ CalibrationSubject subject_of(const CalibrateCameraOptions& options, const std::
   return subject;
 }
 
-// How wide the lens spreads a point, from the raw photographs that the lens was fitted to.
-Result<std::optional<PointSpread>> spread_of(const fs::path& folder, const calibration::Board& board,
-                                             std::span<const BoardView> views, const LensFit& fit,
-                                             const JobContext& context) {
-  std::vector<calibration::EdgeSpreads> spreads(views.size());
+// The edges of the board as each colour shows them, in the raw photographs that the lens was fitted to.
+Result<std::vector<BoardEdge>> edges_of(const fs::path& folder, const calibration::Board& board,
+                                        std::span<const BoardView> views, const LensFit& fit,
+                                        const JobContext& context) {
+  std::vector<std::vector<BoardEdge>> found(views.size());
   const auto look = [&](std::size_t i) -> Result<void> {
     const fs::path file = folder / views[i].name;
     if (!fit.boards[i].used || is_linear_image(file)) return {};
     const Result<RawFrame> frame = capture::decode_raw(file, {.size = fit.camera.size});
     if (!frame) return frame.error();
-    spreads[i] = calibration::edge_spreads(*frame, fit.camera, fit.boards[i].rig_from_board, board);
+    found[i] = calibration::find_edges(*frame, fit.camera, fit.boards[i].rig_from_board, board);
     return {};
   };
   if (Result<void> ok = for_each_frame(views.size(), context, look); !ok) return std::move(ok).error();
-  return calibration::median_spread(spreads);
+  std::vector<BoardEdge> all;
+  for (const std::vector<BoardEdge>& edges : found) all.insert(all.end(), edges.begin(), edges.end());
+  return all;
 }
 
 }  // namespace
@@ -165,9 +169,8 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
                              .least_boards = static_cast<std::size_t>(options.least_boards),
                              .most_focal_sigma = options.most_focal_percent / 100});
   if (!fit) return with_names(fit.error(), *all);
-  const Result<std::optional<PointSpread>> spread =
-      spread_of(options.input, board->board, views, *fit, context);
-  if (!spread) return spread.error();
+  const Result<std::vector<BoardEdge>> edges = edges_of(options.input, board->board, views, *fit, context);
+  if (!edges) return edges.error();
   if (context.stop.stop_requested()) return interrupted();
 
   CalibrateOutcome outcome;
@@ -175,15 +178,17 @@ Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options,
   change.subject = subject_of(options, from, all->camera);
   change.camera = fit->camera;
   change.camera_covariance = fit->covariance;
-  change.spread = *spread;
+  change.spread = calibration::median_spread(*edges);
+  const std::optional<calibration::LateralFit> lateral = calibration::fit_lateral_color(*edges, fit->camera);
+  if (lateral) change.lateral = lateral->color;
   change.fiducials = fiducials_of(*all, fit->camera, outcome.warnings);
   if (from && !from->patches.empty()) {
     change.lights = from->lights;
     change.light_covariance = from->light_covariance;
     outcome.warnings.push_back(patches_left_out("camera"));
   }
-  const CameraFitFacts facts = {*all, *viewed,           views, *fit, change.fiducials, *spread,
-                                from, change.subject.rig};
+  const CameraFitFacts facts = {
+      *all, *viewed, views, *fit, change.fiducials, change.spread, lateral, from, change.subject.rig};
   outcome.report = camera_report(facts);
   for (std::string& warning : left_out(facts)) outcome.warnings.push_back(std::move(warning));
   Result<Calibration> written =

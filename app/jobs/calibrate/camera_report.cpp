@@ -303,6 +303,11 @@ CalibrationReport camera_report(const CameraFitFacts& facts) {
       "to {:.3f} mm (predicted, rms).",
       used, facts.photographs.photographs.size(), facts.fit.rms_px, f.scale_mm.value,
       rms(f.table_sigma_mm.values));
+  if (facts.lateral && facts.lateral->color) {
+    report.summary +=
+        fmt::format(" In the corner red looks {:+.2f} and blue {:+.2f} pixels farther out than green.",
+                    facts.lateral->corner_px[0], facts.lateral->corner_px[1]);
+  }
   report.verdicts = verdicts_of(facts, f);
   report.numbers = numbers_of(facts, f);
 
@@ -324,6 +329,14 @@ CalibrationReport camera_report(const CameraFitFacts& facts) {
         {"spread of the lens, R, G, B, pixels", fmt::format("{:.3f}, {:.3f}, {:.3f}", spread->sigma_px[0],
                                                             spread->sigma_px[1], spread->sigma_px[2])});
     report.numbers["point_spread_px"] = spread->sigma_px;
+  }
+  if (const auto& lateral = facts.lateral) {
+    for (const auto& [i, colour] : {std::pair{0U, "red"}, {1U, "blue"}}) {
+      const Measured corner = {lateral->corner_px[i], lateral->sigma_corner_px[i]};
+      numbers.rows.push_back({fmt::format("{} looks farther out than green in the corner by, pixels", colour),
+                              words(corner, 3)});
+      report.numbers["lateral_corner_px"][colour] = measured_json(corner);
+    }
   }
   report.sections.push_back(
       {"Numbers", {"Each with its standard deviation, by the noise that the corners show."}, numbers});

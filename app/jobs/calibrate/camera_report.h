@@ -8,6 +8,7 @@
 
 #include "app/jobs/calibrate/board_photographs.h"
 #include "app/jobs/calibrate/report.h"
+#include "calibration/camera/lateral.h"
 #include "calibration/camera/lens.h"
 #include "core/calibration.h"
 
@@ -20,8 +21,9 @@ struct CameraFitFacts {
   std::span<const calibration::BoardView> views;  ///< as fitted
   const calibration::LensFit& fit;
   std::vector<Fiducial> fiducials;
-  std::optional<PointSpread> spread;  ///< of the lens; nothing where too few edges show it
-  std::optional<Calibration> from;    ///< the calibration that the other parts come from
+  std::optional<PointSpread> spread;               ///< of the lens; nothing where too few edges show it
+  std::optional<calibration::LateralFit> lateral;  ///< nothing where too few edges show it
+  std::optional<Calibration> from;                 ///< the calibration that the other parts come from
   std::string rig;
 };
 

@@ -92,6 +92,7 @@ Calibration change_of(const RigCheck& rig) {
     change.camera = rig.movement.camera;
     change.fiducials = before.fiducials;
     change.spread = before.spread;
+    change.lateral = before.lateral;
   }
   if (lights || (body && !before.patches.empty())) {
     change.lights = rig.movement.lights;

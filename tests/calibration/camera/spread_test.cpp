@@ -25,17 +25,19 @@ TEST(EdgeSpread, IsTheSimulatorsBlurToATenthOfAPixel) {
   const Board board = {BoardKind::kCheckerboard, 9, 6, 15, 0, ""};
   for (const BlurSettings& blur : {BlurSettings{.defocus_px = 0.5, .spread_px = 0.4}, {.spread_px = 0.8}}) {
     const simulator::Scene scene = board_behind(blur);
-    const EdgeSpreads seen = edge_spreads(test::photographed(scene), test::camera_of(scene),
-                                          test::pose_of(scene.targets[0]), board);
-    const std::optional<PointSpread> spread = median_spread({&seen, 1});
-    ASSERT_TRUE(spread) << seen[0].size() << " edges in red";
+    const std::vector<BoardEdge> seen = find_edges(test::photographed(scene), test::camera_of(scene),
+                                                   test::pose_of(scene.targets[0]), board);
+    const std::optional<PointSpread> spread = median_spread(seen);
+    ASSERT_TRUE(spread) << seen.size() << " edges";
     for (const double sigma_px : spread->sigma_px) EXPECT_NEAR(sigma_px, spread_px(blur), 0.1);
   }
 }
 
 TEST(EdgeSpread, SaysNothingOfAFewEdges) {
-  const EdgeSpreads few = {{{0.5, 0.5}, {0.5, 0.5}, {0.5, 0.5}}};
-  EXPECT_FALSE(median_spread({&few, 1}));
+  BoardEdge edge;
+  edge.seen.fill(SeenEdge{.sigma_px = 0.5});
+  EXPECT_FALSE(median_spread(std::vector<BoardEdge>(39, edge)));
+  EXPECT_TRUE(median_spread(std::vector<BoardEdge>(40, edge)));
 }
 
 }  // namespace
