@@ -2,13 +2,13 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
 
 #include "core/image.h"
 #include "core/point_spread.h"
 #include "core/result.h"
 #include "pipeline/bands.h"
+#include "pipeline/held_rows.h"
 #include "solver/deblur/sharpen.h"
 
 namespace weft::pipeline {
@@ -32,9 +32,7 @@ class Deblur {
   DeblurFacts facts() const;
 
  private:
-  void append(const MapBand& band);
   Result<void> hand_on(int end_row);
-  void forget_rows();
 
   Size size_;
   std::optional<CfaPattern> cfa_;
@@ -42,15 +40,9 @@ class Deblur {
   std::array<solver::DeblurFilter, 3> filters_;
   int threads_;
   const BandSink& next_;
-  // Rows of the image from first_row_ on. Planes: normal X, Y, Z, albedo, its sigma, sigma of the normal, and
-  // of what is kept, model_albedo and model_normal_deg.
-  Image<float> maps_, sharpened_;
-  Image<float> residual_;
-  Image<std::uint16_t> status_;
-  bool has_model_ = false;
-  int first_row_ = 0;
-  int complete_ = 0;   // rows of the image that all maps have
-  int handed_on_ = 0;  // of those
+  HeldRows held_;
+  Image<float> sharpened_;
+  int handed_on_ = 0;  // rows of the image
   double shares_ = 0;  // their sum over the rows handed on
 };
 
