@@ -115,6 +115,7 @@ Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string
                                    {&facts.registration, "registration"},
                                    {&facts.sigma_normal_deg, "sigma_normal_deg"},
                                    {&facts.sharpening, "sharpening"},
+                                   {&facts.lateral_color, "lateral_color"},
                                    {&facts.gates, "gates"},
                                    {&facts.reference, "reference"}}) {
     if (fields.has(name)) *part = document[name];
@@ -142,6 +143,7 @@ Json json_of(const SolveFacts& facts) {
                {"sigma_normal_deg", facts.sigma_normal_deg},
                {"check", facts.check ? json_of(*facts.check) : Json()},
                {"sharpening", facts.sharpening},
+               {"lateral_color", facts.lateral_color},
                {"warnings", json_of(facts.warnings)},
                {"pictures", facts.pictures},
                {"gates", facts.gates},

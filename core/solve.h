@@ -71,6 +71,7 @@ struct SolveFacts {
   Json solved_by, conditions, registration;  ///< docs/formats.md
   Json sigma_normal_deg;                     ///< docs/formats.md
   Json sharpening;                           ///< where the spread of the lens is known
+  Json lateral_color;                        ///< where it was taken out
   Json gates, reference;                     ///< of the level `reference`
 };
 

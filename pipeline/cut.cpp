@@ -52,6 +52,7 @@ Result<Photographs> cut(const Photographs& whole, Rect area) {
   part.color = whole.color;
   part.plane_weights = whole.plane_weights;
   part.spread = whole.spread;
+  part.lateral = whole.lateral;
   part.camera = whole.camera;
   if (part.camera) {
     part.camera->size = part.size;

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "pipeline/lateral.h"
 #include "pipeline/left_out.h"
 #include "pipeline/tile_reader.h"
 
@@ -119,12 +120,25 @@ Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::M
 
 Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
                                const TileOptions& tile, const JobContext& context, const BandSink& sink) {
-  if (!photographs.spread) return solve_as_seen(photographs, method, tile, context, sink);
   const Planes planes = method.make()->wants_rgb() ? Planes() : photographs.planes();
-  Deblur deblur(photographs.size, planes, *photographs.spread, context.threads, sink);
-  Result<FrameFacts> facts = solve_as_seen(photographs, method, tile, context,
-                                           [&](const MapBand& band) { return deblur.put(band); });
-  if (facts) facts->deblur = deblur.facts();
+  BandSink next = sink;
+  std::optional<Deblur> deblur;
+  if (photographs.spread) {
+    deblur.emplace(photographs.size, planes, *photographs.spread, context.threads, sink);
+    next = [&](const MapBand& band) { return deblur->put(band); };
+  }
+  std::optional<Realign> realign;
+  if (photographs.lateral && photographs.camera && planes.count == 1) {
+    realign.emplace(photographs.size, planes.cfa, *photographs.lateral, *photographs.camera, context.threads,
+                    next);
+  }
+  const BandSink aligned = [&](const MapBand& band) { return realign->put(band); };
+  Result<FrameFacts> facts = solve_as_seen(photographs, method, tile, context, realign ? aligned : next);
+  if (facts && deblur) facts->deblur = deblur->facts();
+  if (facts && realign) {
+    facts->lateral_corner_px = {shift_at_corner(photographs.lateral->red, *photographs.camera),
+                                shift_at_corner(photographs.lateral->blue, *photographs.camera)};
+  }
   return facts;
 }
 

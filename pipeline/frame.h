@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "core/job.h"
@@ -26,10 +27,12 @@ struct FrameFacts {
   /// On patches that chose nothing.
   std::optional<solver::LeftOut> left_out = {};
   std::optional<DeblurFacts> deblur = {};  ///< where the spread of the lens is known
+  /// Where lateral colour was taken out: how much farther out red and blue look in the corner, pixels.
+  std::optional<std::array<double, 2>> lateral_corner_px = {};
 };
 
-/// Solves a frame by a level or method, whatever it extends over, and sharpens the maps by
-/// photographs.spread.
+/// Solves a frame by a level or method, whatever it extends over. Maps of mosaics are aligned by
+/// photographs.lateral, and all are sharpened by photographs.spread.
 Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::MethodName& method,
                                const TileOptions& tile, const JobContext& context, const BandSink& sink);
 

@@ -11,6 +11,7 @@
 #include "core/albedo_scale.h"
 #include "core/camera.h"
 #include "core/image.h"
+#include "core/lateral_color.h"
 #include "core/light_field.h"
 #include "core/lights.h"
 #include "core/photosites.h"
@@ -98,6 +99,7 @@ struct Photographs {
   std::optional<LightField> field;                      ///< always there once the photographs are whole
   std::optional<CameraModel> camera;                    ///< where the lights are near
   std::optional<PointSpread> spread;                    ///< of the lens, to be undone; none: left as it is
+  std::optional<LateralColor> lateral;                  ///< of the lens, to be undone where there is a camera
   std::optional<ParameterCovariance> light_covariance;  ///< where the calibration has one
   AlbedoScale albedo_scale = AlbedoScale::kRelative;
   std::array<double, 3> plane_weights = solver::kLuminance;  ///< of RGB, as of solver::TileInput

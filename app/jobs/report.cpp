@@ -454,6 +454,7 @@ Json report_document(const std::string& title, const SolveFacts& solve, const Ph
   if (!solve.gates.empty()) report["gates"] = solve.gates;
   if (!solve.registration.empty()) report["registration"] = solve.registration;
   if (!solve.sharpening.is_null()) report["sharpening"] = solve.sharpening;
+  if (!solve.lateral_color.is_null()) report["lateral_color"] = solve.lateral_color;
   if (!solve.conditions.empty()) report["conditions"] = solve.conditions;
   report["seconds"] = seconds;
   return report;

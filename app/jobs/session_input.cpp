@@ -250,6 +250,7 @@ Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& co
   photographs.field = std::move(*field);
   photographs.camera = plan.calibration.camera;
   photographs.spread = plan.calibration.spread;
+  photographs.lateral = plan.calibration.lateral;
   photographs.light_covariance = plan.calibration.light_covariance;
   photographs.color = plan.calibration.color;
 

@@ -240,6 +240,7 @@ class Run {
     facts_.solved_by = json_of(frame->tally);
     if (frame->robust_share) facts_.solved_by["robust_share"] = *frame->robust_share;
     if (frame->deblur) facts_.sharpening = json_of(*frame->deblur);
+    if (frame->lateral_corner_px) facts_.lateral_color = {{"corner_px", *frame->lateral_corner_px}};
     if (frame->reference) {
       facts_.gates = json_of(frame->reference->gates);
       facts_.reference = json_of(*frame->reference);
