@@ -10,11 +10,13 @@
 #include <utility>
 
 #include "core/solve.h"
+#include "core/text.h"
 #include "library/session_lock.h"
 
 namespace weft::library {
 namespace {
 
+constexpr std::size_t kLongestName = 40;
 constexpr double kMost = 1e5;  // grams per square metre, millimetres
 
 // What the value of a field must be; empty where it is that.
@@ -156,6 +158,21 @@ Result<Metadata> metadata_from_json(const Json& document, const std::string& whe
   metadata.weight_g_m2 = document.value("weight_g_m2", 0.0);
   metadata.thickness_mm = document.value("thickness_mm", 0.0);
   return metadata;
+}
+
+Result<void> check_new_metadata(const Json& metadata) {
+  if (!metadata.is_object() || metadata.size() > kMostTags)
+    return refused("metadata", fmt::format("must be an object of at most {} fields", kMostTags));
+  for (const auto& [key, value] : metadata.items()) {
+    if (key == "revision" || is_of_session(key)) return refused(key, "is set by weft alone");
+    const bool is_name = key.size() <= kLongestName && !key.empty() && plain_name(key) == key;
+    if (!is_name) return refused(plain_name(key.substr(0, kLongestName)), "must be a plain name");
+    const bool is_plain = value.is_number() || value.is_boolean();
+    const Rule rule = rule_of(key);
+    const std::string broken = rule != nullptr ? rule(value) : is_plain ? "" : line_rule(value);
+    if (!broken.empty()) return refused(key, broken);
+  }
+  return {};
 }
 
 Result<Metadata> metadata_of(const Session& session) {

@@ -36,6 +36,9 @@ inline constexpr std::size_t kMostTags = 64;
 
 /// kBadData, `where` being its name for messages.
 Result<Metadata> metadata_from_json(const Json& document, const std::string& where);
+/// Whether a scan may begin with this as the metadata of its session: the rules of the fields above; further
+/// ones of plain names are texts of one line, numbers or truths. kUsage with the field and its rule.
+Result<void> check_new_metadata(const Json& metadata);
 /// What a session says; empty where it says nothing. kBadData.
 Result<Metadata> metadata_of(const Session& session);
 

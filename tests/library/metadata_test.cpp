@@ -133,5 +133,21 @@ TEST(CurrentSolve, StaysTheFirstUntilSomebodyNamesAnother) {
   EXPECT_EQ(current_solve(*read_session(folder)), "bbbbbbbbbbbbbbbb") << "the named one is gone";
 }
 
+TEST(NewMetadata, FollowsTheRulesOfTheLibrary) {
+  for (const char* right :
+       {R"({})", R"({"id": "4006381333931", "tags": ["<b>", "=cmd", "../red"], "notes": "a\nb"})",
+        R"({"weight": 120, "barcode": "4711", "is_dyed": true, "weight_g_m2": 210, "side": "back"})"}) {
+    const Result<void> ok = check_new_metadata(Json::parse(right));
+    EXPECT_TRUE(ok) << right << (ok ? "" : ok.error().message());
+  }
+  for (const Json& wrong :
+       {Json::array(), Json{{"id", "a\nb"}}, Json{{"id", std::string(201, 'x')}},
+        Json{{"notes", std::string(10'001, 'x')}}, Json{{"side", "left"}}, Json{{"tags", "red"}},
+        Json{{"colour", "a\x1b[31m"}}, Json{{"colour", {{"deep", 1}}}}, Json{{"../x", "a"}}, Json{{"", "a"}},
+        Json{{"revision", 7}}, Json{{"current_solve", "0000000000000000"}}, Json{{"weight_g_m2", "heavy"}}}) {
+    EXPECT_FALSE(check_new_metadata(wrong)) << wrong.dump();
+  }
+}
+
 }  // namespace
 }  // namespace weft::library

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <string_view>
 #include <utility>
 
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
+#include "app/server/api/job_body.h"
 #include "app/server/api/scan_body.h"
 
 namespace weft::app {
@@ -19,86 +19,19 @@ Error refused(const std::string& field, const std::string& rule) {
   return {ErrorKind::kUsage, "job cannot be read", field, rule, "see POST jobs in openapi.json"};
 }
 
-// A field of the body that becomes an option of the verb.
-struct JobOption {
-  const char* field;
-  const char* option;
-  bool is_number;
-};
-constexpr JobOption kOfSolve[] = {{"quality", "--quality", false},
-                                  {"method", "--method", false},
-                                  {"within_s", "--within", true},
-                                  {"to_deg", "--to", true}};
-constexpr JobOption kOfRectify[] = {
-    {"solve", "--solve", false}, {"mm_per_pixel", "--mm-per-pixel", true}, {"turn_deg", "--turn", true}};
-
-// A verb that works on one session.
-struct JobKind {
-  const char* name;
-  const char* verb;
-  std::span<const JobOption> options;
-  std::vector<std::string> always;  // further arguments
-};
-
-const std::vector<JobKind>& job_kinds() {
-  static const std::vector<JobKind> kinds = {{"solve", "solve", kOfSolve, {}},
-                                             {"price", "solve", {}, {"--explain"}},
-                                             {"rectify", "rectify", kOfRectify, {}}};
-  return kinds;
-}
-
-// Words never begin with a dash, so none of them is taken for an option.
-Result<std::string> word_of(const Json& body, const char* field) {
-  const Json value = body.value(field, Json());
-  if (!value.is_string() || value == "") return refused(field, "must be a text");
-  std::string word = value.get<std::string>();
-  const bool is_plain = word.size() <= 100 && std::ranges::all_of(word, [](unsigned char c) {
-                          return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.';
-                        });
-  if (!is_plain || word.starts_with('-')) return refused(field, "must be a plain word");
-  return word;
-}
-
-Result<JobSpec> spec_of(const RigParts& parts, const Json& body) {
-  const Result<std::string> kind = word_of(body, "kind");
-  if (!kind) return kind.error();
-  const auto known = std::ranges::find(job_kinds(), *kind, &JobKind::name);
-  if (known == job_kinds().end()) return refused("kind", "must be solve, price or rectify");
-  const Result<std::string> name = word_of(body, "session");
-  if (!name) return name.error();
-  const Result<Session> session = parts.library.session(*name);
-  if (!session) return session.error();
-  JobSpec spec = {*kind, *name, {known->verb, session->folder.string()}, "", ""};
-  spec.arguments.insert(spec.arguments.end(), known->always.begin(), known->always.end());
-  for (const auto& [field, value] : body.items()) {
-    if (field == "kind" || field == "session") continue;
-    if (field == "request_id") {
-      const Result<std::string> id = word_of(body, "request_id");
-      if (!id) return id.error();
-      spec.request_id = *id;
-      continue;
-    }
-    const auto option = std::ranges::find(known->options, std::string_view(field),
-                                          [](const JobOption& o) { return o.field; });
-    if (option == known->options.end())
-      return refused(field.substr(0, 40), fmt::format("is no field of a {} job", known->name));
-    spec.arguments.emplace_back(option->option);
-    if (option->is_number) {
-      if (!value.is_number()) return refused(field, "must be a number");
-      spec.arguments.push_back(fmt::format("{}", value.get<double>()));
-    } else {
-      const Result<std::string> word = word_of(body, option->field);
-      if (!word) return word.error();
-      spec.arguments.push_back(*word);
-    }
-  }
-  return spec;
+JobPlaces places_of(const RigParts& parts) {
+  const auto session = [&parts](const std::string& name) -> Result<std::filesystem::path> {
+    const Result<Session> found = parts.library.session(name);
+    if (!found) return found.error();
+    return found->folder;
+  };
+  return {session, parts.rig.file.parent_path(), parts.rig.name, parts.rig.scan.copy};
 }
 
 Result<Reply> add_job(const RigParts& parts, const Call& call) {
   const Result<Json> body = parse_body(call.body);
   if (!body) return body.error();
-  Result<JobSpec> spec = spec_of(parts, *body);
+  Result<JobSpec> spec = read_job_body(*body, places_of(parts));
   if (!spec) return std::move(spec).error();
   spec->by = parts.controls.name_of(call.control);
   const Result<JobStatus> job = parts.jobs.add(*spec);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/text.h"
+#include "library/metadata.h"
 #include "library/session_name.h"
 
 namespace weft::app {
@@ -169,10 +170,10 @@ Result<ScanWish> read_scan_body(const Json& body, int leds, capture::ScanRequest
   fields.number("exposure_us", "0 (metered), or up to 1e9", 0, 1e9, request.exposure.exposure_us);
   fields.number("iso", "1 to 1e6", 1, 1e6, request.exposure.iso);
   fields.number("f_number", "0.5 to 128", 0.5, 128, request.exposure.f_number);
-  fields.read("metadata", "an object", [&](const Json& value) {
-    if (value.is_object()) request.metadata = value;
-    return value.is_object();
-  });
+  if (const auto metadata = body.find("metadata"); metadata != body.end() && !metadata->is_null()) {
+    if (Result<void> ok = library::check_new_metadata(*metadata); !ok) return std::move(ok).error();
+    request.metadata = *metadata;
+  }
   read_plan(fields, leds, request);
   fields.flag("copy", copy);
   fields.flag("dry_run", wish.dry_run);

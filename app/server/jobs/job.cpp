@@ -54,6 +54,7 @@ Json document_of(const JobStatus& job) {
   document.update(json_of(job));
   document["arguments"] = job.spec.arguments;
   document["request_id"] = job.spec.request_id;
+  document["needs"] = job.spec.needs;
   return document;
 }
 
@@ -76,6 +77,11 @@ Result<JobStatus> job_from_json(const Json& document, const std::string& where) 
   if (!notes) return std::move(notes).error();
   job.spec.arguments = std::move(*arguments);
   job.notes = std::move(*notes);
+  if (document.contains("needs")) {
+    Result<std::vector<std::string>> needs = texts_of(fields, "needs");
+    if (!needs) return std::move(needs).error();
+    job.spec.needs = std::move(*needs);
+  }
   if (const Json code = document.value("exit_code", Json()); code.is_number_integer())
     job.exit_code = code.get<int>();
   job.error = document.value("error", Json());

@@ -12,11 +12,12 @@ namespace weft::app {
 
 /// What a job is to do: a verb of weft with its arguments, as a process of its own.
 struct JobSpec {
-  std::string kind;                    ///< "solve", "rectify", "calibrate lights", ...
-  std::string of;                      ///< what it works on, for people: the name of a session
-  std::vector<std::string> arguments;  ///< of weft: {"solve", "/data/a.weft", "--quality", "robust"}
-  std::string by;                      ///< who asked for it
-  std::string request_id;              ///< the same again is the same job; empty: none
+  std::string kind;                     ///< "solve", "rectify", "calibrate lights", ...
+  std::string of;                       ///< what it works on, for people: the name of a session
+  std::vector<std::string> arguments;   ///< of weft: {"solve", "/data/a.weft", "--quality", "robust"}
+  std::string by;                       ///< who asked for it
+  std::string request_id;               ///< the same again is the same job; empty: none
+  std::vector<std::string> needs = {};  ///< files and folders that must be there when it begins
 };
 
 enum class JobState { kQueued, kRunning, kDone, kFailed, kCancelled };
@@ -43,7 +44,7 @@ struct JobStatus {
 /// "seconds", "exit_code", "notes", "error", "result"}.
 Json json_of(const JobStatus& job);
 
-/// A job as it lies on the disk (weft.job/1): json_of() with "arguments" and "request_id". kBadData.
+/// A job as it lies on the disk (weft.job/1): json_of() with "arguments", "request_id" and "needs". kBadData.
 Json document_of(const JobStatus& job);
 Result<JobStatus> job_from_json(const Json& document, const std::string& where);
 

@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr const char* kJobSchema = "weft.job";
 constexpr auto kLook = std::chrono::milliseconds(100);
-constexpr double kPatience_s = 10;  // for a cancelled job to put away what it has begun
+constexpr double kPatience_s = 10;                   // for a cancelled job to put away what it has begun
+constexpr int kWarningsCode = 2, kBadDataCode = 65;  // of verbs
 constexpr std::size_t kMostNotes = 50, kLongestNote = 1000;
 
 bool has_ended(JobState state) {
@@ -225,9 +226,31 @@ void JobQueue::work(const std::stop_token& stop) {
   }
 }
 
+// What the job needs and is gone; empty where all is there.
+std::string JobQueue::missing(const std::string& id) const {
+  const Result<JobStatus> job = find(id);  // a copy: its disk may hang
+  if (!job) return "";
+  const auto gone =
+      std::ranges::find_if_not(job->spec.needs, [](const std::string& need) { return is_there(need); });
+  return gone == job->spec.needs.end() ? "" : *gone;
+}
+
+void JobQueue::fail(JobStatus& job, const Error& error) {
+  job.state = JobState::kFailed;
+  job.error = weft::json_of(error);
+  job.ended = iso_time_now();
+  (void)write(job);
+  options_.changed(job);
+}
+
 void JobQueue::run(const std::string& id, const std::stop_token& stop) {
+  const std::string gone = missing(id);
   std::unique_lock lock(mutex_);
   JobStatus& job = jobs_[id];
+  if (!gone.empty()) {
+    return fail(job, {ErrorKind::kNoInput, "what the job works on is gone", gone,
+                      "it was there when the job was asked for", "bring it back, then retry"});
+  }
   // setpriv: the job ends when this process is killed.
   std::vector<std::string> command = {"/usr/bin/setpriv", "--pdeathsig", "KILL",
                                       "/usr/bin/nice",    "-n",          std::to_string(options_.niceness)};
@@ -240,14 +263,13 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   const fs::path output = file_of(id, ".out");
   Result<std::unique_ptr<ChildProcess>> started =
       ChildProcess::start(command, {}, output, file_of(id, ".log"));
-  job.state = started ? JobState::kRunning : JobState::kFailed;
   job.began = iso_time_now();
   job.phase.clear();
   job.share = 0;
-  if (!started) job.error = weft::json_of(started.error());
+  if (!started) return fail(job, started.error());
+  job.state = JobState::kRunning;
   (void)write(job);
   options_.changed(job);
-  if (!started) return;
   child_ = std::move(*started);
   running_ = id;
   if (is_held_) child_->signal(SIGSTOP);
@@ -278,8 +300,11 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   } else if (stop.stop_requested()) {
     job.state = JobState::kQueued;
   } else {
-    job.state = job.exit_code == 0 || job.exit_code == 2 ? JobState::kDone : JobState::kFailed;
     job.result = printed(output);
+    // A check that found something has an answer.
+    const bool is_answered = job.exit_code == kBadDataCode && job.error.is_null() && job.result.is_object();
+    const bool is_done = job.exit_code == 0 || job.exit_code == kWarningsCode || is_answered;
+    job.state = is_done ? JobState::kDone : JobState::kFailed;
     if (job.state == JobState::kFailed && job.error.is_null()) {
       job.error = weft::json_of(Error{ErrorKind::kInternal, "job ended without a word", job.spec.kind,
                                       fmt::format("exit code {}", job.exit_code.value_or(-1)),

@@ -62,6 +62,8 @@ class JobQueue {
   explicit JobQueue(JobQueueOptions options) : options_(std::move(options)) {}
   Result<void> load();
   void work(const std::stop_token& stop);
+  std::string missing(const std::string& id) const;
+  void fail(JobStatus& job, const Error& error);
   void run(const std::string& id, const std::stop_token& stop);
   void follow(const std::string& id, std::size_t& read);
   void hear(JobStatus& job, const std::string& line);

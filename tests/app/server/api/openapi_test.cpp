@@ -251,6 +251,7 @@ TEST_F(OpenApi, DescribesJobs) {
     EXPECT_EQ(conforming("POST", jobs, jobs, wrong).status, 400) << wrong;
   }
   EXPECT_EQ(conforming("POST", jobs, jobs, R"({"kind": "solve", "session": "none"})").status, 404);
+  EXPECT_EQ(conforming("POST", jobs, jobs, R"({"kind": "check", "input": "none"})").status, 404);
 
   const char* body = R"({"kind": "solve", "session": "done", "quality": "fast", "request_id": "a"})";
   const Answer asked = conforming("POST", jobs, jobs, body);

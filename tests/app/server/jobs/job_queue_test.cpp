@@ -63,6 +63,28 @@ class Jobs : public testing::Test {
   std::unique_ptr<JobQueue> queue_;
 };
 
+TEST_F(Jobs, SayWhatIsGoneThatTheyWorkOn) {
+  std::filesystem::create_directories(file("satin.weft"));
+  queue_->hold(true);
+  const Result<JobStatus> asked =
+      queue_->add({"solve", "satin", {"-c", "true"}, "", "", {file("satin.weft").string()}});
+  ASSERT_TRUE(asked) << asked.error().message();
+  std::filesystem::remove(file("satin.weft"));
+  open();  // after a restart too
+  const JobStatus job = ended(asked->id);
+  EXPECT_EQ(job.state, JobState::kFailed);
+  EXPECT_EQ(job.error["kind"], "no_input");
+  EXPECT_EQ(job.error["where"], file("satin.weft").string());
+  EXPECT_EQ(job.exit_code, std::nullopt) << "its verb was not begun";
+}
+
+TEST_F(Jobs, AreDoneWhereACheckFoundSomething) {
+  const JobStatus answered = ended(add("echo '{\"holds\": false}'; exit 65"));
+  EXPECT_EQ(answered.state, JobState::kDone);
+  EXPECT_EQ(answered.result["holds"], false);
+  EXPECT_EQ(ended(add("exit 65")).state, JobState::kFailed) << "without a document it is no answer";
+}
+
 TEST_F(Jobs, KeepWhatTheirVerbSaid) {
   const std::string id =
       add(std::string(kBegin) +

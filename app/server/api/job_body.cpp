@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/api/job_body.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/files.h"
+#include "library/session_files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestWord = 100;
+constexpr std::size_t kLongestFolder = 200;
+
+Error unfit(const std::string& field, const std::string& rule) {
+  return {ErrorKind::kUsage, "job cannot be read", field, rule, "see POST jobs in openapi.json"};
+}
+
+// What a field of the body holds.
+enum class Holds {
+  kWord,
+  kNumber,
+  kSession,   // the name of one
+  kFolder,    // one that is there, below the rig's
+  kNewFolder  // one that is not there yet
+};
+
+// A field of the body that becomes an argument of the verb.
+struct JobField {
+  const char* field;
+  const char* option;  // empty: the argument itself
+  Holds holds;
+  bool is_needed = false;
+  double least = 0, most = 0;                // of a number
+  std::vector<std::string_view> words = {};  // that are allowed; none: all
+};
+
+struct JobKind {
+  const char* name;
+  std::vector<std::string> verb;
+  std::vector<JobField> fields;
+  bool names_rig = false;  // to the verb, where there is no calibration that says it
+};
+
+const JobField kSession = {"session", "", Holds::kSession, true};
+const JobField kInput = {"input", "", Holds::kFolder, true};
+const JobField kOutput = {"output", "--output", Holds::kNewFolder, true};
+const JobField kFrom = {"from", "--from", Holds::kFolder};
+
+JobField word(const char* field, const char* option, std::vector<std::string_view> words = {}) {
+  return {field, option, Holds::kWord, false, 0, 0, std::move(words)};
+}
+JobField number(const char* field, const char* option, double least, double most) {
+  return {field, option, Holds::kNumber, false, least, most};
+}
+
+const std::vector<JobKind>& job_kinds() {
+  static const std::vector<JobKind> kinds = {
+      {"solve",
+       {"solve"},
+       {kSession, word("quality", "--quality", {"preview", "fast", "standard", "robust", "reference"}),
+        word("method", "--method"), number("within_s", "--within", 1e-3, 1e9),
+        number("to_deg", "--to", 1e-6, 180)}},
+      {"price", {"solve", "--explain"}, {kSession}},
+      {"rectify",
+       {"rectify"},
+       {kSession, word("solve", "--solve"), number("mm_per_pixel", "--mm-per-pixel", 1e-4, 100),
+        number("turn_deg", "--turn", -360, 360)}},
+      {"copy", {"copy"}, {kSession}},
+      {"check",
+       {"calibrate", "check"},
+       {{"session", "--session", Holds::kSession},
+        {"input", "", Holds::kFolder},
+        kFrom,
+        {"output", "--output", Holds::kNewFolder}}},
+      {"calibrate_camera",
+       {"calibrate", "camera"},
+       {kInput, kOutput, kFrom, word("board", "--board", {"charuco", "checkerboard"}),
+        number("squares_x", "--squares-x", 2, 100), number("squares_y", "--squares-y", 2, 100),
+        number("square_mm", "--square-mm", 1e-3, 1e4), number("thickness_mm", "--thickness-mm", 0, 1000)},
+       true},
+      {"calibrate_response", {"calibrate", "response"}, {kInput, kOutput, kFrom}, true},
+      {"calibrate_color", {"calibrate", "color"}, {kInput, kOutput, kFrom}, true},
+      {"calibrate_lights",
+       {"calibrate", "lights"},
+       {kInput, kOutput, kFrom, word("method", "--method", {"physical", "per-pixel", "seed"}),
+        number("tape_sigma_mm", "--tape-sigma", 1e-3, 1e4), number("flatness_deg", "--flatness", 0, 90),
+        number("flicker_percent", "--flicker", 0, 100)}},
+      {"calibrate_grey", {"calibrate", "grey"}, {kSession, kOutput, kFrom}},
+      {"calibrate_patches", {"calibrate", "patches"}, {kSession, kOutput, kFrom}},
+      {"calibrate_update", {"calibrate", "update"}, {kSession, kOutput, kFrom}}};
+  return kinds;
+}
+
+// Words never begin with a dash, so none of them is taken for an option, nor with a dot.
+bool is_plain(std::string_view text) {
+  return !text.empty() && text.size() <= kLongestWord && text[0] != '-' && text[0] != '.' &&
+         std::ranges::all_of(
+             text, [](unsigned char c) { return std::isalnum(c) != 0 || c == '-' || c == '_' || c == '.'; });
+}
+
+Result<std::string> word_in(const Json& body, const char* field) {
+  const auto value = body.find(field);
+  if (value == body.end() || !value->is_string()) return unfit(field, "must be a text");
+  std::string text = value->get<std::string>();
+  if (!is_plain(text)) return unfit(field, "must be a plain word");
+  return text;
+}
+
+// Words between slashes, below the rig's folder, where no link leads out of it.
+Result<fs::path> folder_in(const Json& body, const JobField& field, const JobPlaces& places) {
+  const Json& value = body[field.field];
+  if (!value.is_string()) return unfit(field.field, "must be a text");
+  const std::string& text = value.get_ref<const std::string&>();
+  bool fits = text.size() <= kLongestFolder && !places.folder.empty();
+  for (std::string_view rest = text; fits; rest.remove_prefix(rest.find('/') + 1)) {
+    fits = is_plain(rest.substr(0, rest.find('/')));
+    if (rest.find('/') == std::string_view::npos) break;
+  }
+  if (!fits) return unfit(field.field, "must name a folder below that of the rig file: photographs/board");
+  fs::path folder = places.folder / text;
+  const bool is_new = field.holds == Holds::kNewFolder;
+  if (is_new && is_there(folder)) {
+    return Error{ErrorKind::kCannotCreate, "there is something of this name already", text, "",
+                 "name another folder"};
+  }
+  std::error_code error;
+  const fs::path there = is_new ? folder.parent_path() : folder;
+  if (!fs::is_directory(there, error) || !library::lies_in(there, places.folder)) {
+    return Error{ErrorKind::kNoInput, "there is no such folder", text,
+                 "it is looked for below the rig file's", "copy it there first"};
+  }
+  return folder;
+}
+
+// What the field becomes; what the job needs of it is added to its needs.
+Result<std::string> argument_of(const Json& body, const JobField& field, const JobPlaces& places,
+                                JobSpec& spec) {
+  if (field.holds == Holds::kNumber) {
+    const Json& value = body[field.field];
+    const double amount = value.is_number() ? value.get<double>() : field.least - 1;
+    if (amount >= field.least && amount <= field.most) return fmt::format("{}", amount);
+    return unfit(field.field, fmt::format("must be a number from {} to {}", field.least, field.most));
+  }
+  if (field.holds == Holds::kWord) {
+    Result<std::string> text = word_in(body, field.field);
+    if (text && !field.words.empty() && std::ranges::find(field.words, *text) == field.words.end())
+      return unfit(field.field, fmt::format("must be one of {}", fmt::join(field.words, ", ")));
+    return text;
+  }
+  Result<fs::path> folder = fs::path();
+  if (field.holds == Holds::kSession) {
+    const Json& name = body[field.field];
+    if (!name.is_string()) return unfit(field.field, "must be the name of a session");
+    folder = places.session(name.get<std::string>());
+  } else {
+    folder = folder_in(body, field, places);
+  }
+  if (!folder) return std::move(folder).error();
+  if (field.holds != Holds::kNewFolder) spec.needs.push_back(folder->string());
+  if (std::string_view(field.field) == "session" || std::string_view(field.field) == "input")
+    spec.of = body[field.field].get<std::string>();
+  return folder->string();
+}
+
+}  // namespace
+
+Result<JobSpec> read_job_body(const Json& body, const JobPlaces& places) {
+  const Result<std::string> name = word_in(body, "kind");
+  if (!name) return name.error();
+  const auto kind = std::ranges::find(job_kinds(), *name, &JobKind::name);
+  if (kind == job_kinds().end()) {
+    std::vector<std::string_view> names;
+    for (const JobKind& each : job_kinds()) names.emplace_back(each.name);
+    return unfit("kind", fmt::format("must be one of {}", fmt::join(names, ", ")));
+  }
+  JobSpec spec = {*name, "", kind->verb, "", ""};
+  for (const auto& [key, value] : body.items()) {
+    const auto is_it = [&key = key](const JobField& field) { return key == field.field; };
+    const bool is_known = key == "kind" || key == "request_id" || std::ranges::any_of(kind->fields, is_it);
+    if (!is_known) return unfit(key.substr(0, 40), fmt::format("is no field of a {} job", kind->name));
+  }
+  if (body.contains("request_id")) {
+    Result<std::string> id = word_in(body, "request_id");
+    if (!id) return std::move(id).error();
+    spec.request_id = std::move(*id);
+  }
+  for (const JobField& field : kind->fields) {
+    if (!body.contains(field.field)) {
+      if (field.is_needed) return unfit(field.field, fmt::format("is needed by a {} job", kind->name));
+      continue;
+    }
+    Result<std::string> argument = argument_of(body, field, places, spec);
+    if (!argument) return std::move(argument).error();
+    if (*field.option != '\0') spec.arguments.emplace_back(field.option);
+    spec.arguments.push_back(std::move(*argument));
+  }
+  if (*name == "check" && body.contains("session") == body.contains("input"))
+    return unfit("session", "either it or input must be named");
+  if (*name == "copy" && !places.copy.empty())
+    spec.arguments.insert(spec.arguments.end(), {"--to", places.copy.string()});
+  if (kind->names_rig && !body.contains("from"))
+    spec.arguments.insert(spec.arguments.end(), {"--rig", places.rig});
+  return spec;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "app/server/jobs/job.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// What jobs may work on: a client sends names and never paths.
+struct JobPlaces {
+  /// The folder of a session by its name. kUsage, kNoInput.
+  std::function<Result<std::filesystem::path>(const std::string& name)> session;
+  std::filesystem::path folder;  ///< that of the rig file: photographs and calibrations lie below it
+  std::string rig;               ///< its name
+  std::filesystem::path copy;    ///< of finished sessions; empty: where each session says
+};
+
+/// The body of POST /api/v1/jobs: {"kind", "session" or "input", "output", "from", "request_id", ...} with
+/// the fields of its kind (docs/http.md). All that can be told before the verb runs is: kUsage with the field
+/// and its rule; kNoInput where what it works on is not there; kCannotCreate where its output is.
+Result<JobSpec> read_job_body(const Json& body, const JobPlaces& places);
+
+}  // namespace weft::app

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/api/job_body.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/temporary_folder.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A rig's folder with photographs, a calibration and a link that leads out, and one session.
+class JobBody : public testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_ / "photographs" / "board");
+    fs::create_directories(folder_ / "calibrations" / "may");
+    fs::create_directories(scratch_.path() / "elsewhere");
+    fs::create_directory_symlink(scratch_.path() / "elsewhere", folder_ / "link");
+  }
+  Result<JobSpec> read(const std::string& body) const {
+    const auto session = [](const std::string& name) -> Result<fs::path> {
+      if (name == "satin") return fs::path("/scans/satin.weft");
+      return Error{ErrorKind::kNoInput, "there is no such session", name, "", ""};
+    };
+    return read_job_body(Json::parse(body), {session, folder_, "north", "/copies"});
+  }
+  std::vector<std::string> arguments(const std::string& body) const {
+    const Result<JobSpec> spec = read(body);
+    return spec ? spec->arguments : std::vector<std::string>{spec.error().message()};
+  }
+  std::string path(const char* name) const { return (folder_ / name).string(); }
+
+  const TemporaryFolder scratch_;
+  const fs::path folder_ = scratch_.path() / "rig";
+};
+
+using Words = std::vector<std::string>;
+
+TEST_F(JobBody, BecomesAVerbWithItsArguments) {
+  EXPECT_EQ(arguments(R"({"kind": "solve", "session": "satin", "quality": "robust"})"),
+            (Words{"solve", "/scans/satin.weft", "--quality", "robust"}));
+  EXPECT_EQ(arguments(R"({"kind": "price", "session": "satin"})"),
+            (Words{"solve", "--explain", "/scans/satin.weft"}));
+  EXPECT_EQ(arguments(R"({"kind": "copy", "session": "satin"})"),
+            (Words{"copy", "/scans/satin.weft", "--to", "/copies"}));
+  EXPECT_EQ(
+      arguments(R"({"kind": "check", "session": "satin", "from": "calibrations/may"})"),
+      (Words{"calibrate", "check", "--session", "/scans/satin.weft", "--from", path("calibrations/may")}));
+  EXPECT_EQ(arguments(R"({"kind": "calibrate_camera", "input": "photographs/board", "squares_x": 9,
+                          "output": "calibrations/june"})"),
+            (Words{"calibrate", "camera", path("photographs/board"), "--output", path("calibrations/june"),
+                   "--squares-x", "9", "--rig", "north"}));
+  const Result<JobSpec> lights = read(R"({"kind": "calibrate_lights", "input": "photographs",
+                                          "output": "new", "from": "calibrations/may", "request_id": "a"})");
+  ASSERT_TRUE(lights) << lights.error().message();
+  EXPECT_EQ(lights->needs, (Words{path("photographs"), path("calibrations/may")}));
+  EXPECT_EQ(lights->of, "photographs");
+  EXPECT_EQ(lights->request_id, "a");
+}
+
+TEST_F(JobBody, LeadsNowhereElse) {
+  for (const char* input : {"..", "../elsewhere", "photographs/../../elsewhere", "/etc", "-o", ".hidden", "",
+                            "photographs//board", "photographs/", "a b", "photographs/board\\n"}) {
+    const Result<JobSpec> spec = read(std::string(R"({"kind": "check", "input": ")") + input + R"("})");
+    ASSERT_FALSE(spec) << input;
+    EXPECT_EQ(spec.error().kind, ErrorKind::kUsage) << input;
+  }
+  EXPECT_EQ(read(R"({"kind": "check", "input": "link"})").error().kind, ErrorKind::kNoInput);
+  const char* through_link =
+      R"({"kind": "calibrate_response", "input": "photographs", "output": "link/new"})";
+  EXPECT_EQ(read(through_link).error().kind, ErrorKind::kNoInput);
+}
+
+TEST_F(JobBody, IsRefusedBeforeItsVerbRuns) {
+  const auto kind_of = [&](const char* body) {
+    const Result<JobSpec> spec = read(body);
+    return spec ? ErrorKind::kInternal : spec.error().kind;
+  };
+  for (const char* wrong :
+       {"{}", R"({"kind": "bake", "session": "satin"})", R"({"kind": "solve"})",
+        R"({"kind": "solve", "session": 7})", R"({"kind": "solve", "session": "satin", "quality": "best"})",
+        R"({"kind": "solve", "session": "satin", "method": "--help"})",
+        R"({"kind": "solve", "session": "satin", "within_s": 0})",
+        R"({"kind": "solve", "session": "satin", "within_s": "soon"})",
+        R"({"kind": "solve", "session": "satin", "threads": 1})",
+        R"({"kind": "rectify", "session": "satin", "mm_per_pixel": -1})",
+        R"({"kind": "check", "session": "satin", "input": "photographs"})", R"({"kind": "check"})",
+        R"({"kind": "calibrate_camera", "input": "photographs"})",
+        R"({"kind": "price", "session": "satin", "request_id": "a b"})"}) {
+    EXPECT_EQ(kind_of(wrong), ErrorKind::kUsage) << wrong;
+  }
+  EXPECT_EQ(kind_of(R"({"kind": "solve", "session": "none"})"), ErrorKind::kNoInput);
+  EXPECT_EQ(kind_of(R"({"kind": "check", "input": "none"})"), ErrorKind::kNoInput);
+  EXPECT_EQ(kind_of(R"({"kind": "calibrate_grey", "session": "satin", "output": "none/new"})"),
+            ErrorKind::kNoInput);
+  EXPECT_EQ(kind_of(R"({"kind": "calibrate_grey", "session": "satin", "output": "calibrations/may"})"),
+            ErrorKind::kCannotCreate);
+}
+
+}  // namespace
+}  // namespace weft::app
