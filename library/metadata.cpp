@@ -11,6 +11,7 @@
 
 #include "core/solve.h"
 #include "core/text.h"
+#include "library/left_out.h"
 #include "library/session_lock.h"
 
 namespace weft::library {
@@ -96,21 +97,30 @@ std::string id_rule(const Json& value) {
   return is_id ? "" : "must be the id of a solve";
 }
 
+std::string left_out_rule(const Json& value) {
+  const bool is_list = value.is_array() && value.size() <= kMostLeftOut;
+  const bool has_indices = is_list && std::ranges::all_of(value, [](const Json& shot) {
+                             return shot.is_number_integer() && shot >= 0 && shot < 1'000'000;
+                           });
+  return has_indices ? "" : fmt::format("must be a list of at most {} indices of shots", kMostLeftOut);
+}
+
 Error refused(const std::string& key, const std::string& rule) {
-  std::string known = "fabric, current_solve";
+  std::string known = "fabric, current_solve, left_out";
   for (const Field& field : kFields) known += fmt::format(", {}", field.key);
   return {ErrorKind::kUsage, "metadata cannot be set", key, rule, "set one of " + known};
 }
 
 // Fields of session.json itself.
 bool is_of_session(std::string_view key) {
-  return key == "fabric" || key == "current_solve";
+  return key == "fabric" || key == "current_solve" || key == "left_out";
 }
 
 // Null where there is no such field.
 Rule rule_of(std::string_view key) {
   if (key == "fabric") return line_rule;
   if (key == "current_solve") return id_rule;
+  if (key == "left_out") return left_out_rule;
   const auto* known = std::ranges::find(kFields, key, &Field::key);
   return known == kFields.end() ? nullptr : known->rule;
 }
@@ -124,6 +134,34 @@ Result<void> check_fields(const Json& fields) {
     if (const std::string broken = rule(value); !broken.empty()) return refused(key, broken);
   }
   return {};
+}
+
+// What the fields name must be there.
+Result<void> check_names(const Session& session, const Json& fields) {
+  if (const auto solve = fields.find("current_solve"); solve != fields.end() && solve->is_string()) {
+    if (const Result<Product> found = find_solve(session.folder, solve->get<std::string>()); !found)
+      return found.error();
+  }
+  const auto shots = fields.find("left_out");
+  if (shots == fields.end() || !shots->is_array()) return {};
+  for (const Json& shot : *shots) {
+    if (std::ranges::find(session.shots, shot.get<int>(), &Shot::index) == session.shots.end()) {
+      return Error{ErrorKind::kNoInput, "there is no such shot", fmt::format("left_out: {}", shot.dump()),
+                   fmt::format("{} has {} shots", session.folder.string(), session.shots.size()),
+                   "name shots by their index, from 0"};
+    }
+  }
+  return {};
+}
+
+// Lists are sorted, each entry once; a list of no shots is none.
+Json in_order(const std::string& key, const Json& value) {
+  if (!value.is_array()) return value;
+  if (key == "tags") return tags_of(value);
+  auto shots = value.get<std::vector<int>>();
+  std::ranges::sort(shots);
+  shots.erase(std::unique(shots.begin(), shots.end()), shots.end());
+  return shots.empty() ? Json() : Json(shots);
 }
 
 // Of a session's document; 0 where it holds none, or none that counts.
@@ -189,10 +227,7 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
   Result<Session> session = read_session(folder);
   if (!session) return std::move(session).error();
   const int revision = revision_of(session->document);
-  if (const auto solve = fields.find("current_solve"); solve != fields.end() && solve->is_string()) {
-    if (const Result<Product> found = find_solve(folder, solve->get<std::string>()); !found)
-      return found.error();
-  }
+  if (Result<void> ok = check_names(*session, fields); !ok) return std::move(ok).error();
 
   Json& document = session->document;
   document["fabric"] = session->fabric;
@@ -217,7 +252,7 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
   for (const auto& [key, value] : fields.items()) {
     Json& holder = holder_of(key);
     Json before = holder.value(key, Json());
-    Json after = key == "tags" && value.is_array() ? Json(tags_of(value)) : value;
+    const Json after = in_order(key, value);
     if (before == after) continue;
     if (after.is_null()) {
       holder.erase(key);
@@ -225,7 +260,7 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
       holder[key] = after;
     }
     change.before[key] = std::move(before);
-    change.after[key] = std::move(after);
+    change.after[key] = after;
   }
   if (change.after.empty()) return change;
   session->fabric = document.value("fabric", "");
@@ -240,7 +275,8 @@ std::string words_of(const Change& change) {
     std::string said = value.is_string() ? value.get<std::string>() : value.is_null() ? "none" : value.dump();
     if (value.is_array()) {
       said = value.empty() ? "none" : "";
-      for (const Json& tag : value) said += (said.empty() ? "" : ", ") + tag.get<std::string>();
+      for (const Json& each : value)
+        said += (said.empty() ? "" : ", ") + (each.is_string() ? each.get<std::string>() : each.dump());
     }
     words += fmt::format("{}{}: {}", words.empty() ? "" : "; ", key, said);
   }

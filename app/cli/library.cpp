@@ -168,6 +168,7 @@ Result<Json> fields_of(const TagArguments& a, const Entry& entry) {
     const bool is_amount = key == "weight_g_m2" || key == "thickness_mm";
     const Json number = is_amount ? Json::parse(value, nullptr, false) : Json();
     fields[key] = value.empty() ? Json() : number.is_number() ? number : Json(value);
+    if (key == "left_out") fields[key] = Json::parse("[" + value + "]", nullptr, false);
   }
   return fields;
 }
@@ -324,9 +325,11 @@ Run add_tag(Options& options) {
   options.add("--add", &a->add, "Tags to add, by commas").by_commas().one_at_a_time();
   options.add("--remove", &a->remove, "Tags to take away, by commas").by_commas().one_at_a_time();
   options
-      .add("--set", &a->set,
-           "KEY=VALUE: fabric, id, composition, construction, side (front, back), notes, weight_g_m2, "
-           "thickness_mm, current_solve; no value removes it")
+      .add(
+          "--set", &a->set,
+          "KEY=VALUE: fabric, id, composition, construction, side (front, back), notes, weight_g_m2, "
+          "thickness_mm, current_solve, left_out (indices of shots, by commas, that no solve uses); no value "
+          "removes it")
       .one_at_a_time();
   return [a](const CommonArguments& common) { return tag(*a, common); };
 }

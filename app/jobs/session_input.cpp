@@ -11,6 +11,7 @@
 #include "app/jobs/session_frames.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "library/left_out.h"
 #include "pipeline/plane_weights.h"
 #include "pipeline/reference.h"
 
@@ -18,6 +19,16 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Takes away what a person left out.
+void leave_out_by_person(SessionPlan& plan) {
+  const std::vector<int> indices = library::left_out(plan.session);
+  std::erase_if(plan.session.shots, [&](const Shot& shot) {
+    if (std::ranges::find(indices, shot.index) == indices.end()) return false;
+    plan.warnings.push_back(fmt::format("{} was left out: a person said so", shot.file));
+    return true;
+  });
+}
 
 // The lit shots of the named LEDs, or of all.
 Result<std::vector<Shot>> choose_lit(const Session& session, const std::vector<int>& leds) {
@@ -199,6 +210,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   Result<Session> session = read_complete_session(options.folder);
   if (!session) return std::move(session).error();
   plan.session = std::move(*session);
+  leave_out_by_person(plan);
   const bool own = options.calibration.empty();
   Result<Calibration> calibration =
       read_calibration(own ? plan.session.calibration_folder() : options.calibration);

@@ -9,6 +9,7 @@
 #include "bench/program/verbs.h"
 #include "bench/server/door.h"
 #include "bench/server/lease.h"
+#include "bench/server/library.h"
 #include "core/process.h"
 
 namespace weft::bench {
@@ -20,9 +21,17 @@ struct ServerArguments {
   std::uint64_t seed = 1;
 };
 
+Result<Rows> measure_library(const ServerArguments& a, app::ProgressLine& line) {
+  ServerLibraryOptions options;
+  if (a.runs > 0) options.questions = a.runs;
+  options.progress = [&](int done, int steps) { line.update("library", static_cast<double>(done) / steps); };
+  return server_library_table(options);
+}
+
 Result<Rows> measure(const ServerArguments& a, bool quiet) {
   if (a.part == "door") return door_table({.requests = a.runs > 0 ? a.runs : 200, .seed = a.seed});
   app::ProgressLine line(quiet);
+  if (a.part == "library") return measure_library(a, line);
   ServerLeaseOptions options;
   options.programs = program_beside("weft").parent_path();
   if (a.runs > 0) options.trials = a.runs;
@@ -36,8 +45,9 @@ app::Run add_server(app::Options& options) {
   options
       .add("--part", &a->part,
            "lease: how soon a LED is dark once its client or the daemon has died; door: answers beside "
-           "malformed requests, silent clients and slow readers")
-      .one_of({"lease", "door"})
+           "malformed requests, silent clients and slow readers; library: answers with tens of thousands of "
+           "sessions, which it makes in a temporary folder")
+      .one_of({"lease", "door", "library"})
       .shows_default();
   options
       .add("--runs", &a->runs,

@@ -10,6 +10,7 @@
 
 #include "core/files.h"
 #include "library/current.h"
+#include "library/left_out.h"
 #include "library/session_lock.h"
 #include "tests/library/shelf.h"
 
@@ -131,6 +132,24 @@ TEST(CurrentSolve, StaysTheFirstUntilSomebodyNamesAnother) {
   EXPECT_EQ(none.error().kind, ErrorKind::kNoInput);
   std::filesystem::remove_all(folder / "solve/aaaaaaaaaaaaaaaa");
   EXPECT_EQ(current_solve(*read_session(folder)), "bbbbbbbbbbbbbbbb") << "the named one is gone";
+}
+
+TEST(LeftOut, NamesShotsThatAreThere) {
+  const Shelf shelf;
+  const auto folder = shelf.put("a");
+  EXPECT_TRUE(left_out(*read_session(folder)).empty());
+  const Result<Change> change = change_metadata(folder, {{"left_out", Json::array({0, 0})}});
+  ASSERT_TRUE(change) << change.error().message();
+  EXPECT_EQ(words_of(*change), "left_out: 0 of a");
+  EXPECT_EQ(left_out(*read_session(folder)), std::vector{0});
+  EXPECT_EQ(change_metadata(folder, {{"left_out", Json::array({7})}}).error().kind, ErrorKind::kNoInput);
+  for (const Json& wrong : {Json{{"left_out", "0"}}, Json{{"left_out", Json::array({-1})}},
+                            Json{{"left_out", Json::array({0.5})}}, Json{{"left_out", 0}},
+                            Json{{"left_out", std::vector<int>(65, 0)}}}) {
+    EXPECT_EQ(change_metadata(folder, wrong).error().kind, ErrorKind::kUsage) << wrong.dump();
+  }
+  ASSERT_TRUE(change_metadata(folder, {{"left_out", Json::array()}}));
+  EXPECT_FALSE(read_session(folder)->document.contains("left_out"));
 }
 
 TEST(NewMetadata, FollowsTheRulesOfTheLibrary) {

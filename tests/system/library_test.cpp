@@ -50,6 +50,16 @@ TEST_F(Library, FindsASessionByATagThatWasGivenUndoneAndGivenAgain) {
   EXPECT_EQ(found({"autumn", "red"}), Names{"cloth"});
 }
 
+TEST_F(Library, LeavesAShotOutOfSolvesUntilItIsTakenBack) {
+  const Json before = run_weft({"solve", session_.string(), "-q", "--json"}).json();
+  ASSERT_EQ(library({"tag", "cloth", "--set", "left_out=2"}).exit_code, 0);
+  const Outcome without = run_weft({"solve", session_.string(), "-q", "--json"});
+  ASSERT_EQ(without.exit_code, 0) << without.error;
+  EXPECT_NE(without.json()["id"], before["id"]);
+  ASSERT_EQ(library({"undo"}).exit_code, 0);
+  EXPECT_EQ(run_weft({"solve", session_.string(), "-q", "--json"}).json()["id"], before["id"]);
+}
+
 TEST_F(Library, ChangesNoSolveWithWhatIsSaidOfACloth) {
   const Outcome before = run_weft({"solve", session_.string(), "-q", "--json"});
   ASSERT_EQ(library({"tag", "cloth", "--set", "fabric=<b>new</b>", "--add", "=cmd|' /C calc'!A0"}).exit_code,

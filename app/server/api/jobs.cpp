@@ -15,10 +15,6 @@ namespace {
 
 constexpr int kMostJobs = 1000;
 
-Error refused(const std::string& field, const std::string& rule) {
-  return {ErrorKind::kUsage, "job cannot be read", field, rule, "see POST jobs in openapi.json"};
-}
-
 JobPlaces places_of(const RigParts& parts) {
   const auto session = [&parts](const std::string& name) -> Result<std::filesystem::path> {
     const Result<Session> found = parts.library.session(name);
@@ -46,7 +42,7 @@ Result<int> number_of(const Call& call, const char* key, int otherwise) {
   const std::string& text = found->second;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   if (error != std::errc() || end != text.data() + text.size() || number < 1)
-    return refused(key, "must be a number from 1");
+    return Error{ErrorKind::kUsage, "jobs cannot be listed so", key, "must be a number from 1", ""};
   return number;
 }
 

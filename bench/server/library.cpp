@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/server/library.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "app/server/http/client.h"
+#include "app/server/rig_server.h"
+#include "core/parallel.h"
+#include "core/statistics.h"
+#include "core/temporary_folder.h"
+#include "library/catalogue.h"
+
+namespace weft::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRig = "bench";
+constexpr int kUnfinishedEach = 1000;  // one of so many sessions
+constexpr std::array<const char*, 5> kFabrics = {"wool twill", "cotton satin", "silk crepe", "linen canvas",
+                                                 "polyester velvet"};
+constexpr std::array<const char*, 4> kTags = {"autumn", "spring", "coat", "lining"};
+
+std::string barcode(int i) {
+  return fmt::format("{:013}", 4'006'381'000'000 + i);
+}
+
+// What a scan of ten LEDs leaves, without its photographs.
+Json session_of(int i) {
+  const auto at = static_cast<std::size_t>(i);
+  Json shots = Json::array();
+  for (int led = 0; led <= 10; ++led) {
+    shots.push_back({{"index", led},
+                     {"led", led},
+                     {"role", led == 0 ? "dark" : "lit"},
+                     {"file", fmt::format("raw/{:02}_led{:02}.nef", led, led)},
+                     {"sha256", std::string(64, 'a')},
+                     {"exposure_us", 20000},
+                     {"iso", 100},
+                     {"f_number", 8},
+                     {"time", fmt::format("20{:02}-{:02}-{:02}T10:{:02}:{:02}Z", 10 + i % 17, 1 + i % 12,
+                                          1 + i % 28, i % 60, led)}});
+  }
+  return {{"schema", "weft.session/1.1"},
+          {"fabric", fmt::format("{} {}", kFabrics[at % kFabrics.size()], i % 977)},
+          {"cloth_height_mm", 0.5},
+          {"rig", kRig},
+          {"calibration", ""},
+          {"state", i % kUnfinishedEach == 0 ? "capturing" : "complete"},
+          {"metadata",
+           {{"id", barcode(i)},
+            {"tags", {kTags[at % kTags.size()]}},
+            {"composition", fmt::format("{} % of it", i % 100)},
+            {"notes", fmt::format("roll {} of the mill, shelf {}", i % 499, i % 83)}}},
+          {"shots", std::move(shots)}};
+}
+
+void write_sessions(const fs::path& folder, int count) {
+  fs::create_directories(folder);
+  parallel_for(static_cast<std::size_t>(count), 0, [&](std::size_t i, int) {
+    const fs::path session = folder / fmt::format("s{:06}.weft", i);
+    fs::create_directory(session);
+    std::ofstream(session / "session.json") << session_of(static_cast<int>(i)).dump();
+  });
+}
+
+double milliseconds_of(const std::function<void()>& work) {
+  const auto begin = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+Json row_of(const std::string& what, int sessions, const std::vector<double>& times_ms, double asked_ms) {
+  const double most = *std::ranges::max_element(times_ms);
+  return {{"what", what},    {"sessions", sessions}, {"median_ms", median(times_ms)},
+          {"most_ms", most}, {"asked_ms", asked_ms}, {"holds", most < asked_ms}};
+}
+
+Result<std::unique_ptr<app::RigServer>> server_of(const fs::path& sessions, const fs::path& state) {
+  capture::Rig rig;
+  rig.name = kRig;
+  rig.scan.sessions = sessions;
+  rig.daemon.port = 0;
+  rig.daemon.state = state;
+  const Error no_devices = {ErrorKind::kTryAgain, "this rig has no devices", rig.name, "", "name another"};
+  return app::RigServer::start(
+      rig, [=](const capture::Rig&) -> Result<capture::RigDevices> { return no_devices; },
+      [=](const capture::ScanRequest&, capture::Lamps&, capture::Camera&, const capture::ScanEvents&,
+          const capture::ScanControl&) -> Result<capture::ScanOutcome> { return no_devices; });
+}
+
+// Until the server has read all of them.
+Result<void> wait_for(const app::RigClient& client, int sessions) {
+  for (;;) {
+    const Result<Json> page = client.get("/api/v1/sessions?limit=1");
+    if (!page) return page.error();
+    if (page->at("total") == sessions) return {};
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+}
+
+Result<void> measure_calls(const ServerLibraryOptions& options, Rows& rows) {
+  const TemporaryFolder folder;
+  write_sessions(folder.path() / "scans", options.served);
+  const auto server = server_of(folder.path() / "scans", folder.path() / "state");
+  if (!server) return server.error();
+  const Result<app::RigClient> client = app::RigClient::connect((*server)->address());
+  if (!client) return client.error();
+  if (Result<void> ok = wait_for(*client, options.served); !ok) return ok;
+
+  const std::string scan = "/api/v1/scan";
+  for (const auto& [what, path] : {std::pair<std::string, std::string>("POST scan, its choice", scan),
+                                   {"GET rig", "/api/v1/rig"},
+                                   {"GET sessions, a search", "/api/v1/sessions?query=wool%20auto%20shelf"},
+                                   {"GET sessions, a word", "/api/v1/sessions?query=satin"},
+                                   {"GET sessions, a tag", "/api/v1/sessions?tag=coat"},
+                                   {"GET sessions, a page of 100", "/api/v1/sessions?limit=100"}}) {
+    std::vector<double> times_ms;
+    for (int i = 0; i < options.questions; ++i) {
+      Result<Json> answer = Json();
+      times_ms.push_back(milliseconds_of([&] {
+        const Json body = {{"fabric", fmt::format("{} {}", kFabrics[0], i)}, {"dry_run", true}};
+        answer = path == scan ? client->post(path, body) : client->get(path);
+      }));
+      if (!answer) return answer.error();
+    }
+    rows.push_back(row_of(what, options.served, times_ms, 50));
+  }
+  return {};
+}
+
+Result<void> measure_reading(const ServerLibraryOptions& options, Rows& rows) {
+  const TemporaryFolder folder;
+  write_sessions(folder.path() / "scans", options.rebuilt);
+  Result<library::Catalogue> catalogue = library::Catalogue::open(folder.path() / "library.sqlite");
+  if (!catalogue) return catalogue.error();
+  for (const auto& [what, asked_ms] : {std::pair("rebuild", 10'000.0), {"refresh", 1000.0}}) {
+    Result<library::RefreshFacts> facts = library::RefreshFacts();
+    const double time_ms =
+        milliseconds_of([&] { facts = catalogue->refresh({folder.path() / "scans"}, {.threads = 1}); });
+    if (!facts) return facts.error();
+    rows.push_back(row_of(what, options.rebuilt, {time_ms}, asked_ms));
+  }
+  return {};
+}
+
+Result<void> measure_search(const ServerLibraryOptions& options, Rows& rows) {
+  const TemporaryFolder folder;
+  write_sessions(folder.path() / "scans", options.searched);
+  Result<library::Catalogue> catalogue = library::Catalogue::open(folder.path() / "library.sqlite");
+  if (!catalogue) return catalogue.error();
+  if (const auto facts = catalogue->refresh({folder.path() / "scans"}, {}); !facts) return facts.error();
+  const library::Query by_word = {.words = "wool"}, by_barcode = {.words = barcode(options.searched / 2)},
+                       by_id = {.id = barcode(options.searched / 2)};
+  for (const auto& [what, query] :
+       {std::pair("search by word, ranked", by_word), {"search by barcode", by_barcode}, {"by id", by_id}}) {
+    std::vector<double> times_ms;
+    for (int i = 0; i < options.questions; ++i) {
+      Result<library::Page> page = library::Page();
+      times_ms.push_back(milliseconds_of([&] { page = catalogue->find(query); }));
+      if (!page) return page.error();
+    }
+    rows.push_back(row_of(what, options.searched, times_ms, 100));
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<Rows> server_library_table(const ServerLibraryOptions& options) {
+  Rows rows;
+  int done = 0;
+  for (const auto& measure : {measure_calls, measure_reading, measure_search}) {
+    options.progress(done++, 3);
+    if (Result<void> ok = measure(options, rows); !ok) return std::move(ok).error();
+  }
+  return rows;
+}
+
+}  // namespace weft::bench
