@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -382,6 +383,19 @@ TEST(CalibrateResponse, MeasuresTheVeilOfALensInABlackTrap) {
   const auto kept = calibrate_response(again, {});
   ASSERT_TRUE(kept) << kept.error().message();
   EXPECT_EQ(kept->calibration.response->veil, veil) << "what was not photographed again stays";
+}
+
+TEST(CalibrateResponse, RefusesACameraThatEndsBelowWhatItsFilesCallFull) {
+  const Workspace work;
+  Frames frames;
+  frames.change = [](RawFrame& frame) {
+    for (int y = 0; y < frame.counts.height(); ++y) {
+      for (int x = 0; x < frame.counts.width(); ++x)
+        frame.counts(x, y) = std::min<std::uint16_t>(frame.counts(x, y), 12'000);
+    }
+  };
+  frames.add_all(work / "response");
+  EXPECT_THAT(refusal(work), HasSubstr("photosites pile up at 12000 counts"));
 }
 
 TEST(CalibrateResponse, RefusesATrapThatIsNotThere) {

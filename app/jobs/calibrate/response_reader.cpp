@@ -12,6 +12,7 @@
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
 #include "core/photosites.h"
+#include "core/radiometry.h"
 #include "core/suits.h"
 
 namespace weft::app {
@@ -119,6 +120,35 @@ std::ptrdiff_t marked(View<const std::uint8_t> bad) {
   return count;
 }
 
+// Counts at which a frame ends though its file says that more is possible: many photosites alike at its
+// highest value are a converter's or a well's end, as no light makes them equal.
+std::optional<int> pile_up(const RawFrame& frame) {
+  constexpr double kAlike = 1e-3;  // share of the frame
+  int highest = 0;
+  std::ptrdiff_t alike = 0;
+  for (int y = 0; y < frame.counts.height(); ++y) {
+    for (int x = 0; x < frame.counts.width(); ++x) {
+      const int counts = frame.counts(x, y);
+      if (counts > highest) alike = 0;
+      highest = std::max(highest, counts);
+      alike += counts == highest ? 1 : 0;
+    }
+  }
+  const float black = frame.black[0][0];
+  const bool is_full =
+      static_cast<float>(highest) >= black + static_cast<float>(kSaturatedFrom) * (frame.white - black);
+  const bool is_dark = static_cast<float>(highest) < black + 0.1F * (frame.white - black);
+  const bool ends = static_cast<double>(alike) > kAlike * static_cast<double>(frame.counts.size().pixels());
+  return ends && !is_full && !is_dark ? std::optional(highest) : std::nullopt;
+}
+
+Error ends_below_full(const fs::path& file, int counts, float white) {
+  return {ErrorKind::kBadData, "the camera ends below what its files call full", file.string(),
+          fmt::format("photosites pile up at {} counts, and full is said to be {:.0f}", counts, white),
+          fmt::format("leave out the exposures that reach {} counts, and expose scans so that nothing does",
+                      counts)};
+}
+
 class Reader {
  public:
   Reader(ResponseFrames& out, const JobContext& context) : out_(out), context_(context) {
@@ -156,6 +186,7 @@ class Reader {
       for (const fs::path& file : exposure.files) {
         Result<RawFrame> frame = read(file);
         if (!frame) return std::move(frame).error();
+        if (const auto ends_at = pile_up(*frame)) return ends_below_full(file, *ends_at, frame->white);
         const calibration::BlockLight light = calibration::block_light(*frame, out_.bad.plane());
         const auto [least_full, most_full] =
             std::minmax_element(light.full_share.begin(), light.full_share.end());
