@@ -206,12 +206,12 @@ TEST_F(Serve, OneThatWasKilledLeavesNothingInTheWay) {
   EXPECT_TRUE(again) << again.error().message() << second.said();
 }
 
-TEST_F(Serve, TheDevicesOfItsRigAreLeftToIt) {
+TEST_F(Serve, TheDevicesOfItsRigAreAskedForThroughIt) {
   Daemon daemon(folder_ / "rig.toml");
   ASSERT_TRUE(client());
   const Ran lights = run("rig lights --rig " + rig_.file.string());
-  EXPECT_EQ(lights.exit_code, 75) << lights.said;
-  EXPECT_THAT(lights.said, testing::HasSubstr("the rig is in use"));
+  EXPECT_EQ(lights.exit_code, 69) << lights.said;
+  EXPECT_THAT(lights.said, testing::HasSubstr("the LED board is not there"));
   const Ran doctor = run("doctor --rig " + rig_.file.string());
   EXPECT_EQ(doctor.exit_code, 0) << doctor.said;
   EXPECT_THAT(doctor.said, testing::HasSubstr("owns the rig and is idle"));
