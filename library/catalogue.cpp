@@ -215,7 +215,9 @@ Error unusable(const std::string& where, std::string why, std::string remedy) {
 }
 
 // Each word as the beginning of one, all of them wanted. Quoted, a word means itself whatever it is made of.
-Result<std::string> match_of(const std::string& words) {
+Result<std::string> match_of(std::string words) {
+  // SQLite's words end at a NUL, and their quotes with them.
+  std::ranges::replace(words, '\0', ' ');
   std::istringstream parts(words);
   std::string match;
   int count = 0;

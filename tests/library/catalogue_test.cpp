@@ -91,6 +91,7 @@ TEST(Catalogue, TakesAnyTextForWordsAndNeverForALanguage) {
     EXPECT_TRUE(catalogue.find({.words = words})) << words;
   }
   EXPECT_EQ(found(catalogue, {.words = "quoted near"}), Names{"a"});
+  EXPECT_EQ(found(catalogue, {.words = std::string("quoted\0near", 11)}), Names{"a"});
   EXPECT_EQ(
       catalogue.find({.words = std::string(100, 'x') + " a b c d e f g h i j k l m n o p"}).error().kind,
       ErrorKind::kUsage)
