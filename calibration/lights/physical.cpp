@@ -13,6 +13,7 @@
 
 #include "calibration/lights/light_parameters.h"
 #include "calibration/lights/reading_cost.h"
+#include "calibration/lights/student.h"
 
 namespace weft::calibration {
 namespace {
@@ -469,17 +470,9 @@ Eigen::MatrixXd Fit::inverse_of_normal_matrix() const {
   return scale.asDiagonal() * (0.5 * (inverse + inverse.transpose())) * scale.asDiagonal();
 }
 
-// The normal deviate as rare as Student's t = sqrt(square (f - 1) / (f - square)) of f - 1 degrees of freedom
-// (Wallace 1959).
-double normal_of_student(double square, double freedom) {
-  const double rest = freedom - 1;
-  return (8 * rest + 1) / (8 * rest + 3) * std::sqrt(rest * std::log(freedom / (freedom - square)));
-}
-
 // Each shot against what all others say of it. Where readings tell a share `told` of a gain and the prior the
 // rest, readings alone say 1 / told times what was found, and gains of mere flicker scatter by the root of
-// told. Sigmas are those of a normal deviate as rare as Student's residual, which has no part in the flicker
-// that it is held against: of few shots a large one is not rare.
+// told. Sigmas are those of a normal as rare as Student's residual: of few shots a large one is not rare.
 void Fit::find_other_shot(const Eigen::MatrixXd& sigma) {
   const double variance = fit_.flicker * fit_.flicker;
   const auto told_of = [&](double* shot) {
@@ -496,7 +489,7 @@ void Fit::find_other_shot(const Eigen::MatrixXd& sigma) {
       if (!(told > kToldFrom && freedom > 1)) continue;
       const double square = *gain * *gain / (told * variance);
       const double sigmas =
-          square < freedom ? normal_of_student(square, freedom) : std::numeric_limits<double>::infinity();
+          square < freedom ? normal_as_rare(square, freedom) : std::numeric_limits<double>::infinity();
       if (sigmas <= worst || std::abs(*gain / told) <= kOtherShotFrom * options_.flicker) continue;
       worst = sigmas;
       fit_.other_shot = {j, k, *gain / told};
