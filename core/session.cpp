@@ -6,16 +6,20 @@
 #include <algorithm>
 #include <array>
 #include <set>
+#include <string_view>
 #include <utility>
 
 namespace weft {
 namespace {
 
 constexpr const char* kSessionSchema = "weft.session";
-constexpr std::array<std::pair<ShotRole, const char*>, 4> kRoles = {{{ShotRole::kLit, "lit"},
+constexpr std::array<std::pair<ShotRole, const char*>, 5> kRoles = {{{ShotRole::kLit, "lit"},
                                                                      {ShotRole::kDark, "dark"},
                                                                      {ShotRole::kRepeat, "repeat"},
-                                                                     {ShotRole::kBracket, "bracket"}}};
+                                                                     {ShotRole::kBracket, "bracket"},
+                                                                     {ShotRole::kBelow, "below"}}};
+constexpr std::array<std::pair<Polariser, const char*>, 3> kPolarisers = {
+    {{Polariser::kNone, "none"}, {Polariser::kParallel, "parallel"}, {Polariser::kCrossed, "crossed"}}};
 
 bool stays_inside(const std::filesystem::path& file) {
   if (file.empty() || file.is_absolute()) return false;
@@ -36,16 +40,28 @@ Result<Shot> read_shot(const Json& json, const std::string& where) {
   shot.time = fields.text_or("time", "");
   const std::string role = fields.text("role");
   const auto* known =
-      std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return role == r.second; });
+      std::ranges::find(kRoles, role, [](const auto& r) { return std::string_view(r.second); });
   if (known == kRoles.end()) {
-    fields.reject("role", fmt::format("is \"{}\"; lit, dark, repeat or bracket was expected", role));
+    fields.reject("role", fmt::format("is \"{}\"; lit, dark, repeat, bracket or below was expected", role));
   } else {
     shot.role = known->first;
   }
+  const std::string polariser = fields.text_or("polariser", "none");
+  const auto* state =
+      std::ranges::find(kPolarisers, polariser, [](const auto& p) { return std::string_view(p.second); });
+  if (state == kPolarisers.end()) {
+    fields.reject("polariser", fmt::format("is \"{}\"; none, parallel or crossed was expected", polariser));
+  } else {
+    shot.polariser = state->first;
+  }
+  if (json.contains("superseded_by")) shot.superseded_by = fields.integer("superseded_by");
   if (!stays_inside(shot.file)) fields.reject("file", "must be a path inside the session");
   if (shot.exposure_us <= 0) fields.reject("exposure_us", "must be above 0");
   if (shot.iso <= 0) fields.reject("iso", "must be above 0");
   if (shot.led < 0) fields.reject("led", "must be 0 (none) or a LED's number");
+  if (shot.role == ShotRole::kBelow && shot.led != 0) {
+    fields.reject("led", "must be 0 for a shot of the light below");
+  }
   if (shot.role == ShotRole::kLit && shot.led == 0) fields.reject("led", "must be above 0 for a lit shot");
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   shot.document = json;
@@ -56,12 +72,22 @@ Result<void> check_shots(const Session& session, const std::string& where) {
   const auto refuse = [&](std::string why, std::string remedy) {
     return Error{ErrorKind::kBadData, "session cannot be used", where, std::move(why), std::move(remedy)};
   };
-  std::set<int> lit_leds;
+  std::set<std::pair<int, Polariser>> lit_leds;
   const Shot* first = nullptr;
   int darks = 0;
   for (const Shot& shot : session.shots) {
-    if (shot.role == ShotRole::kRepeat || shot.role == ShotRole::kBracket) continue;
-    if (shot.role == ShotRole::kLit && !lit_leds.insert(shot.led).second) {
+    if (shot.superseded_by) {
+      const auto other = std::ranges::find(session.shots, *shot.superseded_by, &Shot::index);
+      if (other == session.shots.end() || other->index <= shot.index || other->led != shot.led ||
+          other->role != shot.role) {
+        return refuse(fmt::format("shot {} is superseded by {}, which is no later shot of its LED and role",
+                                  shot.index, *shot.superseded_by),
+                      "name the shot that stands for it, or take \"superseded_by\" out");
+      }
+      continue;
+    }
+    if (shot.role != ShotRole::kLit && shot.role != ShotRole::kDark) continue;
+    if (shot.role == ShotRole::kLit && !lit_leds.insert({shot.led, shot.polariser}).second) {
       return refuse(fmt::format("LED {} has two lit shots", shot.led),
                     "keep one of them as lit and mark the other as repeat");
     }
@@ -81,35 +107,49 @@ Result<void> check_shots(const Session& session, const std::string& where) {
 }
 
 Json to_json(const Shot& shot) {
-  const auto* role =
-      std::find_if(kRoles.begin(), kRoles.end(), [&](const auto& r) { return shot.role == r.first; });
   Json json = shot.document.is_object() ? shot.document : Json::object();
   json["index"] = shot.index;
   json["led"] = shot.led;
-  json["role"] = role->second;
+  json["role"] = name_of(shot.role);
   json["file"] = shot.file;
   json["sha256"] = shot.sha256;
   json["exposure_us"] = shot.exposure_us;
   json["iso"] = shot.iso;
   json["f_number"] = shot.f_number;
   if (!shot.time.empty()) json["time"] = shot.time;
+  if (shot.polariser != Polariser::kNone) json["polariser"] = name_of(shot.polariser);
+  if (shot.superseded_by) json["superseded_by"] = *shot.superseded_by;
   return json;
 }
 
 }  // namespace
 
+const char* name_of(ShotRole role) {
+  return std::ranges::find(kRoles, role, &std::pair<ShotRole, const char*>::first)->second;
+}
+
+const char* name_of(Polariser polariser) {
+  return std::ranges::find(kPolarisers, polariser, &std::pair<Polariser, const char*>::first)->second;
+}
+
 const Shot* Session::dark() const {
-  const auto found =
-      std::find_if(shots.begin(), shots.end(), [](const Shot& s) { return s.role == ShotRole::kDark; });
+  const auto found = std::ranges::find_if(
+      shots, [](const Shot& s) { return s.role == ShotRole::kDark && !s.superseded_by; });
   return found == shots.end() ? nullptr : &*found;
 }
 
 std::vector<const Shot*> Session::lit() const {
+  const auto first = std::ranges::find(shots, ShotRole::kLit, &Shot::role);
+  return first == shots.end() ? std::vector<const Shot*>() : lit(first->polariser);
+}
+
+std::vector<const Shot*> Session::lit(Polariser polariser) const {
   std::vector<const Shot*> lit;
   for (const Shot& shot : shots) {
-    if (shot.role == ShotRole::kLit) lit.push_back(&shot);
+    if (shot.role == ShotRole::kLit && shot.polariser == polariser && !shot.superseded_by)
+      lit.push_back(&shot);
   }
-  std::sort(lit.begin(), lit.end(), [](const Shot* a, const Shot* b) { return a->led < b->led; });
+  std::ranges::sort(lit, {}, &Shot::led);
   return lit;
 }
 

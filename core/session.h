@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,7 +12,18 @@
 namespace weft {
 
 /// What a photograph is for.
-enum class ShotRole { kLit, kDark, kRepeat, kBracket };
+enum class ShotRole {
+  kLit,
+  kDark,
+  kRepeat,   ///< of a LED's lit shot, or with LED 0 of the dark one: what changed in between
+  kBracket,  ///< a LED at another exposure
+  kBelow     ///< the light below the cloth, at an exposure of its own
+};
+const char* name_of(ShotRole role);  ///< "lit"
+
+/// How the film before the camera stands to that before the lights.
+enum class Polariser { kNone, kParallel, kCrossed };
+const char* name_of(Polariser polariser);  ///< "crossed"
 
 /// One exposure of a session.
 struct Shot {
@@ -24,7 +36,9 @@ struct Shot {
   double iso = 100;
   double f_number = 0;
   std::string time;  ///< ISO 8601, or empty
-  Json document;     ///< as read, so that fields of newer minor versions survive a rewrite
+  Polariser polariser = Polariser::kNone;
+  std::optional<int> superseded_by;  ///< index of the shot of the same LED and role that stands for it
+  Json document;                     ///< as read, so that fields of newer minor versions survive a rewrite
 };
 
 /// One scan of one cloth: a folder that can be moved. Reads and writes session.json (schema weft.session/1).
@@ -42,12 +56,14 @@ struct Session {
   std::filesystem::path calibration_folder() const { return folder / "calibration"; }
   /// The dark shot, or null.
   const Shot* dark() const;
-  /// The lit shots in order of their LED.
+  /// The lit shots in order of their LED, with the polariser as the first of them has it.
   std::vector<const Shot*> lit() const;
+  std::vector<const Shot*> lit(Polariser polariser) const;
 };
 
-/// Reads and checks session.json: files stay inside the folder, no LED is lit twice, all lit and dark shots
-/// share exposure, ISO and aperture. The frames themselves are not opened.
+/// Reads and checks session.json: files stay inside the folder, no LED is lit twice with one polariser, all
+/// lit and dark shots share exposure, ISO and aperture, what supersedes a shot is there and is of its LED and
+/// role. Superseded shots count for nothing else. The frames themselves are not opened.
 Result<Session> read_session(const std::filesystem::path& folder);
 
 /// Replaces session.json (aside, synced, renamed).

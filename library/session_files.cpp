@@ -26,20 +26,6 @@ Result<StoredFrame> stored_frame(const Session& session, const std::string& inde
   return StoredFrame{session.path_of(*shot), shot->sha256};
 }
 
-const char* name_of(ShotRole role) {
-  switch (role) {
-    case ShotRole::kLit:
-      return "lit";
-    case ShotRole::kDark:
-      return "dark";
-    case ShotRole::kRepeat:
-      return "repeat";
-    case ShotRole::kBracket:
-      return "bracket";
-  }
-  return "lit";
-}
-
 std::vector<std::string> warnings_of(const Shot& shot) {
   std::vector<std::string> warnings;
   const auto list = shot.document.find("warnings");

@@ -22,9 +22,6 @@ struct StoredFrame {
 /// The file of the frame of this index, which lies in the session. kUsage for what is no number, kNoInput.
 Result<StoredFrame> stored_frame(const Session& session, const std::string& index);
 
-/// "lit", as in session.json.
-const char* name_of(ShotRole role);
-
 /// What the scan warned of at this shot.
 std::vector<std::string> warnings_of(const Shot& shot);
 

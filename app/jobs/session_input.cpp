@@ -60,7 +60,10 @@ void choose_more(SessionPlan& plan) {
   const Shot& lit = plan.lit.front();
   for (const Shot& shot : plan.session.shots) {
     const bool is_repeat = shot.role == ShotRole::kRepeat;
-    if (!is_repeat && shot.role != ShotRole::kBracket) continue;
+    const bool is_bracket = shot.role == ShotRole::kBracket;
+    const bool is_of_dark = is_repeat && shot.led == 0;
+    if ((!is_repeat && !is_bracket) || is_of_dark) continue;
+    if (shot.superseded_by || shot.polariser != lit.polariser) continue;
     const auto leave_out = [&](const std::string& why) {
       plan.warnings.push_back(fmt::format("{} was left out: {}", shot.file, why));
     };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/session.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,6 +41,7 @@ Session small_session(const std::filesystem::path& folder) {
                    shot_of(4, 2, ShotRole::kBracket, "raw/04_led02.nef")};
   session.shots[1].time = "2026-01-31T12:00:00Z";
   session.shots[4].exposure_us = 100;
+  session.shots[4].polariser = Polariser::kParallel;
   return session;
 }
 
@@ -92,6 +94,7 @@ TEST(Session, ReturnsEveryFieldThatWasWritten) {
     EXPECT_EQ(now.iso, before.iso) << "shot " << i;
     EXPECT_EQ(now.f_number, before.f_number) << "shot " << i;
     EXPECT_EQ(now.time, before.time) << "shot " << i;
+    EXPECT_EQ(now.polariser, before.polariser) << "shot " << i;
   }
 }
 
@@ -108,13 +111,43 @@ TEST(Session, ListsItsLitShotsByLedAndItsDarkShot) {
   EXPECT_EQ(Session().dark(), nullptr);
 }
 
+TEST(Session, ListsNoShotThatAnotherStandsFor) {
+  const ScratchFolder folder;
+  Session written = small_session(folder / "");
+  written.shots.push_back(shot_of(5, 2, ShotRole::kLit, "raw/05_led02.nef"));
+  written.shots.push_back(shot_of(6, 0, ShotRole::kDark, "raw/06_dark.nef"));
+  written.shots[0].superseded_by = 5;
+  written.shots[2].superseded_by = 6;
+  ASSERT_TRUE(write_session(written));
+  const Result<Session> session = read_session(folder / "");
+  ASSERT_TRUE(session) << session.error().message();
+  ASSERT_EQ(session->lit().size(), 2U);
+  EXPECT_EQ(session->lit()[1]->file, "raw/05_led02.nef");
+  EXPECT_EQ(session->dark()->file, "raw/06_dark.nef");
+}
+
+TEST(Session, TakesALedOncePerStateOfThePolariser) {
+  const ScratchFolder folder;
+  Session written = small_session(folder / "");
+  for (int led = 1; led <= 2; ++led) {
+    Shot shot = shot_of(4 + led, led, ShotRole::kLit, "raw/crossed.nef");
+    shot.polariser = Polariser::kCrossed;
+    written.shots.push_back(shot);
+  }
+  ASSERT_TRUE(write_session(written));
+  const Result<Session> session = read_session(folder / "");
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_EQ(session->lit(), session->lit(Polariser::kNone)) << "as the first lit shot has it";
+  EXPECT_EQ(session->lit(Polariser::kCrossed).size(), 2U);
+}
+
 TEST(Session, KeepsFieldsItDoesNotKnowWhenItIsRewritten) {
   const ScratchFolder folder;
   ASSERT_TRUE(write_session(small_session(folder / "")));
   Json json = json_in(folder);
   json["schema"] = "weft.session/1.9";
   json["tags"] = {"linen", "summer"};
-  json["shots"][1]["polariser"] = "crossed";
+  json["shots"][1]["temperature_c"] = 31;
   put_bytes(folder / "session.json", json.dump());
 
   Result<Session> session = read_session(folder / "");
@@ -142,6 +175,13 @@ TEST(Session, ReadsANewerMinorVersionAndRefusesANewerMajorOne) {
 TEST(Session, RefusesTwoLitShotsOfOneLed) {
   EXPECT_THAT(verdict([](Json& json) { json["shots"][1]["led"] = 2; }),
               HasSubstr("LED 2 has two lit shots. keep one of them as lit"));
+}
+
+TEST(Session, RefusesAShotThatNoLaterOneOfItsKindStandsFor) {
+  for (const int other : {0, 1, 2, 3, 7}) {
+    EXPECT_THAT(verdict([&](Json& json) { json["shots"][1]["superseded_by"] = other; }),
+                HasSubstr(fmt::format("shot 1 is superseded by {}, which is no later shot", other)));
+  }
 }
 
 TEST(Session, RefusesTwoDarkShots) {
@@ -175,8 +215,10 @@ TEST(Session, NamesTheShotAndTheFieldThatIsWrong) {
     return verdict([&](Json& json) { json["shots"][2][key] = value; });
   };
   EXPECT_THAT(said_of("role", "bright"),
-              HasSubstr("shot 2: \"role\" is \"bright\"; lit, dark, repeat or bracket"));
+              HasSubstr("shot 2: \"role\" is \"bright\"; lit, dark, repeat, bracket or below"));
   EXPECT_THAT(said_of("role", "lit"), HasSubstr("shot 2: \"led\" must be above 0 for a lit shot"));
+  EXPECT_THAT(said_of("polariser", "left"),
+              HasSubstr("shot 2: \"polariser\" is \"left\"; none, parallel or crossed"));
   EXPECT_THAT(said_of("led", -1), HasSubstr("shot 2: \"led\" must be 0 (none) or a LED's number"));
   EXPECT_THAT(said_of("led", 1.5), HasSubstr("shot 2: \"led\" is 1.5; a whole number"));
   EXPECT_THAT(said_of("exposure_us", 0), HasSubstr("shot 2: \"exposure_us\" must be above 0"));

@@ -24,7 +24,7 @@ Json to_json(const Shot& shot, const std::string& name) {
   const std::string path = fmt::format("/api/v1/sessions/{}/frames/{}", name, shot.index);
   return {{"index", shot.index},
           {"led", shot.led},
-          {"role", library::name_of(shot.role)},
+          {"role", name_of(shot.role)},
           {"file", shot.file},
           {"sha256", shot.sha256},
           {"exposure_us", shot.exposure_us},

@@ -185,6 +185,7 @@ void HttpDoor::take_returned() {
     returned.swap(returned_);
   }
   for (Waiting& client : returned) go_on(admit(std::move(client)));
+  give_answers_up();
   waiting_.remove_if([](const Waiting& client) { return client.gone; });
 }
 
@@ -202,20 +203,26 @@ void HttpDoor::accept_all() {
   }
 }
 
-/// The oldest gives way where there are too many, or too much that they do not take.
+/// The oldest gives way where there are too many.
 HttpDoor::Waiting& HttpDoor::admit(Waiting client) {
   if (waiting_.size() >= limits_.waiting) waiting_.pop_front();
-  if (!client.answer.empty()) {
-    std::size_t bytes = client.answer.size();
-    for (const Waiting& other : waiting_) bytes += other.answer.size();
-    while (bytes > limits_.answer_bytes) {
-      const auto oldest = std::ranges::find_if_not(waiting_, &std::string::empty, &Waiting::answer);
-      if (oldest == waiting_.end()) break;
-      bytes -= oldest->answer.size();
-      waiting_.erase(oldest);
-    }
-  }
   return waiting_.emplace_back(std::move(client));
+}
+
+/// Answers that began first give way where too much is not taken; the last of them never does.
+void HttpDoor::give_answers_up() {
+  std::vector<Waiting*> untaken;
+  std::size_t bytes = 0;
+  for (Waiting& client : waiting_) {
+    if (client.answer.empty()) continue;
+    untaken.push_back(&client);
+    bytes += client.answer.size();
+  }
+  std::ranges::sort(untaken, {}, [](const Waiting* client) { return client->answer_end; });
+  for (std::size_t i = 0; i + 1 < untaken.size() && bytes > limits_.answer_bytes; ++i) {
+    bytes -= untaken[i]->answer.size();
+    untaken[i]->gone = true;
+  }
 }
 
 void HttpDoor::attend(Waiting& client, short events) {

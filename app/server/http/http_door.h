@@ -91,6 +91,7 @@ class HttpDoor {
   void take_returned();
   void accept_all();
   Waiting& admit(Waiting client);
+  void give_answers_up();
   void attend(Waiting& client, short events);
   void receive(Waiting& client);
   void take_in(Waiting& client);

@@ -40,7 +40,7 @@ Json frame_event(const std::string& session, int index, int led, ShotRole role,
   return {{"session", session},
           {"index", index},
           {"led", led},
-          {"role", library::name_of(role)},
+          {"role", name_of(role)},
           {"code", finding.code},
           {"level", number(finding.level)},
           {"misfit", number(finding.misfit)}};

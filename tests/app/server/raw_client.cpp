@@ -54,9 +54,12 @@ std::string RawClient::hear(std::chrono::milliseconds most, std::string_view end
   std::string heard;
   std::array<char, 4096> block = {};
   pollfd readable = {socket_.get(), POLLIN, 0};
-  while (heard.find(end) == std::string::npos && poll(&readable, 1, milliseconds_until(deadline)) > 0) {
+  std::size_t searched = 0;
+  while (heard.find(end, searched) == std::string::npos &&
+         poll(&readable, 1, milliseconds_until(deadline)) > 0) {
     const ssize_t bytes = recv(socket_.get(), block.data(), block.size(), 0);
     if (bytes <= 0) break;
+    searched = heard.size() - std::min(heard.size(), end.size());
     heard.append(block.data(), static_cast<std::size_t>(bytes));
   }
   return heard;
