@@ -208,6 +208,8 @@ ShotVerdict ScanEvidence::judge(const PlannedShot& shot, const std::vector<doubl
     case ShotRole::kRepeat:
     case ShotRole::kBracket:
       break;
+    case ShotRole::kBelow:
+      return {};
   }
   return judge_again(shot, light);
 }

@@ -78,6 +78,8 @@ std::string name_of(const PlannedShot& shot) {
       return fmt::format("the repeat of LED {}", shot.led);
     case ShotRole::kBracket:
       return fmt::format("the bracket of LED {}", shot.led);
+    case ShotRole::kBelow:
+      return "the shot of the light below";
     case ShotRole::kLit:
       break;
   }
