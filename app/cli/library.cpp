@@ -20,6 +20,8 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kMostShown = 60;  // bytes of a text in a list
 using library::Catalogue;
 using library::Entry;
 
@@ -94,19 +96,20 @@ Result<Catalogue> fresh_catalogue(const Place& place, const CommonArguments& com
   return catalogue;
 }
 
-// A text on one line of a terminal.
-std::string in_line(std::string text) {
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = ' ';
-  }
-  return text;
+// A text on one line of a terminal, cut after so many bytes where it is longer.
+std::string in_line(std::string text, std::size_t most = std::string::npos) {
+  std::ranges::replace(text, '\n', ' ');
+  if (text.size() <= most) return text;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xC0) == 0x80) --most;  // inside a character
+  return text.substr(0, most) + "…";
 }
 
 std::string line_of(const Entry& e) {
   std::string tags;
   for (const std::string& tag : e.metadata.tags) tags += " #" + tag;
-  return fmt::format("{:.10}  {:<28} {:<24} {:<11} {:>2} solve{} {}", e.taken, e.name, in_line(e.fabric),
-                     e.state, e.solves, e.solves == 1 ? " " : "s", in_line(tags));
+  return fmt::format("{:.10}  {:<28} {:<24} {:<11} {:>2} solve{} {}", e.taken, in_line(e.name, kMostShown),
+                     in_line(e.fabric, kMostShown), in_line(e.state, kMostShown), e.solves,
+                     e.solves == 1 ? " " : "s", in_line(tags, kMostShown));
 }
 
 Result<int> find(const FindArguments& a, const CommonArguments& common) {

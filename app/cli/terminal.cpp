@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -34,6 +35,14 @@ void write_all(std::FILE* stream, std::string_view text) {
 // Texts that are no UTF-8, a file's name say, are mended rather than lost.
 void tell(const Json& event) {
   write_all(stderr, event.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n");
+}
+
+// Names of files and words of people must not steer a terminal.
+std::string shown(std::string_view text) {
+  std::string line(text);
+  const auto steers = [](char c) { return (c >= 0 && c < ' ' && c != '\n' && c != '\t') || c == 0x7f; };
+  std::ranges::replace_if(line, steers, ' ');
+  return line + '\n';
 }
 
 // Of a phase that began so many seconds ago; nothing where it is too early to say.
@@ -119,10 +128,10 @@ std::stop_token stop_on_signal() {
 }
 
 void print(std::string_view text) {
-  write_all(stdout, fmt::format("{}\n", text));
+  write_all(stdout, shown(text));
 }
 void print_json(const Json& document) {
-  print(document.dump(2));
+  write_all(stdout, document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 Result<void> flush_output() {
   errno = 0;
@@ -138,7 +147,7 @@ void complain(const Error& error) {
 }
 void note(std::string_view text) {
   if (speaks_events) return tell({{"event", "note"}, {"text", text}});
-  write_all(stderr, fmt::format("{}\n", text));
+  write_all(stderr, shown(text));
 }
 
 }  // namespace weft::app

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 #include <vector>
@@ -11,6 +12,8 @@
 
 namespace weft::test {
 namespace {
+
+using testing::AllOf, testing::HasSubstr, testing::Not;
 
 class Library : public SessionTest {
  protected:
@@ -67,6 +70,31 @@ TEST_F(Library, ChangesNoSolveWithWhatIsSaidOfACloth) {
   const Outcome after = run_weft({"solve", session_.string(), "-q", "--json"});
   EXPECT_EQ(after.json()["id"], before.json()["id"]);
   EXPECT_EQ(library({"show", "cloth"}).json()["current_solve"], before.json()["id"]);
+}
+
+TEST_F(Library, ShowsWhatWouldSteerATerminalAsWords) {
+  const fs::path session = session_.parent_path() / "b\xff\x1b[31m\n.weft";
+  fs::copy(session_, session, fs::copy_options::recursive);
+  Json document = *read_json(session / "session.json", "weft.session", 1);
+  document["fabric"] = "<script>\x1b[2J\n../../a =cmd|calc, \"" + std::string(10'000, 'y');
+  document["metadata"] = {{"tags", {"<b>", "=cmd", "../red"}}, {"notes", "a\nb"}};
+  ASSERT_TRUE(write_json(session / "session.json", document));
+
+  const std::string listed = run_weft({"library", "list"}).output;
+  EXPECT_THAT(listed, AllOf(Not(HasSubstr("\x1b")), HasSubstr("<script>"), HasSubstr("2 of 2 sessions")));
+  EXPECT_EQ(std::ranges::count(listed, '\n'), 3) << "a line a session: " << listed;
+  EXPECT_LT(listed.size(), 500U) << "long texts are cut";
+  EXPECT_EQ(library({"list"}).json()["total"], 2) << "JSON although the name is no UTF-8";
+
+  const Outcome solved = run_weft({"solve", session.string(), "--json"});
+  ASSERT_EQ(solved.exit_code, 0) << solved.error;
+  EXPECT_THAT(solved.error, Not(HasSubstr("\x1b")));
+  for (const fs::directory_entry& solve : fs::directory_iterator(session / "solve")) {
+    EXPECT_THAT(bytes_of(solve.path() / "report.html"), Not(HasSubstr("<script")));
+  }
+  const Outcome missing = run_weft({"solve", "nothing\x1b[31m"});
+  EXPECT_EQ(missing.exit_code, 66);
+  EXPECT_THAT(missing.error, Not(HasSubstr("\x1b")));
 }
 
 TEST_F(Library, ListsWhatItWouldPruneAndPrunesOnRequestAlone) {

@@ -33,7 +33,7 @@ Result<void> write_check_result(const fs::path& folder, const std::string& of, c
                        {"calibration", calibration.id},
                        {"passed", report.verdicts.empty()},
                        {"numbers", report.numbers}};
-  return write_report(report, folder, std::array{NamedFile{kCheckResultFile, result.dump(2) + "\n"}});
+  return write_report(report, folder, std::array{NamedFile{kCheckResultFile, text_of(result)}});
 }
 
 double reported_delta(const fs::path& calibration) {

@@ -16,9 +16,12 @@ Json document_of(const CalibrationReport& report) {
           {"numbers", report.numbers}};
 }
 
+std::string text_of(const Json& document) {
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
+}
+
 std::vector<NamedFile> report_files(const CalibrationReport& report) {
-  return {{report.part + ".html", html_of(report)},
-          {report.part + ".json", document_of(report).dump(2) + "\n"}};
+  return {{report.part + ".html", html_of(report)}, {report.part + ".json", text_of(document_of(report))}};
 }
 
 std::string rig_name(const std::string& named, const fs::path& input) {

@@ -39,5 +39,7 @@ Result<void> write_report(const CalibrationReport& report, const std::filesystem
 
 /// The document of <part>.json.
 Json document_of(const CalibrationReport& report);
+/// A document as files have it. Bytes of a name that are no UTF-8 are replaced.
+std::string text_of(const Json& document);
 
 }  // namespace weft::app
