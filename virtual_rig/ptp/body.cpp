@@ -155,6 +155,12 @@ Answer PtpBody::serve(const Request& request, BytesView data) {
       return events();
     case kDeviceReady:
       return ready();
+    case kStartLiveView:
+      return start_live_view();
+    case kEndLiveView:
+      return end_live_view();
+    case kGetLiveViewImage:
+      return live_picture();
     case kInitiateCapture:
       return capture(false);
     case kInitiateCaptureRecInMedia:
@@ -162,7 +168,7 @@ Answer PtpBody::serve(const Request& request, BytesView data) {
     case kCaptureRecInSdram:
     case kAfCaptureSdram:
       return capture(true);
-    default:  // autofocus, camera mode, live view: nothing to see of them
+    default:  // autofocus, camera mode: nothing to see of them
       return {};
   }
 }
@@ -234,6 +240,7 @@ Answer PtpBody::property(const Request& request, BytesView data) {
     if (response == kOk && code == kExposureTime) tell_changes({kShutterSpeed});
     return {.code = response};
   }
+  if (code == kLiveViewProhibited) tell_prohibitions();
   std::optional<Bytes> bytes =
       request.operation == kGetDevicePropDesc ? properties_.description(code) : properties_.value(code);
   return bytes ? with_data(*std::move(bytes)) : Answer{.code = kPropertyNotSupported};
@@ -269,6 +276,7 @@ Answer PtpBody::capture(bool to_memory) {
     befall_before_next();
     return {.code = kDeviceBusy};
   }
+  end_live_view();
   const Exposure exposure = expose(to_memory);
   const auto half = exposure.camera.opened + (exposure.camera.closed - exposure.camera.opened) / 2;
   timeline_.at(half, [this, exposure] { half_exposed(exposure); });

@@ -75,6 +75,10 @@ class PtpBody {
   Answer events();
   Answer ready();
   Answer capture(bool to_memory);
+  Answer start_live_view();
+  Answer end_live_view();
+  Answer live_picture();
+  void tell_prohibitions();
 
   bool busy() const;
   Exposure expose(bool to_memory);
@@ -113,7 +117,9 @@ class PtpBody {
   bool powered_ = true, cable_in_ = true, port_open_ = true;
   bool session_open_ = false, session_silent_ = false, card_full_ = false;
   bool exposing_ = false, stuck_ = false, undeveloped_ = false;
-  RigClock::time_point busy_until_ = {}, claimed_until_ = {};
+  bool live_ = false, never_live_ = false;
+  int looks_ = 0;  ///< pictures of live view that were asked for
+  RigClock::time_point busy_until_ = {}, claimed_until_ = {}, next_look_ = {}, live_until_ = {};
   Timeline timeline_;  // last: ends before what it uses
 };
 

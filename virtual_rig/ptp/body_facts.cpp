@@ -9,7 +9,7 @@ namespace weft::virtual_rig::ptp {
 namespace {
 
 // What both serve, and last what a body with live view does: libgphoto2 takes that for a body's kind.
-constexpr std::array<std::uint16_t, 26> kOperations = {kGetDeviceInfo,      kOpenSession,
+constexpr std::array<std::uint16_t, 28> kOperations = {kGetDeviceInfo,      kOpenSession,
                                                        kCloseSession,       kGetStorageIds,
                                                        kGetStorageInfo,     kGetNumObjects,
                                                        kGetObjectHandles,   kGetObjectInfo,
@@ -21,8 +21,9 @@ constexpr std::array<std::uint16_t, 26> kOperations = {kGetDeviceInfo,      kOpe
                                                        kChangeCameraMode,   kDeleteSdramImage,
                                                        kGetEvent,           kDeviceReady,
                                                        kGetVendorPropCodes, kAfCaptureSdram,
-                                                       kEndLiveView,        kInitiateCaptureRecInMedia};
-constexpr std::size_t kWithoutLiveView = kOperations.size() - 2;
+                                                       kStartLiveView,      kEndLiveView,
+                                                       kGetLiveViewImage,   kInitiateCaptureRecInMedia};
+constexpr std::size_t kWithoutLiveView = kOperations.size() - 4;
 
 }  // namespace
 

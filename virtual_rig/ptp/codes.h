@@ -32,7 +32,9 @@ enum Operation : std::uint16_t {
   kDeviceReady = 0x90c8,
   kGetVendorPropCodes = 0x90ca,
   kAfCaptureSdram = 0x90cb,
+  kStartLiveView = 0x9201,
   kEndLiveView = 0x9202,
+  kGetLiveViewImage = 0x9203,
   kInitiateCaptureRecInMedia = 0x9207,
 };
 
@@ -52,6 +54,8 @@ enum ResponseCode : std::uint16_t {
   kInvalidPropValue = 0x201c,
   kInvalidParameter = 0x201d,
   kSessionAlreadyOpen = 0x201e,
+  kInvalidStatus = 0xa004,
+  kNotLiveView = 0xa00b,
 };
 
 /// What a camera says without being asked.
@@ -93,6 +97,7 @@ enum PropertyCode : std::uint16_t {
   kIsoAuto = 0xd16a,
   kRemoteTimeout = 0xd16b,
   kLiveViewStatus = 0xd1a2,
+  kLiveViewProhibited = 0xd1a4,
 };
 
 /// What a file is.

@@ -140,7 +140,10 @@ std::uint32_t PtpBody::new_handle(bool to_memory) const {
 
 void PtpBody::inject(const PtpFaultKind& kind, int shot) {
   const std::lock_guard lock(mutex_);
-  faults_.add(kind.fault, (kind.befalls == Befalls::kConnection ? connections_ : captures_) + shot);
+  const int before = kind.befalls == Befalls::kConnection ? connections_
+                     : kind.befalls == Befalls::kLook     ? looks_
+                                                          : captures_;
+  faults_.add(kind.fault, before + shot);
   if (!exposing_) befall_before_next();
 }
 
@@ -175,6 +178,7 @@ void PtpBody::befall(PtpFault fault) {
       return tell_changes({kImageQuality});
     case PtpFault::kWell:
       faults_.forget();
+      never_live_ = false;
       properties_.turn(kBatteryLevel, static_cast<int>(std::lround(100 * options_.battery)));
       properties_.turn(kImageQuality, 4);
       properties_.turn_dial(true);
@@ -224,7 +228,8 @@ void PtpBody::set_power(bool on) {
   update_presence();
   if (on) return;
   ++power_cycles_;  // what the timeline still holds of before is void
-  session_open_ = stuck_ = exposing_ = undeveloped_ = false;
+  session_open_ = stuck_ = exposing_ = undeveloped_ = never_live_ = false;
+  end_live_view();
   notices_.clear();
   std::erase_if(objects_, [](const auto& object) { return object.second.facts.storage == kMemory; });
   if (network_) network_->hang_up();

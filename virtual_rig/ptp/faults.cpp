@@ -74,6 +74,10 @@ constexpr auto kFaultKinds = std::to_array<PtpFaultKind>({
     {kUsbTimeout, kShot, "usb_timeout", "The transfer of the picture ends by a time-out of the bus."},
     {kUsbStaleSession, kConnection, "usb_stale_session",
      "The session of a host that was killed is still open: the camera answers Session Already Open."},
+    {kLiveStalls, kLook, "live_stalls", "The camera does not answer when asked for a picture of live view."},
+    {kLiveEnds, kLook, "live_ends", "The camera ends live view by itself."},
+    {kNeverLive, kLook, "never_live",
+     "The camera starts live view and says ever after, until it is switched off, that it is not in it."},
     {kWell, kBefore, "well",
      "All is well again: power, cable, battery, dial, quality; faults that still wait are forgotten."},
 });

@@ -47,6 +47,9 @@ enum class PtpFault : std::uint8_t {
   kUsbClaimed,
   kUsbTimeout,
   kUsbStaleSession,
+  kLiveStalls,
+  kLiveEnds,
+  kNeverLive,
   kWell,
 };
 
@@ -55,6 +58,7 @@ enum class Befalls {
   kShot,        ///< an exposure
   kConnection,  ///< a host that connects
   kBefore,      ///< the end of the exposure before; at once for the first
+  kLook,        ///< a picture of live view
 };
 
 /// A fault and what is told of it.

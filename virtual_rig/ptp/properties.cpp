@@ -149,6 +149,7 @@ std::vector<Property> d5100() {
       range(kIsoAuto, 0, 1),
       range(kRemoteTimeout, 3, 3),
       fixed(range(kLiveViewStatus, 0, 1)),
+      fixed({kLiveViewProhibited, kUint32, true, std::int64_t{0}, kAny, {}}),
   };
 }
 

@@ -29,6 +29,9 @@ struct CameraExposure {
 /// Makes the file of an exposure: its bytes. Called on a thread of the camera's; what it takes is read-out.
 using DevelopExposure = std::function<Result<std::vector<std::uint8_t>>(const CameraExposure&)>;
 
+/// What its finder shows at this moment: the bytes of a JPEG.
+using LookThrough = std::function<std::vector<std::uint8_t>()>;
+
 /// The bodies that the camera can be.
 enum class CameraBody {
   kD5100,  ///< is busy while its shutter is open, which libgphoto2's trigger waits for
@@ -51,6 +54,8 @@ struct VirtualCameraOptions {
   std::filesystem::path usb = {};  ///< a socket for the libusb stand-in; empty: no USB
   double away_s = 2;               ///< how long what is pulled out or switched off by a fault is away
   double late_s = 8;               ///< how late a picture is that comes late
+  LookThrough finder = {};         ///< for live view, 15 pictures a second; none: it is black
+  double finder_s = 600;           ///< after so long live view ends by itself
 };
 
 /// What may befall a camera, from the next step of its kind on. `shot` counts from 1 from now on.

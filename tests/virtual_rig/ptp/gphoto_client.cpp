@@ -22,6 +22,13 @@ bool is_usb(const std::string& port) {
   return port.starts_with("usb:");
 }
 
+std::vector<std::uint8_t> bytes_of(CameraFile* file) {
+  const char* data = nullptr;
+  unsigned long size = 0;
+  if (gp_file_get_data_and_size(file, &data, &size) < 0 || !data) return {};
+  return {data, data + size};
+}
+
 }  // namespace
 
 const std::string& private_home() {
@@ -171,10 +178,17 @@ GphotoClient::File GphotoClient::fetch(const CameraFilePath& path) {
   CameraFile* handle = nullptr;
   gp_file_new(&handle);
   file.code = gp_camera_file_get(camera_, path.folder, path.name, GP_FILE_TYPE_NORMAL, handle, context_);
-  const char* data = nullptr;
-  unsigned long size = 0;
-  if (file.code >= 0 && gp_file_get_data_and_size(handle, &data, &size) >= 0 && data)
-    file.bytes.assign(data, data + size);
+  file.bytes = bytes_of(handle);
+  gp_file_unref(handle);
+  return file;
+}
+
+GphotoClient::File GphotoClient::preview() {
+  File file;
+  CameraFile* handle = nullptr;
+  gp_file_new(&handle);
+  file.code = gp_camera_capture_preview(camera_, handle, context_);
+  file.bytes = bytes_of(handle);
   gp_file_unref(handle);
   return file;
 }

@@ -45,6 +45,8 @@ class GphotoClient {
     std::vector<std::uint8_t> bytes;
   };
   File fetch(const CameraFilePath& path);
+  /// A picture of live view, which is started where it is off.
+  File preview();
   int remove(const CameraFilePath& path);
 
   struct Shot {
