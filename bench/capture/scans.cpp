@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kRows = 10, kTurns = 12;
+constexpr int kRows = 10, kTurns = 13;
 
 /// What frames show, whatever their times and numbers.
 using Digests = std::map<std::string, std::string>;

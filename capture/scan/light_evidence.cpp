@@ -24,9 +24,12 @@ constexpr std::size_t kStoryStep = 5;        // every fifth patch is looked at: 
 constexpr double kMostFull = 0.5;            // of a frame's patches, for it to be held against the others
 constexpr double kFarBetter = 0.6;       // of the plan's misfit, at most, for another story to be believed
 constexpr double kBetterBy = 0.002;      // and by this at least
-constexpr double kDriftWarns = 0.01;     // of a repeat's brightness
+constexpr double kDriftWarns = 0.005;    // of a repeat's brightness
 constexpr double kRepeatLevel = 0.08;    // beyond it a repeat is not the same light
 constexpr double kRepeatPattern = 0.05;  // scatter of a repeat over its first, beyond noise
+constexpr double kDarkAlike = 3e-5;      // of full scale, between two dark shots: half a count of 14 bits
+constexpr double kDarkNoise = 6;         // of their difference, beyond it they are not alike
+constexpr double kMedianNoise = 1.86;    // of a median of normal deviates, from their median deviation
 constexpr double kBracketLevel = 0.25;   // of a bracket's brightness over the ratio of its times
 
 /// The share of patches that hold a full photosite.
@@ -206,6 +209,8 @@ ShotVerdict ScanEvidence::judge(const PlannedShot& shot, const std::vector<doubl
     case ShotRole::kLit:
       return judge_lit(shot, light);
     case ShotRole::kRepeat:
+      if (shot.led == 0) return judge_dark_again(light);
+      break;
     case ShotRole::kBracket:
       break;
     case ShotRole::kBelow:
@@ -234,6 +239,28 @@ ShotVerdict ScanEvidence::judge_dark(const PlannedShot& shot, const std::vector<
     verdict.warnings.push_back(
         fmt::format("the dark shot has {:.2g} of full scale: darken the room for cleaner maps", bright));
   }
+  return verdict;
+}
+
+/// The middle of what the patches gained, by how well that is known. A lamp that was switched on fills them
+/// all, so that none may be finite.
+ShotVerdict ScanEvidence::judge_dark_again(const std::vector<double>& light) const {
+  if (!dark_) return {};
+  std::vector<double> gained;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    if (std::isfinite(light[i]) && std::isfinite((*dark_)[i])) gained.push_back(light[i] - (*dark_)[i]);
+  }
+  const double more = gained.empty() ? 1 : median(gained);
+  for (double& each : gained) each = std::abs(each - more);
+  const double noise =
+      gained.empty() ? 0 : kMedianNoise * median(gained) / std::sqrt(static_cast<double>(gained.size()));
+  ShotVerdict verdict;
+  if (std::abs(more) < std::max(kDarkNoise * noise, kDarkAlike)) return verdict;
+  verdict.doubt = Finding::kRoomLight;
+  verdict.warnings.push_back(
+      fmt::format("the dark shot at the end is {} than the first by {:.2g} percent of full scale: the room's "
+                  "light changed or the sensor warmed in between; scan again with the room dark",
+                  more > 0 ? "brighter" : "darker", 100 * std::abs(more)));
   return verdict;
 }
 
@@ -357,8 +384,10 @@ ShotVerdict ScanEvidence::judge_again(const PlannedShot& shot, const std::vector
                name_of(shot), 100 * ratio->scatter));
   } else if (is_repeat && off > kDriftWarns) {
     verdict.doubt = Finding::kChanged;
-    verdict.warnings.push_back(fmt::format("LED {} gave {:.1f} percent {} light at the end than at first",
-                                           shot.led, 100 * off, *verdict.level < 1 ? "less" : "more"));
+    verdict.warnings.push_back(fmt::format(
+        "LED {} gave {:.1f} percent {} light at the end than at first: LEDs drift while they warm "
+        "up; let each be lit once before the next scan",
+        shot.led, 100 * off, *verdict.level < 1 ? "less" : "more"));
   }
   return verdict;
 }

@@ -57,7 +57,8 @@ struct ShotVerdict {
 ///   where it does not, forget() every shot that the verdict accuses.
 ///
 /// The dark shot is taken off what comes after it. Repeats and brackets are held against the lit frame of
-/// their LED. Where there is nothing to hold a frame against, it agrees.
+/// their LED, the dark shot at the end against the first: it is kept, and warned of. Where there is nothing
+/// to hold a frame against, it agrees.
 class ScanEvidence {
  public:
   /// Without a model only darkness, the repeat and the brackets are looked at.
@@ -78,6 +79,7 @@ class ScanEvidence {
   const Seen* of_led(int led) const;
   std::vector<double> without_dark(const std::vector<double>& light) const;
   ShotVerdict judge_dark(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_dark_again(const std::vector<double>& light) const;
   ShotVerdict judge_lit(const PlannedShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_again(const PlannedShot& shot, const std::vector<double>& light) const;
   double level_of(const PlannedShot& shot, const std::vector<double>& light) const;

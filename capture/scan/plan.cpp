@@ -15,7 +15,7 @@ constexpr double kSameTime = 0.01;  // 1/60 s is listed as 16667 or 16700 us; a 
 
 int ShotList::count() const {
   const int lit = static_cast<int>(leds.size());
-  return 1 + lit + (repeat ? 1 : 0) + (bracket ? lit : 0);
+  return 1 + lit + (repeat ? 2 : 0) + (bracket ? lit : 0);
 }
 
 Json to_json(const ShotList& list) {
@@ -34,8 +34,10 @@ std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings
   add(0, ShotRole::kDark, exposure.exposure_us);
   for (const int led : list.leds) add(led, ShotRole::kLit, exposure.exposure_us);
   if (list.repeat) add(list.leds.front(), ShotRole::kRepeat, exposure.exposure_us);
-  if (!list.bracket) return plan;
-  for (const int led : list.leds) add(led, ShotRole::kBracket, bracket_us);
+  if (list.bracket) {
+    for (const int led : list.leds) add(led, ShotRole::kBracket, bracket_us);
+  }
+  if (list.repeat) add(0, ShotRole::kRepeat, exposure.exposure_us);
   return plan;
 }
 
@@ -75,7 +77,7 @@ std::string name_of(const PlannedShot& shot) {
     case ShotRole::kDark:
       return "the dark shot";
     case ShotRole::kRepeat:
-      return fmt::format("the repeat of LED {}", shot.led);
+      return shot.led == 0 ? "the dark shot at the end" : fmt::format("the repeat of LED {}", shot.led);
     case ShotRole::kBracket:
       return fmt::format("the bracket of LED {}", shot.led);
     case ShotRole::kBelow:

@@ -22,16 +22,16 @@ struct PlannedShot {
 /// Which shots a scan takes, whatever their exposure. It is kept in session.json ("plan").
 struct ShotList {
   std::vector<int> leds;
-  bool repeat = true;
+  bool repeat = true;             ///< the first LED and the dark shot once more
   std::optional<double> bracket;  ///< times the exposure
 
   int count() const;
 };
 Json to_json(const ShotList& list);
 
-/// The shots in order: the dark one, the LEDs, the first LED again, each LED at `bracket_us`. The dark shot
-/// is the first, because whatever lights it (a lamp in the room, a LED that stays lit) lights all the others
-/// too.
+/// The shots in order: the dark one, the LEDs, the first LED again, each LED at `bracket_us`, the dark one
+/// again. The dark shot is the first, because whatever lights it (a lamp in the room, a LED that stays lit)
+/// lights all the others too; the last tells whether that changed.
 std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
                                     double bracket_us);
 

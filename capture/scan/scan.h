@@ -30,7 +30,7 @@ struct ScanRequest {
   std::filesystem::path calibration;  ///< folder, copied into the session; empty: none, and no light model
   ExposureSettings exposure;          ///< exposure_us 0: metered
   std::vector<int> leds;              ///< empty: all of the board
-  bool repeat = true;                 ///< the first LED once more at the end
+  bool repeat = true;                 ///< the first LED and the dark shot once more at the end
   std::optional<double> bracket;      ///< each LED once more at this times the exposure, 0.001 to 100
   std::filesystem::path copy;         ///< folder for a second copy of the finished session; empty: none
 };

@@ -107,7 +107,7 @@ TEST(Journal, MakesASessionThatEveryReaderTakes) {
   EXPECT_EQ(session->fabric, "cloth");
   EXPECT_EQ(session->rig, "rig 1");
   EXPECT_EQ(session->document["metadata"]["barcode"], "4711");
-  ASSERT_EQ(session->shots.size(), 4u);
+  ASSERT_EQ(session->shots.size(), 5u);
   EXPECT_EQ(session->shots[1].file, "raw/01_led01.dng");
   EXPECT_EQ(session->shots[1].time, "2026-11-18T11:06:40.250Z");
   EXPECT_EQ(session->shots[1].document["image_number"], 71);
@@ -118,7 +118,7 @@ TEST(Journal, MakesASessionThatEveryReaderTakes) {
   EXPECT_EQ(
       files_under(request.session),
       (std::set<std::string>{"calibration/lights.json", "calibration/report/lights.html", "raw/00_led00.dng",
-                             "raw/01_led01.dng", "raw/02_led02.dng", "raw/03_led01.dng", "session.json"}));
+                             "raw/01_led01.dng", "raw/02_led02.dng", "raw/03_led01.dng", "raw/04_led00.dng", "session.json"}));
 }
 
 TEST(Journal, SurvivesAKillAfterAnyStepWithEveryFrameWhole) {
@@ -214,7 +214,7 @@ TEST(Journal, ForgetsNoFrameWhileItsFoldersDiskIsAway) {
   fs::rename(disk, raw);
   const Result<Journal> back = opened(request);
   ASSERT_TRUE(back) << back.error().message();
-  EXPECT_EQ(back->session().shots.size(), 4u);
+  EXPECT_EQ(back->session().shots.size(), 5u);
 }
 
 TEST(Journal, LosesNoFrameThatComesBackWithItsDiskAfterItWasForgotten) {
@@ -228,7 +228,7 @@ TEST(Journal, LosesNoFrameThatComesBackWithItsDiskAfterItWasForgotten) {
   fs::rename(disk, raw);
   ASSERT_TRUE(opened(request));
   EXPECT_EQ(bytes_of(raw / ".dropped" / "01_led01.dng"), text_of(1));
-  EXPECT_EQ(files_under(raw).size(), 4u);
+  EXPECT_EQ(files_under(raw).size(), 5u);
 }
 
 TEST(Journal, KeepsEveryTakeAsideUntilTheSessionIsFinished) {
@@ -257,7 +257,7 @@ TEST(Journal, MovesAsideWhatNoSessionNames) {
   EXPECT_FALSE(is_there(request.session / "raw" / "04_led02.dng"));
   EXPECT_EQ(bytes_of(request.session / "raw" / ".dropped" / "04_led02.dng"), "of a crash");
   EXPECT_FALSE(is_there(request.session / "incoming" / "x.dng.partial"));
-  EXPECT_EQ(journal->session().shots.size(), 4u);
+  EXPECT_EQ(journal->session().shots.size(), 5u);
 }
 
 TEST(Journal, RefusesAFinishedSession) {
@@ -313,7 +313,7 @@ TEST(Journal, ForgetsNoFrameThatItOnlyCannotRead) {
   ASSERT_FALSE(journal);
   EXPECT_EQ(journal.error().kind, ErrorKind::kInputOutput) << journal.error().message();
   EXPECT_TRUE(is_there(frame));
-  EXPECT_EQ(read_session(request.session)->shots.size(), 4u);
+  EXPECT_EQ(read_session(request.session)->shots.size(), 5u);
 }
 
 TEST(Journal, IsWrittenByOneScanAtATime) {
@@ -357,9 +357,9 @@ TEST(Journal, TakesFramesOutAgain) {
   Result<Journal> journal = opened(request);
   ASSERT_TRUE(journal) << journal.error().message();
   ASSERT_TRUE(journal->discard({1, 3}));
-  EXPECT_EQ(journal->session().shots.size(), 2u);
+  EXPECT_EQ(journal->session().shots.size(), 3u);
   EXPECT_FALSE(is_there(request.session / "raw" / "01_led01.dng"));
-  EXPECT_EQ(read_session(request.session)->shots.size(), 2u);
+  EXPECT_EQ(read_session(request.session)->shots.size(), 3u);
 }
 
 }  // namespace

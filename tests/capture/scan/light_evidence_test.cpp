@@ -16,12 +16,14 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 constexpr int kRepeat = -1;
+constexpr int kDarkAgain = -2;                   // the dark shot at the end
 using Story = std::function<Lighting(int led)>;  // 0: dark, kRepeat: LED 1 again
 
 /// A session under a story of what really lit each shot; the first verdict that speaks, with its shot.
 struct Told {
   ShotVerdict verdict;
   int at = -1;
+  double drift = 0;  // of the repeat
   std::vector<std::string> warnings;
 };
 
@@ -35,12 +37,14 @@ Told told(const simulator::Scene& scene, const Story& story, bool with_model = t
   const ExposureSettings exposure = {brightness * cloth.scene_exposure_us(), 100, 8};
   Told told;
   for (const PlannedShot& shot : plan_shots({{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}}, exposure, 0)) {
-    const Lighting lighting = story(shot.role == ShotRole::kRepeat ? kRepeat : shot.led);
+    const bool is_repeat = shot.role == ShotRole::kRepeat;
+    const Lighting lighting = story(!is_repeat ? shot.led : shot.led == 0 ? kDarkAgain : kRepeat);
     std::vector<double> light = evidence.glance(
         cloth.photograph(lighting, exposure.exposure_us, static_cast<std::uint32_t>(shot.index)));
     told.verdict = evidence.judge(shot, light);
     told.warnings.insert(told.warnings.end(), told.verdict.warnings.begin(), told.verdict.warnings.end());
     told.at = shot.index;
+    if (told.verdict.level && is_repeat) told.drift = *told.verdict.level;
     if (told.verdict.finding != Finding::kAgrees) return told;
     evidence.accept(shot, std::move(light));
   }
@@ -48,7 +52,7 @@ Told told(const simulator::Scene& scene, const Story& story, bool with_model = t
 }
 
 Lighting as_planned(int led) {
-  if (led == 0) return {};
+  if (led == 0 || led == kDarkAgain) return {};
   return {{{led == kRepeat ? 1 : led, 1.0}}, 0};
 }
 
@@ -63,9 +67,9 @@ TEST(LightEvidence, AgreesWithASessionAsPlanned) {
   for (const auto& scene : {test::small_scene(), woven()}) {
     const Told t = told(scene, as_planned);
     EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << t.verdict.sentence;
-    EXPECT_EQ(t.at, 11);
+    EXPECT_EQ(t.at, 12);
     EXPECT_TRUE(t.warnings.empty()) << t.warnings.front();
-    EXPECT_NEAR(*t.verdict.level, 1, 0.005) << "of the repeat";
+    EXPECT_NEAR(t.drift, 1, 0.005);
   }
 }
 
@@ -141,13 +145,29 @@ TEST(LightEvidence, TellsALampThatIsSwitchedOnMeanwhileAtTheRepeatAtLatest) {
   EXPECT_NE(t.verdict.finding, Finding::kAgrees);
 }
 
-TEST(LightEvidence, SpeaksOfDriftFromOnePercentOn) {
+TEST(LightEvidence, SpeaksOfLightThatCameBetweenTheTwoDarkShots) {
+  for (const double room : {0.0, 1e-3, -1e-3, 5e-3, 0.5}) {
+    const Told t = told(woven(), [&](int led) {
+      Lighting lighting = as_planned(led);
+      if (led == (room < 0 ? 0 : kDarkAgain)) lighting.room = std::abs(room);
+      return lighting;
+    });
+    EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << "it is kept: " << t.verdict.sentence;
+    EXPECT_EQ(t.verdict.doubt, room == 0 ? Finding::kAgrees : Finding::kRoomLight) << room;
+    ASSERT_EQ(t.warnings.size(), room == 0 ? 0U : 1U) << room;
+    if (room == 0) continue;
+    EXPECT_THAT(t.warnings.front(), HasSubstr(room < 0 ? "the dark shot at the end is darker"
+                                                       : "the dark shot at the end is brighter"));
+  }
+}
+
+TEST(LightEvidence, SpeaksOfDriftFromHalfAPercentOn) {
   const auto fading = [](double to) {
     return [to](int led) { return led == kRepeat ? Lighting{{{1, to}}, 0} : as_planned(led); };
   };
-  const Told still = told(woven(), fading(0.995));
+  const Told still = told(woven(), fading(0.997));
   EXPECT_TRUE(still.warnings.empty());
-  const Told fades = told(woven(), fading(0.97));
+  const Told fades = told(woven(), fading(0.993));
   EXPECT_EQ(fades.verdict.finding, Finding::kAgrees);
   ASSERT_EQ(fades.warnings.size(), 1u);
   EXPECT_THAT(fades.warnings.front(), HasSubstr("percent less light at the end"));

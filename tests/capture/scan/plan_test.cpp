@@ -15,15 +15,17 @@ std::vector<std::string> stems(const std::vector<PlannedShot>& plan) {
   return names;
 }
 
-TEST(Plan, BeginsInTheDarkAndRepeatsTheFirstLed) {
+TEST(Plan, BeginsAndEndsInTheDarkAndRepeatsTheFirstLed) {
   const auto plan = plan_shots({{1, 2, 3}, true, {}}, {20000, 100, 8}, 0);
-  EXPECT_THAT(stems(plan), ElementsAre("00_led00", "01_led01", "02_led02", "03_led03", "04_led01"));
+  EXPECT_THAT(stems(plan),
+              ElementsAre("00_led00", "01_led01", "02_led02", "03_led03", "04_led01", "05_led00"));
+  EXPECT_EQ(plan[4].role, ShotRole::kRepeat);
   EXPECT_EQ(plan.front().role, ShotRole::kDark);
   EXPECT_EQ(plan.back().role, ShotRole::kRepeat);
   for (const PlannedShot& shot : plan) EXPECT_EQ(shot.exposure, (ExposureSettings{20000, 100, 8}));
 }
 
-TEST(Plan, TakesBracketsLastAndAtTheirOwnTime) {
+TEST(Plan, TakesBracketsAfterTheLedsAndAtTheirOwnTime) {
   const ShotList list = {{4, 2}, false, 4};
   const auto plan = plan_shots(list, {20000, 100, 8}, 80000);
   EXPECT_THAT(stems(plan), ElementsAre("00_led00", "01_led04", "02_led02", "03_led04", "04_led02"));
@@ -35,7 +37,7 @@ TEST(Plan, TakesBracketsLastAndAtTheirOwnTime) {
 TEST(Plan, FindsWhatASessionLacksInOrder) {
   const auto plan = plan_shots({{1, 2, 3}, true, {}}, {20000, 100, 8}, 0);
   Session session;
-  for (const int index : {0, 2, 4}) session.shots.emplace_back().index = index;
+  for (const int index : {0, 2, 4, 5}) session.shots.emplace_back().index = index;
   EXPECT_THAT(stems(missing_shots(plan, session)), ElementsAre("01_led01", "03_led03"));
 }
 

@@ -15,7 +15,7 @@ using test::SimulatedRig;
 using testing::HasSubstr;
 using Fault = SimulatedRig::Fault;
 
-constexpr int kShots = 12;
+constexpr int kShots = 13;
 
 /// The fault once, at each shot: the scan gets over it by itself.
 void expect_passes(Fault fault, int retaken) {

@@ -35,7 +35,7 @@ TEST(Scan, MakesASessionOfAllLedsThatIsComplete) {
   ASSERT_TRUE(session) << session.error().message();
   EXPECT_EQ(session->lit().size(), 10u);
   ASSERT_NE(session->dark(), nullptr);
-  EXPECT_EQ(session->shots.size(), 12u);
+  EXPECT_EQ(session->shots.size(), 13u);
   EXPECT_FALSE(bench.rig.is_lit());
   const Result<Calibration> calibration = read_calibration(session->calibration_folder());
   ASSERT_TRUE(calibration) << calibration.error().message();
@@ -53,13 +53,13 @@ TEST(Scan, MetersTheClothAndRecordsHow) {
   EXPECT_EQ(outcome->session.shots[1].exposure_us, exposure["exposure_us"]);
   const double bright = bench.kept[1].histogram_rgb[1].clipped;
   EXPECT_EQ(bright, 0);
-  EXPECT_EQ(bench.rig.takes(), 14) << "two test shots and the frames";
+  EXPECT_EQ(bench.rig.takes(), 15) << "two test shots and the frames";
 }
 
 TEST(Scan, TellsOfEveryFrameWithItsHistogram) {
   ScanBench bench;
   ASSERT_TRUE(bench.scan());
-  ASSERT_EQ(bench.kept.size(), 12u);
+  ASSERT_EQ(bench.kept.size(), 13u);
   for (std::size_t i = 0; i < 12; ++i) {
     EXPECT_EQ(bench.kept[i].shot.index, static_cast<int>(i));
     std::uint64_t sites = 0;
@@ -69,8 +69,8 @@ TEST(Scan, TellsOfEveryFrameWithItsHistogram) {
     EXPECT_EQ(sites, 96u * 64u);
   }
   EXPECT_EQ(bench.statuses.back().phase, ScanPhase::kComplete);
-  EXPECT_EQ(bench.statuses.back().frames, 12);
-  EXPECT_EQ(bench.statuses.back().frames_planned, 12);
+  EXPECT_EQ(bench.statuses.back().frames, 13);
+  EXPECT_EQ(bench.statuses.back().frames_planned, 13);
 }
 
 TEST(Scan, TakesBracketsAndSaysThatTheirRatioIsNotMeasured) {
@@ -79,7 +79,7 @@ TEST(Scan, TakesBracketsAndSaysThatTheirRatioIsNotMeasured) {
   bench.request.leds = {1, 2, 3, 4, 5};
   const Result<ScanOutcome> outcome = bench.scan();
   ASSERT_TRUE(outcome) << outcome.error().message();
-  EXPECT_EQ(outcome->session.shots.size(), 12u);
+  EXPECT_EQ(outcome->session.shots.size(), 13u);
   EXPECT_NEAR(outcome->session.shots[8].exposure_us, 4 * outcome->session.shots[1].exposure_us, 5);
   ASSERT_EQ(outcome->warnings.size(), 1u);
   EXPECT_THAT(outcome->warnings.front(), HasSubstr("no measured ratio"));
@@ -205,7 +205,7 @@ TEST(Scan, IsStoppedAfterTheShotOnItsWayAndGoesOnWhereItWas) {
   const Result<ScanOutcome> resumed = bench.scan();
   ASSERT_TRUE(resumed) << resumed.error().message();
   EXPECT_EQ(resumed->frames_resumed, 5);
-  EXPECT_EQ(bench.rig.takes(), 12);
+  EXPECT_EQ(bench.rig.takes(), 13);
   EXPECT_EQ(bench.objection(), "");
 }
 
@@ -220,7 +220,7 @@ TEST(Scan, ResumesAMeteredSessionWithItsExposure) {
   ASSERT_FALSE(bench.scan());
   bench.control.cancel = {};
   ASSERT_TRUE(bench.scan());
-  EXPECT_EQ(bench.rig.takes(), 14) << "no test shot is taken twice";
+  EXPECT_EQ(bench.rig.takes(), 15) << "no test shot is taken twice";
   EXPECT_EQ(bench.objection(), "");
 }
 
