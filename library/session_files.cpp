@@ -7,10 +7,19 @@
 #include <charconv>
 
 namespace weft::library {
+namespace {
+
+Error no_frame(const Session& session, int index) {
+  return {ErrorKind::kNoInput, "there is no such frame",
+          fmt::format("{}, frame {}", session.folder.stem().string(), index), "",
+          "see the session for the frames there are"};
+}
+
+}  // namespace
 
 namespace fs = std::filesystem;
 
-Result<StoredFrame> stored_frame(const Session& session, const std::string& index) {
+Result<Shot> stored_shot(const Session& session, const std::string& index) {
   int wanted = -1;
   const auto [end, error] = std::from_chars(index.data(), index.data() + index.size(), wanted);
   if (error != std::errc() || end != index.data() + index.size()) {
@@ -18,11 +27,14 @@ Result<StoredFrame> stored_frame(const Session& session, const std::string& inde
                  "use a frame's index, from 0"};
   }
   const auto shot = std::ranges::find(session.shots, wanted, &Shot::index);
-  if (shot == session.shots.end() || !lies_in(session.path_of(*shot), session.folder)) {
-    return Error{ErrorKind::kNoInput, "there is no such frame",
-                 fmt::format("{}, frame {}", session.folder.stem().string(), wanted), "",
-                 "see the session for the frames there are"};
-  }
+  if (shot == session.shots.end()) return no_frame(session, wanted);
+  return *shot;
+}
+
+Result<StoredFrame> stored_frame(const Session& session, const std::string& index) {
+  const Result<Shot> shot = stored_shot(session, index);
+  if (!shot) return shot.error();
+  if (!lies_in(session.path_of(*shot), session.folder)) return no_frame(session, shot->index);
   return StoredFrame{session.path_of(*shot), shot->sha256};
 }
 

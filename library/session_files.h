@@ -19,7 +19,9 @@ struct StoredFrame {
   std::string sha256;
 };
 
-/// The file of the frame of this index, which lies in the session. kUsage for what is no number, kNoInput.
+/// The shot of this index. kUsage for what is no number, kNoInput.
+Result<Shot> stored_shot(const Session& session, const std::string& index);
+/// Its file, which lies in the session. Errors as stored_shot().
 Result<StoredFrame> stored_frame(const Session& session, const std::string& index);
 
 /// What the scan warned of at this shot.

@@ -21,6 +21,7 @@
 #include "capture/rig.h"
 #include "core/calibration.h"
 #include "core/files.h"
+#include "core/session.h"
 
 namespace weft::app {
 namespace {
@@ -36,6 +37,7 @@ struct ScanArguments {
   std::vector<int> leds;  ///< empty: all
   std::optional<double> exposure_us, bracket, cloth_height_mm;
   std::vector<std::string> metadata;  ///< "key=value"
+  std::optional<int> again;           ///< LED of a finished session; 0: the dark shot
   bool repeat = true;
   bool preview = true;  ///< a quick solve at the end
   bool dry_run = false;
@@ -190,14 +192,32 @@ fs::path solve_preview(const fs::path& session, const CommonArguments& common, J
   return {};
 }
 
+/// The call that takes the LED's shot of a finished session once more.
+Result<std::string> call_again(const fs::path& folder, int led) {
+  if (folder.empty()) {
+    return Error{ErrorKind::kUsage, "nothing says of which session", "--again", "",
+                 "name it: -o NAME.weft --again LED"};
+  }
+  const Result<Session> session = read_session(folder);
+  if (!session) return session.error();
+  const std::vector<const Shot*> lit = session->lit();
+  const auto found = std::ranges::find(lit, led, &Shot::led);
+  const Shot* shot = led == 0 ? session->dark() : found != lit.end() ? *found : nullptr;
+  if (shot == nullptr) {
+    return Error{ErrorKind::kUsage, fmt::format("the session has no shot of LED {}", led), folder.string(),
+                 "", "name a LED that it lit, or 0 for the dark shot"};
+  }
+  return fmt::format("/api/v1/sessions/{}/frames/{}/again", folder.stem().string(), shot->index);
+}
+
 /// Scans. Returns the rig's last status, once nothing of this process holds the rig any more.
 Result<Json> photograph(const capture::Rig& rig, const std::optional<std::string>& owner, const Json& body,
-                        const CommonArguments& common) {
+                        const std::string& call, const CommonArguments& common) {
   const Result<ReachedRig> scanner = reach_rig(rig, owner);
   if (!scanner) return scanner.error();
-  const Result<Json> begun = scanner->client.post("/api/v1/scan", body);
+  const Result<Json> begun = scanner->client.post(call, body);
   if (!begun) return begun.error();
-  if (!body.contains("session")) say_choice(*begun, rig);
+  if (begun->contains("resumed") && !body.contains("session")) say_choice(*begun, rig);
   return follow(scanner->client, begun->at("session"), common);
 }
 
@@ -221,8 +241,15 @@ Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
   if (!arguments.output.has_filename()) arguments.output = arguments.output.parent_path();
   Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
   if (!rig) return std::move(rig).error();
-  const Result<Json> body = body_of(arguments);
-  if (!body) return body.error();
+  Result<Json> body = body_of(arguments);
+  if (!body) return std::move(body).error();
+  std::string call = "/api/v1/scan";
+  if (arguments.again) {
+    Result<std::string> again = call_again(arguments.output, *arguments.again);
+    if (!again) return std::move(again).error();
+    call = std::move(*again);
+    body = Json{{"exposure_us", arguments.exposure_us.value_or(0)}};
+  }
   const Result<std::optional<std::string>> owner = address_of_owner(*rig);
   if (!owner) return owner.error();
   if (*owner) {
@@ -231,7 +258,7 @@ Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
     rig->scan.sessions = fs::absolute(arguments.output).parent_path();
   }
   if (arguments.dry_run) return name_only(*rig, *owner, *body, common);
-  Result<Json> ended = photograph(*rig, *owner, *body, common);
+  Result<Json> ended = photograph(*rig, *owner, *body, call, common);
   if (!ended) return std::move(ended).error();
   Json& status = *ended;
   if (!status["error"].is_null())
@@ -268,6 +295,11 @@ Run add_scan(Options& options) {
       .add("--height", &a->cloth_height_mm,
            "Of the cloth's surface above the table, mm; default the rig file's")
       .in_range(-1000.0, 1000.0);
+  options
+      .add("--again", &a->again,
+           "LED whose shot of the finished session -o is taken once more, 0: the dark shot. The new frame "
+           "stands for the old one, which stays; with --exposure it is a bracket")
+      .in_range(0, 10);
   options.add("--metadata", &a->metadata, "KEY=VALUE to keep with the session: id, weight, side, notes");
   options.add_flag("!--no-repeat", &a->repeat,
                    "Do not light the first LED once more at the end, to see drift");

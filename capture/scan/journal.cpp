@@ -43,7 +43,7 @@ Result<void> make_session(const ScanRequest& request, const std::string& calibra
   session.calibration_id = calibration_id;
   session.state = kCapturing;
   session.document = Json::object();
-  session.document["schema"] = "weft.session/1.1";
+  session.document["schema"] = "weft.session/1.2";
   session.document["plan"] = to_json(list);
   if (!request.metadata.empty()) session.document["metadata"] = request.metadata;
   if (Result<void> written = write_session(session); !written) return written;
@@ -161,6 +161,26 @@ Result<Journal> Journal::open(const ScanRequest& request, const std::string& cal
   return journal;
 }
 
+Result<Journal> Journal::reopen(const ScanRequest& request, const std::string& calibration_id,
+                                AfterStep after_step) {
+  Result<Descriptor> lock = locked(request.session);
+  if (!lock) return lock.error();
+  Result<Session> session = read_session(request.session);
+  if (!session) return session.error();
+  const auto refuse = [&](std::string why, std::string remedy) {
+    return Error{ErrorKind::kCannotCreate, "no shot of the session can be taken again",
+                 request.session.string(), std::move(why), std::move(remedy)};
+  };
+  if (session->state != kComplete) return refuse("it is not finished", "finish it first: scan it again");
+  if (session->rig != request.rig) return refuse("it is of rig \"" + session->rig + "\"", "use that rig");
+  if (session->calibration_id != calibration_id)
+    return refuse("its calibration is not the one beside it", "bring the calibration back that it names");
+  Journal journal(std::move(*session), std::move(*lock), std::move(after_step));
+  if (Result<void> made = make_writable_folder(journal.incoming_); !made) return made.error();
+  if (Result<void> cleared = journal.clear_incoming(); !cleared) return cleared.error();
+  return journal;
+}
+
 Result<void> Journal::clear_incoming() const {
   std::error_code failed;
   for (const auto& entry : fs::directory_iterator(incoming_, failed)) {
@@ -168,6 +188,11 @@ Result<void> Journal::clear_incoming() const {
     if (failed) break;
   }
   return failed ? Result<void>(cannot_write(incoming_, failed.value())) : Result<void>();
+}
+
+void Journal::forget_incoming() const {
+  std::error_code ignored;
+  fs::remove_all(incoming_, ignored);
 }
 
 Result<void> Journal::forget_damaged() {
@@ -262,6 +287,8 @@ Result<Shot> Journal::keep(const PlannedShot& planned, const Photograph& photogr
   const auto place = std::find_if(session.shots.begin(), session.shots.end(),
                                   [&](const Shot& other) { return other.index > shot.index; });
   session.shots.insert(place, shot);
+  if (planned.supersedes)
+    std::ranges::find(session.shots, *planned.supersedes, &Shot::index)->superseded_by = shot.index;
   if (Result<void> written = replace(std::move(session)); !written) return written.error();
   after_step_("session.json replaced");
   return shot;
@@ -285,8 +312,12 @@ Result<void> Journal::discard(const std::vector<int>& indices) {
 
 Session Journal::finished(const std::vector<std::string>& warnings) const {
   Session session = session_;
+  const bool was_finished = session.state == kComplete;
   session.state = kComplete;
-  if (!warnings.empty()) session.document["warnings"] = warnings;
+  if (warnings.empty()) return session;
+  Json& kept = session.document["warnings"];
+  if (!was_finished || !kept.is_array()) kept = Json::array();
+  for (const std::string& warning : warnings) kept.push_back(warning);
   return session;
 }
 

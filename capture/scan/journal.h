@@ -31,6 +31,11 @@ class Journal {
   static Result<Journal> open(
       const ScanRequest& request, const std::string& calibration_id, const ShotList& list,
       AfterStep after_step = [](const char*) {});
+  /// Takes up one that is finished, to add a frame: it stays finished throughout. kCannotCreate where it is
+  /// unfinished or of another rig or calibration; kTryAgain, kInputOutput as open().
+  static Result<Journal> reopen(
+      const ScanRequest& request, const std::string& calibration_id,
+      AfterStep after_step = [](const char*) {});
   /// How many frames the session lacks, all where it is not there: worth asking before a device is.
   /// kCannotCreate where it is finished, or of another rig, calibration, cloth or plan; kBadData where it is
   /// no session of a scan.
@@ -42,15 +47,18 @@ class Journal {
   std::filesystem::path incoming(const std::string& stem) const { return incoming_ / stem; }
   /// Removes what landed there and was not kept.
   Result<void> clear_incoming() const;
+  /// The folder too: a finished session has none.
+  void forget_incoming() const;
 
   /// Exposure of the lit shots and where it comes from.
   Result<void> set_exposure(const Json& exposure);
   /// Puts a photograph in its place, read-only, its digest verified (kTryAgain where it is another), and then
-  /// into session.json. `notes` are further fields of the shot.
+  /// into session.json, together with the word that the shot it supersedes is superseded. `notes` are further
+  /// fields of the shot.
   Result<Shot> keep(const PlannedShot& planned, const Photograph& photograph, const Json& notes);
   /// Takes frames out again; their files go to raw/.dropped.
   Result<void> discard(const std::vector<int>& indices);
-  /// The session as finish() will leave it.
+  /// The session as finish() will leave it; one that was finished before keeps its warnings.
   Session finished(const std::vector<std::string>& warnings) const;
   /// `copy`: what became of the second copy, as record_of_copy() has it; null: none was asked for.
   Result<void> finish(const std::vector<std::string>& warnings, const Json& copy = {});

@@ -41,6 +41,45 @@ std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings
   return plan;
 }
 
+std::vector<PlannedShot> plan_of(const Session& session, const ExposureSettings& exposure,
+                                 double bracket_us) {
+  std::vector<PlannedShot> plan;
+  for (const Shot& shot : session.shots) {
+    const double time_us = shot.role == ShotRole::kBracket ? bracket_us : exposure.exposure_us;
+    plan.push_back({shot.index, shot.led, shot.role, {time_us, exposure.iso, exposure.f_number}});
+  }
+  return plan;
+}
+
+Result<PlannedShot> shot_again(const Session& session, int index, const ExposureSettings& exposure,
+                               std::optional<double> bracket_us) {
+  const auto refuse = [&](std::string why, std::string remedy) {
+    return Error{ErrorKind::kUsage, "the shot cannot be taken again",
+                 fmt::format("{}: index {}", session.folder.string(), index), std::move(why),
+                 std::move(remedy)};
+  };
+  const auto old = std::ranges::find(session.shots, index, &Shot::index);
+  if (old == session.shots.end()) return refuse("there is no such shot", "name one of the session's");
+  if (old->superseded_by) {
+    return refuse(fmt::format("shot {} stands for it already", *old->superseded_by), "take that one again");
+  }
+  const bool is_lit = old->role == ShotRole::kLit;
+  if (!is_lit && (old->role != ShotRole::kDark || bracket_us)) {
+    return refuse("it is a " + std::string(weft::name_of(old->role)) + " shot",
+                  "take a lit shot again, or the dark one at its exposure");
+  }
+  int last = 0;
+  for (const Shot& shot : session.shots) last = std::max(last, shot.index);
+  PlannedShot again = {last + 1, old->led, old->role, exposure};
+  if (bracket_us) {
+    again.role = ShotRole::kBracket;
+    again.exposure.exposure_us = *bracket_us;
+  } else {
+    again.supersedes = index;
+  }
+  return again;
+}
+
 std::string file_stem(const PlannedShot& shot) {
   return fmt::format("{:02}_led{:02}", shot.index, shot.led);
 }

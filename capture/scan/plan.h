@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct PlannedShot {
   int led = 0;    ///< from 1; 0: none
   ShotRole role = ShotRole::kLit;
   ExposureSettings exposure;
+  std::optional<int> supersedes = {};  ///< index of the shot that it stands for from then on
 };
 
 /// Which shots a scan takes, whatever their exposure. It is kept in session.json ("plan").
@@ -34,6 +36,13 @@ Json to_json(const ShotList& list);
 /// lights all the others too; the last tells whether that changed.
 std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
                                     double bracket_us);
+
+/// What was planned for a session's shots, in their order.
+std::vector<PlannedShot> plan_of(const Session& session, const ExposureSettings& exposure, double bracket_us);
+/// The shot of this index once more: kUsage where it is none that can be. `bracket_us`: as a bracket of its
+/// LED.
+Result<PlannedShot> shot_again(const Session& session, int index, const ExposureSettings& exposure,
+                               std::optional<double> bracket_us);
 
 /// "03_led04": its file without the ending.
 std::string file_stem(const PlannedShot& shot);

@@ -68,6 +68,7 @@ class Scan {
   Result<ScanOutcome> run() {
     Result<void> done = steps();
     const Result<void> off = shooter_.lamps_off();
+    if (!done && request_.again && journal_) journal_->forget_incoming();
     if (done && !off) warnings_.push_back("LEDs could not be switched off: " + off.error().message());
     if (!done) {
       const bool stopped = done.error().kind == ErrorKind::kInterrupted;
@@ -98,7 +99,8 @@ class Scan {
     if (!list) return list.error();
     list_ = std::move(*list);
     report_.change([&](ScanStatus& status) { status.frames_planned = list_.count(); });
-    const Result<int> missing = Journal::check(request_, calibration_id(), list_);
+    const Result<int> missing =
+        request_.again ? Result<int>(1) : Journal::check(request_, calibration_id(), list_);
     if (!missing) return missing.error();
     // What the frames will take is known well enough before the first one: 16 bits a photosite.
     const std::int64_t pixels =
@@ -116,7 +118,7 @@ class Scan {
           "there is no calibration of camera and lights: frames are not held against the LEDs");
       return {};
     }
-    if (list_.leds.size() < kEnoughForPatterns) {
+    if (!request_.again && list_.leds.size() < kEnoughForPatterns) {
       warnings_.push_back(
           fmt::format("with {} LEDs nothing tells that two of them are exchanged: that takes {} or more",
                       list_.leds.size(), kEnoughForPatterns));
@@ -142,11 +144,15 @@ class Scan {
   }
 
   Result<void> open_session() {
-    Result<Journal> journal = Journal::open(request_, calibration_id(), list_);
+    Result<Journal> journal = request_.again ? Journal::reopen(request_, calibration_id())
+                                             : Journal::open(request_, calibration_id(), list_);
     if (!journal) return journal.error();
     journal_.emplace(std::move(*journal));
     frames_resumed_ = static_cast<int>(journal_->session().shots.size());
-    report_.change([&](ScanStatus& status) { status.frames = frames_resumed_; });
+    report_.change([&](ScanStatus& status) {
+      status.frames = frames_resumed_;
+      if (request_.again) status.frames_planned = frames_resumed_ + 1;
+    });
     return {};
   }
 
@@ -157,6 +163,11 @@ class Scan {
     const Session& session = journal_->session();
     if (session.document.contains("exposure") && !session.shots.empty())
       return take_up_exposure(session.document["exposure"]);
+    if (request_.again) {
+      return Error{ErrorKind::kBadData, "no shot of the session can be taken again",
+                   request_.session.string(), "it does not say what the camera was set to",
+                   "take again what weft scan took"};
+    }
     Json record = {{"from", "request"}};
     if (exposure_.exposure_us > 0) {
       const Result<double> settable = settable_time_us(shutter_times_us_, exposure_.exposure_us);
@@ -186,8 +197,8 @@ class Scan {
     bracket_us_ = fields.optional_number("bracket_us").value_or(of_session.exposure_us);
     if (Result<void> ok = fields.status(); !ok) return ok;
     const double asked_us = request_.exposure.exposure_us;
-    const bool other_time =
-        asked_us > 0 && nearest_time_us(shutter_times_us_, asked_us) != of_session.exposure_us;
+    const bool other_time = asked_us > 0 && !request_.again &&
+                            nearest_time_us(shutter_times_us_, asked_us) != of_session.exposure_us;
     if (other_time || of_session.iso != exposure_.iso || of_session.f_number != exposure_.f_number) {
       return Error{ErrorKind::kCannotCreate, "session was begun with another exposure",
                    request_.session.string(),
@@ -256,7 +267,8 @@ class Scan {
 
   /// Frames of an earlier run are evidence for those of this one.
   Result<void> look_at_kept() {
-    plan_ = plan_shots(list_, exposure_, bracket_us_);
+    plan_ = request_.again ? plan_of(journal_->session(), exposure_, bracket_us_)
+                           : plan_shots(list_, exposure_, bracket_us_);
     std::optional<std::uint32_t> last;
     for (const Shot& shot : journal_->session().shots) {
       if (shot.document.contains("image_number") && shot.document["image_number"].is_number_unsigned()) {
@@ -270,10 +282,41 @@ class Scan {
           !ok)
         return ok;
       ScanEvidence& evidence = *so_far_.evidence;
-      evidence.accept(plan_[static_cast<std::size_t>(shot.index)], evidence.glance(*frame));
+      if (!shot.superseded_by && shot.index != request_.again)
+        evidence.accept(planned(shot.index), evidence.glance(*frame));
     }
     shooter_.follow(last);
+    return request_.again ? plan_again() : Result<void>();
+  }
+
+  const PlannedShot& planned(int index) const {
+    return *std::ranges::find(plan_, index, &PlannedShot::index);
+  }
+
+  Result<void> plan_again() {
+    std::optional<double> bracket_us;
+    if (const double asked_us = request_.exposure.exposure_us; asked_us > 0) {
+      const Result<double> settable = settable_time_us(shutter_times_us_, asked_us);
+      if (!settable) return settable.error();
+      if (*settable != exposure_.exposure_us) bracket_us = *settable;
+    }
+    if (bracket_us && !(calibration_ && calibration_->response &&
+                        calibration_->response->exposure_ratio(*bracket_us, exposure_.exposure_us))) {
+      return Error{ErrorKind::kUsage, "the shot cannot be taken again at another exposure",
+                   request_.session.string(),
+                   fmt::format("nobody measured the ratio of {:.6g} us to the session's {:.6g} us",
+                               *bracket_us, exposure_.exposure_us),
+                   "leave the exposure as it was, or measure the ratio: weft calibrate response"};
+    }
+    Result<PlannedShot> again = shot_again(journal_->session(), *request_.again, exposure_, bracket_us);
+    if (!again) return again.error();
+    plan_.push_back(*again);
     return {};
+  }
+
+  std::vector<PlannedShot> shots_to_take() const {
+    if (request_.again) return {plan_.back()};
+    return missing_shots(plan_, journal_->session());
   }
 
   /// The first frame says what all are like.
@@ -305,7 +348,7 @@ class Scan {
 
   /// While a shot is taken, the frame before it is decoded, checked and kept on another thread.
   Result<void> photograph_missing() {
-    const std::vector<PlannedShot> missing = missing_shots(plan_, journal_->session());
+    const std::vector<PlannedShot> missing = shots_to_take();
     std::deque<PlannedShot> queue(missing.begin(), missing.end());
     std::future<Arrived> on_its_way;
     while (!queue.empty() || on_its_way.valid()) {
@@ -348,7 +391,7 @@ class Scan {
     for (const int index : kept.take_again) {
       if (++times_wrong_[index] >= kTimesWrong) return *kept.error;
       ++frames_wrong_;
-      queue.push_front(plan_[static_cast<std::size_t>(index)]);
+      queue.push_front(planned(index));
     }
     return {};
   }
@@ -408,11 +451,12 @@ class Scan {
                            ? "leave cloth, camera and light alone, and scan under another name with -o"
                            : "mend the light, then run the same command again"},
                  {}};
-    const Result<void> out = journal_->discard(verdict.accused);
+    // What is taken again adds to a session and takes nothing out.
+    const Result<void> out = request_.again ? Result<void>() : journal_->discard(verdict.accused);
     if (!out) return {out.error(), {}};
     for (const int index : verdict.accused) {
       so_far.evidence->forget(index);
-      const PlannedShot& shot = plan_[static_cast<std::size_t>(index)];
+      const PlannedShot& shot = planned(index);
       report_.refused({index,
                        shot.led,
                        shot.role,
@@ -421,14 +465,14 @@ class Scan {
     }
     report_.change(
         [&](ScanStatus& status) { status.frames = static_cast<int>(journal_->session().shots.size()); });
-    if (verdict.may_pass()) kept.take_again = verdict.accused;
+    if (verdict.may_pass() && !request_.again) kept.take_again = verdict.accused;
     return kept;
   }
 
   std::string names_of(const std::vector<int>& shots) const {
     std::string names;
     for (const int index : shots) {
-      names += (names.empty() ? "" : ", ") + file_stem(plan_[static_cast<std::size_t>(index)]);
+      names += (names.empty() ? "" : ", ") + file_stem(planned(index));
     }
     return names;
   }

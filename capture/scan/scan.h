@@ -33,6 +33,10 @@ struct ScanRequest {
   bool repeat = true;                 ///< the first LED and the dark shot once more at the end
   std::optional<double> bracket;      ///< each LED once more at this times the exposure, 0.001 to 100
   std::filesystem::path copy;         ///< folder for a second copy of the finished session; empty: none
+  /// Instead of all that: this lit or dark shot of the finished session once more, at its exposure. The new
+  /// frame gets the next number and stands for the old one, which stays. With an exposure of its own the new
+  /// frame is a bracket of the LED, and supersedes none.
+  std::optional<int> again;
 };
 
 /// What a scan does at the moment (the machine is drawn in docs/reliability.md).

@@ -23,6 +23,16 @@ bool are_same_frames(const Session& a, const Session& b) {
   return std::ranges::equal(a.shots, b.shots, {}, &Shot::sha256, &Shot::sha256);
 }
 
+bool holds(const Session& session, const Shot& shot) {
+  return std::ranges::any_of(
+      session.shots, [&](const Shot& each) { return each.sha256 == shot.sha256 && each.file == shot.file; });
+}
+
+/// Whether `twin` is what the session was before shots were taken again.
+bool is_of_before(const Session& twin, const Session& session) {
+  return std::ranges::all_of(twin.shots, [&](const Shot& shot) { return holds(session, shot); });
+}
+
 /// Reads a file back from its disk: what the system holds of it in memory is written and let go first.
 Result<void> verify(const fs::path& file, const std::string& sha256) {
   const Descriptor on_disk(file, O_RDONLY);
@@ -69,6 +79,21 @@ Result<void> copy_calibration(const Session& session, const Session& twin) {
   return failed ? Result<void>(cannot_read(from, failed.value())) : Result<void>();
 }
 
+/// The session's document comes last: a copy that is cut short is the one of before, with files more.
+Result<void> add_frames(const Session& session, const Session& there) {
+  Session twin = session;
+  twin.folder = there.folder;
+  for (const Shot& shot : session.shots) {
+    if (holds(there, shot)) continue;
+    std::error_code ignored;
+    std::filesystem::remove(twin.path_of(shot), ignored);
+    if (Result<void> done = copy_verified(session.path_of(shot), twin.path_of(shot), shot.sha256); !done)
+      return done;
+  }
+  twin.document.erase("copy");
+  return write_session(twin);
+}
+
 Result<void> verify_frames(const Session& session) {
   for (const Shot& shot : session.shots) {
     if (Result<void> same = verify(session.path_of(shot), shot.sha256); !same) return same;
@@ -86,9 +111,9 @@ fs::path place_of_copy(const Session& session, const fs::path& folder) {
 
 Result<void> copy_session(const Session& session, const fs::path& folder) {
   const fs::path target = place_of_copy(session, folder);
-  if (const Result<Session> there = read_session(target);
-      there && there->state == session.state && are_same_frames(*there, session)) {
-    return verify_frames(*there);
+  if (const Result<Session> there = read_session(target); there && there->state == session.state) {
+    if (are_same_frames(*there, session)) return verify_frames(*there);
+    if (is_of_before(*there, session)) return add_frames(session, *there);
   }
   remove_abandoned(target);
   PartialFolder aside(target);

@@ -17,7 +17,8 @@ std::filesystem::path place_of_copy(const Session& session, const std::filesyste
 /// Copies a session whose frames have all landed to its place below `folder` (on another disk), with
 /// `session` as its session.json. Every frame is read back from there and held against the digest it was
 /// received with. The copy is made aside and renamed: what is there under the session's name is whole. One of
-/// the same frames that is there already is only read back. kCannotCreate where another folder of that name
+/// the same frames that is there already is only read back, and one that lacks frames which were taken again
+/// since gets them. kCannotCreate where another folder of that name
 /// is there, kInputOutput where what is read back differs.
 Result<void> copy_session(const Session& session, const std::filesystem::path& folder);
 

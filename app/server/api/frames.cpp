@@ -7,6 +7,8 @@
 
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
+#include "app/server/api/scan_body.h"
+#include "app/server/api/session_choice.h"
 #include "app/server/http/error_json.h"
 #include "library/session_files.h"
 
@@ -14,6 +16,7 @@ namespace weft::app {
 namespace {
 
 constexpr int kBusy = 503;
+constexpr double kLongestAgain_us = 1e9;
 
 /// Too many pictures at once is this server's fault, not a conflict with the rig's state.
 Result<Reply> busy_or(const Error& error) {
@@ -89,6 +92,30 @@ Result<Reply> histogram(const RigParts& parts, const Call& call) {
   return json_reply(*histogram);
 }
 
+/// The shot once more, which then stands for this one.
+Result<Reply> again(const RigParts& parts, const Call& call) {
+  const Result<Json> body = parse_body(call.body);
+  if (!body) return body.error();
+  const Result<std::string> by = parts.controls.commander(call.control);
+  if (!by) return by.error();
+  const Json exposure = body->value("exposure_us", Json(0));
+  if (!exposure.is_number() || exposure < 0 || exposure > kLongestAgain_us) {
+    return Error{ErrorKind::kUsage, "the shot cannot be taken again", "exposure_us",
+                 fmt::format("must be above 0 and at most {:g}, or absent: the session's", kLongestAgain_us),
+                 "see frames/{index}/again in openapi.json"};
+  }
+  const Result<Session> session = parts.library.session(call.segments.at(0));
+  if (!session) return session.error();
+  const Result<Shot> shot = library::stored_shot(*session, call.segments.at(1));
+  if (!shot) return shot.error();
+  Result<capture::ScanRequest> request = request_again(*session, parts.rig, *shot, exposure.get<double>());
+  if (!request) return std::move(request).error();
+  if (Result<void> begun = parts.keeper.begin(std::move(*request), *by); !begun)
+    return std::move(begun).error();
+  parts.library.watch(session->folder);
+  return json_reply({{"session", call.segments.at(0)}, {"led", shot->led}}, kAccepted);
+}
+
 }  // namespace
 
 Resource frames_resource(const RigParts& parts) {
@@ -97,7 +124,9 @@ Resource frames_resource(const RigParts& parts) {
            {"GET", "/api/v1/sessions/{name}/frames/{index}/histogram",
             [&parts](const Call& call) { return histogram(parts, call); }, false, Pool::kPictures},
            {"GET", "/api/v1/sessions/{name}/frames/{index}/raw",
-            [&parts](const Call& call) { return raw(parts, call); }, false, Pool::kFiles}},
+            [&parts](const Call& call) { return raw(parts, call); }, false, Pool::kFiles},
+           {"POST", "/api/v1/sessions/{name}/frames/{index}/again",
+            [&parts](const Call& call) { return again(parts, call); }}},
           frames_description()};
 }
 

@@ -164,4 +164,21 @@ Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig, 
   return choice;
 }
 
+Result<capture::ScanRequest> request_again(const Session& session, const capture::Rig& rig, const Shot& shot,
+                                           double exposure_us) {
+  if (session.rig != rig.name) {
+    return Error{ErrorKind::kCannotCreate, "no shot of the session can be taken again",
+                 session.folder.string(), "it is of rig \"" + session.rig + "\"", "use that rig"};
+  }
+  capture::ScanRequest request = request_of_session(session, rig);
+  request.session = session.folder;
+  request.calibration = is_there(session.calibration_folder()) ? session.calibration_folder() : fs::path();
+  request.exposure.exposure_us = exposure_us;
+  const Json copy = session.document.value("copy", Json());
+  request.copy = copy.is_object() ? copy.value("to", "") : "";
+  request.again = shot.index;
+  if (shot.led > 0) request.leds = {shot.led};
+  return request;
+}
+
 }  // namespace weft::app

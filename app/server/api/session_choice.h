@@ -9,6 +9,7 @@
 #include "capture/scan/scan.h"
 #include "core/json_document.h"
 #include "core/result.h"
+#include "core/session.h"
 #include "library/catalogue.h"
 
 namespace weft::app {
@@ -39,5 +40,10 @@ library::Query unfinished_of(const capture::Rig& rig);
 /// and kBadData (its session.json). Nothing is made.
 Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig, LibraryService& library,
                                      std::chrono::system_clock::time_point now);
+
+/// The scan that takes a shot of a finished session once more (capture::ScanRequest::again), with an exposure
+/// of its own above 0. kCannotCreate where the session is not this rig's.
+Result<capture::ScanRequest> request_again(const Session& session, const capture::Rig& rig, const Shot& shot,
+                                           double exposure_us);
 
 }  // namespace weft::app
