@@ -49,6 +49,7 @@ struct Rig {
     std::filesystem::path look_token;  ///< a file with that of who may only look; empty: nobody
     std::vector<std::string> names;    ///< more names that lead to it: "rig.local"
     std::vector<std::string> origins;  ///< of pages behind a proxy: "https://rig.local"
+    bool preview = true;               ///< each finished scan is solved once quickly, as a job
     std::filesystem::path state;       ///< folder for its lock, address and log; empty: beside the rig file
   } daemon;
 };

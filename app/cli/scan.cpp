@@ -210,6 +210,31 @@ Result<std::string> call_again(const fs::path& folder, int led) {
   return fmt::format("/api/v1/sessions/{}/frames/{}/again", folder.stem().string(), shot->index);
 }
 
+/// The sheet of the quick solve that the daemon makes of a finished scan as a job; empty where it makes none.
+fs::path await_preview(const capture::Rig& rig, const std::string& owner, const std::string& session,
+                       const CommonArguments& common, Json& warnings) {
+  const Result<RigClient> client = connect_to_owner(rig, owner);
+  if (!client) return {};
+  ProgressLine line(common.quiet);
+  const std::stop_token interrupt = stop_on_signal();
+  for (; !interrupt.stop_requested(); std::this_thread::sleep_for(kBetweenQuestions)) {
+    const Result<Json> page = client->get("/api/v1/jobs");
+    if (!page) return {};
+    const Json& jobs = page->at("jobs");
+    const auto job = std::ranges::find_if(
+        jobs, [&](const Json& each) { return each["of"] == session && each["by"] == "scan"; });
+    if (job == jobs.end()) return {};
+    const std::string state = job->at("state").get<std::string>();
+    if (state == "done") return fs::path(job->at("result").value("folder", "")) / "sheet.png";
+    if (state == "failed" || state == "cancelled") {
+      warnings.push_back("there is no preview: its job " + state);
+      return {};
+    }
+    line.update("preview", job->at("share").get<double>());
+  }
+  return {};
+}
+
 /// Scans. Returns the rig's last status, once nothing of this process holds the rig any more.
 Result<Json> photograph(const capture::Rig& rig, const std::optional<std::string>& owner, const Json& body,
                         const std::string& call, const CommonArguments& common) {
@@ -271,7 +296,9 @@ Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
                  "run the same command again to finish it"};
   }
   Json warnings = status["warnings"];
-  const fs::path sheet = arguments.preview ? solve_preview(session, common, warnings) : fs::path();
+  const fs::path sheet = !arguments.preview ? fs::path()
+                         : *owner           ? await_preview(*rig, **owner, session.stem(), common, warnings)
+                                            : solve_preview(session, common, warnings);
   print_outcome(session, status, warnings, sheet, common);
   return kDone;
 }

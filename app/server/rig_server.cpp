@@ -14,11 +14,14 @@
 #include "app/server/rig/controls.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_lock.h"
+#include "core/calibration.h"
 #include "core/files.h"
 #include "core/process.h"
 
 namespace weft::app {
 namespace {
+
+constexpr const char* kScan = "scan";  // who asks for a preview
 
 // A job without what it made, which is asked for by its id.
 Json event_of(const JobStatus& job) {
@@ -53,7 +56,21 @@ struct RigServer::State {
 
   void tell_shot(const TestShot& shot) { events.add("shot", document_of(shot, pictures)); }
 
-  Result<void> open_jobs_and_library(const std::filesystem::path& weft) {
+  /// By the calibration that the session was scanned with, where that suffices for a solve.
+  void solve_preview(const capture::ScanRequest& request) {
+    const Result<Calibration> calibration = read_calibration(request.session / "calibration");
+    if (!calibration || !calibration->camera || !calibration->lights || !calibration->response) return;
+    const std::string session = request.session.string(), name = request.session.stem().string();
+    const Result<JobStatus> job =
+        jobs->add({"solve", name, {"solve", session, "--quality", "preview"}, kScan, "", {session}});
+    if (!job) {
+      log.add("preview_failed", job.error().message(), {{"session", name}});
+    } else {
+      static_cast<void>(jobs->first(job->id));
+    }
+  }
+
+  Result<void> open_jobs_and_library(const std::filesystem::path& weft, bool previews) {
     Result<std::unique_ptr<LibraryService>> shelves = LibraryService::open(lock.folder(), rig.scan.sessions);
     if (!shelves) return std::move(shelves).error();
     library = std::move(*shelves);
@@ -69,6 +86,7 @@ struct RigServer::State {
     if (!opened) return std::move(opened).error();
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
+    if (previews) keeper.on_scanned([this](const capture::ScanRequest& request) { solve_preview(request); });
     parts.emplace(
         RigParts{rig, lock.folder(), keeper, pictures, attendance, controls, *jobs, *library, guard});
     return {};
@@ -121,7 +139,8 @@ Result<std::unique_ptr<RigServer>> RigServer::start(const capture::Rig& rig, cap
   if (!rules) return std::move(rules).error();
   auto state = std::make_unique<State>(rig, std::move(*lock), std::move(open), std::move(run), options.say);
   state->guard = *rules;
-  if (Result<void> ok = state->open_jobs_and_library(options.weft); !ok) return std::move(ok).error();
+  if (Result<void> ok = state->open_jobs_and_library(options.weft, options.previews); !ok)
+    return std::move(ok).error();
   std::vector<Route> routes = api_routes(*state->parts);
   for (Route& route : page_routes()) routes.push_back(std::move(route));
   Result<std::unique_ptr<HttpServer>> http =

@@ -19,6 +19,7 @@ struct RigServerOptions {
   /// Where the rig file names no token, the server makes one that clients of this user can read.
   bool own_token = false;
   std::filesystem::path weft = {};  ///< the program that jobs run; empty: weft beside this one
+  bool previews = false;            ///< a finished scan is solved once quickly, as the first of the jobs
   Logbook::Say say = {};            ///< hears each line of its log; empty: nobody does
 };
 

@@ -74,6 +74,13 @@ double TomlKeys::within(const char* key, double value, double least, double most
   return value;
 }
 
+bool TomlKeys::flag_or(const char* key, bool otherwise) {
+  if (!has(key)) return otherwise;
+  const auto value = table_->get(key)->value_exact<bool>();
+  if (!value) reject(key, "it must be true or false");
+  return value.value_or(otherwise);
+}
+
 std::string TomlKeys::text_or(const char* key, std::string otherwise) {
   if (!has(key)) return otherwise;
   const auto value = table_->get(key)->value<std::string>();

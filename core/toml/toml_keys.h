@@ -35,6 +35,7 @@ class TomlKeys {
   std::vector<double> numbers(const char* key, std::size_t fewest, std::size_t most);
   /// `value`, which must be within.
   double within(const char* key, double value, double least, double most);
+  bool flag_or(const char* key, bool otherwise);
   std::string text_or(const char* key, std::string otherwise);
   std::vector<std::string> texts_or(const char* key, std::vector<std::string> otherwise);
   /// The table [key], empty where there is none.

@@ -92,6 +92,7 @@ TEST(RigFile, NamesTheKeyThatIsWrong) {
       {"[daemon]\nlook_token = \"look\"", "[daemon]: look_token"},
       {"[daemon]\nnames = [\"rig.local:8470\"]", "[daemon]: names"},
       {"[daemon]\norigins = [\"rig.local\"]", "[daemon]: origins"},
+      {"[daemon]\npreview = 1", "[daemon]: preview"},
       {"[daemon]\norigins = [\"https://rig.local/\"]", "[daemon]: origins"},
       {"[daemon", "line 1"},
   };

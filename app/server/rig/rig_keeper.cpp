@@ -268,6 +268,7 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
     record["frames_retaken"] = outcome->frames_retaken;
     record["warnings"] = outcome->warnings;
     log_.add("scan_complete", name_of_session(request), std::move(record));
+    scanned_(request);
   } else {
     record["error"] = json_of(outcome.error());
     log_.add(cancelled ? "scan_cancelled" : "scan_failed", outcome.error().message(), std::move(record));

@@ -47,6 +47,9 @@ class RigKeeper {
   /// Hears whether a scan runs; set before the first begins. Must not call the keeper.
   void on_busy(std::function<void(bool)> busy) { busy_ = std::move(busy); }
 
+  /// Hears of each scan that came to its end; set before the first begins.
+  void on_scanned(std::function<void(const capture::ScanRequest&)> scanned) { scanned_ = std::move(scanned); }
+
   /// Hears who holds the controls; set before the first client comes. Must not call the keeper.
   void on_controls(std::function<std::string()> controls) { controls_ = std::move(controls); }
   /// Tells all that follow how things are.
@@ -90,6 +93,7 @@ class RigKeeper {
   FramePictures& pictures_;
 
   std::function<void(bool)> busy_ = [](bool) {};
+  std::function<void(const capture::ScanRequest&)> scanned_ = [](const capture::ScanRequest&) {};
   std::function<std::string()> controls_ = [] { return std::string(); };
   mutable std::mutex mutex_;
   std::condition_variable_any ended_;  ///< or asked to end
