@@ -120,7 +120,7 @@ bool is_origin(std::string_view origin) {
 
 Result<void> read_daemon(const toml::table& table, Rig& rig) {
   TomlKeys keys(table, place(rig.file, "daemon"), kPage);
-  keys.know({"host", "port", "token", "look_token", "names", "origins", "preview", "state"});
+  keys.know({"host", "port", "token", "look_token", "names", "origins", "archives", "preview", "state"});
   rig.daemon.host = keys.text_or("host", rig.daemon.host);
   rig.daemon.port = keys.integer_or("port", rig.daemon.port, 0, 65535);
   rig.daemon.token = beside(rig.file, keys.text_or("token", ""));
@@ -131,6 +131,8 @@ Result<void> read_daemon(const toml::table& table, Rig& rig) {
   for (const std::string& name : rig.daemon.names) {
     if (!is_host_name(name)) keys.reject("names", "each is a name without a port, as in [\"rig.local\"]");
   }
+  for (const std::string& archive : keys.texts_or("archives", {}))
+    rig.daemon.archives.push_back(beside(rig.file, archive));
   rig.daemon.preview = keys.flag_or("preview", rig.daemon.preview);
   rig.daemon.origins = keys.texts_or("origins", {});
   for (const std::string& origin : rig.daemon.origins) {

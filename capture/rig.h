@@ -15,7 +15,7 @@ namespace weft::capture {
 struct Rig {
   std::filesystem::path file;  ///< it was read from
   std::string name;            ///< in every session and calibration of it
-  int leds = 10;               ///< 1 to 10; where the file does not say, as many as `lights` has
+  int leds = 10;               ///< 1 to 10; where the file does not say, as many as `lights` has; 0: no rig
 
   /// [[led]], from LED 1: where a tape has them. Aims are unit vectors, by default at the table's centre;
   /// fluxes are 1. None where nobody measured.
@@ -43,14 +43,15 @@ struct Rig {
   } scan;
 
   struct Daemon {
-    std::string host = "127.0.0.1";    ///< another one needs a token
-    int port = 8470;                   ///< 0: any free one, written to `state`/address
-    std::filesystem::path token;       ///< a file that holds it; empty: none
-    std::filesystem::path look_token;  ///< a file with that of who may only look; empty: nobody
-    std::vector<std::string> names;    ///< more names that lead to it: "rig.local"
-    std::vector<std::string> origins;  ///< of pages behind a proxy: "https://rig.local"
-    bool preview = true;               ///< each finished scan is solved once quickly, as a job
-    std::filesystem::path state;       ///< folder for its lock, address and log; empty: beside the rig file
+    std::string host = "127.0.0.1";               ///< another one needs a token
+    int port = 8470;                              ///< 0: any free one, written to `state`/address
+    std::filesystem::path token;                  ///< a file that holds it; empty: none
+    std::filesystem::path look_token;             ///< a file with that of who may only look; empty: nobody
+    std::vector<std::string> names;               ///< more names that lead to it: "rig.local"
+    std::vector<std::string> origins;             ///< of pages behind a proxy: "https://rig.local"
+    std::vector<std::filesystem::path> archives;  ///< more folders of sessions, to look at
+    bool preview = true;                          ///< each finished scan is solved once quickly, as a job
+    std::filesystem::path state;  ///< folder for its lock, address and log; empty: beside the rig file
   } daemon;
 };
 

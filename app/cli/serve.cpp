@@ -19,6 +19,7 @@
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -29,6 +30,7 @@ struct ServeArguments {
   std::filesystem::path rig;        ///< rig.toml; empty: found as find_rig() says
   std::optional<std::string> host;  ///< in place of what the rig file says
   std::optional<int> port;
+  std::vector<std::string> archives;
 };
 
 constexpr auto kTick = std::chrono::milliseconds(50);
@@ -76,12 +78,44 @@ class Watchdog {
   Clock::time_point next_ = {};
 };
 
-Result<int> serve(const ServeArguments& arguments, const CommonArguments& common) {
-  const std::stop_token stop = stop_on_signal();
-  Result<capture::Rig> rig = capture::read_rig(find_rig(arguments.rig));
-  if (!rig) return std::move(rig).error();
+/// What a server works on that has archives and no rig.
+capture::Rig no_rig(const std::vector<std::string>& archives) {
+  capture::Rig rig;
+  rig.name = "archive";
+  rig.leds = 0;
+  rig.scan.sessions = archives.front();
+  const char* state = std::getenv("XDG_STATE_HOME");
+  const char* home = std::getenv("HOME");
+  rig.daemon.state = state != nullptr && *state != '\0'
+                         ? std::filesystem::path(state) / "weft/archive"
+                         : std::filesystem::path(home == nullptr ? "/" : home) / ".local/state/weft/archive";
+  return rig;
+}
+
+/// The rig of its file; where none is named or found and there are archives, no rig.
+Result<capture::Rig> rig_to_serve(const ServeArguments& arguments) {
+  const std::filesystem::path file = find_rig(arguments.rig);
+  const bool has_rig = !arguments.rig.empty() || arguments.archives.empty() || is_there(file);
+  Result<capture::Rig> rig = has_rig ? capture::read_rig(file) : no_rig(arguments.archives);
+  if (!rig) return rig;
+  for (const std::string& archive : arguments.archives) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(archive, error)) {
+      return Error{ErrorKind::kNoInput, "there is no such folder of sessions", archive,
+                   error.message(), "name one that is there with --archive"};
+    }
+    if (absolute_folder(archive) != absolute_folder(rig->scan.sessions))
+      rig->daemon.archives.push_back(absolute_folder(archive));
+  }
   if (arguments.host) rig->daemon.host = *arguments.host;
   if (arguments.port) rig->daemon.port = *arguments.port;
+  return rig;
+}
+
+Result<int> serve(const ServeArguments& arguments, const CommonArguments& common) {
+  const std::stop_token stop = stop_on_signal();
+  const Result<capture::Rig> rig = rig_to_serve(arguments);
+  if (!rig) return rig.error();
 
   const Result<std::unique_ptr<RigServer>> server =
       RigServer::start(*rig, capture::open_devices, run_scan_of,
@@ -111,6 +145,10 @@ Run add_serve(Options& options) {
               "Address to listen on; default the rig file's, 127.0.0.1. Any other needs a token");
   options.add("--port", &a->port, "Port to listen on; 0 is any free one; default the rig file's, 8470")
       .in_range(0, 65535);
+  options.add(
+      "--archive", &a->archives,
+      "Folder of sessions to show beside the rig's, with those below it; may be given again. Without a "
+      "rig file the server has no rig: library and jobs alone");
   return [a](const CommonArguments& common) { return serve(*a, common); };
 }
 

@@ -71,7 +71,8 @@ struct RigServer::State {
   }
 
   Result<void> open_jobs_and_library(const std::filesystem::path& weft, bool previews) {
-    Result<std::unique_ptr<LibraryService>> shelves = LibraryService::open(lock.folder(), rig.scan.sessions);
+    Result<std::unique_ptr<LibraryService>> shelves =
+        LibraryService::open(lock.folder(), rig.scan.sessions, rig.daemon.archives);
     if (!shelves) return std::move(shelves).error();
     library = std::move(*shelves);
     JobQueueOptions options;

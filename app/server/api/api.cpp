@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/server/api/api.h"
 
+#include <string_view>
 #include <utility>
 
 #include "app/server/api/descriptions.h"
@@ -19,6 +20,18 @@ Json whole_description(const std::vector<Resource>& resources) {
   return whole;
 }
 
+/// Whether a call asks something of board or camera.
+bool is_of_devices(const Route& route) {
+  const std::string_view path = std::string_view(route.path).substr(std::string_view("/api/v1/").size());
+  return route.method != std::string_view("GET") &&
+         (path.starts_with("rig/") || path.starts_with("scan") || path.ends_with("/again"));
+}
+
+Result<Reply> refuse_for_want_of_a_rig(const Call&) {
+  return Error{ErrorKind::kTryAgain, "this server has no rig", "", "it was started for archives alone",
+               "ask the daemon of a rig"};
+}
+
 }  // namespace
 
 std::vector<Route> api_routes(const RigParts& parts) {
@@ -34,7 +47,10 @@ std::vector<Route> api_routes(const RigParts& parts) {
                     [description](const Call&) -> Result<Reply> { return description; }, false,
                     Pool::kQuick});
   for (Resource& resource : resources) {
-    for (Route& route : resource.routes) routes.push_back(std::move(route));
+    for (Route& route : resource.routes) {
+      if (parts.rig.leds == 0 && is_of_devices(route)) route.handle = refuse_for_want_of_a_rig;
+      routes.push_back(std::move(route));
+    }
   }
   return routes;
 }

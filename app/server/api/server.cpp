@@ -75,9 +75,16 @@ Json rooms_of(const capture::Rig& rig, const std::filesystem::path& state) {
 }
 
 /// Opens no device: a scan may begin at any moment, and then they are its own.
-Json findings_of(const capture::Rig& rig, bool leaves_alone) {
+Json findings_of(const capture::Rig& rig, bool leaves_alone,
+                 const std::vector<std::filesystem::path>& silent_archives) {
   Json findings = Json::array();
-  for (const SetupFinding& found : leaves_alone ? std::vector<SetupFinding>() : examine_rig(rig, {})) {
+  for (const std::filesystem::path& archive : silent_archives) {
+    findings.push_back(json_of(fault_of(
+        "archive", {ErrorKind::kInputOutput, "an archive does not answer", archive.string(),
+                    "what was known of it stays in the library", "look whether its disk is there: df"})));
+  }
+  for (const SetupFinding& found :
+       leaves_alone || rig.leds == 0 ? std::vector<SetupFinding>() : examine_rig(rig, {})) {
     findings.push_back(json_of(found));
   }
   for (const SetupFinding& found : examine_folders(rig, kFrameBytes)) findings.push_back(json_of(found));
@@ -108,7 +115,9 @@ Resource server_resource(const RigParts& parts) {
               const RigStatus status = parts.keeper.status();
               const bool is_ours = status.devices_open || !parts.keeper.session().empty();
               const std::optional<Json> found =
-                  doctor->get([rig = parts.rig, is_ours] { return findings_of(rig, is_ours); });
+                  doctor->get([rig = parts.rig, is_ours, silent = parts.library.silent()] {
+                    return findings_of(rig, is_ours, silent);
+                  });
               if (found) return json_reply(*found);
               return json_reply({{"rig", parts.rig.name},
                                  {"leaves_alone", is_ours},

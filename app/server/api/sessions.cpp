@@ -31,6 +31,8 @@ Json to_json(const Shot& shot, const std::string& name) {
           {"iso", shot.iso},
           {"f_number", shot.f_number},
           {"time", shot.time},
+          {"polariser", name_of(shot.polariser)},
+          {"superseded_by", shot.superseded_by ? Json(*shot.superseded_by) : Json()},
           {"thumbnail", path + "/thumbnail?sha256=" + shot.sha256},
           {"raw", path + "/raw?sha256=" + shot.sha256},
           {"warnings", library::warnings_of(shot)}};

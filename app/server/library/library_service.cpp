@@ -17,6 +17,11 @@ constexpr auto kFresh = std::chrono::seconds(1);
 constexpr auto kBlink = std::chrono::milliseconds(20);
 constexpr auto kFirst = std::chrono::seconds(5);
 
+Error no_session(const std::string& name) {
+  return {ErrorKind::kNoInput, "there is no such session", name, "",
+          "see /api/v1/sessions for those there are"};
+}
+
 // What looks at a folder and writes what it finds.
 Result<std::unique_ptr<Looker>> looker_at(const library::Catalogue& beside, std::filesystem::path folder) {
   Result<library::Catalogue> opened = beside.beside();
@@ -51,27 +56,31 @@ struct LibraryService::Watched {
   }
 };
 
-Result<std::unique_ptr<LibraryService>> LibraryService::open(const std::filesystem::path& state,
-                                                             const std::filesystem::path& home) {
+Result<std::unique_ptr<LibraryService>> LibraryService::open(
+    const std::filesystem::path& state, const std::filesystem::path& home,
+    const std::vector<std::filesystem::path>& archives) {
   // A scan in another folder does not throw away what is known of this one.
   const std::string of_home = sha256_of(absolute_folder(home).string()).substr(0, 16);
   Result<library::Catalogue> asked =
       library::Catalogue::open(state / fmt::format("library-{}.sqlite", of_home));
   if (!asked) return std::move(asked).error();
-  if (Result<void> ok = asked->keep_only({home}); !ok) return std::move(ok).error();
+  std::vector<std::filesystem::path> all = archives;
+  all.push_back(home);
+  if (Result<void> ok = asked->keep_only(all); !ok) return std::move(ok).error();
   Result<library::Catalogue> edited = asked->beside();
   if (!edited) return std::move(edited).error();
   Result<library::Edits> edits = library::Edits::open(state / "edits.json");
   if (!edits) return std::move(edits).error();
   std::unique_ptr<LibraryService> service(
-      new LibraryService(std::move(*asked), std::move(*edited), std::move(*edits), home));
+      new LibraryService(std::move(*asked), std::move(*edited), std::move(*edits), home, archives));
   if (Result<void> ok = service->begin_looking(); !ok) return std::move(ok).error();
   return service;
 }
 
 LibraryService::LibraryService(library::Catalogue asked, library::Catalogue edited, library::Edits edits,
-                               std::filesystem::path home)
+                               std::filesystem::path home, std::vector<std::filesystem::path> archives)
     : home_(absolute_folder(home)),
+      archives_(std::move(archives)),
       asked_(std::move(asked)),
       edited_(std::move(edited)),
       edits_(std::move(edits)) {}
@@ -88,6 +97,11 @@ Result<void> LibraryService::begin_looking() {
   Result<std::unique_ptr<Looker>> looker = looker_at(asked_, home_);
   if (!looker) return std::move(looker).error();
   at_home_ = std::move(*looker);
+  for (const std::filesystem::path& archive : archives_) {
+    Result<std::unique_ptr<Looker>> at_archive = looker_at(asked_, absolute_folder(archive));
+    if (!at_archive) return std::move(at_archive).error();
+    at_archives_.push_back(std::move(*at_archive));
+  }
   return {};
 }
 
@@ -97,6 +111,8 @@ void LibraryService::look_again() {
   const std::uint64_t home = at_home_->ask(), watched = at_watched_->ask();
   at_watched_->wait(watched, until);
   at_home_->wait(home, until);
+  // Their disks may be slow: a question has them look again and waits for a blink at most.
+  for (const auto& archive : at_archives_) archive->wait(archive->ask(), until);
 }
 
 Result<library::Page> LibraryService::find(const library::Query& query) {
@@ -111,14 +127,22 @@ Result<std::vector<std::pair<std::string, int>>> LibraryService::tags() {
   return asked_.tags();
 }
 
-Result<Session> LibraryService::session(const std::string& name) const {
+Result<Session> LibraryService::session(const std::string& name) {
   const Result<std::filesystem::path> folder = library::session_folder(home_, name);
   if (!folder) return folder.error();
-  if (!is_there(*folder / "session.json")) {
-    return Error{ErrorKind::kNoInput, "there is no such session", name, "",
-                 "see /api/v1/sessions for those there are"};
+  if (is_there(*folder / "session.json")) return read_session(*folder);
+  const std::lock_guard lock(asked_mutex_);
+  const Result<library::Entry> entry = asked_.find_one(name);
+  if (!entry) return entry.error().kind == ErrorKind::kNoInput ? no_session(name) : entry.error();
+  return read_session(entry->folder);
+}
+
+std::vector<std::filesystem::path> LibraryService::silent() const {
+  std::vector<std::filesystem::path> folders;
+  for (std::size_t i = 0; i < archives_.size(); ++i) {
+    if (at_archives_[i]->is_stuck()) folders.push_back(archives_[i]);
   }
-  return read_session(*folder);
+  return folders;
 }
 
 void LibraryService::watch(const std::filesystem::path& session) {

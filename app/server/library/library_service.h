@@ -21,19 +21,23 @@ namespace weft::app {
 /// slow disk delays nobody who asks, and the changes that people make. Safe from any thread.
 class LibraryService {
  public:
-  /// Keeps a catalogue of its own for each `home`, and edits.json, in `state`. Sessions of `home`, the rig's
-  /// folder, go by their names. Errors of Catalogue::open() and Edits::open().
-  static Result<std::unique_ptr<LibraryService>> open(const std::filesystem::path& state,
-                                                      const std::filesystem::path& home);
+  /// Keeps a catalogue of its own for each `home`, and edits.json, in `state`. Sessions go by their names:
+  /// one of `home`, the rig's folder, before one of the archives, which are looked at with all below them.
+  /// Errors of Catalogue::open() and Edits::open().
+  static Result<std::unique_ptr<LibraryService>> open(
+      const std::filesystem::path& state, const std::filesystem::path& home,
+      const std::vector<std::filesystem::path>& archives = {});
   ~LibraryService();
 
   /// As the folders were at most a second ago, or, where looking through them takes longer than a blink, as
   /// they were known. The first question waits up to five seconds for the first look at `home`.
   Result<library::Page> find(const library::Query& query);
   Result<std::vector<std::pair<std::string, int>>> tags();
-  /// A session by its name, as its session.json is now. kUsage for what is no name, kNoInput where there is
-  /// none, errors of read_session().
-  Result<Session> session(const std::string& name) const;
+  /// A session by its name, as its session.json is now. kUsage for what is no name and for one that several
+  /// archives have, kNoInput where there is none, errors of read_session().
+  Result<Session> session(const std::string& name);
+  /// Archives whose disk does not answer: what was known of them stays.
+  std::vector<std::filesystem::path> silent() const;
   /// The session that is written now: each question is answered as it is at that moment.
   void watch(const std::filesystem::path& session);
 
@@ -49,12 +53,13 @@ class LibraryService {
  private:
   struct Watched;
   LibraryService(library::Catalogue asked, library::Catalogue edited, library::Edits edits,
-                 std::filesystem::path home);
+                 std::filesystem::path home, std::vector<std::filesystem::path> archives);
   Result<void> begin_looking();
   void look_again();
   Result<library::Change> after(Result<library::Change> change);
 
   const std::filesystem::path home_;
+  const std::vector<std::filesystem::path> archives_;
   std::mutex asked_mutex_;
   library::Catalogue asked_;
   std::mutex edits_mutex_;  ///< of its own: an edit waits for its disk
@@ -62,6 +67,7 @@ class LibraryService {
   library::Edits edits_;
   std::shared_ptr<Watched> watched_;
   std::unique_ptr<Looker> at_home_, at_watched_;
+  std::vector<std::unique_ptr<Looker>> at_archives_;  ///< in the order of archives_
 };
 
 }  // namespace weft::app

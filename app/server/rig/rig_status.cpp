@@ -54,8 +54,9 @@ Json to_json(const LedStatus& led) {
 }
 
 // What may be asked of the rig now.
-std::vector<const char*> commands_of(const RigStatus& status) {
+std::vector<const char*> commands_of(const RigStatus& status, const capture::Rig& rig) {
   using State = RigStatus::State;
+  if (rig.leds == 0) return {};
   std::vector<const char*> commands;
   const bool is_free =
       status.state == State::kIdle || status.state == State::kAttended || status.state == State::kFailed;
@@ -104,7 +105,7 @@ Json to_json(const RigStatus& status, const capture::Rig& rig) {
           {"warnings", status.warnings},
           {"leds", std::move(leds)},
           {"left_s", status.left_s ? Json(*status.left_s) : nothing},
-          {"can", commands_of(status)},
+          {"can", commands_of(status, rig)},
           {"lit", status.lit},
           {"controls", status.controls},
           {"by", status.by},

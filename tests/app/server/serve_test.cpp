@@ -257,5 +257,42 @@ TEST_F(Serve, TellsTheServiceManagerThatItIsReadyAliveAndEnding) {
   EXPECT_EQ(daemon.ended(), 0);
 }
 
+TEST_F(Serve, WithoutARigShowsArchivesAndRefusesWhatNeedsOne) {
+  const fs::path archive = folder_ / "archive", state = folder_ / "state";
+  fs::create_directories(archive / "2019" / "wool.weft" / "raw");
+  std::ofstream(archive / "2019" / "wool.weft" / "session.json")
+      << R"({"schema": "weft.session/1", "fabric": "wool", "cloth_height_mm": 0, "rig": "old", "calibration": "",
+             "state": "complete", "shots": []})";
+  ASSERT_EQ(run("serve --archive " + (folder_ / "none").string() + " -q").exit_code, 66);
+  const pid_t child = fork();
+  if (child == 0) {
+    for (const char* name : {"HOME", "XDG_CONFIG_HOME"}) setenv(name, folder_.c_str(), 1);
+    setenv("XDG_STATE_HOME", state.c_str(), 1);
+    unsetenv("WEFT_RIG");
+    if (chdir(archive.c_str()) != 0) _exit(126);
+    execl(WEFT_PROGRAM, "weft", "serve", "--archive", archive.c_str(), "--port", "0", "-q",
+          static_cast<char*>(nullptr));
+    _exit(127);
+  }
+  const fs::path address = state / "weft/archive/address";
+  EXPECT_TRUE(comes_true([&] { return fs::exists(address) && fs::file_size(address) > 0; }));
+  std::string at;
+  std::ifstream(address) >> at;
+  const int port = std::stoi(at.substr(at.rfind(':') + 1));
+  EXPECT_EQ(ask(port, "GET", "/api/v1/sessions?query=wool").json()["total"], 1);
+  EXPECT_EQ(ask(port, "GET", "/api/v1/sessions/wool").json()["fabric"], "wool")
+      << "below a folder of the archive";
+  EXPECT_EQ(ask(port, "GET", "/api/v1/rig").json()["can"], Json::array());
+  EXPECT_EQ(ask(port, "GET", "/api/v1/jobs").status, 200);
+  EXPECT_EQ(ask(port, "GET", "/api/v1/doctor").status, 200);
+  for (const char* call : {"/api/v1/scan", "/api/v1/rig/devices", "/api/v1/sessions/wool/frames/0/again"}) {
+    const Answer refused = ask(port, "POST", call, "{}", {{"Content-Type", "application/json"}});
+    EXPECT_EQ(refused.status, 409) << call;
+    EXPECT_EQ(refused.json()["error"]["code"], "no_rig") << call;
+  }
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+}
+
 }  // namespace
 }  // namespace weft::app
