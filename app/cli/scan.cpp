@@ -37,6 +37,7 @@ struct ScanArguments {
   std::vector<int> leds;  ///< empty: all
   std::optional<double> exposure_us, bracket, cloth_height_mm;
   std::vector<std::string> metadata;  ///< "key=value"
+  std::string accept_moved;           ///< why; empty: not
   std::optional<int> again;           ///< LED of a finished session; 0: the dark shot
   bool repeat = true;
   bool preview = true;  ///< a quick solve at the end
@@ -66,6 +67,7 @@ Result<Json> body_of(const ScanArguments& arguments) {
   if (arguments.bracket) body["bracket"] = *arguments.bracket;
   if (arguments.cloth_height_mm) body["cloth_height_mm"] = *arguments.cloth_height_mm;
   if (!arguments.repeat) body["repeat"] = false;
+  if (!arguments.accept_moved.empty()) body["accept_moved"] = arguments.accept_moved;
   for (const std::string& pair : arguments.metadata) {
     const std::size_t equals = pair.find('=');
     if (equals == 0 || equals == std::string::npos) {
@@ -328,6 +330,8 @@ Run add_scan(Options& options) {
            "stands for the old one, which stays; with --exposure it is a bracket")
       .in_range(0, 10);
   options.add("--metadata", &a->metadata, "KEY=VALUE to keep with the session: id, weight, side, notes");
+  options.add("--accept-moved", &a->accept_moved,
+              "Scan although the last check of the calibration did not pass: the reason, which is kept");
   options.add_flag("!--no-repeat", &a->repeat,
                    "Do not light the first LED once more at the end, to see drift");
   options.add_flag("!--no-preview", &a->preview, "Do not solve a quick preview at the end");

@@ -30,6 +30,17 @@ void leave_out_by_person(SessionPlan& plan) {
   });
 }
 
+// Of a rig that was known to have moved when the cloth was scanned.
+void tell_of_moved_rig(SessionPlan& plan) {
+  const Json accepted = plan.session.document.value("accepted_moved", Json());
+  if (!accepted.is_object()) return;
+  const Json degrees = accepted.value("degrees", Json()), why = accepted.value("why", Json());
+  plan.warnings.push_back(fmt::format(
+      "the rig had moved since its calibration when this was scanned ({}), which was accepted: {}",
+      degrees.is_number() ? fmt::format("{:.2g} degrees", degrees.get<double>()) : "nobody knows how far",
+      why.is_string() ? why.get<std::string>() : "no reason is given"));
+}
+
 // The lit shots of the named LEDs, or of all.
 Result<std::vector<Shot>> choose_lit(const Session& session, const std::vector<int>& leds) {
   std::vector<Shot> chosen;
@@ -214,6 +225,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   if (!session) return std::move(session).error();
   plan.session = std::move(*session);
   leave_out_by_person(plan);
+  tell_of_moved_rig(plan);
   const bool own = options.calibration.empty();
   Result<Calibration> calibration =
       read_calibration(own ? plan.session.calibration_folder() : options.calibration);

@@ -74,7 +74,8 @@ struct SessionConditions {
   std::optional<pipeline::LedGains> cloth_gains;  ///< that the cloth told, where they were applied
   std::vector<int> leds;                          ///< of cloth_gains
 };
-/// {"hot_photosites", "veil", "brackets", "left_out", "drift", "cloth_gains"}, those that there are, for solve.json.
+/// {"hot_photosites", "veil", "brackets", "left_out", "drift", "cloth_gains"}, those that there are, for
+/// solve.json.
 Json json_of(const SessionConditions& conditions);
 
 /// A session in memory, corrected and ready to be solved.

@@ -36,7 +36,7 @@ struct SolveReport {
   std::filesystem::path folder;
   bool was_there = false;  ///< a complete solve of the same inputs and options was found
   SolveFacts facts;
-  ExpectedError expected;    ///< of this run: zero if was_there
+  ExpectedError expected;            ///< of this run: zero if was_there
   std::optional<Transfer> transfer;  ///< of photographs: kLinear or kSrgb
   SolveSeconds seconds;              ///< of this run: zero if was_there
 };

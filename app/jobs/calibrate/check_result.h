@@ -6,14 +6,11 @@
 #include <string>
 
 #include "app/jobs/calibrate/report.h"
+#include "app/jobs/last_check.h"
 #include "core/calibration.h"
 #include "core/result.h"
 
 namespace weft::app {
-
-/// The name of a result in its folder, and its schema.
-inline constexpr const char* kCheckResultFile = "result.json";
-inline constexpr const char* kCheckResultSchema = "weft.calibration-check";
 
 /// Writes a result folder aside and renames it: result.json and the files of the report. Nothing where
 /// `folder` is empty. `of` is "sheets" or "session". `checked_at` is when the evidence was taken, else now

@@ -1,16 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <chrono>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "app/jobs/last_check.h"
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_choice.h"
+#include "core/calibration.h"
 #include "core/files.h"
 
 namespace weft::app {
 namespace {
+
+/// Whether the last check of the rig's calibration passed. One that did not must be accepted, and then is
+/// recorded with what it costs.
+Result<void> check_moved(const capture::Rig& rig, capture::ScanRequest& request) {
+  const Json accepted = std::exchange(request.accepted_moved, Json());
+  if (rig.scan.calibration.empty()) return {};
+  const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
+  if (!calibration) return {};  // the scan says what is wrong with it
+  const std::optional<LastCheck> check = last_check_of(rig.scan.calibration, calibration->id);
+  if (!check || check->passed) return {};
+  if (!accepted.is_null()) {
+    request.accepted_moved = accepted;
+    request.accepted_moved["degrees"] = check->mean_deg ? Json(*check->mean_deg) : Json();
+    request.accepted_moved["checked"] = check->date;
+    return {};
+  }
+  const std::string cost =
+      check->mean_deg && check->worst_deg
+          ? fmt::format("normals would be off by {:.2g} degrees on average, {:.2g} at worst",
+                        *check->mean_deg, *check->worst_deg)
+          : "how far normals would be off it could not tell";
+  return Error{ErrorKind::kBadData, "the rig has moved since it was calibrated", check->folder.string(),
+               fmt::format("the check of {} did not pass: {}", check->date, cost),
+               "calibrate it again (weft calibrate update), or give a reason to scan all the same: "
+               "--accept-moved WHY, \"accept_moved\" over HTTP"};
+}
 
 Result<Reply> start_scan(const RigParts& parts, const Call& call) {
   const Result<Json> body = parse_body(call.body);
@@ -22,6 +53,9 @@ Result<Reply> start_scan(const RigParts& parts, const Call& call) {
   if (!choice) return std::move(choice).error();
   if (const auto dry = body->find("dry_run"); dry != body->end() && *dry == true)
     return json_reply(to_json(*choice));
+  if (!choice->resumed) {
+    if (Result<void> ok = check_moved(parts.rig, choice->request); !ok) return std::move(ok).error();
+  }
   if (Result<void> made = make_writable_folder(parts.rig.scan.sessions); !made)
     return std::move(made).error();
   const std::filesystem::path folder = choice->request.session;

@@ -18,9 +18,9 @@ namespace {
 
 constexpr int kMostDepth = 32;
 constexpr std::size_t kMostFabricBytes = 200;
-constexpr std::array<std::string_view, 12> kFields = {
-    "session",  "fabric", "cloth_height_mm", "metadata", "exposure_us", "iso",
-    "f_number", "leds",   "repeat",          "bracket",  "copy",        "dry_run"};
+constexpr std::array<std::string_view, 13> kFields = {
+    "session", "fabric", "cloth_height_mm", "metadata", "exposure_us", "iso",         "f_number",
+    "leds",    "repeat", "bracket",         "copy",     "dry_run",     "accept_moved"};
 
 Error refuse(const std::string& where, std::string why, std::string remedy) {
   return {ErrorKind::kUsage, "the request cannot be used", where, std::move(why), std::move(remedy)};
@@ -175,6 +175,9 @@ Result<ScanWish> read_scan_body(const Json& body, int leds, capture::ScanRequest
     request.metadata = *metadata;
   }
   read_plan(fields, leds, request);
+  std::string accept_moved;
+  fields.text("accept_moved", "the reason in 1 to 200 characters", accept_moved, is_fabric);
+  if (!accept_moved.empty()) request.accepted_moved = {{"why", accept_moved}};
   fields.flag("copy", copy);
   fields.flag("dry_run", wish.dry_run);
   if (fields.error()) return *fields.error();

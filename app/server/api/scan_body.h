@@ -32,7 +32,7 @@ capture::ScanRequest request_of_session(const Session& session, const capture::R
 
 /// The body of POST /api/v1/scan over `otherwise`, every field optional: {"session", "fabric",
 /// "cloth_height_mm", "metadata", "exposure_us", "iso", "f_number", "leds", "repeat", "bracket", "copy",
-/// "dry_run"}. kUsage with the field and what is allowed there; a field that is not known is refused, with
+/// "dry_run", "accept_moved"}. kUsage with the field and what is allowed there; a field that is not known is refused, with
 /// the nearest that is.
 Result<ScanWish> read_scan_body(const Json& body, int leds, capture::ScanRequest otherwise);
 

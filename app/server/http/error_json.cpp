@@ -12,7 +12,7 @@ namespace weft::app {
 namespace {
 
 /// What is said, and the word for it. Clients rely on the words.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 40> kCodes = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 41> kCodes = {{
     {"the token is missing or wrong", "not_logged_in"},
     {"the token is wrong", "wrong_token"},
     {"this token may only look", "may_only_look"},
@@ -39,6 +39,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 40> kCodes =
     {"no scan is running", "no_scan"},
     {"the scan is about to end", "scan_ending"},
     {"the scan has no fabric", "no_fabric"},
+    {"the rig has moved since it was calibrated", "rig_moved"},
     {"there is a session of this name", "session_exists"},
     {"there is no such session", "no_such_session"},
     {"this is no name of a session", "no_such_session"},

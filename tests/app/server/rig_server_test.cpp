@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "app/server/rig/rig_lock.h"
+#include "core/calibration.h"
 #include "core/files.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
@@ -291,6 +292,43 @@ TEST(RigServer, CannotBePausedWhileTheScanEnds) {
   EXPECT_EQ(pause.json()["error"]["what"], "the scan is about to end");
   gate.open();
   EXPECT_EQ(wait_for_state(port, "idle")["phase"], "complete");
+}
+
+TEST(RigServer, ScansWithACalibrationWhoseCheckFailedOnlyForAReason) {
+  ScriptedRig scripted("moved");
+  const std::filesystem::path folder = scripted.rig.file.parent_path();
+  const std::filesystem::path calibration = folder / "calibrations" / "one";
+  std::filesystem::create_directories(folder / "calibrations" / "checks");
+  std::filesystem::copy(
+      std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas/weft.calibration-1.2-measured", calibration,
+      std::filesystem::copy_options::recursive);
+  const Result<Calibration> read = read_calibration(calibration);
+  ASSERT_TRUE(read) << read.error().message();
+  scripted.rig.scan.calibration = calibration;
+  const auto checked = [&](const char* name, const char* date, bool passed) {
+    std::filesystem::create_directories(folder / "calibrations" / "checks" / name);
+    ASSERT_TRUE(write_json(folder / "calibrations" / "checks" / name / "result.json",
+                           {{"schema", "weft.calibration-check/1"},
+                            {"date", date},
+                            {"of", "session"},
+                            {"calibration", read->id},
+                            {"passed", passed},
+                            {"numbers", {{"cost_mean_deg", 0.82}, {"cost_worst_deg", 2.1}}}}));
+  };
+  checked("a", "2026-11-01T10:00:00Z", true);
+  checked("b", "2026-11-02T10:00:00Z", false);
+  const auto server = scripted.started();
+  const int port = server->port();
+  const Answer refused = ask(port, "POST", kScan, R"({"fabric": "satin"})");
+  EXPECT_EQ(refused.status, 422) << refused.body;
+  EXPECT_EQ(refused.json()["error"]["code"], "rig_moved");
+  EXPECT_THAT(refused.body, HasSubstr("0.82 degrees on average, 2.1 at worst"));
+  EXPECT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "accept_moved": "only colours count"})").status,
+            202);
+  wait_for_state(port, "idle");
+  checked("c", "2026-11-03T10:00:00Z", true);
+  EXPECT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin"})").status, 202) << "it was mended";
+  wait_for_state(port, "idle");
 }
 
 TEST(RigServer, TakesUpTheSessionThatTheSameRequestBegan) {

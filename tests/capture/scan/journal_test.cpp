@@ -38,6 +38,7 @@ ScanRequest request_in(const fs::path& folder) {
   request.fabric = "cloth";
   request.rig = "rig 1";
   request.metadata = {{"barcode", "4711"}};
+  request.accepted_moved = {{"why", "only colours count"}, {"degrees", 0.8}};
   request.calibration = folder / "calibration";
   if (!is_there(request.calibration)) {
     fs::create_directories(request.calibration / "report");
@@ -107,6 +108,7 @@ TEST(Journal, MakesASessionThatEveryReaderTakes) {
   EXPECT_EQ(session->fabric, "cloth");
   EXPECT_EQ(session->rig, "rig 1");
   EXPECT_EQ(session->document["metadata"]["barcode"], "4711");
+  EXPECT_EQ(session->document["accepted_moved"]["why"], "only colours count");
   ASSERT_EQ(session->shots.size(), 5u);
   EXPECT_EQ(session->shots[1].file, "raw/01_led01.dng");
   EXPECT_EQ(session->shots[1].time, "2026-11-18T11:06:40.250Z");
