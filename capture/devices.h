@@ -83,6 +83,12 @@ class Camera {
   /// has closed, while the picture is still on its way: light may change from then on.
   virtual Result<Photograph> take(const std::filesystem::path& file,
                                   const std::function<void()>& exposed) = 0;
+  /// What its finder shows now: the bytes of a JPEG. Starts live view where it is off, which takes up to a
+  /// second; then at the rate of the body. For framing only: the camera chooses its exposure. set() and
+  /// take() end it first.
+  virtual Result<std::string> look() = 0;
+  /// Ends live view, which warms the sensor; nothing where it is off.
+  virtual Result<void> stop_looking() = 0;
   /// After an error: ends whatever hangs and connects again, at most a few seconds.
   virtual Result<CameraFacts> recover() = 0;
 };

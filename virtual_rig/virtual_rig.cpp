@@ -9,6 +9,7 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <chrono>
 #include <fstream>
 #include <mutex>
 #include <numeric>
@@ -22,6 +23,7 @@
 #include "virtual_rig/control_socket.h"
 #include "virtual_rig/light/exposure.h"
 #include "virtual_rig/light/light_faults.h"
+#include "virtual_rig/light/live_picture.h"
 #include "virtual_rig/ptp/virtual_camera.h"
 #include "virtual_rig/rig_folder.h"
 #include "virtual_rig/terminal/port_name.h"
@@ -33,6 +35,7 @@ namespace fs = std::filesystem;
 
 constexpr int kOutputs = 10;  // of the board
 constexpr int kMostShots = 1000000;
+constexpr auto kLookTime = std::chrono::milliseconds(50);
 
 struct BoardCommand {
   const char* name;
@@ -158,6 +161,7 @@ class RunningRig : public VirtualRig {
     camera.shots_before = last_image_number(in_folder(kExposureLog));
     camera.away_s = options_.away_s;
     camera.late_s = options_.late_s;
+    camera.finder = [this] { return look(); };
     if (options_.usb) camera.usb = in_folder("camera.sock");
     auto started =
         VirtualCamera::start(camera, [this](const CameraExposure& exposure) { return photograph(exposure); });
@@ -201,6 +205,20 @@ class RunningRig : public VirtualRig {
     if (options_.same_noise) light.noise_key = lit_mask(light);
     if (Result<void> ok = log(exposure, pins, light); !ok) return ok.error();
     return develop(frames_, light, exposure, options_.serial, options_.render.tiles.threads);
+  }
+
+  /// What the finder shows of the last twentieth of a second.
+  std::vector<std::uint8_t> look() {
+    const RigClock::time_point now = RigClock::now();
+    CameraExposure moment;
+    moment.opened = now - kLookTime;
+    moment.closed = now;
+    moment.exposure_us = 5e4;
+    moment.iso = 100;
+    moment.f_number = frames_.scene().camera.f_number;
+    moment.image_number = ++looks_;
+    const std::vector<double> pins = lit_shares(pins_, moment.opened, moment.closed, frames_.leds());
+    return live_picture(frames_, gathered_light(frames_, pins, faults(), moment));
   }
 
   static std::uint32_t lit_mask(const GatheredLight& light) {
@@ -287,6 +305,7 @@ class RunningRig : public VirtualRig {
   mutable std::mutex mutex_;  // of faults_
   LightFaults faults_;
   std::vector<std::string> environment_;
+  std::uint32_t looks_ = 0;  // of the camera's thread
   int end_ = -1, log_ = -1;
   std::unique_ptr<VirtualBoard> board_;
   std::unique_ptr<VirtualCamera> camera_;

@@ -28,7 +28,9 @@ using Steady = std::chrono::steady_clock;
 constexpr double kOpenUsbS = 12, kOpenNetworkS = 5;
 constexpr const char* kNotOpenedRemedy =
     "switch the camera off and on; if its card holds thousands of pictures, format it or take it out";
-constexpr double kSetS = 5;       // libgphoto2 gives up on a packet after 2.5 s
+constexpr double kSetS = 5;     // libgphoto2 gives up on a packet after 2.5 s
+constexpr double kLookS = 2.5;  // for the mirror and a first picture, of which later ones take a tenth
+constexpr std::size_t kMostPictureBytes = 4U << 20;
 constexpr double kOverdueS = 1;   // beyond the deadline that the worker keeps by itself
 constexpr double kEndS = 0.5;     // for the camera's session to be closed
 constexpr double kComeBackS = 1;  // a camera that just lost its link may refuse a new one for a moment
@@ -182,6 +184,24 @@ Result<Photograph> CameraLink::take(const fs::path& file, const std::function<vo
     return std::move(synced).error();
   if (photograph->image_number) last_image_number_ = photograph->image_number;
   return photograph;
+}
+
+Result<std::string> CameraLink::look() {
+  if (!ready_) return not_connected();
+  const auto deadline = Steady::now() + seconds(kLookS);
+  const Result<Json> told = request({{"do", "look"}}, kLookS);
+  if (!told) return told.error();
+  const Json bytes = told->value("bytes", Json());
+  if (!bytes.is_number_unsigned() || bytes > kMostPictureBytes) return wrong_line(told->dump());
+  Result<std::string> picture = worker_->read_bytes(bytes.get<std::size_t>(), deadline);
+  if (!picture) end_worker();
+  return picture;
+}
+
+Result<void> CameraLink::stop_looking() {
+  if (!ready_) return not_connected();
+  const Result<Json> done = request({{"do", "stop_looking"}}, kSetS);
+  return done ? Result<void>() : done.error();
 }
 
 /// What the worker has landed, held against what was asked of the camera.

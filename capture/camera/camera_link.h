@@ -51,6 +51,8 @@ class CameraLink : public Camera {
   Result<CameraFacts> set(const ExposureSettings& exposure) override;
   Result<std::vector<double>> shutter_times_us() override;
   Result<Photograph> take(const std::filesystem::path& file, const std::function<void()>& exposed) override;
+  Result<std::string> look() override;
+  Result<void> stop_looking() override;
   Result<CameraFacts> recover() override;
 
   /// Of the worker; 0 where none runs.

@@ -72,6 +72,8 @@ Result<Ports> ports_now() {
                "install libgphoto2-port12"};
 }
 
+constexpr const char *kViewfinder = "viewfinder", *kOn = "1", *kOff = "0";
+
 std::string text_of(CameraWidget* widget) {
   CameraWidgetType type = GP_WIDGET_TEXT;
   gp_widget_get_type(widget, &type);
@@ -258,6 +260,32 @@ Result<void> GphotoCamera::set(const std::string& widget, const std::string& val
   if (!after) return after.error();
   if (*after == value) return {};
   return Error{ErrorKind::kBadData, what, address_.port, "it stays at " + *after, "set it at the camera"};
+}
+
+Result<FetchedFile> GphotoCamera::preview() {
+  ::CameraFile* file = nullptr;
+  gp_file_new(&file);
+  FetchedFile fetched(file);
+  if (const int code = gp_camera_capture_preview(handles_->camera, file, handles_->context.get()); code < 0)
+    return failed(code, "the camera shows nothing in live view");
+  const char* data = nullptr;
+  unsigned long size = 0;  // NOLINT(google-runtime-int): libgphoto2's type
+  gp_file_get_data_and_size(file, &data, &size);
+  fetched.bytes_ = {reinterpret_cast<const std::uint8_t*>(data), size};
+  return fetched;
+}
+
+Result<bool> GphotoCamera::is_live() {
+  if (!has(kViewfinder)) return false;
+  const Result<std::string> value = this->value(kViewfinder);
+  if (!value) return value.error();
+  return *value == kOn;
+}
+
+Result<void> GphotoCamera::end_live() {
+  const Result<bool> live = is_live();
+  if (!live) return live.error();
+  return *live ? set(kViewfinder, kOff) : Result<void>();
 }
 
 Result<void> GphotoCamera::trigger() {

@@ -68,6 +68,12 @@ class GphotoCamera {
   /// Sets a value and reads it back.
   Result<void> set(const std::string& widget, const std::string& value);
 
+  /// A picture of live view (JPEG), which is started where it is off: libgphoto2 throws its first one away.
+  Result<FetchedFile> preview();
+  /// Whether live view is on.
+  Result<bool> is_live();
+  Result<void> end_live();
+
   /// Releases the shutter. Returns once it has closed, or at once, by the kind of body
   /// (CameraProfile::Trigger). Success does not prove that it opened: a body that was busy says the same.
   Result<void> trigger();

@@ -51,6 +51,7 @@ class Worker {
     const Result<Json> done = request.is_object() ? perform(request) : bad_request("the line is no object");
     if (done) {
       say("ok", *done);
+      write_all(std::exchange(picture_, {}));
     } else {
       say("error", json_of(done.error()));
     }
@@ -65,17 +66,22 @@ class Worker {
       camera_.reset();
       return Json::object();
     }
-    const bool known = what == "set" || what == "shutters" || what == "take" || what == "bare";
+    const bool known = what == "set" || what == "shutters" || what == "take" || what == "bare" ||
+                       what == "look" || what == "stop_looking";
     if (!known) return bad_request("\"do\" is \"" + what + "\"");
     if (!camera_) return bad_request("no camera is open");
-    if (what == "set") return set(fields);
+    if (what == "look") return look();
     if (what == "shutters") return shutters();
+    if (Result<void> ended = stop_looking(); !ended) return std::move(ended).error();
+    if (what == "stop_looking") return Json::object();
+    if (what == "set") return set(fields);
     return what == "take" ? take(fields) : bare(fields);
   }
 
   Result<Json> open(JsonFields& fields) {
     camera_.reset();
     prepared_.reset();
+    is_looking_ = false;
     const std::string name = fields.text("profile");
     const WantedCamera wanted{fields.text("port"), fields.text("serial")};
     const bool watched = fields.has("watch_clock");
@@ -119,6 +125,26 @@ class Worker {
     const Result<double> battery = battery_of(*camera_, profile_);
     if (!battery) return battery.error();
     return Json{{"exposure", line_of(*exposure)}, {"battery", *battery}};
+  }
+
+  Result<Json> look() {
+    if (!std::exchange(is_looking_, true)) {
+      prepared_.reset();
+      if (Result<void> quiet = drain(); !quiet) return std::move(quiet).error();
+    }
+    const Result<FetchedFile> picture = camera_->preview();
+    if (!picture) return picture.error();
+    const std::span<const std::uint8_t> bytes = picture->bytes();
+    picture_.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return Json{{"bytes", bytes.size()}};
+  }
+
+  /// Live view warms the sensor that the dark shot is to measure, and a trigger would start it again.
+  Result<void> stop_looking() {
+    if (!std::exchange(is_looking_, false)) return {};
+    prepared_.reset();
+    if (Result<void> ended = camera_->end_live(); !ended) return ended;
+    return drain();
   }
 
   Result<Json> shutters() {
@@ -232,9 +258,11 @@ class Worker {
   }
 
   void say(const char* key, const Json& value) {
-    std::string line =
-        Json{{"id", id_}, {key, value}}.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n';
-    std::string_view rest = line;
+    write_all(Json{{"id", id_}, {key, value}}.dump(-1, ' ', false, Json::error_handler_t::replace) + '\n');
+  }
+
+  void write_all(const std::string& bytes) const {
+    std::string_view rest = bytes;
     while (!rest.empty()) {
       const ssize_t n = ::write(out_, rest.data(), rest.size());
       if (n < 0 && errno == EINTR) continue;
@@ -254,6 +282,8 @@ class Worker {
   Json id_;
   CameraProfile profile_;
   std::unique_ptr<GphotoCamera> camera_;
+  bool is_looking_ = false;
+  std::string picture_;                   // that follows the answer
   double exposure_us_ = 0;                // that the camera is set to
   std::optional<Result<void>> prepared_;  // how the next shot was prepared since
   Steady::time_point prepared_at_;

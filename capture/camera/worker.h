@@ -21,8 +21,13 @@ namespace weft::capture {
 ///   {"id": 5, "do": "bare", "shots": 10}
 ///       {"id": 5, "ok": {"seconds": [...]}}: of each shot that is thrown away; the yardstick of the
 ///       benchmark
-///   {"id": 6, "do": "close"}
-///       {"id": 6, "ok": {}}: the session with the camera has ended; it may be opened again
+///   {"id": 6, "do": "look"}
+///       {"id": 6, "ok": {"bytes": N}} and after its line N bytes: a JPEG of live view, which set, take and
+///       bare end
+///   {"id": 7, "do": "stop_looking"}
+///       {"id": 7, "ok": {}}: live view is off, and what the camera still had to say is heard
+///   {"id": 8, "do": "close"}
+///       {"id": 8, "ok": {}}: the session with the camera has ended; it may be opened again
 ///
 /// What fails is answered by {"id", "error": {"kind", "what", "where", "why", "remedy"}}, a line that is no
 /// request with "id": null. Every number is in the unit its name ends with; times count from 1970.

@@ -141,13 +141,27 @@ Result<std::string> WorkerProcess::read_line(Deadline deadline) {
       return line;
     }
     if (received_.size() > kLongestLine) return hung("it does not end its line");
-    if (!wait_readable(deadline)) return hung("it has not answered in time");
-    std::array<char, 4096> block;
-    const ssize_t n = ::recv(socket_, block.data(), block.size(), MSG_DONTWAIT);
-    if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-    if (n <= 0) return ended();
-    received_.append(block.data(), static_cast<std::size_t>(n));
+    if (Result<void> more = receive(deadline); !more) return std::move(more).error();
   }
+}
+
+Result<std::string> WorkerProcess::read_bytes(std::size_t count, Deadline deadline) {
+  while (received_.size() < count) {
+    if (Result<void> more = receive(deadline); !more) return std::move(more).error();
+  }
+  std::string bytes = received_.substr(0, count);
+  received_.erase(0, count);
+  return bytes;
+}
+
+Result<void> WorkerProcess::receive(Deadline deadline) {
+  if (!wait_readable(deadline)) return hung("it has not answered in time");
+  std::array<char, 16384> block;
+  const ssize_t n = ::recv(socket_, block.data(), block.size(), MSG_DONTWAIT);
+  if (n < 0 && (errno == EINTR || errno == EAGAIN)) return {};
+  if (n <= 0) return ended();
+  received_.append(block.data(), static_cast<std::size_t>(n));
+  return {};
 }
 
 void WorkerProcess::end(Deadline deadline) {

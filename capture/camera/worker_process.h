@@ -42,12 +42,15 @@ class WorkerProcess {
   Result<void> send(std::string_view line);
   /// The next line without its end. kTryAgain at the deadline, and where it has ended: `why` says by what.
   Result<std::string> read_line(Deadline deadline);
+  /// So many bytes that follow a line. kTryAgain as read_line().
+  Result<std::string> read_bytes(std::size_t count, Deadline deadline);
   /// Closes its input, gives it until the deadline to end, then kills it.
   void end(Deadline deadline);
 
  private:
   WorkerProcess(pid_t pid, int socket) : pid_(pid), socket_(socket) {}
   bool wait_readable(Deadline deadline) const;
+  Result<void> receive(Deadline deadline);
   Error ended();
 
   pid_t pid_;

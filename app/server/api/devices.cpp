@@ -110,6 +110,23 @@ Result<Reply> picture(const RigParts& parts, const Call& call) {
   return reply;
 }
 
+Result<Reply> live_frame(const RigParts& parts, const Call& call) {
+  std::int64_t after = 0;
+  if (const auto found = call.query.find("after"); found != call.query.end()) {
+    const std::string& text = found->second;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), after);
+    if (error != std::errc() || end != text.data() + text.size() || after < 0)
+      return refused("after", "must be the number of a picture, from 0");
+  }
+  Result<Attendance::Look> look = parts.attendance.look(after);
+  if (!look) return std::move(look).error();
+  Reply reply;
+  reply.type = "image/jpeg";
+  reply.body = std::move(look->jpeg);
+  reply.headers.emplace_back("X-Weft-Frame", std::to_string(look->number));
+  return reply;
+}
+
 }  // namespace
 
 Resource devices_resource(const RigParts& parts) {
@@ -124,6 +141,7 @@ Resource devices_resource(const RigParts& parts) {
            call("POST", "/api/v1/rig/devices", open_or_close, Pool::kDevices),
            call("POST", "/api/v1/rig/light", light, Pool::kDevices),
            call("POST", "/api/v1/rig/test-shot", begin_shot, Pool::kDevices),
+           call("GET", "/api/v1/rig/live/frame", live_frame, Pool::kDevices),
            call("GET", "/api/v1/rig/test-shots/{id}", one_shot, Pool::kPictures),
            call("GET", "/api/v1/rig/test-shots/{id}/picture", picture, Pool::kPictures)},
           devices_description()};

@@ -103,7 +103,7 @@ Result<void> Attendance::close() {
   }
   devices_.reset();
   change([&](Status& status) {
-    status.is_open = false;
+    status.is_open = status.is_live = false;
     status.lit.clear();
     open_until_ = {};
   });
@@ -116,6 +116,7 @@ void Attendance::fail_held(const Error& error) {
   change([&](Status& status) {
     status.is_open = false;
     status.lit.clear();
+    status.is_live = false;
     status.error = error;
     open_until_ = {};
   });
@@ -151,6 +152,34 @@ Result<double> Attendance::light(const std::vector<int>& leds) {
   const std::vector<int> lit = *rest > 0 ? std::vector<int>() : leds;
   if (status().lit != lit) change([&](Status& status) { status.lit = lit; });
   return rest;
+}
+
+Result<Attendance::Look> Attendance::look(std::int64_t after) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (is_lent_) return is_scanning(rig_.name);
+    if (!status_.is_open) return is_closed(rig_.name);
+    renew();
+    look_until_ = Clock::now() + kLookLease;
+  }
+  const std::lock_guard devices(devices_mutex_);
+  if (!devices_) return is_closed(rig_.name);
+  if (look_.number > after && status().is_live) return look_;
+  Result<std::string> jpeg = devices_->camera->look();
+  if (!jpeg) {
+    const Error error = jpeg.error();
+    if (const Result<capture::CameraFacts> back = devices_->camera->recover(); !back) fail_held(back.error());
+    change([](Status& status) { status.is_live = false; });
+    return error;
+  }
+  look_ = {look_.number + 1, std::move(*jpeg)};
+  if (!status().is_live) change([](Status& status) { status.is_live = true; });
+  return look_;
+}
+
+void Attendance::end_look_held() {
+  if (devices_) static_cast<void>(devices_->camera->stop_looking());
+  change([](Status& status) { status.is_live = false; });
 }
 
 Result<int> Attendance::shoot(int led, double exposure_us) {
@@ -203,6 +232,7 @@ void Attendance::take(TestShot shot) {
 }
 
 Result<FrameFile> Attendance::photograph_held(const TestShot& shot) {
+  if (status().is_live) end_look_held();
   if (Result<void> made = make_writable_folder(folder_); !made) return std::move(made).error();
   const capture::ExposureSettings exposure = {shot.exposure_us, rig_.scan.iso, rig_.scan.f_number};
   if (set_ != exposure) {
@@ -263,6 +293,7 @@ Result<capture::RigDevices> Attendance::lend() {
     is_lent_ = true;
   }
   const std::lock_guard devices(devices_mutex_);
+  if (status().is_live) end_look_held();
   Result<capture::RigDevices> lent =
       devices_ ? Result<capture::RigDevices>(std::move(*devices_)) : open_(rig_);
   devices_.reset();
@@ -297,9 +328,14 @@ void Attendance::watch(const std::stop_token& stop) {
     const bool is_idle = !is_shooting_ && !stop.stop_requested();
     const bool went_dark = is_idle && !status_.lit.empty() && now >= lit_until_;
     const bool ran_out = is_idle && status_.is_open && now >= open_until_;
-    if (!went_dark && !ran_out) continue;
+    const bool looked_away = is_idle && status_.is_live && now >= look_until_;
+    if (!went_dark && !ran_out && !looked_away) continue;
     if (went_dark) status_.lit.clear();
     lock.unlock();
+    if (looked_away) {
+      const std::lock_guard devices(devices_mutex_);
+      end_look_held();
+    }
     if (ran_out) {
       static_cast<void>(close());
     } else {
@@ -335,6 +371,7 @@ Json to_json(const Attendance::Status& status) {
   return {{"open", status.is_open},
           {"doing", status.doing},
           {"lit", status.lit},
+          {"live", status.is_live},
           {"error", status.error ? json_of(*status.error) : Json()}};
 }
 

@@ -43,11 +43,13 @@ class Attendance {
   static constexpr std::chrono::minutes kLease{5};
   static constexpr std::chrono::milliseconds kLightLease{1500};
   static constexpr std::size_t kKeptShots = 8;
+  static constexpr std::chrono::seconds kLookLease{3};
 
   struct Status {
     bool is_open = false;  ///< for a person: not while a scan has them
     std::string doing;     ///< "opening", "shooting", "scanning"; empty: nothing
     std::vector<int> lit;  ///< as asked for last, until its lease ends
+    bool is_live = false;  ///< the camera is in live view
     std::optional<capture::CameraFacts> camera;
     std::optional<Error> error;
   };
@@ -76,6 +78,16 @@ class Attendance {
   /// One of the last; kNoInput where it is none of these.
   Result<TestShot> shot(int id) const;
 
+  /// What the camera's finder shows (JPEG), and its number, which rises. Live view begins with the first look
+  /// and ends kLookLease after the last one, before a test shot, and when a scan takes the devices. One
+  /// picture serves all who ask with an earlier number at once. Errors: kTryAgain as light(), and those of
+  /// Camera::look().
+  struct Look {
+    std::int64_t number = 0;
+    std::string jpeg;
+  };
+  Result<Look> look(std::int64_t after);
+
   Status status() const;
 
   /// The devices, for a scan: those that are open, else opened now. Waits for a test shot under way.
@@ -94,6 +106,7 @@ class Attendance {
   Result<FrameFile> photograph_held(const TestShot& shot);
   void keep(TestShot shot);
   void fail_held(const Error& error);
+  void end_look_held();
   void watch(const std::stop_token& stop);
   void renew();
   template <typename Change>
@@ -107,12 +120,13 @@ class Attendance {
   std::mutex devices_mutex_;  ///< of the devices; held while one of them works
   std::optional<capture::RigDevices> devices_;
   std::optional<capture::ExposureSettings> set_;
+  Look look_;  ///< the last one
 
   mutable std::mutex mutex_;  ///< of all that follows; held for moments
   std::condition_variable_any changed_;
   Status status_;
   bool is_lent_ = false, is_shooting_ = false, is_stopping_ = false;
-  Clock::time_point open_until_, lit_until_;
+  Clock::time_point open_until_, lit_until_, look_until_;
   std::vector<int> wanted_;
   std::deque<TestShot> shots_;
   int newest_ = 0;

@@ -23,6 +23,8 @@ class WatchedCamera : public capture::Camera {
                                    const std::function<void()>& exposed) override {
     return camera_.take(file, exposed);
   }
+  Result<std::string> look() override { return camera_.look(); }
+  Result<void> stop_looking() override { return camera_.stop_looking(); }
   Result<capture::CameraFacts> recover() override { return pass_on(camera_.recover()); }
 
  private:

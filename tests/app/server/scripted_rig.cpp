@@ -41,6 +41,8 @@ class NoCamera : public capture::Camera {
   Result<capture::Photograph> take(const fs::path&, const std::function<void()>&) override {
     return capture::Photograph{};
   }
+  Result<std::string> look() override { return std::string("\xff\xd8\xff\xd9"); }
+  Result<void> stop_looking() override { return {}; }
   Result<capture::CameraFacts> recover() override { return connect(); }
 };
 

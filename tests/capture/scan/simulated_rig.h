@@ -80,6 +80,8 @@ class SimulatedRig {
     Result<std::vector<double>> shutter_times_us() override;
     Result<capture::Photograph> take(const std::filesystem::path& file,
                                      const std::function<void()>& exposed) override;
+    Result<std::string> look() override { return std::string("\xff\xd8\xff\xd9"); }
+    Result<void> stop_looking() override { return {}; }
     Result<capture::CameraFacts> recover() override;
 
    private:
