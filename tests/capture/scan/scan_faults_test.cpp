@@ -60,7 +60,7 @@ TEST(ScanFaults, APhotographThatComesOneShotLateIsNeverTakenForTheNextOne) {
 }
 
 TEST(ScanFaults, ALedThatGoesOutInOneExposureIsPhotographedAgain) {
-  for (int take = 2; take <= kShots; ++take) {  // the first is the dark shot
+  for (int take = 2; take < kShots; ++take) {  // the first and the last are dark shots
     ScanBench bench;
     bench.rig.camera_faults[take] = Fault::kLedWentOut;
     const Result<ScanOutcome> outcome = bench.scan();
