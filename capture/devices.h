@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "core/session.h"
 
 namespace weft::capture {
 
@@ -31,6 +32,13 @@ class Lamps {
   virtual Result<double> light(std::span<const int> leds, double most_s) = 0;
   /// After an error: finds the board again, all off. The same board or an error.
   virtual Result<void> recover() = 0;
+
+  /// Whether it has outputs for a light below the cloth, which is LED leds() + 1 and lit alone, and for a
+  /// polariser. What hangs on them the rig file says.
+  virtual bool has_more_outputs() const = 0;
+  /// Turns the polariser, until the next call or recover(), which leaves it parallel. kUsage for kNone, and
+  /// where there are no such outputs.
+  virtual Result<void> polarise(Polariser state) = 0;
 };
 
 /// What a scan asks of a camera for each shot.

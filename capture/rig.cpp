@@ -85,6 +85,29 @@ Result<void> read_camera(const toml::table& table, Rig& rig) {
   return keys.status();
 }
 
+Result<void> read_below(const toml::table& table, Rig& rig) {
+  TomlKeys keys(table, place(rig.file, "below"), kPage);
+  keys.know({"exposure_us"});
+  rig.below.emplace();
+  if (keys.has("exposure_us")) rig.below->exposure_us = keys.number("exposure_us", 1, 1e9);
+  return keys.status();
+}
+
+Result<void> read_polariser(const toml::table& table, Rig& rig) {
+  TomlKeys keys(table, place(rig.file, "polariser"), kPage);
+  keys.know({"states", "settle_s"});
+  for (const std::string& name : keys.texts_or("states", {})) {
+    const std::optional<Polariser> state = polariser_of(name);
+    if (!state || state == Polariser::kNone || std::ranges::count(rig.polariser.states, *state) > 0) {
+      keys.reject("states", "it must be \"crossed\", \"parallel\" or both");
+      break;
+    }
+    rig.polariser.states.push_back(*state);
+  }
+  rig.polariser.settle_s = keys.number_or("settle_s", rig.polariser.settle_s, 0, 60);
+  return keys.status();
+}
+
 Result<void> read_scan(const toml::table& table, Rig& rig) {
   TomlKeys keys(table, place(rig.file, "scan"), kPage);
   keys.know({"calibration", "iso", "f_number", "exposure_us", "cloth_height_mm", "sessions", "copy",
@@ -150,18 +173,22 @@ Result<Rig> read_rig(const fs::path& file) {
   Rig rig;
   rig.file = file;
   TomlKeys keys(*table, file.string(), kPage);
-  keys.know({"name", "leds", "led", "board", "camera", "scan", "daemon"});
+  keys.know({"name", "leds", "led", "board", "camera", "below", "polariser", "scan", "daemon"});
   rig.name = keys.text_or("name", "rig");
   if (rig.name.empty() || rig.name.find('/') != std::string::npos)
     keys.reject("name", "it must be a plain name");
   if (Result<void> ok = read_leds(keys, rig); !ok) return std::move(ok).error();
   const toml::table& board = keys.table("board");
   const toml::table& camera = keys.table("camera");
+  const toml::table& polariser = keys.table("polariser");
+  const toml::table& below = keys.table("below");
   const toml::table& scan = keys.table("scan");
   const toml::table& daemon = keys.table("daemon");
   if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
   for (const Result<void>& read :
-       {read_board(board, rig), read_camera(camera, rig), read_scan(scan, rig), read_daemon(daemon, rig)}) {
+       {read_board(board, rig), read_camera(camera, rig), read_polariser(polariser, rig),
+        keys.has("below") ? read_below(below, rig) : Result<void>(), read_scan(scan, rig),
+        read_daemon(daemon, rig)}) {
     if (!read) return read.error();
   }
   return rig;

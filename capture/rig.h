@@ -8,6 +8,7 @@
 
 #include "core/lights.h"
 #include "core/result.h"
+#include "core/session.h"
 
 namespace weft::capture {
 
@@ -30,6 +31,20 @@ struct Rig {
     std::string port;                     ///< "ptpip:127.0.0.1:15740:15740"; empty: found on USB
     std::string serial;                   ///< empty: the calibration's (camera_serial())
   } camera;
+
+  /// [below]: a light below the cloth, on the board's output for it. None: there is none.
+  struct Below {
+    std::optional<double> exposure_us;  ///< none: metered for each cloth
+  };
+  std::optional<Below> below;
+
+  /// [polariser]: one before the lens, crossed or parallel to those before the lights.
+  struct PolariserFilm {
+    /// What each scan photographs the LEDs in, one after the other; the first is what is solved. Empty: there
+    /// is none. With one state it stands as it is; with two the board turns it.
+    std::vector<Polariser> states;
+    double settle_s = 0.5;  ///< from the command to turn until it stands
+  } polariser;
 
   struct Scan {
     std::filesystem::path calibration;  ///< folder

@@ -47,12 +47,11 @@ Result<Shot> read_shot(const Json& json, const std::string& where) {
     shot.role = known->first;
   }
   const std::string polariser = fields.text_or("polariser", "none");
-  const auto* state =
-      std::ranges::find(kPolarisers, polariser, [](const auto& p) { return std::string_view(p.second); });
-  if (state == kPolarisers.end()) {
+  const std::optional<Polariser> state = polariser_of(polariser);
+  if (!state) {
     fields.reject("polariser", fmt::format("is \"{}\"; none, parallel or crossed was expected", polariser));
   } else {
-    shot.polariser = state->first;
+    shot.polariser = *state;
   }
   if (json.contains("superseded_by")) shot.superseded_by = fields.integer("superseded_by");
   if (!stays_inside(shot.file)) fields.reject("file", "must be a path inside the session");
@@ -126,6 +125,12 @@ Json to_json(const Shot& shot) {
 
 const char* name_of(ShotRole role) {
   return std::ranges::find(kRoles, role, &std::pair<ShotRole, const char*>::first)->second;
+}
+
+std::optional<Polariser> polariser_of(std::string_view name) {
+  const auto found =
+      std::ranges::find(kPolarisers, name, [](const auto& p) { return std::string_view(p.second); });
+  return found == kPolarisers.end() ? std::nullopt : std::optional(found->first);
 }
 
 const char* name_of(Polariser polariser) {

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/json_document.h"
@@ -24,6 +25,7 @@ const char* name_of(ShotRole role);  ///< "lit"
 /// How the film before the camera stands to that before the lights.
 enum class Polariser { kNone, kParallel, kCrossed };
 const char* name_of(Polariser polariser);  ///< "crossed"
+std::optional<Polariser> polariser_of(std::string_view name);
 
 /// One exposure of a session.
 struct Shot {

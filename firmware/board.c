@@ -56,7 +56,7 @@ static void light(struct WeftLamps* lamps, uint16_t mask, uint16_t on_cs, struct
 }
 
 static void light_one(struct WeftLamps* lamps, const uint8_t* payload, struct Answer* answer) {
-  if (payload[0] > kWeftLeds) {
+  if (payload[0] > kWeftBelow) {
     answer->error = kWeftNoSuchLed;
     return;
   }
@@ -72,12 +72,22 @@ static void light_pair(struct WeftLamps* lamps, const uint8_t* payload, struct A
   light(lamps, bit_of(a) | bit_of(b), weft_get_u16(payload + 2), answer);
 }
 
+static void polarise(struct WeftBoard* board, uint8_t state, struct Answer* answer) {
+  if (state > kWeftCrossed) {
+    answer->error = kWeftWrongState;
+    return;
+  }
+  answer->payload[0] = board->polariser;
+  answer->length = kWeftPolariserReply;
+  board->polariser = state;
+}
+
 static void act(struct WeftBoard* board, const uint8_t* request, struct Answer* answer) {
   static const uint8_t kLengths[] = {
-      [kWeftHello] = 0, [kWeftLight] = 3, [kWeftLightPair] = 4, [kWeftStatus] = 0};
+      [kWeftHello] = 0, [kWeftLight] = 3, [kWeftLightPair] = 4, [kWeftStatus] = 0, [kWeftPolariser] = 1};
   const uint8_t command = weft_command(request);
   const uint8_t* payload = request + kWeftFrameHead;
-  if (command < kWeftHello || command > kWeftStatus) {
+  if (command < kWeftHello || command > kWeftPolariser) {
     answer->error = kWeftUnknownCommand;
   } else if (weft_length(request) != kLengths[command]) {
     answer->error = kWeftWrongLength;
@@ -87,6 +97,8 @@ static void act(struct WeftBoard* board, const uint8_t* request, struct Answer* 
     light_one(&board->lamps, payload, answer);
   } else if (command == kWeftLightPair) {
     light_pair(&board->lamps, payload, answer);
+  } else if (command == kWeftPolariser) {
+    polarise(board, payload[0], answer);
   } else {
     say_status(board, answer);
   }

@@ -13,6 +13,7 @@ extern "C" {
 /// The board but for its hardware.
 struct WeftBoard {
   struct WeftLamps lamps;
+  uint8_t polariser;
   uint16_t bad_frames;
   uint16_t overruns;
   uint8_t reset_cause;

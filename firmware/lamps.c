@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "firmware/lamps.h"
 
-enum { kMark0 = 0x57EF, kMark1 = 0x1A3D };
+enum { kMark0 = 0x57EF, kMark1 = 0x1A3E };
 
 static const uint16_t kMostOn_ms = 10U * kWeftMostOn_cs;
 static const uint8_t kCooling_ms = 16;
@@ -13,7 +13,7 @@ static void go_dark(struct WeftLamps* lamps, uint8_t cause) {
 
 static void add_heat(struct WeftLamps* lamps, uint8_t cooled_ms) {
   uint16_t lit = lamps->lit, lately = lamps->lit_lately;
-  for (uint8_t led = 0; led < kWeftLeds;
+  for (uint8_t led = 0; led < kWeftBelow;
        ++led, lit = (uint16_t)(lit >> 1), lately = (uint16_t)(lately >> 1)) {
     uint16_t* heat = &lamps->heat->ms[led];
     if (lit & 1) {
@@ -26,7 +26,7 @@ static void add_heat(struct WeftLamps* lamps, uint8_t cooled_ms) {
 
 void weft_lamps_start(struct WeftLamps* lamps, struct WeftHeat* heat) {
   uint8_t known = heat->mark[0] == kMark0 && heat->mark[1] == kMark1;
-  for (int led = 0; led < kWeftLeds; ++led) known = known && heat->ms[led] <= kMostOn_ms;
+  for (int led = 0; led < kWeftBelow; ++led) known = known && heat->ms[led] <= kMostOn_ms;
   if (!known) *heat = (struct WeftHeat){{kMark0, kMark1}, {0}};
   *lamps = (struct WeftLamps){.heat = heat};
 }
@@ -50,7 +50,7 @@ void weft_lamps_heard(struct WeftLamps* lamps) {
 
 uint16_t weft_lamps_rest_ms(const struct WeftLamps* lamps, uint16_t mask, uint16_t on_ms) {
   uint16_t rest_ms = 0;
-  for (int led = 0; led < kWeftLeds; ++led, mask = (uint16_t)(mask >> 1)) {
+  for (int led = 0; led < kWeftBelow; ++led, mask = (uint16_t)(mask >> 1)) {
     const uint16_t room_ms = (uint16_t)(kMostOn_ms - lamps->heat->ms[led]);
     if ((mask & 1) && on_ms > room_ms && on_ms - room_ms > rest_ms) rest_ms = (uint16_t)(on_ms - room_ms);
   }

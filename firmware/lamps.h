@@ -9,18 +9,18 @@
 extern "C" {
 #endif
 
-/// How long each LED was lit lately: a ms lit adds one, a ms dark takes one away. A LED is lit only for as
-/// long as this stays below the longest on-time, so that it is dark half of the time in the long run, however
-/// it is switched. Kept through resets, which are no way to light it longer.
+/// How long each LED, and the light below, was lit lately: a ms lit adds one, a ms dark takes one away. A LED
+/// is lit only for as long as this stays below the longest on-time, so that it is dark half of the time in
+/// the long run, however it is switched. Kept through resets, which are no way to light it longer.
 struct WeftHeat {
   uint16_t mark[2];
-  uint16_t ms[kWeftLeds];
+  uint16_t ms[kWeftBelow];
 };
 
 /// What is lit, and when that ends.
 struct WeftLamps {
   struct WeftHeat* heat;
-  uint16_t lit;         ///< bit 0 is LED 1
+  uint16_t lit;         ///< bit 0 is LED 1, bit 10 the light below
   uint16_t lit_lately;  ///< at any time since LEDs last cooled
   uint16_t left_ms;     ///< of the on-time
   uint16_t silent_ms;   ///< since a whole frame came

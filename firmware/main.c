@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hardware of the LED board: an ATmega328P at 16 MHz, LEDs 1 to 6 on PD2 to PD7, 7 to 10 on PB0 to PB3.
+// The hardware of the LED board: an ATmega328P at 16 MHz, LEDs 1 to 6 on PD2 to PD7, 7 to 10 on PB0 to PB3,
+// the light below on PB4, the polariser on PC0.
 #include <avr/interrupt.h>
 #include <avr/io.h>
 #include <avr/sleep.h>
@@ -15,7 +16,7 @@
 #define BAUD_TOL 3  // 16 MHz gives 2.1 % more, which every USB bridge takes
 #include <util/setbaud.h>
 
-enum { kRing = 64, kLedsOnD = 0xFC, kLedsOnB = 0x0F };
+enum { kRing = 64, kLedsOnD = 0xFC, kLedsOnB = 0x1F };
 
 static uint8_t reset_cause __attribute__((section(".noinit")));
 static struct WeftHeat heat __attribute__((section(".noinit")));
@@ -57,6 +58,7 @@ static void start_hardware(void) {
   EICRA = _BV(ISC11) | _BV(ISC01);
   DDRD = kLedsOnD;
   DDRB = kLedsOnB;
+  DDRC = _BV(DDC0);
   UCSR0A = USE_2X ? _BV(U2X0) : 0;
   UBRR0H = UBRRH_VALUE;
   UBRR0L = UBRRL_VALUE;
@@ -78,6 +80,10 @@ static void show(uint16_t lit) {
   PORTB &= b;
   PORTD = d;
   PORTB = b;
+}
+
+static void turn(uint8_t polariser) {
+  PORTC = polariser == kWeftCrossed ? _BV(PORTC0) : 0;
 }
 
 static uint16_t now_ms(void) {
@@ -123,6 +129,7 @@ static void hear(void) {
   board.bad_frames = parser.bad_frames;
   const uint8_t size = weft_board_answer(&board, parser.bytes);
   show(board.lamps.lit);
+  turn(board.polariser);
   send(board.reply, size);
 }
 

@@ -65,7 +65,8 @@ bool is_d80(const LightFrames& frames) {
 
 std::string rig_toml(const LightFrames& frames, const RigFiles& files) {
   const simulator::Scene& scene = frames.scene();
-  return fmt::format(R"(# A virtual rig: what a host is told of it. It ends with the program that made it.
+  return fmt::format(
+      R"(# A virtual rig: what a host is told of it. It ends with the program that made it.
 name = "virtual rig"
 leds = {}
 
@@ -76,7 +77,7 @@ port = {}
 profile = {}
 port = {}
 serial = {}
-
+{}{}
 [scan]
 calibration = "calibration"
 iso = {}
@@ -87,10 +88,10 @@ sessions = "scans"
 [daemon]
 port = 0
 )",
-                     frames.leds(), quoted(files.board_port),
-                     quoted(is_d80(frames) ? kProfile : "nikon-d5100"), quoted(files.camera_port),
-                     quoted(files.camera_serial), scene.camera.iso, scene.camera.f_number,
-                     scene.geometry.cloth_height_mm);
+      frames.leds(), quoted(files.board_port), quoted(is_d80(frames) ? kProfile : "nikon-d5100"),
+      quoted(files.camera_port), quoted(files.camera_serial), files.below ? "\n[below]\n" : "",
+      files.polariser ? "\n[polariser]\nstates = [\"crossed\", \"parallel\"]\nsettle_s = 0.1\n" : "",
+      scene.camera.iso, scene.camera.f_number, scene.geometry.cloth_height_mm);
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ struct RigFiles {
   std::string camera_port;  ///< empty: found on USB
   std::string camera_serial;
   std::vector<std::string> environment;  ///< "NAME=value"
+  bool below = false, polariser = false;
 };
 
 /// Name of the file that VirtualRig keeps of its exposures.

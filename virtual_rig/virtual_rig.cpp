@@ -33,7 +33,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kOutputs = 10;  // of the board
+constexpr int kLedOutputs = 10;  // of the board
 constexpr int kMostShots = 1000000;
 constexpr auto kLookTime = std::chrono::milliseconds(50);
 
@@ -84,16 +84,17 @@ std::uint32_t last_image_number(const fs::path& log) {
 }
 
 Result<void> check_leds(const LightFrames& frames) {
-  if (frames.leds() <= kOutputs) return {};
+  if (frames.leds() <= kLedOutputs) return {};
   return Error{ErrorKind::kBadData, "too many LEDs for a board", "scene",
-               fmt::format("it has {} and the board {} outputs", frames.leds(), kOutputs),
+               fmt::format("it has {} and the board {} outputs", frames.leds(), kLedOutputs),
                "take some out of the scene's section [lights]"};
 }
 
 class RunningRig : public VirtualRig {
  public:
-  RunningRig(const VirtualRigOptions& options, LightFrames frames, RigFolder folder)
-      : options_(options), frames_(std::move(frames)), folder_(std::move(folder)) {}
+  RunningRig(const VirtualRigOptions& options, LightFrames frames, std::optional<LightFrames> matt,
+             RigFolder folder)
+      : options_(options), frames_(std::move(frames)), matt_(std::move(matt)), folder_(std::move(folder)) {}
 
   ~RunningRig() override {
     control_.reset();  // nobody commands what goes
@@ -185,6 +186,8 @@ class RunningRig : public VirtualRig {
     if (!options_.usb) files.camera_port = fmt::format("ptpip:127.0.0.1:{0}:{0}", camera_->port());
     files.camera_serial = options_.serial;
     files.environment = environment_;
+    files.below = options_.below;
+    files.polariser = options_.polariser;
     return folder_.write(frames_, files);
   }
 
@@ -200,8 +203,12 @@ class RunningRig : public VirtualRig {
 
   /// On the camera's thread.
   Result<std::vector<std::uint8_t>> photograph(const CameraExposure& exposure) {
-    const std::vector<double> pins = lit_shares(pins_, exposure.opened, exposure.closed, frames_.leds());
+    std::vector<double> pins = lit_shares(pins_, exposure.opened, exposure.closed, kOutputs);
+    const double below = pins[kBelowBit], crossed = pins[kPolariserBit];
+    pins.resize(static_cast<std::size_t>(frames_.leds()));
     GatheredLight light = gathered_light(frames_, pins, faults(), exposure);
+    if (options_.below) add_light_below(light, below, exposure);
+    if (options_.polariser) add_films(light, crossed, matt_ ? &*matt_ : nullptr);
     if (options_.same_noise) light.noise_key = lit_mask(light);
     if (Result<void> ok = log(exposure, pins, light); !ok) return ok.error();
     return develop(frames_, light, exposure, options_.serial, options_.render.tiles.threads);
@@ -282,7 +289,7 @@ class RunningRig : public VirtualRig {
   Json status() const {
     std::vector<int> lit;
     const std::uint16_t mask = pins_.now();
-    for (int led = 1; led <= kOutputs; ++led) {
+    for (int led = 1; led <= kBelowBit + 1; ++led) {
       if ((mask >> (led - 1) & 1) != 0) lit.push_back(led);
     }
     return {{"shots", camera_->shots()},  {"pins", lit},
@@ -300,6 +307,7 @@ class RunningRig : public VirtualRig {
 
   VirtualRigOptions options_;
   LightFrames frames_;
+  std::optional<LightFrames> matt_;  ///< without its gloss, where a polariser takes that away
   RigFolder folder_;
   LitLog pins_;
   mutable std::mutex mutex_;  // of faults_
@@ -322,7 +330,14 @@ Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& o
   Result<LightFrames> frames = LightFrames::open(scene, options.cache, options.render);
   if (!frames) return frames.error();
   if (Result<void> ok = check_leds(*frames); !ok) return ok.error();
-  auto rig = std::make_unique<RunningRig>(options, std::move(*frames), std::move(*folder));
+  std::optional<LightFrames> matt;
+  if (options.polariser && scene.effects.reflectance) {
+    scene.effects.reflectance = false;
+    Result<LightFrames> without_gloss = LightFrames::open(scene, options.cache, options.render);
+    if (!without_gloss) return without_gloss.error();
+    matt = std::move(*without_gloss);
+  }
+  auto rig = std::make_unique<RunningRig>(options, std::move(*frames), std::move(matt), std::move(*folder));
   if (Result<void> ok = rig->start(); !ok) return ok.error();
   return std::unique_ptr<VirtualRig>(std::move(rig));
 }

@@ -25,6 +25,8 @@ struct VirtualRigOptions {
   std::string serial = "6000001";               ///< of the camera
   double bootloader_s = 0.1;                    ///< the board is deaf for after a reset
   double clock_offset_s = 0;                    ///< of the camera's clock to this machine's
+  bool below = false;      ///< a light below the cloth hangs on the board's output for it
+  bool polariser = false;  ///< and films before LEDs and lens, which it turns
   bool usb = false;        ///< the camera hangs on USB, by the stand-in for libusb; else PTP/IP
   double away_s = 2;       ///< how long what a fault takes away is away
   double late_s = 8;       ///< how late a picture is that comes late

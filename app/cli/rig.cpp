@@ -201,12 +201,16 @@ Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& argu
   const auto show = [&](const capture::KeptFrame& frame) {
     const auto& rgb = frame.histogram_rgb;
     rows.push_back({{"led", frame.shot.led},
+                    {"role", name_of(frame.shot.role)},
+                    {"polariser", name_of(frame.shot.polariser)},
                     {"mean_rgb", {mean_of(rgb[0]), mean_of(rgb[1]), mean_of(rgb[2])}},
                     {"clipped_rgb", {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped}},
                     {"warnings", frame.warnings}});
     if (common.json) return;
     print(fmt::format("{:8} mean {:5.1f} {:5.1f} {:5.1f} %  clipped {:.2g} %",
-                      frame.shot.led > 0 ? fmt::format("LED {}", frame.shot.led) : "dark",
+                      frame.shot.led > 0                    ? fmt::format("LED {}", frame.shot.led)
+                      : frame.shot.role == ShotRole::kBelow ? "below"
+                                                            : "dark",
                       100 * mean_of(rgb[0]), 100 * mean_of(rgb[1]), 100 * mean_of(rgb[2]),
                       100 * std::max({rgb[0].clipped, rgb[1].clipped, rgb[2].clipped})));
     for (const std::string& warning : frame.warnings) print(fmt::format("{:8} {}", "", warning));

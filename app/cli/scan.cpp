@@ -36,9 +36,11 @@ struct ScanArguments {
   std::string fabric;
   std::vector<int> leds;  ///< empty: all
   std::optional<double> exposure_us, bracket, cloth_height_mm;
-  std::vector<std::string> metadata;  ///< "key=value"
-  std::string accept_moved;           ///< why; empty: not
-  std::optional<int> again;           ///< LED of a finished session; 0: the dark shot
+  std::vector<std::string> metadata;   ///< "key=value"
+  std::string accept_moved;            ///< why; empty: not
+  std::optional<int> again;            ///< LED of a finished session; 0: the dark shot
+  std::vector<std::string> polariser;  ///< states; empty: the rig file's
+  bool below = true;
   bool repeat = true;
   bool preview = true;  ///< a quick solve at the end
   bool dry_run = false;
@@ -67,6 +69,8 @@ Result<Json> body_of(const ScanArguments& arguments) {
   if (arguments.bracket) body["bracket"] = *arguments.bracket;
   if (arguments.cloth_height_mm) body["cloth_height_mm"] = *arguments.cloth_height_mm;
   if (!arguments.repeat) body["repeat"] = false;
+  if (!arguments.polariser.empty()) body["polariser"] = arguments.polariser;
+  if (!arguments.below) body["below"] = false;
   if (!arguments.accept_moved.empty()) body["accept_moved"] = arguments.accept_moved;
   for (const std::string& pair : arguments.metadata) {
     const std::size_t equals = pair.find('=');
@@ -99,9 +103,13 @@ class Narrator {
     double clipped = 0;
     for (const Json& share : frame["clipped_rgb"]) clipped = std::max(clipped, share.get<double>());
     const int led = frame["led"].get<int>();
-    note(fmt::format("  {:>2} {:7} {:8} clipped {:.3g} %", frame["index"].get<int>(),
-                     led > 0 ? fmt::format("LED {}", led) : "dark", frame["role"].get<std::string>(),
-                     100 * clipped));
+    const std::string role = frame["role"].get<std::string>();
+    const std::string polariser = frame["polariser"].get<std::string>();
+    note(fmt::format("  {:>2} {:7} {:8} {}clipped {:.3g} %", frame["index"].get<int>(),
+                     led > 0           ? fmt::format("LED {}", led)
+                     : role == "below" ? "below"
+                                       : "dark",
+                     role, polariser == "none" ? "" : fmt::format("{:8} ", polariser), 100 * clipped));
     for (const Json& warning : frame["warnings"]) note("     " + warning.get<std::string>());
   }
 
@@ -332,6 +340,14 @@ Run add_scan(Options& options) {
   options.add("--metadata", &a->metadata, "KEY=VALUE to keep with the session: id, weight, side, notes");
   options.add("--accept-moved", &a->accept_moved,
               "Scan although the last check of the calibration did not pass: the reason, which is kept");
+  options
+      .add(
+          "--polariser", &a->polariser,
+          "How the films stand for each LED, crossed, parallel or crossed,parallel: one after the other, and "
+          "the first is solved; default [polariser] of the rig file")
+      .by_commas();
+  options.add_flag("!--no-below", &a->below,
+                   "Do not light the cloth from below, though the rig file has [below]");
   options.add_flag("!--no-repeat", &a->repeat,
                    "Do not light the first LED once more at the end, to see drift");
   options.add_flag("!--no-preview", &a->preview, "Do not solve a quick preview at the end");

@@ -76,7 +76,7 @@ class Stage {
     Told told;
     std::vector<int> leds(static_cast<std::size_t>(cloth_.leds()));
     std::iota(leds.begin(), leds.end(), 1);
-    for (const auto& shot : capture::plan_shots({leds, true, {}}, {cloth_.scene_exposure_us(), 100, 8}, 0)) {
+    for (const auto& shot : capture::plan_shots({leds, true, {}}, {cloth_.scene_exposure_us(), 100, 8}, {})) {
       const bool is_repeat = shot.role == ShotRole::kRepeat && shot.led > 0;
       std::vector<double> light = seen(story(is_repeat ? kRepeat : shot.led), is_repeat);
       const capture::ShotVerdict verdict = evidence.judge(shot, light);

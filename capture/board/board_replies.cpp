@@ -33,7 +33,7 @@ Error unlike_protocol(const BoardReply& reply, const std::string& port) {
 /// Nothing where this board can be used, and what to do where not.
 Result<void> check_version(const BoardReply& hello, const std::string& port) {
   const int major = hello.payload[0], minor = hello.payload[1];
-  if (major == kWeftProtocolMajor && minor >= kWeftProtocolMinor) return {};
+  if (major == kWeftProtocolMajor) return {};
   const bool newer = major > kWeftProtocolMajor;
   const std::string flash = "./dev flash " + port;
   return Error{
@@ -116,6 +116,12 @@ Result<BoardStatus> status_in(const BoardReply& reply, const std::string& port) 
   status.dark = dark_of(said[10]);
   status.reset = reset_of(said[11]);
   return status;
+}
+
+Result<void> polariser_answer_in(const BoardReply& reply, const std::string& port) {
+  if (reply.command != kWeftPolariser || reply.length < kWeftPolariserReply)
+    return unlike_protocol(reply, port);
+  return {};
 }
 
 std::uint16_t mask_of(const std::vector<int>& leds) {

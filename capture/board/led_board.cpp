@@ -25,6 +25,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kKeepAlive = 120ms;  ///< a quarter of the dead-man's time: three may be lost
 constexpr auto kEndOfLight = 50ms;  ///< so close to the end of a light, it may be over already
 constexpr double kRestMargin_s = 0.02;
+constexpr int kMoreOutputsSince = 1;  // minor of the protocol
 
 Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
@@ -60,6 +61,10 @@ Result<std::string> port_of(const std::string& usb, const std::string& given) {
                fmt::format("no port is USB device {}", usb), "plug the rig's own board in"};
 }
 
+bool has_more_outputs_by(const BoardFacts& facts) {
+  return facts.protocol_minor >= kMoreOutputsSince;
+}
+
 /// LEDs as bits, and the request that lights them.
 struct Light {
   std::uint16_t mask = 0;
@@ -79,8 +84,9 @@ Result<Light> light_of(std::span<const int> leds, double most_s, const BoardFact
   if (leds.size() > 2 || (leds.size() == 2 && leds[0] == leds[1])) {
     return wrong("one LED or two different ones are lit together", "ask for one or two");
   }
+  const bool is_below = leds.size() == 1 && leds[0] == facts.leds + 1 && has_more_outputs_by(facts);
   for (const int led : leds) {
-    if (led < 1 || led > facts.leds) {
+    if (!is_below && (led < 1 || led > facts.leds)) {
       return wrong(fmt::format("there is no LED {}", led), fmt::format("choose from 1 to {}", facts.leds));
     }
     light.mask = static_cast<std::uint16_t>(light.mask | 1 << (led - 1));
@@ -124,6 +130,22 @@ class OpenLedBoard final : public LedBoard {
     if (*rest == 0ms) return 0.0;
     if (auto dark = send({}); !dark) return dark.error();
     return std::chrono::duration<double>(*rest).count() + kRestMargin_s;
+  }
+
+  bool has_more_outputs() const override { return has_more_outputs_by(facts_); }
+
+  Result<void> polarise(Polariser state) override {
+    if (state == Polariser::kNone || !has_more_outputs()) {
+      return Error{
+          ErrorKind::kUsage, "the LED board cannot turn the polariser", options_.port,
+          has_more_outputs() ? "it is turned to parallel or crossed" : "its firmware is older than that",
+          has_more_outputs() ? "ask for one of these" : "flash its firmware: ./dev flash " + options_.port};
+    }
+    const std::array<std::uint8_t, 1> payload = {state == Polariser::kCrossed ? std::uint8_t{kWeftCrossed}
+                                                                              : std::uint8_t{kWeftParallel}};
+    const std::lock_guard lock(mutex_);
+    const auto reply = ask(kWeftPolariser, payload);
+    return reply ? polariser_answer_in(*reply, options_.port) : reply.error();
   }
 
   Result<BoardStatus> status() override {

@@ -75,13 +75,14 @@ Result<void> check_same_scan(const Session& session, const ScanRequest& request,
                                      session.cloth_height_mm, request.fabric, request.cloth_height_mm));
   }
   if (!session.document.contains("plan") || session.document["plan"] != to_json(list)) {
-    return cannot_resume(session, "its LEDs, repeat or brackets are others");
+    return cannot_resume(session, "its LEDs, repeat, brackets, polariser or light below are others");
   }
-  const std::vector<PlannedShot> plan = plan_shots(list, {}, 0);
+  const std::vector<PlannedShot> plan = plan_shots(list, {}, {});
   for (const Shot& shot : session.shots) {
     const bool is_planned = shot.index >= 0 && shot.index < static_cast<int>(plan.size()) &&
                             plan[static_cast<std::size_t>(shot.index)].led == shot.led &&
-                            plan[static_cast<std::size_t>(shot.index)].role == shot.role;
+                            plan[static_cast<std::size_t>(shot.index)].role == shot.role &&
+                            plan[static_cast<std::size_t>(shot.index)].polariser == shot.polariser;
     if (is_planned) continue;
     return Error{ErrorKind::kBadData, "session has a shot that its plan has not", session.folder.string(),
                  fmt::format("{}: index {}, LED {}", shot.file, shot.index, shot.led),
@@ -116,9 +117,11 @@ Result<Descriptor> locked(const fs::path& folder) {
 /// The time of the session's other frames of this setting, else the one that the photograph says, else the
 /// one that was set: cameras name 1/60 s in several ways, and a session has one.
 double exposure_us_of(const PlannedShot& planned, const Photograph& photograph, const Session& session) {
-  const bool is_bracket = planned.role == ShotRole::kBracket;
+  const auto setting = [](ShotRole role) {
+    return role == ShotRole::kBracket || role == ShotRole::kBelow ? role : ShotRole::kLit;
+  };
   for (const Shot& shot : session.shots) {
-    if ((shot.role == ShotRole::kBracket) == is_bracket) return shot.exposure_us;
+    if (setting(shot.role) == setting(planned.role)) return shot.exposure_us;
   }
   return photograph.exposure.exposure_us > 0 ? photograph.exposure.exposure_us : planned.exposure.exposure_us;
 }
@@ -265,6 +268,7 @@ Result<Shot> Journal::keep(const PlannedShot& planned, const Photograph& photogr
   shot.index = planned.index;
   shot.led = planned.led;
   shot.role = planned.role;
+  shot.polariser = planned.polariser;
   shot.file = fmt::format("raw/{}.{}", file_stem(planned), photograph.ending);
   shot.sha256 = photograph.sha256;
   shot.exposure_us = exposure_us_of(planned, photograph, session_);

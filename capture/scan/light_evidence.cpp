@@ -30,6 +30,7 @@ constexpr double kRepeatPattern = 0.05;  // scatter of a repeat over its first, 
 constexpr double kDarkAlike = 3e-5;      // of full scale, between two dark shots: half a count of 14 bits
 constexpr double kDarkNoise = 6;         // of their difference, beyond it they are not alike
 constexpr double kMedianNoise = 1.86;    // of a median of normal deviates, from their median deviation
+constexpr double kOtherSideBy = 0.05;    // less uneven over another LED's frame: that one was lit
 constexpr double kBracketLevel = 0.25;   // of a bracket's brightness over the ratio of its times
 
 /// The share of patches that hold a full photosite.
@@ -42,6 +43,12 @@ double full_share(const std::vector<double>& light) {
 /// where the light is weak.
 bool is_readable(const std::vector<double>& light) {
   return full_share(light) <= kMostFull;
+}
+
+/// Whether no patch is lit, of a frame without its dark shot.
+bool is_dark(const std::vector<double>& own) {
+  return lower_quantile(finite(own), 0.99) < kLitFrom &&
+         std::ranges::none_of(own, [](double v) { return std::isnan(v); });
 }
 
 /// What a frame has over another, and how unevenly.
@@ -172,8 +179,8 @@ const char* code_of(Finding finding) {
   return "";
 }
 
-ScanEvidence::ScanEvidence(PatchGrid grid, std::optional<PatchLights> model)
-    : grid_(grid), model_(std::move(model)) {}
+ScanEvidence::ScanEvidence(PatchGrid grid, std::optional<PatchLights> model, Polariser solved)
+    : grid_(grid), model_(std::move(model)), solved_(solved) {}
 
 std::vector<double> ScanEvidence::glance(const RawFrame& frame) const {
   return glance_at(frame, grid_, model_ ? model_->scale : GlanceScale());
@@ -182,7 +189,7 @@ std::vector<double> ScanEvidence::glance(const RawFrame& frame) const {
 void ScanEvidence::accept(const PlannedShot& shot, std::vector<double> light) {
   if (shot.role == ShotRole::kDark)
     dark_ = std::move(light);
-  else if (shot.role == ShotRole::kLit)
+  else if (shot.role == ShotRole::kLit && shot.polariser == solved_)
     lit_[shot.index] = {shot, std::move(light)};
 }
 
@@ -207,14 +214,14 @@ ShotVerdict ScanEvidence::judge(const PlannedShot& shot, const std::vector<doubl
     case ShotRole::kDark:
       return judge_dark(shot, light);
     case ShotRole::kLit:
-      return judge_lit(shot, light);
+      return shot.polariser == solved_ ? judge_lit(shot, light) : judge_other_state(shot, light);
     case ShotRole::kRepeat:
       if (shot.led == 0) return judge_dark_again(light);
       break;
     case ShotRole::kBracket:
       break;
     case ShotRole::kBelow:
-      return {};
+      return judge_below(light);
   }
   return judge_again(shot, light);
 }
@@ -292,8 +299,7 @@ ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<d
   const auto found = [&](Finding finding, std::string sentence) {
     return ShotVerdict{finding, std::move(sentence), {shot.index}, {}, {}, {}};
   };
-  if (lower_quantile(finite(own), 0.99) < kLitFrom &&
-      std::count_if(own.begin(), own.end(), [](double v) { return std::isnan(v); }) == 0) {
+  if (is_dark(own)) {
     return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
   }
   if (!model_ || lit_.empty()) return {};
@@ -352,6 +358,42 @@ ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vect
       if (story.lights[f] != planned[f]) verdict.accused.push_back(frames[f].shot.index);
     }
   }
+  return verdict;
+}
+
+/// Gloss comes and goes with the polariser, unevenly, but the light still falls from its own side: over the
+/// frame of another LED this one is more uneven than over that of its own.
+ShotVerdict ScanEvidence::judge_other_state(const PlannedShot& shot, const std::vector<double>& light) const {
+  const std::vector<double> own = without_dark(light);
+  const auto refuse = [&](Finding finding, std::string sentence) {
+    return ShotVerdict{finding, std::move(sentence), {shot.index}, {}, {}, {}};
+  };
+  if (is_dark(own)) return refuse(Finding::kDark, fmt::format("LED {} is dark", shot.led));
+  const Seen* first = of_led(shot.led);
+  const std::optional<Ratio> ratio =
+      first == nullptr ? std::nullopt : ratio_of(own, without_dark(first->light));
+  if (!ratio) return {};
+  ShotVerdict verdict;
+  verdict.level = ratio->median;
+  double least = std::min(kFarBetter * ratio->scatter, ratio->scatter - kOtherSideBy);
+  for (const auto& [index, seen] : lit_) {
+    const std::optional<Ratio> other = ratio_of(own, without_dark(seen.light));
+    if (seen.shot.led == shot.led || !other || other->scatter >= least) continue;
+    least = other->scatter;
+    verdict = refuse(
+        Finding::kOther,
+        fmt::format("LED {} lights where LED {} should: are their wires swapped?", seen.shot.led, shot.led));
+  }
+  return verdict;
+}
+
+/// A dense cloth lets nothing through, so that darkness is only spoken of.
+ShotVerdict ScanEvidence::judge_below(const std::vector<double>& light) const {
+  ShotVerdict verdict;
+  if (!is_dark(without_dark(light))) return verdict;
+  verdict.doubt = Finding::kDark;
+  verdict.warnings.emplace_back(
+      "no light comes through the cloth from below: it is dense, or the light below is out");
   return verdict;
 }
 

@@ -61,8 +61,10 @@ struct ShotVerdict {
 /// to hold a frame against, it agrees.
 class ScanEvidence {
  public:
-  /// Without a model only darkness, the repeat and the brackets are looked at.
-  ScanEvidence(PatchGrid grid, std::optional<PatchLights> model);
+  /// Without a model only darkness, the repeat and the brackets are looked at. `solved`: the polariser's
+  /// state in the lit shots that are held against the model. A LED's shot in the other state is held against
+  /// its own in this one, and against those of the others.
+  ScanEvidence(PatchGrid grid, std::optional<PatchLights> model, Polariser solved = Polariser::kNone);
 
   /// The light of a frame by patch, which judge() and accept() take.
   std::vector<double> glance(const RawFrame& frame) const;
@@ -81,12 +83,15 @@ class ScanEvidence {
   ShotVerdict judge_dark(const PlannedShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_dark_again(const std::vector<double>& light) const;
   ShotVerdict judge_lit(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_other_state(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_below(const std::vector<double>& light) const;
   ShotVerdict judge_again(const PlannedShot& shot, const std::vector<double>& light) const;
   double level_of(const PlannedShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const;
 
   PatchGrid grid_;
   std::optional<PatchLights> model_;
+  Polariser solved_;
   std::optional<std::vector<double>> dark_;
   std::map<int, Seen> lit_;  ///< kept frames of role lit by index, the dark shot taken off
 };

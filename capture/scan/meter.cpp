@@ -22,6 +22,7 @@ constexpr double kAgree = 0.1;          // of two LEDs' brightness with what the
 constexpr double kMostClippedByMeter = 1e-5;
 constexpr double kPoorRange = 0.5;  // 99.9 percent below less than this share of white
 constexpr double kLongestBracket = 100;
+constexpr double kWhite = 0.8;  // albedo that the first test shot holds
 
 /// What a LED gives a microsecond.
 double rate_of(const MeteredShot& shot) {
@@ -147,6 +148,17 @@ Json to_json(const Metering& metering) {
   Json shots = Json::array();
   for (const MeteredShot& shot : metering.test_shots) shots.push_back(to_json(shot));
   return {{"led", metering.led}, {"wanted_us", metering.wanted_us}, {"test_shots", std::move(shots)}};
+}
+
+void expect_light(MeterInput& input, const PatchLights& lights, double iso) {
+  input.expected.clear();
+  for (const int led : input.leds) {
+    double brightest = 0;
+    for (const Vec3& s : lights.leds[static_cast<std::size_t>(led - 1)]) brightest = std::max(brightest, s.z);
+    input.expected.push_back(brightest);
+  }
+  const double most = *std::ranges::max_element(input.expected);
+  input.start_us = 1e6 * kMeteredTo / (kWhite * most * lights.reading * iso / 100);
 }
 
 Result<Metering> meter(const MeterInput& input, const TestShot& shoot) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "capture/scan/histogram.h"
+#include "capture/scan/light_fit.h"
 #include "core/json_document.h"
 #include "core/result.h"
 
@@ -45,6 +46,9 @@ struct MeterInput {
   std::vector<double> shutter_times_us;  ///< rising
   double start_us = 0;                   ///< of the first test shot
 };
+
+/// Takes what to expect from the calibrated lights: the first test shot then holds white cloth.
+void expect_light(MeterInput& input, const PatchLights& lights, double iso);
 
 /// A test shot: how bright the cloth is under a LED at an exposure.
 using TestShot = std::function<Result<Brightness>(int led, double exposure_us)>;

@@ -15,38 +15,52 @@ constexpr double kSameTime = 0.01;  // 1/60 s is listed as 16667 or 16700 us; a 
 
 int ShotList::count() const {
   const int lit = static_cast<int>(leds.size());
-  return 1 + lit + (repeat ? 2 : 0) + (bracket ? lit : 0);
+  const int states = std::max(1, static_cast<int>(polariser.size()));
+  return 1 + states * lit + (repeat ? 2 : 0) + (bracket ? lit : 0) + (below ? 1 : 0);
 }
 
 Json to_json(const ShotList& list) {
   Json json = {{"leds", list.leds}, {"repeat", list.repeat}};
   if (list.bracket) json["bracket"] = *list.bracket;
+  for (const Polariser state : list.polariser) json["polariser"].push_back(name_of(state));
+  if (list.below) json["below"] = true;
   return json;
 }
 
 std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
-                                    double bracket_us) {
+                                    const OtherTimes& times) {
   std::vector<PlannedShot> plan;
-  const auto add = [&](int led, ShotRole role, double exposure_us) {
-    plan.push_back(
-        {static_cast<int>(plan.size()), led, role, {exposure_us, exposure.iso, exposure.f_number}});
+  const Polariser solved = list.polariser.empty() ? Polariser::kNone : list.polariser.front();
+  const auto add = [&](int led, ShotRole role, double exposure_us, std::optional<Polariser> other = {}) {
+    plan.push_back({static_cast<int>(plan.size()),
+                    led,
+                    role,
+                    {exposure_us, exposure.iso, exposure.f_number},
+                    other.value_or(solved)});
   };
   add(0, ShotRole::kDark, exposure.exposure_us);
   for (const int led : list.leds) add(led, ShotRole::kLit, exposure.exposure_us);
   if (list.repeat) add(list.leds.front(), ShotRole::kRepeat, exposure.exposure_us);
   if (list.bracket) {
-    for (const int led : list.leds) add(led, ShotRole::kBracket, bracket_us);
+    for (const int led : list.leds) add(led, ShotRole::kBracket, times.bracket_us);
   }
+  for (std::size_t i = 1; i < list.polariser.size(); ++i) {
+    for (const int led : list.leds) add(led, ShotRole::kLit, exposure.exposure_us, list.polariser[i]);
+  }
+  if (list.below) add(0, ShotRole::kBelow, times.below_us);
   if (list.repeat) add(0, ShotRole::kRepeat, exposure.exposure_us);
   return plan;
 }
 
 std::vector<PlannedShot> plan_of(const Session& session, const ExposureSettings& exposure,
-                                 double bracket_us) {
+                                 const OtherTimes& times) {
   std::vector<PlannedShot> plan;
   for (const Shot& shot : session.shots) {
-    const double time_us = shot.role == ShotRole::kBracket ? bracket_us : exposure.exposure_us;
-    plan.push_back({shot.index, shot.led, shot.role, {time_us, exposure.iso, exposure.f_number}});
+    const double time_us = shot.role == ShotRole::kBracket ? times.bracket_us
+                           : shot.role == ShotRole::kBelow ? times.below_us
+                                                           : exposure.exposure_us;
+    plan.push_back(
+        {shot.index, shot.led, shot.role, {time_us, exposure.iso, exposure.f_number}, shot.polariser});
   }
   return plan;
 }
@@ -70,7 +84,7 @@ Result<PlannedShot> shot_again(const Session& session, int index, const Exposure
   }
   int last = 0;
   for (const Shot& shot : session.shots) last = std::max(last, shot.index);
-  PlannedShot again = {last + 1, old->led, old->role, exposure};
+  PlannedShot again = {last + 1, old->led, old->role, exposure, old->polariser};
   if (bracket_us) {
     again.role = ShotRole::kBracket;
     again.exposure.exposure_us = *bracket_us;
@@ -81,7 +95,10 @@ Result<PlannedShot> shot_again(const Session& session, int index, const Exposure
 }
 
 std::string file_stem(const PlannedShot& shot) {
-  return fmt::format("{:02}_led{:02}", shot.index, shot.led);
+  if (shot.role == ShotRole::kBelow) return fmt::format("{:02}_below", shot.index);
+  const bool has_state = shot.polariser != Polariser::kNone;
+  return fmt::format("{:02}_led{:02}{}{}", shot.index, shot.led, has_state ? "_" : "",
+                     has_state ? weft::name_of(shot.polariser) : "");
 }
 
 std::vector<PlannedShot> missing_shots(const std::vector<PlannedShot>& plan, const Session& session) {

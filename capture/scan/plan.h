@@ -18,33 +18,44 @@ struct PlannedShot {
   int led = 0;    ///< from 1; 0: none
   ShotRole role = ShotRole::kLit;
   ExposureSettings exposure;
+  Polariser polariser = Polariser::kNone;
   std::optional<int> supersedes = {};  ///< index of the shot that it stands for from then on
 };
 
 /// Which shots a scan takes, whatever their exposure. It is kept in session.json ("plan").
 struct ShotList {
   std::vector<int> leds;
-  bool repeat = true;             ///< the first LED and the dark shot once more
-  std::optional<double> bracket;  ///< times the exposure
+  bool repeat = true;                     ///< the first LED and the dark shot once more
+  std::optional<double> bracket;          ///< times the exposure
+  std::vector<Polariser> polariser = {};  ///< states of PolariserUse
+  bool below = false;                     ///< the light below the cloth
 
   int count() const;
 };
 Json to_json(const ShotList& list);
 
-/// The shots in order: the dark one, the LEDs, the first LED again, each LED at `bracket_us`, the dark one
-/// again. The dark shot is the first, because whatever lights it (a lamp in the room, a LED that stays lit)
-/// lights all the others too; the last tells whether that changed.
+/// How long the shots are that are not exposed as the lit ones.
+struct OtherTimes {
+  double bracket_us = 0;
+  double below_us = 0;
+};
+
+/// The shots in order: the dark one, the LEDs, the first LED again, each LED at the bracket's time, the LEDs
+/// in the polariser's other states, the light below, the dark one again. The dark shot is the first, because
+/// whatever lights it (a lamp in the room, a LED that stays lit) lights all the others too; the last tells
+/// whether that changed.
 std::vector<PlannedShot> plan_shots(const ShotList& list, const ExposureSettings& exposure,
-                                    double bracket_us);
+                                    const OtherTimes& times);
 
 /// What was planned for a session's shots, in their order.
-std::vector<PlannedShot> plan_of(const Session& session, const ExposureSettings& exposure, double bracket_us);
+std::vector<PlannedShot> plan_of(const Session& session, const ExposureSettings& exposure,
+                                 const OtherTimes& times);
 /// The shot of this index once more: kUsage where it is none that can be. `bracket_us`: as a bracket of its
 /// LED.
 Result<PlannedShot> shot_again(const Session& session, int index, const ExposureSettings& exposure,
                                std::optional<double> bracket_us);
 
-/// "03_led04": its file without the ending.
+/// "03_led04", "14_led01_parallel", "24_below": its file without the ending.
 std::string file_stem(const PlannedShot& shot);
 
 /// The shots that the session does not have.

@@ -42,12 +42,18 @@ Result<void> check_disk(const std::filesystem::path& folder, std::uint64_t neede
 
 }  // namespace
 
-Result<ShotList> checked_shots(const ScanRequest& request, int leds_of_board,
+Result<ShotList> checked_shots(const ScanRequest& request, int leds_of_board, bool has_more_outputs,
                                const std::optional<Calibration>& calibration) {
   const auto refuse = [](std::string what, std::string why, std::string remedy) {
     return Error{ErrorKind::kUsage, std::move(what), "scan", std::move(why), std::move(remedy)};
   };
-  ShotList list = {request.leds, request.repeat, request.bracket};
+  ShotList list = {request.leds, request.repeat, request.bracket, request.polariser.states, request.below};
+  if (!has_more_outputs && (request.below || request.polariser.is_turned)) {
+    return Error{ErrorKind::kBadData,
+                 request.below ? "the LED board has no output for a light below"
+                               : "the LED board cannot turn the polariser",
+                 "scan", "its firmware is older than that", "flash its firmware: ./dev flash PORT"};
+  }
   if (list.leds.empty()) {
     list.leds.resize(static_cast<std::size_t>(leds_of_board));
     std::iota(list.leds.begin(), list.leds.end(), 1);

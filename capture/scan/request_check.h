@@ -14,7 +14,7 @@ namespace weft::capture {
 
 /// Everything that can be known to be wrong before a shot. kBadData, kUsage and kCannotCreate with what to
 /// do.
-Result<ShotList> checked_shots(const ScanRequest& request, int leds_of_board,
+Result<ShotList> checked_shots(const ScanRequest& request, int leds_of_board, bool has_more_outputs,
                                const std::optional<Calibration>& calibration);
 
 /// Whether rig, camera, aperture and ISO are those that the calibration is of.

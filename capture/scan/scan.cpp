@@ -30,7 +30,6 @@ namespace fs = std::filesystem;
 
 constexpr double kMostClipped = 1e-5;  // of a channel of a metered frame
 constexpr int kTimesWrong = 2;         // a shot whose light is wrong ends the scan
-constexpr double kWhite = 0.8;         // albedo that the first test shot holds
 constexpr double kSixthOfAStop = 0.116;
 constexpr std::int64_t kUsualPixels = 16'500'000;  // of a camera that no calibration tells of
 
@@ -62,8 +61,9 @@ class Scan {
        const ScanControl& control, const ScanOptions& options)
       : request_(request),
         report_(events),
-        shooter_(lamps, camera, control, options, report_),
-        leds_of_board_(lamps.leds()) {}
+        shooter_(lamps, camera, request.polariser, control, options, report_),
+        leds_of_board_(lamps.leds()),
+        has_more_outputs_(lamps.has_more_outputs()) {}
 
   Result<ScanOutcome> run() {
     Result<void> done = steps();
@@ -95,7 +95,7 @@ class Scan {
       if (!calibration) return calibration.error();
       calibration_ = std::move(*calibration);
     }
-    Result<ShotList> list = checked_shots(request_, leds_of_board_, calibration_);
+    Result<ShotList> list = checked_shots(request_, leds_of_board_, has_more_outputs_, calibration_);
     if (!list) return list.error();
     list_ = std::move(*list);
     report_.change([&](ScanStatus& status) { status.frames_planned = list_.count(); });
@@ -180,11 +180,16 @@ class Scan {
       warnings_.insert(warnings_.end(), metering->warnings.begin(), metering->warnings.end());
       record = {{"from", "meter"}, {"meter", to_json(*metering)}};
     }
-    bracket_us_ = nearest_time_us(shutter_times_us_, exposure_.exposure_us * list_.bracket.value_or(1));
+    times_.bracket_us = nearest_time_us(shutter_times_us_, exposure_.exposure_us * list_.bracket.value_or(1));
     record["exposure_us"] = exposure_.exposure_us;
     record["iso"] = exposure_.iso;
     record["f_number"] = exposure_.f_number;
-    if (list_.bracket) record["bracket_us"] = bracket_us_;
+    if (list_.bracket) record["bracket_us"] = times_.bracket_us;
+    if (list_.below) {
+      const Result<double> below_us = time_of_light_below();
+      if (!below_us) return below_us.error();
+      record["below_us"] = times_.below_us = *below_us;
+    }
     warn_of_bracket();
     report_.change([&](ScanStatus& status) { status.exposure_us = exposure_.exposure_us; });
     return journal_->set_exposure(record);
@@ -194,7 +199,8 @@ class Scan {
     JsonFields fields(record, (request_.session / "session.json").string() + ": exposure");
     const ExposureSettings of_session = {fields.number("exposure_us"), fields.number("iso"),
                                          fields.number("f_number")};
-    bracket_us_ = fields.optional_number("bracket_us").value_or(of_session.exposure_us);
+    times_.bracket_us = fields.optional_number("bracket_us").value_or(of_session.exposure_us);
+    times_.below_us = fields.optional_number("below_us").value_or(of_session.exposure_us);
     if (Result<void> ok = fields.status(); !ok) return ok;
     const double asked_us = request_.exposure.exposure_us;
     const bool other_time = asked_us > 0 && !request_.again &&
@@ -213,7 +219,7 @@ class Scan {
 
   void warn_of_bracket() {
     if (!list_.bracket) return;
-    const double ratio = bracket_us_ / exposure_.exposure_us;
+    const double ratio = times_.bracket_us / exposure_.exposure_us;
     if (std::abs(std::log(ratio / *list_.bracket)) > kSixthOfAStop) {
       warnings_.push_back(
           fmt::format("the brackets are {:.3g} times the exposure, not {:.3g}: the camera has "
@@ -221,42 +227,57 @@ class Scan {
                       ratio, *list_.bracket));
     }
     if (!calibration_ || !calibration_->response ||
-        calibration_->response->exposure_ratio(bracket_us_, exposure_.exposure_us)) {
+        calibration_->response->exposure_ratio(times_.bracket_us, exposure_.exposure_us)) {
       return;
     }
     warnings_.push_back(fmt::format(
         "the calibration has no measured ratio of {:.6g} us to {:.6g} us, without which the brackets are not "
         "used: measure it with weft calibrate response",
-        bracket_us_, exposure_.exposure_us));
+        times_.bracket_us, exposure_.exposure_us));
   }
 
   Result<Metering> metered() {
     report_.phase(ScanPhase::kMetering);
     MeterInput input = {list_.leds, {}, shutter_times_us_, 1e6 / 125};
-    if (const auto& model = so_far_.model) {
-      double most = 0;
-      for (const int led : list_.leds) {
-        double brightest = 0;
-        for (const Vec3& s : model->leds[static_cast<std::size_t>(led - 1)])
-          brightest = std::max(brightest, s.z);
-        input.expected.push_back(brightest);
-        most = std::max(most, input.expected.back());
-      }
-      input.start_us = 1e6 * kMeteredTo / (kWhite * most * model->reading * exposure_.iso / 100);
-    }
+    if (so_far_.model) expect_light(input, *so_far_.model, exposure_.iso);
     return meter(input, [&](int led, double exposure_us) -> Result<Brightness> {
-      const ExposureSettings exposure = {exposure_us, exposure_.iso, exposure_.f_number};
-      Result<Photograph> photograph = shoot(led, exposure, "test");
-      if (!photograph) return photograph.error();
-      Result<RawFrame> frame = decode_raw(photograph->file);
-      if (!frame) return frame.error();
-      if (Result<void> cleared = journal_->clear_incoming(); !cleared) return cleared.error();
-      return brightness_of(*frame);
+      return tested({led, ShotRole::kLit, solved_state()}, exposure_us);
     });
   }
 
-  Result<Photograph> shoot(int led, const ExposureSettings& exposure, const std::string& stem) {
-    return shooter_.take(led, exposure, journal_->incoming(stem), [&] {
+  Polariser solved_state() const {
+    return list_.polariser.empty() ? Polariser::kNone : list_.polariser.front();
+  }
+
+  /// The time asked for, else a metered one; that of the lit shots where the cloth lets no light through.
+  Result<double> time_of_light_below() {
+    if (request_.below_us > 0) return settable_time_us(shutter_times_us_, request_.below_us);
+    report_.phase(ScanPhase::kMetering);
+    const Result<Metering> metering =
+        meter({{1}, {}, shutter_times_us_, exposure_.exposure_us}, [&](int, double exposure_us) {
+          return tested({0, ShotRole::kBelow, solved_state()}, exposure_us);
+        });
+    if (metering) return metering->exposure_us;
+    if (metering.error().kind != ErrorKind::kBadData) return metering.error();
+    warnings_.push_back("the light below the cloth could not be metered and is taken as the LEDs are: " +
+                        metering.error().why);
+    return exposure_.exposure_us;
+  }
+
+  /// How bright a test shot is; it is not kept.
+  Result<Brightness> tested(const ShotLight& light, double exposure_us) {
+    const ExposureSettings exposure = {exposure_us, exposure_.iso, exposure_.f_number};
+    Result<Photograph> photograph = shoot(light, exposure, "test");
+    if (!photograph) return photograph.error();
+    Result<RawFrame> frame = decode_raw(photograph->file);
+    if (!frame) return frame.error();
+    if (Result<void> cleared = journal_->clear_incoming(); !cleared) return cleared.error();
+    return brightness_of(*frame);
+  }
+
+  Result<Photograph> shoot(const ShotLight& light, const ExposureSettings& exposure,
+                           const std::string& stem) {
+    return shooter_.take(light, exposure, journal_->incoming(stem), [&] {
       std::error_code ignored;
       for (const auto& entry : fs::directory_iterator(journal_->incoming("").parent_path(), ignored)) {
         const std::string name = entry.path().filename().string();
@@ -267,8 +288,8 @@ class Scan {
 
   /// Frames of an earlier run are evidence for those of this one.
   Result<void> look_at_kept() {
-    plan_ = request_.again ? plan_of(journal_->session(), exposure_, bracket_us_)
-                           : plan_shots(list_, exposure_, bracket_us_);
+    plan_ = request_.again ? plan_of(journal_->session(), exposure_, times_)
+                           : plan_shots(list_, exposure_, times_);
     std::optional<std::uint32_t> last;
     for (const Shot& shot : journal_->session().shots) {
       if (shot.document.contains("image_number") && shot.document["image_number"].is_number_unsigned()) {
@@ -331,7 +352,7 @@ class Scan {
     }
     if (Result<void> ok = check_body(frame.shot, where); !ok) return ok;
     const PatchGrid grid = so_far.model ? so_far.model->grid : PatchGrid::over(size);
-    so_far.evidence.emplace(grid, std::exchange(so_far.model, std::nullopt));
+    so_far.evidence.emplace(grid, std::exchange(so_far.model, std::nullopt), plan_.front().polariser);
     so_far.first_size = size;
     so_far.first = RawFrame{{}, frame.cfa, frame.black, frame.white, frame.shot};
     return {};
@@ -359,7 +380,8 @@ class Scan {
         shot = queue.front();
         queue.pop_front();
         // A name of its own: the one before may still be read while this one lands.
-        Result<Photograph> taken = shoot(shot.led, shot.exposure, file_stem(shot) + (is_odd_ ? "_b" : "_a"));
+        Result<Photograph> taken = shoot({shot.led, shot.role, shot.polariser}, shot.exposure,
+                                         file_stem(shot) + (is_odd_ ? "_b" : "_a"));
         is_odd_ = !is_odd_;
         if (taken)
           photograph = std::move(*taken);
@@ -439,7 +461,7 @@ class Scan {
   }
 
   Kept unusable(const PlannedShot& shot, const char* code, const Error& error, std::vector<int> take_again) {
-    report_.refused({shot.index, shot.led, shot.role, {code, {}, {}}, error.message()});
+    report_.refused({shot.index, shot.led, shot.role, shot.polariser, {code, {}, {}}, error.message()});
     return {error, std::move(take_again)};
   }
 
@@ -460,6 +482,7 @@ class Scan {
       report_.refused({index,
                        shot.led,
                        shot.role,
+                       shot.polariser,
                        {code_of(verdict.finding), verdict.level, verdict.misfit},
                        kept.error->message()});
     }
@@ -512,12 +535,13 @@ class Scan {
   Report report_;
   Shooter shooter_;
   int leds_of_board_;
+  bool has_more_outputs_;
   std::optional<Calibration> calibration_;
   ShotList list_;
   std::optional<Journal> journal_;
   std::vector<double> shutter_times_us_;
   ExposureSettings exposure_;
-  double bracket_us_ = 0;
+  OtherTimes times_;
   std::vector<PlannedShot> plan_;
   int frames_resumed_ = 0, frames_wrong_ = 0;
   std::map<int, int> times_wrong_;

@@ -19,13 +19,22 @@
 
 namespace weft::capture {
 
+/// The film before the lens in a scan.
+struct PolariserUse {
+  /// Each LED is photographed in each of these, one state after the other; the first is what is solved.
+  /// Empty: there is no film.
+  std::vector<Polariser> states;
+  bool is_turned = false;  ///< by the board; else it stands in the only state
+  double settle_s = 0.5;   ///< from the command to turn until it stands
+};
+
 /// One scan of one cloth, as it is asked for.
 struct ScanRequest {
   std::filesystem::path session;  ///< NAME.weft: not there yet, or an unfinished session of the same rig
   std::string fabric;
   double cloth_height_mm = 0;
   Json metadata =
-      Json::object();  ///< id, tags, composition, weight, construction, side, notes: kept as given
+      Json::object();        ///< id, tags, composition, weight, construction, side, notes: kept as given
   Json accepted_moved = {};  ///< of a rig that is known to have moved: {"why", "degrees"}, kept as given
   std::string rig;
   std::filesystem::path calibration;  ///< folder, copied into the session; empty: none, and no light model
@@ -33,7 +42,10 @@ struct ScanRequest {
   std::vector<int> leds;              ///< empty: all of the board
   bool repeat = true;                 ///< the first LED and the dark shot once more at the end
   std::optional<double> bracket;      ///< each LED once more at this times the exposure, 0.001 to 100
-  std::filesystem::path copy;         ///< folder for a second copy of the finished session; empty: none
+  PolariserUse polariser;
+  bool below = false;          ///< the cloth once by the light below it
+  double below_us = 0;         ///< exposure of that; 0: metered
+  std::filesystem::path copy;  ///< folder for a second copy of the finished session; empty: none
   /// Instead of all that: this lit or dark shot of the finished session once more, at its exposure. The new
   /// frame gets the next number and stands for the old one, which stays. With an exposure of its own the new
   /// frame is a bracket of the LED, and supersedes none.
@@ -83,6 +95,7 @@ struct RefusedFrame {
   int index = 0;
   int led = 0;
   ShotRole role = ShotRole::kLit;
+  Polariser polariser = Polariser::kNone;
   FrameFinding finding;
   std::string why;  ///< one sentence with what to do
 };
@@ -90,8 +103,10 @@ struct RefusedFrame {
 /// Where a scan stands.
 struct ScanStatus {
   ScanPhase phase = ScanPhase::kConnecting;
-  int led = 0;     ///< being photographed
-  int frames = 0;  ///< kept
+  int led = 0;                             ///< being photographed
+  ShotRole role = ShotRole::kLit;          ///< of that
+  Polariser polariser = Polariser::kNone;  ///< at that
+  int frames = 0;                          ///< kept
   int frames_planned = 0;
   double exposure_us = 0;
   std::string why;  ///< of a pause, a rest, a failure, a recovery: one sentence with what to do

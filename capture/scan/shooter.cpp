@@ -97,6 +97,7 @@ Result<CameraFacts> Shooter::connect() {
   });
   if (!found) return found.error();
   lamps_failed_ = false;
+  turned_.reset();
   return facts;
 }
 
@@ -127,6 +128,7 @@ Result<void> Shooter::recover(const Error& error) {
     Result<void> back = wait_for([&] { return lamps_.recover(); });
     if (!back) return back;
     lamps_failed_ = false;
+    turned_.reset();
   }
   count_.connected();
   return wait_for([&]() -> Result<void> {
@@ -173,7 +175,23 @@ Result<steady_clock::time_point> Shooter::light(int led, std::chrono::duration<d
   }
 }
 
-Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
+Result<void> Shooter::turn(Polariser state) {
+  if (!use_.is_turned || turned_ == state) return {};
+  const Result<void> turned = lamps_.polarise(state);
+  if (!turned) {
+    lamps_failed_ = true;
+    return turned;
+  }
+  const auto stands = steady_clock::now() + std::chrono::duration<double>(use_.settle_s);
+  while (steady_clock::now() < stands) {
+    if (is_cancelled()) return cancelled("scan");
+    std::this_thread::sleep_for(kPause);
+  }
+  turned_ = state;
+  return {};
+}
+
+Result<Photograph> Shooter::take_once(const ShotLight& wanted, const ExposureSettings& exposure,
                                       const std::filesystem::path& file, bool is_metering) {
   if (set_ != exposure) {
     const Result<CameraFacts> set = camera_.set(exposure);
@@ -181,10 +199,14 @@ Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
     set_ = exposure;
   }
   report_.change([&](ScanStatus& status) {
-    status.led = led;
+    status.led = wanted.led;
+    status.role = wanted.role;
+    status.polariser = wanted.polariser;
     status.why.clear();
     status.phase = is_metering ? ScanPhase::kMetering : ScanPhase::kExposing;
   });
+  if (Result<void> stands = turn(wanted.polariser); !stands) return stands.error();
+  const int led = wanted.role == ShotRole::kBelow ? lamps_.leds() + 1 : wanted.led;
   const std::chrono::duration<double> most_lit(options_.lamp_margin_s + exposure.exposure_us * 1e-6);
   const auto goes_out = light(led, most_lit);
   if (!goes_out) return goes_out.error();
@@ -205,13 +227,13 @@ Result<Photograph> Shooter::take_once(int led, const ExposureSettings& exposure,
   return photograph;
 }
 
-Result<Photograph> Shooter::take(int led, const ExposureSettings& exposure, const std::filesystem::path& file,
-                                 const std::function<void()>& clear) {
+Result<Photograph> Shooter::take(const ShotLight& light, const ExposureSettings& exposure,
+                                 const std::filesystem::path& file, const std::function<void()>& clear) {
   const bool is_metering = report_.phase() == ScanPhase::kMetering;
   for (int i = 1;; ++i) {
     if (Result<void> go = wait_while_paused(); !go) return go.error();
     if (is_cancelled()) return cancelled("scan");
-    Result<Photograph> photograph = take_once(led, exposure, file, is_metering);
+    Result<Photograph> photograph = take_once(light, exposure, file, is_metering);
     if (photograph) return photograph;
     count_.failed();
     if (!may_pass(photograph.error().kind) || i >= options_.tries_per_shot) {

@@ -31,31 +31,45 @@ class Report {
   ScanStatus status_;
 };
 
+/// What lights an exposure, and how the film before the lens stands.
+struct ShotLight {
+  int led = 0;                     ///< from 1; 0: none
+  ShotRole role = ShotRole::kLit;  ///< kBelow: the light below
+  Polariser polariser = Polariser::kNone;
+};
+
 /// Takes single photographs and gets over what devices do: LEDs are off whenever no shutter is open, every
 /// fault is followed by recover(), and what a camera delivers is checked to be the next by its count.
 class Shooter {
  public:
-  Shooter(Lamps& lamps, Camera& camera, const ScanControl& control, const ScanOptions& options,
-          Report& report)
-      : lamps_(lamps), camera_(camera), control_(control), options_(options), report_(report) {}
+  Shooter(Lamps& lamps, Camera& camera, const PolariserUse& polariser, const ScanControl& control,
+          const ScanOptions& options, Report& report)
+      : lamps_(lamps),
+        camera_(camera),
+        use_(polariser),
+        control_(control),
+        options_(options),
+        report_(report) {}
 
   /// Finds both devices, waits for one that is not there. kInterrupted, kNoDevice, kBadData.
   Result<CameraFacts> connect();
   /// The last count of shots that the session knows.
   void follow(std::optional<std::uint32_t> image_number) { count_.follow(image_number); }
   Result<std::vector<double>> shutter_times_us();
-  /// One photograph under a LED (0: dark) to `file` with an ending. Tries again where that may help; in
-  /// between `clear` removes what a failed take left. Waits while the scan is paused.
-  Result<Photograph> take(int led, const ExposureSettings& exposure, const std::filesystem::path& file,
-                          const std::function<void()>& clear);
+  /// One photograph in this light to `file` with an ending. Tries again where that may help; in between
+  /// `clear` removes what a failed take left. Waits while the scan is paused.
+  Result<Photograph> take(const ShotLight& light, const ExposureSettings& exposure,
+                          const std::filesystem::path& file, const std::function<void()>& clear);
   Result<void> lamps_off();
   bool is_cancelled() const { return control_.cancel.stop_requested(); }
   bool is_paused() const { return control_.pause != nullptr && control_.pause->load(); }
   int retaken() const { return retaken_; }
 
  private:
-  Result<Photograph> take_once(int led, const ExposureSettings& exposure, const std::filesystem::path& file,
-                               bool is_metering);
+  Result<Photograph> take_once(const ShotLight& light, const ExposureSettings& exposure,
+                               const std::filesystem::path& file, bool is_metering);
+  /// Where the board turns the film: turns it, unless it stands so.
+  Result<void> turn(Polariser state);
   /// Lights a LED (0: none) as soon as it is cool. When it goes out at the earliest.
   Result<std::chrono::steady_clock::time_point> light(int led, std::chrono::duration<double> most_lit);
   Result<void> let_cool(int led, double cools_s);
@@ -66,11 +80,13 @@ class Shooter {
 
   Lamps& lamps_;
   Camera& camera_;
+  const PolariserUse& use_;
   const ScanControl& control_;
   const ScanOptions& options_;
   Report& report_;
   ImageCount count_;
   std::optional<ExposureSettings> set_;  ///< what the camera is set to
+  std::optional<Polariser> turned_;      ///< how the board has turned the film
   bool lamps_failed_ = false;
   int retaken_ = 0;
 };

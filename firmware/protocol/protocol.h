@@ -18,11 +18,12 @@
 // One enumeration, for C++ dislikes arithmetic across two.
 enum {
   kWeftProtocolMajor = WEFT_PROTOCOL_MAJOR,
-  kWeftProtocolMinor = 0,
+  kWeftProtocolMinor = 1,
   kWeftFirmwareMajor = 1,
-  kWeftFirmwareMinor = 0,
+  kWeftFirmwareMinor = 1,
 
   kWeftLeds = 10,
+  kWeftBelow = 11,        // the light below the cloth, where a LED's number stands
   kWeftDeadMan_ms = 500,  // lights go off after so long without a whole frame
   kWeftParser_ms = 20,    // a frame with a longer pause inside is forgotten
   kWeftMostOn_cs = 4000,  // the longest a LED is lit, in units of 10 ms
@@ -45,6 +46,8 @@ enum {
   kWeftLightPair = 0x03,
   // -> LEDs lit (2), uptime ms (4), bad frames (2), overruns (2), why they last went dark, reset cause
   kWeftStatus = 0x04,
+  // state to turn the polariser to -> the state until then (1)
+  kWeftPolariser = 0x05,
   // Only as a reply: error code, the command refused, ms to wait (2). A command that is refused changes
   // nothing.
   kWeftError = 0x7F,
@@ -52,6 +55,7 @@ enum {
   kWeftHelloReply = 10,
   kWeftLightReply = 2,
   kWeftStatusReply = 12,
+  kWeftPolariserReply = 1,
   kWeftErrorReply = 4,
 
   // Error codes.
@@ -60,6 +64,11 @@ enum {
   kWeftNoSuchLed = 3,
   kWeftWrongTime = 4,  // 0, or above the longest on-time
   kWeftResting = 5,    // the LED must cool first; the reply says how long
+  kWeftWrongState = 6,
+
+  // States of the polariser; the first is that of every start.
+  kWeftParallel = 0,
+  kWeftCrossed = 1,
 
   // Why the lights last went dark.
   kWeftNeverLit = 0,

@@ -59,6 +59,26 @@ TEST(RigFile, HoldsWhereATapeHasItsLeds) {
   EXPECT_EQ(second.mu, 1.5);
 }
 
+TEST(RigFile, SaysWhatHangsOnTheBoardBesideTheLeds) {
+  const auto plain = read_rig(rig_file(""));
+  ASSERT_TRUE(plain) << plain.error().message();
+  EXPECT_FALSE(plain->below);
+  EXPECT_TRUE(plain->polariser.states.empty());
+  const auto rig =
+      read_rig(rig_file("[below]\nexposure_us = 9000\n"
+                        "[polariser]\nstates = [\"crossed\", \"parallel\"]\nsettle_s = 2\n"));
+  ASSERT_TRUE(rig) << rig.error().message();
+  ASSERT_TRUE(rig->below);
+  EXPECT_EQ(rig->below->exposure_us, 9000);
+  EXPECT_THAT(rig->polariser.states, testing::ElementsAre(Polariser::kCrossed, Polariser::kParallel));
+  EXPECT_EQ(rig->polariser.settle_s, 2);
+  for (const char* states : {"[\"none\"]", "[\"crossed\", \"crossed\"]", "[\"skewed\"]"}) {
+    const auto wrong = read_rig(rig_file(std::string("[polariser]\nstates = ") + states + "\n"));
+    ASSERT_FALSE(wrong) << states;
+    EXPECT_THAT(wrong.error().message(), HasSubstr("states"));
+  }
+}
+
 TEST(RigFile, MayHoldMoreLedsThanABoardHas) {
   std::string text;
   for (int led = 0; led < 12; ++led) text += "[[led]]\nposition_mm = [1, 2, 300]\n";

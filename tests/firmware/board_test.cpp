@@ -35,7 +35,7 @@ TEST(BoardFirmware, GreetsWithItsVersionsAndLimits) {
 
 TEST(BoardFirmware, LightsOneLedAndSaysWhatWasLitBefore) {
   BareBoard board;
-  for (int led = 0; led <= kWeftLeds; ++led) {
+  for (int led = 0; led <= kWeftBelow; ++led) {
     const int before = board.lit();
     const Bytes said = payload_of(board.hear(light_request(led, led, 100)));
     ASSERT_EQ(said.size(), 2U) << led;
@@ -60,16 +60,29 @@ TEST(BoardFirmware, RefusesWhatItCannotDoAndChangesNothing) {
     return error_in(board.hear(request(sequence++, command, payload)));
   };
   EXPECT_EQ(error_of(0, {}), kWeftUnknownCommand);
-  EXPECT_EQ(error_of(5, {}), kWeftUnknownCommand);
+  EXPECT_EQ(error_of(6, {}), kWeftUnknownCommand);
   EXPECT_EQ(error_of(kWeftError, {}), kWeftUnknownCommand);
   EXPECT_EQ(error_of(kWeftLight, {3, 100}), kWeftWrongLength);
   EXPECT_EQ(error_of(kWeftHello, {0}), kWeftWrongLength);
-  EXPECT_EQ(error_of(kWeftLight, {11, 100, 0}), kWeftNoSuchLed);
+  EXPECT_EQ(error_of(kWeftLight, {12, 100, 0}), kWeftNoSuchLed);
+  EXPECT_EQ(error_of(kWeftLightPair, {3, kWeftBelow, 100, 0}), kWeftNoSuchLed);
+  EXPECT_EQ(error_of(kWeftPolariser, {}), kWeftWrongLength);
+  EXPECT_EQ(error_of(kWeftPolariser, {2}), kWeftWrongState);
   EXPECT_EQ(error_of(kWeftLightPair, {3, 3, 100, 0}), kWeftNoSuchLed);
   EXPECT_EQ(error_of(kWeftLightPair, {0, 3, 100, 0}), kWeftNoSuchLed);
   EXPECT_EQ(error_of(kWeftLight, {3, 0, 0}), kWeftWrongTime);
   EXPECT_EQ(error_of(kWeftLight, {3, 0xA1, 0x0F}), kWeftWrongTime);
   EXPECT_EQ(board.lit(), 1 << 4);
+  EXPECT_EQ(board.board.polariser, kWeftParallel);
+}
+
+TEST(BoardFirmware, TurnsThePolariserAndSaysHowItStoodBefore) {
+  BareBoard board;
+  EXPECT_THAT(payload_of(board.hear(request(1, kWeftPolariser, {kWeftCrossed}))),
+              testing::ElementsAre(kWeftParallel));
+  EXPECT_EQ(board.board.polariser, kWeftCrossed);
+  EXPECT_THAT(payload_of(board.hear(request(2, kWeftPolariser, {kWeftParallel}))),
+              testing::ElementsAre(kWeftCrossed));
 }
 
 TEST(BoardFirmware, SaysHowLongALedMustRest) {

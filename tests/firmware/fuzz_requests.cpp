@@ -36,7 +36,7 @@ class Watched {
  private:
   void check() const {
     const auto lit = static_cast<unsigned>(board_.lit());
-    demand(lit < 1U << kWeftLeds && std::popcount(lit) <= 2);
+    demand(lit < 1U << kWeftBelow && std::popcount(lit) <= 2);
     demand(lit == 0 || silent_ms_ < kWeftDeadMan_ms);
     for (const auto heat_ms : board_.heat.ms) demand(heat_ms <= kMost_ms);
   }
@@ -53,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       board.wait_ms(data[at] * 4);
       const std::size_t length = data[at + 1] % 5;
       const weft::test::Bytes payload(data + at + 3, data + at + 3 + std::min<std::size_t>(length, 4));
-      for (const auto byte : weft::test::request(data[at + 1], data[at + 2] % 6, payload)) board.hear(byte);
+      for (const auto byte : weft::test::request(data[at + 1], data[at + 2] % 7, payload)) board.hear(byte);
     }
   } else {
     for (std::size_t at = 1; at < size; ++at) {

@@ -4,15 +4,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "app/jobs/session_input.h"
+#include "app/jobs/solve.h"
 #include "capture/board/led_board.h"
 #include "capture/camera/camera_link.h"
 #include "capture/camera/camera_profile.h"
@@ -31,8 +35,9 @@ namespace fs = std::filesystem;
 
 class ScanWithABody : public testing::Test {
  protected:
-  void start(simulator::Body body) {
+  void start(simulator::Body body, bool has_more_outputs = false) {
     virtual_rig::VirtualRigOptions options;
+    options.below = options.polariser = has_more_outputs;
     options.scene = virtual_rig::small_scene();
     options.body = body;
     options.folder = folder_ / "rig";
@@ -47,7 +52,8 @@ class ScanWithABody : public testing::Test {
   void TearDown() override { unsetenv(virtual_rig::kModemVariable); }
 
   /// A session of the rig's file; `profile` in place of its own.
-  Result<capture::ScanOutcome> scan(double exposure_us, const std::string& profile = "") {
+  Result<capture::ScanOutcome> scan(double exposure_us, const std::string& profile = "",
+                                    const capture::ScanControl& control = {}) {
     const Result<capture::Rig> file = capture::read_rig(folder_ / "rig" / "rig.toml");
     if (!file) return file.error();
     const auto board = capture::LedBoard::open({.port = file->board.port});
@@ -65,7 +71,20 @@ class ScanWithABody : public testing::Test {
     request.calibration = file->scan.calibration;
     request.leds = {1, 2, 3};  // of the scene; the board has ten outputs
     request.exposure = {exposure_us, file->scan.iso, file->scan.f_number};
-    return capture::scan(request, **board, **camera, {}, {});
+    request.below = file->below.has_value();
+    const auto& states = file->polariser.states;
+    request.polariser = {states, states.size() > 1, file->polariser.settle_s};
+    return capture::scan(request, **board, **camera, {}, control);
+  }
+
+  /// All normals and albedos of a solve.
+  static std::string solved(const Session& session, const fs::path& folder) {
+    app::SolveOptions options;
+    options.method = "standard";
+    options.output = folder;
+    const Result<app::SolveReport> report = app::solve_session({session.folder, {}, {}}, options, {});
+    EXPECT_TRUE(report) << report.error().message();
+    return *sha256_of_file(folder / "normal.exr") + *sha256_of_file(folder / "albedo.exr");
   }
 
   /// How alike a frame is to what one LED's light gives, 1 where it is of that light alone.
@@ -130,6 +149,56 @@ TEST_F(ScanWithABody, WhoseSettingRoundsTheShutterTimeIsSolved) {
   ASSERT_TRUE(plan) << plan.error().message();
   EXPECT_EQ(plan->lit.size(), 3u);
   EXPECT_EQ(plan->repeats.size(), 1u);
+}
+
+TEST_F(ScanWithABody, WhoseRigHasFilmsAndALightBelowTakesAllOfThemAndSolvesTheFirst) {
+  start(simulator::Body::kD5100, true);
+  const Result<capture::ScanOutcome> outcome = scan(16600);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  const Session& session = outcome->session;
+  std::vector<std::string> files;
+  for (const Shot& shot : session.shots) files.push_back(fs::path(shot.file).stem());
+  EXPECT_THAT(files,
+              testing::ElementsAre("00_led00_crossed", "01_led01_crossed", "02_led02_crossed",
+                                   "03_led03_crossed", "04_led01_crossed", "05_led01_parallel",
+                                   "06_led02_parallel", "07_led03_parallel", "08_below", "09_led00_crossed"));
+  EXPECT_EQ(session.lit(Polariser::kParallel).size(), 3u);
+  for (const Shot* shot : session.lit()) {
+    EXPECT_EQ(shot->polariser, Polariser::kCrossed);
+    EXPECT_GT(likeness(session.path_of(*shot), shot->led), 0.99) << shot->file;
+  }
+  const Shot& below = session.shots[8];
+  EXPECT_EQ(below.role, ShotRole::kBelow);
+  EXPECT_GT(below.exposure_us, 16600) << "metered: little comes through the cloth";
+  EXPECT_EQ(session.document["plan"]["below"], true);
+  EXPECT_NEAR(session.document["exposure"]["below_us"].get<double>(), below.exposure_us,
+              0.02 * below.exposure_us);
+
+  const std::string all = solved(session, folder_ / "all");
+  Session first = session;
+  std::erase_if(first.shots, [](const Shot& shot) {
+    return shot.polariser == Polariser::kParallel || shot.role == ShotRole::kBelow;
+  });
+  ASSERT_TRUE(write_session(first));
+  EXPECT_EQ(solved(first, folder_ / "first"), all) << "what is not solved changes no byte";
+}
+
+TEST_F(ScanWithABody, ThatWasStoppedAmongTheFilmsGoesOnThere) {
+  start(simulator::Body::kD5100, true);
+  std::stop_source stop;
+  std::jthread stopper([&](const std::stop_token& end) {
+    while (!end.stop_requested() && !is_there(folder_ / "cloth.weft" / "raw" / "05_led01_parallel.dng"))
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    stop.request_stop();
+  });
+  const Result<capture::ScanOutcome> cut = scan(16600, "", {stop.get_token(), nullptr});
+  ASSERT_FALSE(cut);
+  EXPECT_EQ(cut.error().kind, ErrorKind::kInterrupted);
+  const Result<capture::ScanOutcome> outcome = scan(16600);
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_GE(outcome->frames_resumed, 6);
+  EXPECT_EQ(outcome->session.shots.size(), 10u);
+  EXPECT_EQ(outcome->session.state, "complete");
 }
 
 }  // namespace

@@ -25,6 +25,17 @@ avr_cycle_count_t wake(avr_t*, avr_cycle_count_t, void*) {
   return 0;
 }
 
+/// Where an output is: its port and its pin there.
+struct Place {
+  char port;
+  int pin;
+};
+
+Place place_of(int output) {
+  if (output == kPolariserBit) return {'C', 0};
+  return output < 6 ? Place{'D', output + 2} : Place{'B', output - 6};
+}
+
 avr_irq_t* uart(avr_t* avr, int wire) {
   return avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), wire);
 }
@@ -63,12 +74,13 @@ Avr::~Avr() {
 }
 
 void Avr::connect_wires() {
-  for (int led = 0; led < 10; ++led) {
-    Pin& pin = pins_[static_cast<std::size_t>(led)];
-    pin = {this, led};
-    const std::uint32_t port = led < 6 ? std::uint32_t{'D'} : std::uint32_t{'B'};
-    avr_irq_register_notify(avr_io_getirq(avr_, AVR_IOCTL_IOPORT_GETIRQ(port), led < 6 ? led + 2 : led - 6),
-                            on_pin, &pin);
+  for (int output = 0; output < kOutputs; ++output) {
+    Pin& pin = pins_[static_cast<std::size_t>(output)];
+    pin = {this, output};
+    const Place place = place_of(output);
+    avr_irq_register_notify(
+        avr_io_getirq(avr_, AVR_IOCTL_IOPORT_GETIRQ(static_cast<std::uint32_t>(place.port)), place.pin),
+        on_pin, &pin);
   }
   // Nothing is wired to INT0 and INT1; as level interrupts simavr would poll them at every cycle.
   for (std::uint8_t pin = 0; pin < 2; ++pin) avr_extint_set_strict_lvl_trig(avr_, pin, 0);
@@ -153,7 +165,7 @@ void Avr::on_core_reset(avr_t* avr) {
 
 void Avr::on_pin(avr_irq_t*, std::uint32_t value, void* parameter) {
   const Pin& pin = *static_cast<Pin*>(parameter);
-  const auto bit = static_cast<std::uint16_t>(1 << pin.led);
+  const auto bit = static_cast<std::uint16_t>(1 << pin.output);
   Avr& self = *pin.self;
   const auto lit = static_cast<std::uint16_t>((value & 1) != 0 ? self.lit_ | bit : self.lit_ & ~bit);
   if (lit == self.lit_) return;

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/result.h"
+#include "virtual_rig/board/lit_log.h"
 
 struct avr_t;
 struct avr_irq_t;
@@ -16,7 +17,7 @@ struct avr_irq_t;
 namespace weft::virtual_rig {
 
 /// An ATmega328P at 16 MHz in simavr, with a LED board's wiring: LEDs 1 to 6 on PD2 to PD7, 7 to 10 on PB0 to
-/// PB3. For one thread.
+/// PB3, the light below on PB4, the polariser on PC0. For one thread.
 class Avr {
  public:
   static constexpr double kCycles_per_s = 16e6;
@@ -24,7 +25,7 @@ class Avr {
   /// What happens on the wires, with the cycle it happens at.
   struct Wires {
     std::function<void(std::uint64_t cycle, std::uint8_t byte)> sent;
-    std::function<void(std::uint64_t cycle, std::uint16_t lit)> pins;
+    std::function<void(std::uint64_t cycle, std::uint16_t lit)> pins;  ///< by bits of LitLog
   };
 
   static Result<std::unique_ptr<Avr>> load(const std::filesystem::path& elf, Wires wires);
@@ -62,7 +63,7 @@ class Avr {
 
   struct Pin {
     Avr* self;
-    int led;
+    int output;
   };
   /// What stood where the program hangs.
   struct Hang {
@@ -73,7 +74,7 @@ class Avr {
   avr_t* avr_;
   Wires wires_;
   void (*core_reset_)(avr_t*) = nullptr;
-  std::array<Pin, 10> pins_ = {};
+  std::array<Pin, kOutputs> pins_ = {};
   std::optional<Hang> hang_;
   std::uint64_t base_ = 0;  ///< cycles before simavr last began to count
   std::uint64_t chance_ = 1;

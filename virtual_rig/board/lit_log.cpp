@@ -20,8 +20,9 @@ std::uint16_t LitLog::now() const {
   return edges_.empty() ? std::uint16_t{0} : edges_.back().mask;
 }
 
-std::vector<double> LitLog::lit_seconds(RigClock::time_point from, RigClock::time_point to, int leds) const {
-  std::vector<double> seconds(static_cast<std::size_t>(leds), 0.0);
+std::vector<double> LitLog::lit_seconds(RigClock::time_point from, RigClock::time_point to,
+                                        int outputs) const {
+  std::vector<double> seconds(static_cast<std::size_t>(outputs), 0.0);
   const std::lock_guard lock(mutex_);
   // Exposures lie at the end of the log: back from there, until an edge before the exposure.
   auto end = to;
@@ -29,8 +30,8 @@ std::vector<double> LitLog::lit_seconds(RigClock::time_point from, RigClock::tim
     const auto begin = std::max(edge->when, from);
     if (begin >= end) continue;
     const double lit = std::chrono::duration<double>(end - begin).count();
-    for (std::size_t led = 0; led < seconds.size(); ++led) {
-      if ((edge->mask >> led & 1) != 0) seconds[led] += lit;
+    for (std::size_t output = 0; output < seconds.size(); ++output) {
+      if ((edge->mask >> output & 1) != 0) seconds[output] += lit;
     }
     end = begin;
   }

@@ -21,6 +21,9 @@ namespace {
 
 using simulator::PhotositeDefect;
 
+constexpr double kThroughCloth = 0.05;
+constexpr double kFilm = 0.5;             // of unpolarised light, through a film
+constexpr double kLeak = 0.01;            // of gloss, through crossed ones
 constexpr double kThroughout = 1 - 1e-9;  // a sum of several pieces may fall short by rounding
 
 struct WeightedPlane {
@@ -34,8 +37,12 @@ std::vector<WeightedPlane> lit_planes(const LightFrames& frames, const GatheredL
   std::vector<WeightedPlane> planes;
   for (int led = 1; led <= frames.leds(); ++led) {
     const double seconds = light.leds_s[static_cast<std::size_t>(led - 1)];
-    if (seconds > 0) planes.push_back({frames.led(led), seconds * gain});
+    if (seconds <= 0) continue;
+    const LightFrames& matt = light.matt != nullptr ? *light.matt : frames;
+    if (light.leds_share != 0) planes.push_back({frames.led(led), seconds * gain * light.leds_share});
+    if (light.matt_share != 0) planes.push_back({matt.led(led), seconds * gain * light.matt_share});
   }
+  if (light.below_s > 0) planes.push_back({frames.ambient(), kThroughCloth * light.below_s * gain});
   if (light.ambient_s > 0) planes.push_back({frames.ambient(), light.ambient_s * gain});
   return planes;
 }
@@ -218,6 +225,21 @@ GatheredLight gathered_light(const LightFrames& frames, const std::vector<double
   light.move_x = faults.move_x;
   light.move_y = faults.move_y;
   return light;
+}
+
+void add_light_below(GatheredLight& light, double pin_share, const CameraExposure& exposure) {
+  light.below_s = pin_share * exposure.exposure_us * 1e-6;
+}
+
+void add_films(GatheredLight& light, double crossed_share, const LightFrames* matt) {
+  const auto between = [&](double parallel, double crossed) {
+    return parallel + crossed_share * (crossed - parallel);
+  };
+  light.matt = matt;
+  light.leds_share = between(1, kLeak);
+  light.matt_share = between(-kFilm, kFilm - kLeak);
+  light.ambient_s *= kFilm;
+  light.below_s *= kFilm;
 }
 
 Image<std::uint16_t> read_out(const LightFrames& frames, const GatheredLight& light, int threads) {

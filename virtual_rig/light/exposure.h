@@ -18,7 +18,12 @@ namespace weft::virtual_rig {
 struct GatheredLight {
   std::vector<double> leds_s;  ///< seconds of each LED's full light
   double ambient_s = 0;        ///< of LightFrames::ambient()
-  double dark_s = 0;           ///< seconds in which charge gathers by warmth
+  double below_s = 0;          ///< of the light below the cloth
+  /// The same scene without gloss, where there is a polariser and the cloth has gloss.
+  const LightFrames* matt = nullptr;
+  double leds_share = 1;  ///< of a LED's light that comes through the films
+  double matt_share = 0;  ///< of its light in `matt`, besides
+  double dark_s = 0;      ///< seconds in which charge gathers by warmth
   double iso = 100;
   double aperture_gain = 1;     ///< light of this aperture over that of the scene's
   std::uint32_t noise_key = 0;  ///< the same light under the same key gives the same counts
@@ -34,6 +39,13 @@ std::vector<double> lit_shares(const LitLog& pins, RigClock::time_point from, Ri
 /// What an exposure gathers that opens while pins are on for these shares of it.
 GatheredLight gathered_light(const LightFrames& frames, const std::vector<double>& pin_shares,
                              const LightFaults& faults, const CameraExposure& exposure);
+
+/// Adds what the outputs of a rig with more than LEDs do to an exposure, by the shares of it that they were
+/// on for. Cloth lets a twentieth of the light below through, evenly. Of films, each perfect but for a
+/// hundredth, parallel ones let half of the light and all gloss through, crossed ones half of the light
+/// alone.
+void add_light_below(GatheredLight& light, double pin_share, const CameraExposure& exposure);
+void add_films(GatheredLight& light, double crossed_share, const LightFrames* matt);
 
 /// What the photosites read: sum of light, charge, bloom, noise, non-linearity and converter as the scene
 /// names them, by the same arithmetic and with the same random numbers as a simulated session's take

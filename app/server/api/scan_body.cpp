@@ -18,9 +18,10 @@ namespace {
 
 constexpr int kMostDepth = 32;
 constexpr std::size_t kMostFabricBytes = 200;
-constexpr std::array<std::string_view, 13> kFields = {
-    "session", "fabric", "cloth_height_mm", "metadata", "exposure_us", "iso",         "f_number",
-    "leds",    "repeat", "bracket",         "copy",     "dry_run",     "accept_moved"};
+constexpr std::array<std::string_view, 15> kFields = {
+    "session", "fabric", "cloth_height_mm", "metadata", "exposure_us", "iso",          "f_number",
+    "leds",    "repeat", "bracket",         "copy",     "dry_run",     "accept_moved", "polariser",
+    "below"};
 
 Error refuse(const std::string& where, std::string why, std::string remedy) {
   return {ErrorKind::kUsage, "the request cannot be used", where, std::move(why), std::move(remedy)};
@@ -94,8 +95,21 @@ bool take_leds(const Json& json, int most, std::vector<int>& leds) {
   return true;
 }
 
-/// Which shots are taken.
-void read_plan(Fields& fields, int most_leds, capture::ScanRequest& request) {
+bool take_states(const Json& json, const std::vector<Polariser>& possible, std::vector<Polariser>& states) {
+  if (!json.is_array() || json.empty() || json.size() > possible.size()) return false;
+  states.clear();
+  for (const Json& name : json) {
+    const auto state = name.is_string() ? polariser_of(name.get_ref<const std::string&>()) : std::nullopt;
+    if (!state || std::ranges::count(possible, *state) == 0 || std::ranges::count(states, *state) > 0)
+      return false;
+    states.push_back(*state);
+  }
+  return true;
+}
+
+/// Which shots are taken; the rig has no other polariser and light below than `rig` asks for.
+void read_plan(Fields& fields, int most_leds, const capture::ScanRequest& rig,
+               capture::ScanRequest& request) {
   const std::string leds = fmt::format("different numbers from 1 to {}", most_leds);
   fields.read("leds", leds.c_str(),
               [&](const Json& value) { return take_leds(value, most_leds, request.leds); });
@@ -105,6 +119,18 @@ void read_plan(Fields& fields, int most_leds, capture::ScanRequest& request) {
     request.bracket = value.get<double>();
     return true;
   });
+  const std::string states = rig.polariser.states.empty()
+                                 ? "none: the rig file has no [polariser]"
+                                 : "different ones of [polariser] states in the rig file";
+  fields.read("polariser", states.c_str(), [&](const Json& value) {
+    return take_states(value, rig.polariser.states, request.polariser.states);
+  });
+  fields.read("below", rig.below ? "true or false" : "false: the rig file has no [below]",
+              [&](const Json& value) {
+                if (!value.is_boolean() || (value.get<bool>() && !rig.below)) return false;
+                request.below = value.get<bool>();
+                return true;
+              });
 }
 
 }  // namespace
@@ -142,6 +168,9 @@ capture::ScanRequest request_of_rig(const capture::Rig& rig) {
   request.copy = rig.scan.copy;
   request.leds.resize(static_cast<std::size_t>(rig.leds));
   std::iota(request.leds.begin(), request.leds.end(), 1);
+  request.polariser = {rig.polariser.states, rig.polariser.states.size() > 1, rig.polariser.settle_s};
+  request.below = rig.below.has_value();
+  if (rig.below) request.below_us = rig.below->exposure_us.value_or(0);
   return request;
 }
 
@@ -151,16 +180,19 @@ capture::ScanRequest request_of_session(const Session& session, const capture::R
   request.cloth_height_mm = session.cloth_height_mm;
   if (session.document.contains("metadata")) request.metadata = session.document["metadata"];
   if (!session.document.contains("plan") || !session.document["plan"].is_object()) return request;
+  const capture::ScanRequest of_rig = request;
+  request.polariser.states.clear();
+  request.below = false;
   Fields plan(session.document["plan"]);
-  read_plan(plan, rig.leds, request);
+  read_plan(plan, rig.leds, of_rig, request);
   return request;
 }
 
-Result<ScanWish> read_scan_body(const Json& body, int leds, capture::ScanRequest otherwise) {
+Result<ScanWish> read_scan_body(const Json& body, int leds, const capture::ScanRequest& otherwise) {
   if (auto unknown = unknown_field(body)) return std::move(*unknown);
   const Result<std::string> name = session_in_body(body);
   if (!name) return name.error();
-  ScanWish wish = {*name, std::move(otherwise)};
+  ScanWish wish = {*name, otherwise};
   capture::ScanRequest& request = wish.request;
   bool copy = true;
 
@@ -174,7 +206,7 @@ Result<ScanWish> read_scan_body(const Json& body, int leds, capture::ScanRequest
     if (Result<void> ok = library::check_new_metadata(*metadata); !ok) return std::move(ok).error();
     request.metadata = *metadata;
   }
-  read_plan(fields, leds, request);
+  read_plan(fields, leds, otherwise, request);
   std::string accept_moved;
   fields.text("accept_moved", "the reason in 1 to 200 characters", accept_moved, is_fabric);
   if (!accept_moved.empty()) request.accepted_moved = {{"why", accept_moved}};

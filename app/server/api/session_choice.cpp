@@ -64,8 +64,9 @@ bool is_asked_for(const Session& session, const Json& body, const capture::Rig& 
   const Result<ScanWish> asked = read_scan_body(body, rig.leds, begun);
   return asked && asked->request.cloth_height_mm == begun.cloth_height_mm &&
          asked->request.leds == begun.leds && asked->request.repeat == begun.repeat &&
-         asked->request.bracket == begun.bracket && asked->request.metadata == begun.metadata &&
-         is_exposed_as(session, asked->request.exposure);
+         asked->request.bracket == begun.bracket && asked->request.below == begun.below &&
+         asked->request.polariser.states == begun.polariser.states &&
+         asked->request.metadata == begun.metadata && is_exposed_as(session, asked->request.exposure);
 }
 
 Result<SessionChoice> resumed(std::string name, const Session& session, const Json& body,
@@ -76,7 +77,8 @@ Result<SessionChoice> resumed(std::string name, const Session& session, const Js
   choice.request.session = session.folder;
   choice.frames = static_cast<int>(session.shots.size());
   const capture::ScanRequest& asked = choice.request;
-  choice.frames_planned = capture::ShotList{asked.leds, asked.repeat, asked.bracket}.count();
+  choice.frames_planned =
+      capture::ShotList{asked.leds, asked.repeat, asked.bracket, asked.polariser.states, asked.below}.count();
   return choice;
 }
 
@@ -178,6 +180,7 @@ Result<capture::ScanRequest> request_again(const Session& session, const capture
   request.copy = copy.is_object() ? copy.value("to", "") : "";
   request.again = shot.index;
   if (shot.led > 0) request.leds = {shot.led};
+  request.below = false;
   return request;
 }
 

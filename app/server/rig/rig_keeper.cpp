@@ -34,13 +34,14 @@ struct Lent {
 };
 
 /// What every frame is told with, kept or not.
-Json frame_event(const std::string& session, int index, int led, ShotRole role,
+Json frame_event(const std::string& session, int index, int led, ShotRole role, Polariser polariser,
                  const capture::FrameFinding& finding) {
   const auto number = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
   return {{"session", session},
           {"index", index},
           {"led", led},
           {"role", name_of(role)},
+          {"polariser", name_of(polariser)},
           {"code", finding.code},
           {"level", number(finding.level)},
           {"misfit", number(finding.misfit)}};
@@ -183,8 +184,10 @@ void RigKeeper::log_once(const char* event, const std::string& why) {
 }
 
 // Where the shot that lights a LED for the first time stands; null for all others.
-LedStatus* RigKeeper::lit_shot_of(int led, ShotRole role) {
-  if (role != ShotRole::kLit) return nullptr;
+LedStatus* RigKeeper::lit_shot_of(int led, ShotRole role, Polariser polariser) {
+  const auto& states = request_->polariser.states;
+  const bool is_other_state = !states.empty() && polariser != states.front();
+  if (role != ShotRole::kLit || is_other_state) return nullptr;
   const auto found = std::ranges::find(status_.leds, led, &LedStatus::led);
   return found != status_.leds.end() ? &*found : nullptr;
 }
@@ -199,8 +202,8 @@ void RigKeeper::on_status(const capture::ScanStatus& status) {
   }
   const std::lock_guard lock(mutex_);
   status_.scan = status;
-  if (LedStatus* led = lit_shot_of(status.led, ShotRole::kLit); led != nullptr) {
-    const bool is_kept = led->state == LedStatus::State::kKept;  // what follows is a repeat or a bracket
+  if (LedStatus* led = lit_shot_of(status.led, status.role, status.polariser); led != nullptr) {
+    const bool is_kept = led->state == LedStatus::State::kKept;
     if (status.phase == capture::ScanPhase::kExposing && !is_kept) led->state = LedStatus::State::kExposing;
     if (status.phase == capture::ScanPhase::kFetching && !is_kept) led->state = LedStatus::State::kChecking;
   }
@@ -221,14 +224,15 @@ void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::Kept
   pictures_.prepare({request.session / frame.shot.file, frame.shot.sha256, frame.histogram_rgb});
   const std::string name = name_of_session(request);
   const auto& rgb = frame.histogram_rgb;
-  Json event = frame_event(name, frame.shot.index, frame.shot.led, frame.shot.role, frame.finding);
+  Json event = frame_event(name, frame.shot.index, frame.shot.led, frame.shot.role, frame.shot.polariser,
+                           frame.finding);
   event["kept"] = true;
   event["clipped_rgb"] = {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped};
   event["warnings"] = frame.warnings;
   event["thumbnail"] = fmt::format("/api/v1/sessions/{}/frames/{}/thumbnail", name, frame.shot.index);
   {
     const std::lock_guard lock(mutex_);
-    if (LedStatus* led = lit_shot_of(frame.shot.led, frame.shot.role); led != nullptr) {
+    if (LedStatus* led = lit_shot_of(frame.shot.led, frame.shot.role, frame.shot.polariser); led != nullptr) {
       *led = {frame.shot.led, LedStatus::State::kKept, led->takes + 1, frame.finding,
               std::max({rgb[0].clipped, rgb[1].clipped, rgb[2].clipped})};
     }
@@ -243,12 +247,13 @@ void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::Kept
 }
 
 void RigKeeper::on_refused(const capture::ScanRequest& request, const capture::RefusedFrame& frame) {
-  Json event = frame_event(name_of_session(request), frame.index, frame.led, frame.role, frame.finding);
+  Json event = frame_event(name_of_session(request), frame.index, frame.led, frame.role, frame.polariser,
+                           frame.finding);
   event["kept"] = false;
   event["why"] = frame.why;
   {
     const std::lock_guard lock(mutex_);
-    if (LedStatus* led = lit_shot_of(frame.led, frame.role); led != nullptr)
+    if (LedStatus* led = lit_shot_of(frame.led, frame.role, frame.polariser); led != nullptr)
       *led = {frame.led, LedStatus::State::kRefused, led->takes + 1, frame.finding, 0};
   }
   log_.add("frame_refused", frame.why, event);

@@ -82,7 +82,7 @@ class RigKeeper {
   void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome);
   void log_once(const char* event, const std::string& why);
   RigStatus status_locked() const;
-  LedStatus* lit_shot_of(int led, ShotRole role);
+  LedStatus* lit_shot_of(int led, ShotRole role, Polariser polariser);
   void tell_status_locked() { events_.add("status", to_json(status_locked(), rig_)); }
 
   const capture::Rig rig_;

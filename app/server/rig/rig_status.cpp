@@ -97,6 +97,8 @@ Json to_json(const RigStatus& status, const capture::Rig& rig) {
           {"phase", has_session ? Json(capture::name_of(status.scan.phase)) : nothing},
           {"session", has_session ? Json(status.session) : nothing},
           {"led", status.scan.led},
+          {"role", name_of(status.scan.role)},
+          {"polariser", name_of(status.scan.polariser)},
           {"frames", status.scan.frames},
           {"frames_planned", status.scan.frames_planned},
           {"exposure_us", status.scan.exposure_us},

@@ -254,7 +254,7 @@ TEST(RigServer, OutlivesAnExceptionOfItsScan) {
 
 TEST(RigServer, WritesWhatHappenedToItsLog) {
   ScriptedRig scripted("log");
-  scripted.refuse = {1, 1, ShotRole::kLit, {"dark", 0.01, {}}, "LED 1 is dark"};
+  scripted.refuse = {1, 1, ShotRole::kLit, {}, {"dark", 0.01, {}}, "LED 1 is dark"};
   scripted.before = [](int frame) -> Result<void> {
     if (frame < 2) return {};
     return Error{ErrorKind::kTryAgain, "the camera hangs", "camera", "no answer", "switch it off and on"};

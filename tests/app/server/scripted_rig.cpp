@@ -26,6 +26,8 @@ class NoLamps : public capture::Lamps {
   int leds() const override { return 3; }
   Result<double> light(std::span<const int>, double) override { return 0.0; }
   Result<void> recover() override { return {}; }
+  bool has_more_outputs() const override { return false; }
+  Result<void> polarise(Polariser) override { return {}; }
 };
 
 class NoCamera : public capture::Camera {

@@ -75,7 +75,7 @@ TEST(LedBoard, LightsEveryPair) {
 TEST(LedBoard, RefusesALightThatTheBoardDoesNotHave) {
   Desk desk;
   const auto board = desk.open();
-  for (const std::vector<int>& leds : {std::vector<int>{0}, {11}, {-1}, {3, 3}, {1, 2, 3}}) {
+  for (const std::vector<int>& leds : {std::vector<int>{0}, {12}, {-1}, {3, 3}, {3, 11}, {1, 2, 3}}) {
     const auto lit = light(*board, leds);
     ASSERT_FALSE(lit);
     EXPECT_EQ(lit.error().kind, ErrorKind::kUsage) << lit.error().message();
@@ -85,6 +85,30 @@ TEST(LedBoard, RefusesALightThatTheBoardDoesNotHave) {
     ASSERT_FALSE(lit);
     EXPECT_EQ(lit.error().kind, ErrorKind::kUsage) << lit.error().message();
   }
+  EXPECT_EQ(desk.pins().now(), 0);
+}
+
+TEST(LedBoard, LightsTheLightBelowAndTurnsThePolariser) {
+  Desk desk;
+  const auto board = desk.open();
+  ASSERT_TRUE(board->has_more_outputs());
+  ASSERT_TRUE(board->polarise(Polariser::kCrossed));
+  EXPECT_EQ(desk.pins().now(), 1 << virtual_rig::kPolariserBit);
+  ASSERT_TRUE(light(*board, {11}));
+  EXPECT_EQ(desk.pins().now(), 1 << virtual_rig::kPolariserBit | 1 << virtual_rig::kBelowBit);
+  ASSERT_TRUE(light(*board, {3}));
+  ASSERT_TRUE(board->polarise(Polariser::kParallel));
+  EXPECT_EQ(desk.pins().now(), 1 << 2) << "the light stays as it is while the film turns";
+  const auto refused = board->polarise(Polariser::kNone);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUsage) << refused.error().message();
+}
+
+TEST(LedBoard, IsParallelAfterItsStart) {
+  Desk desk;
+  const auto board = desk.open();
+  ASSERT_TRUE(board->polarise(Polariser::kCrossed));
+  ASSERT_TRUE(board->recover());
   EXPECT_EQ(desk.pins().now(), 0);
 }
 

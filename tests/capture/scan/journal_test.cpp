@@ -74,7 +74,7 @@ Result<void> scanned(
   Result<Journal> journal = opened(request, after_step);
   if (!journal) return journal.error();
   if (Result<void> ok = journal->set_exposure({{"exposure_us", 20000}}); !ok) return ok;
-  for (const PlannedShot& shot : missing_shots(plan_shots(kList, kExposure, 0), journal->session())) {
+  for (const PlannedShot& shot : missing_shots(plan_shots(kList, kExposure, {}), journal->session())) {
     Result<Shot> kept = journal->keep(shot, landed(*journal, shot), Json::object());
     if (!kept) return kept.error();
   }
@@ -90,7 +90,7 @@ TEST(Journal, StoresOneExposureTimeForASetting) {
   const ScanRequest request = request_in(fresh_folder());
   Result<Journal> journal = opened(request);
   ASSERT_TRUE(journal) << journal.error().message();
-  for (const PlannedShot& shot : plan_shots(kList, kExposure, 0)) {
+  for (const PlannedShot& shot : plan_shots(kList, kExposure, {})) {
     Photograph photograph = landed(*journal, shot);
     photograph.exposure.exposure_us = shot.index == 0 ? 20080 : 19990;  // as a body that measures each anew
     ASSERT_TRUE(journal->keep(shot, photograph, Json::object()));
@@ -117,10 +117,10 @@ TEST(Journal, MakesASessionThatEveryReaderTakes) {
   struct stat info = {};
   ASSERT_EQ(stat(session->path_of(session->shots[0]).c_str(), &info), 0);
   EXPECT_EQ(info.st_mode & 0222, 0u) << "a landed frame is read-only";
-  EXPECT_EQ(
-      files_under(request.session),
-      (std::set<std::string>{"calibration/lights.json", "calibration/report/lights.html", "raw/00_led00.dng",
-                             "raw/01_led01.dng", "raw/02_led02.dng", "raw/03_led01.dng", "raw/04_led00.dng", "session.json"}));
+  EXPECT_EQ(files_under(request.session),
+            (std::set<std::string>{"calibration/lights.json", "calibration/report/lights.html",
+                                   "raw/00_led00.dng", "raw/01_led01.dng", "raw/02_led02.dng",
+                                   "raw/03_led01.dng", "raw/04_led00.dng", "session.json"}));
 }
 
 TEST(Journal, SurvivesAKillAfterAnyStepWithEveryFrameWhole) {
@@ -178,7 +178,7 @@ ScanRequest unfinished(const fs::path& folder) {
   const ScanRequest request = request_in(folder);
   Result<Journal> journal = opened(request);
   EXPECT_TRUE(journal) << journal.error().message();
-  for (const PlannedShot& shot : plan_shots(kList, kExposure, 0)) {
+  for (const PlannedShot& shot : plan_shots(kList, kExposure, {})) {
     const Result<Shot> kept = journal->keep(shot, landed(*journal, shot), Json::object());
     EXPECT_TRUE(kept) << kept.error().message();
   }
@@ -193,7 +193,7 @@ TEST(Journal, TakesFramesAgainThatAreMissingOrChanged) {
   const Result<Journal> journal = opened(request);
   ASSERT_TRUE(journal) << journal.error().message();
   std::vector<int> missing;
-  for (const PlannedShot& shot : missing_shots(plan_shots(kList, kExposure, 0), journal->session())) {
+  for (const PlannedShot& shot : missing_shots(plan_shots(kList, kExposure, {}), journal->session())) {
     missing.push_back(shot.index);
   }
   EXPECT_EQ(missing, (std::vector<int>{1, 2}));
@@ -239,7 +239,7 @@ TEST(Journal, KeepsEveryTakeAsideUntilTheSessionIsFinished) {
   {
     Result<Journal> journal = opened(request);
     ASSERT_TRUE(journal) << journal.error().message();
-    const PlannedShot shot = plan_shots(kList, kExposure, 0)[1];
+    const PlannedShot shot = plan_shots(kList, kExposure, {})[1];
     ASSERT_TRUE(journal->discard({1}));
     ASSERT_TRUE(journal->keep(shot, landed(*journal, shot), Json::object()));
     ASSERT_TRUE(journal->discard({1}));
@@ -334,7 +334,7 @@ TEST(Journal, DoesNotKeepAPhotographThatChangedOnItsWay) {
   const ScanRequest request = request_in(fresh_folder());
   Result<Journal> journal = opened(request);
   ASSERT_TRUE(journal) << journal.error().message();
-  const PlannedShot shot = plan_shots(kList, kExposure, 0).front();
+  const PlannedShot shot = plan_shots(kList, kExposure, {}).front();
   Photograph photograph = landed(*journal, shot);
   std::ofstream(photograph.file) << "other bytes";
   const Result<Shot> kept = journal->keep(shot, photograph, Json::object());

@@ -36,7 +36,7 @@ Told told(const simulator::Scene& scene, const Story& story, bool with_model = t
   ScanEvidence evidence(grid, with_model ? std::optional(std::move(*model)) : std::nullopt);
   const ExposureSettings exposure = {brightness * cloth.scene_exposure_us(), 100, 8};
   Told told;
-  for (const PlannedShot& shot : plan_shots({{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}}, exposure, 0)) {
+  for (const PlannedShot& shot : plan_shots({{1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}}, exposure, {})) {
     const bool is_repeat = shot.role == ShotRole::kRepeat;
     const Lighting lighting = story(!is_repeat ? shot.led : shot.led == 0 ? kDarkAgain : kRepeat);
     std::vector<double> light = evidence.glance(
@@ -83,6 +83,53 @@ TEST(LightEvidence, BlamesNoLightWhereFramesAreFull) {
     }
   }
   EXPECT_THAT(told(woven(), as_planned, true, 8).warnings, testing::Contains(HasSubstr("full photosites")));
+}
+
+/// What the evidence says of LED 3 in the polariser's other state where these light it instead.
+ShotVerdict other_state(const Lighting& lighting) {
+  const test::SimulatedCloth cloth(woven());
+  Result<PatchLights> model = PatchLights::make(cloth.calibration(), 0);
+  EXPECT_TRUE(model) << model.error().message();
+  const PatchGrid grid = model->grid;
+  ScanEvidence evidence(grid, std::move(*model), Polariser::kCrossed);
+  const ExposureSettings exposure = {0.8 * cloth.scene_exposure_us(), 100, 8};
+  const ShotList list = {
+      {1, 2, 3, 4, 5, 6, 7, 8, 9, 10}, true, {}, {Polariser::kCrossed, Polariser::kParallel}};
+  for (const PlannedShot& shot : plan_shots(list, exposure, {})) {
+    const bool is_other = shot.polariser == Polariser::kParallel;
+    if (is_other && shot.led != 3) continue;
+    const Lighting of_plan = shot.led == 0 ? Lighting() : Lighting{{{shot.led, 1.0}}, 0};
+    std::vector<double> light = evidence.glance(cloth.photograph(
+        is_other ? lighting : of_plan, exposure.exposure_us, static_cast<std::uint32_t>(shot.index)));
+    const ShotVerdict verdict = evidence.judge(shot, light);
+    if (is_other) return verdict;
+    EXPECT_EQ(verdict.finding, Finding::kAgrees) << verdict.sentence;
+    evidence.accept(shot, std::move(light));
+  }
+  return {};
+}
+
+TEST(LightEvidence, HoldsTheOtherStateOfThePolariserAgainstTheFirst) {
+  const ShotVerdict brighter = other_state({{{3, 1.2}}, 0});
+  EXPECT_EQ(brighter.finding, Finding::kAgrees) << brighter.sentence;
+  EXPECT_NEAR(brighter.level.value_or(0), 1.2, 0.01);
+  EXPECT_EQ(other_state({}).finding, Finding::kDark);
+  const ShotVerdict other = other_state({{{5, 1.0}}, 0});
+  EXPECT_EQ(other.finding, Finding::kOther);
+  EXPECT_THAT(other.sentence, HasSubstr("LED 5 lights where LED 3 should"));
+}
+
+TEST(LightEvidence, SpeaksOfALightBelowThatNothingComesThroughOf) {
+  const test::SimulatedCloth cloth(woven());
+  ScanEvidence evidence(PatchGrid::over(cloth.calibration().camera->size), std::nullopt);
+  const PlannedShot below = {12, 0, ShotRole::kBelow, {cloth.scene_exposure_us(), 100, 8}};
+  const ShotVerdict dense = evidence.judge(below, evidence.glance(cloth.photograph({}, 1000, 1)));
+  EXPECT_EQ(dense.finding, Finding::kAgrees) << "it is kept";
+  EXPECT_EQ(dense.doubt, Finding::kDark);
+  ASSERT_EQ(dense.warnings.size(), 1u);
+  const Lighting through = {{{1, 0.5}}, 0};
+  EXPECT_TRUE(evidence.judge(below, evidence.glance(cloth.photograph(through, cloth.scene_exposure_us(), 2)))
+                  .warnings.empty());
 }
 
 TEST(LightEvidence, NamesTwoSwappedLeds) {

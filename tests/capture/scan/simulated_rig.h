@@ -68,6 +68,8 @@ class SimulatedRig {
     int leds() const override { return rig_.cloth_.leds(); }
     Result<double> light(std::span<const int> leds, double most_s) override;
     Result<void> recover() override;
+    bool has_more_outputs() const override { return false; }
+    Result<void> polarise(Polariser) override { return {}; }
 
    private:
     SimulatedRig& rig_;

@@ -335,5 +335,36 @@ TEST(Exposure, IsAFileThatSaysWhatTookItAndWhen) {
   EXPECT_EQ(exif[0x9211], std::string("\x70\x11\x01\0", 4)) << "ImageNumber";
 }
 
+TEST(Films, CrossedTakeTheGlossAndHalfOfTheLight) {
+  Scene glossy = small_scene();
+  glossy.effects.reflectance = true;
+  glossy.material.reflectance = simulator::Ggx{};
+  Scene dull = glossy;
+  dull.effects.reflectance = false;
+  const LightFrames frames = opened(glossy), matt = opened(dull);
+  const auto signal = [&](std::optional<double> crossed_share) {
+    GatheredLight light = gathered(frames, {0, 1, 0});
+    light.ambient_s = 0;
+    if (crossed_share) add_films(light, *crossed_share, &matt);
+    return signal_of(frames, light)(64, 48);
+  };
+  GatheredLight without_gloss = gathered(matt, {0, 1, 0});
+  without_gloss.ambient_s = 0;
+  const double all = signal(std::nullopt), diffuse = signal_of(matt, without_gloss)(64, 48);
+  EXPECT_GT(std::abs(all - diffuse), 0.001 * diffuse) << "the cloth has gloss";
+  EXPECT_NEAR(signal(0.0), all - diffuse / 2, 1e-6 * all) << "parallel";
+  EXPECT_NEAR(signal(1.0), diffuse / 2 + 0.01 * (all - diffuse), 1e-6 * all) << "crossed";
+}
+
+TEST(LightBelow, ComesThroughTheClothEvenly) {
+  const LightFrames frames = opened(small_scene());
+  GatheredLight light = gathered(frames, {0, 0, 0});
+  light.ambient_s = 0;
+  CameraExposure exposure = exposure_of(frames);
+  exposure.exposure_us = 2e6;
+  add_light_below(light, 0.5, exposure);
+  EXPECT_NEAR(signal_of(frames, light)(64, 48), 0.05 * static_cast<double>(frames.ambient()(64, 48)), 1e-9);
+}
+
 }  // namespace
 }  // namespace weft::virtual_rig

@@ -51,7 +51,7 @@ class OpenApi : public testing::Test {
       if (frame == 2 && holding_) gate_.pass();
       return {};
     };
-    scripted_.refuse = {2, 2, ShotRole::kLit, {"swapped", 0.9, 0.2}, "LED 2 lights where LED 3 should"};
+    scripted_.refuse = {2, 2, ShotRole::kLit, {}, {"swapped", 0.9, 0.2}, "LED 2 lights where LED 3 should"};
     HttpLimits limits;
     limits.heartbeat_s = 0.3;
     server_ = scripted_.started(limits);

@@ -52,6 +52,38 @@ TEST(ScanBody, LeavesWhatItDoesNotNameAsItWas) {
   EXPECT_THAT(read("{}", request_of_rig(rig))->request.leds, ElementsAre(1, 2, 3)) << "those of the rig file";
 }
 
+TEST(ScanBody, AsksForNoFilmAndNoLightBelowThatTheRigHasNot) {
+  capture::Rig rig;
+  EXPECT_FALSE(read(R"({"below": true})", request_of_rig(rig)));
+  EXPECT_TRUE(read(R"({"below": false})", request_of_rig(rig)));
+  EXPECT_THAT(read(R"({"polariser": ["crossed"]})", request_of_rig(rig)).error().message(),
+              HasSubstr("the rig file has no [polariser]"));
+  rig.below.emplace();
+  rig.polariser.states = {Polariser::kCrossed, Polariser::kParallel};
+  const Result<ScanWish> all = read("{}", request_of_rig(rig));
+  EXPECT_TRUE(all->request.below);
+  EXPECT_EQ(all->request.polariser.states, rig.polariser.states);
+  EXPECT_TRUE(all->request.polariser.is_turned);
+  const Result<ScanWish> fewer = read(R"({"below": false, "polariser": ["parallel"]})", request_of_rig(rig));
+  ASSERT_TRUE(fewer) << fewer.error().message();
+  EXPECT_FALSE(fewer->request.below);
+  EXPECT_THAT(fewer->request.polariser.states, ElementsAre(Polariser::kParallel));
+  EXPECT_TRUE(fewer->request.polariser.is_turned) << "the board has to turn it there";
+  for (const char* wrong :
+       {R"({"polariser": []})", R"({"polariser": "crossed"})", R"({"polariser": ["none"]})",
+        R"({"polariser": ["crossed", "crossed"]})", R"({"below": 1})"})
+    EXPECT_FALSE(read(wrong, request_of_rig(rig))) << wrong;
+
+  Session session;
+  session.document = {{"plan", {{"leds", {1, 2, 3}}, {"repeat", true}}}};
+  EXPECT_FALSE(request_of_session(session, rig).below) << "as it was begun";
+  EXPECT_TRUE(request_of_session(session, rig).polariser.states.empty());
+  session.document["plan"]["polariser"] = {"parallel"};
+  session.document["plan"]["below"] = true;
+  EXPECT_TRUE(request_of_session(session, rig).below);
+  EXPECT_THAT(request_of_session(session, rig).polariser.states, ElementsAre(Polariser::kParallel));
+}
+
 TEST(ScanBody, GoesOnAsItsSessionWasBegun) {
   Session session;
   session.fabric = "linen";
