@@ -39,6 +39,8 @@ class Lamps {
   /// Turns the polariser, until the next call or recover(), which leaves it parallel. kUsage for kNone, and
   /// where there are no such outputs.
   virtual Result<void> polarise(Polariser state) = 0;
+  /// Seconds that each LED may be lit for at once, the light below last; none where the board cannot tell.
+  virtual Result<std::vector<double>> can_light_s() = 0;
 };
 
 /// What a scan asks of a camera for each shot.

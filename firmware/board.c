@@ -82,12 +82,18 @@ static void polarise(struct WeftBoard* board, uint8_t state, struct Answer* answ
   board->polariser = state;
 }
 
+static void say_heat(const struct WeftHeat* heat, struct Answer* answer) {
+  for (uint8_t led = 0; led < kWeftBelow; ++led)
+    answer->payload[led] = (uint8_t)((heat->ms[led] + kWeftHeat_ms - 1) / kWeftHeat_ms);
+  answer->length = kWeftHeatReply;
+}
+
 static void act(struct WeftBoard* board, const uint8_t* request, struct Answer* answer) {
-  static const uint8_t kLengths[] = {
-      [kWeftHello] = 0, [kWeftLight] = 3, [kWeftLightPair] = 4, [kWeftStatus] = 0, [kWeftPolariser] = 1};
+  static const uint8_t kLengths[] = {[kWeftHello] = 0,  [kWeftLight] = 3,     [kWeftLightPair] = 4,
+                                     [kWeftStatus] = 0, [kWeftPolariser] = 1, [kWeftHeat] = 0};
   const uint8_t command = weft_command(request);
   const uint8_t* payload = request + kWeftFrameHead;
-  if (command < kWeftHello || command > kWeftPolariser) {
+  if (command < kWeftHello || command > kWeftHeat) {
     answer->error = kWeftUnknownCommand;
   } else if (weft_length(request) != kLengths[command]) {
     answer->error = kWeftWrongLength;
@@ -99,6 +105,8 @@ static void act(struct WeftBoard* board, const uint8_t* request, struct Answer* 
     light_pair(&board->lamps, payload, answer);
   } else if (command == kWeftPolariser) {
     polarise(board, payload[0], answer);
+  } else if (command == kWeftHeat) {
+    say_heat(board->lamps.heat, answer);
   } else {
     say_status(board, answer);
   }

@@ -42,6 +42,7 @@ Result<std::unique_ptr<RigProcess>> RigProcess::start(const RigProcessOptions& o
                                       options.scene.string(), "--folder", options.folder.string()};
   if (options.megapixels)
     command.insert(command.end(), {"--megapixels", fmt::format("{}", *options.megapixels)});
+  if (options.has_more_outputs) command.insert(command.end(), {"--below", "--polariser"});
   if (options.same_noise) command.emplace_back("--same-noise");
   if (options.usb) command.emplace_back("--usb");
   const fs::path log = options.folder.string() + ".log";

@@ -22,7 +22,8 @@ struct RigProcessOptions {
   std::filesystem::path folder;
   std::optional<double> megapixels = {};  ///< else the scene's
   bool usb = false;
-  bool same_noise = false;  ///< a shot taken again is the same picture
+  bool has_more_outputs = false;  ///< a light below the cloth and a polariser
+  bool same_noise = false;        ///< a shot taken again is the same picture
 };
 
 /// weft-virtual-rig as a process of its own.

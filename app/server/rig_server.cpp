@@ -181,6 +181,7 @@ std::vector<std::string> RigServer::calls() const {
 }
 
 bool RigServer::stop(std::chrono::milliseconds most) {
+  state_->controls.stop();
   const bool ended = state_->keeper.stop(most) && state_->attendance.stop(most);
   if (!state_->events.closed()) {
     state_->log.add("daemon_ended",

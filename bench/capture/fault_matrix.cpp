@@ -12,6 +12,7 @@
 #include <random>
 #include <set>
 #include <thread>
+#include <tuple>
 
 #include "bench/capture/process_size.h"
 #include "capture/raw/decode.h"
@@ -29,6 +30,7 @@ using Steady = std::chrono::steady_clock;
 
 constexpr int kLeds = 10;
 constexpr int kShots = kLeds + 2;  // the first once more, the dark one
+constexpr int kFilmsEvery = 4;     // runs: one whose scan has the films' other state and the light below
 constexpr double kScan_s = 90;     // a scan that takes longer hangs
 constexpr double kUsual_s = 5;     // moments are drawn from this
 
@@ -116,13 +118,13 @@ const Fault* fault_named(const std::string& name) {
 
 /// What each frame of an undisturbed scan shows, and what its session says but for times and numbers.
 struct Frames {
-  std::map<std::pair<int, ShotRole>, RawFrame> shown;
+  std::map<std::tuple<int, ShotRole, Polariser>, RawFrame> shown;
   std::string record;
 };
-/// Of one whose exposure is given, and of a metered one.
-struct Truth {
-  Frames given, metered;
-};
+/// What is asked for: an exposure, or that it is metered, or all that the rig can: films crossed and parallel
+/// and the light below.
+enum class Asked { kExposure, kMetered, kFilms };
+using Truth = std::map<Asked, Frames>;
 
 /// What two scans of one cloth have in common: everything but times, counts of shots, what follows from them,
 /// and what was seen on the way, as by the meter.
@@ -161,7 +163,7 @@ Result<Frames> frames_of(const Session& session) {
   for (const Shot& shot : session.shots) {
     Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
     if (!frame) return std::move(frame).error();
-    frames.shown.insert_or_assign({shot.led, shot.role}, std::move(*frame));
+    frames.shown.insert_or_assign({shot.led, shot.role, shot.polariser}, std::move(*frame));
   }
   return frames;
 }
@@ -181,7 +183,7 @@ struct Run {
   const Fault* fault = nullptr;
   int shot = 1;
   double moment_s = 0;
-  bool metered = false;
+  Asked asked = Asked::kExposure;
   int led = 1, other_led = 2;
   double share = 0.2;
 
@@ -212,10 +214,13 @@ std::vector<Run> runs_of(const FaultMatrixOptions& options) {
     run.fault = faults[static_cast<std::size_t>(i) % faults.size()];
     run.shot = shot(random);
     run.moment_s = moment(random);
-    run.metered = metered(random);
+    run.asked = metered(random) ? Asked::kMetered : Asked::kExposure;
     run.led = led(random);
     run.other_led = 1 + (run.led - 1 + further(random)) % kLeds;
     run.share = share(random);
+    if (i % kFilmsEvery != kFilmsEvery - 1) continue;
+    run.asked = Asked::kFilms;
+    run.shot += kShots;  // where these differ from the others
   }
   return runs;
 }
@@ -229,19 +234,19 @@ class Bench {
   Result<Truth> truth() {
     if (Result<void> ok = start(false); !ok) return std::move(ok).error();
     Truth truth;
-    for (const bool metered : {false, true}) {
-      const Result<Session> session = undisturbed(metered);
+    for (const Asked asked : {Asked::kExposure, Asked::kMetered, Asked::kFilms}) {
+      const Result<Session> session = undisturbed(asked);
       if (!session) return session.error();
       Result<Frames> frames = frames_of(*session);
       if (!frames) return std::move(frames).error();
-      (metered ? truth.metered : truth.given) = std::move(*frames);
+      truth[asked] = std::move(*frames);
     }
     return truth;
   }
 
   Result<void> run(Run run, const Truth& truths, FaultTally& tally) {
     if (Result<void> ok = start(run.fault->usb); !ok) return ok;
-    const Frames& truth = run.metered ? truths.metered : truths.given;
+    const Frames& truth = truths.at(run.asked);
     const fs::path session = (*rig_)->folder() / "scans" / fmt::format("run{:04}.weft", run.number);
     ++tally.runs;
     Steady::time_point began = Steady::now();
@@ -279,15 +284,17 @@ class Bench {
                                                .folder = folder_ / (usb ? "usb" : "network"),
                                                .megapixels = options_.megapixels,
                                                .usb = usb,
+                                               .has_more_outputs = true,
                                                .same_noise = true});
     if (!rig) return std::move(rig).error();
     *rig_ = std::move(*rig);
     return {};
   }
 
-  Result<Session> undisturbed(bool metered) {
-    const fs::path session = (*rig_)->folder() / "scans" / fmt::format("truth{:d}.weft", metered);
-    auto weft = scan(session, metered);
+  Result<Session> undisturbed(Asked asked) {
+    const fs::path session =
+        (*rig_)->folder() / "scans" / fmt::format("truth{:d}.weft", static_cast<int>(asked));
+    auto weft = scan(session, asked);
     if (!weft) return std::move(weft).error();
     const std::optional<int> code = (*weft)->wait(kScan_s);
     if (code == 0) return read_session(session);
@@ -295,9 +302,10 @@ class Bench {
                  "mend that first"};
   }
 
-  Result<std::unique_ptr<ChildProcess>> scan(const fs::path& session, bool metered) const {
+  Result<std::unique_ptr<ChildProcess>> scan(const fs::path& session, Asked asked) const {
     std::vector<std::string> command = {"scan", "-o", session.string(), "--fabric", "matrix", "--no-preview"};
-    if (!metered) command.insert(command.end(), {"--exposure", "20000"});
+    if (asked != Asked::kMetered) command.insert(command.end(), {"--exposure", "20000"});
+    if (asked != Asked::kFilms) command.insert(command.end(), {"--polariser", "crossed", "--no-below"});
     return (*rig_)->weft(std::move(command), "scan.log");
   }
 
@@ -312,7 +320,7 @@ class Bench {
     if (fault.what == What::kKillDaemon) {
       if (Result<void> ok = serve(); !ok) return ok.error();
     }
-    auto weft = scan(session, run.metered);
+    auto weft = scan(session, run.asked);
     if (!weft) return std::move(weft).error();
     has_befallen_ = fault.when == When::kAtShot || !(*weft)->wait(run.moment_s);
     if (fault.when == When::kAtMoment && has_befallen_) {
@@ -387,7 +395,7 @@ class Bench {
 
   /// Whether the same command finishes the scan.
   Result<bool> resume(const Run& run, const fs::path& session, FaultTally& tally) {
-    auto weft = scan(session, run.metered);
+    auto weft = scan(session, run.asked);
     if (!weft) return std::move(weft).error();
     const std::optional<int> code = (*weft)->wait(kScan_s);
     if (code != 0) tally.wrong.push_back(fmt::format("run {}: not resumed: {}", run.number, (*weft)->said()));
@@ -406,10 +414,10 @@ class Bench {
     tally.differing += record && *record == truth.record ? 0 : 1;
     const int before = tally.lost + tally.mislabelled + tally.half_written;
     std::set<fs::path> named;
-    std::set<std::pair<int, ShotRole>> seen;
+    std::set<std::tuple<int, ShotRole, Polariser>> seen;
     for (const Shot& shot : session->shots) {
       named.insert(session->path_of(shot));
-      seen.insert({shot.led, shot.role});
+      seen.insert({shot.led, shot.role, shot.polariser});
       judge_frame(run, *session, shot, truth, tally);
     }
     for (const auto& [what, frame] : truth.shown) tally.lost += seen.contains(what) ? 0 : 1;
@@ -433,7 +441,7 @@ class Bench {
       tally.wrong.push_back(fmt::format("run {}: {} is not whole", run.number, shot.file));
       return;
     }
-    const auto expected = truth.shown.find({shot.led, shot.role});
+    const auto expected = truth.shown.find({shot.led, shot.role, shot.polariser});
     if (expected != truth.shown.end() && same_counts(*frame, expected->second)) return;
     ++tally.mislabelled;
     tally.wrong.push_back(fmt::format("run {} (shot {}, {:.2f} s): {} is not what LED {} shows", run.number,

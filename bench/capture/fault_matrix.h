@@ -42,7 +42,8 @@ struct FaultTally {
   std::vector<std::string> wrong;  ///< what was wrong, a sentence a run
 };
 
-/// Scans the same cloth again and again, half of the times metered, each time with one fault at a random shot
+/// Scans the same cloth again and again, every fourth time with both states of the polariser and the light
+/// below, half of the others metered, each time with one fault at a random shot
 /// or moment (an earlier one, where the scan had ended by then), and compares every frame with an undisturbed
 /// scan's, count by count: noise of these rigs depends on the light alone.
 Result<std::vector<FaultTally>> fault_matrix(const FaultMatrixOptions& options);

@@ -118,6 +118,14 @@ Result<BoardStatus> status_in(const BoardReply& reply, const std::string& port) 
   return status;
 }
 
+Result<std::vector<double>> heat_in(const BoardReply& reply, const std::string& port) {
+  if (reply.command != kWeftHeat || reply.length < kWeftHeatReply) return unlike_protocol(reply, port);
+  std::vector<double> lately_s;
+  for (std::size_t i = 0; i < kWeftHeatReply; ++i)
+    lately_s.push_back(reply.payload[i] * (int{kWeftHeat_ms} / 1000.0));
+  return lately_s;
+}
+
 Result<void> polariser_answer_in(const BoardReply& reply, const std::string& port) {
   if (reply.command != kWeftPolariser || reply.length < kWeftPolariserReply)
     return unlike_protocol(reply, port);

@@ -23,6 +23,8 @@ struct LightAnswer {
 Result<BoardFacts> facts_in(const BoardReply& hello, const std::string& port);
 Result<LightAnswer> light_answer_in(const BoardReply& reply, const std::string& port);
 Result<BoardStatus> status_in(const BoardReply& reply, const std::string& port);
+/// Seconds that each LED was lit lately.
+Result<std::vector<double>> heat_in(const BoardReply& reply, const std::string& port);
 Result<void> polariser_answer_in(const BoardReply& reply, const std::string& port);
 
 std::uint16_t mask_of(const std::vector<int>& leds);

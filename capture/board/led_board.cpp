@@ -148,6 +148,17 @@ class OpenLedBoard final : public LedBoard {
     return reply ? polariser_answer_in(*reply, options_.port) : reply.error();
   }
 
+  Result<std::vector<double>> can_light_s() override {
+    if (!has_more_outputs()) return std::vector<double>();
+    const std::lock_guard lock(mutex_);
+    const auto reply = ask(kWeftHeat, {});
+    if (!reply) return reply.error();
+    Result<std::vector<double>> seconds = heat_in(*reply, options_.port);
+    if (!seconds) return seconds;
+    for (double& each : *seconds) each = std::max(facts_.longest_on_s - each, 0.0);
+    return seconds;
+  }
+
   Result<BoardStatus> status() override {
     const std::lock_guard lock(mutex_);
     return ask_status();

@@ -48,6 +48,8 @@ enum {
   kWeftStatus = 0x04,
   // state to turn the polariser to -> the state until then (1)
   kWeftPolariser = 0x05,
+  // -> how long each LED and the light below was lit lately, in units of 200 ms, rounded up (11)
+  kWeftHeat = 0x06,
   // Only as a reply: error code, the command refused, ms to wait (2). A command that is refused changes
   // nothing.
   kWeftError = 0x7F,
@@ -56,6 +58,8 @@ enum {
   kWeftLightReply = 2,
   kWeftStatusReply = 12,
   kWeftPolariserReply = 1,
+  kWeftHeatReply = 11,
+  kWeftHeat_ms = 200,  // the unit of that
   kWeftErrorReply = 4,
 
   // Error codes.

@@ -60,7 +60,7 @@ TEST(BoardFirmware, RefusesWhatItCannotDoAndChangesNothing) {
     return error_in(board.hear(request(sequence++, command, payload)));
   };
   EXPECT_EQ(error_of(0, {}), kWeftUnknownCommand);
-  EXPECT_EQ(error_of(6, {}), kWeftUnknownCommand);
+  EXPECT_EQ(error_of(7, {}), kWeftUnknownCommand);
   EXPECT_EQ(error_of(kWeftError, {}), kWeftUnknownCommand);
   EXPECT_EQ(error_of(kWeftLight, {3, 100}), kWeftWrongLength);
   EXPECT_EQ(error_of(kWeftHello, {0}), kWeftWrongLength);
@@ -83,6 +83,19 @@ TEST(BoardFirmware, TurnsThePolariserAndSaysHowItStoodBefore) {
   EXPECT_EQ(board.board.polariser, kWeftCrossed);
   EXPECT_THAT(payload_of(board.hear(request(2, kWeftPolariser, {kWeftParallel}))),
               testing::ElementsAre(kWeftCrossed));
+}
+
+TEST(BoardFirmware, SaysHowLongEachLedWasLitLately) {
+  BareBoard board;
+  board.hear(light_request(1, 3, 100));
+  board.wait_ms(401);
+  board.hear(light_request(2, kWeftBelow, 10));
+  board.wait_ms(100);
+  const Bytes said = payload_of(board.hear(request(3, kWeftHeat)));
+  ASSERT_EQ(said.size(), std::size_t{kWeftHeatReply});
+  EXPECT_EQ(said[2], 2) << "401 ms lit, and about 100 ms dark: 301 ms";
+  EXPECT_EQ(said[10], 1) << "100 ms";
+  EXPECT_EQ(said[0], 0);
 }
 
 TEST(BoardFirmware, SaysHowLongALedMustRest) {

@@ -53,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       board.wait_ms(data[at] * 4);
       const std::size_t length = data[at + 1] % 5;
       const weft::test::Bytes payload(data + at + 3, data + at + 3 + std::min<std::size_t>(length, 4));
-      for (const auto byte : weft::test::request(data[at + 1], data[at + 2] % 7, payload)) board.hear(byte);
+      for (const auto byte : weft::test::request(data[at + 1], data[at + 2] % 8, payload)) board.hear(byte);
     }
   } else {
     for (std::size_t at = 1; at < size; ++at) {

@@ -15,6 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLight_s = 1e-3 * static_cast<double>(Attendance::kLightLease.count());
+constexpr double kMostLit_s = 40;  // of a LED at once, by its board
 constexpr auto kLook = std::chrono::milliseconds(100);
 
 Error is_closed(const std::string& rig) {
@@ -91,6 +92,7 @@ Result<void> Attendance::open_held() {
   if (!facts) return std::move(facts).error();
   devices_ = std::move(*devices);
   set_.reset();
+  feel_heat_held();
   change([&](Status& status) { status.camera = std::move(*facts); });
   return {};
 }
@@ -132,7 +134,16 @@ Result<double> Attendance::light_held(const std::vector<int>& leds, double most_
     }
   }
   if (!rest && rest.error().kind != ErrorKind::kUsage) fail_held(rest.error());
+  if (rest) feel_heat_held();
   return rest;
+}
+
+/// What cannot be told is not shown.
+void Attendance::feel_heat_held() {
+  Result<std::vector<double>> seconds = devices_->lamps->can_light_s();
+  const std::lock_guard lock(mutex_);
+  can_light_s_ = seconds ? std::move(*seconds) : std::vector<double>();
+  felt_ = Clock::now();
 }
 
 Result<double> Attendance::light(const std::vector<int>& leds) {
@@ -284,7 +295,16 @@ Result<TestShot> Attendance::shot(int id) const {
 
 Attendance::Status Attendance::status() const {
   const std::lock_guard lock(mutex_);
-  return status_;
+  Status status = status_;
+  if (!status.is_open) return status;
+  // What was lit since heats it, what was dark cools it, a second a second.
+  const double since_s = std::chrono::duration<double>(Clock::now() - felt_).count();
+  for (std::size_t i = 0; i < can_light_s_.size(); ++i) {
+    const bool is_lit = std::ranges::count(status.lit, static_cast<int>(i) + 1) > 0;
+    status.can_light_s.push_back(
+        std::clamp(can_light_s_[i] + (is_lit ? -since_s : since_s), 0.0, kMostLit_s));
+  }
+  return status;
 }
 
 Result<capture::RigDevices> Attendance::lend() {
@@ -315,6 +335,10 @@ void Attendance::take_back(capture::RigDevices devices) {
     status_.is_open = Clock::now() < open_until_;
     if (status_.is_open) devices_ = std::move(devices);
     set_.reset();
+  }
+  {
+    const std::lock_guard held(devices_mutex_);
+    if (devices_) feel_heat_held();
   }
   told_.changed();
 }

@@ -46,10 +46,11 @@ class Attendance {
   static constexpr std::chrono::seconds kLookLease{3};
 
   struct Status {
-    bool is_open = false;  ///< for a person: not while a scan has them
-    std::string doing;     ///< "opening", "shooting", "scanning"; empty: nothing
-    std::vector<int> lit;  ///< as asked for last, until its lease ends
-    bool is_live = false;  ///< the camera is in live view
+    bool is_open = false;             ///< for a person: not while a scan has them
+    std::string doing;                ///< "opening", "shooting", "scanning"; empty: nothing
+    std::vector<int> lit;             ///< as asked for last, until its lease ends
+    bool is_live = false;             ///< the camera is in live view
+    std::vector<double> can_light_s;  ///< by LED: how long it may be lit at once from now; empty: not known
     std::optional<capture::CameraFacts> camera;
     std::optional<Error> error;
   };
@@ -102,6 +103,7 @@ class Attendance {
   using Clock = std::chrono::steady_clock;
   Result<void> open_held();
   Result<double> light_held(const std::vector<int>& leds, double most_s);
+  void feel_heat_held();
   void take(TestShot shot);
   Result<FrameFile> photograph_held(const TestShot& shot);
   void keep(TestShot shot);
@@ -128,6 +130,8 @@ class Attendance {
   bool is_lent_ = false, is_shooting_ = false, is_stopping_ = false;
   Clock::time_point open_until_, lit_until_, look_until_;
   std::vector<int> wanted_;
+  std::vector<double> can_light_s_;  ///< at felt_
+  Clock::time_point felt_;
   std::deque<TestShot> shots_;
   int newest_ = 0;
   std::jthread shooter_, watch_;

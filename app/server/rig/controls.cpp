@@ -25,6 +25,11 @@ bool is_plain(const std::string& name) {
 
 }  // namespace
 
+Controls::Controls(std::function<void(const std::string& name)> changed, Clock::duration lease)
+    : changed_(std::move(changed)),
+      lease_time_(lease),
+      watch_([this](const std::stop_token& stop) { watch(stop); }) {}
+
 const Controls::Lease* Controls::held() const {
   return lease_ && Clock::now() < lease_->until ? &*lease_ : nullptr;
 }
@@ -37,11 +42,13 @@ Result<std::string> Controls::take(const std::string& name, bool from_another) {
   }
   Result<std::string> id = new_token();
   if (!id) return id;
+  const std::lock_guard telling(telling_);
   {
     const std::lock_guard lock(mutex_);
     if (const Lease* other = held(); other != nullptr && !from_another) return held_by(other->name);
-    lease_ = Lease{*id, name, Clock::now() + kLease};
+    lease_ = Lease{*id, name, Clock::now() + lease_time_};
   }
+  renewed_.notify_all();
   changed_(name);
   return id;
 }
@@ -49,17 +56,37 @@ Result<std::string> Controls::take(const std::string& name, bool from_another) {
 bool Controls::renew(const std::string& id) {
   const std::lock_guard lock(mutex_);
   if (held() == nullptr || lease_->id != id) return false;
-  lease_->until = Clock::now() + kLease;
+  lease_->until = Clock::now() + lease_time_;
   return true;
 }
 
 void Controls::release(const std::string& id) {
+  const std::lock_guard telling(telling_);
   {
     const std::lock_guard lock(mutex_);
     if (held() == nullptr || lease_->id != id) return;
     lease_.reset();
   }
   changed_("");
+}
+
+void Controls::watch(const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    {
+      std::unique_lock lock(mutex_);
+      if (!lease_) renewed_.wait(lock, stop, [&] { return lease_.has_value(); });
+      if (!lease_) return;
+      const Clock::time_point until = lease_->until;
+      renewed_.wait_until(lock, stop, until, [&] { return !lease_ || lease_->until < until; });
+    }
+    const std::lock_guard telling(telling_);
+    {
+      const std::lock_guard lock(mutex_);
+      if (stop.stop_requested() || !lease_ || held() != nullptr) continue;
+      lease_.reset();
+    }
+    changed_("");
+  }
 }
 
 std::string Controls::holder() const {

@@ -229,7 +229,8 @@ void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::Kept
   event["kept"] = true;
   event["clipped_rgb"] = {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped};
   event["warnings"] = frame.warnings;
-  event["thumbnail"] = fmt::format("/api/v1/sessions/{}/frames/{}/thumbnail", name, frame.shot.index);
+  event["thumbnail"] = fmt::format("/api/v1/sessions/{}/frames/{}/thumbnail?sha256={}", name,
+                                   frame.shot.index, frame.shot.sha256);
   {
     const std::lock_guard lock(mutex_);
     if (LedStatus* led = lit_shot_of(frame.shot.led, frame.shot.role, frame.shot.polariser); led != nullptr) {
@@ -310,6 +311,7 @@ RigStatus RigKeeper::status_locked() const {
   if (is_free && attended.is_open) {
     status.state = RigStatus::State::kAttended;
     status.devices_open = true;
+    status.can_light_s = attended.can_light_s;
   }
   if (attended.camera && !status.camera) status.camera = attended.camera;
   status.lit = attended.lit;

@@ -36,6 +36,7 @@ struct RigStatus {
   std::vector<LedStatus> leds;        ///< of that scan, in the order of its plan
   std::optional<double> left_s;       ///< of a scan that runs, once two frames were kept
   bool can_go_on = false;             ///< what failed or was cancelled can be begun again
+  std::vector<double> can_light_s;    ///< Attendance::Status
   bool devices_open = false;
   std::vector<int> lit;                        ///< for a person to see by; a scan's own is scan.led
   std::string controls;                        ///< who holds them; empty: nobody

@@ -28,6 +28,7 @@ class NoLamps : public capture::Lamps {
   Result<void> recover() override { return {}; }
   bool has_more_outputs() const override { return false; }
   Result<void> polarise(Polariser) override { return {}; }
+  Result<std::vector<double>> can_light_s() override { return std::vector<double>{40, 12.5}; }
 };
 
 class NoCamera : public capture::Camera {

@@ -104,6 +104,18 @@ TEST(LedBoard, LightsTheLightBelowAndTurnsThePolariser) {
   EXPECT_EQ(refused.error().kind, ErrorKind::kUsage) << refused.error().message();
 }
 
+TEST(LedBoard, SaysHowLongEachLedCanBeLit) {
+  Desk desk;
+  const auto board = desk.open();
+  ASSERT_TRUE(light(*board, {3}, 2));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1000));
+  const auto seconds = board->can_light_s();
+  ASSERT_TRUE(seconds) << seconds.error().message();
+  ASSERT_EQ(seconds->size(), 11u);
+  EXPECT_NEAR((*seconds)[2], 39, 0.25);
+  EXPECT_EQ((*seconds)[10], 40);
+}
+
 TEST(LedBoard, IsParallelAfterItsStart) {
   Desk desk;
   const auto board = desk.open();

@@ -70,6 +70,7 @@ class SimulatedRig {
     Result<void> recover() override;
     bool has_more_outputs() const override { return false; }
     Result<void> polarise(Polariser) override { return {}; }
+    Result<std::vector<double>> can_light_s() override { return std::vector<double>{40, 12.5}; }
 
    private:
     SimulatedRig& rig_;

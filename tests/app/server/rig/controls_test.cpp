@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <future>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace weft::app {
@@ -43,6 +46,26 @@ TEST_F(ControlsTest, OneHoldsThemUntilAnotherTakesThemOver) {
   EXPECT_EQ(controls_.holder(), "Bob") << "who does not hold them cannot give them back";
   controls_.release(bob);
   EXPECT_THAT(told_, ElementsAre("Ann at the desk", "Bob", ""));
+}
+
+TEST(Controls, AreFreeAndSaySoOnceTheirHolderFallsSilent) {
+  std::promise<void> free;
+  std::vector<std::string> told;
+  Controls controls(
+      [&](const std::string& name) {
+        told.push_back(name);
+        if (name.empty()) free.set_value();
+      },
+      std::chrono::milliseconds(100));
+  const std::string ann = controls.take("Ann", false).value();
+  for (int i = 0; i < 5; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(40));
+    ASSERT_TRUE(controls.renew(ann)) << "after " << 40 * (i + 1) << " ms";
+  }
+  ASSERT_EQ(free.get_future().wait_for(std::chrono::seconds(5)), std::future_status::ready);
+  controls.stop();
+  EXPECT_EQ(controls.holder(), "");
+  EXPECT_THAT(told, ElementsAre("Ann", ""));
 }
 
 TEST_F(ControlsTest, NamesOfWhoeverCommandsArePlain) {
