@@ -4,16 +4,22 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/cli/exit_code.h"
 #include "app/cli/explain.h"
 #include "app/cli/options.h"
+#include "app/cli/rig_options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/jobs/last_check.h"
 #include "app/jobs/left_out_report.h"
+#include "capture/rig.h"
 #include "core/files.h"
+#include "core/session.h"
 #include "solver/method.h"
 
 namespace weft::app {
@@ -79,8 +85,30 @@ void print_warnings(const std::vector<Verdict>& warnings) {
   }
 }
 
-Result<int> solve(const SolveArguments& arguments, const CommonArguments& common) {
+/// Whether the rig that this machine has is known to have moved before it scanned the session: its last check
+/// did not pass, and none did since the session.
+Result<void> check_moved(SolveArguments& arguments) {
+  const Result<Session> session = read_session(arguments.session.folder);
+  if (!session || session->shots.empty() || session->document.contains("accepted_moved")) return {};
+  const Result<capture::Rig> rig = capture::read_rig(find_rig({}));
+  if (!rig || rig->scan.calibration.empty() || rig->name != session->rig) return {};
+  const std::optional<LastCheck> check = last_check_of(rig->scan.calibration, session->calibration_id);
+  if (!check || check->passed || session->shots.front().time <= check->passed_last) return {};
+  if (arguments.accept_moved.empty()) {
+    return moved_since(
+        *check,
+        "solve by a newer calibration (--calibration), or give a reason to solve all the same: "
+        "--accept-moved WHY");
+  }
+  arguments.session.accepted_moved = accepted_moved(*check, arguments.accept_moved);
+  return {};
+}
+
+Result<int> solve(SolveArguments& arguments, const CommonArguments& common) {
   const bool is_session = !arguments.session.folder.empty();
+  if (is_session && arguments.session.calibration.empty()) {
+    if (Result<void> ok = check_moved(arguments); !ok) return std::move(ok).error();
+  }
   if (!is_session && arguments.photos.folder.empty() && arguments.photos.light_file.empty())
     return Error{ErrorKind::kUsage, "solve needs a session, --photos or --lp", "", "", "See weft --help"};
   if (!arguments.ladder.empty()) return run_ladder(arguments, common);
@@ -178,6 +206,12 @@ void add_readings(Options& options, const Option& session, SolveArguments& a) {
       .by_commas()
       .above_zero();
   options.add("--calibration", &a.session.calibration, "Calibration folder; default the session's own")
+      .needs(session);
+  options
+      .add(
+          "--accept-moved", &a.accept_moved,
+          "Solve although the last check of this rig's calibration did not pass before the scan: the reason, "
+          "which is kept")
       .needs(session);
   options.add_choice(
       "--transfer", &a.photos.transfer, kTransferNames,

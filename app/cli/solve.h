@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "app/jobs/explain.h"
 #include "app/jobs/solve.h"
@@ -16,6 +17,7 @@ struct SolveArguments {
   bool explain = false;
   LevelWish wish;
   std::filesystem::path ladder;  ///< a picture of all levels, instead of one solve
+  std::string accept_moved;      ///< why to solve though the rig is known to have moved; empty: not
   bool check = false;            ///< print how well left-out lights are predicted
   bool strict = false;           ///< pixels without a solution, and warnings, end with exit code 2
 };

@@ -5,6 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "core/json_document.h"
+#include "core/result.h"
+
 namespace weft::app {
 
 /// The result of a check of a calibration (weft calibrate check -o FOLDER), in its folder, and its schema.
@@ -17,10 +20,16 @@ struct LastCheck {
   std::string date;  ///< ISO 8601
   bool passed = false;
   std::optional<double> mean_deg, worst_deg;  ///< that normals are off, as far as it could tell
+  std::string passed_last;                    ///< date of the newest one that passed; empty: none did
 };
 
 /// The newest result of a check of the calibration of this id that lies beside its folder, at most two levels
 /// down. None where there is none that can be read.
 std::optional<LastCheck> last_check_of(const std::filesystem::path& calibration, const std::string& id);
+
+/// Why not to go on where that check did not pass, with the degrees at stake.
+Error moved_since(const LastCheck& check, std::string remedy);
+/// {"why", "degrees", "checked"}: that a person went on all the same, as a session records it.
+Json accepted_moved(const LastCheck& check, const std::string& why);
 
 }  // namespace weft::app

@@ -225,6 +225,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   if (!session) return std::move(session).error();
   plan.session = std::move(*session);
   leave_out_by_person(plan);
+  if (!options.accepted_moved.is_null()) plan.session.document["accepted_moved"] = options.accepted_moved;
   tell_of_moved_rig(plan);
   const bool own = options.calibration.empty();
   Result<Calibration> calibration =

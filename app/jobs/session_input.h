@@ -25,6 +25,7 @@ struct SessionOptions {
   std::filesystem::path folder;
   std::filesystem::path calibration;  ///< empty: the session's own
   std::vector<int> leds;              ///< empty: all that were lit
+  Json accepted_moved = {};           ///< beside the session's own word (docs/formats.md)
 };
 
 /// A session that has been looked at but not read: everything that can be checked before an hour of work.

@@ -26,21 +26,13 @@ Result<void> check_moved(const capture::Rig& rig, capture::ScanRequest& request)
   if (!calibration) return {};  // the scan says what is wrong with it
   const std::optional<LastCheck> check = last_check_of(rig.scan.calibration, calibration->id);
   if (!check || check->passed) return {};
-  if (!accepted.is_null()) {
-    request.accepted_moved = accepted;
-    request.accepted_moved["degrees"] = check->mean_deg ? Json(*check->mean_deg) : Json();
-    request.accepted_moved["checked"] = check->date;
-    return {};
+  if (accepted.is_null()) {
+    return moved_since(*check,
+                       "calibrate it again (weft calibrate update), or give a reason to scan all the same: "
+                       "--accept-moved WHY, \"accept_moved\" over HTTP");
   }
-  const std::string cost =
-      check->mean_deg && check->worst_deg
-          ? fmt::format("normals would be off by {:.2g} degrees on average, {:.2g} at worst",
-                        *check->mean_deg, *check->worst_deg)
-          : "how far normals would be off it could not tell";
-  return Error{ErrorKind::kBadData, "the rig has moved since it was calibrated", check->folder.string(),
-               fmt::format("the check of {} did not pass: {}", check->date, cost),
-               "calibrate it again (weft calibrate update), or give a reason to scan all the same: "
-               "--accept-moved WHY, \"accept_moved\" over HTTP"};
+  request.accepted_moved = accepted_moved(*check, accepted["why"].get<std::string>());
+  return {};
 }
 
 Result<Reply> start_scan(const RigParts& parts, const Call& call) {
