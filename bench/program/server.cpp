@@ -10,6 +10,7 @@
 #include "bench/server/door.h"
 #include "bench/server/lease.h"
 #include "bench/server/library.h"
+#include "bench/server/scan_beside.h"
 #include "core/process.h"
 
 namespace weft::bench {
@@ -28,10 +29,20 @@ Result<Rows> measure_library(const ServerArguments& a, app::ProgressLine& line) 
   return server_library_table(options);
 }
 
+Result<Rows> measure_scan(const ServerArguments& a, app::ProgressLine& line) {
+  ScanBesideOptions options;
+  options.programs = program_beside("weft").parent_path();
+  if (a.runs > 0) options.turns = a.runs;
+  options.seed = a.seed;
+  options.progress = [&](int done, int turns) { line.update("scan", static_cast<double>(done) / turns); };
+  return scan_beside_table(options);
+}
+
 Result<Rows> measure(const ServerArguments& a, bool quiet) {
   if (a.part == "door") return door_table({.requests = a.runs > 0 ? a.runs : 200, .seed = a.seed});
   app::ProgressLine line(quiet);
   if (a.part == "library") return measure_library(a, line);
+  if (a.part == "scan") return measure_scan(a, line);
   ServerLeaseOptions options;
   options.programs = program_beside("weft").parent_path();
   if (a.runs > 0) options.trials = a.runs;
@@ -46,12 +57,15 @@ app::Run add_server(app::Options& options) {
       .add("--part", &a->part,
            "lease: how soon a LED is dark once its client or the daemon has died; door: answers beside "
            "malformed requests, silent clients and slow readers; library: answers with tens of thousands of "
-           "sessions, which it makes in a temporary folder")
-      .one_of({"lease", "door", "library"})
+           "sessions, which it makes in a temporary folder; scan: a scan beside malformed requests, silent "
+           "clients "
+           "and slow readers, over one alone")
+      .one_of({"lease", "door", "library", "scan"})
       .shows_default();
   options
       .add("--runs", &a->runs,
-           "Trials of each death, or requests of each row; 0 is as many as docs/reliability.md")
+           "Trials of each death, requests of each row, or pairs of scans; 0 is as many as "
+           "docs/reliability.md")
       .in_range(0, 1000000);
   options.add("--seed", &a->seed, "Of the moments, or of malformed requests").shows_default();
   return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.quiet), common); };

@@ -5,20 +5,14 @@
 
 #include <algorithm>
 #include <chrono>
-#include <csignal>
-#include <memory>
-#include <optional>
 #include <random>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "app/server/http/client.h"
-#include "core/process.h"
+#include "bench/server/served_rig.h"
 #include "core/statistics.h"
-#include "core/temporary_folder.h"
-#include "virtual_rig/rig_process.h"
 
 namespace weft::bench {
 namespace {
@@ -39,25 +33,17 @@ class Desk {
  public:
   explicit Desk(const ServerLeaseOptions& options) : options_(options) {}
 
-  Result<void> start() {
-    auto rig = virtual_rig::RigProcess::start({.programs = options_.programs,
-                                               .scene = options_.scene,
-                                               .folder = folder_.path() / "rig",
-                                               .megapixels = 0.05});
-    if (!rig) return std::move(rig).error();
-    rig_ = std::move(*rig);
-    return {};
-  }
+  Result<void> start() { return rig_.start(options_.programs, options_.scene, 0.05); }
 
   // Seconds from the death to dark.
   Result<double> trial(bool daemon_dies, int led, double after_s) {
-    if (Result<void> ok = serve(); !ok) return std::move(ok).error();
-    if (auto opened = client_->post("/api/v1/rig/devices", {{"open", true}}); !opened)
+    if (Result<void> ok = rig_.serve(); !ok) return std::move(ok).error();
+    if (auto opened = rig_.client().post("/api/v1/rig/devices", {{"open", true}}); !opened)
       return std::move(opened).error();
     const int renewals = 1 + static_cast<int>(after_s / kRenewed_s);
     for (int i = 0; i < renewals; ++i) {
       if (i > 0) sleep_s(kRenewed_s);
-      auto lit = client_->post("/api/v1/rig/light", {{"leds", {led}}});
+      auto lit = rig_.client().post("/api/v1/rig/light", {{"leds", {led}}});
       if (!lit) return std::move(lit).error();
       if ((*lit)["rest_s"] > 0) {
         sleep_s((*lit)["rest_s"].get<double>());
@@ -65,40 +51,15 @@ class Desk {
       }
     }
     sleep_s(after_s - kRenewed_s * (renewals - 1));
-    if (daemon_dies) {
-      daemon_->signal(SIGKILL);
-      daemon_.reset();
-    }
+    if (daemon_dies) rig_.kill_daemon();
     return seconds_to_dark(led);
   }
 
  private:
-  Result<void> serve() {
-    if (daemon_) return {};
-    auto daemon = rig_->weft({"serve"}, "serve.log");
-    if (!daemon) return std::move(daemon).error();
-    daemon_ = std::move(*daemon);
-    const auto deadline = Clock::now() + Seconds(kPatience_s);
-    for (;;) {
-      const std::string said = daemon_->said();
-      const std::size_t begin = said.rfind("\nhttp://");
-      if (begin != std::string::npos && said.find('\n', begin + 1) != std::string::npos) {
-        auto client = app::RigClient::connect(said.substr(begin + 1, said.find('\n', begin + 1) - begin - 1));
-        if (!client) return std::move(client).error();
-        client_ = std::move(*client);
-        return {};
-      }
-      if (daemon_->wait(0.02) || Clock::now() > deadline) {
-        return Error{ErrorKind::kTryAgain, "weft serve does not start", folder_.path().string(), said,
-                     "mend that first"};
-      }
-    }
-  }
-
   Result<double> seconds_to_dark(int led) {
     const auto died = Clock::now();
     for (bool was_lit = false;; was_lit = true) {
-      const Result<std::string> status = rig_->say("status");
+      const Result<std::string> status = rig_.rig().say("status");
       if (!status) return status.error();
       const Json pins = Json::parse(*status)["pins"];
       const double passed_s = Seconds(Clock::now() - died).count();
@@ -112,10 +73,7 @@ class Desk {
   }
 
   const ServerLeaseOptions& options_;
-  TemporaryFolder folder_;
-  std::unique_ptr<virtual_rig::RigProcess> rig_;
-  std::unique_ptr<ChildProcess> daemon_;
-  std::optional<app::RigClient> client_;
+  ServedRig rig_;
 };
 
 }  // namespace

@@ -57,6 +57,11 @@ ssize_t writev(int descriptor, const iovec* parts, int count) {
   return is_refused(descriptor) ? no_room() : real(descriptor, parts, count);
 }
 
+ssize_t pwrite64(int descriptor, const void* bytes, size_t count, off64_t offset) {
+  static auto* const real = next<decltype(pwrite64)>("pwrite64");
+  return is_refused(descriptor) ? no_room() : real(descriptor, bytes, count, offset);
+}
+
 ssize_t sendfile(int out, int in, off_t* offset, size_t count) noexcept {
   static auto* const real = next<decltype(sendfile)>("sendfile");
   return is_refused(out) ? no_room() : real(out, in, offset, count);

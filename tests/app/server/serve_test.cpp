@@ -13,6 +13,7 @@
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -257,28 +258,65 @@ TEST_F(Serve, TellsTheServiceManagerThatItIsReadyAliveAndEnding) {
   EXPECT_EQ(daemon.ended(), 0);
 }
 
-TEST_F(Serve, WithoutARigShowsArchivesAndRefusesWhatNeedsOne) {
-  const fs::path archive = folder_ / "archive", state = folder_ / "state";
-  fs::create_directories(archive / "2019" / "wool.weft" / "raw");
-  std::ofstream(archive / "2019" / "wool.weft" / "session.json")
+/// A running weft serve of archives alone, in `home`; killed with its owner.
+class ArchiveServer {
+ public:
+  ArchiveServer(const fs::path& home, const std::vector<fs::path>& archives) {
+    std::vector<std::string> words = {"weft", "serve", "--port", "0", "-q"};
+    for (const fs::path& archive : archives) words.insert(words.end(), {"--archive", archive.string()});
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    arguments.push_back(nullptr);
+    const fs::path state = home / "state", address = state / "weft/archive/address";
+    pid_ = fork();
+    if (pid_ == 0) {
+      for (const char* name : {"HOME", "XDG_CONFIG_HOME"}) setenv(name, home.c_str(), 1);
+      setenv("XDG_STATE_HOME", state.c_str(), 1);
+      unsetenv("WEFT_RIG");
+      if (chdir(archives.front().c_str()) != 0) _exit(126);
+      execv(WEFT_PROGRAM, arguments.data());
+      _exit(127);
+    }
+    EXPECT_TRUE(comes_true([&] { return fs::exists(address) && fs::file_size(address) > 0; }));
+    std::string at;
+    std::ifstream(address) >> at;
+    if (!at.empty()) port_ = std::stoi(at.substr(at.rfind(':') + 1));
+  }
+  ~ArchiveServer() {
+    if (pid_ == 0) return;
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  ArchiveServer(const ArchiveServer&) = delete;
+  ArchiveServer& operator=(const ArchiveServer&) = delete;
+
+  int port() const { return port_; }
+  /// Whether it exits when it is told to.
+  bool ends() {
+    kill(pid_, SIGTERM);
+    int status = 0;
+    if (!comes_true([&] { return waitpid(pid_, &status, WNOHANG) == pid_; })) return false;
+    pid_ = 0;
+    return WIFEXITED(status);
+  }
+
+ private:
+  pid_t pid_ = 0;
+  int port_ = 0;
+};
+
+void make_session(const fs::path& folder) {
+  fs::create_directories(folder / "raw");
+  std::ofstream(folder / "session.json")
       << R"({"schema": "weft.session/1", "fabric": "wool", "cloth_height_mm": 0, "rig": "old", "calibration": "",
              "state": "complete", "shots": []})";
+}
+
+TEST_F(Serve, WithoutARigShowsArchivesAndRefusesWhatNeedsOne) {
+  make_session(folder_ / "archive" / "2019" / "wool.weft");
   ASSERT_EQ(run("serve --archive " + (folder_ / "none").string() + " -q").exit_code, 66);
-  const pid_t child = fork();
-  if (child == 0) {
-    for (const char* name : {"HOME", "XDG_CONFIG_HOME"}) setenv(name, folder_.c_str(), 1);
-    setenv("XDG_STATE_HOME", state.c_str(), 1);
-    unsetenv("WEFT_RIG");
-    if (chdir(archive.c_str()) != 0) _exit(126);
-    execl(WEFT_PROGRAM, "weft", "serve", "--archive", archive.c_str(), "--port", "0", "-q",
-          static_cast<char*>(nullptr));
-    _exit(127);
-  }
-  const fs::path address = state / "weft/archive/address";
-  EXPECT_TRUE(comes_true([&] { return fs::exists(address) && fs::file_size(address) > 0; }));
-  std::string at;
-  std::ifstream(address) >> at;
-  const int port = std::stoi(at.substr(at.rfind(':') + 1));
+  const ArchiveServer server(folder_, {folder_ / "archive"});
+  const int port = server.port();
   EXPECT_EQ(ask(port, "GET", "/api/v1/sessions?query=wool").json()["total"], 1);
   EXPECT_EQ(ask(port, "GET", "/api/v1/sessions/wool").json()["fabric"], "wool")
       << "below a folder of the archive";
@@ -290,8 +328,29 @@ TEST_F(Serve, WithoutARigShowsArchivesAndRefusesWhatNeedsOne) {
     EXPECT_EQ(refused.status, 409) << call;
     EXPECT_EQ(refused.json()["error"]["code"], "no_rig") << call;
   }
-  kill(child, SIGKILL);
-  waitpid(child, nullptr, 0);
+}
+
+// Whoever opens a file that another process holds a write lease on waits for it, as for a disk that does not
+// answer.
+TEST_F(Serve, AnArchiveThatHangsIsNamedAndDelaysNobody) {
+  const fs::path hanging = folder_ / "hanging";
+  make_session(folder_ / "archive" / "wool.weft");
+  make_session(hanging / "lost.weft");
+  std::signal(SIGIO, SIG_IGN);  // by which the system asks for the lease
+  const Descriptor held(hanging / "lost.weft" / "session.json", O_RDWR);
+  if (::fcntl(held.get(), F_SETLEASE, F_WRLCK) != 0)
+    GTEST_SKIP() << "the file system of " << hanging << " gives no leases: " << std::strerror(errno);
+  ArchiveServer server(folder_, {folder_ / "archive", hanging});
+  const auto wool = [&] {
+    return ask(server.port(), "GET", "/api/v1/sessions?query=wool").json()["total"] == 1;
+  };
+  EXPECT_TRUE(comes_true(wool));
+  const Clock::time_point begin = Clock::now();
+  EXPECT_TRUE(wool());
+  EXPECT_LT(Clock::now() - begin, seconds(1));
+  const auto doctor = [&] { return ask(server.port(), "GET", "/api/v1/doctor").body; };
+  EXPECT_TRUE(comes_true([&] { return doctor().find(hanging.string()) != std::string::npos; })) << doctor();
+  EXPECT_TRUE(server.ends()) << "all the same";
 }
 
 }  // namespace

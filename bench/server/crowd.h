@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+#include "core/descriptor.h"
+#include "core/result.h"
+
+namespace weft::bench {
+
+/// Clients that keep the door of a daemon busy, until they go.
+class Crowd {
+ public:
+  explicit Crowd(int port) : port_(port) {}
+
+  /// So many malformed requests one after another, drawn by `seed`.
+  void send_malformed(int requests, std::uint64_t seed);
+  bool sending() const { return sending_; }
+  /// So many who say nothing, every second one of them in the middle of its request. kTryAgain where one
+  /// cannot connect.
+  Result<void> stay_silent(int clients);
+  /// So many who ask for openapi.json twenty times at once and take 40 kB a second of it. Who is dropped
+  /// comes back.
+  void read_slowly(int clients);
+
+ private:
+  const int port_;
+  std::atomic<bool> sending_ = false;
+  std::vector<Descriptor> silent_;
+  std::vector<std::jthread> threads_;
+};
+
+}  // namespace weft::bench

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "app/server/http/client.h"
+#include "core/process.h"
+#include "core/result.h"
+#include "core/temporary_folder.h"
+#include "virtual_rig/rig_process.h"
+
+namespace weft::bench {
+
+/// A virtual rig and the weft serve of it, in a temporary folder.
+class ServedRig {
+ public:
+  /// `programs`: folder with weft, weft-camera and weft-virtual-rig.
+  Result<void> start(const std::filesystem::path& programs, const std::filesystem::path& scene,
+                     double megapixels);
+  /// Starts weft serve, unless it runs. kTryAgain with what it said where it does not come up.
+  Result<void> serve();
+  /// SIGKILL.
+  void kill_daemon();
+
+  const app::RigClient& client() const { return *client_; }
+  int port() const { return port_; }
+  const virtual_rig::RigProcess& rig() const { return *rig_; }
+
+ private:
+  TemporaryFolder folder_;
+  std::unique_ptr<virtual_rig::RigProcess> rig_;
+  std::unique_ptr<ChildProcess> daemon_;
+  std::optional<app::RigClient> client_;
+  int port_ = 0;
+};
+
+}  // namespace weft::bench
