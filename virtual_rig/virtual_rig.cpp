@@ -35,6 +35,7 @@ namespace fs = std::filesystem;
 
 constexpr int kLedOutputs = 10;  // of the board
 constexpr int kMostShots = 1000000;
+constexpr double kMostBlur_px = 32;
 constexpr auto kLookTime = std::chrono::milliseconds(50);
 
 struct BoardCommand {
@@ -90,11 +91,39 @@ Result<void> check_leds(const LightFrames& frames) {
                "take some out of the scene's section [lights]"};
 }
 
+/// The light on the cloth, as a camera sees it that is focused as it is.
+struct SceneLight {
+  LightFrames frames;
+  std::optional<LightFrames> matt;  ///< without its gloss, where a polariser takes that away
+};
+
+Result<SceneLight> light_of(simulator::Scene scene, const VirtualRigOptions& options) {
+  Result<LightFrames> frames = LightFrames::open(scene, options.cache, options.render);
+  if (!frames) return frames.error();
+  std::optional<LightFrames> matt;
+  if (options.polariser && scene.effects.reflectance) {
+    scene.effects.reflectance = false;
+    Result<LightFrames> without_gloss = LightFrames::open(scene, options.cache, options.render);
+    if (!without_gloss) return without_gloss.error();
+    matt = std::move(*without_gloss);
+  }
+  return SceneLight{std::move(*frames), std::move(matt)};
+}
+
+std::optional<double> pixels_in(const std::string& word) {
+  double pixels = 0;
+  const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), pixels);
+  if (wrong != std::errc() || end != word.data() + word.size() || !(pixels >= 0 && pixels <= kMostBlur_px))
+    return {};
+  return pixels;
+}
+
 class RunningRig : public VirtualRig {
  public:
-  RunningRig(const VirtualRigOptions& options, LightFrames frames, std::optional<LightFrames> matt,
-             RigFolder folder)
-      : options_(options), frames_(std::move(frames)), matt_(std::move(matt)), folder_(std::move(folder)) {}
+  RunningRig(const VirtualRigOptions& options, SceneLight light, RigFolder folder)
+      : options_(options),
+        light_(std::make_shared<const SceneLight>(std::move(light))),
+        folder_(std::move(folder)) {}
 
   ~RunningRig() override {
     control_.reset();  // nobody commands what goes
@@ -118,7 +147,7 @@ class RunningRig : public VirtualRig {
     return {};
   }
 
-  const LightFrames& frames() const override { return frames_; }
+  const LightFrames& frames() const override { return light_->frames; }
   const std::vector<std::string>& environment() const override { return environment_; }
   int end_descriptor() const override { return end_; }
 
@@ -129,13 +158,15 @@ class RunningRig : public VirtualRig {
     if (kind == "status" && words.size() == 1) return status().dump();
     if (kind == "end" && words.size() == 1) return end();
     const auto done = [&]() -> Result<void> {
+      if (kind == "focus" && words.size() == 2) return change_focus(line, words[1]);
       if (kind == "light") return change_light({words.begin() + 1, words.end()});
       if (kind == "board" && words.size() == 2) return inject_board(line, words[1]);
       if (kind == "disk" && words.size() == 2) return fill_disk(line, words[1]);
       if (kind == "camera" && (words.size() == 2 || words.size() == 3)) return inject_camera(line, words);
-      return refusal(
-          line, "a line is board NAME, camera NAME [SHOT], disk full, disk room, light ..., status or end",
-          "see weft-virtual-rig --help");
+      return refusal(line,
+                     "a line is board NAME, camera NAME [SHOT], disk full, disk room, focus PIXELS, light "
+                     "..., status or end",
+                     "see weft-virtual-rig --help");
     }();
     if (!done) return done.error();
     return std::string("ok");
@@ -156,7 +187,7 @@ class RunningRig : public VirtualRig {
     VirtualCameraOptions camera;
     camera.body = options_.body == simulator::Body::kD80 ? CameraBody::kD80 : CameraBody::kD5100;
     camera.serial = options_.serial;
-    camera.size = frames_.size();
+    camera.size = frames().size();
     camera.clock_offset_s = options_.clock_offset_s;
     camera.port = options_.port;
     camera.shots_before = last_image_number(in_folder(kExposureLog));
@@ -188,7 +219,7 @@ class RunningRig : public VirtualRig {
     files.environment = environment_;
     files.below = options_.below;
     files.polariser = options_.polariser;
-    return folder_.write(frames_, files);
+    return folder_.write(frames(), files);
   }
 
   Result<void> start_control() {
@@ -205,13 +236,14 @@ class RunningRig : public VirtualRig {
   Result<std::vector<std::uint8_t>> photograph(const CameraExposure& exposure) {
     std::vector<double> pins = lit_shares(pins_, exposure.opened, exposure.closed, kOutputs);
     const double below = pins[kBelowBit], crossed = pins[kPolariserBit];
-    pins.resize(static_cast<std::size_t>(frames_.leds()));
-    GatheredLight light = gathered_light(frames_, pins, faults(), exposure);
+    const std::shared_ptr<const SceneLight> scene = scene_light();
+    pins.resize(static_cast<std::size_t>(scene->frames.leds()));
+    GatheredLight light = gathered_light(scene->frames, pins, faults(), exposure);
     if (options_.below) add_light_below(light, below, exposure);
-    if (options_.polariser) add_films(light, crossed, matt_ ? &*matt_ : nullptr);
+    if (options_.polariser) add_films(light, crossed, scene->matt ? &*scene->matt : nullptr);
     if (options_.same_noise) light.noise_key = lit_mask(light);
     if (Result<void> ok = log(exposure, pins, light); !ok) return ok.error();
-    return develop(frames_, light, exposure, options_.serial, options_.render.tiles.threads);
+    return develop(scene->frames, light, exposure, options_.serial, options_.render.tiles.threads);
   }
 
   /// What the finder shows of the last twentieth of a second.
@@ -222,10 +254,11 @@ class RunningRig : public VirtualRig {
     moment.closed = now;
     moment.exposure_us = 5e4;
     moment.iso = 100;
-    moment.f_number = frames_.scene().camera.f_number;
+    const std::shared_ptr<const SceneLight> scene = scene_light();
+    moment.f_number = scene->frames.scene().camera.f_number;
     moment.image_number = ++looks_;
-    const std::vector<double> pins = lit_shares(pins_, moment.opened, moment.closed, frames_.leds());
-    return live_picture(frames_, gathered_light(frames_, pins, faults(), moment));
+    const std::vector<double> pins = lit_shares(pins_, moment.opened, moment.closed, scene->frames.leds());
+    return live_picture(scene->frames, gathered_light(scene->frames, pins, faults(), moment));
   }
 
   static std::uint32_t lit_mask(const GatheredLight& light) {
@@ -255,9 +288,32 @@ class RunningRig : public VirtualRig {
     return faults_;
   }
 
+  std::shared_ptr<const SceneLight> scene_light() const {
+    const std::lock_guard hold(mutex_);
+    return light_;
+  }
+
+  /// What the cache lacks is rendered while the rig goes on as it was.
+  Result<void> change_focus(const std::string& line, const std::string& word) {
+    const std::optional<double> pixels = pixels_in(word);
+    if (!pixels) {
+      return refusal(line, fmt::format("the blur is 0 to {:g} pixels across", kMostBlur_px),
+                     "give a number, 0 for the sharpest that the lens can be");
+    }
+    simulator::Scene scene = frames().scene();
+    scene.effects.defocus = true;
+    scene.camera.blur.defocus_px = *pixels;
+    Result<SceneLight> light = light_of(std::move(scene), options_);
+    if (!light) return light.error();
+    auto focused = std::make_shared<const SceneLight>(std::move(*light));
+    const std::lock_guard hold(mutex_);
+    light_ = std::move(focused);
+    return {};
+  }
+
   Result<void> change_light(const std::vector<std::string>& words) {
     const std::lock_guard hold(mutex_);
-    return change_faults(faults_, words, frames_.leds());
+    return change_faults(faults_, words, light_->frames.leds());
   }
 
   Result<void> inject_board(const std::string& line, const std::string& name) {
@@ -294,7 +350,7 @@ class RunningRig : public VirtualRig {
     }
     return {{"shots", camera_->shots()},  {"pins", lit},
             {"light", json_of(faults())}, {"disk_full", is_there(in_folder(kFullDisk))},
-            {"leds", frames_.leds()},     {"size", {frames_.size().width, frames_.size().height}},
+            {"leds", frames().leds()},    {"size", {frames().size().width, frames().size().height}},
             {"port", camera_->port()},    {"process", ::getpid()}};
   }
 
@@ -306,11 +362,10 @@ class RunningRig : public VirtualRig {
   }
 
   VirtualRigOptions options_;
-  LightFrames frames_;
-  std::optional<LightFrames> matt_;  ///< without its gloss, where a polariser takes that away
+  std::shared_ptr<const SceneLight> light_;  // changed with the focus, under mutex_
   RigFolder folder_;
   LitLog pins_;
-  mutable std::mutex mutex_;  // of faults_
+  mutable std::mutex mutex_;  // of faults_ and light_
   LightFaults faults_;
   std::vector<std::string> environment_;
   std::uint32_t looks_ = 0;  // of the camera's thread
@@ -327,17 +382,10 @@ Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& o
   scene.camera.body = options.body;
   Result<RigFolder> folder = RigFolder::take(options.folder, options.keep_log);
   if (!folder) return folder.error();
-  Result<LightFrames> frames = LightFrames::open(scene, options.cache, options.render);
-  if (!frames) return frames.error();
-  if (Result<void> ok = check_leds(*frames); !ok) return ok.error();
-  std::optional<LightFrames> matt;
-  if (options.polariser && scene.effects.reflectance) {
-    scene.effects.reflectance = false;
-    Result<LightFrames> without_gloss = LightFrames::open(scene, options.cache, options.render);
-    if (!without_gloss) return without_gloss.error();
-    matt = std::move(*without_gloss);
-  }
-  auto rig = std::make_unique<RunningRig>(options, std::move(*frames), std::move(matt), std::move(*folder));
+  Result<SceneLight> light = light_of(scene, options);
+  if (!light) return light.error();
+  if (Result<void> ok = check_leds(light->frames); !ok) return ok.error();
+  auto rig = std::make_unique<RunningRig>(options, std::move(*light), std::move(*folder));
   if (Result<void> ok = rig->start(); !ok) return ok.error();
   return std::unique_ptr<VirtualRig>(std::move(rig));
 }
@@ -345,7 +393,8 @@ Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& o
 std::vector<std::string> virtual_rig_commands() {
   std::vector<std::string> lines = {
       "status               shots, pins that are on, faults, as JSON", "end                  ends the rig",
-      "disk full            no file of a host of this rig takes any more", "disk room            ends that"};
+      "disk full            no file of a host of this rig takes any more", "disk room            ends that",
+      "focus PIXELS         the focus ring is turned: the picture is blurred by so many raw pixels across"};
   for (const BoardCommand& one : kBoardCommands)
     lines.push_back(fmt::format("board {:<14} {}", one.name, one.does));
   for (std::string& line : light_fault_words()) lines.push_back(std::move(line));

@@ -55,10 +55,10 @@ class VirtualRig {
   static Result<std::unique_ptr<VirtualRig>> start(const VirtualRigOptions& options);
   virtual ~VirtualRig() = default;  ///< ends all of it and removes what it made
 
-  virtual const LightFrames& frames() const = 0;
+  virtual const LightFrames& frames() const = 0;  ///< until the focus is changed
   virtual const std::vector<std::string>& environment() const = 0;  ///< "NAME=value"
   /// What the control socket does with a line: "camera NAME [SHOT]", "board NAME", "light ...", "disk full",
-  /// "disk room", "status", "end". The answer is "ok", the status as JSON, or an error.
+  /// "disk room", "focus PIXELS", "status", "end". The answer is "ok", the status as JSON, or an error.
   virtual Result<std::string> command(const std::string& line) = 0;
   /// Readable once somebody has said "end".
   virtual int end_descriptor() const = 0;

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "app/cli/exit_code.h"
+#include "app/cli/opened_devices.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
@@ -75,55 +76,6 @@ Result<int> show_status(const capture::Rig& rig, const RigArguments&, const Comm
   return kDone;
 }
 
-/// False where somebody wants an end before.
-bool wait(double seconds, const std::stop_token& stop) {
-  const auto until = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
-  while (std::chrono::steady_clock::now() < until && !stop.stop_requested()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  }
-  return !stop.stop_requested();
-}
-
-/// Devices that are open for as long as this lives.
-class OpenedDevices {
- public:
-  static Result<std::unique_ptr<OpenedDevices>> open(const capture::Rig& rig) {
-    const Result<std::optional<std::string>> owner = address_of_owner(rig);
-    if (!owner) return owner.error();
-    Result<ReachedRig> reached = reach_rig(rig, *owner);
-    if (!reached) return std::move(reached).error();
-    const Result<Json> before = reached->client.get("/api/v1/rig/devices");
-    if (!before) return before.error();
-    std::unique_ptr<OpenedDevices> devices(new OpenedDevices(std::move(*reached), before->at("open")));
-    if (const Result<Json> opened = devices->client().post("/api/v1/rig/devices", {{"open", true}}); !opened)
-      return opened.error();
-    return devices;
-  }
-  ~OpenedDevices() {
-    static_cast<void>(were_open_ ? client().post("/api/v1/rig/light", {{"leds", Json::array()}})
-                                 : client().post("/api/v1/rig/devices", {{"open", false}}));
-  }
-
-  const RigClient& client() const { return reached_.client; }
-
-  /// Holds a LED lit; how many seconds it has to rest before, 0 once it was lit for all the time.
-  Result<double> hold(int led, double seconds, const std::stop_token& stop) const {
-    constexpr double kRenewed_s = 0.5;
-    for (double left_s = seconds; left_s > 0; left_s -= kRenewed_s) {
-      const Result<Json> lit = client().post("/api/v1/rig/light", {{"leds", {led}}});
-      if (!lit) return lit.error();
-      if (const double rest_s = lit->at("rest_s"); rest_s > 0) return rest_s;
-      if (!wait(std::min(left_s, kRenewed_s), stop)) return interrupted();
-    }
-    return 0.0;
-  }
-
- private:
-  OpenedDevices(ReachedRig reached, bool were_open) : reached_(std::move(reached)), were_open_(were_open) {}
-  ReachedRig reached_;
-  bool were_open_;  ///< for somebody else
-};
-
 Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments,
                           const CommonArguments& common) {
   const auto devices = OpenedDevices::open(rig);
@@ -136,7 +88,7 @@ Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments
       if (!rest_s) return rest_s.error();
       if (*rest_s <= 0) break;
       if (!common.quiet) note(fmt::format("LED {} cools, {:.0f} s", led, std::ceil(*rest_s)));
-      if (!wait(*rest_s, stop)) return interrupted();
+      if (!wait_for(*rest_s, stop)) return interrupted();
     }
   }
   if (common.json) print_json({{"leds", chosen_leds(rig, arguments)}});
@@ -148,20 +100,11 @@ Result<int> take_test_shot(const capture::Rig& rig, const RigArguments& argument
                            const CommonArguments& common) {
   const auto devices = OpenedDevices::open(rig);
   if (!devices) return devices.error();
-  const RigClient& client = (*devices)->client();
-  const std::stop_token stop = stop_on_signal();
-  const Result<Json> asked =
-      client.post("/api/v1/rig/test-shot", {{"led", arguments.led}, {"exposure_us", arguments.exposure_us}});
-  if (!asked) return asked.error();
-  const std::string path = fmt::format("/api/v1/rig/test-shots/{}", asked->at("id").get<int>());
-  Result<Json> shot = client.get(path);
-  for (; shot && shot->at("state") == "taking"; shot = client.get(path)) {
-    if (!wait(0.1, stop)) return interrupted();
-  }
+  const Result<Json> shot = (*devices)->shoot(arguments.led, arguments.exposure_us, stop_on_signal());
   if (!shot) return shot.error();
-  if (shot->at("state") == "failed") return error_of_json(shot->at("error"), rig.name);
   if (!arguments.output.empty()) {
-    const Result<std::string> picture = client.bytes(path + "/picture");
+    const Result<std::string> picture = (*devices)->client().bytes(
+        fmt::format("/api/v1/rig/test-shots/{}/picture", shot->at("id").get<int>()));
     if (!picture) return picture.error();
     if (Result<void> written = write_file(arguments.output, *picture); !written)
       return std::move(written).error();

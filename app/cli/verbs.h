@@ -19,6 +19,7 @@ Verb rectify_verb();
 Verb serve_verb();
 Verb scan_verb();
 Verb rig_verb();
+Verb focus_verb();
 Verb doctor_verb();
 Verb copy_verb();
 Verb library_verb();

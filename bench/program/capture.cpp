@@ -13,6 +13,7 @@
 #include "bench/capture/camera.h"
 #include "bench/capture/evidence.h"
 #include "bench/capture/fault_matrix.h"
+#include "bench/capture/focus.h"
 #include "bench/capture/scans.h"
 #include "bench/program/rows.h"
 #include "bench/program/verbs.h"
@@ -78,8 +79,17 @@ Result<Rows> measure_evidence(app::ProgressLine& line) {
                                  }});
 }
 
+Result<Rows> measure_focus(const CaptureArguments& a, app::ProgressLine& line) {
+  FocusOptions options;
+  options.scenes = "testdata/scenes";
+  if (a.runs > 1) options.repeats = a.runs;
+  options.progress = [&](int done, int steps) { line.update("focus", static_cast<double>(done) / steps); };
+  return capture_focus_table(options);
+}
+
 Result<Rows> measure(const CaptureArguments& a, bool quiet) {
   app::ProgressLine line(quiet);
+  if (a.part == "focus") return measure_focus(a, line);
   if (a.part == "evidence") return measure_evidence(line);
   return a.part == "faults" ? measure_matrix(a, line) : measure_rig(a, line);
 }
@@ -89,8 +99,8 @@ app::Run add_capture(app::Options& options) {
   options
       .add("--part", &a->part,
            "board, camera, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that "
-           "it starts; evidence: what light tells of LEDs")
-      .one_of({"board", "camera", "scans", "faults", "evidence"})
+           "it starts; evidence: what light tells of LEDs; focus: how well a photograph tells blur")
+      .one_of({"board", "camera", "scans", "faults", "evidence", "focus"})
       .shows_default();
   options.add("--rig", &a->rig, "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
   options.add("--runs", &a->runs, "Commands, shots, scans or runs; 0 is as many as docs/reliability.md")

@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
+#include "capture/raw/decode.h"
+#include "core/calibration.h"
 #include "core/error_json.h"
 #include "core/files.h"
 
@@ -29,6 +32,15 @@ Error is_scanning(const std::string& rig) {
 
 bool may_pass(const Error& error) {
   return error.kind == ErrorKind::kTryAgain || error.kind == ErrorKind::kProtocol;
+}
+
+/// Where the rig's calibration knows it.
+std::optional<capture::PhotositeNoise> noise_of(const capture::Rig& rig) {
+  if (rig.scan.calibration.empty()) return std::nullopt;
+  const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
+  if (!calibration || !calibration->response) return std::nullopt;
+  return capture::PhotositeNoise{calibration->response->electrons_per_count,
+                                 calibration->response->read_noise_counts};
 }
 
 }  // namespace
@@ -92,6 +104,7 @@ Result<void> Attendance::open_held() {
   if (!facts) return std::move(facts).error();
   devices_ = std::move(*devices);
   set_.reset();
+  noise_ = noise_of(rig_);
   feel_heat_held();
   change([&](Status& status) { status.camera = std::move(*facts); });
   return {};
@@ -203,7 +216,7 @@ Result<int> Attendance::shoot(int led, double exposure_us) {
   }
   renew();
   is_shooting_ = true;
-  TestShot shot = {++newest_, led, exposure_us, {}, {}};
+  TestShot shot = {++newest_, led, exposure_us, {}, {}, {}};
   shots_.push_back(shot);
   // The last one's thread has done its last deed once is_shooting_ is false.
   shooter_ = std::jthread([this, shot = std::move(shot)] { take(shot); });
@@ -217,6 +230,7 @@ void Attendance::take(TestShot shot) {
     Result<FrameFile> frame = devices_ ? photograph_held(shot) : Result<FrameFile>(is_closed(rig_.name));
     if (frame) {
       shot.frame = std::move(*frame);
+      shot.focus = focus_of(shot);
     } else {
       shot.error = std::move(frame).error();
     }
@@ -270,6 +284,16 @@ Result<FrameFile> Attendance::photograph_held(const TestShot& shot) {
   set_.reset();
   if (const Result<capture::CameraFacts> back = devices_->camera->recover(); !back) fail_held(back.error());
   return std::move(photograph).error();
+}
+
+/// Of one that cannot be decoded nothing is told here: its histogram says why.
+std::optional<capture::FocusStanding> Attendance::focus_of(const TestShot& shot) {
+  const Result<RawFrame> frame = capture::decode_raw(shot.frame->file);
+  if (!frame) return std::nullopt;
+  if (shot.led != series_led_ || shot.exposure_us != series_us_) series_ = {};
+  series_led_ = shot.led;
+  series_us_ = shot.exposure_us;
+  return series_.add(capture::focus_of(*frame, noise_));
 }
 
 void Attendance::keep(TestShot shot) {
@@ -369,6 +393,26 @@ void Attendance::watch(const std::stop_token& stop) {
   }
 }
 
+namespace {
+
+Json number_or_null(double value) {
+  return std::isfinite(value) ? Json(value) : Json();
+}
+
+Json to_json(const capture::FocusStanding& focus) {
+  Json scores = Json::array(), cells = Json::array();
+  for (const double score : focus.scores) scores.push_back(number_or_null(score));
+  for (const double cell : focus.relative) cells.push_back(number_or_null(cell));
+  return {{"scores", std::move(scores)},
+          {"best", focus.best},
+          {"columns", capture::FocusMap::kColumns},
+          {"relative", std::move(cells)},
+          {"more_right", focus.more_right ? Json(*focus.more_right) : Json()},
+          {"more_below", focus.more_below ? Json(*focus.more_below) : Json()}};
+}
+
+}  // namespace
+
 Json document_of(const TestShot& shot, FramePictures& pictures) {
   Json document = {{"id", shot.id},
                    {"led", shot.led},
@@ -378,6 +422,7 @@ Json document_of(const TestShot& shot, FramePictures& pictures) {
                                           : "taking"},
                    {"clipped_rgb", Json()},
                    {"histogram", Json()},
+                   {"focus", shot.focus ? to_json(*shot.focus) : Json()},
                    {"error", shot.error ? json_of(*shot.error) : Json()}};
   if (!shot.frame) return document;
   const Result<Json> histogram = pictures.histogram(*shot.frame);

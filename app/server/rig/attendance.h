@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/server/rig/frame_pictures.h"
+#include "capture/framing/focus.h"
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"
 #include "core/json_document.h"
@@ -26,8 +27,9 @@ struct TestShot {
   int id = 0;
   int led = 0;  ///< 0: none was lit
   double exposure_us = 0;
-  std::optional<FrameFile> frame;  ///< once it is taken
-  std::optional<Error> error;      ///< why it is not
+  std::optional<FrameFile> frame;               ///< once it is taken
+  std::optional<capture::FocusStanding> focus;  ///< among those of its LED and exposure, one after another
+  std::optional<Error> error;                   ///< why it is not
 };
 
 /// The devices of a rig, held open while a person attends it: to see what each LED lights, to frame, to
@@ -106,6 +108,7 @@ class Attendance {
   void feel_heat_held();
   void take(TestShot shot);
   Result<FrameFile> photograph_held(const TestShot& shot);
+  std::optional<capture::FocusStanding> focus_of(const TestShot& shot);
   void keep(TestShot shot);
   void fail_held(const Error& error);
   void end_look_held();
@@ -122,7 +125,11 @@ class Attendance {
   std::mutex devices_mutex_;  ///< of the devices; held while one of them works
   std::optional<capture::RigDevices> devices_;
   std::optional<capture::ExposureSettings> set_;
-  Look look_;  ///< the last one
+  Look look_;                                     ///< the last one
+  std::optional<capture::PhotositeNoise> noise_;  ///< by the rig's calibration
+  capture::FocusSeries series_;
+  int series_led_ = -1;
+  double series_us_ = 0;
 
   mutable std::mutex mutex_;  ///< of all that follows; held for moments
   std::condition_variable_any changed_;
@@ -137,8 +144,8 @@ class Attendance {
   std::jthread shooter_, watch_;
 };
 
-/// {"id", "led", "exposure_us", "state" (taking, taken, failed), "clipped_rgb", "histogram", "error"}: of one
-/// that is taken the histogram is counted now, if it is not yet.
+/// {"id", "led", "exposure_us", "state" (taking, taken, failed), "clipped_rgb", "histogram", "focus",
+/// "error"}: of one that is taken the histogram is counted now, if it is not yet.
 Json document_of(const TestShot& shot, FramePictures& pictures);
 
 /// {"open", "doing", "lit", "error"}.
