@@ -26,7 +26,11 @@ void read(const BoardReply& reply) {
     demand(!facts.error().what.empty() && !facts.error().remedy.empty());
   }
   if (const auto status = status_in(reply, "port")) demand(status->lit.size() <= 16 && status->uptime_s >= 0);
+  if (const auto heat = heat_in(reply, "port")) {
+    for (const double lately_s : *heat) demand(lately_s >= 0 && lately_s <= 51);
+  }
   static_cast<void>(light_answer_in(reply, "port"));
+  static_cast<void>(polariser_answer_in(reply, "port"));
 }
 
 /// The bytes as the payload of a whole frame, so that what replies mean is reached too.
