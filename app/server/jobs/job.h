@@ -31,7 +31,7 @@ struct JobStatus {
   bool is_held = false;  ///< it runs, and waits until a scan lets it go on
   std::string phase;     ///< of a running one, as its verb calls it; and how much of it is done
   double share = 0;
-  std::optional<double> left_s;     ///< of the phase
+  std::optional<double> left_s;  ///< by how long the last job like it took; of the phase where there was none
   std::string asked, began, ended;  ///< ISO 8601; empty: not yet
   double seconds = 0;               ///< that it ran
   std::optional<int> exit_code;

@@ -275,6 +275,8 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   if (is_held_) child_->signal(SIGSTOP);
 
   const auto began = std::chrono::steady_clock::now();
+  const auto usual_end = began + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+                                     std::chrono::duration<double>(usual_seconds(job.spec).value_or(0)));
   std::size_t read = 0;
   std::optional<std::chrono::steady_clock::time_point> told;  // to end
   while (child_->runs()) {
@@ -286,9 +288,9 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
     if (told && std::chrono::steady_clock::now() - *told > std::chrono::duration<double>(kPatience_s))
       child_->signal(SIGKILL);
     woken_.wait_for(lock, kLook);
-    follow(id, read);
+    follow(id, read, usual_end);
   }
-  follow(id, read);
+  follow(id, read, began);
   job.exit_code = child_->wait(0);
   job.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   child_.reset();
@@ -317,8 +319,24 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   forget_old();
 }
 
+// Of the newest that is done and differs in nothing but what it worked on.
+std::optional<double> JobQueue::usual_seconds(const JobSpec& spec) const {
+  const auto same = [](const std::string& a, const std::string& b) {
+    return a == b || (a.starts_with('/') && b.starts_with('/'));
+  };
+  for (auto it = jobs_.rbegin(); it != jobs_.rend(); ++it) {
+    const JobStatus& job = it->second;
+    if (job.state == JobState::kDone && job.spec.kind == spec.kind &&
+        std::ranges::equal(job.spec.arguments, spec.arguments, same)) {
+      return job.seconds;
+    }
+  }
+  return std::nullopt;
+}
+
 // Reads what the verb has said since.
-void JobQueue::follow(const std::string& id, std::size_t& read) {
+void JobQueue::follow(const std::string& id, std::size_t& read,
+                      std::chrono::steady_clock::time_point usual_end) {
   const std::string said = bytes_from(file_of(id, ".log"), read);
   const std::size_t whole = said.rfind('\n') + 1;
   if (whole == 0) return;
@@ -326,6 +344,8 @@ void JobQueue::follow(const std::string& id, std::size_t& read) {
   JobStatus& job = jobs_[id];
   std::istringstream lines(said.substr(0, whole));
   for (std::string line; std::getline(lines, line);) hear(job, line);
+  const std::chrono::duration<double> left = usual_end - std::chrono::steady_clock::now();
+  if (left.count() > 0) job.left_s = left.count();
   options_.changed(job);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -8,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -65,7 +67,8 @@ class JobQueue {
   std::string missing(const std::string& id) const;
   void fail(JobStatus& job, const Error& error);
   void run(const std::string& id, const std::stop_token& stop);
-  void follow(const std::string& id, std::size_t& read);
+  std::optional<double> usual_seconds(const JobSpec& spec) const;
+  void follow(const std::string& id, std::size_t& read, std::chrono::steady_clock::time_point usual_end);
   void hear(JobStatus& job, const std::string& line);
   void forget_old();
   void remove_files(const std::string& id) const;

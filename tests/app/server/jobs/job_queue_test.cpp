@@ -63,6 +63,17 @@ class Jobs : public testing::Test {
   std::unique_ptr<JobQueue> queue_;
 };
 
+TEST_F(Jobs, TakeAsLongAsTheLastOneLikeThem) {
+  const std::string script = std::string(kBegin) + " sleep 0.6";
+  const std::string first = add(script);
+  EXPECT_EQ(running(first).left_s, 3) << "as its phase says: nothing is known of such jobs";
+  EXPECT_EQ(ended(first).state, JobState::kDone);
+  const std::string second = add(script);
+  EXPECT_LT(running(second).left_s.value_or(9), 0.8);
+  EXPECT_EQ(ended(second).state, JobState::kDone);
+  EXPECT_EQ(running(add(script + "; true")).left_s, 3) << "another job";
+}
+
 TEST_F(Jobs, SayWhatIsGoneThatTheyWorkOn) {
   std::filesystem::create_directories(file("satin.weft"));
   queue_->hold(true);
