@@ -13,6 +13,7 @@
 #include "core/calibration.h"
 #include "core/camera.h"
 #include "core/files.h"
+#include "simulator/bare_rig.h"
 #include "simulator/captures_layout.h"
 #include "simulator/plan.h"
 #include "simulator/sampling/random.h"
@@ -23,77 +24,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kTableAlbedo = 0.08;
-constexpr double kThickness_mm = 3;  // of the board
-constexpr double kWhite = 0.88;      // of paper, where the scene has none
-constexpr double kBright = 0.85;     // of full scale: the brightest spot of white paper
-constexpr double kTrapShare = 0.15;  // of the frame's height
+constexpr double kBright = 0.85;  // of full scale: the brightest spot of white paper
 constexpr CapturePose kTurned = {.rotation_deg = 90};
-constexpr CapturePose kPlane = {.tilt_deg = 15, .azimuth_deg = 210};
-
-/// The rig of a scene over a bare dark table, every effect of the cloth left out.
-Result<Scene> bare_table(const Scene& given) {
-  const Result<Plan> plan = plan_of(given);
-  if (!plan) return plan.error();
-  Scene scene = plan->scene;
-  scene.fabric = "calibration";
-  scene.geometry = {};
-  scene.material = {};
-  scene.targets = furniture(plan->scene, plan->rig.camera);
-  scene.damage.clear();
-  scene.frames = FrameFormat::kDng;
-  scene.camera.retakes.repeat = false;
-  scene.camera.retakes.bracket.reset();
-  EffectSettings& on = scene.effects;
-  on.relief = on.cast_shadows = on.interreflection = on.translucency = on.reflectance = on.movement = false;
-  if (on.spectral) {
-    scene.material.dye = flat_spectrum(kTableAlbedo);
-  } else {
-    scene.material.albedo.fill(kTableAlbedo);
-  }
-  return scene;
-}
-
-TargetSettings paper_of(const Scene& scene) {
-  const auto paper = std::find_if(scene.targets.begin(), scene.targets.end(), [](const TargetSettings& t) {
-    return kind_of(t.pattern) == TargetKind::kPaper;
-  });
-  TargetSettings plain;
-  plain.white = kWhite;
-  return paper == scene.targets.end() ? plain : *paper;
-}
-
-/// LED positions as a tape measure gives them.
-std::vector<Vec3> taped(const NearLights& lights, double error_mm, std::int64_t seed) {
-  constexpr std::uint32_t kTapeStream = 1;
-  std::vector<Vec3> positions_mm;
-  for (std::size_t k = 0; k < lights.leds.size(); ++k) {
-    const auto n = static_cast<std::uint32_t>(k);
-    const std::array<std::uint32_t, 2> key = {static_cast<std::uint32_t>(seed), kTapeStream};
-    const NormalPair xy = normal_pair(philox({n, 0, 0, 0}, key));
-    const NormalPair z = normal_pair(philox({n, 1, 0, 0}, key));
-    const Vec3 off = error_mm * normalized({xy.first, xy.second, z.first});
-    positions_mm.push_back(lights.leds[k].position_mm + off);
-  }
-  return positions_mm;
-}
-
-Calibration start_of(const Scene& scene, const SceneRig& rig, const std::vector<Vec3>& positions_mm) {
-  Calibration start;
-  start.subject = exact_calibration(scene, rig).subject;
-  start.subject.albedo_scale = AlbedoScale::kRelative;
-  start.camera = overhead_camera(rig.camera.size, scene.camera.distance_mm, scene.camera.mm_per_pixel);
-  start.response = response_of(rig.sensor);
-  NearLights lights;
-  for (const Vec3 position : positions_mm) {
-    NearLight& led = lights.leds.emplace_back();
-    led.position_mm = position;
-    led.aim = normalized(-1.0 * position);
-    led.flux_rgb.fill(scene.lights.flux);
-  }
-  start.lights = std::move(lights);
-  return start;
-}
 
 /// The LED that is farthest from LED 1 around the z axis, for even light from two.
 int opposite_of_first(const NearLights& lights) {
@@ -107,17 +39,6 @@ int opposite_of_first(const NearLights& lights) {
   return static_cast<int>(least - lights.leds.begin()) + 1;
 }
 
-std::string sheet_toml(const SheetLayout& sheet, double reflectance) {
-  std::string text = fmt::format("width_mm = {}\nheight_mm = {}\nreflectance = {}\nmargin_mm = {}\n",
-                                 sheet.width_mm, sheet.height_mm, reflectance, sheet.margin_mm);
-  for (const CaptureTag& tag : sheet.tags) {
-    text +=
-        fmt::format("\n[[tag]]\ndictionary = \"{}\"\nid = {}\nside_mm = {}\ncentre_mm = [{:.4f}, {:.4f}]\n",
-                    TagSettings().dictionary, tag.id, sheet.tag_mm, tag.centre_mm[0], tag.centre_mm[1]);
-  }
-  return text;
-}
-
 std::string rig_toml(const std::vector<Vec3>& positions_mm) {
   std::string text = "# Tape-measured.\n";
   for (const Vec3 p : positions_mm)
@@ -125,34 +46,15 @@ std::string rig_toml(const std::vector<Vec3>& positions_mm) {
   return text;
 }
 
-// The patches as the observer sees them.
-std::string chart_toml(const std::vector<Spectrum>& patches) {
-  std::string text = "rec709 = [\n";
-  for (const Spectrum& patch : patches) {
-    const auto [r, g, b] = rec709_albedo(patch);
-    text += fmt::format("  [{:.6f}, {:.6f}, {:.6f}],\n", r, g, b);
-  }
-  return text + "]\n";
-}
-
-std::string board_toml(const CharucoSettings& board) {
-  return fmt::format(
-      "kind = \"charuco\"\nsquares_x = {}\nsquares_y = {}\nsquare_mm = {}\nmarker_share = {}\ndictionary = "
-      "\"{}\"\nthickness_mm = {}\n",
-      board.squares_x, board.squares_y, board.square_mm, board.marker_share, board.dictionary, kThickness_mm);
-}
-
 class CaptureWriter {
  public:
-  CaptureWriter(Scene scene, SceneRig rig, TargetSettings paper, const CapturesOptions& options)
-      : scene_(std::move(scene)),
-        rig_(std::move(rig)),
-        paper_(std::move(paper)),
+  CaptureWriter(BareRig rig, const CapturesOptions& options)
+      : bare_(std::move(rig)),
         options_(options),
-        positions_mm_(taped(rig_.leds, options.tape_error_mm, options.seed)) {
-    for (std::size_t k = 1; k <= rig_.leds.leds.size(); ++k) all_leds_.push_back(static_cast<int>(k));
+        positions_mm_(bare_.taped(options.tape_error_mm, options.seed)) {
+    for (int led = 1; led <= bare_.leds(); ++led) all_leds_.push_back(led);
     simulate_ = options.simulate;
-    simulate_.calibration = start_of(scene_, rig_, positions_mm_);
+    simulate_.calibration = bare_.start(positions_mm_);
     simulate_.truth = false;
   }
 
@@ -162,9 +64,8 @@ class CaptureWriter {
   }
 
   Result<void> write_camera(const fs::path& folder) {
-    const CharucoSettings board = board_pattern(scene_);
-    std::vector<TargetSettings> poses =
-        board_poses(scene_, rig_.camera, board, options_.boards, options_.seed);
+    const std::vector<TargetSettings> poses =
+        board_poses(scene_, rig_.camera, bare_.board(), options_.boards, options_.seed);
     const int other = opposite_of_first(rig_.leds);
     for (std::size_t i = 0; i < poses.size(); ++i) {
       const std::vector<int> leds = i % 3 == 2 || other == 1 ? std::vector{1} : std::vector{1, other};
@@ -173,18 +74,16 @@ class CaptureWriter {
           !ok)
         return ok;
     }
-    TargetSettings flat;
-    flat.pattern = board;
-    flat.centre_mm.z = kThickness_mm;
+    const TargetSettings flat = bare_.flat_board();
     const std::vector<int> leds = other == 1 ? std::vector{1} : std::vector{1, other};
     if (Result<void> ok = photograph(with({flat}), flat, leds, folder / "table01.dng"); !ok) return ok;
-    return write_file(folder / "board.toml", board_toml(board));
+    return write_file(folder / "board.toml", bare_.board_toml());
   }
 
   Result<void> write_response(const fs::path& folder) {
     constexpr double kShares[] = {0.125, 0.25, 0.5, 1};
     const std::vector<int> both = leds() > 1 ? std::vector{1, 2} : std::vector{1};
-    const std::vector<TargetSettings> sheet = laid(lights_sheet(), {}, paper_);
+    const std::vector<TargetSettings> sheet = laid(bare_.sheet(), {}, paper_);
     const double longest_us = exposure_for(scene_, rig_, {sheet.front()}, both, kBright);
     Scene still = with(sheet);
     still.camera.exposure_us = longest_us;
@@ -198,26 +97,20 @@ class CaptureWriter {
       }
     }
     if (Result<void> ok = write_scale(folder / "scale"); !ok) return ok;
-    return scene_.effects.veil ? write_trap(folder / "trap", sheet) : Result<void>();
+    return scene_.effects.veil ? write_trap(folder / "trap") : Result<void>();
   }
 
   Result<void> write_color(const fs::path& folder) {
-    TargetSettings chart;
-    ChartSettings pattern;
-    pattern.patch_mm = std::floor(0.6 * scene_.camera.width * scene_.camera.mm_per_pixel / 6 / 1.1);
-    pattern.gap_mm = 0.1 * pattern.patch_mm;
-    pattern.frame_mm = 0.2 * pattern.patch_mm;
-    chart.pattern = pattern;
-    chart.centre_mm.z = 1;
+    const TargetSettings chart = bare_.chart();
     Scene scene = with({chart});
     scene.camera.exposure_us = session_exposure_us({chart});
     scene.fabric = "colour chart";
     if (Result<void> ok = session(scene, folder / "chart.weft"); !ok) return ok;
-    return write_file(folder / "chart.toml", chart_toml(scene_.spectra.chart));
+    return write_file(folder / "chart.toml", bare_.chart_toml());
   }
 
   Result<void> write_lights(const fs::path& folder) {
-    const SheetLayout sheet = lights_sheet();
+    const SheetLayout sheet = bare_.sheet();
     const std::vector<CapturePose> poses = five_poses();
     for (std::size_t i = 0; i < poses.size(); ++i) {
       Scene scene = with(laid(sheet, poses[i], paper_));
@@ -225,14 +118,14 @@ class CaptureWriter {
       scene.fabric = "white sheet";
       if (Result<void> ok = session(scene, folder / fmt::format("sheet{:02}.weft", i + 1)); !ok) return ok;
     }
-    if (Result<void> ok = write_file(folder / "sheet.toml", sheet_toml(sheet, paper_.white)); !ok) return ok;
+    if (Result<void> ok = write_file(folder / "sheet.toml", bare_.sheet_toml()); !ok) return ok;
     return write_file(folder / "rig.toml", rig_toml(positions_mm_));
   }
 
   Result<void> write_check(const fs::path& folder) {
-    const SheetLayout sheet = lights_sheet();
+    const SheetLayout sheet = bare_.sheet();
     const std::tuple<const char*, CapturePose, bool> kSessions[] = {
-        {"turned", kTurned, true}, {"other", {}, false}, {"plane", kPlane, false}};
+        {"turned", kTurned, true}, {"other", {}, false}, {"plane", plane_pose(), false}};
     for (const auto& [name, pose, same_sheet] : kSessions) {
       Scene scene = with(laid(sheet, pose, paper_, same_sheet));
       scene.camera.exposure_us = sheets_exposure_us(sheet, {pose});
@@ -240,29 +133,18 @@ class CaptureWriter {
       scene.fabric = fmt::format("white sheet, {}", name);
       if (Result<void> ok = session(scene, folder / fmt::format("{}.weft", name)); !ok) return ok;
     }
-    if (Result<void> ok = write_file(folder / "sheet.toml", sheet_toml(sheet, paper_.white)); !ok) return ok;
+    if (Result<void> ok = write_file(folder / "sheet.toml", bare_.sheet_toml()); !ok) return ok;
     return write_file(folder / "check.toml",
                       fmt::format("[[plane]]\nsession = \"plane.weft\"\ntilt_deg = {}\nazimuth_deg = {}\n",
-                                  kPlane.tilt_deg, kPlane.azimuth_deg));
+                                  plane_pose().tilt_deg, plane_pose().azimuth_deg));
   }
 
   const CapturesReport& report() const { return report_; }
 
  private:
-  int leds() const { return static_cast<int>(rig_.leds.leds.size()); }
+  int leds() const { return bare_.leds(); }
 
-  SheetLayout lights_sheet() const {
-    std::vector<CapturePose> poses = five_poses();
-    poses.push_back(kPlane);
-    return sheet_layout(scene_, rig_.camera, poses);
-  }
-
-  /// The table with these things on it. What was there keeps its number behind them.
-  Scene with(std::vector<TargetSettings> targets) const {
-    Scene scene = scene_;
-    scene.targets.insert(scene.targets.begin(), targets.begin(), targets.end());
-    return scene;
-  }
+  Scene with(const std::vector<TargetSettings>& things) const { return bare_.with(things); }
 
   double session_exposure_us(const std::vector<TargetSettings>& targets) const {
     double shortest = 1e9;
@@ -312,49 +194,22 @@ class CaptureWriter {
   }
 
   Result<void> write_scale(const fs::path& folder) {
-    TargetSettings scale;
-    GreyScaleSettings pattern;
-    const double width_mm = 0.8 * scene_.camera.width * scene_.camera.mm_per_pixel;
-    pattern.patch_mm = std::floor(width_mm / static_cast<double>(pattern.reflectances.size()) / 1.1);
-    pattern.gap_mm = 0.1 * pattern.patch_mm;
-    scale.pattern = pattern;
-    scale.centre_mm.z = 1;
+    const TargetSettings scale = bare_.grey_scale();
     const double exposure_us = exposure_for(scene_, rig_, {scale}, {1}, kBright);
     if (Result<void> ok = pair(with({scale}), {1}, exposure_us, folder); !ok) return ok;
-    return write_file(folder / "scale.toml",
-                      fmt::format("reflectances = [{}]\ncorners_px = [{}]\n",
-                                  fmt::join(pattern.reflectances, ", "), corners_px(scale, pattern)));
+    return write_file(folder / "scale.toml", bare_.scale_toml());
   }
 
-  /// The sheet with a hole in its middle that sends nothing back.
-  Result<void> write_trap(const fs::path& folder, std::vector<TargetSettings> things) {
-    TargetSettings trap;
-    const double height_mm = scene_.camera.height * scene_.camera.mm_per_pixel;
-    trap.pattern = GreyScaleSettings{
-        .reflectances = {0}, .patch_mm = kTrapShare * height_mm, .gap_mm = 0, .margin_mm = 0};
-    trap.white = 0;
-    trap.centre_mm.z = 1;
-    const double exposure_us = exposure_for(scene_, rig_, {things.front()}, {1}, kBright);
-    things.insert(things.begin(), std::move(trap));
+  Result<void> write_trap(const fs::path& folder) {
+    const std::vector<TargetSettings> things = bare_.trap();
+    const double exposure_us = exposure_for(scene_, rig_, {things[1]}, {1}, kBright);
     return pair(with(things), {1}, exposure_us, folder);
   }
 
-  /// Of the row of patches, clockwise from the upper left of the first.
-  std::string corners_px(const TargetSettings& scale, const GreyScaleSettings& pattern) const {
-    const auto patches = static_cast<double>(pattern.reflectances.size());
-    const double u = (patches * pattern.patch_mm + (patches - 1) * pattern.gap_mm) / 2,
-                 v = pattern.patch_mm / 2;
-    std::string text;
-    for (const auto& [x, y] : {std::pair{-u, v}, {u, v}, {u, -v}, {-u, -v}}) {
-      const Vec3 p = project(rig_.camera, scale.centre_mm + Vec3{x, y, 0});
-      text += fmt::format("{}[{:.2f}, {:.2f}]", text.empty() ? "" : ", ", p.x, p.y);
-    }
-    return text;
-  }
-
-  Scene scene_;
-  SceneRig rig_;
-  TargetSettings paper_;
+  const BareRig bare_;
+  const Scene& scene_ = bare_.table();
+  const SceneRig& rig_ = bare_.rig();
+  const TargetSettings& paper_ = bare_.paper();
   const CapturesOptions& options_;
   std::vector<Vec3> positions_mm_;
   std::vector<int> all_leds_;
@@ -369,15 +224,11 @@ constexpr std::pair<const char*, Writer> kWriters[] = {
     {"response", &CaptureWriter::write_response}, {"color", &CaptureWriter::write_color},
     {"lights", &CaptureWriter::write_lights},     {"check", &CaptureWriter::write_check}};
 
-bool has_chart(const Scene& scene) {
-  return !scene.spectra.chart.empty() && scene.effects.spectral;
-}
-
-Result<std::vector<std::string>> chosen(const CapturesOptions& options, const Scene& scene) {
+Result<std::vector<std::string>> chosen(const CapturesOptions& options, const BareRig& rig) {
   std::vector<std::string> parts = options.parts;
   if (parts.empty()) {
     parts = capture_parts();
-    if (!has_chart(scene)) std::erase(parts, "color");
+    if (!rig.has_chart()) std::erase(parts, "color");
   }
   for (const std::string& part : parts) {
     const std::vector<std::string>& all = capture_parts();
@@ -385,7 +236,7 @@ Result<std::vector<std::string>> chosen(const CapturesOptions& options, const Sc
       return Error{ErrorKind::kUsage, "there are no such captures", part,
                    fmt::format("there are {}", fmt::join(all, ", ")), "name one of these"};
     }
-    if (part == "color" && !has_chart(scene)) {
+    if (part == "color" && !rig.has_chart()) {
       return Error{ErrorKind::kUsage, "the scene has no colour chart", "color",
                    "it names no spectra.chart or not the effect spectral",
                    "add them to the scene or leave color out"};
@@ -411,13 +262,11 @@ const std::vector<std::string>& capture_parts() {
 
 Result<CapturesReport> simulate_captures(const Scene& given, const fs::path& folder,
                                          const CapturesOptions& options) {
-  Result<Scene> scene = bare_table(given);
-  if (!scene) return scene.error();
-  const Result<SceneRig> rig = rig_of(*scene);
-  if (!rig) return rig.error();
-  const Result<std::vector<std::string>> parts = chosen(options, *scene);
+  Result<BareRig> rig = BareRig::of(given);
+  if (!rig) return std::move(rig).error();
+  const Result<std::vector<std::string>> parts = chosen(options, *rig);
   if (!parts) return parts.error();
-  CaptureWriter writer(*scene, *rig, paper_of(given), options);
+  CaptureWriter writer(std::move(*rig), options);
   if (Result<void> ok = make_writable_folder(folder); !ok) return ok.error();
   for (const std::string& part : *parts) {
     if (is_there(folder / part)) {
