@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "simulator/light/incidence.h"
 #include "simulator/sampling/random.h"
@@ -67,22 +68,11 @@ bool is_in_frame(const CameraModel& camera, const std::vector<Vec3>& points) {
   });
 }
 
-/// Lifts a target until its lowest corner is `above_mm` over the table.
-void rest(TargetSettings& target, double above_mm) {
-  double lowest = 1e9;
-  for (const Vec3 point : points_of(target)) lowest = std::min(lowest, point.z);
-  target.centre_mm.z += above_mm - lowest;
-}
-
 TargetSettings paper_at(const SheetLayout& sheet, const CapturePose& pose, const TargetSettings& paper) {
   TargetSettings target = paper;
   target.pattern = PaperSettings{sheet.width_mm, sheet.height_mm};
   target.centre_mm = {sheet.x_mm, sheet.y_mm, 0};
-  target.tilt_deg = pose.tilt_deg;
-  target.azimuth_deg = pose.azimuth_deg;
-  target.rotation_deg = pose.rotation_deg;
-  rest(target, pose.above_mm);
-  return target;
+  return resting(std::move(target), pose);
 }
 
 SheetLayout layout_of_width(const Scene& scene, double width_mm) {
@@ -104,6 +94,16 @@ SheetLayout layout_of_width(const Scene& scene, double width_mm) {
 
 std::vector<CapturePose> five_poses() {
   return {{}, {20, 0}, {20, 180}, {20, 90}, {20, 270}};
+}
+
+TargetSettings resting(TargetSettings thing, const CapturePose& pose) {
+  thing.tilt_deg = pose.tilt_deg;
+  thing.azimuth_deg = pose.azimuth_deg;
+  thing.rotation_deg = pose.rotation_deg;
+  double lowest = 1e9;
+  for (const Vec3 point : points_of(thing)) lowest = std::min(lowest, point.z);
+  thing.centre_mm.z += pose.above_mm - lowest;
+  return thing;
 }
 
 SheetLayout sheet_layout(const Scene& scene, const CameraModel& camera,
@@ -178,9 +178,8 @@ std::vector<TargetSettings> board_poses(const Scene& scene, const CameraModel& c
         if (tilt < 1) break;
         out = 1, tilt *= 0.8, lift_mm *= 0.5;
       }
-      target.tilt_deg = tilt;
       target.centre_mm = seen_centre(scene) + Vec3{out * x, out * y, 0};
-      rest(target, 1 + lift_mm);
+      target = resting(target, {tilt, target.azimuth_deg, target.rotation_deg, 1 + lift_mm});
       if (is_in_frame(camera, points_of(target))) break;
     }
     target.pattern = board;

@@ -40,6 +40,9 @@ struct CapturePose {
 /// Flat, and 20 degrees about x and about y, both ways.
 std::vector<CapturePose> five_poses();
 
+/// A thing that lies in this pose where its x and y are.
+TargetSettings resting(TargetSettings thing, const CapturePose& pose);
+
 /// The largest sheet of the frame's shape that lies whole in the frame in all of the poses. It has eight
 /// tags: one at each corner and two along each long side, which are seen of a sheet that is turned by 90
 /// degrees.

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* kLock = "lock";
 // What a rig makes and takes away again.
 constexpr const char* kProfile = "camera.toml";
-constexpr std::array kMade = {"rig.toml", kProfile, "calibration", "environment", "home",
+constexpr std::array kMade = {"rig.toml", kProfile, "calibration", "environment", "home",   "things",
                               "board",    "modem",  "control",     "camera.sock", kFullDisk};
 
 constexpr const char* kD80 = R"toml(# A Nikon D80 that takes its pictures to its card.
@@ -49,6 +49,10 @@ autofocus = "Off"
 whitebalance = "Daylight"
 )toml";
 
+/// How well a tape measures, and in which directions it errs.
+constexpr double kTapeError_mm = 10;
+constexpr std::int64_t kTapeSeed = 1;
+
 /// A basic string of TOML.
 std::string quoted(const std::string& text) {
   std::string quoted = "\"";
@@ -63,7 +67,14 @@ bool is_d80(const LightFrames& frames) {
   return frames.scene().camera.body == simulator::Body::kD80;
 }
 
-std::string rig_toml(const LightFrames& frames, const RigFiles& files) {
+std::string leds_toml(const std::vector<Vec3>& taped_mm) {
+  std::string text;
+  for (const Vec3 p : taped_mm)
+    text += fmt::format("\n[[led]]\nposition_mm = [{:.1f}, {:.1f}, {:.1f}]\n", p.x, p.y, p.z);
+  return text;
+}
+
+std::string rig_toml(const LightFrames& frames, const std::string& leds, const RigFiles& files) {
   const simulator::Scene& scene = frames.scene();
   return fmt::format(
       R"(# A virtual rig: what a host is told of it. It ends with the program that made it.
@@ -77,7 +88,7 @@ port = {}
 profile = {}
 port = {}
 serial = {}
-{}{}
+{}{}{}
 [scan]
 calibration = "calibration"
 iso = {}
@@ -89,7 +100,7 @@ sessions = "scans"
 port = 0
 )",
       frames.leds(), quoted(files.board_port), quoted(is_d80(frames) ? kProfile : "nikon-d5100"),
-      quoted(files.camera_port), quoted(files.camera_serial), files.below ? "\n[below]\n" : "",
+      quoted(files.camera_port), quoted(files.camera_serial), leds, files.below ? "\n[below]\n" : "",
       files.polariser ? "\n[polariser]\nstates = [\"crossed\", \"parallel\"]\nsettle_s = 0.1\n" : "",
       scene.camera.iso, scene.camera.f_number, scene.geometry.cloth_height_mm);
 }
@@ -142,11 +153,14 @@ void RigFolder::remove_made() const {
   for (const char* name : kMade) remove(name);
 }
 
-Result<void> RigFolder::write(const LightFrames& frames, const RigFiles& files) const {
-  Calibration exact = exact_calibration(frames.scene(), frames.rig());
-  exact.subject.camera_serial = files.camera_serial;
-  const Result<Calibration> written = write_calibration(path_ / "calibration", std::move(exact));
+Result<void> RigFolder::write(const LightFrames& frames, const simulator::BareRig& rig,
+                              const RigFiles& files) const {
+  const std::vector<Vec3> taped_mm = rig.taped(kTapeError_mm, kTapeSeed);
+  Calibration known = files.is_bare ? rig.start(taped_mm) : exact_calibration(frames.scene(), frames.rig());
+  known.subject.camera_serial = files.camera_serial;
+  const Result<Calibration> written = write_calibration(path_ / "calibration", std::move(known));
   if (!written) return written.error();
+  if (Result<void> ok = write_things(rig); !ok) return ok;
   if (Result<void> ok = make_writable_folder(path_ / "home"); !ok) return ok;
   if (is_d80(frames)) {
     if (Result<void> ok = write_file(path_ / kProfile, kD80); !ok) return ok;
@@ -154,7 +168,19 @@ Result<void> RigFolder::write(const LightFrames& frames, const RigFiles& files) 
   std::string environment;
   for (const std::string& line : files.environment) environment += line + '\n';
   if (Result<void> ok = write_file(path_ / "environment", environment); !ok) return ok;
-  return write_file(path_ / "rig.toml", rig_toml(frames, files));
+  return write_file(path_ / "rig.toml", rig_toml(frames, files.is_bare ? leds_toml(taped_mm) : "", files));
+}
+
+Result<void> RigFolder::write_things(const simulator::BareRig& rig) const {
+  const fs::path things = path_ / "things";
+  if (Result<void> ok = make_writable_folder(things); !ok) return ok;
+  std::vector<std::pair<const char*, std::string>> files = {
+      {"board.toml", rig.board_toml()}, {"sheet.toml", rig.sheet_toml()}, {"scale.toml", rig.scale_toml()}};
+  if (rig.has_chart()) files.emplace_back("chart.toml", rig.chart_toml());
+  for (const auto& [name, text] : files) {
+    if (Result<void> ok = write_file(things / name, text); !ok) return ok;
+  }
+  return {};
 }
 
 }  // namespace weft::virtual_rig

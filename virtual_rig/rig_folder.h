@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "simulator/bare_rig.h"
 #include "virtual_rig/light/light_frames.h"
 
 namespace weft::virtual_rig {
@@ -18,6 +19,7 @@ struct RigFiles {
   std::string camera_serial;
   std::vector<std::string> environment;  ///< "NAME=value"
   bool below = false, polariser = false;
+  bool is_bare = false;  ///< never calibrated: LEDs are where a tape has them
 };
 
 /// Name of the file that VirtualRig keeps of its exposures.
@@ -35,12 +37,13 @@ class RigFolder {
   ~RigFolder();
 
   const std::filesystem::path& path() const { return path_; }
-  /// rig.toml, calibration/, environment, home/ and, where none is built in, the camera's profile.
-  Result<void> write(const LightFrames& frames, const RigFiles& files) const;
+  /// rig.toml, calibration/, environment, home/, things/ and, where none is built in, the camera's profile.
+  Result<void> write(const LightFrames& frames, const simulator::BareRig& rig, const RigFiles& files) const;
 
  private:
   RigFolder(std::filesystem::path path, int lock, bool keep_log)
       : path_(std::move(path)), lock_(lock), keep_log_(keep_log) {}
+  Result<void> write_things(const simulator::BareRig& rig) const;
   void remove(const char* name) const;
   void remove_made() const;
 

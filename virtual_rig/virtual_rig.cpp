@@ -26,6 +26,7 @@
 #include "virtual_rig/light/live_picture.h"
 #include "virtual_rig/ptp/virtual_camera.h"
 #include "virtual_rig/rig_folder.h"
+#include "virtual_rig/table/table.h"
 #include "virtual_rig/terminal/port_name.h"
 
 namespace weft::virtual_rig {
@@ -120,8 +121,10 @@ std::optional<double> pixels_in(const std::string& word) {
 
 class RunningRig : public VirtualRig {
  public:
-  RunningRig(const VirtualRigOptions& options, SceneLight light, RigFolder folder)
+  RunningRig(const VirtualRigOptions& options, Table table, SceneLight light, RigFolder folder)
       : options_(options),
+        table_(std::move(table)),
+        seen_(light.frames.scene()),
         light_(std::make_shared<const SceneLight>(std::move(light))),
         folder_(std::move(folder)) {}
 
@@ -159,13 +162,14 @@ class RunningRig : public VirtualRig {
     if (kind == "end" && words.size() == 1) return end();
     const auto done = [&]() -> Result<void> {
       if (kind == "focus" && words.size() == 2) return change_focus(line, words[1]);
+      if (kind == "table") return change_table({words.begin() + 1, words.end()});
       if (kind == "light") return change_light({words.begin() + 1, words.end()});
       if (kind == "board" && words.size() == 2) return inject_board(line, words[1]);
       if (kind == "disk" && words.size() == 2) return fill_disk(line, words[1]);
       if (kind == "camera" && (words.size() == 2 || words.size() == 3)) return inject_camera(line, words);
       return refusal(line,
                      "a line is board NAME, camera NAME [SHOT], disk full, disk room, focus PIXELS, light "
-                     "..., status or end",
+                     "..., table ..., status or end",
                      "see weft-virtual-rig --help");
     }();
     if (!done) return done.error();
@@ -219,7 +223,8 @@ class RunningRig : public VirtualRig {
     files.environment = environment_;
     files.below = options_.below;
     files.polariser = options_.polariser;
-    return folder_.write(frames(), files);
+    files.is_bare = options_.bare;
+    return folder_.write(frames(), table_.rig(), files);
   }
 
   Result<void> start_control() {
@@ -293,21 +298,38 @@ class RunningRig : public VirtualRig {
     return light_;
   }
 
-  /// What the cache lacks is rendered while the rig goes on as it was.
   Result<void> change_focus(const std::string& line, const std::string& word) {
     const std::optional<double> pixels = pixels_in(word);
     if (!pixels) {
       return refusal(line, fmt::format("the blur is 0 to {:g} pixels across", kMostBlur_px),
                      "give a number, 0 for the sharpest that the lens can be");
     }
-    simulator::Scene scene = frames().scene();
-    scene.effects.defocus = true;
-    scene.camera.blur.defocus_px = *pixels;
-    Result<SceneLight> light = light_of(std::move(scene), options_);
+    const std::lock_guard turn(changing_);
+    blur_px_ = *pixels;
+    return show(seen_);
+  }
+
+  Result<void> change_table(const std::vector<std::string>& words) {
+    Result<simulator::Scene> scene = table_.with(words);
+    if (!scene) return scene.error();
+    scene->camera.body = options_.body;
+    const std::lock_guard turn(changing_);
+    return show(std::move(*scene));
+  }
+
+  /// Has the camera see this, by a lens that is focused as it is. What the cache lacks is rendered while the
+  /// rig goes on as it was.
+  Result<void> show(simulator::Scene scene) {
+    if (blur_px_) {
+      scene.effects.defocus = true;
+      scene.camera.blur.defocus_px = *blur_px_;
+    }
+    Result<SceneLight> light = light_of(scene, options_);
     if (!light) return light.error();
-    auto focused = std::make_shared<const SceneLight>(std::move(*light));
+    seen_ = std::move(scene);
+    auto shown = std::make_shared<const SceneLight>(std::move(*light));
     const std::lock_guard hold(mutex_);
-    light_ = std::move(focused);
+    light_ = std::move(shown);
     return {};
   }
 
@@ -362,7 +384,11 @@ class RunningRig : public VirtualRig {
   }
 
   VirtualRigOptions options_;
-  std::shared_ptr<const SceneLight> light_;  // changed with the focus, under mutex_
+  const Table table_;
+  std::mutex changing_;            // of blur_px_ and seen_: one change at a time
+  std::optional<double> blur_px_;  // as the focus ring was turned; else as the scene has it
+  simulator::Scene seen_;
+  std::shared_ptr<const SceneLight> light_;  // of what is seen, under mutex_
   RigFolder folder_;
   LitLog pins_;
   mutable std::mutex mutex_;  // of faults_ and light_
@@ -385,7 +411,9 @@ Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& o
   Result<SceneLight> light = light_of(scene, options);
   if (!light) return light.error();
   if (Result<void> ok = check_leds(light->frames); !ok) return ok.error();
-  auto rig = std::make_unique<RunningRig>(options, std::move(*light), std::move(*folder));
+  Result<Table> table = Table::of(scene);
+  if (!table) return table.error();
+  auto rig = std::make_unique<RunningRig>(options, std::move(*table), std::move(*light), std::move(*folder));
   if (Result<void> ok = rig->start(); !ok) return ok.error();
   return std::unique_ptr<VirtualRig>(std::move(rig));
 }
@@ -397,6 +425,7 @@ std::vector<std::string> virtual_rig_commands() {
       "focus PIXELS         the focus ring is turned: the picture is blurred by so many raw pixels across"};
   for (const BoardCommand& one : kBoardCommands)
     lines.push_back(fmt::format("board {:<14} {}", one.name, one.does));
+  for (std::string& line : table_words()) lines.push_back(std::move(line));
   for (std::string& line : light_fault_words()) lines.push_back(std::move(line));
   for (const auto& [name, does] : camera_faults()) {
     lines.push_back(fmt::format("camera {:<13} {}", name + " [SHOT]", does));

@@ -27,6 +27,8 @@ struct VirtualRigOptions {
   double clock_offset_s = 0;                    ///< of the camera's clock to this machine's
   bool below = false;      ///< a light below the cloth hangs on the board's output for it
   bool polariser = false;  ///< and films before LEDs and lens, which it turns
+  /// Nobody has calibrated it: its calibration is what a data sheet and a tape say.
+  bool bare = false;
   bool usb = false;        ///< the camera hangs on USB, by the stand-in for libusb; else PTP/IP
   double away_s = 2;       ///< how long what a fault takes away is away
   double late_s = 8;       ///< how late a picture is that comes late
@@ -40,7 +42,8 @@ struct VirtualRigOptions {
 
 /// A rig on a table that is not there: board, camera, and the light between them. In its folder:
 ///   rig.toml       what a host is given (capture/rig.h), its calibration beside it
-///   calibration/   the exact one
+///   calibration/   the exact one, but of a bare rig
+///   things/        what is written about what can lie on its table: board.toml, sheet.toml ...
 ///   environment    NAME=value lines that a host needs to meet the rig
 ///   board, modem   the board's terminal and its modem lines
 ///   camera.sock    the camera on USB
@@ -55,10 +58,11 @@ class VirtualRig {
   static Result<std::unique_ptr<VirtualRig>> start(const VirtualRigOptions& options);
   virtual ~VirtualRig() = default;  ///< ends all of it and removes what it made
 
-  virtual const LightFrames& frames() const = 0;  ///< until the focus is changed
+  virtual const LightFrames& frames() const = 0;                    ///< until the focus is changed
   virtual const std::vector<std::string>& environment() const = 0;  ///< "NAME=value"
   /// What the control socket does with a line: "camera NAME [SHOT]", "board NAME", "light ...", "disk full",
-  /// "disk room", "focus PIXELS", "status", "end". The answer is "ok", the status as JSON, or an error.
+  /// "disk room", "focus PIXELS", "table ...", "status", "end". The answer is "ok", the status as JSON, or an
+  /// error.
   virtual Result<std::string> command(const std::string& line) = 0;
   /// Readable once somebody has said "end".
   virtual int end_descriptor() const = 0;

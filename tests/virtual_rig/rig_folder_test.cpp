@@ -30,8 +30,10 @@ TEST(RigFolder, TellsAHostWhereItsDevicesAre) {
   const Result<LightFrames> frames = LightFrames::open(scene, folder.parent_path() / "cache");
   ASSERT_TRUE(frames) << frames.error().message();
   const RigFolder rig = taken(folder);
+  const Result<simulator::BareRig> bare = simulator::BareRig::of(scene);
+  ASSERT_TRUE(bare) << bare.error().message();
   const Result<void> written =
-      rig.write(*frames, {"/dev/../a \"b\"", "ptpip:127.0.0.1:7:7", "6000042", {"A=1", "B=2"}});
+      rig.write(*frames, *bare, {"/dev/../a \"b\"", "ptpip:127.0.0.1:7:7", "6000042", {"A=1", "B=2"}});
   ASSERT_TRUE(written) << written.error().message();
 
   const std::string toml = read_text(folder / "rig.toml").value();
@@ -46,6 +48,30 @@ TEST(RigFolder, TellsAHostWhereItsDevicesAre) {
   EXPECT_EQ(calibration->subject.camera_serial, "6000042");
   EXPECT_EQ(calibration->subject.camera_model, "D5100");
   EXPECT_EQ(light_count(*calibration->lights), 3u);
+}
+
+TEST(RigFolder, OfABareRigHasATapesLedsAndWhatIsWrittenAboutThings) {
+  const fs::path folder = fresh_folder() / "rig";
+  const simulator::Scene scene = small_scene();
+  const Result<LightFrames> frames = LightFrames::open(scene, folder.parent_path() / "cache");
+  ASSERT_TRUE(frames) << frames.error().message();
+  const RigFolder rig = taken(folder);
+  RigFiles files;
+  files.is_bare = true;
+  const Result<simulator::BareRig> bare = simulator::BareRig::of(scene);
+  ASSERT_TRUE(bare) << bare.error().message();
+  ASSERT_TRUE(rig.write(*frames, *bare, files));
+
+  EXPECT_THAT(read_text(folder / "rig.toml").value(), HasSubstr("[[led]]\nposition_mm = ["));
+  const Result<Calibration> calibration = read_calibration(folder / "calibration");
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  const auto& lights = std::get<NearLights>(*calibration->lights);
+  for (std::size_t k = 0; k < lights.leds.size(); ++k) {
+    const Vec3 off = lights.leds[k].position_mm - frames->rig().leds.leds[k].position_mm;
+    EXPECT_NEAR(length(off), 10, 1e-9) << "LED " << k + 1;
+  }
+  for (const char* name : {"board.toml", "sheet.toml", "scale.toml"})
+    EXPECT_TRUE(is_there(folder / "things" / name)) << name;
 }
 
 TEST(RigFolder, BelongsToOneRigAtATime) {

@@ -68,6 +68,8 @@ void define(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--same-noise", a.rig.same_noise,
                "noise follows from the LEDs that are lit: the same shot taken again is the same picture");
+  app.add_flag("--bare", a.rig.bare,
+               "nobody has calibrated it: LEDs are where a tape has them, the camera is as its data sheet says");
   app.add_flag("--below", a.rig.below, "a light below the cloth hangs on the board");
   app.add_flag("--polariser", a.rig.polariser,
                "films hang before LEDs and lens, which the board turns: crossed they take the gloss away");

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "virtual_rig/table/table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/virtual_rig/small_scene.h"
+
+namespace weft::virtual_rig {
+namespace {
+
+using simulator::TargetSettings;
+using testing::HasSubstr;
+
+Table small_table() {
+  Result<Table> table = Table::of(small_scene());
+  if (!table) throw std::runtime_error(table.error().message());
+  return std::move(*table);
+}
+
+TEST(Table, HasTheClothUntilSomethingElseIsLaidOnIt) {
+  const Table table = small_table();
+  const Result<simulator::Scene> cloth = table.with({"cloth"});
+  ASSERT_TRUE(cloth) << cloth.error().message();
+  EXPECT_EQ(*cloth, small_scene());
+  const Result<simulator::Scene> empty = table.with({"empty"});
+  ASSERT_TRUE(empty) << empty.error().message();
+  EXPECT_FALSE(empty->effects.relief);
+}
+
+TEST(Table, TiltsABoardOnItsLowestCorner) {
+  const Result<simulator::Scene> scene =
+      small_table().with({"board", "tilt=30", "azimuth=90", "x=5", "height=2"});
+  ASSERT_TRUE(scene) << scene.error().message();
+  const TargetSettings& board = scene->targets.front();
+  EXPECT_EQ(kind_of(board.pattern), simulator::TargetKind::kCharuco);
+  EXPECT_EQ(board.tilt_deg, 30);
+  EXPECT_EQ(board.azimuth_deg, 90);
+  EXPECT_EQ(board.centre_mm.x, 5);
+  const auto& squares = std::get<simulator::CharucoSettings>(board.pattern);
+  const double half_mm = squares.squares_y * squares.square_mm / 2 + squares.margin_mm;
+  EXPECT_NEAR(board.centre_mm.z, 3 + 2 + half_mm * 0.5, 1e-9);  // sin 30 degrees
+}
+
+TEST(Table, LaysTheSameSheetOrAnotherOne) {
+  const Table table = small_table();
+  const Result<simulator::Scene> same = table.with({"sheet"}), other = table.with({"sheet", "other=1"});
+  ASSERT_TRUE(same && other);
+  EXPECT_EQ(kind_of(same->targets.front().pattern), simulator::TargetKind::kPaper);
+  EXPECT_EQ(kind_of(other->targets.front().pattern), simulator::TargetKind::kTag);
+}
+
+TEST(Table, RefusesWhatItDoesNotKnowWithWhatItDoes) {
+  struct Case {
+    std::vector<std::string> words;
+    const char* says;
+  };
+  for (const Case& c : {Case{{"stone"}, "ruler"}, Case{{}, "cloth"}, Case{{"board", "tilt=90"}, "0 to 80"},
+                        Case{{"board", "tilt"}, "azimuth=NUMBER"}, Case{{"board", "x=1e9"}, "10000"},
+                        Case{{"trap", "x=1"}, "nothing"}, Case{{"chart"}, "spectra"},
+                        Case{{"cloth", "/nowhere.toml"}, "nowhere"}}) {
+    const Result<simulator::Scene> scene = small_table().with(c.words);
+    ASSERT_FALSE(scene) << testing::PrintToString(c.words);
+    EXPECT_THAT(scene.error().message(), HasSubstr(c.says));
+  }
+}
+
+}  // namespace
+}  // namespace weft::virtual_rig

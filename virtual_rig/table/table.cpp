@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "virtual_rig/table/table.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+namespace weft::virtual_rig {
+namespace {
+
+using simulator::BareRig;
+using simulator::Scene;
+using simulator::TargetSettings;
+
+constexpr double kRulerSquare_mm = 5;
+constexpr int kRulerSquares = 20;
+
+/// A number that may be said of a thing.
+struct Setting {
+  const char* name;
+  double least, most, usual;
+};
+constexpr Setting kTilt = {"tilt", 0, 80, 0}, kAzimuth = {"azimuth", -360, 360, 0},
+                  kTurn = {"turn", -360, 360, 0}, kX = {"x", -10000, 10000, 0}, kY = {"y", -10000, 10000, 0},
+                  kHeight = {"height", 0, 1000, 0}, kColumns = {"columns", 3, 100, 0},
+                  kRows = {"rows", 3, 100, 0}, kReflectance = {"reflectance", 0, 1, 0},
+                  kOther = {"other", 0, 1, 0};
+
+/// What was said of a thing, as "tilt=30".
+class Said {
+ public:
+  static Result<Said> of(const std::vector<std::string>& words, const std::vector<Setting>& settings) {
+    Said said;
+    for (const std::string& word : words) {
+      const std::size_t equals = word.find('=');
+      const std::string name = word.substr(0, equals);
+      const auto setting = std::find_if(settings.begin(), settings.end(),
+                                        [&](const Setting& each) { return each.name == name; });
+      if (setting == settings.end() || equals == std::string::npos) return refused(word, settings);
+      const char* end = word.data() + word.size();
+      double value = 0;
+      const auto [read, wrong] = std::from_chars(word.data() + equals + 1, end, value);
+      if (wrong != std::errc() || read != end || !(value >= setting->least && value <= setting->most)) {
+        return Error{ErrorKind::kUsage, "a thing cannot lie like that", word,
+                     fmt::format("{} is a number from {:g} to {:g}", name, setting->least, setting->most),
+                     "give it another one"};
+      }
+      said.values_.emplace_back(name, value);
+    }
+    return said;
+  }
+
+  double operator()(const Setting& setting) const { return value(setting).value_or(setting.usual); }
+  std::optional<double> value(const Setting& setting) const {
+    for (const auto& [name, value] : values_) {
+      if (name == setting.name) return value;
+    }
+    return {};
+  }
+
+ private:
+  static Error refused(const std::string& word, const std::vector<Setting>& settings) {
+    std::vector<std::string> names;
+    for (const Setting& each : settings) names.push_back(fmt::format("{}=NUMBER", each.name));
+    return {ErrorKind::kUsage, "nobody knows what that is of a thing on the table", word,
+            names.empty() ? std::string("nothing can be said of it")
+                          : fmt::format("it may be {}", fmt::join(names, ", ")),
+            "see weft-virtual-rig --help"};
+  }
+
+  std::vector<std::pair<std::string, double>> values_;
+};
+
+simulator::CapturePose pose_of(const Said& said, double above_mm) {
+  return {.tilt_deg = said(kTilt),
+          .azimuth_deg = said(kAzimuth),
+          .rotation_deg = said(kTurn),
+          .above_mm = above_mm + said(kHeight)};
+}
+
+/// A thing that is tilted, turned and shifted as was said, its lowest corner `above_mm` over the table.
+TargetSettings placed(TargetSettings thing, const Said& said, double above_mm) {
+  thing.centre_mm = {said(kX), said(kY), 0};
+  return simulator::resting(std::move(thing), pose_of(said, above_mm));
+}
+
+std::vector<TargetSettings> board(const BareRig& rig, const Said& said) {
+  TargetSettings board = rig.flat_board();
+  auto& pattern = std::get<simulator::CharucoSettings>(board.pattern);
+  pattern.squares_x = static_cast<int>(said.value(kColumns).value_or(pattern.squares_x));
+  pattern.squares_y = static_cast<int>(said.value(kRows).value_or(pattern.squares_y));
+  return {placed(board, said, board.centre_mm.z)};
+}
+
+std::vector<TargetSettings> sheet(const BareRig& rig, const Said& said) {
+  TargetSettings paper = rig.paper();
+  paper.white = said.value(kReflectance).value_or(paper.white);
+  simulator::SheetLayout layout = rig.sheet();
+  layout.x_mm += said(kX), layout.y_mm += said(kY);
+  return simulator::laid(layout, pose_of(said, simulator::CapturePose().above_mm), paper, said(kOther) == 0);
+}
+
+std::vector<TargetSettings> chart(const BareRig& rig, const Said& said) {
+  return {placed(rig.chart(), said, rig.chart().centre_mm.z)};
+}
+
+std::vector<TargetSettings> scale(const BareRig& rig, const Said& said) {
+  return {placed(rig.grey_scale(), said, rig.grey_scale().centre_mm.z)};
+}
+
+std::vector<TargetSettings> trap(const BareRig& rig, const Said&) {
+  return rig.trap();
+}
+
+std::vector<TargetSettings> ruler(const BareRig&, const Said& said) {
+  TargetSettings ruler;
+  ruler.pattern = simulator::CheckerboardSettings{
+      .squares_x = kRulerSquares, .squares_y = 2, .square_mm = kRulerSquare_mm, .margin_mm = 1};
+  return {placed(ruler, said, 1)};
+}
+
+std::vector<TargetSettings> nothing(const BareRig&, const Said&) {
+  return {};
+}
+
+struct Thing {
+  const char* name;
+  std::vector<Setting> settings;
+  std::vector<TargetSettings> (*laid)(const BareRig& rig, const Said& said);
+  std::string does;
+};
+
+const std::vector<Thing>& things() {
+  const std::vector<Setting> anyhow = {kTilt, kAzimuth, kTurn, kX, kY, kHeight};
+  const auto and_more = [&](const std::vector<Setting>& more) {
+    std::vector<Setting> all = anyhow;
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  };
+  static const std::vector<Thing> kThings = {
+      {"board", and_more({kColumns, kRows}), board,
+       "the ChArUco board of things/board.toml, or one of so many columns= and rows="},
+      {"sheet", and_more({kReflectance, kOther}), sheet,
+       "the white sheet of things/sheet.toml, other=1: another one alike, or of another reflectance="},
+      {"scale", anyhow, scale, "the grey scale of things/scale.toml"},
+      {"chart", anyhow, chart, "the colour chart of things/chart.toml, where the scene has spectra"},
+      {"trap", {}, trap, "a sheet with a black trap in its middle"},
+      {"ruler", anyhow, ruler,
+       fmt::format("{} squares of {:g} mm in two rows", kRulerSquares, kRulerSquare_mm)},
+      {"empty", {}, nothing, "nothing but the table's own tags and patches"},
+  };
+  return kThings;
+}
+
+/// The rig of one scene under the cloth of another.
+Scene with_cloth_of(const Scene& other, Scene scene) {
+  scene.fabric = other.fabric;
+  scene.geometry = other.geometry;
+  scene.material = other.material;
+  simulator::EffectSettings& on = scene.effects;
+  on.relief = other.effects.relief;
+  on.cast_shadows = other.effects.cast_shadows;
+  on.interreflection = other.effects.interreflection;
+  on.translucency = other.effects.translucency;
+  on.reflectance = other.effects.reflectance;
+  return scene;
+}
+
+Error no_such_thing(const std::string& word) {
+  std::vector<std::string> names = {"cloth [SCENE]"};
+  for (const Thing& each : things()) names.emplace_back(each.name);
+  return {ErrorKind::kUsage, "no such thing", word,
+          fmt::format("on the table can lie {}", fmt::join(names, ", ")), "choose one of these"};
+}
+
+}  // namespace
+
+Result<Table> Table::of(const Scene& scene) {
+  Result<BareRig> bare = BareRig::of(scene);
+  if (!bare) return std::move(bare).error();
+  return Table(scene, std::move(*bare));
+}
+
+Result<Scene> Table::with(const std::vector<std::string>& words) const {
+  if (words.empty()) return no_such_thing("table");
+  const std::vector<std::string> of_it(words.begin() + 1, words.end());
+  if (words[0] == "cloth" && of_it.size() <= 1) {
+    if (of_it.empty()) return scene_;
+    const Result<Scene> other = simulator::read_scene(of_it[0]);
+    if (!other) return other.error();
+    return with_cloth_of(*other, scene_);
+  }
+  const auto thing = std::find_if(things().begin(), things().end(),
+                                  [&](const Thing& each) { return words[0] == each.name; });
+  if (thing == things().end()) return no_such_thing(words[0]);
+  if (words[0] == "chart" && !bare_.has_chart()) {
+    return Error{ErrorKind::kUsage, "this rig has no colour chart", "table chart",
+                 "its scene names no spectra.chart, or not the effect spectral",
+                 "start a rig of testdata/scenes/rig.toml"};
+  }
+  const Result<Said> said = Said::of(of_it, thing->settings);
+  if (!said) return said.error();
+  return bare_.with(thing->laid(bare_, *said));
+}
+
+std::vector<std::string> table_words() {
+  std::vector<std::string> lines = {
+      "table cloth [SCENE]  the cloth of the rig's scene, or of another scene file, lies on the table"};
+  for (const Thing& each : things())
+    lines.push_back(fmt::format("table {:<14} on it lies {}", each.name, each.does));
+  lines.emplace_back(
+      "                     board, sheet, scale, chart and ruler lie as tilt=, azimuth= (of the tilt),\n"
+      "                       turn= (degrees), x=, y= (of the centre) and height= (above the table, mm) say");
+  return lines;
+}
+
+}  // namespace weft::virtual_rig
