@@ -29,7 +29,7 @@ struct Apart {
 };
 
 // Scale and, if it was fitted, cubic term.
-struct Terms {
+struct LateralTerms {
   Eigen::Vector2d value = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
 
@@ -59,14 +59,14 @@ std::vector<Apart> apart(std::span<const BoardEdge> edges, const CameraModel& ca
 }
 
 // By the first `count` terms.
-Terms fit_terms(const std::vector<Apart>& edges, int count) {
+LateralTerms fit_terms(const std::vector<Apart>& edges, int count) {
   Eigen::Matrix2d normal = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
   for (const Apart& edge : edges) {
     normal += edge.terms_px * edge.terms_px.transpose();
     right += edge.by_px * edge.terms_px;
   }
-  Terms terms;
+  LateralTerms terms;
   terms.count = count;
   const auto solver = normal.topLeftCorner(count, count).ldlt();
   terms.value.head(count) = solver.solve(right.head(count));
@@ -79,7 +79,7 @@ Terms fit_terms(const std::vector<Apart>& edges, int count) {
 
 // Without the edges that are unlike the others.
 std::vector<Apart> alike(std::vector<Apart> edges) {
-  const Terms terms = fit_terms(edges, 2);
+  const LateralTerms terms = fit_terms(edges, 2);
   const auto off_px = [&](const Apart& edge) {
     return std::abs(edge.by_px - edge.terms_px.dot(terms.value));
   };
@@ -109,7 +109,7 @@ std::optional<LateralFit> fit_lateral_color(std::span<const BoardEdge> edges, co
     std::vector<Apart> all = apart(edges, camera, 2 * i);
     if (all.size() < kLeastShared) return {};
     all = alike(std::move(all));
-    Terms terms = fit_terms(all, 2);
+    LateralTerms terms = fit_terms(all, 2);
     if (std::abs(terms.value[1]) < kLeastSigmas * terms.sigma(1)) terms = fit_terms(all, 1);
     const Eigen::Vector2d of_corner = {shift_at_corner({.scale = 1}, camera),
                                        shift_at_corner({.cubic = 1}, camera)};

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/camera/guidance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "bench/oracles/board_views.h"
+
+namespace weft::test {
+namespace {
+
+using calibration::Board;
+using calibration::BoardGuidance;
+using calibration::BoardPose;
+using calibration::BoardView;
+using calibration::guide_board;
+using calibration::Pose;
+
+constexpr double kNoise_px = 0.1;
+
+/// A person who does what is asked, a little differently each time.
+struct Operator {
+  BoardRig rig;
+  Board board;
+  CameraModel start;
+  std::mt19937 random{5};
+  std::vector<BoardView> views;
+
+  Operator() {
+    board.squares_x = 18, board.squares_y = 12, board.square_mm = 9;
+    start = overhead_camera(rig.camera.size, 610, 0.083);
+    photograph({Pose().rotation, {0, 0, rig.thickness_mm}});
+  }
+  BoardGuidance asks() const { return guide_board(board, rig.thickness_mm, start, views, 0); }
+  /// Corners are 0.1 pixel off.
+  void photograph(const Pose& rig_from_board) {
+    views.push_back(views_of(rig, {rig_from_board}, kNoise_px, static_cast<int>(random() % 1000)).front());
+  }
+  void takes(BoardPose pose) {
+    std::normal_distribution<double> degrees(0, 2), mm(0, 3);
+    pose.tilt_deg = std::max(0.0, pose.tilt_deg + degrees(random));
+    pose.azimuth_deg += degrees(random);
+    pose.x_mm += mm(random), pose.y_mm += mm(random);
+    photograph(board_pose(board, rig.camera, pose).rig_from_board);
+  }
+};
+
+TEST(GuideBoard, AsksForTheTableFirst) {
+  const Operator person;
+  const BoardGuidance first = guide_board(person.board, 2, person.start, {}, {});
+  EXPECT_FALSE(first.next);
+  EXPECT_FALSE(first.is_done);
+  EXPECT_GT(first.now.focal_percent, 1) << "a data sheet and one flat board tell a focal length";
+}
+
+TEST(GuideBoard, KnowsTheCameraAfterSixPhotographs) {
+  Operator person;
+  for (int i = 0; i < 5; ++i) {
+    const BoardGuidance guidance = person.asks();
+    ASSERT_TRUE(guidance.next) << i;
+    EXPECT_LT(guidance.then.place_mm, guidance.now.place_mm);
+    person.takes(*guidance.next);
+  }
+  const BoardGuidance guidance = person.asks();
+  EXPECT_LE(guidance.now.focal_percent, 0.02);
+  EXPECT_LE(guidance.now.place_mm, 0.02);
+  EXPECT_NEAR(guidance.camera.fx / person.rig.camera.fx, 1, 0.0008);
+}
+
+/// A pose up to 40 degrees from level at any place where the board is whole in the frame.
+BoardPose anyhow(Operator& person) {
+  std::uniform_real_distribution<double> part(0, 1);
+  const Size size = person.rig.camera.size;
+  while (true) {
+    BoardPose pose;
+    pose.tilt_deg = 40 * part(person.random), pose.azimuth_deg = 360 * part(person.random);
+    pose.x_mm = 100 * (part(person.random) - 0.5), pose.y_mm = 70 * (part(person.random) - 0.5);
+    pose.height_mm = 60 * part(person.random);
+    pose = board_pose(person.board, person.rig.camera, pose);
+    if (std::all_of(pose.outline_px.begin(), pose.outline_px.end(), [&](const calibration::PixelPoint& p) {
+          return p.x > 30 && p.y > 30 && p.x < size.width - 30 && p.y < size.height - 30;
+        }))
+      return pose;
+  }
+}
+
+TEST(GuideBoard, TellsAsMuchByFivePhotographsAsFifteenTakenAnyhow) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    Operator guided, unguided;
+    unguided.random.seed(seed);
+    for (int i = 0; i < 5; ++i) guided.takes(*guided.asks().next);
+    for (int i = 0; i < 15; ++i) unguided.photograph(anyhow(unguided).rig_from_board);
+    EXPECT_LE(guided.asks().now.focal_percent, unguided.asks().now.focal_percent) << "seed " << seed;
+  }
+}
+
+TEST(GuideBoard, IsNeverDoneByFlatBoards) {
+  Operator person;
+  for (int i = 0; i < 12; ++i) {
+    BoardPose flat;
+    flat.x_mm = 10.0 * (i % 4) - 15, flat.y_mm = 10.0 * (i / 4) - 10;
+    person.photograph(board_pose(person.board, person.rig.camera, flat).rig_from_board);
+  }
+  const BoardGuidance guidance = person.asks();
+  EXPECT_FALSE(guidance.is_done);
+  EXPECT_GT(guidance.now.focal_percent, 1);
+  ASSERT_TRUE(guidance.next);
+  EXPECT_GE(guidance.next->tilt_deg, 30);
+}
+
+TEST(GuideBoard, IsDoneOnceTheWholeFrameWasSeen) {
+  Operator person;
+  int taken = 1;
+  for (BoardGuidance guidance = person.asks(); guidance.next && taken < 30; guidance = person.asks(), ++taken)
+    person.takes(*guidance.next);
+  const BoardGuidance guidance = person.asks();
+  EXPECT_TRUE(guidance.is_done);
+  EXPECT_LE(taken, 12);
+  EXPECT_GE(guidance.parts_seen, 44) << "of 48";
+}
+
+TEST(GuideBoard, TellsThePhotographOfBefore) {
+  Operator person;
+  const BoardPose pose = *person.asks().next;
+  person.photograph(pose.rig_from_board);
+  person.photograph(pose.rig_from_board);
+  const std::vector<double> alike = person.asks().alike;
+  EXPECT_LT(alike[1], 0.5);
+  EXPECT_GT(alike[2], 0.9);
+}
+
+}  // namespace
+}  // namespace weft::test
