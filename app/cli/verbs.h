@@ -20,6 +20,7 @@ Verb serve_verb();
 Verb scan_verb();
 Verb rig_verb();
 Verb focus_verb();
+Verb capture_verb();
 Verb doctor_verb();
 Verb copy_verb();
 Verb library_verb();

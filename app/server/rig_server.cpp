@@ -43,7 +43,8 @@ struct RigServer::State {
         controls([this](const std::string& name) { tell_controls(name); }),
         attendance(rig, std::move(open), lock.folder() / "test-shots",
                    {[this] { keeper.tell_status(); }, [this](const TestShot& shot) { tell_shot(shot); }}),
-        keeper(rig, attendance, std::move(run), events, log, pictures) {
+        keeper(rig, attendance, std::move(run), events, log, pictures),
+        sets(rig, keeper, events) {
     keeper.on_controls([this] { return controls.holder(); });
   }
 
@@ -89,7 +90,7 @@ struct RigServer::State {
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
     if (previews) keeper.on_scanned([this](const capture::ScanRequest& request) { solve_preview(request); });
     parts.emplace(
-        RigParts{rig, lock.folder(), keeper, pictures, attendance, controls, *jobs, *library, guard});
+        RigParts{rig, lock.folder(), keeper, pictures, attendance, sets, controls, *jobs, *library, guard});
     return {};
   }
 
@@ -103,6 +104,7 @@ struct RigServer::State {
   Controls controls;
   Attendance attendance;
   RigKeeper keeper;
+  SetKeeper sets;
   std::optional<RigParts> parts;
   GuardRules guard;
   std::string address;

@@ -194,13 +194,10 @@ bool is_met(const LensForecast& forecast, const GuidanceOptions& options) {
   return forecast.focal_percent <= options.asked_focal_percent && forecast.place_mm <= options.asked_place_mm;
 }
 
-/// By how far both are from what is asked.
-bool is_better(const LensForecast& a, const LensForecast& b, const GuidanceOptions& options) {
-  const auto missing = [&](const LensForecast& forecast) {
-    return std::hypot(forecast.focal_percent / options.asked_focal_percent,
-                      forecast.place_mm / options.asked_place_mm);
-  };
-  return missing(a) < missing(b);
+/// How far both are from what is asked.
+double missing(const LensForecast& forecast, const GuidanceOptions& options) {
+  return std::hypot(forecast.focal_percent / options.asked_focal_percent,
+                    forecast.place_mm / options.asked_place_mm);
 }
 
 /// 1 where two poses are the same, 0 from a tenth of the distance or 10 degrees apart.
@@ -216,6 +213,81 @@ double rms_of(const std::vector<PixelPoint>& residuals) {
   double sum = 0;
   for (const PixelPoint& r : residuals) sum += r.x * r.x + r.y * r.y;
   return std::sqrt(sum / std::max<double>(1, static_cast<double>(residuals.size())));
+}
+
+/// The camera as far as it is known, above the board on the table or where `start` has it.
+CameraModel standing_over_the_table(const Bundle& bundle, const CameraModel& start,
+                                    std::optional<std::size_t> table, double thickness_mm) {
+  CameraModel camera = bundle.camera;
+  stand_at(camera, table ? bundle.camera_from_board[*table] * Pose{Pose().rotation, {0, 0, -thickness_mm}}
+                         : pose_of_camera(start));
+  return camera;
+}
+
+/// Residuals of the views, and how much each is like one before it.
+void compare_views(std::span<const BoardView> views, const Bundle& bundle, BoardGuidance& guidance) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const Pose& pose = bundle.camera_from_board[i];
+    guidance.residuals_px.push_back(rms_of(residuals_of(views[i], bundle.camera, pose, 0)));
+    double most = 0;
+    for (std::size_t before = 0; before < i; ++before)
+      most = std::max(most, likeness(pose, bundle.camera_from_board[before]));
+    guidance.alike.push_back(most);
+  }
+}
+
+/// What the residuals show; few of them are of the camera's errors too.
+double corner_sigma(const std::vector<double>& residuals_px, const GuidanceOptions& options) {
+  if (residuals_px.size() < kToFit) return options.corner_sigma_px;
+  return std::clamp(median(residuals_px) / std::numbers::sqrt2, options.least_corner_sigma_px,
+                    options.corner_sigma_px);
+}
+
+/// Candidates that nobody photographed yet.
+std::vector<BoardPose> new_poses(const Board& board, const Bundle& bundle, const CameraModel& camera,
+                                 const GuidanceOptions& options) {
+  std::vector<BoardPose> poses = candidates(board, camera, options);
+  std::erase_if(poses, [&](const BoardPose& pose) {
+    const Pose here = pose_of_camera(camera) * pose.rig_from_board;
+    return std::ranges::any_of(bundle.camera_from_board, [&](const Pose& before) {
+      return likeness(here, before) > options.most_alike;
+    });
+  });
+  return poses;
+}
+
+/// The pose after which most is known, if it adds enough.
+void choose_by_information(const Board& board, const std::vector<BoardPose>& poses, const Matrix& information,
+                           const Forecaster& forecast, const GuidanceOptions& options,
+                           BoardGuidance& guidance) {
+  const Pose camera_from_rig = pose_of_camera(guidance.camera);
+  std::optional<BoardPose> best;
+  LensForecast then = guidance.now;
+  for (const BoardPose& pose : poses) {
+    const BoardView some = view_of(board, guidance.camera, pose.rig_from_board, kEachOf);
+    const double scale = static_cast<double>(board.corners()) / static_cast<double>(some.corners.size());
+    const LensForecast with_it = forecast(
+        information + scale * information_of(some, guidance.camera, camera_from_rig * pose.rig_from_board));
+    if (missing(with_it, options) >= missing(then, options)) continue;
+    best = pose;
+    then = with_it;
+  }
+  if (!best || missing(then, options) > (1 - options.worth) * missing(guidance.now, options)) return;
+  guidance.next = best;
+  guidance.then = then;
+}
+
+/// The pose that shows most parts of the frame in which nothing was seen.
+void choose_by_coverage(const Board& board, const std::vector<BoardPose>& poses,
+                        const GuidanceOptions& options, BoardGuidance& guidance) {
+  int most = 0;
+  for (const BoardPose& pose : poses) {
+    const BoardView all = view_of(board, guidance.camera, pose.rig_from_board, 1);
+    const int parts = new_parts(all, guidance.corners, guidance.camera.size, options);
+    if (parts <= most) continue;
+    most = parts;
+    guidance.next = pose;
+  }
 }
 
 }  // namespace
@@ -243,53 +315,30 @@ BoardGuidance guide_board(const Board& board, double thickness_mm, const CameraM
                           const GuidanceOptions& options) {
   const Bundle bundle = known_so_far(start, views);
   BoardGuidance guidance;
-  guidance.camera = bundle.camera;
-  stand_at(guidance.camera, pose_of_camera(start));
-  if (table) {
-    stand_at(guidance.camera,
-             bundle.camera_from_board[*table] * Pose{Pose().rotation, {0, 0, -thickness_mm}});
-  }
-  const CameraModel& camera = guidance.camera;
-  const Pose camera_from_rig = pose_of_camera(camera);
-
-  Matrix information = prior_information(camera, options.corner_sigma_px);
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    information += information_of(views[i], camera, bundle.camera_from_board[i]);
-    guidance.residuals_px.push_back(rms_of(residuals_of(views[i], camera, bundle.camera_from_board[i], 0)));
-    double most = 0;
-    for (std::size_t before = 0; before < i; ++before)
-      most = std::max(most, likeness(bundle.camera_from_board[i], bundle.camera_from_board[before]));
-    guidance.alike.push_back(most);
-  }
-  const Pose flat = {Pose().rotation, {0, 0, thickness_mm}};
-  const BoardView on_table = table ? views[*table] : view_of(board, camera, flat, 1);
-  if (!table) information += information_of(on_table, camera, camera_from_rig * flat);
-  const Forecaster forecast(camera,
-                            normal_equations({&on_table}, camera_parameters(kDistortion),
-                                             {camera, {camera_from_rig}, {thickness_mm}}),
-                            options.corner_sigma_px);
-
-  guidance.now = guidance.then = forecast(information);
-  guidance.corners = corner_counts(views, camera.size, options.columns, options.rows);
+  guidance.camera = standing_over_the_table(bundle, start, table, thickness_mm);
+  compare_views(views, bundle, guidance);
+  guidance.corners = corner_counts(views, guidance.camera.size, options.columns, options.rows);
   guidance.parts_seen = parts_with(guidance.corners);
+
+  const double sigma_px = corner_sigma(guidance.residuals_px, options);
+  const Pose camera_from_rig = pose_of_camera(guidance.camera);
+  const Pose flat = {Pose().rotation, {0, 0, thickness_mm}};
+  const BoardView on_table = table ? views[*table] : view_of(board, guidance.camera, flat, 1);
+  Matrix information = prior_information(guidance.camera, sigma_px);
+  for (std::size_t i = 0; i < views.size(); ++i)
+    information += information_of(views[i], guidance.camera, bundle.camera_from_board[i]);
+  if (!table) information += information_of(on_table, guidance.camera, camera_from_rig * flat);
+  const Forecaster forecast(guidance.camera,
+                            normal_equations({&on_table}, camera_parameters(kDistortion),
+                                             {guidance.camera, {camera_from_rig}, {thickness_mm}}),
+                            sigma_px);
+  guidance.now = guidance.then = forecast(information);
   if (!table) return guidance;
 
   const bool is_known = is_met(guidance.now, options);
-  int most_parts = is_known ? 1 : 0;
-  for (const BoardPose& pose : candidates(board, camera, options)) {
-    const int parts = is_known ? new_parts(view_of(board, camera, pose.rig_from_board, 1), guidance.corners,
-                                           camera.size, options)
-                               : 0;
-    if (parts < most_parts) continue;
-    const BoardView some = view_of(board, camera, pose.rig_from_board, kEachOf);
-    const double scale = static_cast<double>(board.corners()) / static_cast<double>(some.corners.size());
-    const LensForecast then =
-        forecast(information + scale * information_of(some, camera, camera_from_rig * pose.rig_from_board));
-    if (parts == most_parts && guidance.next && !is_better(then, guidance.then, options)) continue;
-    most_parts = parts;
-    guidance.next = pose;
-    guidance.then = then;
-  }
+  const std::vector<BoardPose> poses = new_poses(board, bundle, guidance.camera, options);
+  if (!is_known) choose_by_information(board, poses, information, forecast, options, guidance);
+  if (!guidance.next) choose_by_coverage(board, poses, options, guidance);
   guidance.is_done = is_known && !guidance.next;
   return guidance;
 }

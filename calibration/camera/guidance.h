@@ -17,12 +17,16 @@
 namespace weft::calibration {
 
 struct GuidanceOptions {
-  double corner_sigma_px = 0.1;       ///< noise of a corner along x and along y
+  /// Noise of a corner along x and along y, until three views show how much it is; and the least that they
+  /// may show.
+  double corner_sigma_px = 0.1, least_corner_sigma_px = 0.02;
   double asked_focal_percent = 0.02;  ///< sigma of the focal length
   double asked_place_mm = 0.02;       ///< sigma of a pixel's place on the table, rms over the frame
   int columns = 8, rows = 6;          ///< parts of the frame in each of which a corner was seen once
   double most_tilt_deg = 40;
-  double lift_mm = 60;  ///< boards are also held this high
+  double lift_mm = 60;      ///< boards are also held this high
+  double worth = 0.06;      ///< a photograph that lowers what is predicted by a smaller share adds little
+  double most_alike = 0.75;  ///< of a pose with those that were photographed
 };
 
 /// What the photographs that there are let a calibration know, to first order.
@@ -49,8 +53,8 @@ struct BoardGuidance {
   std::vector<int> corners;  ///< by part of the frame, row by row
   int parts_seen = 0;        ///< that have a corner
   bool is_done = false;      ///< what is asked is met, and every part has been seen that a board can reach
-  /// The photograph to take next; none where all is done, or where first the board is to lie flat on the
-  /// table.
+  /// The photograph to take next. None where first the board is to lie flat on the table, where all is done,
+  /// and where none adds much: then what is asked is more than this board and this camera give.
   std::optional<BoardPose> next;
   LensForecast then;                 ///< with that one
   std::vector<double> residuals_px;  ///< rms of each view by this camera
@@ -59,10 +63,11 @@ struct BoardGuidance {
 
 /// Of the poses in which the whole board is in the frame (5 x 5 places; level and tilted by 15 degrees, 30
 /// and options.most_tilt_deg to eight sides; on the table and lifted), the one after which focal length
-/// and a pixel's place on the table are predicted nearest to what is asked; once what is asked is met, the
-/// one that shows most parts of the frame in which no corner was seen. The information of a photograph is the
-/// Fisher information of its corners on focal lengths, principal point, k1, k2, p1 and p2 after its own pose
-/// has followed (a Schur complement), on top of what a data sheet tells: 5 percent, a twentieth of the frame.
+/// and a pixel's place on the table are predicted nearest to what is asked; once what is asked is met, or
+/// none adds much to it, the one that shows most parts of the frame in which no corner was seen. The
+/// information of a photograph is the Fisher information of its corners on focal lengths, principal point,
+/// k1, k2, p1 and p2 after its own pose has followed (a Schur complement), on top of what a data sheet tells:
+/// 5 percent, a twentieth of the frame.
 ///
 /// `start` is the camera as it was known before, from which poses of single views are found; it is refined
 /// where three views or more allow it. `table` is the view in which the board lies on the table,

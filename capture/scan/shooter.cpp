@@ -2,7 +2,6 @@
 #include "capture/scan/shooter.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -159,9 +158,8 @@ Result<void> Shooter::let_cool(int led, double cools_s) {
   return {};
 }
 
-Result<steady_clock::time_point> Shooter::light(int led, std::chrono::duration<double> most_lit) {
-  const std::array<int, 1> one = {led};
-  const auto leds = led == 0 ? std::span<const int>() : std::span<const int>(one);
+Result<steady_clock::time_point> Shooter::light(const std::vector<int>& leds,
+                                                std::chrono::duration<double> most_lit) {
   for (;;) {  // ends: a LED that is dark cools
     if (is_cancelled()) return cancelled("scan");
     const auto asked = steady_clock::now();
@@ -171,7 +169,7 @@ Result<steady_clock::time_point> Shooter::light(int led, std::chrono::duration<d
       return cools_s.error();
     }
     if (*cools_s <= 0) return std::chrono::time_point_cast<steady_clock::duration>(asked + most_lit);
-    if (Result<void> cool = let_cool(led, *cools_s); !cool) return cool.error();
+    if (Result<void> cool = let_cool(leds.front(), *cools_s); !cool) return cool.error();
   }
 }
 
@@ -208,7 +206,10 @@ Result<Photograph> Shooter::take_once(const ShotLight& wanted, const ExposureSet
   if (Result<void> stands = turn(wanted.polariser); !stands) return stands.error();
   const int led = wanted.role == ShotRole::kBelow ? lamps_.leds() + 1 : wanted.led;
   const std::chrono::duration<double> most_lit(options_.lamp_margin_s + exposure.exposure_us * 1e-6);
-  const auto goes_out = light(led, most_lit);
+  std::vector<int> leds;
+  if (led != 0) leds.push_back(led);
+  if (wanted.second != 0) leds.push_back(wanted.second);
+  const auto goes_out = light(leds, most_lit);
   if (!goes_out) return goes_out.error();
   Result<void> off;
   bool is_exposed = false;

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "capture/devices.h"
 #include "capture/scan/frame_check.h"
@@ -36,6 +37,7 @@ struct ShotLight {
   int led = 0;                     ///< from 1; 0: none
   ShotRole role = ShotRole::kLit;  ///< kBelow: the light below
   Polariser polariser = Polariser::kNone;
+  int second = 0;  ///< a LED that is lit together with `led`; 0: none
 };
 
 /// Takes single photographs and gets over what devices do: LEDs are off whenever no shutter is open, every
@@ -70,8 +72,9 @@ class Shooter {
                                const std::filesystem::path& file, bool is_metering);
   /// Where the board turns the film: turns it, unless it stands so.
   Result<void> turn(Polariser state);
-  /// Lights a LED (0: none) as soon as it is cool. When it goes out at the earliest.
-  Result<std::chrono::steady_clock::time_point> light(int led, std::chrono::duration<double> most_lit);
+  /// Lights LEDs as soon as they are cool. When they go out at the earliest.
+  Result<std::chrono::steady_clock::time_point> light(const std::vector<int>& leds,
+                                                      std::chrono::duration<double> most_lit);
   Result<void> let_cool(int led, double cools_s);
   Result<void> wait_while_paused();
   /// Whether devices answer again after `error`; else the error that ends the scan.

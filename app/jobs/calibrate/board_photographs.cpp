@@ -165,20 +165,29 @@ void leave_out_the_softest(std::vector<BoardPhotograph>& photographs) {
   }
 }
 
+BoardPhotograph headed(const fs::path& file) {
+  BoardPhotograph photograph;
+  photograph.name = file.filename().string();
+  photograph.of_table = photograph.name.starts_with("table");
+  read_header(file, photograph);
+  return photograph;
+}
+
 }  // namespace
+
+Result<BoardPhotograph> read_board_photograph(const fs::path& file, const BoardFolderOptions& options) {
+  BoardPhotograph photograph = headed(file);
+  if (!photograph.left_out.empty()) return photograph;
+  if (Result<void> looked = look_at(file, options, photograph); !looked) return looked.error();
+  return photograph;
+}
 
 Result<BoardPhotographs> read_board_photographs(const BoardFolderOptions& options,
                                                 const JobContext& context) {
   const Result<std::vector<fs::path>> files = photographs_in(options.folder);
   if (!files) return files.error();
   BoardPhotographs all;
-  for (const fs::path& file : *files) {
-    BoardPhotograph photograph;
-    photograph.name = file.filename().string();
-    photograph.of_table = photograph.name.starts_with("table");
-    read_header(file, photograph);
-    all.photographs.push_back(std::move(photograph));
-  }
+  for (const fs::path& file : *files) all.photographs.push_back(headed(file));
   keep_one_camera(options, all);
   const Result<void> read = for_each_frame(files->size(), context, [&](std::size_t i) -> Result<void> {
     if (!all.photographs[i].left_out.empty()) return {};

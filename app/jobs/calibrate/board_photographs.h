@@ -65,6 +65,10 @@ struct BoardFolderOptions {
   std::optional<Size> size = {};  ///< of its frames; without it that of most photographs
 };
 
+/// Looks at one photograph by itself. Errors: those of find_tags().
+Result<BoardPhotograph> read_board_photograph(const std::filesystem::path& file,
+                                              const BoardFolderOptions& options);
+
 /// Looks at every photograph of a folder (all files but hidden ones and .toml, .json, .txt, .md), several at
 /// once: memory holds one a thread, 8 bytes a photosite of a raw one and 17 a pixel of a developed one.
 /// Photographs that cannot be read, are of another camera, size, aperture or focal length, or show no board

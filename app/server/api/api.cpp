@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/server/api/descriptions.h"
+#include "app/server/api/scan_body.h"
 #include "core/files.h"
 
 namespace weft::app {
@@ -24,7 +25,8 @@ Json whole_description(const std::vector<Resource>& resources) {
 bool is_of_devices(const Route& route) {
   const std::string_view path = std::string_view(route.path).substr(std::string_view("/api/v1/").size());
   return route.method != std::string_view("GET") &&
-         (path.starts_with("rig/") || path.starts_with("scan") || path.ends_with("/again"));
+         (path.starts_with("rig/") || path.starts_with("scan") || path.starts_with("calibrations/") ||
+          path.ends_with("/again"));
 }
 
 Result<Reply> refuse_for_want_of_a_rig(const Call&) {
@@ -34,11 +36,19 @@ Result<Reply> refuse_for_want_of_a_rig(const Call&) {
 
 }  // namespace
 
+Result<Json> command_in(const RigParts& parts, const Call& call) {
+  Result<Json> body = parse_body(call.body);
+  if (!body) return body;
+  if (const Result<std::string> by = parts.controls.commander(call.control); !by) return by.error();
+  return body;
+}
+
 std::vector<Route> api_routes(const RigParts& parts) {
   std::vector<Resource> resources = {
-      server_resource(parts),   login_resource(parts),   rig_resource(parts),    scan_resource(parts),
-      sessions_resource(parts), frames_resource(parts),  jobs_resource(parts),   library_resource(parts),
-      events_resource(parts),   control_resource(parts), devices_resource(parts)};
+      server_resource(parts),  login_resource(parts),    rig_resource(parts),
+      scan_resource(parts),    sessions_resource(parts), frames_resource(parts),
+      jobs_resource(parts),    library_resource(parts),  events_resource(parts),
+      control_resource(parts), devices_resource(parts),  calibrations_resource(parts)};
   std::vector<Route> routes;
   Reply description = json_reply(whole_description(resources));
   description.keeping = Keeping::kAskAgain;

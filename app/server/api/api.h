@@ -12,6 +12,7 @@
 #include "app/server/rig/controls.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_keeper.h"
+#include "app/server/rig/set_keeper.h"
 #include "capture/rig.h"
 #include "core/json_document.h"
 
@@ -24,6 +25,7 @@ struct RigParts {
   RigKeeper& keeper;
   FramePictures& pictures;
   Attendance& attendance;
+  SetKeeper& sets;
   Controls& controls;
   JobQueue& jobs;
   LibraryService& library;
@@ -45,12 +47,16 @@ Resource login_resource(const RigParts& parts);
 Resource rig_resource(const RigParts& parts);
 Resource control_resource(const RigParts& parts);
 Resource devices_resource(const RigParts& parts);
+Resource calibrations_resource(const RigParts& parts);
 Resource scan_resource(const RigParts& parts);
 Resource sessions_resource(const RigParts& parts);
 Resource frames_resource(const RigParts& parts);
 Resource jobs_resource(const RigParts& parts);
 Resource library_resource(const RigParts& parts);
 Resource events_resource(const RigParts& parts);
+
+/// The body of a call by who may command the rig. The errors of parse_body() and Controls::commander().
+Result<Json> command_in(const RigParts& parts, const Call& call);
 
 /// Every call of the interface, GET openapi.json among them.
 std::vector<Route> api_routes(const RigParts& parts);

@@ -19,14 +19,6 @@ Error refused(const char* field, std::string rule) {
           "see rig/devices, rig/light and rig/test-shot in openapi.json"};
 }
 
-// The body of a call by who may command the rig.
-Result<Json> command_in(const RigParts& parts, const Call& call) {
-  Result<Json> body = parse_body(call.body);
-  if (!body) return body;
-  if (const Result<std::string> by = parts.controls.commander(call.control); !by) return by.error();
-  return body;
-}
-
 Result<int> led_of(const Json& value, const RigParts& parts, int least) {
   const bool is_there = value.is_number_integer() && value >= least && value <= parts.rig.leds;
   if (is_there) return value.get<int>();

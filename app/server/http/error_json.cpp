@@ -12,7 +12,7 @@ namespace weft::app {
 namespace {
 
 /// What is said, and the word for it. Clients rely on the words.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 41> kCodes = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 45> kCodes = {{
     {"the token is missing or wrong", "not_logged_in"},
     {"the token is wrong", "wrong_token"},
     {"this token may only look", "may_only_look"},
@@ -47,6 +47,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 41> kCodes =
     {"session is being written", "session_busy"},
     {"session was changed meanwhile", "changed_meanwhile"},
     {"there is nothing to take back", "nothing_to_undo"},
+    {"this is no name of a set", "no_such_set"},
+    {"no set is worked on", "no_set"},
+    {"the set is being photographed", "rig_busy"},
+    {"the set has all that is needed", "set_complete"},
     {"there is no such job", "no_such_job"},
     {"job cannot be cancelled", "job_ended"},
     {"job cannot be retried", "job_not_ended"},

@@ -70,6 +70,15 @@ void RigKeeper::tell_status() {
 }
 
 Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& by) {
+  return begin(std::move(request), by, run_, true);
+}
+
+Result<void> RigKeeper::begin_work(capture::ScanRequest request, const std::string& by, RunScan work) {
+  return begin(std::move(request), by, std::move(work), false);
+}
+
+Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& by, RunScan work,
+                              bool is_scan) {
   const std::lock_guard lock(mutex_);
   if (running_ || stopping_) {
     return Error{ErrorKind::kTryAgain, "the rig is busy", rig_.name,
@@ -85,14 +94,15 @@ Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& b
   for (const int led : request.leds) status_.leds.emplace_back().led = led;
   first_kept_.reset();
   pause_ = false;
-  request_ = request;
+  request_ = is_scan ? std::optional(request) : std::nullopt;
   tell_status_locked();
   // The last one's thread has done its last deed once running_ is false: joining it here takes no time.
-  scan_ = std::jthread([this, request = std::move(request), by](const std::stop_token& cancel) {
+  scan_ = std::jthread([this, request = std::move(request), by, work = std::move(work),
+                        is_scan](const std::stop_token& cancel) {
     log_.add("scan_began", fmt::format("{} of {}", name_of_session(request), request.fabric),
              {{"session", name_of_session(request)}, {"fabric", request.fabric}, {"by", by}});
     logged_.clear();
-    on_end(request, scan_with_devices(request, cancel));
+    on_end(request, scan_with_devices(request, work, cancel), is_scan);
   });
   return {};
 }
@@ -160,6 +170,7 @@ Result<capture::RigDevices> RigKeeper::open_devices(const std::stop_token& cance
 }
 
 Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanRequest& request,
+                                                          const RunScan& work,
                                                           const std::stop_token& cancel) try {
   Result<capture::RigDevices> devices = open_devices(cancel);
   if (!devices) return std::move(devices).error();
@@ -173,7 +184,7 @@ Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanReq
       [this](const capture::ScanStatus& status) { on_status(status); },
       [&](const capture::KeptFrame& frame) { on_kept(request, frame); },
       [&](const capture::RefusedFrame& frame) { on_refused(request, frame); }};
-  return run_(request, *lent.devices.lamps, camera, events, {cancel, &pause_});
+  return work(request, *lent.devices.lamps, camera, events, {cancel, &pause_});
 } catch (const std::exception& thrown) {
   return error_of_exception(thrown, name_of_session(request));
 }
@@ -185,6 +196,7 @@ void RigKeeper::log_once(const char* event, const std::string& why) {
 
 // Where the shot that lights a LED for the first time stands; null for all others.
 LedStatus* RigKeeper::lit_shot_of(int led, ShotRole role, Polariser polariser) {
+  if (!request_) return nullptr;
   const auto& states = request_->polariser.states;
   const bool is_other_state = !states.empty() && polariser != states.front();
   if (role != ShotRole::kLit || is_other_state) return nullptr;
@@ -266,7 +278,8 @@ void RigKeeper::on_facts(const capture::CameraFacts& facts) {
   status_.camera = facts;
 }
 
-void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome) {
+void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome,
+                       bool is_scan) {
   const bool cancelled = !outcome && outcome.error().kind == ErrorKind::kInterrupted;
   Json record = {{"session", name_of_session(request)}};
   if (outcome) {
@@ -274,7 +287,7 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
     record["frames_retaken"] = outcome->frames_retaken;
     record["warnings"] = outcome->warnings;
     log_.add("scan_complete", name_of_session(request), std::move(record));
-    scanned_(request);
+    if (is_scan) scanned_(request);
   } else {
     record["error"] = json_of(outcome.error());
     log_.add(cancelled ? "scan_cancelled" : "scan_failed", outcome.error().message(), std::move(record));

@@ -58,6 +58,9 @@ class RigKeeper {
   /// Starts a scan, or resumes a session that is there. `by`: who asked for it, if that is known. kTryAgain
   /// while one runs.
   Result<void> begin(capture::ScanRequest request, const std::string& by);
+  /// Has something else done with the devices, as a scan is: `work` hears of cancelling and pausing, and what
+  /// it tells is told. `request` names it. No session is scanned by it.
+  Result<void> begin_work(capture::ScanRequest request, const std::string& by, RunScan work);
   /// kTryAgain where there is nothing to pause, resume or cancel. Resuming what failed or was cancelled
   /// begins it again.
   Result<void> pause();
@@ -73,13 +76,14 @@ class RigKeeper {
 
  private:
   Result<capture::RigDevices> open_devices(const std::stop_token& cancel);
-  Result<capture::ScanOutcome> scan_with_devices(const capture::ScanRequest& request,
+  Result<void> begin(capture::ScanRequest request, const std::string& by, RunScan work, bool is_scan);
+  Result<capture::ScanOutcome> scan_with_devices(const capture::ScanRequest& request, const RunScan& work,
                                                  const std::stop_token& cancel);
   void on_status(const capture::ScanStatus& status);
   void on_kept(const capture::ScanRequest& request, const capture::KeptFrame& frame);
   void on_refused(const capture::ScanRequest& request, const capture::RefusedFrame& frame);
   void on_facts(const capture::CameraFacts& facts);
-  void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome);
+  void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome, bool is_scan);
   void log_once(const char* event, const std::string& why);
   RigStatus status_locked() const;
   LedStatus* lit_shot_of(int led, ShotRole role, Polariser polariser);
@@ -100,7 +104,7 @@ class RigKeeper {
   bool running_ = false;
   bool stopping_ = false;
   RigStatus status_;
-  std::optional<capture::ScanRequest> request_;  ///< the last one
+  std::optional<capture::ScanRequest> request_;  ///< of the last scan; none: something else was done
   int first_frames_ = 0;                         ///< kept when the scan was first told of a frame
   std::optional<std::chrono::steady_clock::time_point> first_kept_;
   std::atomic<bool> pause_ = false;

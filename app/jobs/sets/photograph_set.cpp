@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/sets/photograph_set.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "app/jobs/calibrate/sheet_files.h"
+#include "core/files.h"
+#include "core/iso_time.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSetFile = "set.json";
+constexpr std::array<std::pair<SetPart, const char*>, 6> kParts = {{{SetPart::kBoard, "board"},
+                                                                    {SetPart::kResponse, "response"},
+                                                                    {SetPart::kTrap, "trap"},
+                                                                    {SetPart::kSheet, "sheet"},
+                                                                    {SetPart::kChart, "chart"},
+                                                                    {SetPart::kCheck, "check"}}};
+
+/// The file that a part's thing is described in; null where there is nothing to say of it.
+const char* description_of(SetPart part) {
+  switch (part) {
+    case SetPart::kBoard:
+      return "board.toml";
+    case SetPart::kSheet:
+    case SetPart::kCheck:
+      return "sheet.toml";
+    case SetPart::kChart:
+      return "chart.toml";
+    case SetPart::kResponse:
+    case SetPart::kTrap:
+      break;
+  }
+  return nullptr;
+}
+
+Result<void> check_description(const PhotographSet& set) {
+  if (set.part == SetPart::kBoard) {
+    const Result<PrintedBoard> board = read_board_file(set.board_file(), {});
+    return board ? Result<void>() : board.error();
+  }
+  if (set.part == SetPart::kSheet || set.part == SetPart::kCheck) {
+    const Result<TaggedSheet> sheet = read_sheet_file(set.sheet_file());
+    return sheet ? Result<void>() : sheet.error();
+  }
+  return {};
+}
+
+Result<void> check_described(const SetRequest& request) {
+  const char* name = description_of(request.part);
+  if (name == nullptr || !request.description.empty() || request.part == SetPart::kChart) return {};
+  return Error{ErrorKind::kUsage, fmt::format("nobody said what the {} is", name_of(request.part)), name,
+               "its size and pattern must be known to find it",
+               fmt::format("write a {} (docs/calibration.md) and name it", name)};
+}
+
+Error not_this_set(const SetRequest& request, const std::string& why) {
+  return {ErrorKind::kCannotCreate, "the photographs cannot be added to this folder", request.folder.string(),
+          why, "name another folder, or one that is not there yet"};
+}
+
+Result<PhotographSet> taken_up(const SetRequest& request) {
+  Result<PhotographSet> set = read_set(request.folder);
+  if (!set) return set;
+  if (set->part != request.part)
+    return not_this_set(request, fmt::format("it is a set of part {}", name_of(set->part)));
+  if (set->rig != request.rig) return not_this_set(request, "its photographs are of the rig " + set->rig);
+  if (Result<void> ok = check_description(*set); !ok) return ok.error();
+  return set;
+}
+
+}  // namespace
+
+const char* name_of(SetPart part) {
+  return kParts[static_cast<std::size_t>(part)].second;
+}
+
+std::optional<SetPart> set_part_of(const std::string& name) {
+  for (const auto& [part, its] : kParts) {
+    if (name == its) return part;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> set_part_names() {
+  std::vector<std::string> names;
+  for (const auto& [part, name] : kParts) names.emplace_back(name);
+  return names;
+}
+
+Result<PhotographSet> begin_set(const SetRequest& request) {
+  if (is_there(request.folder / kSetFile)) return taken_up(request);
+  std::error_code failed;
+  if (is_there(request.folder) && !fs::is_empty(request.folder, failed))
+    return not_this_set(request, "there is something in it, and no set.json");
+  if (Result<void> ok = check_described(request); !ok) return ok.error();
+  PhotographSet set;
+  set.folder = absolute_folder(request.folder);
+  set.part = request.part;
+  set.rig = request.rig;
+  set.created = iso_time_now();
+  set.from = request.from.empty() ? fs::path() : absolute_folder(request.from);
+  if (Result<void> made = make_writable_folder(set.folder); !made) return made.error();
+  const char* file = description_of(set.part);
+  Result<void> written;
+  if (file != nullptr && !request.description.empty())
+    written = write_file(set.folder / file, request.description);
+  if (written) written = check_description(set);
+  if (written) written = write_set(set);
+  if (written) return set;
+  fs::remove_all(set.folder, failed);
+  return written.error();
+}
+
+Result<PhotographSet> read_set(const fs::path& folder) {
+  const fs::path file = folder / kSetFile;
+  const Result<Json> document = read_json(file, "weft.set", 1);
+  if (!document) return document.error();
+  JsonFields fields(*document, file.string());
+  PhotographSet set;
+  set.folder = absolute_folder(folder);
+  const std::string part = fields.text("part");
+  set.rig = fields.text("rig");
+  set.created = fields.text("created");
+  set.from = fields.text("from");
+  set.exposure_us = fields.number("exposure_us");
+  if (Result<void> ok = fields.status(); !ok) return ok.error();
+  const std::optional<SetPart> known = set_part_of(part);
+  const Json asked = document->value("asked", Json::object());
+  if (!known || !asked.is_object()) {
+    return Error{ErrorKind::kBadData, "set.json cannot be used", file.string(),
+                 known ? "asked is no object" : fmt::format("there are no sets of part {}", part),
+                 "take its photographs into a new set"};
+  }
+  set.part = *known;
+  set.asked = asked;
+  return set;
+}
+
+Result<void> write_set(const PhotographSet& set) {
+  return write_json(set.folder / kSetFile, {{"schema", "weft.set/1"},
+                                            {"part", name_of(set.part)},
+                                            {"rig", set.rig},
+                                            {"created", set.created},
+                                            {"from", set.from.string()},
+                                            {"exposure_us", set.exposure_us},
+                                            {"asked", set.asked}});
+}
+
+Result<void> leave_out(const PhotographSet& set, const std::string& name, bool out) {
+  const fs::path used = set.folder / name, unused = set.left_out() / name;
+  const fs::path &from = out ? used : unused, &to = out ? unused : used;
+  const bool is_plain = fs::path(name).filename() == fs::path(name) && !name.starts_with('.');
+  if (!is_plain || !is_there(from) || name == kSetFile) {
+    return Error{ErrorKind::kNoInput, "there is no such photograph", name,
+                 out ? "the set does not have it" : "it was not left out", "name one of the set's"};
+  }
+  if (Result<void> made = make_writable_folder(to.parent_path()); !made) return made;
+  std::error_code failed;
+  fs::rename(from, to, failed);
+  if (failed) return cannot_write(to, failed.value());
+  return sync_path(to.parent_path());
+}
+
+}  // namespace weft::app

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/calibrate/board_photographs.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+// The photographs that one step of a calibration needs, in a folder that `weft calibrate` reads as it is.
+
+namespace weft::app {
+
+/// What a set is of: the folders of docs/calibration.md.
+enum class SetPart { kBoard, kResponse, kTrap, kSheet, kChart, kCheck };
+const char* name_of(SetPart part);  ///< "board"
+std::optional<SetPart> set_part_of(const std::string& name);
+std::vector<std::string> set_part_names();
+
+/// A set as set.json in its folder has it (weft.set/1). The folder is what counts: a photograph that lies
+/// there is of the set, whether set.json came to know of it or not.
+struct PhotographSet {
+  std::filesystem::path folder;
+  SetPart part = SetPart::kBoard;
+  std::string rig;
+  std::string created;          ///< ISO 8601
+  std::filesystem::path from;   ///< the calibration that was known before
+  double exposure_us = 0;       ///< of its photographs; 0: not metered yet
+  Json asked = Json::object();  ///< by photograph: the pose that a person was asked for
+
+  /// What people write about the board or the sheet, beside the photographs.
+  std::filesystem::path board_file() const { return folder / "board.toml"; }
+  std::filesystem::path sheet_file() const { return folder / "sheet.toml"; }
+  std::filesystem::path left_out() const { return folder / "left_out"; }
+};
+
+/// What a set is begun with.
+struct SetRequest {
+  std::filesystem::path folder;
+  SetPart part = SetPart::kBoard;
+  std::string rig;
+  std::filesystem::path from;
+  std::string description;  ///< text of board.toml, sheet.toml or chart.toml; not of a set that is there
+};
+
+/// Begins a set, or takes up the one that is in the folder. kCannotCreate where the folder holds another part
+/// or another rig's, or something that is no set; kNoInput, kBadData for what is written about the board or
+/// the sheet.
+Result<PhotographSet> begin_set(const SetRequest& request);
+Result<PhotographSet> read_set(const std::filesystem::path& folder);
+Result<void> write_set(const PhotographSet& set);
+
+/// Moves a photograph or session of the set to left_out/, or from there back. kNoInput where it is not there.
+Result<void> leave_out(const PhotographSet& set, const std::string& name, bool out);
+
+}  // namespace weft::app

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "calibration/camera/guidance.h"
+
+namespace weft::app {
+
+/// "tilt the board by 30 degrees, raising its left edge, at the upper right of the picture": what a person
+/// does who looks at the camera's picture.
+std::string words_of(const calibration::BoardPose& pose, const CameraModel& camera);
+
+}  // namespace weft::app

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/sets/photograph_set.h"
+#include "app/jobs/sets/set_guide.h"
+#include "capture/scan/series.h"
+#include "core/result.h"
+
+// Series that nobody has a hand in: pairs of photographs alike, at several exposures.
+
+namespace weft::app {
+
+/// Steps of the parts response (lit, then dark) and trap.
+Result<SetStanding> look_at_series(const PhotographSet& set);
+
+/// What a step of these parts photographs. `share_of_us` gives a time that the camera has.
+std::vector<capture::SeriesShot> series_of(const SetStep& step, int leds,
+                                           const std::function<double(double share)>& share_of_us);
+
+}  // namespace weft::app

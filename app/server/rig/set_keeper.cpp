@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/server/rig/set_keeper.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "app/jobs/sets/set_work.h"
+#include "core/error_json.h"
+
+namespace weft::app {
+namespace {
+
+constexpr std::size_t kLongestSetName = 100;
+
+Result<std::filesystem::path> folder_of(const capture::Rig& rig, const std::string& name) {
+  const bool is_plain = !name.empty() && name.size() <= kLongestSetName && name.front() != '.' &&
+                        std::ranges::all_of(name, [](const char c) {
+                          return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                                 c == '-' || c == '_' || c == '.';
+                        });
+  if (is_plain) return rig.file.parent_path() / "sets" / name;
+  return Error{ErrorKind::kUsage, "this is no name of a set", name,
+               "it has letters, digits, -, _ and . and does not begin with a dot", "give it another one"};
+}
+
+Error is_photographing(const std::string& rig) {
+  return {ErrorKind::kTryAgain, "the set is being photographed", rig, "",
+          "wait for the end of that, or cancel it"};
+}
+
+Error no_set(const std::string& rig) {
+  return {ErrorKind::kNoInput, "no set is worked on", rig, "", "begin one: POST calibrations/work"};
+}
+
+}  // namespace
+
+Result<Json> SetKeeper::begin(const Wish& wish) {
+  Result<std::filesystem::path> folder =
+      folder_of(rig_, wish.name.empty() ? std::string(name_of(wish.part)) : wish.name);
+  if (!folder) return std::move(folder).error();
+  const std::lock_guard lock(mutex_);
+  if (is_busy_) return is_photographing(rig_.name);
+  SetRequest request;
+  request.folder = std::move(*folder);
+  request.part = wish.part;
+  request.rig = rig_.name;
+  request.from = wish.from.empty() ? rig_.scan.calibration : wish.from;
+  request.description = wish.description;
+  Result<PhotographSet> set = begin_set(request);
+  if (!set) return std::move(set).error();
+  Work work = {*set, SetGuide(*set), {}, {}};
+  Result<SetStanding> standing = work.guide.look(work.set);
+  if (!standing) return std::move(standing).error();
+  work.standing = std::move(*standing);
+  work_ = std::move(work);
+  tell_locked();
+  return document_locked();
+}
+
+Result<Json> SetKeeper::photograph(const std::string& by) {
+  const std::lock_guard lock(mutex_);
+  if (!work_) return no_set(rig_.name);
+  if (is_busy_) return is_photographing(rig_.name);
+  if (!work_->standing.next) {
+    return Error{ErrorKind::kTryAgain, "the set has all that is needed", work_->set.folder.string(), "",
+                 "run its step of weft calibrate, or leave a photograph out to take another one"};
+  }
+  capture::ScanRequest request;
+  request.session = work_->set.folder;
+  request.fabric = name_of(work_->set.part);
+  const SetStep step = *work_->standing.next;
+  const Result<void> begun = keeper_.begin_work(
+      std::move(request), by,
+      [this, step](const capture::ScanRequest&, capture::Lamps& lamps, capture::Camera& camera,
+                   const capture::ScanEvents& events, const capture::ScanControl& control) {
+        return take(step, lamps, camera, events, control);
+      });
+  if (!begun) return begun.error();
+  is_busy_ = true;
+  work_->error.reset();
+  tell_locked();
+  return document_locked();
+}
+
+Result<capture::ScanOutcome> SetKeeper::take(const SetStep& step, capture::Lamps& lamps,
+                                             capture::Camera& camera, const capture::ScanEvents& events,
+                                             const capture::ScanControl& control) {
+  Work* work = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    work = &*work_;
+  }
+  const Result<void> taken = take_step(work->set, step, rig_, lamps, camera, events, control);
+  Result<SetStanding> standing = work->guide.look(work->set);
+  const std::lock_guard lock(mutex_);
+  if (standing) work->standing = std::move(*standing);
+  if (!taken) {
+    work->error = taken.error();
+  } else if (!standing) {
+    work->error = standing.error();
+  }
+  is_busy_ = false;
+  tell_locked();
+  if (work->error) return *work->error;
+  return capture::ScanOutcome();
+}
+
+Result<Json> SetKeeper::leave_out(const std::string& name, bool out) {
+  const std::lock_guard lock(mutex_);
+  if (!work_) return no_set(rig_.name);
+  if (is_busy_) return is_photographing(rig_.name);
+  if (Result<void> moved = app::leave_out(work_->set, name, out); !moved) return std::move(moved).error();
+  Result<SetStanding> standing = work_->guide.look(work_->set);
+  if (!standing) return std::move(standing).error();
+  work_->standing = std::move(*standing);
+  tell_locked();
+  return document_locked();
+}
+
+Result<Json> SetKeeper::document() const {
+  const std::lock_guard lock(mutex_);
+  if (!work_) return no_set(rig_.name);
+  return document_locked();
+}
+
+void SetKeeper::close() {
+  const std::lock_guard lock(mutex_);
+  if (!is_busy_) work_.reset();
+}
+
+Json SetKeeper::document_locked() const {
+  const PhotographSet& set = work_->set;
+  Json document = {{"name", set.folder.filename().string()},
+                   {"part", name_of(set.part)},
+                   {"folder", set.folder.string()},
+                   {"from", set.from.string()},
+                   {"busy", is_busy_},
+                   {"error", work_->error ? weft::json_of(*work_->error) : Json()}};
+  document.update(json_of(work_->standing));
+  return document;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <string>
+
+#include "app/jobs/sets/photograph_set.h"
+#include "app/jobs/sets/set_guide.h"
+#include "app/server/http/event_log.h"
+#include "app/server/rig/rig_keeper.h"
+#include "capture/rig.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+/// The set of photographs for a calibration that is worked on at a rig: one at a time. Sets lie in sets/
+/// beside the rig file, and whatever ends this process or the machine, a set goes on where it was. Safe from
+/// any thread.
+class SetKeeper {
+ public:
+  SetKeeper(const capture::Rig& rig, RigKeeper& keeper, EventLog& events)
+      : rig_(rig), keeper_(keeper), events_(events) {}
+
+  /// What a client asks for.
+  struct Wish {
+    std::string name;  ///< of its folder; empty: the part's
+    SetPart part = SetPart::kBoard;
+    std::string description;     ///< text of board.toml, sheet.toml, chart.toml
+    std::filesystem::path from;  ///< calibration; empty: the rig's
+  };
+  /// Begins a set or takes one up, and looks at what it has. Errors: those of begin_set() and
+  /// SetGuide::look(); kTryAgain while one is photographed.
+  Result<Json> begin(const Wish& wish);
+  /// Photographs what comes next. kTryAgain where nothing does, and while the rig is busy.
+  Result<Json> photograph(const std::string& by);
+  /// Leaves a photograph out, or takes it back. Errors: those of leave_out().
+  Result<Json> leave_out(const std::string& name, bool out);
+  /// {"name", "part", "folder", "from", "busy", "error", "photographs", "figures", "next", "done"}.
+  /// kNoInput where none is worked on.
+  Result<Json> document() const;
+  void close();
+
+ private:
+  struct Work {
+    PhotographSet set;
+    SetGuide guide;
+    SetStanding standing;
+    std::optional<Error> error;  ///< of the last step
+  };
+  Result<capture::ScanOutcome> take(const SetStep& step, capture::Lamps& lamps, capture::Camera& camera,
+                                    const capture::ScanEvents& events, const capture::ScanControl& control);
+  Json document_locked() const;
+  void tell_locked() { events_.add("calibration", document_locked()); }
+
+  const capture::Rig& rig_;
+  RigKeeper& keeper_;
+  EventLog& events_;
+  mutable std::mutex mutex_;
+  std::optional<Work> work_;
+  bool is_busy_ = false;  ///< work_ is the photographing thread's but for standing and error
+};
+
+}  // namespace weft::app
