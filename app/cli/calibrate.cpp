@@ -100,8 +100,9 @@ Verb calibrate_verb() {
   return {.name = "calibrate",
           .help = "Measure a rig; each step writes a new calibration",
           .verbs = {calibrate_camera_verb(), calibrate_response_verb(), calibrate_color_verb(),
-                    calibrate_lights_verb(), calibrate_check_verb(), calibrate_grey_verb(),
-                    calibrate_patches_verb(), calibrate_update_verb(), calibrate_history_verb()}};
+                    calibrate_lights_verb(), calibrate_check_verb(), calibrate_accept_verb(),
+                    calibrate_grey_verb(), calibrate_patches_verb(), calibrate_update_verb(),
+                    calibrate_history_verb()}};
 }
 
 }  // namespace weft::app

@@ -26,6 +26,7 @@ Verb calibrate_color_verb();
 Verb calibrate_lights_verb();
 Verb calibrate_grey_verb();
 Verb calibrate_check_verb();
+Verb calibrate_accept_verb();
 Verb calibrate_patches_verb();
 Verb calibrate_update_verb();
 Verb calibrate_history_verb();

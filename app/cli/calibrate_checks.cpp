@@ -5,12 +5,18 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "app/cli/calibrate.h"
+#include "app/cli/exit_code.h"
+#include "app/cli/rig_options.h"
+#include "app/cli/terminal.h"
+#include "app/jobs/calibrate/accept.h"
 #include "app/jobs/calibrate/check.h"
 #include "app/jobs/calibrate/history.h"
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/update.h"
+#include "capture/rig.h"
 
 namespace weft::app {
 namespace {
@@ -109,7 +115,57 @@ Run add_history(Options& options) {
   });
 }
 
+struct AcceptArguments {
+  std::filesystem::path calibration, rig;
+  bool dry_run = false;
+};
+
+Result<int> accept(const AcceptArguments& a, const CommonArguments& common) {
+  const std::filesystem::path file = find_rig(a.rig);
+  const Result<capture::Rig> rig = capture::read_rig(file);
+  if (!rig) return rig.error();
+  const Result<CalibrationChange> change = change_between(rig->scan.calibration, a.calibration);
+  if (!change) return change.error();
+  const std::vector<std::string> words = words_of(*change);
+  if (common.json) {
+    Json maps;
+    if (change->maps) {
+      maps = {{"mean_deg", change->maps->mean_deg},
+              {"worst_deg", change->maps->worst_deg},
+              {"albedo_factor", 1 / change->maps->albedo_factor},
+              {"albedo_unevenness", change->maps->albedo_unevenness}};
+    }
+    print_json({{"from", change->old_id},
+                {"to", change->new_id},
+                {"maps", maps},
+                {"gained", change->gained},
+                {"lost", change->lost},
+                {"warning", change->warning},
+                {"accepted", !a.dry_run}});
+  } else {
+    for (const std::string& line : words) print(line);
+  }
+  if (!change->warning.empty()) note(change->warning);
+  if (a.dry_run) return kDone;
+  if (Result<void> named = name_calibration(file, a.calibration); !named) return named.error();
+  note(file.string() + " names it from now on; a daemon of this rig reads it when it starts again");
+  return kDone;
+}
+
+Run add_accept(Options& options) {
+  const auto a = std::make_shared<AcceptArguments>();
+  options.add("calibration", &a->calibration, "Folder of the calibration that is to be the rig's").required();
+  add_rig_file(options, a->rig);
+  options.add_flag("--dry-run", &a->dry_run, "Only say what would change");
+  return [a](const CommonArguments& common) { return accept(*a, common); };
+}
+
 }  // namespace
+
+Verb calibrate_accept_verb() {
+  return {"accept", "Say in degrees and albedo what a calibration changes, and make it the rig's",
+          add_accept};
+}
 
 Verb calibrate_check_verb() {
   return {

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "calibration/checks/light_at.h"
 #include "calibration/checks/rig_state.h"
@@ -223,10 +224,10 @@ ParameterCovariance covariance_of_leds(const Story& story) {
   return out;
 }
 
-/// What a rig that was calibrated as `before` makes of a surface with this normal at a pixel, while it is
-/// `after`.
-std::optional<Vec3> solved_normal(const NearLights& before, Vec3 seen_at_mm, const NearLights& after,
-                                  Vec3 point_mm, Vec3 normal, std::array<double, 2> place) {
+/// What a rig that was calibrated as `before` makes of a white surface with this normal at a pixel, while it
+/// is `after`: the normal, as long as the albedo.
+std::optional<Vec3> solved_surface(const NearLights& before, Vec3 seen_at_mm, const NearLights& after,
+                                   Vec3 point_mm, Vec3 normal, std::array<double, 2> place) {
   Eigen::Matrix3d a = Eigen::Matrix3d::Zero();
   Eigen::Vector3d b = Eigen::Vector3d::Zero();
   for (std::size_t k = 0; k < before.leds.size(); ++k) {
@@ -244,7 +245,16 @@ std::optional<Vec3> solved_normal(const NearLights& before, Vec3 seen_at_mm, con
   }
   const Eigen::Vector3d n = a.ldlt().solve(b);
   if (!n.allFinite() || !(n.norm() > 0)) return std::nullopt;
-  return normalized({n[0], n[1], n[2]});
+  return Vec3{n[0], n[1], n[2]};
+}
+
+/// Mean, and the largest departure from it.
+void put_albedo(const std::vector<double>& albedo, MovementCost& cost) {
+  if (albedo.empty()) return;
+  cost.albedo_factor =
+      std::accumulate(albedo.begin(), albedo.end(), 0.0) / static_cast<double>(albedo.size());
+  for (const double each : albedo)
+    cost.albedo_unevenness = std::max(cost.albedo_unevenness, std::abs(each / cost.albedo_factor - 1));
 }
 
 }  // namespace
@@ -295,15 +305,17 @@ MovementCost cost_of(const CameraModel& camera_before, const NearLights& before,
   const Size frame = camera_before.size;
   MovementCost cost;
   int counted = 0;
+  std::vector<double> flat_albedo;
   for (int j = 0; j < 3; ++j) {
     for (int i = 0; i < 5; ++i) {
       const double x = (frame.width - 1) * i / 4.0, y = (frame.height - 1) * j / 2.0;
       const Vec3 believed = point_on_plane(camera_before, x, y, 0),
                  real = point_on_plane(camera_after, x, y, 0);
       for (const Vec3 normal : kNormals) {
-        const auto solved = solved_normal(before, believed, after, real, normal, frame_place(frame, x, y));
+        const auto solved = solved_surface(before, believed, after, real, normal, frame_place(frame, x, y));
         if (!solved) continue;
-        const double off = angle_deg(*solved, normal);
+        if (normal.z == 1) flat_albedo.push_back(length(*solved));
+        const double off = angle_deg(normalized(*solved), normal);
         cost.mean_deg += off;
         cost.worst_deg = std::max(cost.worst_deg, off);
         ++counted;
@@ -311,6 +323,7 @@ MovementCost cost_of(const CameraModel& camera_before, const NearLights& before,
     }
   }
   if (counted > 0) cost.mean_deg /= counted;
+  put_albedo(flat_albedo, cost);
   return cost;
 }
 

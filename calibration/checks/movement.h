@@ -112,6 +112,8 @@ Result<Movement> find_movement(const Calibration& calibration, const RigEvidence
 struct MovementCost {
   double mean_deg = 0;
   double worst_deg = 0;
+  double albedo_factor = 1;      ///< mean of solved over true albedo, where it lies flat
+  double albedo_unevenness = 0;  ///< largest departure from that over the frame, relative
 };
 MovementCost cost_of(const CameraModel& camera_before, const NearLights& lights_before,
                      const CameraModel& camera_after, const NearLights& lights_after);

@@ -93,7 +93,8 @@ Result<std::vector<fs::path>> list_chart_pictures(const fs::path& input) {
   for (fs::directory_iterator it(input, failed), end; !failed && it != end; it.increment(failed)) {
     const fs::path path = it->path();
     const bool is_hidden = path.filename().string().front() == '.';
-    const bool is_wanted = it->is_directory() ? is_there(path / "session.json") : path.extension() != ".toml";
+    const bool is_written = path.extension() == ".toml" || path.extension() == ".json";
+    const bool is_wanted = it->is_directory() ? is_there(path / "session.json") : !is_written;
     if (!is_hidden && is_wanted) files.push_back(path);
   }
   if (!files.empty()) {

@@ -22,6 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr double kStart_us = 1e6 / 60;
 constexpr double kTooDark = 0.35, kTooBright = 0.95;  // brightest photosites: metered once more
+// Linearity is seen as high up as both LEDs at once are bright.
+constexpr double kUntilFull = 1.25;
 // A sheet that is tilted towards a LED is brighter than it is flat.
 constexpr double kTiltedSheet = 0.65;
 
@@ -63,14 +65,14 @@ Result<void> take_board(PhotographSet& set, const SetStep& step, const std::vect
   return again ? Result<void>() : again.error();
 }
 
-/// Both LEDs at once come to nearly full at the longest exposure.
 Result<void> take_series(PhotographSet& set, const SetStep& step, int leds, capture::Series& series) {
   if (!(set.exposure_us > 0)) {
     const std::vector<int> both =
         set.part == SetPart::kResponse && leds > 1 ? std::vector{1, 2} : std::vector{1};
     const Result<double> exposure_us = metered_us(series, set, {both});
     if (!exposure_us) return exposure_us.error();
-    if (Result<void> ok = remember(set, *exposure_us); !ok) return ok;
+    const double longer = set.part == SetPart::kResponse ? kUntilFull : 1;
+    if (Result<void> ok = remember(set, series.share_of_us(*exposure_us, longer)); !ok) return ok;
   }
   return series.take_missing(
       series_of(step, leds, [&](double share) { return series.share_of_us(set.exposure_us, share); }));
@@ -90,7 +92,8 @@ capture::ScanRequest scan_of(const PhotographSet& set, const SetStep& step, cons
   request.session = set.folder / step.name;
   request.fabric = set.part == SetPart::kChart ? "colour chart" : "white sheet";
   request.rig = rig.name;
-  request.calibration = set.from;
+  // Lights that are not known yet, or a sheet that is tilted from them, are no evidence against a photograph.
+  if (set.part == SetPart::kChart) request.calibration = set.from;
   request.exposure = {set.part == SetPart::kSheet ? set.exposure_us : 0, rig.scan.iso, rig.scan.f_number};
   for (int led = 1; led <= leds; ++led) request.leds.push_back(led);
   return request;
