@@ -37,6 +37,6 @@ inline constexpr std::array<StatusName, 8> kStatusNames = {{{kSaturated, "SATURA
 inline constexpr double kIllConditionedFrom = 1e6;
 
 /// Raised whenever the bytes of an output may change.
-inline constexpr int kSolverVersion = 5;
+inline constexpr int kSolverVersion = 6;
 
 }  // namespace weft

@@ -25,10 +25,12 @@ constexpr int kSampleStep = 5;  // columns and lines, odd: photosites of every c
 constexpr std::size_t kFewestLights = 6, kFewestPixels = 500;
 constexpr double kLitFrom = 0.25;  // of the third brightest reading
 constexpr int kRounds = 4;
+constexpr int kQuarters = 4;
 constexpr double kUnknownFrom = 0.9;  // of the prior: such a gain was told by no pixel
 
 // The lit readings of one photosite.
 struct SamplePixel {
+  int quarter = 0;  // of the frame
   std::vector<std::size_t> light;
   MatrixXd direction;    // a row each
   VectorXd x, variance;  // reading over strength
@@ -51,6 +53,8 @@ std::vector<SamplePixel> read_pixels(const Photographs& photographs, const Noise
         if (bright.size() < kFewestLights) continue;
         std::ranges::nth_element(bright, bright.begin() + 2, std::greater{});
         SamplePixel pixel;
+        pixel.quarter = (2 * (tile.x0 + x) >= photographs.size.width ? 1 : 0) +
+                        (2 * (tile.y0 + y) >= photographs.size.height ? 2 : 0);
         for (std::size_t k = 0; k < rows.size(); ++k) {
           const double value = rows[k].reading[0] / rows[k].strength[0];
           if (std::isfinite(value) && value > kLitFrom * bright[2]) pixel.light.push_back(k);
@@ -83,9 +87,11 @@ struct Equations {
 };
 
 // Pixels that fit worse than noise explains count for less, as their misfit says.
-Equations gather(const std::vector<SamplePixel>& pixels, const VectorXd& log_gain) {
+Equations gather(const std::vector<SamplePixel>& pixels, const VectorXd& log_gain,
+                 std::optional<int> without_quarter = {}) {
   Equations all = {MatrixXd::Zero(log_gain.size(), log_gain.size()), VectorXd::Zero(log_gain.size()), {}};
   for (const SamplePixel& pixel : pixels) {
+    if (pixel.quarter == without_quarter) continue;
     const Eigen::Index n = pixel.x.size();
     const VectorXd root_w = pixel.variance.cwiseInverse().cwiseSqrt();
     VectorXd x = pixel.x;
@@ -130,6 +136,22 @@ VectorXd without_trend(const VectorXd& log_gain, const std::vector<SamplePixel>&
   return (log_gain.array() - log_gain.mean()).matrix() - slope * height;
 }
 
+// The spread of the gains that each three quarters of the frame tell (a jackknife; Efron 1982). Lights that
+// are not quite where the calibration has them are an error that all pixels of a part of the frame share: it
+// is in no noise, and differs from one part to the other.
+MatrixXd spread_over_the_frame(const std::vector<SamplePixel>& pixels, const VectorXd& log_gain,
+                               double prior) {
+  const MatrixXd prior_information = prior * MatrixXd::Identity(log_gain.size(), log_gain.size());
+  MatrixXd steps(log_gain.size(), kQuarters);
+  for (int quarter = 0; quarter < kQuarters; ++quarter) {
+    const Equations others = gather(pixels, log_gain, quarter);
+    steps.col(quarter) = (others.a + prior_information).ldlt().solve(others.rhs - prior * log_gain);
+  }
+  const VectorXd mean = steps.rowwise().mean();
+  const MatrixXd off = steps.colwise() - mean;
+  return (kQuarters - 1.0) / kQuarters * off * off.transpose();
+}
+
 bool is_worth_it(const LedGains& gains, const LedGainsOptions& options) {
   bool differs = false;
   for (std::size_t k = 0; k < gains.gain.size(); ++k) {
@@ -167,11 +189,13 @@ Result<std::optional<LedGains>> find_led_gains(const Photographs& photographs, c
   // The common gain, which no residual shows, is left out of the spread: it turns no normal.
   const MatrixXd centre = MatrixXd::Identity(lights, lights) -
                           MatrixXd::Constant(lights, lights, 1 / static_cast<double>(lights));
-  const VectorXd variance = (centre * covariance * centre).diagonal();
+  const VectorXd by_noise = (centre * covariance * centre).diagonal(),
+                 by_place = (centre * spread_over_the_frame(pixels, log_gain, prior) * centre).diagonal();
   const VectorXd told = without_trend(log_gain, pixels);
   for (Eigen::Index k = 0; k < lights; ++k) {
     found.gain.push_back(std::exp(told[k]));
-    found.sigma.push_back(std::sqrt(std::max(variance[k], 0.0) * std::max(1.0, found.misfit_after)));
+    found.sigma.push_back(
+        std::sqrt(std::max(by_noise[k], 0.0) * std::max(1.0, found.misfit_after) + by_place[k]));
   }
   if (!is_worth_it(found, options)) return std::optional<LedGains>();
 

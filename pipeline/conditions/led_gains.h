@@ -21,7 +21,7 @@ namespace weft::pipeline {
 /// diagnosis does: a sensor that is not linear and light between yarns look like one.
 struct LedGains {
   std::vector<double> gain;   ///< by light
-  std::vector<double> sigma;  ///< of each, with the prior
+  std::vector<double> sigma;  ///< of each, with the prior and with how much quarters of the frame differ
   double misfit_before = 0;   ///< median chi-square a degree of freedom of the samples
   double misfit_after = 0;
   /// By how much left-out light is predicted better with the gains; none where it was not asked.

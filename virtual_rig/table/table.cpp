@@ -11,6 +11,8 @@
 #include <string_view>
 #include <utility>
 
+#include "simulator/spectra/spectrum.h"
+
 namespace weft::virtual_rig {
 namespace {
 
@@ -158,11 +160,28 @@ const std::vector<Thing>& things() {
   return kThings;
 }
 
+/// Dyes for a cloth that has none, as grey as it is green.
+void dye(simulator::MaterialSettings& material) {
+  if (material.dye || material.warp_dye || material.weft_dye) return;
+  const auto dyed = [](const Rgb& albedo) { return simulator::flat_spectrum(albedo[1]); };
+  material.dye = dyed(material.albedo);
+  if (material.warp_albedo) material.warp_dye = dyed(*material.warp_albedo);
+  if (material.weft_albedo) material.weft_dye = dyed(*material.weft_albedo);
+  if (material.warp_dye || material.weft_dye) {
+    material.warp_dye = material.warp_dye.value_or(*material.dye);
+    material.weft_dye = material.weft_dye.value_or(*material.dye);
+    material.dye.reset();
+  }
+  material.warp_albedo.reset();
+  material.weft_albedo.reset();
+}
+
 /// The rig of one scene under the cloth of another.
 Scene with_cloth_of(const Scene& other, Scene scene) {
   scene.fabric = other.fabric;
   scene.geometry = other.geometry;
   scene.material = other.material;
+  if (scene.effects.spectral) dye(scene.material);
   simulator::EffectSettings& on = scene.effects;
   on.relief = other.effects.relief;
   on.cast_shadows = other.effects.cast_shadows;
