@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+// docs/user/rig_day.md, typed line by line: a rig that nobody has calibrated becomes one that is known as
+// well as if it had been built from a drawing, through its own camera alone.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "app/jobs/compare.h"
+#include "core/calibration.h"
+#include "core/files.h"
+#include "core/temporary_folder.h"
+#include "simulator/scene/resolution.h"
+#include "simulator/scene/rig.h"
+#include "simulator/scene/scene.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+
+/// The lines of all sh blocks of a page.
+std::string typed_lines(const fs::path& page) {
+  std::istringstream in(read_text(page).value());
+  std::string lines;
+  bool is_typed = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("```")) {
+      is_typed = line == "```sh";
+    } else if (is_typed) {
+      lines += line + '\n';
+    }
+  }
+  return lines;
+}
+
+class RigDay : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = new TemporaryFolder;
+    fs::create_directory_symlink(WEFT_SOURCE_DIR "/testdata", folder_->path() / "testdata");
+    code_ = run("rig_day", typed_lines(WEFT_SOURCE_DIR "/docs/user/rig_day.md"));
+    said_ = read_text(folder_->path() / "rig_day.txt").value();
+  }
+  static void TearDownTestSuite() {
+    run("end", "test ! -e rig/control || weft-virtual-rig --folder rig --inject end");
+    delete folder_;
+  }
+
+  /// A shell runs the lines and stops at the first that fails; its exit code. NAME.txt has what it said.
+  static int run(const std::string& name, const std::string& lines) {
+    const fs::path script = folder_->path() / (name + ".sh");
+    std::ofstream(script) << "set -ev\ncd '" << folder_->path().string()
+                          << "'\nexport PATH='" WEFT_PROGRAMS "':\"$PATH\" WEFT_RIG=\n"
+                          << lines;
+    const std::string command = "timeout -k 5 400 bash '" + script.string() + "' > '" +
+                                (folder_->path() / (name + ".txt")).string() + "' 2>&1 < /dev/null";
+    return std::system(command.c_str());
+  }
+  static fs::path in_folder(const char* name) { return folder_->path() / name; }
+
+  /// What is exactly so of the page's rig, behind the lens as it was measured: the page cannot know better.
+  static Result<void> write_exact_calibration(const fs::path& to, const Calibration& measured) {
+    Result<simulator::Scene> scene = simulator::read_scene(WEFT_SOURCE_DIR "/testdata/scenes/rig.toml");
+    if (!scene) return scene.error();
+    simulator::resize(scene->camera, 0.25);
+    const Result<simulator::SceneRig> rig = simulator::rig_of(*scene);
+    if (!rig) return rig.error();
+    Calibration exact = simulator::exact_calibration(*scene, *rig);
+    exact.subject = measured.subject;
+    exact.spread = measured.spread;
+    exact.color = measured.color;
+    const Result<Calibration> written = write_calibration(to, std::move(exact));
+    return written ? Result<void>() : written.error();
+  }
+
+  static inline TemporaryFolder* folder_ = nullptr;
+  static inline int code_ = -1;
+  static inline std::string said_;
+};
+
+TEST_F(RigDay, RunsLineByLine) {
+  ASSERT_EQ(code_, 0) << said_.substr(said_.size() - std::min<std::size_t>(said_.size(), 2000));
+  EXPECT_THAT(said_, HasSubstr("Accepted: 3 sheets"));
+  EXPECT_THAT(said_, HasSubstr("names it from now on"));
+  EXPECT_THAT(said_, Not(HasSubstr("not used")));
+}
+
+TEST_F(RigDay, EndsWithNormalsThatAnExactCalibrationWouldGive) {
+  ASSERT_EQ(code_, 0);
+  const Result<Calibration> measured = read_calibration(in_folder("rig/cal4"));
+  ASSERT_TRUE(measured) << measured.error().message();
+  const Result<void> exact = write_exact_calibration(in_folder("exact"), *measured);
+  ASSERT_TRUE(exact) << exact.error().message();
+  ASSERT_EQ(run("solve",
+                "for by in rig/cal4 exact; do weft solve rig/scans/*.weft --quality standard --quiet "
+                "--calibration $by -o solved_$(basename $by); done"),
+            0)
+      << read_text(in_folder("solve.txt")).value();
+  const auto off =
+      compare_normals(in_folder("solved_cal4/normal.exr"), in_folder("solved_exact/normal.exr"), {});
+  ASSERT_TRUE(off) << off.error().message();
+  EXPECT_LT(off->median_deg, 0.1);
+  EXPECT_LT(off->p95_deg, 0.2);
+}
+
+}  // namespace
+}  // namespace weft::app
