@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/jobs/calibrate/sheet_files.h"
+#include "core/calibration.h"
 #include "core/files.h"
 #include "core/iso_time.h"
 
@@ -103,6 +104,9 @@ Result<PhotographSet> begin_set(const SetRequest& request) {
   if (is_there(request.folder) && !fs::is_empty(request.folder, failed))
     return not_this_set(request, "there is something in it, and no set.json");
   if (Result<void> ok = check_described(request); !ok) return ok.error();
+  if (!request.from.empty()) {
+    if (const Result<Calibration> before = read_calibration(request.from); !before) return before.error();
+  }
   PhotographSet set;
   set.folder = absolute_folder(request.folder);
   set.part = request.part;
@@ -143,6 +147,7 @@ Result<PhotographSet> read_set(const fs::path& folder) {
   }
   set.part = *known;
   set.asked = asked;
+  set.why = document->value("why", Json::object());
   return set;
 }
 
@@ -153,7 +158,8 @@ Result<void> write_set(const PhotographSet& set) {
                                             {"created", set.created},
                                             {"from", set.from.string()},
                                             {"exposure_us", set.exposure_us},
-                                            {"asked", set.asked}});
+                                            {"asked", set.asked},
+                                            {"why", set.why}});
 }
 
 Result<void> leave_out(const PhotographSet& set, const std::string& name, bool out) {
@@ -163,6 +169,10 @@ Result<void> leave_out(const PhotographSet& set, const std::string& name, bool o
   if (!is_plain || !is_there(from) || name == kSetFile) {
     return Error{ErrorKind::kNoInput, "there is no such photograph", name,
                  out ? "the set does not have it" : "it was not left out", "name one of the set's"};
+  }
+  if (is_there(to)) {
+    return Error{ErrorKind::kCannotCreate, "there is one of this name already", to.string(), "",
+                 "remove it, or rename it"};
   }
   if (Result<void> made = make_writable_folder(to.parent_path()); !made) return made;
   std::error_code failed;

@@ -30,6 +30,7 @@ struct PhotographSet {
   std::filesystem::path from;   ///< the calibration that was known before
   double exposure_us = 0;       ///< of its photographs; 0: not metered yet
   Json asked = Json::object();  ///< by photograph: the pose that a person was asked for
+  Json why = Json::object();    ///< by session that weft left out: why
 
   /// What people write about the board or the sheet, beside the photographs.
   std::filesystem::path board_file() const { return folder / "board.toml"; }
@@ -53,7 +54,8 @@ Result<PhotographSet> begin_set(const SetRequest& request);
 Result<PhotographSet> read_set(const std::filesystem::path& folder);
 Result<void> write_set(const PhotographSet& set);
 
-/// Moves a photograph or session of the set to left_out/, or from there back. kNoInput where it is not there.
+/// Moves a photograph or session of the set to left_out/, or from there back. kNoInput where it is not there,
+/// kCannotCreate where one of its name lies there.
 Result<void> leave_out(const PhotographSet& set, const std::string& name, bool out);
 
 }  // namespace weft::app

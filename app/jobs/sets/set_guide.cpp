@@ -32,7 +32,7 @@ using calibration::BoardView;
 constexpr double kTooAlike = 0.7;      // calibration::BoardGuidance::alike
 constexpr double kMostMisfit = 2.5;    // times the median residual of the others
 constexpr std::size_t kToCompare = 4;  // views whose median says what a residual is
-constexpr double kSamePose_deg = 3, kAsAsked_deg = 6;
+constexpr double kSamePose_deg = 3, kAsAsked_deg = 9;
 
 std::vector<std::string> names_in(const fs::path& folder, bool sessions) {
   constexpr std::array kNoPhotographs = {".toml", ".json"};
@@ -52,7 +52,8 @@ std::vector<std::string> names_in(const fs::path& folder, bool sessions) {
 void add_left_out(const PhotographSet& set, SetStanding& standing) {
   const bool of_sessions = set.part == SetPart::kSheet || set.part == SetPart::kCheck;
   for (const std::string& name : names_in(set.left_out(), of_sessions))
-    standing.photographs.push_back({name, false, true, "it was left out", Json::object()});
+    standing.photographs.push_back(
+        {name, false, true, set.why.value(name, "it was left out"), Json::object()});
 }
 
 /// The first name of this kind that nothing in the set has, left out or not.
@@ -280,9 +281,29 @@ void judge_likeness(SetStanding& standing) {
   }
 }
 
-SetStep step_to(const WantedSheet& wanted) {
+/// Whether a sheet lies about as was asked.
+bool lies_as(const WantedSheet& wanted, const SetPhotograph& sheet) {
+  constexpr double kRadians = std::numbers::pi / 180;
+  const double tilt = wanted.tilt_deg * kRadians, azimuth = wanted.azimuth_deg * kRadians;
+  const Json normal = {std::sin(tilt) * std::cos(azimuth), std::sin(tilt) * std::sin(azimuth),
+                       std::cos(tilt)};
+  return degrees_between(normal, sheet.facts["normal"]) < kAsAsked_deg;
+}
+
+/// The name of a scan that was begun for this, or one that nothing in the set has.
+std::string unfinished_or_free(const PhotographSet& set, const std::string& name) {
+  for (int number = 1;; ++number) {
+    std::string session =
+        number == 1 ? fmt::format("{}.weft", name) : fmt::format("{}_{}.weft", name, number);
+    const Result<Session> begun = read_session(set.folder / session);
+    const bool is_taken = is_there(set.folder / session) || is_there(set.left_out() / session);
+    if (!is_taken || (begun && begun->state != "complete")) return session;
+  }
+}
+
+SetStep step_to(const WantedSheet& wanted, std::string session) {
   return {StepKind::kScan,
-          fmt::format("{}.weft", wanted.name),
+          std::move(session),
           wanted.says,
           {{"tilt_deg", wanted.tilt_deg}, {"azimuth_deg", wanted.azimuth_deg}}};
 }
@@ -310,13 +331,13 @@ Result<SetStanding> SetGuide::look_at_sheets(const PhotographSet& set) {
   if (set.part == SetPart::kSheet) judge_likeness(standing);
   const auto has = [&](const WantedSheet& wanted) {
     return std::ranges::any_of(standing.photographs, [&](const SetPhotograph& p) {
-      return p.is_used && p.name == fmt::format("{}.weft", wanted.name);
+      return p.is_used &&
+             (set.part == SetPart::kSheet ? lies_as(wanted, p) : p.name.starts_with(wanted.name));
     });
   };
   const auto next_of = [&](const auto& wanted) {
     for (const WantedSheet& each : wanted) {
-      if (standing.next || has(each)) continue;
-      standing.next = step_to(each);
+      if (!standing.next && !has(each)) standing.next = step_to(each, unfinished_or_free(set, each.name));
     }
   };
   set.part == SetPart::kSheet ? next_of(kSheets) : next_of(kChecks);

@@ -70,15 +70,16 @@ void RigKeeper::tell_status() {
 }
 
 Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& by) {
-  return begin(std::move(request), by, run_, true);
+  return begin(std::move(request), by, run_, true, [] {});
 }
 
-Result<void> RigKeeper::begin_work(capture::ScanRequest request, const std::string& by, RunScan work) {
-  return begin(std::move(request), by, std::move(work), false);
+Result<void> RigKeeper::begin_work(capture::ScanRequest request, const std::string& by, RunScan work,
+                                   std::function<void()> ended) {
+  return begin(std::move(request), by, std::move(work), false, std::move(ended));
 }
 
-Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& by, RunScan work,
-                              bool is_scan) {
+Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& by, RunScan work, bool is_scan,
+                              std::function<void()> ended) {
   const std::lock_guard lock(mutex_);
   if (running_ || stopping_) {
     return Error{ErrorKind::kTryAgain, "the rig is busy", rig_.name,
@@ -97,12 +98,13 @@ Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& b
   request_ = is_scan ? std::optional(request) : std::nullopt;
   tell_status_locked();
   // The last one's thread has done its last deed once running_ is false: joining it here takes no time.
-  scan_ = std::jthread([this, request = std::move(request), by, work = std::move(work),
-                        is_scan](const std::stop_token& cancel) {
+  scan_ = std::jthread([this, request = std::move(request), by, work = std::move(work), is_scan,
+                        ended = std::move(ended)](const std::stop_token& cancel) {
     log_.add("scan_began", fmt::format("{} of {}", name_of_session(request), request.fabric),
              {{"session", name_of_session(request)}, {"fabric", request.fabric}, {"by", by}});
     logged_.clear();
     on_end(request, scan_with_devices(request, work, cancel), is_scan);
+    ended();
   });
   return {};
 }

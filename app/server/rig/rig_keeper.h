@@ -59,8 +59,9 @@ class RigKeeper {
   /// while one runs.
   Result<void> begin(capture::ScanRequest request, const std::string& by);
   /// Has something else done with the devices, as a scan is: `work` hears of cancelling and pausing, and what
-  /// it tells is told. `request` names it. No session is scanned by it.
-  Result<void> begin_work(capture::ScanRequest request, const std::string& by, RunScan work);
+  /// it tells is told. `request` names it. `ended` is called once the rig is free again.
+  Result<void> begin_work(capture::ScanRequest request, const std::string& by, RunScan work,
+                          std::function<void()> ended);
   /// kTryAgain where there is nothing to pause, resume or cancel. Resuming what failed or was cancelled
   /// begins it again.
   Result<void> pause();
@@ -76,7 +77,8 @@ class RigKeeper {
 
  private:
   Result<capture::RigDevices> open_devices(const std::stop_token& cancel);
-  Result<void> begin(capture::ScanRequest request, const std::string& by, RunScan work, bool is_scan);
+  Result<void> begin(capture::ScanRequest request, const std::string& by, RunScan work, bool is_scan,
+                     std::function<void()> ended);
   Result<capture::ScanOutcome> scan_with_devices(const capture::ScanRequest& request, const RunScan& work,
                                                  const std::stop_token& cancel);
   void on_status(const capture::ScanStatus& status);

@@ -75,7 +75,8 @@ Result<Json> SetKeeper::photograph(const std::string& by) {
       [this, step](const capture::ScanRequest&, capture::Lamps& lamps, capture::Camera& camera,
                    const capture::ScanEvents& events, const capture::ScanControl& control) {
         return take(step, lamps, camera, events, control);
-      });
+      },
+      [this] { on_end(); });
   if (!begun) return begun.error();
   is_busy_ = true;
   work_->error.reset();
@@ -93,6 +94,7 @@ Result<capture::ScanOutcome> SetKeeper::take(const SetStep& step, capture::Lamps
   }
   const Result<void> taken = take_step(work->set, step, rig_, lamps, camera, events, control);
   Result<SetStanding> standing = work->guide.look(work->set);
+  if (standing && taken && step.kind == StepKind::kScan) standing = without_useless(*work, step, *standing);
   const std::lock_guard lock(mutex_);
   if (standing) work->standing = std::move(*standing);
   if (!taken) {
@@ -100,10 +102,24 @@ Result<capture::ScanOutcome> SetKeeper::take(const SetStep& step, capture::Lamps
   } else if (!standing) {
     work->error = standing.error();
   }
-  is_busy_ = false;
-  tell_locked();
   if (work->error) return *work->error;
   return capture::ScanOutcome();
+}
+
+void SetKeeper::on_end() {
+  const std::lock_guard lock(mutex_);
+  is_busy_ = false;
+  tell_locked();
+}
+
+/// A step of weft calibrate reads every session of its folder: one that is of no use goes to left_out/.
+Result<SetStanding> SetKeeper::without_useless(Work& work, const SetStep& step, const SetStanding& standing) {
+  const auto scanned = std::ranges::find(standing.photographs, step.name, &SetPhotograph::name);
+  if (scanned == standing.photographs.end() || scanned->is_used) return standing;
+  work.set.why[step.name] = scanned->why;
+  if (Result<void> written = write_set(work.set); !written) return written.error();
+  if (Result<void> moved = app::leave_out(work.set, step.name, true); !moved) return moved.error();
+  return work.guide.look(work.set);
 }
 
 Result<Json> SetKeeper::leave_out(const std::string& name, bool out) {

@@ -51,6 +51,8 @@ class SetKeeper {
   };
   Result<capture::ScanOutcome> take(const SetStep& step, capture::Lamps& lamps, capture::Camera& camera,
                                     const capture::ScanEvents& events, const capture::ScanControl& control);
+  static Result<SetStanding> without_useless(Work& work, const SetStep& step, const SetStanding& standing);
+  void on_end();
   Json document_locked() const;
   void tell_locked() { events_.add("calibration", document_locked()); }
 

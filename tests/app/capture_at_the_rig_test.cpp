@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+// Photographs for a calibration, through the virtual camera, with what can be wrong with them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <thread>
+
+#include "bench/server/served_rig.h"
+#include "core/files.h"
+#include "core/json_document.h"
+
+namespace weft::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr const char* kWork = "/api/v1/calibrations/work";
+
+class CaptureAtTheRig : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(served_.start(WEFT_PROGRAMS, WEFT_SOURCE_DIR "/testdata/scenes/rig.toml", 0.25));
+    ASSERT_TRUE(served_.serve());
+  }
+
+  Json begin(const std::string& part, const char* description) {
+    Json body = {{"part", part}};
+    if (description != nullptr) body["description"] = read_text(things() / description).value();
+    return answer(served_.client().post(kWork, body));
+  }
+  fs::path things() const { return served_.rig().folder() / "things"; }
+
+  static Json answer(const Result<Json>& document) {
+    EXPECT_TRUE(document) << document.error().message();
+    return document ? *document : Json();
+  }
+  void lay(const std::string& thing) {
+    const auto laid = served_.rig().say("table " + thing);
+    ASSERT_TRUE(laid) << laid.error().message();
+  }
+  /// The set after the next photograph.
+  Json photograph() {
+    const Result<Json> begun = served_.client().post(std::string(kWork) + "/photograph", Json::object());
+    if (!begun) return {{"error", begun.error().message()}};
+    for (;; std::this_thread::sleep_for(std::chrono::milliseconds(20))) {
+      Json set = answer(served_.client().get(kWork));
+      if (set.is_null() || !set["busy"]) return set;
+    }
+  }
+  static Json of(const Json& set, const std::string& name) {
+    for (const Json& photograph : set["photographs"]) {
+      if (photograph["name"].get<std::string>().starts_with(name)) return photograph;
+    }
+    return {{"why", "there is none"}};
+  }
+
+  ServedRig served_;
+};
+
+TEST_F(CaptureAtTheRig, SaysOfEachBoardWhetherItIsOfUseAndWhyNot) {
+  begin("board", "board.toml");
+  lay("board");
+  Json set = photograph();
+  EXPECT_TRUE(of(set, "table01")["used"]) << set;
+  const double focal_percent = set["figures"]["predicted"]["focal_percent"];
+
+  lay("board tilt=35 azimuth=90 columns=8 rows=5");
+  EXPECT_THAT(of(photograph(), "board01")["why"].get<std::string>(), HasSubstr("squares"));
+  lay("board tilt=20 x=90");
+  EXPECT_THAT(of(photograph(), "board02")["why"].get<std::string>(), HasSubstr("partial"));
+  lay("empty");
+  EXPECT_THAT(of(photograph(), "board03")["why"].get<std::string>(), HasSubstr("no board"));
+  lay("board tilt=35 azimuth=90");
+  set = photograph();
+  EXPECT_TRUE(of(set, "board04")["used"]) << of(set, "board04");
+  EXPECT_LT(set["figures"]["predicted"]["focal_percent"].get<double>(), focal_percent);
+  set = photograph();
+  EXPECT_THAT(of(set, "board05").dump(), HasSubstr("much like one before"));
+}
+
+TEST_F(CaptureAtTheRig, GoesOnAfterTheDaemonWasKilled) {
+  begin("board", "board.toml");
+  lay("board");
+  const Json before = photograph();
+  served_.kill_daemon();
+  ASSERT_TRUE(served_.serve());
+  EXPECT_FALSE(served_.client().get(kWork)) << "nobody has taken the set up yet";
+  const Json after = begin("board", nullptr);
+  EXPECT_EQ(after["photographs"], before["photographs"]);
+  EXPECT_EQ(after["figures"], before["figures"]);
+  EXPECT_EQ(after["next"], before["next"]);
+}
+
+TEST_F(CaptureAtTheRig, LeavesAPhotographOutAndTakesItBack) {
+  begin("board", "board.toml");
+  lay("board");
+  photograph();
+  lay("board tilt=35 azimuth=90");
+  const Json before = photograph();
+  const std::string leave_out = std::string(kWork) + "/leave-out";
+  const Json without = answer(served_.client().post(leave_out, {{"name", "board01.dng"}}));
+  EXPECT_TRUE(of(without, "board01")["left_out"]);
+  EXPECT_GT(without["figures"]["predicted"]["focal_percent"],
+            before["figures"]["predicted"]["focal_percent"]);
+  const Json back = answer(served_.client().post(leave_out, {{"name", "board01.dng"}, {"out", false}}));
+  EXPECT_EQ(back["figures"], before["figures"]);
+  const Result<Json> none = served_.client().post(leave_out, {{"name", "../rig.toml"}});
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message(), HasSubstr("no such photograph"));
+}
+
+TEST_F(CaptureAtTheRig, RefusesWhatItCannotWorkOn) {
+  const auto refusal = [&](const Json& body) {
+    const Result<Json> begun = served_.client().post(kWork, body);
+    return begun ? std::string("taken") : begun.error().message();
+  };
+  EXPECT_THAT(refusal({{"part", "stone"}}), HasSubstr("board, response"));
+  EXPECT_THAT(refusal({{"part", "board"}}), HasSubstr("nobody said what the board is"));
+  EXPECT_THAT(refusal({{"part", "board"}, {"description", "squares_x = 1"}}), HasSubstr("squares_y"));
+  EXPECT_THAT(refusal({{"part", "board"}, {"name", "../x"}, {"description", ""}}),
+              HasSubstr("no name of a set"));
+  EXPECT_THAT(refusal({{"part", "response"}, {"from", "/nowhere"}}), HasSubstr("nowhere"));
+  const Result<Json> none = served_.client().post(std::string(kWork) + "/leave-out", {{"name", 1}});
+  EXPECT_FALSE(none);
+  begin("chart", "chart.toml");
+  EXPECT_THAT(refusal({{"part", "board"}, {"name", "chart"}}), HasSubstr("it is a set of part chart"));
+}
+
+TEST_F(CaptureAtTheRig, TellsASheetThatLiesAsBefore) {
+  begin("sheet", "sheet.toml");
+  lay("sheet");
+  const Json first = photograph();
+  EXPECT_TRUE(of(first, "sheet01")["used"]) << first;
+  EXPECT_THAT(first["next"]["says"].get<std::string>(), HasSubstr("left edge"));
+  const Json again = photograph();
+  EXPECT_THAT(of(again, "sheet02")["why"].get<std::string>(), HasSubstr("lies as it did in sheet01"));
+  EXPECT_TRUE(of(again, "sheet02")["left_out"]) << "weft calibrate lights reads the folder as it is";
+  EXPECT_EQ(again["next"]["name"], "sheet02_2.weft");
+}
+
+}  // namespace
+}  // namespace weft::bench
