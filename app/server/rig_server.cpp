@@ -43,8 +43,8 @@ struct RigServer::State {
         controls([this](const std::string& name) { tell_controls(name); }),
         attendance(rig, std::move(open), lock.folder() / "test-shots",
                    {[this] { keeper.tell_status(); }, [this](const TestShot& shot) { tell_shot(shot); }}),
-        keeper(rig, attendance, std::move(run), events, log, pictures),
-        sets(rig, keeper, events) {
+        sets(rig, keeper, events),
+        keeper(rig, attendance, std::move(run), events, log, pictures) {
     keeper.on_controls([this] { return controls.holder(); });
   }
 
@@ -103,8 +103,8 @@ struct RigServer::State {
   std::unique_ptr<JobQueue> jobs;
   Controls controls;
   Attendance attendance;
+  SetKeeper sets;    // outlives what the keeper does for it
   RigKeeper keeper;
-  SetKeeper sets;
   std::optional<RigParts> parts;
   GuardRules guard;
   std::string address;

@@ -73,6 +73,7 @@ Result<Json> document_again(const fs::path& file) {
 constexpr char kSolveReport[] = "weft.solve-report";
 constexpr char kCalibrationReport[] = "weft.calibration-report";
 constexpr char kCalibrationCheck[] = "weft.calibration-check";
+constexpr char kSet[] = "weft.set";
 
 struct Format {
   std::string name;
@@ -89,7 +90,8 @@ const std::vector<Format> kFormats = {{"weft.session", session_again},
                                       {"weft.rectified", product_again<kRectified>},
                                       {kSolveReport, document_again<kSolveReport>},
                                       {kCalibrationReport, document_again<kCalibrationReport>},
-                                      {kCalibrationCheck, document_again<kCalibrationCheck>}};
+                                      {kCalibrationCheck, document_again<kCalibrationCheck>},
+                                      {kSet, document_again<kSet>}};
 
 struct Stored {
   fs::path file;
