@@ -41,7 +41,7 @@ std::string next_command(const Json& set) {
                      : part == "sheet"                      ? "lights"
                      : part == "chart"                      ? "color"
                                                             : "check";
-  return fmt::format("weft calibrate {} {} --from {} -o NEW", step, folder, from);
+  return fmt::format("weft calibrate {} {}{} -o NEW", step, folder, from.empty() ? "" : " --from " + from);
 }
 
 std::string line_of_photograph(const Json& photograph) {

@@ -16,18 +16,18 @@ const std::vector<std::string> kDistortion = {"k1", "k2", "p1", "p2"};
 constexpr double kRadians = std::numbers::pi / 180;
 constexpr double kFree = 0.015;    // of the frame's width stays free around a board
 constexpr std::size_t kToFit = 3;  // views that tell more of a camera than its data sheet
-constexpr double kFarOff = 0.5;    // focal length from the data sheet's: the fit went astray
+constexpr double kFarOff = 3;      // times the focal length of the start, or a third: the fit went astray
 constexpr int kGrid = 6;           // places over the frame at which the error is looked at
 constexpr int kEachOf = 2;         // rows and columns of a candidate that are looked at
 
 struct Priors {
-  double focal = 0.05, centre = 0.05, radial = 0.3, tangential = 0.01;
+  double centre = 0.05, radial = 0.3, tangential = 0.01;
 };
 
-/// What a data sheet tells, as information in corners of unit noise.
-Matrix prior_information(const CameraModel& camera, double corner_sigma_px) {
+/// What is known before, as information in corners of unit noise.
+Matrix prior_information(const CameraModel& camera, double focal_sigma, double corner_sigma_px) {
   constexpr Priors kPriors;
-  const double focal_px = kPriors.focal * camera.fx, centre_px = kPriors.centre * camera.size.width;
+  const double focal_px = focal_sigma * camera.fx, centre_px = kPriors.centre * camera.size.width;
   const std::array<double, 8> sigma = {focal_px,           focal_px,          centre_px,
                                        centre_px,          kPriors.radial,    kPriors.radial,
                                        kPriors.tangential, kPriors.tangential};
@@ -59,8 +59,8 @@ Bundle known_so_far(const CameraModel& start, std::span<const BoardView> views) 
   if (views.size() < kToFit) return bundle;
   Bundle fitted = bundle;
   const bool is_fit = fit(pointers_to(views), {"k1", "k2"}, fitted);
-  const double off = std::abs(fitted.camera.fx / start.fx - 1);
-  return is_fit && off < kFarOff ? fitted : bundle;
+  const double times = fitted.camera.fx / start.fx;
+  return is_fit && times < kFarOff && times > 1 / kFarOff ? fitted : bundle;
 }
 
 /// The board's inner corners, or every `each`th of a row and of the rows, as `camera` sees them in a pose.
@@ -324,7 +324,7 @@ BoardGuidance guide_board(const Board& board, double thickness_mm, const CameraM
   const Pose camera_from_rig = pose_of_camera(guidance.camera);
   const Pose flat = {Pose().rotation, {0, 0, thickness_mm}};
   const BoardView on_table = table ? views[*table] : view_of(board, guidance.camera, flat, 1);
-  Matrix information = prior_information(guidance.camera, sigma_px);
+  Matrix information = prior_information(guidance.camera, options.start_focal_sigma, sigma_px);
   for (std::size_t i = 0; i < views.size(); ++i)
     information += information_of(views[i], guidance.camera, bundle.camera_from_board[i]);
   if (!table) information += information_of(on_table, guidance.camera, camera_from_rig * flat);

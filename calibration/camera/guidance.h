@@ -17,6 +17,7 @@
 namespace weft::calibration {
 
 struct GuidanceOptions {
+  double start_focal_sigma = 0.05;  ///< of the focal length of `start`, relative
   /// Noise of a corner along x and along y, until three views show how much it is; and the least that they
   /// may show.
   double corner_sigma_px = 0.1, least_corner_sigma_px = 0.02;
@@ -24,8 +25,8 @@ struct GuidanceOptions {
   double asked_place_mm = 0.02;       ///< sigma of a pixel's place on the table, rms over the frame
   int columns = 8, rows = 6;          ///< parts of the frame in each of which a corner was seen once
   double most_tilt_deg = 40;
-  double lift_mm = 60;      ///< boards are also held this high
-  double worth = 0.06;      ///< a photograph that lowers what is predicted by a smaller share adds little
+  double lift_mm = 60;       ///< boards are also held this high
+  double worth = 0.06;       ///< a photograph that lowers what is predicted by a smaller share adds little
   double most_alike = 0.75;  ///< of a pose with those that were photographed
 };
 
@@ -66,8 +67,8 @@ struct BoardGuidance {
 /// and a pixel's place on the table are predicted nearest to what is asked; once what is asked is met, or
 /// none adds much to it, the one that shows most parts of the frame in which no corner was seen. The
 /// information of a photograph is the Fisher information of its corners on focal lengths, principal point,
-/// k1, k2, p1 and p2 after its own pose has followed (a Schur complement), on top of what a data sheet tells:
-/// 5 percent, a twentieth of the frame.
+/// k1, k2, p1 and p2 after its own pose has followed (a Schur complement), on top of what `start` tells,
+/// its principal point to a twentieth of the frame.
 ///
 /// `start` is the camera as it was known before, from which poses of single views are found; it is refined
 /// where three views or more allow it. `table` is the view in which the board lies on the table,

@@ -113,6 +113,27 @@ TEST_F(CaptureAtTheRig, LeavesAPhotographOutAndTakesItBack) {
   EXPECT_THAT(none.error().message(), HasSubstr("no such photograph"));
 }
 
+TEST_F(CaptureAtTheRig, BeginsWithABoardWhereTheRigHasNoCalibration) {
+  served_.kill_daemon();
+  const fs::path file = served_.rig().folder() / "rig.toml";
+  std::string toml = read_text(file).value();
+  const std::string line = "calibration = \"calibration\"\n";
+  ASSERT_NE(toml.find(line), std::string::npos);
+  ASSERT_TRUE(write_file(file, toml.erase(toml.find(line), line.size())));
+  ASSERT_TRUE(served_.serve());
+  EXPECT_EQ(begin("board", "board.toml")["next"]["name"], "table01");
+  lay("board");
+  Json set = photograph();
+  const double unknown_percent = set["figures"]["predicted"]["focal_percent"];
+  for (const char* pose : {"board tilt=35 azimuth=0", "board tilt=35 azimuth=90 x=10"}) {
+    lay(pose);
+    set = photograph();
+  }
+  const double known_percent = set["figures"]["predicted"]["focal_percent"];
+  EXPECT_GT(unknown_percent, 5) << "one flat board tells no focal length";
+  EXPECT_LT(known_percent, 1) << set["figures"];
+}
+
 TEST_F(CaptureAtTheRig, RefusesWhatItCannotWorkOn) {
   const auto refusal = [&](const Json& body) {
     const Result<Json> begun = served_.client().post(kWork, body);

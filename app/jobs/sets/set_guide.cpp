@@ -127,52 +127,33 @@ SetStep step_to(const PhotographSet& set, const BoardGuidance& guidance) {
   return step;
 }
 
-}  // namespace
+SetStep step_to_table(const PhotographSet& set) {
+  return {StepKind::kPhotograph, free_name(set, "table"),
+          "lay the board flat on the table, in the middle of the picture, its rows along the table's x axis",
+          Json()};
+}
 
-Result<SetStanding> SetGuide::look_at_boards(const PhotographSet& set) {
-  const Result<CameraModel> start = camera_known_before(set);
-  if (!start) return start.error();
-  const Result<PrintedBoard> printed = read_board_file(set.board_file(), {});
-  if (!printed) return printed.error();
-
-  SetStanding standing;
-  std::vector<BoardView> views;
-  std::vector<std::size_t> viewed;
-  std::optional<std::size_t> table;
-  for (const std::string& name : names_in(set.folder, false)) {
-    auto known = boards_.find(name);
-    if (known == boards_.end()) {
-      const Result<BoardPhotograph> read =
-          read_board_photograph(set.folder / name, {.folder = set.folder, .board = printed->board});
-      if (!read) return read.error();
-      known = boards_.emplace(name, *read).first;
-    }
-    const BoardPhotograph& board = known->second;
-    SetPhotograph& photograph = standing.photographs.emplace_back();
-    photograph.name = name;
-    photograph.is_used = board.left_out.empty();
-    photograph.why = board.left_out;
-    photograph.facts = {{"corners", board.sighting.corners.size()}, {"edge_px", board.sighting.edge_px}};
-    if (photograph.is_used && board.size != start->size) {
-      photograph.is_used = false;
-      photograph.why =
-          fmt::format("it has {} x {} pixels, the camera as it was known {} x {}", board.size.width,
-                      board.size.height, start->size.width, start->size.height);
-    }
-    if (!photograph.is_used) continue;
-    if (board.of_table && !table) table = views.size();
-    viewed.push_back(standing.photographs.size() - 1);
-    views.push_back({name, board.sighting.corners});
+SetPhotograph judged(const BoardPhotograph& board, Size size) {
+  SetPhotograph photograph;
+  photograph.name = board.name;
+  photograph.is_used = board.left_out.empty();
+  photograph.why = board.left_out;
+  photograph.facts = {{"corners", board.sighting.corners.size()}, {"edge_px", board.sighting.edge_px}};
+  if (photograph.is_used && board.size != size) {
+    photograph.is_used = false;
+    photograph.why = fmt::format("it has {} x {} pixels, the camera {} x {}", board.size.width,
+                                 board.size.height, size.width, size.height);
   }
+  return photograph;
+}
 
-  const calibration::GuidanceOptions asked;
-  const BoardGuidance guidance =
-      calibration::guide_board(printed->board, printed->thickness_mm, *start, views, table, asked);
+/// What the guidance found, of the set and of each photograph that was viewed.
+void tell(const BoardGuidance& guidance, const calibration::GuidanceOptions& asked,
+          const std::vector<std::size_t>& viewed, SetStanding& standing) {
   for (std::size_t i = 0; i < viewed.size(); ++i) {
-    SetPhotograph& photograph = standing.photographs[viewed[i]];
-    photograph.facts["rms_px"] = guidance.residuals_px[i];
-    if (guidance.alike[i] > kTooAlike)
-      photograph.facts["note"] = "it is much like one before and adds little";
+    Json& facts = standing.photographs[viewed[i]].facts;
+    facts["rms_px"] = guidance.residuals_px[i];
+    if (guidance.alike[i] > kTooAlike) facts["note"] = "it is much like one before and adds little";
   }
   judge_residuals(viewed, guidance, standing);
   standing.figures = {
@@ -183,17 +164,84 @@ Result<SetStanding> SetGuide::look_at_boards(const PhotographSet& set) {
         {"seen", guidance.parts_seen}}},
       {"predicted", json_of(guidance.now)},
       {"asked", {{"focal_percent", asked.asked_focal_percent}, {"place_mm", asked.asked_place_mm}}}};
+  if (guidance.next) standing.figures["then"] = json_of(guidance.then);
   standing.is_done = guidance.is_done;
-  if (!table) {
-    standing.next =
-        SetStep{StepKind::kPhotograph, free_name(set, "table"),
-                "lay the board flat on the table, in the middle of the picture, its rows along the "
-                "table's x axis",
-                Json()};
-  } else if (guidance.next) {
-    standing.next = step_to(set, guidance);
-    standing.figures["then"] = json_of(guidance.then);
+}
+
+/// A camera, and how well its focal length is known.
+struct KnownCamera {
+  CameraModel camera;
+  double focal_sigma = 0;
+};
+
+/// The camera of the calibration that was known before; of a rig that has none, one with a usual lens as high
+/// over the first board as makes it as large as it is seen.
+Result<KnownCamera> camera_before_boards(const PhotographSet& set,
+                                         const std::vector<const BoardPhotograph*>& boards) {
+  if (!set.from.empty()) {
+    const Result<CameraModel> camera = camera_known_before(set);
+    if (!camera) return camera.error();
+    return KnownCamera{*camera, calibration::GuidanceOptions().start_focal_sigma};
   }
+  constexpr double kUsualLens = 2, kUsualSigma = 0.5;  // focal length over the frame's width
+  for (const BoardPhotograph* each : boards) {
+    if (!each->left_out.empty() || each->sighting.corners.size() < 2) continue;
+    const calibration::BoardCorner &a = each->sighting.corners.front(), &b = each->sighting.corners.back();
+    const double mm_per_pixel =
+        std::hypot(b.u_mm - a.u_mm, b.v_mm - a.v_mm) / std::hypot(b.px.x - a.px.x, b.px.y - a.px.y);
+    const double height_mm = kUsualLens * each->size.width * mm_per_pixel;
+    return KnownCamera{overhead_camera(each->size, height_mm, mm_per_pixel), kUsualSigma};
+  }
+  return KnownCamera{boards.empty() ? CameraModel() : overhead_camera(boards.front()->size, 1, 1),
+                     kUsualSigma};
+}
+
+}  // namespace
+
+Result<std::vector<const BoardPhotograph*>> SetGuide::read_boards(const PhotographSet& set,
+                                                                  const PrintedBoard& printed) {
+  std::vector<const BoardPhotograph*> boards;
+  for (const std::string& name : names_in(set.folder, false)) {
+    auto known = boards_.find(name);
+    if (known == boards_.end()) {
+      const Result<BoardPhotograph> read =
+          read_board_photograph(set.folder / name, {.folder = set.folder, .board = printed.board});
+      if (!read) return read.error();
+      known = boards_.emplace(name, *read).first;
+    }
+    boards.push_back(&known->second);
+  }
+  return boards;
+}
+
+Result<SetStanding> SetGuide::look_at_boards(const PhotographSet& set) {
+  const Result<PrintedBoard> printed = read_board_file(set.board_file(), {});
+  if (!printed) return printed.error();
+  const Result<std::vector<const BoardPhotograph*>> boards = read_boards(set, *printed);
+  if (!boards) return boards.error();
+  const Result<KnownCamera> start = camera_before_boards(set, *boards);
+  if (!start) return start.error();
+
+  SetStanding standing;
+  std::vector<BoardView> views;
+  std::vector<std::size_t> viewed;
+  std::optional<std::size_t> table;
+  for (const BoardPhotograph* board : *boards) {
+    standing.photographs.push_back(judged(*board, start->camera.size));
+    if (!standing.photographs.back().is_used) continue;
+    if (board->of_table && !table) table = views.size();
+    viewed.push_back(standing.photographs.size() - 1);
+    views.push_back({board->name, board->sighting.corners});
+  }
+  calibration::GuidanceOptions asked;
+  asked.start_focal_sigma = start->focal_sigma;
+  if (!views.empty() || !set.from.empty()) {
+    const BoardGuidance guidance =
+        calibration::guide_board(printed->board, printed->thickness_mm, start->camera, views, table, asked);
+    tell(guidance, asked, viewed, standing);
+    if (guidance.next) standing.next = step_to(set, guidance);
+  }
+  if (!table) standing.next = step_to_table(set);
   add_left_out(set, standing);
   return standing;
 }

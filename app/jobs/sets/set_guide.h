@@ -55,6 +55,9 @@ class SetGuide {
   Result<SetStanding> look(const PhotographSet& set);
 
  private:
+  /// Each looked at once.
+  Result<std::vector<const BoardPhotograph*>> read_boards(const PhotographSet& set,
+                                                          const PrintedBoard& printed);
   Result<SetStanding> look_at_boards(const PhotographSet& set);
   Result<SetStanding> look_at_sheets(const PhotographSet& set);
   Result<SetStanding> look_at_chart(const PhotographSet& set);

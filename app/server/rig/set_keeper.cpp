@@ -6,7 +6,9 @@
 #include <utility>
 
 #include "app/jobs/sets/set_work.h"
+#include "core/calibration.h"
 #include "core/error_json.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -49,6 +51,7 @@ Result<Json> SetKeeper::begin(const Wish& wish) {
   request.description = wish.description;
   Result<PhotographSet> set = begin_set(request);
   if (!set) return std::move(set).error();
+  if (Result<void> told = tell_tape(*set); !told) return std::move(told).error();
   Work work = {*set, SetGuide(*set), {}, {}};
   Result<SetStanding> standing = work.guide.look(work.set);
   if (!standing) return std::move(standing).error();
@@ -56,6 +59,16 @@ Result<Json> SetKeeper::begin(const Wish& wish) {
   work_ = std::move(work);
   tell_locked();
   return document_locked();
+}
+
+/// Where nobody has calibrated the LEDs, calibrate lights begins where the rig file's tape has them.
+Result<void> SetKeeper::tell_tape(const PhotographSet& set) const {
+  const std::filesystem::path file = set.folder / "rig.toml";
+  if (set.part != SetPart::kSheet || !rig_.lights || is_there(file)) return {};
+  const Result<Calibration> before = read_calibration(set.from);
+  if (before && before->lights) return {};
+  const Result<std::string> text = read_text(rig_.file);
+  return text ? write_file(file, *text) : text.error();
 }
 
 Result<Json> SetKeeper::photograph(const std::string& by) {

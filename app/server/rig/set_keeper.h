@@ -52,6 +52,7 @@ class SetKeeper {
   Result<capture::ScanOutcome> take(const SetStep& step, capture::Lamps& lamps, capture::Camera& camera,
                                     const capture::ScanEvents& events, const capture::ScanControl& control);
   static Result<SetStanding> without_useless(Work& work, const SetStep& step, const SetStanding& standing);
+  Result<void> tell_tape(const PhotographSet& set) const;
   void on_end();
   Json document_locked() const;
   void tell_locked() { events_.add("calibration", document_locked()); }
