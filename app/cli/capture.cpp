@@ -204,6 +204,8 @@ Result<int> converse(Capture& capture, const std::stop_token& stop) {
     Result<void> done;
     if (line->starts_with("x ") || line->starts_with("b ")) {
       done = capture.leave_out(line->substr(2), line->starts_with('x'));
+    } else if (*line == "u" && capture.last().empty()) {
+      note("nothing was taken yet; x NAME leaves out what was taken before");
     } else if (*line == "u") {
       done = capture.leave_out(capture.last(), true);
     } else if (line->empty()) {

@@ -165,7 +165,8 @@ Result<void> write_set(const PhotographSet& set) {
 Result<void> leave_out(const PhotographSet& set, const std::string& name, bool out) {
   const fs::path used = set.folder / name, unused = set.left_out() / name;
   const fs::path &from = out ? used : unused, &to = out ? unused : used;
-  const bool is_plain = fs::path(name).filename() == fs::path(name) && !name.starts_with('.');
+  const bool is_plain =
+      !name.empty() && fs::path(name).filename() == fs::path(name) && !name.starts_with('.');
   if (!is_plain || !is_there(from) || name == kSetFile) {
     return Error{ErrorKind::kNoInput, "there is no such photograph", name,
                  out ? "the set does not have it" : "it was not left out", "name one of the set's"};
