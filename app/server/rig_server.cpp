@@ -40,6 +40,7 @@ struct RigServer::State {
         lock(std::move(its_lock)),
         log(lock.folder() / "log", std::move(say)),
         pictures(lock.folder() / "pictures"),
+        views(lock.folder() / "views"),
         controls([this](const std::string& name) { tell_controls(name); }),
         attendance(rig, std::move(open), lock.folder() / "test-shots",
                    {[this] { keeper.tell_status(); }, [this](const TestShot& shot) { tell_shot(shot); }}),
@@ -89,8 +90,8 @@ struct RigServer::State {
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
     if (previews) keeper.on_scanned([this](const capture::ScanRequest& request) { solve_preview(request); });
-    parts.emplace(
-        RigParts{rig, lock.folder(), keeper, pictures, attendance, sets, controls, *jobs, *library, guard});
+    parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, attendance, sets, controls, *jobs, *library,
+                           views, pixels, guard});
     return {};
   }
 
@@ -99,11 +100,13 @@ struct RigServer::State {
   EventLog events;
   Logbook log;
   FramePictures pictures;
+  ViewStore views;
+  PixelTables pixels;
   std::unique_ptr<LibraryService> library;
   std::unique_ptr<JobQueue> jobs;
   Controls controls;
   Attendance attendance;
-  SetKeeper sets;    // outlives what the keeper does for it
+  SetKeeper sets;  // outlives what the keeper does for it
   RigKeeper keeper;
   std::optional<RigParts> parts;
   GuardRules guard;

@@ -24,10 +24,23 @@ constexpr int kReweightings = 30;
 
 enum class Use { kFitted, kShadowed, kRejected };
 
+ReadingUse story_of(Use use) {
+  switch (use) {
+    case Use::kFitted:
+      return ReadingUse::kUsed;
+    case Use::kShadowed:
+      return ReadingUse::kShadowed;
+    case Use::kRejected:
+      return ReadingUse::kRejected;
+  }
+  return ReadingUse::kMissing;
+}
+
 // One equilibrated reading: x = r / e by plane, and `light` = sum of plane weights times x, which the normal
 // is solved from.
 struct Reading {
   Vector3d l;
+  std::size_t row = 0;  // that it is of
   std::array<double, 3> x = {};
   double light = 0;
   double inverse_strength = 0;  // of plane 0
@@ -66,10 +79,12 @@ struct PixelSolver::Work {
   void take_valid(std::span<const PixelRow> rows) {
     readings.clear();
     status = 0;
-    for (const PixelRow& row : rows) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      const PixelRow& row = rows[k];
       bool missing = false, saturated = false, unlit = false;
       Reading r;
       r.l = Vector3d(row.direction.x, row.direction.y, row.direction.z);
+      r.row = k;
       r.inverse_strength = 1 / row.strength[0];
       for (std::size_t p = 0; p < planes(); ++p) {
         saturated |= row.reading[p] == kInfinity;
@@ -432,6 +447,48 @@ PixelSolution PixelSolver::solve(std::span<const PixelRow> rows) {
   if (!w.estimate()) return w.unsolved();
   if (w.fit.condition >= kIllConditionedFrom) w.status |= kIllConditioned;
   return w.solution();
+}
+
+PixelSolution PixelSolver::explain(std::span<const PixelRow> rows, std::span<ReadingStory> stories) {
+  const PixelSolution solution = solve(rows);
+  const Work& w = *work_;
+  const bool is_solved = solution.path != SolvedBy::kNothing;
+  const Vector3d b = is_solved ? w.fit.b : Vector3d::Zero();
+  const double model2 = std::pow(model_share(w.has_noise()) * b.norm(), 2);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const PixelRow& row = rows[k];
+    const double strength = w.planes() == 1 ? row.strength[0] : 1;
+    const Vector3d l(row.direction.x, row.direction.y, row.direction.z);
+    ReadingStory& story = stories[k];
+    story = {.use = ReadingUse::kShadowed, .predicted = strength * std::max(0.0, l.dot(b))};
+    for (std::size_t p = 0; p < w.planes(); ++p) {
+      if (row.reading[p] == kInfinity) story.use = ReadingUse::kSaturated;
+      if (std::isnan(row.reading[p])) story.use = ReadingUse::kMissing;
+      story.reading +=
+          w.planes() == 1 ? row.reading[p] : w.options.plane_weights[p] * row.reading[p] / row.strength[p];
+    }
+    if (!std::isfinite(story.reading)) story.reading = std::numeric_limits<double>::quiet_NaN();
+  }
+  for (const Reading& r : w.readings) {
+    ReadingStory& story = stories[r.row];
+    const double strength = w.planes() == 1 ? 1 / r.inverse_strength : 1;
+    story.use = story_of(r.use);
+    story.sigma = is_solved ? strength * std::sqrt(w.noise_variance(r) + model2) : 0;
+  }
+  return solution;
+}
+
+PixelOptions pixel_options_of(std::string_view method) {
+  if (method == "seed" || method == "least-squares" || method == "preview") return {};
+  PixelOptions options;
+  options.shadow_mask = method != "l1" && method != "sbl";
+  if (method == "l1") options.estimator = Estimator::kLeastAbsolute;
+  if (method == "sbl") options.estimator = Estimator::kSparse;
+  if (method == "wls") options.estimator = Estimator::kWeighted;
+  if (method == "standard") options.estimator = Estimator::kRejecting;
+  if (method == "robust" || method == "reference" || method == "lts") options.estimator = Estimator::kTrimmed;
+  if (method == "lts") options.trim_from = 0;
+  return options;
 }
 
 PixelSolution solve_pixel(std::span<const PixelRow> rows, const PixelOptions& options) {

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "core/radiometry.h"
 #include "core/solve_record.h"
@@ -63,6 +64,18 @@ struct PixelSolution {
   int rejected = 0;  ///< readings left out because the others contradict them
 };
 
+/// What became of a reading.
+enum class ReadingUse { kUsed, kSaturated, kMissing, kShadowed, kRejected };
+
+/// A reading as the solution of its pixel sees it. Where there is none, nothing is predicted.
+struct ReadingStory {
+  ReadingUse use = ReadingUse::kMissing;
+  double predicted = 0;  ///< in plane 0; of RGB, and the next, the weighted sum of the planes over their
+                         ///< strengths
+  double reading = 0;    ///< as predicted is; NaN where it is saturated or missing
+  double sigma = 0;      ///< of the reading, by noise and by what no noise model knows
+};
+
 /// The slow obvious truth of the kernels, in double, and the last resort of the pixels that float32 cannot
 /// answer for: condition number over kFloatCondition, fewer than three readings, nothing but noise.
 ///
@@ -75,11 +88,17 @@ class PixelSolver {
   ~PixelSolver();
   PixelSolver(PixelSolver&&) noexcept;
   PixelSolution solve(std::span<const PixelRow> rows);
+  /// The same, and a story for each row.
+  PixelSolution explain(std::span<const PixelRow> rows, std::span<ReadingStory> stories);
 
  private:
   struct Work;
   std::unique_ptr<Work> work_;
 };
+
+/// How PixelSolver does what the method of this name (solver/method.h) does to one pixel by itself. The seed
+/// stands here as least squares.
+PixelOptions pixel_options_of(std::string_view method);
 
 PixelSolution solve_pixel(std::span<const PixelRow> rows, const PixelOptions& options);
 

@@ -13,6 +13,8 @@
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/rig_keeper.h"
 #include "app/server/rig/set_keeper.h"
+#include "app/server/view/pixel_tables.h"
+#include "app/server/view/view_store.h"
 #include "capture/rig.h"
 #include "core/json_document.h"
 
@@ -29,6 +31,8 @@ struct RigParts {
   Controls& controls;
   JobQueue& jobs;
   LibraryService& library;
+  ViewStore& views;
+  PixelTables& pixels;
   GuardRules guard;  ///< who may come in
 };
 
@@ -51,6 +55,7 @@ Resource calibrations_resource(const RigParts& parts);
 Resource scan_resource(const RigParts& parts);
 Resource sessions_resource(const RigParts& parts);
 Resource frames_resource(const RigParts& parts);
+Resource solves_resource(const RigParts& parts);
 Resource jobs_resource(const RigParts& parts);
 Resource library_resource(const RigParts& parts);
 Resource events_resource(const RigParts& parts);

@@ -17,5 +17,6 @@ const char* rig_description();
 const char* scan_description();
 const char* server_description();
 const char* sessions_description();
+const char* solves_description();
 
 }  // namespace weft::app

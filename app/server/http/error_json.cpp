@@ -12,7 +12,7 @@ namespace weft::app {
 namespace {
 
 /// What is said, and the word for it. Clients rely on the words.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 45> kCodes = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 49> kCodes = {{
     {"the token is missing or wrong", "not_logged_in"},
     {"the token is wrong", "wrong_token"},
     {"this token may only look", "may_only_look"},
@@ -44,6 +44,10 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 45> kCodes =
     {"there is no such session", "no_such_session"},
     {"this is no name of a session", "no_such_session"},
     {"there is no such frame", "no_such_frame"},
+    {"there is no such solve", "no_such_solve"},
+    {"there is no such tile", "no_such_tile"},
+    {"the readings of this solve are no longer there", "readings_gone"},
+    {"nothing is known of millimetres", "no_millimetres"},
     {"session is being written", "session_busy"},
     {"session was changed meanwhile", "changed_meanwhile"},
     {"there is nothing to take back", "nothing_to_undo"},

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/result.h"
+
+// What can be looked at of a folder of maps: those of a solve, or the truth of a simulated session.
+
+namespace weft::app {
+
+enum class LayerKind {
+  kNormal,  ///< X, Y, Z
+  kColor,   ///< R, G, B, linear
+  kScalar,  ///< one value
+  kFlags,   ///< bits of StatusBit (core/solve_record.h)
+  kMosaic,  ///< a raw frame
+};
+const char* name_of(LayerKind kind);  ///< "normal"
+
+/// One map among those of a folder.
+struct Layer {
+  std::string name;  ///< "sigma_noise"
+  LayerKind kind = LayerKind::kScalar;
+  std::string unit;                   ///< "deg", "mm", "share"; empty: none
+  std::string file;                   ///< in the folder
+  std::vector<std::string> channels;  ///< of the file
+  bool is_deviation = false;          ///< averages as the root of the mean of squares
+};
+
+/// The layers of the maps that a folder has, normal first. Errors of read_image_info(); kNoInput where there
+/// are none.
+struct Layers {
+  Size size;
+  std::vector<Layer> all;
+
+  const Layer* find(const std::string& name) const;
+};
+Result<Layers> layers_of(const std::filesystem::path& folder);
+
+}  // namespace weft::app

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "app/jobs/view/layers.h"
+#include "app/jobs/view/pyramid.h"
+#include "core/calibration.h"
+#include "core/image.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+// What maps say in a place: numbers for people, from the maps' own values, never from tiles.
+
+namespace weft::app {
+
+/// The pyramid of a layer.
+using OpenLayer = std::function<Result<std::shared_ptr<Pyramid>>(const Layer&)>;
+
+/// {"level", "pixels", "layers": {NAME: {CHANNEL: {"mean", "deviation", "p5", "p50", "p95", "least", "most",
+/// "bins"}}}, "status": {NAME: share}} of a rectangle, which lies inside. Up to four megapixels every pixel
+/// counts (level 0); of larger ones the averages of the level that has no more do. "bins" are 64 counts from
+/// least to most.
+Result<Json> region_facts(const Layers& layers, const OpenLayer& open, Rect part);
+
+/// A line over the frame, between centres of pixels of the maps.
+struct Line {
+  double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+};
+
+/// Where a solve's pixels lie on the cloth.
+struct Ground {
+  const Calibration& calibration;  ///< has a camera
+  int pixels_each = 1;             ///< of the camera, a pixel of the maps and side
+  double height_mm = 0;            ///< of the cloth
+};
+
+/// {"mm", "sigma_mm", "profile": {"mm", "height_mm", "albedo"}} along a line. The length is that on the plane
+/// of the cloth, its sigma from the covariance of the camera (null where the calibration has none). The
+/// profile is of the pixels under the line, at most 2000: heights are sums of slopes from the line's begin,
+/// albedo is green's. kBadData where a layer of normals or albedo is not there.
+Result<Json> line_facts(const Layers& layers, const OpenLayer& open, const Line& line, const Ground& ground);
+
+}  // namespace weft::app
