@@ -11,6 +11,7 @@
 #include "bench/server/lease.h"
 #include "bench/server/library.h"
 #include "bench/server/scan_beside.h"
+#include "bench/server/tiles.h"
 #include "core/process.h"
 
 namespace weft::bench {
@@ -38,11 +39,20 @@ Result<Rows> measure_scan(const ServerArguments& a, app::ProgressLine& line) {
   return scan_beside_table(options);
 }
 
+Result<Rows> measure_tiles(const ServerArguments& a, app::ProgressLine& line) {
+  ServerTilesOptions options;
+  if (a.runs > 0) options.tiles = a.runs;
+  options.seed = a.seed;
+  options.progress = [&](int done, int steps) { line.update("tiles", static_cast<double>(done) / steps); };
+  return server_tiles_table(options);
+}
+
 Result<Rows> measure(const ServerArguments& a, bool quiet) {
   if (a.part == "door") return door_table({.requests = a.runs > 0 ? a.runs : 200, .seed = a.seed});
   app::ProgressLine line(quiet);
   if (a.part == "library") return measure_library(a, line);
   if (a.part == "scan") return measure_scan(a, line);
+  if (a.part == "tiles") return measure_tiles(a, line);
   ServerLeaseOptions options;
   options.programs = program_beside("weft").parent_path();
   if (a.runs > 0) options.trials = a.runs;
@@ -59,12 +69,13 @@ app::Run add_server(app::Options& options) {
            "malformed requests, silent clients and slow readers; library: answers with tens of thousands of "
            "sessions, which it makes in a temporary folder; scan: a scan beside malformed requests, silent "
            "clients "
-           "and slow readers, over one alone")
-      .one_of({"lease", "door", "library", "scan"})
+           "and slow readers, over one alone; tiles: what a viewer waits for, of maps of 16 and 100 "
+           "megapixels")
+      .one_of({"lease", "door", "library", "scan", "tiles"})
       .shows_default();
   options
       .add("--runs", &a->runs,
-           "Trials of each death, requests of each row, or pairs of scans; 0 is as many as "
+           "Trials of each death, requests or tiles of each row, or pairs of scans; 0 is as many as "
            "docs/reliability.md")
       .in_range(0, 1000000);
   options.add("--seed", &a->seed, "Of the moments, or of malformed requests").shows_default();

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "app/server/http/client.h"
-#include "app/server/rig_server.h"
+#include "bench/server/no_devices.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
 #include "core/temporary_folder.h"
@@ -87,19 +87,6 @@ Json row_of(const std::string& what, int sessions, const std::vector<double>& ti
           {"most_ms", most}, {"asked_ms", asked_ms}, {"holds", most < asked_ms}};
 }
 
-Result<std::unique_ptr<app::RigServer>> server_of(const fs::path& sessions, const fs::path& state) {
-  capture::Rig rig;
-  rig.name = kRig;
-  rig.scan.sessions = sessions;
-  rig.daemon.port = 0;
-  rig.daemon.state = state;
-  const Error no_devices = {ErrorKind::kTryAgain, "this rig has no devices", rig.name, "", "name another"};
-  return app::RigServer::start(
-      rig, [=](const capture::Rig&) -> Result<capture::RigDevices> { return no_devices; },
-      [=](const capture::ScanRequest&, capture::Lamps&, capture::Camera&, const capture::ScanEvents&,
-          const capture::ScanControl&) -> Result<capture::ScanOutcome> { return no_devices; });
-}
-
 // Until the server has read all of them.
 Result<void> wait_for(const app::RigClient& client, int sessions) {
   for (;;) {
@@ -113,7 +100,7 @@ Result<void> wait_for(const app::RigClient& client, int sessions) {
 Result<void> measure_calls(const ServerLibraryOptions& options, Rows& rows) {
   const TemporaryFolder folder;
   write_sessions(folder.path() / "scans", options.served);
-  const auto server = server_of(folder.path() / "scans", folder.path() / "state");
+  const auto server = server_without_devices(kRig, folder.path() / "scans", folder.path() / "state");
   if (!server) return server.error();
   const Result<app::RigClient> client = app::RigClient::connect((*server)->address());
   if (!client) return client.error();

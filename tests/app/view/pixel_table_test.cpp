@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/view/pixel_table.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "app/jobs/solve.h"
+#include "app/jobs/view/layers.h"
+#include "app/jobs/view/probes.h"
+#include "core/temporary_folder.h"
+#include "simulator/scene/scene.h"
+#include "simulator/simulate.h"
+
+// A small cloth without lens blur, from frames to answers.
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AskedSolve : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
+    const auto scene = simulator::parse_scene(
+        "fabric = \"asked\"\n[camera]\nwidth = 256\nheight = 192\nmm_per_pixel = 0.04\n"
+        "[geometry]\nfamily = \"deep\"\n[effects]\nnear_light = true\nrelief = true\nnoise = true\n",
+        "scene");
+    ASSERT_TRUE(scene) << scene.error().message();
+    const auto made = simulator::simulate_session(*scene, session(), {});
+    ASSERT_TRUE(made) << made.error().message();
+    SessionOptions input;
+    input.folder = session();
+    const Result<SolveReport> report = solve_session(input, {}, {});
+    ASSERT_TRUE(report) << report.error().message();
+    solve_ = report->facts;
+    maps_ = report->folder;
+  }
+  static void TearDownTestSuite() { folder_.reset(); }
+
+  static fs::path session() { return folder_->path() / "asked.weft"; }
+  static Result<Layers> layers() { return layers_of(maps_); }
+  static OpenLayer opener() {
+    return [](const Layer& layer) -> Result<std::shared_ptr<Pyramid>> {
+      Result<std::unique_ptr<Pyramid>> pyramid = Pyramid::open(maps_, layer, folder_->path() / "kept");
+      if (!pyramid) return std::move(pyramid).error();
+      return std::shared_ptr<Pyramid>(std::move(*pyramid));
+    };
+  }
+
+  static inline std::unique_ptr<TemporaryFolder> folder_;
+  static inline SolveFacts solve_;
+  static inline fs::path maps_;
+};
+
+TEST_F(AskedSolve, ReadingsMinusTheirModelAreTheResidualOfTheMap) {
+  const auto table = PixelTable::read(session(), solve_, {});
+  ASSERT_TRUE(table) << table.error().message();
+  const Result<Layers> layers = AskedSolve::layers();
+  ASSERT_TRUE(layers) << layers.error().message();
+  const auto residual = opener()(*layers->find("residual"));
+  ASSERT_TRUE(residual) << residual.error().message();
+  int pixels = 0;
+  for (const auto& [x, y] : {std::pair{10, 10}, {101, 55}, {128, 96}, {255, 191}, {30, 170}}) {
+    const Json answer = (*table)->at(x, y);
+    ASSERT_EQ(answer["readings"].size(), 10U);
+    double squares = 0;
+    int used = 0;
+    for (const Json& reading : answer["readings"]) {
+      EXPECT_EQ(reading["used"].get<bool>(), reading["left_out"].is_null());
+      if (!reading["used"]) continue;
+      const double strength = reading["strength"];
+      squares += std::pow((reading["reading"].get<double>() - reading["model"].get<double>()) / strength, 2);
+      ++used;
+    }
+    const double solved = std::sqrt(squares / used) / answer["solved"]["albedo"][0].get<double>();
+    const auto map = (*residual)->read(0, {x, y, x + 1, y + 1});
+    ASSERT_TRUE(map) << map.error().message();
+    EXPECT_NEAR(solved, (*map)(0, 0), 1e-3 * solved + 1e-5) << x << " " << y;
+    ++pixels;
+  }
+  EXPECT_EQ(pixels, 5);
+}
+
+TEST_F(AskedSolve, SaysWhyAReadingIsLeftOut) {
+  const auto table = PixelTable::read(session(), solve_, {});
+  ASSERT_TRUE(table) << table.error().message();
+  std::set<std::string> reasons;
+  for (int y = 0; y < 192; y += 3) {
+    for (int x = 0; x < 256; x += 3) {
+      const Json answer = (*table)->at(x, y);
+      for (const Json& reading : answer["readings"]) {
+        if (reading["left_out"].is_string()) reasons.insert(reading["left_out"]);
+      }
+    }
+  }
+  EXPECT_TRUE(reasons.contains("shadowed")) << "of a weave some yarns face away from low lights";
+  EXPECT_FALSE(reasons.contains("saturated"));
+}
+
+TEST_F(AskedSolve, IsRefusedWhereTheSessionHasChanged) {
+  SolveFacts other = solve_;
+  other.input["calibration"] = "another";
+  const auto table = PixelTable::read(session(), other, {});
+  ASSERT_FALSE(table);
+  EXPECT_EQ(table.error().kind, ErrorKind::kBadData);
+  EXPECT_EQ(table.error().what, "the readings of this solve are no longer there");
+}
+
+TEST_F(AskedSolve, MeasuresALineInMillimetresWithItsDeviation) {
+  const Result<Layers> layers = AskedSolve::layers();
+  ASSERT_TRUE(layers) << layers.error().message();
+  Result<Calibration> calibration = read_calibration(session() / "calibration");
+  ASSERT_TRUE(calibration) << calibration.error().message();
+  // Of a focal length with one percent the length has one.
+  const double fx = calibration->camera->fx, sigma = 0.01 * fx;
+  calibration->camera_covariance = ParameterCovariance{{"fx"}, {sigma * sigma}};
+  const Result<Json> line = line_facts(*layers, opener(), {20, 100, 220, 100}, {*calibration, 1, 0});
+  ASSERT_TRUE(line) << line.error().message();
+  const double each = 0.04;
+  EXPECT_NEAR((*line)["mm"].get<double>(), 200 * each, 1e-6 * each);
+  EXPECT_NEAR((*line)["sigma_mm"].get<double>(), 2 * each, 0.02 * each);
+  EXPECT_EQ((*line)["profile"]["mm"].size(), 201U);
+}
+
+TEST_F(AskedSolve, CountsEveryPixelOfARectangleOnce) {
+  const Result<Layers> layers = AskedSolve::layers();
+  ASSERT_TRUE(layers) << layers.error().message();
+  const Result<Json> facts = region_facts(*layers, opener(), {11, 13, 111, 63});
+  ASSERT_TRUE(facts) << facts.error().message();
+  EXPECT_EQ((*facts)["level"], 0);
+  EXPECT_EQ((*facts)["pixels"], 5000);
+  const Json& green = (*facts)["layers"]["albedo"]["G"];
+  std::int64_t counted = 0;
+  for (const Json& bin : green["bins"]) counted += bin.get<std::int64_t>();
+  EXPECT_EQ(counted, 5000);
+  EXPECT_LE(green["p5"], green["p50"]);
+  EXPECT_LE(green["p50"], green["p95"]);
+  EXPECT_EQ((*facts)["status"].size(), 8U);
+}
+
+}  // namespace
+}  // namespace weft::app
