@@ -7,53 +7,23 @@
 #include <set>
 #include <string>
 
-#include "app/jobs/solve.h"
 #include "app/jobs/view/layers.h"
 #include "app/jobs/view/probes.h"
-#include "core/temporary_folder.h"
-#include "simulator/scene/scene.h"
-#include "simulator/simulate.h"
-
-// A small cloth without lens blur, from frames to answers.
+#include "tests/app/view/asked_session.h"
 
 namespace weft::app {
 namespace {
 
-namespace fs = std::filesystem;
-
-class AskedSolve : public testing::Test {
+class AskedSolve : public AskedSession {
  protected:
-  static void SetUpTestSuite() {
-    folder_ = std::make_unique<TemporaryFolder>();
-    const auto scene = simulator::parse_scene(
-        "fabric = \"asked\"\n[camera]\nwidth = 256\nheight = 192\nmm_per_pixel = 0.04\n"
-        "[geometry]\nfamily = \"deep\"\n[effects]\nnear_light = true\nrelief = true\nnoise = true\n",
-        "scene");
-    ASSERT_TRUE(scene) << scene.error().message();
-    const auto made = simulator::simulate_session(*scene, session(), {});
-    ASSERT_TRUE(made) << made.error().message();
-    SessionOptions input;
-    input.folder = session();
-    const Result<SolveReport> report = solve_session(input, {}, {});
-    ASSERT_TRUE(report) << report.error().message();
-    solve_ = report->facts;
-    maps_ = report->folder;
-  }
-  static void TearDownTestSuite() { folder_.reset(); }
-
-  static fs::path session() { return folder_->path() / "asked.weft"; }
   static Result<Layers> layers() { return layers_of(maps_); }
   static OpenLayer opener() {
     return [](const Layer& layer) -> Result<std::shared_ptr<Pyramid>> {
-      Result<std::unique_ptr<Pyramid>> pyramid = Pyramid::open(maps_, layer, folder_->path() / "kept");
+      Result<std::unique_ptr<Pyramid>> pyramid = Pyramid::open(maps_, layer, root() / "kept");
       if (!pyramid) return std::move(pyramid).error();
       return std::shared_ptr<Pyramid>(std::move(*pyramid));
     };
   }
-
-  static inline std::unique_ptr<TemporaryFolder> folder_;
-  static inline SolveFacts solve_;
-  static inline fs::path maps_;
 };
 
 TEST_F(AskedSolve, ReadingsMinusTheirModelAreTheResidualOfTheMap) {
@@ -120,7 +90,7 @@ TEST_F(AskedSolve, MeasuresALineInMillimetresWithItsDeviation) {
   calibration->camera_covariance = ParameterCovariance{{"fx"}, {sigma * sigma}};
   const Result<Json> line = line_facts(*layers, opener(), {20, 100, 220, 100}, {*calibration, 1, 0});
   ASSERT_TRUE(line) << line.error().message();
-  const double each = 0.04;
+  const double each = kMmPerPixel;
   EXPECT_NEAR((*line)["mm"].get<double>(), 200 * each, 1e-6 * each);
   EXPECT_NEAR((*line)["sigma_mm"].get<double>(), 2 * each, 0.02 * each);
   EXPECT_EQ((*line)["profile"]["mm"].size(), 201U);
