@@ -46,6 +46,7 @@ Result<void> make_session(const ScanRequest& request, const std::string& calibra
   session.document["schema"] = "weft.session/1.2";
   session.document["plan"] = to_json(list);
   if (!request.metadata.empty()) session.document["metadata"] = request.metadata;
+  if (!request.calibrated.is_null()) session.document["calibrated"] = request.calibrated;
   if (!request.accepted_moved.is_null()) session.document["accepted_moved"] = request.accepted_moved;
   if (Result<void> written = write_session(session); !written) return written;
   after_step("session.json made");

@@ -35,6 +35,7 @@ struct ScanRequest {
   double cloth_height_mm = 0;
   Json metadata =
       Json::object();        ///< id, tags, composition, weight, construction, side, notes: kept as given
+  Json calibrated = {};      ///< how old the calibration is, and its last check, kept as given
   Json accepted_moved = {};  ///< of a rig that is known to have moved: {"why", "degrees"}, kept as given
   std::string rig;
   std::filesystem::path calibration;  ///< folder, copied into the session; empty: none, and no light model

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "bench/server/served_rig.h"
 #include "core/json_document.h"
@@ -64,6 +65,24 @@ TEST_F(FocusAtTheRig, IsToldOnATerminalThroughTheDaemon) {
   EXPECT_EQ((*weft)->wait(60), 0) << (*weft)->said();
   EXPECT_THAT((*weft)->said(), HasSubstr("sharpest"));
   EXPECT_THAT((*weft)->said(), HasSubstr("each part of the picture"));
+}
+
+TEST_F(FocusAtTheRig, IsLitByOneLedAfterAnother) {
+  ASSERT_TRUE(served_.client().post("/api/v1/rig/devices", {{"open", true}}));
+  std::vector<int> turns;
+  const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(6500);
+  while (std::chrono::steady_clock::now() < end) {
+    const Result<Json> lit = served_.client().post("/api/v1/rig/light", {{"round", true}});
+    ASSERT_TRUE(lit) << lit.error().message();
+    ASSERT_EQ(lit->at("lit").size(), 1u) << *lit;
+    const int led = lit->at("lit")[0];
+    if (turns.empty() || turns.back() != led) turns.push_back(led);
+    std::this_thread::sleep_for(std::chrono::milliseconds(250));
+  }
+  EXPECT_THAT(turns, testing::ElementsAre(1, 2, 3)) << "each for three seconds, all of them cool";
+  const Result<Json> both = served_.client().post("/api/v1/rig/light", {{"round", true}, {"leds", {1}}});
+  ASSERT_FALSE(both);
+  EXPECT_EQ(both.error().kind, ErrorKind::kUsage);
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "app/jobs/compare.h"
 #include "core/calibration.h"
 #include "core/files.h"
+#include "core/session.h"
 #include "core/temporary_folder.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/scene/rig.h"
@@ -91,6 +92,20 @@ TEST_F(RigDay, RunsLineByLine) {
   EXPECT_THAT(said_, HasSubstr("Accepted: 3 sheets"));
   EXPECT_THAT(said_, HasSubstr("names it from now on"));
   EXPECT_THAT(said_, Not(HasSubstr("not used")));
+}
+
+TEST_F(RigDay, LeavesAScanThatSaysHowOldItsCalibrationIs) {
+  ASSERT_EQ(code_, 0);
+  const Result<Calibration> measured = read_calibration(in_folder("rig/cal4"));
+  ASSERT_TRUE(measured) << measured.error().message();
+  const std::filesystem::directory_iterator scans(in_folder("rig/scans"));
+  ASSERT_NE(begin(scans), end(scans));
+  const Result<Session> session = read_session(scans->path());
+  ASSERT_TRUE(session) << session.error().message();
+  const Json calibrated = session->document.value("calibrated", Json::object());
+  EXPECT_EQ(calibrated.value("measured", ""), measured->subject.measured);
+  EXPECT_EQ(calibrated.value("passed", false), true) << calibrated;
+  EXPECT_GT(calibrated.value("checked", ""), measured->subject.measured);
 }
 
 TEST_F(RigDay, EndsWithNormalsThatAnExactCalibrationWouldGive) {

@@ -41,9 +41,21 @@ Result<Reply> open_or_close(const RigParts& parts, const Call& call) {
   return json_reply(devices_of(parts));
 }
 
+Result<Reply> lit_reply(const Result<Attendance::Lit>& lit) {
+  if (!lit) return lit.error();
+  const double lease_s = 1e-3 * static_cast<double>(Attendance::kLightLease.count());
+  return json_reply({{"lit", lit->leds}, {"rest_s", lit->rest_s}, {"lease_s", lease_s}});
+}
+
 Result<Reply> light(const RigParts& parts, const Call& call) {
   const Result<Json> body = command_in(parts, call);
   if (!body) return body.error();
+  const Json round = body->value("round", Json(false));
+  if (!round.is_boolean()) return refused("round", "must be true or false");
+  if (round.get<bool>()) {
+    if (body->contains("leds")) return refused("leds", "must be absent where LEDs take turns");
+    return lit_reply(parts.attendance.light_in_turns());
+  }
   const Json list = body->value("leds", Json());
   if (!list.is_array() || list.size() > 2) return refused("leds", "must be a list of no LED, one or two");
   std::vector<int> leds;
@@ -53,11 +65,7 @@ Result<Reply> light(const RigParts& parts, const Call& call) {
     leds.push_back(*led);
   }
   if (leds.size() == 2 && leds[0] == leds[1]) return refused("leds", "must be two different ones");
-  const Result<double> rest_s = parts.attendance.light(leds);
-  if (!rest_s) return rest_s.error();
-  const double lease_s = 1e-3 * static_cast<double>(Attendance::kLightLease.count());
-  return json_reply(
-      {{"lit", *rest_s > 0 ? std::vector<int>() : leds}, {"rest_s", *rest_s}, {"lease_s", lease_s}});
+  return lit_reply(parts.attendance.light(leds));
 }
 
 Result<Reply> begin_shot(const RigParts& parts, const Call& call) {

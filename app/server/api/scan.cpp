@@ -17,14 +17,27 @@
 namespace weft::app {
 namespace {
 
+/// When it was measured, and what the last check of it said; null where nothing is known.
+Json age_of(const Calibration& calibration, const std::optional<LastCheck>& check) {
+  Json age = Json::object();
+  if (!calibration.subject.measured.empty()) age["measured"] = calibration.subject.measured;
+  if (check) {
+    age["checked"] = check->date;
+    age["passed"] = check->passed;
+    if (check->mean_deg) age["mean_deg"] = *check->mean_deg;
+  }
+  return age.empty() ? Json() : age;
+}
+
 /// Whether the last check of the rig's calibration passed. One that did not must be accepted, and then is
-/// recorded with what it costs.
+/// recorded with what it costs. The age of the calibration is recorded in any case.
 Result<void> check_moved(const capture::Rig& rig, capture::ScanRequest& request) {
   const Json accepted = std::exchange(request.accepted_moved, Json());
   if (rig.scan.calibration.empty()) return {};
   const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
   if (!calibration) return {};  // the scan says what is wrong with it
   const std::optional<LastCheck> check = last_check_of(rig.scan.calibration, calibration->id);
+  request.calibrated = age_of(*calibration, check);
   if (!check || check->passed) return {};
   if (accepted.is_null()) {
     return moved_since(*check,

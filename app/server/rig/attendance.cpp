@@ -159,7 +159,7 @@ void Attendance::feel_heat_held() {
   felt_ = Clock::now();
 }
 
-Result<double> Attendance::light(const std::vector<int>& leds) {
+Result<Attendance::Lit> Attendance::light(const std::vector<int>& leds) {
   {
     const std::lock_guard lock(mutex_);
     if (is_lent_) return is_scanning(rig_.name);
@@ -167,15 +167,41 @@ Result<double> Attendance::light(const std::vector<int>& leds) {
     renew();
     wanted_ = leds;
     lit_until_ = Clock::now() + kLightLease;
-    if (is_shooting_) return 0.0;  // lit after the shot
+    if (is_shooting_) return Lit{leds, 0};  // lit after the shot
   }
   const std::lock_guard devices(devices_mutex_);
   if (!devices_) return is_closed(rig_.name);
   Result<double> rest = light_held(leds, kLight_s);
-  if (!rest) return rest;
+  if (!rest) return std::move(rest).error();
   const std::vector<int> lit = *rest > 0 ? std::vector<int>() : leds;
   if (status().lit != lit) change([&](Status& status) { status.lit = lit; });
-  return rest;
+  return Lit{lit, *rest};
+}
+
+Result<Attendance::Lit> Attendance::light_in_turns() {
+  const std::vector<double> seconds = status().can_light_s;
+  int led = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto can = [&](int each) {
+      const auto i = static_cast<std::size_t>(each) - 1;
+      return i < seconds.size() ? seconds[i] : 0;
+    };
+    const Clock::time_point now = Clock::now();
+    const bool goes_on = turn_ > 0 && now < turn_began_ + kTurn && can(turn_) > kLight_s;
+    if (!goes_on) {
+      // From the one that follows, so that those that are as cool as each other go round.
+      int next = turn_ % rig_.leds + 1;
+      for (int i = 1; i < rig_.leds; ++i) {
+        const int other = (turn_ + i) % rig_.leds + 1;
+        if (other != turn_ && can(other) > can(next)) next = other;
+      }
+      turn_ = next;
+      turn_began_ = now;
+    }
+    led = turn_;
+  }
+  return light({led});
 }
 
 Result<Attendance::Look> Attendance::look(std::int64_t after) {

@@ -44,6 +44,7 @@ class Attendance {
  public:
   static constexpr std::chrono::minutes kLease{5};
   static constexpr std::chrono::milliseconds kLightLease{1500};
+  static constexpr std::chrono::seconds kTurn{3};
   static constexpr std::size_t kKeptShots = 8;
   static constexpr std::chrono::seconds kLookLease{3};
 
@@ -71,10 +72,16 @@ class Attendance {
   /// Dark and closed.
   Result<void> close();
 
-  /// Lights these LEDs (none: all off) until kLightLease from now. Seconds that they have to rest before, 0
-  /// where they are lit. Errors: kTryAgain where the devices are closed or a scan has them, kUsage for LEDs
-  /// that are not there, those of Lamps::light().
-  Result<double> light(const std::vector<int>& leds);
+  struct Lit {
+    std::vector<int> leds;  ///< that are lit now
+    double rest_s = 0;      ///< that those asked for have to rest before; 0 where they are lit
+  };
+  /// Lights these LEDs (none: all off) until kLightLease from now. Errors: kTryAgain where the devices are
+  /// closed or a scan has them, kUsage for LEDs that are not there, those of Lamps::light().
+  Result<Lit> light(const std::vector<int>& leds);
+  /// Lights one LED for as long as somebody looks: after kTurn another one, that which may be lit longest.
+  /// The same errors.
+  Result<Lit> light_in_turns();
   /// Begins a test shot by this LED (0: none) and gives its id. The light that was lit comes back after it.
   /// Errors as light(); kTryAgain while another one is taken.
   Result<int> shoot(int led, double exposure_us);
@@ -137,6 +144,8 @@ class Attendance {
   bool is_lent_ = false, is_shooting_ = false, is_stopping_ = false;
   Clock::time_point open_until_, lit_until_, look_until_;
   std::vector<int> wanted_;
+  int turn_ = 0;  ///< the LED whose turn it is, from turn_began_ on
+  Clock::time_point turn_began_;
   std::vector<double> can_light_s_;  ///< at felt_
   Clock::time_point felt_;
   std::deque<TestShot> shots_;
