@@ -34,6 +34,7 @@ Result<Rows> measure_scan(const ServerArguments& a, app::ProgressLine& line) {
   ScanBesideOptions options;
   options.programs = program_beside("weft").parent_path();
   if (a.runs > 0) options.turns = a.runs;
+  if (a.part == "viewers") options.viewers = 2;
   options.seed = a.seed;
   options.progress = [&](int done, int turns) { line.update("scan", static_cast<double>(done) / turns); };
   return scan_beside_table(options);
@@ -51,7 +52,7 @@ Result<Rows> measure(const ServerArguments& a, bool quiet) {
   if (a.part == "door") return door_table({.requests = a.runs > 0 ? a.runs : 200, .seed = a.seed});
   app::ProgressLine line(quiet);
   if (a.part == "library") return measure_library(a, line);
-  if (a.part == "scan") return measure_scan(a, line);
+  if (a.part == "scan" || a.part == "viewers") return measure_scan(a, line);
   if (a.part == "tiles") return measure_tiles(a, line);
   ServerLeaseOptions options;
   options.programs = program_beside("weft").parent_path();
@@ -70,8 +71,8 @@ app::Run add_server(app::Options& options) {
            "sessions, which it makes in a temporary folder; scan: a scan beside malformed requests, silent "
            "clients "
            "and slow readers, over one alone; tiles: what a viewer waits for, of maps of 16 and 100 "
-           "megapixels")
-      .one_of({"lease", "door", "library", "scan", "tiles"})
+           "megapixels; viewers: a scan beside two who look at tiles, over one alone")
+      .one_of({"lease", "door", "library", "scan", "tiles", "viewers"})
       .shows_default();
   options
       .add("--runs", &a->runs,

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/server/scan_beside.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -10,6 +15,7 @@
 
 #include "bench/server/crowd.h"
 #include "bench/server/served_rig.h"
+#include "bench/server/wide_solve.h"
 #include "core/json_document.h"
 #include "core/statistics.h"
 
@@ -19,6 +25,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kBetweenQuestions(50);
+constexpr int kLeast = 19;  // niceness
 
 /// One scan to its end, asked about all the while.
 struct ScanTime {
@@ -48,6 +55,41 @@ Result<ScanTime> time_of_scan(const ServedRig& served) {
   return time;
 }
 
+/// Ask for tiles until they go.
+class Viewers {
+ public:
+  /// `calls` must outlive them.
+  Viewers(const ServedRig& served, int count, const std::vector<std::string>& calls) {
+    for (int i = 0; i < count; ++i) {
+      threads_.emplace_back([&served, &calls, i](const std::stop_token& stop) {
+        // They sit at other machines, and take nothing from this one's processor but what is left.
+        setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kLeast);
+        for (std::size_t k = static_cast<std::size_t>(i); !stop.stop_requested(); ++k)
+          static_cast<void>(served.client().bytes(calls[k % calls.size()]).has_value());
+      });
+    }
+  }
+
+ private:
+  std::vector<std::jthread> threads_;
+};
+
+/// The calls for tiles of a solve that is written beside the rig's own sessions, each answered once.
+Result<std::vector<std::string>> tiles_to_look_at(const ServedRig& served, std::uint64_t seed) {
+  constexpr int kMegapixels = 16, kTiles = 200;
+  const Result<Json> next = served.client().get("/api/v1/next-name?fabric=wide");
+  if (!next) return next.error();
+  const std::filesystem::path sessions =
+      std::filesystem::path(next->at("folder").get<std::string>()).parent_path();
+  const Size size = wide_size(kMegapixels);
+  if (Result<void> ok = write_wide_solve(sessions, size); !ok) return std::move(ok).error();
+  std::vector<std::string> calls = wide_tiles(size, kTiles, seed);
+  for (const std::string& call : calls) {
+    if (const Result<std::string> tile = served.client().bytes(call); !tile) return tile.error();
+  }
+  return calls;
+}
+
 }  // namespace
 
 Result<Rows> scan_beside_table(const ScanBesideOptions& options) {
@@ -56,14 +98,25 @@ Result<Rows> scan_beside_table(const ScanBesideOptions& options) {
     return std::move(ok).error();
   if (Result<void> ok = served.serve(); !ok) return std::move(ok).error();
   if (const Result<ScanTime> first = time_of_scan(served); !first) return first.error();  // watches the clock
+  std::vector<std::string> calls;
+  if (options.viewers > 0) {
+    Result<std::vector<std::string>> tiles = tiles_to_look_at(served, options.seed);
+    if (!tiles) return std::move(tiles).error();
+    calls = std::move(*tiles);
+  }
   std::vector<double> alone, beside, ratios, answers_ms;
   for (int turn = 0; turn < options.turns; ++turn) {
     const Result<ScanTime> quiet = time_of_scan(served);
     if (!quiet) return quiet.error();
     Crowd crowd(served.port());
-    if (Result<void> there = crowd.stay_silent(options.silent); !there) return std::move(there).error();
-    crowd.read_slowly(options.slow);
-    crowd.send_malformed(options.malformed, options.seed + static_cast<std::uint64_t>(turn));
+    std::optional<Viewers> viewers;
+    if (options.viewers > 0) {
+      viewers.emplace(served, options.viewers, calls);
+    } else {
+      if (Result<void> there = crowd.stay_silent(options.silent); !there) return std::move(there).error();
+      crowd.read_slowly(options.slow);
+      crowd.send_malformed(options.malformed, options.seed + static_cast<std::uint64_t>(turn));
+    }
     const Result<ScanTime> loud = time_of_scan(served);
     if (!loud) return loud.error();
     alone.push_back(quiet->seconds);

@@ -16,12 +16,14 @@ struct ScanBesideOptions {
   double megapixels = 1;
   int turns = 10;  ///< pairs of scans
   int malformed = 1000, silent = 64, slow = 32;
+  int viewers = 0;         ///< in place of these: clients that look at tiles of a solve of 16 megapixels
   std::uint64_t seed = 1;  ///< of what is malformed
   std::function<void(int done, int turns)> progress = [](int, int) {};
 };
 
 /// What clients that mean ill cost a scan: in turn one alone, and one beside malformed requests one after
-/// another, silent clients and slow readers (crowd.h). One row: "turns", "alone_s" and "beside_s" (median),
+/// another, silent clients and slow readers (crowd.h), or beside viewers, each asking for one tile after
+/// another. One row: "turns", "alone_s" and "beside_s" (median),
 /// "ratio" (median of the pairs), "median_ms" and "most_ms" of GET /api/v1/rig every 50 ms beside them.
 /// Errors: of the rig's and the daemon's start, and of a scan.
 Result<Rows> scan_beside_table(const ScanBesideOptions& options);

@@ -161,7 +161,7 @@ Resource frames_resource(const RigParts& parts) {
            {"GET", "/api/v1/sessions/{name}/frames/{index}/raw",
             [&parts](const Call& call) { return raw(parts, call); }, false, Pool::kFiles},
            {"GET", "/api/v1/sessions/{name}/frames/{index}/tiles/{level}/{tile}",
-            [&parts](const Call& call) { return frame_tile(parts, call); }, false, Pool::kPictures},
+            [&parts](const Call& call) { return frame_tile(parts, call); }, false, Pool::kTiles},
            {"POST", "/api/v1/sessions/{name}/frames/{index}/again",
             [&parts](const Call& call) { return again(parts, call); }}},
           frames_description()};

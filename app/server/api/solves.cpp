@@ -386,19 +386,19 @@ Result<Reply> compare(const RigParts& parts, const Call& call) {
 Resource solves_resource(const RigParts& parts) {
   const std::string of = "/api/v1/sessions/{name}/solves";
   const std::string one = of + "/{solve}";
-  return {{{"GET", of, [&parts](const Call& call) { return solves(parts, call); }},
-           {"GET", one, [&parts](const Call& call) { return one_solve(parts, call); }},
-           {"GET", one + "/tiles/{layer}/{level}/{tile}",
-            [&parts](const Call& call) { return tile(parts, call); }, false, Pool::kPictures},
-           {"GET", one + "/pixel", [&parts](const Call& call) { return pixel(parts, call); }, false,
-            Pool::kPictures},
-           {"GET", one + "/region", [&parts](const Call& call) { return region(parts, call); }, false,
-            Pool::kPictures},
-           {"GET", one + "/line", [&parts](const Call& call) { return line(parts, call); }, false,
-            Pool::kPictures},
-           {"GET", "/api/v1/compare", [&parts](const Call& call) { return compare(parts, call); }, false,
-            Pool::kPictures}},
-          solves_description()};
+  return {
+      {{"GET", of, [&parts](const Call& call) { return solves(parts, call); }},
+       {"GET", one, [&parts](const Call& call) { return one_solve(parts, call); }},
+       {"GET", one + "/tiles/{layer}/{level}/{tile}",
+        [&parts](const Call& call) { return tile(parts, call); }, false, Pool::kTiles},
+       {"GET", one + "/pixel", [&parts](const Call& call) { return pixel(parts, call); }, false,
+        Pool::kTiles},
+       {"GET", one + "/region", [&parts](const Call& call) { return region(parts, call); }, false,
+        Pool::kTiles},
+       {"GET", one + "/line", [&parts](const Call& call) { return line(parts, call); }, false, Pool::kTiles},
+       {"GET", "/api/v1/compare", [&parts](const Call& call) { return compare(parts, call); }, false,
+        Pool::kTiles}},
+      solves_description()};
 }
 
 }  // namespace weft::app

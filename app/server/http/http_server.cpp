@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <httplib.h>
 #include <poll.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -214,6 +215,17 @@ Result<std::shared_ptr<const FileBody>> open_file_body(const std::filesystem::pa
   return std::shared_ptr<const FileBody>(std::move(body));
 }
 
+namespace {
+
+/// A scan has the processor before those who look at maps.
+void let_others_first() {
+  constexpr int kNiceness = 19;
+  thread_local const int done = setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNiceness);
+  static_cast<void>(done);
+}
+
+}  // namespace
+
 class HttpServer::Parser : public httplib::Server {
  public:
   Parser(GuardRules rules, std::vector<Route> routes, EventLog& events, const HttpLimits& limits)
@@ -239,8 +251,9 @@ class HttpServer::Parser : public httplib::Server {
     svr_sock_ = door.socket();
     for (const auto& [pool, threads] :
          {std::pair(Pool::kQuick, limits_.quick), std::pair(Pool::kDisk, limits_.disk),
-          std::pair(Pool::kPictures, limits_.pictures), std::pair(Pool::kFiles, limits_.files),
-          std::pair(Pool::kDevices, limits_.devices), std::pair(Pool::kStreams, limits_.streams + 1)}) {
+          std::pair(Pool::kPictures, limits_.pictures), std::pair(Pool::kTiles, limits_.tiles),
+          std::pair(Pool::kFiles, limits_.files), std::pair(Pool::kDevices, limits_.devices),
+          std::pair(Pool::kStreams, limits_.streams + 1)}) {
       pools_[pool] = std::make_unique<Threads>(threads, threads + limits_.waiting);
     }
     door.begin([this, &door](WholeRequest request) { enter(std::move(request), door); });
@@ -274,6 +287,7 @@ class HttpServer::Parser : public httplib::Server {
     // std::function wants to copy what it holds.
     auto held = std::make_shared<WholeRequest>(std::move(request));
     threads.pool.enqueue([this, &door, &threads, pool, held] {
+      if (pool == Pool::kTiles) let_others_first();
       AnsweredRequest whole = answered(std::move(*held), pool);
       --threads.requests;
       door.take_back(std::move(whole));

@@ -66,6 +66,7 @@ enum class Pool {
   kQuick,     ///< what is in memory
   kDisk,      ///< files, on a disk that may hang
   kPictures,  ///< raw frames to be decoded
+  kTiles,     ///< maps to be cut and asked about, after everything else that the machine does
   kFiles,     ///< files to be sent, for as long as their clients take
   kDevices,   ///< of the rig, which take seconds
   kStreams,   ///< of events
