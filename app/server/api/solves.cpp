@@ -268,28 +268,33 @@ Result<Reply> tile(const RigParts& parts, const Call& call) {
   return reply;
 }
 
-Result<Reply> pixel(const RigParts& parts, const Call& call) {
-  const Result<Viewed> viewed = viewed_of(parts, call);
-  if (!viewed) return viewed.error();
-  const Size size = viewed->layers.size;
+/// The pixel that x and y of the query name.
+Result<Rect> pixel_in(const Call& call, Size size) {
   const Result<int> x = whole_number_of(call, "x", 0, size.width - 1);
   if (!x) return x.error();
   const Result<int> y = whole_number_of(call, "y", 0, size.height - 1);
   if (!y) return y.error();
-  Json document = {{"x", *x}, {"y", *y}, {"maps", Json::object()}, {"readings", nullptr}};
+  return Rect{*x, *y, *x + 1, *y + 1};
+}
+
+Result<Reply> pixel(const RigParts& parts, const Call& call) {
+  const Result<Viewed> viewed = viewed_of(parts, call);
+  if (!viewed) return viewed.error();
+  const Result<Rect> at = pixel_in(call, viewed->layers.size);
+  if (!at) return at.error();
+  Json document = {{"x", at->x0}, {"y", at->y0}, {"maps", Json::object()}, {"readings", nullptr}};
   for (const Layer& layer : viewed->layers.all) {
     const Result<std::shared_ptr<Pyramid>> pyramid = pyramid_of(parts, *viewed, layer.name);
     if (!pyramid) return pyramid.error();
     Json values = Json::array();
     if (layer.kind == LayerKind::kFlags) {
       for (std::size_t bit = 0; bit < kStatusNames.size(); ++bit) {
-        const Result<Image<float>> flag =
-            (*pyramid)->read(0, {*x, *y, *x + 1, *y + 1}, static_cast<int>(bit));
+        const Result<Image<float>> flag = (*pyramid)->read(0, *at, static_cast<int>(bit));
         if (!flag) return flag.error();
         if ((*flag)(0, 0) > 0) values.push_back(kStatusNames[bit].name);
       }
     } else {
-      const Result<Image<float>> planes = (*pyramid)->read(0, {*x, *y, *x + 1, *y + 1});
+      const Result<Image<float>> planes = (*pyramid)->read(0, *at);
       if (!planes) return planes.error();
       for (int p = 0; p < planes->planes(); ++p) values.push_back((*planes)(0, 0, p));
     }
@@ -298,13 +303,13 @@ Result<Reply> pixel(const RigParts& parts, const Call& call) {
   if (const Result<Calibrated> calibrated = calibration_of(*viewed)) {
     const Ground ground = calibrated->ground(*viewed);
     const double each = ground.pixels_each, middle = (each - 1) / 2;
-    const Vec3 place =
-        point_on_plane(*ground.calibration.camera, each * *x + middle, each * *y + middle, ground.height_mm);
+    const Vec3 place = point_on_plane(*ground.calibration.camera, each * at->x0 + middle,
+                                      each * at->y0 + middle, ground.height_mm);
     document["table_mm"] = {place.x, place.y, place.z};
   }
   if (!viewed->solve) return json_reply(document);
   const Result<std::optional<Json>> readings =
-      parts.pixels.at(viewed->session.folder, *viewed->solve, *x, *y);
+      parts.pixels.at(viewed->session.folder, *viewed->solve, at->x0, at->y0);
   if (!readings) return readings.error();
   if (*readings) document["readings"] = **readings;
   return json_reply(document, *readings ? 200 : kAccepted);
@@ -314,15 +319,14 @@ Result<Reply> region(const RigParts& parts, const Call& call) {
   const Result<Viewed> viewed = viewed_of(parts, call);
   if (!viewed) return viewed.error();
   const Size size = viewed->layers.size;
-  const Result<int> x = whole_number_of(call, "x", 0, size.width - 1);
-  if (!x) return x.error();
-  const Result<int> y = whole_number_of(call, "y", 0, size.height - 1);
-  if (!y) return y.error();
-  const Result<int> w = whole_number_of(call, "w", 1, size.width - *x);
+  const Result<Rect> at = pixel_in(call, size);
+  if (!at) return at.error();
+  const Result<int> w = whole_number_of(call, "w", 1, size.width - at->x0);
   if (!w) return w.error();
-  const Result<int> h = whole_number_of(call, "h", 1, size.height - *y);
+  const Result<int> h = whole_number_of(call, "h", 1, size.height - at->y0);
   if (!h) return h.error();
-  Result<Json> facts = region_facts(viewed->layers, opener_of(parts, *viewed), {*x, *y, *x + *w, *y + *h});
+  Result<Json> facts =
+      region_facts(viewed->layers, opener_of(parts, *viewed), {at->x0, at->y0, at->x0 + *w, at->y0 + *h});
   if (!facts) return std::move(facts).error();
   return json_reply(*facts);
 }
