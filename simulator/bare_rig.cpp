@@ -13,6 +13,7 @@
 #include "simulator/plan.h"
 #include "simulator/sampling/random.h"
 #include "simulator/spectra/observer.h"
+#include "simulator/targets/target.h"
 
 namespace weft::simulator {
 namespace {
@@ -168,6 +169,21 @@ std::string BareRig::chart_toml() const {
     text += fmt::format("  [{:.6f}, {:.6f}, {:.6f}],\n", r, g, b);
   }
   return text + "]\n";
+}
+
+std::vector<Fiducial> BareRig::fiducials() const {
+  std::vector<Fiducial> fiducials;
+  for (const TargetSettings& target : scene_.targets) {
+    const auto* tag = std::get_if<TagSettings>(&target.pattern);
+    const Result<Target> placed = Target::make(target, scene_.seed, 0);
+    if (tag == nullptr || !placed) continue;
+    const double half_mm = tag->side_mm / 2;
+    fiducials.push_back({tag->dictionary,
+                         tag->id,
+                         {placed->place_mm(-half_mm, half_mm), placed->place_mm(half_mm, half_mm),
+                          placed->place_mm(half_mm, -half_mm), placed->place_mm(-half_mm, -half_mm)}});
+  }
+  return fiducials;
 }
 
 std::vector<Vec3> BareRig::taped(double error_mm, std::int64_t seed) const {

@@ -46,6 +46,9 @@ class BareRig {
   std::string scale_toml() const;
   std::string chart_toml() const;
 
+  /// The tags that stay on the table, exactly.
+  std::vector<Fiducial> fiducials() const;
+
   /// LED positions as a tape measure gives them: each off by `error_mm` in a random direction.
   std::vector<Vec3> taped(double error_mm, std::int64_t seed) const;
   /// What a calibration begins with: the camera as its data sheet has it, LEDs at these places, aimed at the

@@ -158,9 +158,10 @@ Result<void> RigFolder::write(const LightFrames& frames, const simulator::BareRi
   const std::vector<Vec3> taped_mm = rig.taped(kTapeError_mm, kTapeSeed);
   Calibration known = files.is_bare ? rig.start(taped_mm) : exact_calibration(frames.scene(), frames.rig());
   known.subject.camera_serial = files.camera_serial;
+  if (!files.is_bare) known.fiducials = rig.fiducials();
   const Result<Calibration> written = write_calibration(path_ / "calibration", std::move(known));
   if (!written) return written.error();
-  if (Result<void> ok = write_things(rig); !ok) return ok;
+  if (Result<void> ok = write_things(rig, files.is_bare); !ok) return ok;
   if (Result<void> ok = make_writable_folder(path_ / "home"); !ok) return ok;
   if (is_d80(frames)) {
     if (Result<void> ok = write_file(path_ / kProfile, kD80); !ok) return ok;
@@ -171,11 +172,14 @@ Result<void> RigFolder::write(const LightFrames& frames, const simulator::BareRi
   return write_file(path_ / "rig.toml", rig_toml(frames, files.is_bare ? leds_toml(taped_mm) : "", files));
 }
 
-Result<void> RigFolder::write_things(const simulator::BareRig& rig) const {
+/// `is_bare`: nobody has measured by what law the paper reflects.
+Result<void> RigFolder::write_things(const simulator::BareRig& rig, bool is_bare) const {
   const fs::path things = path_ / "things";
   if (Result<void> ok = make_writable_folder(things); !ok) return ok;
+  std::string sheet = rig.sheet_toml();
+  if (!is_bare) sheet.insert(0, fmt::format("delta = {}\n", rig.paper().sheet.non_lambertian));
   std::vector<std::pair<const char*, std::string>> files = {
-      {"board.toml", rig.board_toml()}, {"sheet.toml", rig.sheet_toml()}, {"scale.toml", rig.scale_toml()}};
+      {"board.toml", rig.board_toml()}, {"sheet.toml", sheet}, {"scale.toml", rig.scale_toml()}};
   if (rig.has_chart()) files.emplace_back("chart.toml", rig.chart_toml());
   for (const auto& [name, text] : files) {
     if (Result<void> ok = write_file(things / name, text); !ok) return ok;

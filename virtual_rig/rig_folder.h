@@ -43,7 +43,7 @@ class RigFolder {
  private:
   RigFolder(std::filesystem::path path, int lock, bool keep_log)
       : path_(std::move(path)), lock_(lock), keep_log_(keep_log) {}
-  Result<void> write_things(const simulator::BareRig& rig) const;
+  Result<void> write_things(const simulator::BareRig& rig, bool is_bare) const;
   void remove(const char* name) const;
   void remove_made() const;
 

@@ -44,6 +44,7 @@ Result<std::unique_ptr<RigProcess>> RigProcess::start(const RigProcessOptions& o
     command.insert(command.end(), {"--megapixels", fmt::format("{}", *options.megapixels)});
   if (options.has_more_outputs) command.insert(command.end(), {"--below", "--polariser"});
   if (options.same_noise) command.emplace_back("--same-noise");
+  if (options.is_bare) command.emplace_back("--bare");
   if (options.usb) command.emplace_back("--usb");
   const fs::path log = options.folder.string() + ".log";
   Result<std::unique_ptr<ChildProcess>> process = ChildProcess::start(command, {}, log);

@@ -21,6 +21,7 @@ struct RigProcessOptions {
   std::filesystem::path scene;
   std::filesystem::path folder;
   std::optional<double> megapixels = {};  ///< else the scene's
+  bool is_bare = false;                   ///< nobody has calibrated it
   bool usb = false;
   bool has_more_outputs = false;  ///< a light below the cloth and a polariser
   bool same_noise = false;        ///< a shot taken again is the same picture

@@ -26,6 +26,7 @@
 #include "virtual_rig/light/live_picture.h"
 #include "virtual_rig/ptp/virtual_camera.h"
 #include "virtual_rig/rig_folder.h"
+#include "virtual_rig/table/knock.h"
 #include "virtual_rig/table/table.h"
 #include "virtual_rig/terminal/port_name.h"
 
@@ -147,6 +148,9 @@ class RunningRig : public VirtualRig {
                             &RunningRig::start_control}) {
       if (Result<void> ok = (this->*step)(); !ok) return ok;
     }
+    for (const std::string& line : options_.first) {
+      if (Result<std::string> done = command(line); !done) return std::move(done).error();
+    }
     return {};
   }
 
@@ -163,13 +167,14 @@ class RunningRig : public VirtualRig {
     const auto done = [&]() -> Result<void> {
       if (kind == "focus" && words.size() == 2) return change_focus(line, words[1]);
       if (kind == "table") return change_table({words.begin() + 1, words.end()});
+      if (kind == "knock") return change_place({words.begin() + 1, words.end()});
       if (kind == "light") return change_light({words.begin() + 1, words.end()});
       if (kind == "board" && words.size() == 2) return inject_board(line, words[1]);
       if (kind == "disk" && words.size() == 2) return fill_disk(line, words[1]);
       if (kind == "camera" && (words.size() == 2 || words.size() == 3)) return inject_camera(line, words);
       return refusal(line,
-                     "a line is board NAME, camera NAME [SHOT], disk full, disk room, focus PIXELS, light "
-                     "..., table ..., status or end",
+                     "a line is board NAME, camera NAME [SHOT], disk full, disk room, focus PIXELS, knock "
+                     "..., light ..., table ..., status or end",
                      "see weft-virtual-rig --help");
     }();
     if (!done) return done.error();
@@ -317,14 +322,25 @@ class RunningRig : public VirtualRig {
     return show(std::move(*scene));
   }
 
-  /// Has the camera see this, by a lens that is focused as it is. What the cache lacks is rendered while the
-  /// rig goes on as it was.
+  Result<void> change_place(const std::vector<std::string>& words) {
+    const std::lock_guard turn(changing_);
+    const Knocks before = knocks_;
+    if (Result<void> ok = knock(knocks_, words, frames().leds()); !ok) return ok;
+    Result<void> shown = show(seen_);
+    if (!shown) knocks_ = before;
+    return shown;
+  }
+
+  /// Has the camera see this, by a lens that is focused as it is, from where everything was knocked to. What
+  /// the cache lacks is rendered while the rig goes on as it was.
   Result<void> show(simulator::Scene scene) {
+    Result<simulator::Scene> from_there = knocked(scene, knocks_);
+    if (!from_there) return from_there.error();
     if (blur_px_) {
-      scene.effects.defocus = true;
-      scene.camera.blur.defocus_px = *blur_px_;
+      from_there->effects.defocus = true;
+      from_there->camera.blur.defocus_px = *blur_px_;
     }
-    Result<SceneLight> light = light_of(scene, options_);
+    Result<SceneLight> light = light_of(std::move(*from_there), options_);
     if (!light) return light.error();
     seen_ = std::move(scene);
     auto shown = std::make_shared<const SceneLight>(std::move(*light));
@@ -385,8 +401,9 @@ class RunningRig : public VirtualRig {
 
   VirtualRigOptions options_;
   const Table table_;
-  std::mutex changing_;            // of blur_px_ and seen_: one change at a time
+  std::mutex changing_;            // of blur_px_, knocks_ and seen_: one change at a time
   std::optional<double> blur_px_;  // as the focus ring was turned; else as the scene has it
+  Knocks knocks_;
   simulator::Scene seen_;
   std::shared_ptr<const SceneLight> light_;  // of what is seen, under mutex_
   RigFolder folder_;
@@ -426,6 +443,7 @@ std::vector<std::string> virtual_rig_commands() {
   for (const BoardCommand& one : kBoardCommands)
     lines.push_back(fmt::format("board {:<14} {}", one.name, one.does));
   for (std::string& line : table_words()) lines.push_back(std::move(line));
+  for (std::string& line : knock_words()) lines.push_back(std::move(line));
   for (std::string& line : light_fault_words()) lines.push_back(std::move(line));
   for (const auto& [name, does] : camera_faults()) {
     lines.push_back(fmt::format("camera {:<13} {}", name + " [SHOT]", does));

@@ -36,7 +36,8 @@ struct VirtualRigOptions {
   /// Noise follows from the LEDs that are lit and not from the camera's count of shots: the same shot taken
   /// again is the same picture.
   bool same_noise = false;
-  bool keep_log = false;  ///< exposures.jsonl stays when the rig ends
+  bool keep_log = false;           ///< exposures.jsonl stays when the rig ends
+  std::vector<std::string> first;  ///< commands, done before anybody meets the rig
   RenderLightOptions render;
 };
 
@@ -61,8 +62,8 @@ class VirtualRig {
   virtual const LightFrames& frames() const = 0;                    ///< until the focus is changed
   virtual const std::vector<std::string>& environment() const = 0;  ///< "NAME=value"
   /// What the control socket does with a line: "camera NAME [SHOT]", "board NAME", "light ...", "disk full",
-  /// "disk room", "focus PIXELS", "table ...", "status", "end". The answer is "ok", the status as JSON, or an
-  /// error.
+  /// "disk room", "focus PIXELS", "knock ...", "table ...", "status", "end". The answer is "ok", the status
+  /// as JSON, or an error.
   virtual Result<std::string> command(const std::string& line) = 0;
   /// Readable once somebody has said "end".
   virtual int end_descriptor() const = 0;

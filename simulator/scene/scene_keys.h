@@ -484,6 +484,7 @@ void walk(Visitor& v, CharucoSettings& b) {
   v.number("marker_share", b.marker_share, {0.1, 0.95});
   v.text("dictionary", b.dictionary);
   v.number("margin_mm", b.margin_mm, kTargetGap_mm);
+  v.flag("mirrored", b.mirrored);
 }
 
 template <typename Visitor>

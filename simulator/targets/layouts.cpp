@@ -68,6 +68,11 @@ Rectangles checkerboard(const Grid& squares, double margin_mm) {
   return rectangles;
 }
 
+Rectangles mirrored(Rectangles rectangles) {
+  for (Rectangle& r : rectangles) r = {-r.u1_mm, r.v0_mm, -r.u0_mm, r.v1_mm, r.ink};
+  return rectangles;
+}
+
 Result<Rectangles> lay_out(const PaperSettings& paper) {
   if (auto ok = check({{"width_mm", paper.width_mm, kSize_mm}, {"height_mm", paper.height_mm, kSize_mm}});
       !ok)
@@ -104,7 +109,7 @@ Result<Rectangles> lay_out(const CharucoSettings& board) {
     add_marker(*cells, (square.u0_mm + square.u1_mm) / 2, (square.v0_mm + square.v1_mm) / 2,
                board.marker_share * board.square_mm, rectangles);
   }
-  return rectangles;
+  return board.mirrored ? mirrored(std::move(rectangles)) : rectangles;
 }
 
 Result<Rectangles> lay_out(const GreyScaleSettings& scale) {

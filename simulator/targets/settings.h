@@ -38,6 +38,7 @@ struct CharucoSettings {
   double marker_share = 0.75;               ///< side of a marker over that of a square; 0.1 to 0.95
   std::string dictionary = "DICT_5X5_100";  ///< as OpenCV names it
   double margin_mm = 10;                    ///< white; 0 to 1000
+  bool mirrored = false;                    ///< printed as a mirror shows it
 
   bool operator==(const CharucoSettings&) const = default;
 };

@@ -68,8 +68,9 @@ void define(CLI::App& app, Arguments& a) {
       ->check(CLI::Range(0.0, 1000.0));
   app.add_flag("--same-noise", a.rig.same_noise,
                "noise follows from the LEDs that are lit: the same shot taken again is the same picture");
-  app.add_flag("--bare", a.rig.bare,
-               "nobody has calibrated it: LEDs are where a tape has them, the camera is as its data sheet says");
+  app.add_flag(
+      "--bare", a.rig.bare,
+      "nobody has calibrated it: LEDs are where a tape has them, the camera is as its data sheet says");
   app.add_flag("--below", a.rig.below, "a light below the cloth hangs on the board");
   app.add_flag("--polariser", a.rig.polariser,
                "films hang before LEDs and lens, which the board turns: crossed they take the gloss away");
@@ -81,6 +82,10 @@ void define(CLI::App& app, Arguments& a) {
   app.add_flag("--keep", a.keep, "leave the folder as it is at the end: sessions and exposures.jsonl");
   app.add_flag("--no-wait", a.background,
                "return as soon as the rig is ready; it lives on until --inject end");
+  app.add_option("--first", a.rig.first,
+                 "a command as for --inject, done before the rig is ready; may be said again")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--ready", a.ready)->group("");  // run_in_background()
   app.add_option("--inject", a.inject, "send one command to the rig that lives in --folder, and end");
   std::string footer = "Commands for --inject, or a line each on the socket FOLDER/control:\n";

@@ -5,13 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <optional>
-#include <string_view>
 #include <utility>
 
 #include "simulator/spectra/spectrum.h"
+#include "virtual_rig/table/said.h"
 
 namespace weft::virtual_rig {
 namespace {
@@ -22,62 +20,14 @@ using simulator::TargetSettings;
 
 constexpr double kRulerSquare_mm = 5;
 constexpr int kRulerSquares = 20;
+constexpr double kFoldShare = 0.4, kFold_mm = 8;  // of the sheet's width; how broad it is
 
-/// A number that may be said of a thing.
-struct Setting {
-  const char* name;
-  double least, most, usual;
-};
 constexpr Setting kTilt = {"tilt", 0, 80, 0}, kAzimuth = {"azimuth", -360, 360, 0},
                   kTurn = {"turn", -360, 360, 0}, kX = {"x", -10000, 10000, 0}, kY = {"y", -10000, 10000, 0},
                   kHeight = {"height", 0, 1000, 0}, kColumns = {"columns", 3, 100, 0},
-                  kRows = {"rows", 3, 100, 0}, kReflectance = {"reflectance", 0, 1, 0},
+                  kRows = {"rows", 3, 100, 0}, kMirrored = {"mirrored", 0, 1, 0},
+                  kReflectance = {"reflectance", 0, 1, 0}, kFold = {"fold", 0, 45, 0},
                   kOther = {"other", 0, 1, 0};
-
-/// What was said of a thing, as "tilt=30".
-class Said {
- public:
-  static Result<Said> of(const std::vector<std::string>& words, const std::vector<Setting>& settings) {
-    Said said;
-    for (const std::string& word : words) {
-      const std::size_t equals = word.find('=');
-      const std::string name = word.substr(0, equals);
-      const auto setting = std::find_if(settings.begin(), settings.end(),
-                                        [&](const Setting& each) { return each.name == name; });
-      if (setting == settings.end() || equals == std::string::npos) return refused(word, settings);
-      const char* end = word.data() + word.size();
-      double value = 0;
-      const auto [read, wrong] = std::from_chars(word.data() + equals + 1, end, value);
-      if (wrong != std::errc() || read != end || !(value >= setting->least && value <= setting->most)) {
-        return Error{ErrorKind::kUsage, "a thing cannot lie like that", word,
-                     fmt::format("{} is a number from {:g} to {:g}", name, setting->least, setting->most),
-                     "give it another one"};
-      }
-      said.values_.emplace_back(name, value);
-    }
-    return said;
-  }
-
-  double operator()(const Setting& setting) const { return value(setting).value_or(setting.usual); }
-  std::optional<double> value(const Setting& setting) const {
-    for (const auto& [name, value] : values_) {
-      if (name == setting.name) return value;
-    }
-    return {};
-  }
-
- private:
-  static Error refused(const std::string& word, const std::vector<Setting>& settings) {
-    std::vector<std::string> names;
-    for (const Setting& each : settings) names.push_back(fmt::format("{}=NUMBER", each.name));
-    return {ErrorKind::kUsage, "nobody knows what that is of a thing on the table", word,
-            names.empty() ? std::string("nothing can be said of it")
-                          : fmt::format("it may be {}", fmt::join(names, ", ")),
-            "see weft-virtual-rig --help"};
-  }
-
-  std::vector<std::pair<std::string, double>> values_;
-};
 
 simulator::CapturePose pose_of(const Said& said, double above_mm) {
   return {.tilt_deg = said(kTilt),
@@ -97,6 +47,7 @@ std::vector<TargetSettings> board(const BareRig& rig, const Said& said) {
   auto& pattern = std::get<simulator::CharucoSettings>(board.pattern);
   pattern.squares_x = static_cast<int>(said.value(kColumns).value_or(pattern.squares_x));
   pattern.squares_y = static_cast<int>(said.value(kRows).value_or(pattern.squares_y));
+  pattern.mirrored = said(kMirrored) != 0;
   return {placed(board, said, board.centre_mm.z)};
 }
 
@@ -105,7 +56,16 @@ std::vector<TargetSettings> sheet(const BareRig& rig, const Said& said) {
   paper.white = said.value(kReflectance).value_or(paper.white);
   simulator::SheetLayout layout = rig.sheet();
   layout.x_mm += said(kX), layout.y_mm += said(kY);
-  return simulator::laid(layout, pose_of(said, simulator::CapturePose().above_mm), paper, said(kOther) == 0);
+  std::vector<TargetSettings> things =
+      simulator::laid(layout, pose_of(said, simulator::CapturePose().above_mm), paper, said(kOther) == 0);
+  if (said(kFold) > 0) {
+    paper.pattern = simulator::PaperSettings{.width_mm = kFoldShare * layout.width_mm, .height_mm = kFold_mm};
+    paper.centre_mm = {layout.x_mm, layout.y_mm, 0};
+    const simulator::CapturePose on_sheet = {
+        .tilt_deg = said(kFold), .azimuth_deg = 90, .above_mm = simulator::CapturePose().above_mm + 0.01};
+    things.insert(things.begin(), simulator::resting(paper, on_sheet));
+  }
+  return things;
 }
 
 std::vector<TargetSettings> chart(const BareRig& rig, const Said& said) {
@@ -146,10 +106,12 @@ const std::vector<Thing>& things() {
     return all;
   };
   static const std::vector<Thing> kThings = {
-      {"board", and_more({kColumns, kRows}), board,
-       "the ChArUco board of things/board.toml, or one of so many columns= and rows="},
-      {"sheet", and_more({kReflectance, kOther}), sheet,
-       "the white sheet of things/sheet.toml, other=1: another one alike, or of another reflectance="},
+      {"board", and_more({kColumns, kRows, kMirrored}), board,
+       "the ChArUco board of things/board.toml, or one of so many columns= and rows=, mirrored=1: from "
+       "behind"},
+      {"sheet", and_more({kReflectance, kOther, kFold}), sheet,
+       "the white sheet of things/sheet.toml, other=1: another one alike, or of another reflectance=; "
+       "fold=: a crease of so many degrees in its middle, where it lies flat"},
       {"scale", anyhow, scale, "the grey scale of things/scale.toml"},
       {"chart", anyhow, chart, "the colour chart of things/chart.toml, where the scene has spectra"},
       {"trap", {}, trap, "a sheet with a black trap in its middle"},

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "simulator/scene/rig.h"
 #include "tests/virtual_rig/small_scene.h"
+#include "virtual_rig/table/knock.h"
 
 namespace weft::virtual_rig {
 namespace {
@@ -67,6 +69,45 @@ TEST(Table, RefusesWhatItDoesNotKnowWithWhatItDoes) {
     ASSERT_FALSE(scene) << testing::PrintToString(c.words);
     EXPECT_THAT(scene.error().message(), HasSubstr(c.says));
   }
+}
+
+TEST(Knock, MovesCameraAndLedsFromWhereTheyWereAtTheStart) {
+  Knocks knocks;
+  ASSERT_TRUE(knock(knocks, {"camera", "x=9"}, 10));
+  ASSERT_TRUE(knock(knocks, {"camera", "x=3", "turn=0.4", "tilt=1", "azimuth=90"}, 10));
+  ASSERT_TRUE(knock(knocks, {"led", "2", "z=-4"}, 10));
+  const simulator::Scene before = small_scene();
+  const Result<simulator::SceneRig> there = rig_of(before);
+  ASSERT_TRUE(there) << there.error().message();
+  const Result<simulator::Scene> after = knocked(before, knocks);
+  ASSERT_TRUE(after) << after.error().message();
+  EXPECT_EQ(after->camera.pose.x_mm, before.camera.pose.x_mm + 3);
+  EXPECT_EQ(after->camera.pose.roll_deg, before.camera.pose.roll_deg + 0.4);
+  EXPECT_NEAR(after->camera.pose.tilt_deg, 1, 1e-12);
+  EXPECT_NEAR(after->camera.pose.azimuth_deg, 90, 1e-9);
+  ASSERT_EQ(after->lights.leds.size(), there->leds.leds.size());
+  EXPECT_EQ(after->lights.leds[0].position_mm.z, there->leds.leds[0].position_mm.z);
+  EXPECT_EQ(after->lights.leds[1].position_mm.z, there->leds.leds[1].position_mm.z - 4);
+  ASSERT_TRUE(knock(knocks, {"nothing"}, 10));
+  EXPECT_EQ(*knocked(before, knocks), before);
+}
+
+TEST(Knock, RefusesWhatCannotBe) {
+  struct Case {
+    std::vector<std::string> words;
+    const char* says;
+  };
+  Knocks knocks;
+  for (const Case& c :
+       {Case{{}, "camera"}, Case{{"table"}, "camera"}, Case{{"led"}, "1 to 3"}, Case{{"led", "4"}, "1 to 3"},
+        Case{{"led", "1", "x"}, "x=NUMBER"}, Case{{"camera", "tilt=80"}, "0 to 45"}}) {
+    const Result<void> done = knock(knocks, c.words, 3);
+    ASSERT_FALSE(done) << testing::PrintToString(c.words);
+    EXPECT_THAT(done.error().message(), HasSubstr(c.says));
+  }
+  EXPECT_EQ(knocks, Knocks());
+  knocks.leds_mm[1] = {0, 0, -900};
+  EXPECT_THAT(knocked(small_scene(), knocks).error().message(), HasSubstr("not above"));
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/result.h"
+
+namespace weft::virtual_rig {
+
+/// A number that may be said of a thing.
+struct Setting {
+  const char* name;
+  double least, most, usual;
+};
+
+/// What was said of a thing, as "tilt=30".
+class Said {
+ public:
+  /// kUsage for a word that names none of `settings`, or a number out of its range.
+  static Result<Said> of(const std::vector<std::string>& words, const std::vector<Setting>& settings);
+
+  double operator()(const Setting& setting) const { return value(setting).value_or(setting.usual); }
+  std::optional<double> value(const Setting& setting) const;
+
+ private:
+  std::vector<std::pair<std::string, double>> values_;
+};
+
+}  // namespace weft::virtual_rig
