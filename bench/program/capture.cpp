@@ -14,6 +14,7 @@
 #include "bench/capture/evidence.h"
 #include "bench/capture/fault_matrix.h"
 #include "bench/capture/focus.h"
+#include "bench/capture/minutes.h"
 #include "bench/capture/scans.h"
 #include "bench/program/rows.h"
 #include "bench/program/verbs.h"
@@ -87,8 +88,16 @@ Result<Rows> measure_focus(const CaptureArguments& a, app::ProgressLine& line) {
   return capture_focus_table(options);
 }
 
+Result<Rows> measure_minutes(app::ProgressLine& line) {
+  MinutesOptions options;
+  options.programs = program_beside("weft").parent_path();
+  options.progress = [&](int done, int steps) { line.update("minutes", static_cast<double>(done) / steps); };
+  return capture_minutes_table(options);
+}
+
 Result<Rows> measure(const CaptureArguments& a, bool quiet) {
   app::ProgressLine line(quiet);
+  if (a.part == "minutes") return measure_minutes(line);
   if (a.part == "focus") return measure_focus(a, line);
   if (a.part == "evidence") return measure_evidence(line);
   return a.part == "faults" ? measure_matrix(a, line) : measure_rig(a, line);
@@ -99,8 +108,10 @@ app::Run add_capture(app::Options& options) {
   options
       .add("--part", &a->part,
            "board, camera, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that "
-           "it starts; evidence: what light tells of LEDs; focus: how well a photograph tells blur")
-      .one_of({"board", "camera", "scans", "faults", "evidence", "focus"})
+           "it starts; evidence: what light tells of LEDs; focus: how well a photograph tells blur; minutes: "
+           "what "
+           "each further minute of calibrating takes away")
+      .one_of({"board", "camera", "scans", "faults", "evidence", "focus", "minutes"})
       .shows_default();
   options.add("--rig", &a->rig, "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
   options.add("--runs", &a->runs, "Commands, shots, scans or runs; 0 is as many as docs/reliability.md")

@@ -21,10 +21,10 @@ struct ScanBesideOptions {
   std::function<void(int done, int turns)> progress = [](int, int) {};
 };
 
-/// What clients that mean ill cost a scan: in turn one alone, and one beside malformed requests one after
-/// another, silent clients and slow readers (crowd.h), or beside viewers, each asking for one tile after
-/// another. One row: "turns", "alone_s" and "beside_s" (median),
-/// "ratio" (median of the pairs), "median_ms" and "most_ms" of GET /api/v1/rig every 50 ms beside them.
+/// What clients cost a scan: in turn one alone, and one beside those who mean ill (malformed requests one
+/// after another, silent clients, slow readers; crowd.h) or beside viewers, each asking for one tile after
+/// another. One row: "turns", "alone_s" and "beside_s" (median), "ratio" (median of the pairs), "median_ms"
+/// and "most_ms" of GET /api/v1/rig every 50 ms beside them.
 /// Errors: of the rig's and the daemon's start, and of a scan.
 Result<Rows> scan_beside_table(const ScanBesideOptions& options);
 

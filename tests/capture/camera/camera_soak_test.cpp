@@ -9,7 +9,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/capture/camera/link_bench.h"
+#include "tests/capture/camera/usb_bench.h"
 
 namespace weft::capture {
 namespace {
@@ -79,6 +79,49 @@ TEST(CameraSoak, TwoHundredKillsAtRandomMomentsLoseNothing) {
         << i << ", killed after " << when.count() << " ms";
   }
   EXPECT_EQ(left_over(bench.folder() / "raw"), 0);
+}
+
+/// A person looks through the finder, which may fail, and then something is scanned, a hundred times.
+void look_and_scan(LinkBench& bench, std::mt19937& random) {
+  const std::vector<std::string> faults = {"", "", "live_stalls", "live_ends", "never_live"};
+  bench.hurry(3);
+  bench.ready();
+  for (int run = 0; run < 100; ++run) {
+    const std::string fault =
+        faults[std::uniform_int_distribution<std::size_t>(0, faults.size() - 1)(random)];
+    const int looks = std::uniform_int_distribution(1, 4)(random);
+    const int fails_at = std::uniform_int_distribution(0, looks)(random);
+    for (int look = 0; look < looks; ++look) {
+      if (!fault.empty() && look == fails_at) {
+        ASSERT_TRUE(bench.camera().inject({fault, 1}));
+      }
+      if (const auto picture = bench.link().look(); picture) continue;
+      ASSERT_TRUE(bench.camera().inject({"well", 1}));
+      const auto back = bench.link().recover();
+      ASSERT_TRUE(back) << run << ", " << fault << ": " << back.error().message();
+    }
+    ASSERT_TRUE(bench.camera().inject({"well", 1}));
+    if (std::bernoulli_distribution(0.5)(random)) static_cast<void>(bench.link().stop_looking());
+    for (int shot = 0; shot < 3; ++shot) {
+      const auto taken = bench.take_patiently(3 * run + shot);
+      ASSERT_TRUE(taken) << run << ", " << fault << ": " << taken.error().message();
+      ASSERT_EQ(wrong_with(*taken, static_cast<std::uint32_t>(bench.camera().shots())), "")
+          << run << ", " << fault;
+      ASSERT_NEAR(taken->exposure.exposure_us, 1e6 / 60, 1) << run << ": a setting was changed";
+      ASSERT_EQ(taken->exposure.iso, 100) << run;
+      ASSERT_EQ(taken->exposure.f_number, 8) << run;
+    }
+  }
+  EXPECT_EQ(bench.retakes(), 0) << bench.last_error().message();
+}
+
+TEST(CameraSoak, TwoHundredRunsOfLiveViewAndScansLoseNothing) {
+  std::mt19937 random(2027);
+  LinkBench network(with_finder());
+  look_and_scan(network, random);
+  if (HasFailure()) return;
+  UsbBench usb("soak");
+  look_and_scan(usb, random);
 }
 
 }  // namespace

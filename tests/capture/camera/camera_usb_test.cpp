@@ -6,44 +6,35 @@
 #include <csignal>
 #include <string>
 
-#include "tests/capture/camera/link_bench.h"
+#include "tests/capture/camera/usb_bench.h"
 
 namespace weft::capture {
 namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
-using virtual_rig::VirtualCameraOptions;
-
-/// A socket's path may have 107 characters, fewer than a test's folder.
-std::string socket_path(const std::string& name) {
-  return "/tmp/weft_usb_" + std::to_string(getpid()) + "_" + name;
-}
-
-class UsbBench : public LinkBench {
- public:
-  explicit UsbBench(const std::string& name, const std::string& serial = "6000001")
-      : LinkBench(options(name, serial)), socket_(socket_path(name)) {
-    use_usb(socket_);
-  }
-  ~UsbBench() { std::filesystem::remove(socket_); }
-  const std::string& socket() const { return socket_; }
-
- private:
-  static VirtualCameraOptions options(const std::string& name, const std::string& serial) {
-    VirtualCameraOptions options;
-    options.serial = serial;
-    options.usb = socket_path(name);
-    options.away_s = 1.5;
-    return options;
-  }
-  std::string socket_;
-};
 
 TEST(CameraUsb, TakesPhotographs) {
   UsbBench bench("plain");
   CameraLink& link = bench.ready();
   for (std::uint32_t i = 1; i <= 3; ++i) {
+    const auto taken = link.take(bench.raw(static_cast<int>(i)), [] {});
+    ASSERT_TRUE(taken) << taken.error().message();
+    EXPECT_EQ(wrong_with(*taken, i), "");
+  }
+}
+
+TEST(CameraUsb, ShowsItsFinderBetweenPhotographs) {
+  UsbBench bench("finder");
+  CameraLink& link = bench.ready();
+  std::uint8_t last = 0;
+  for (std::uint32_t i = 1; i <= 2; ++i) {
+    for (int look = 0; look < 3; ++look) {
+      const Result<std::string> picture = link.look();
+      ASSERT_TRUE(picture) << picture.error().message();
+      EXPECT_GT(static_cast<std::uint8_t>((*picture)[2]), last);
+      last = static_cast<std::uint8_t>((*picture)[2]);
+    }
     const auto taken = link.take(bench.raw(static_cast<int>(i)), [] {});
     ASSERT_TRUE(taken) << taken.error().message();
     EXPECT_EQ(wrong_with(*taken, i), "");

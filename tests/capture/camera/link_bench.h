@@ -38,6 +38,19 @@ inline double seconds_since(std::chrono::steady_clock::time_point begin) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+/// With a finder whose pictures are numbered in their third byte.
+inline virtual_rig::VirtualCameraOptions with_finder(virtual_rig::VirtualCameraOptions options = {}) {
+  options.finder = [number = std::uint8_t{0}]() mutable {
+    std::vector<std::uint8_t> picture(40'000, '\n');
+    picture[0] = picture[picture.size() - 2] = 0xff;
+    picture[1] = 0xd8;
+    picture[2] = ++number;
+    picture.back() = 0xd9;
+    return picture;
+  };
+  return options;
+}
+
 /// A virtual camera and a link to it through the real weft-camera, in a folder of their own.
 class LinkBench {
  public:

@@ -8,19 +8,6 @@
 namespace weft::capture {
 namespace {
 
-virtual_rig::VirtualCameraOptions with_finder() {
-  virtual_rig::VirtualCameraOptions options;
-  options.finder = [number = std::uint8_t{0}]() mutable {
-    std::vector<std::uint8_t> picture(40'000, '\n');
-    picture[0] = picture[picture.size() - 2] = 0xff;
-    picture[1] = 0xd8;
-    picture[2] = ++number;
-    picture.back() = 0xd9;
-    return picture;
-  };
-  return options;
-}
-
 TEST(LiveView, ShowsPicturesUntilAShotIsTakenAndAfterIt) {
   LinkBench bench(with_finder());
   CameraLink& link = bench.ready();
