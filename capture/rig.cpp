@@ -143,7 +143,8 @@ bool is_origin(std::string_view origin) {
 
 Result<void> read_daemon(const toml::table& table, Rig& rig) {
   TomlKeys keys(table, place(rig.file, "daemon"), kPage);
-  keys.know({"host", "port", "token", "look_token", "names", "origins", "archives", "preview", "state"});
+  keys.know({"host", "port", "token", "look_token", "names", "origins", "archives", "preview", "screen",
+             "page_dark_ms", "state"});
   rig.daemon.host = keys.text_or("host", rig.daemon.host);
   rig.daemon.port = keys.integer_or("port", rig.daemon.port, 0, 65535);
   rig.daemon.token = beside(rig.file, keys.text_or("token", ""));
@@ -157,6 +158,11 @@ Result<void> read_daemon(const toml::table& table, Rig& rig) {
   for (const std::string& archive : keys.texts_or("archives", {}))
     rig.daemon.archives.push_back(beside(rig.file, archive));
   rig.daemon.preview = keys.flag_or("preview", rig.daemon.preview);
+  const std::string screen = keys.text_or("screen", "seen");
+  if (screen != "seen" && screen != "unseen")
+    keys.reject("screen", "it is \"seen\" or \"unseen\" by the cloth");
+  rig.daemon.is_screen_seen = screen == "seen";
+  rig.daemon.page_dark_ms = keys.integer_or("page_dark_ms", rig.daemon.page_dark_ms, 0, 5000);
   rig.daemon.origins = keys.texts_or("origins", {});
   for (const std::string& origin : rig.daemon.origins) {
     if (!is_origin(origin)) keys.reject("origins", "each is as in [\"https://rig.local\"], without a path");
@@ -192,6 +198,11 @@ Result<Rig> read_rig(const fs::path& file) {
     if (!read) return read.error();
   }
   return rig;
+}
+
+std::filesystem::path calibration_now(const Rig& rig) {
+  const Result<Rig> now = read_rig(rig.file);
+  return now ? now->scan.calibration : rig.scan.calibration;
 }
 
 std::string camera_serial(const Rig& rig) {

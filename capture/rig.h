@@ -66,12 +66,18 @@ struct Rig {
     std::vector<std::string> origins;             ///< of pages behind a proxy: "https://rig.local"
     std::vector<std::filesystem::path> archives;  ///< more folders of sessions, to look at
     bool preview = true;                          ///< each finished scan is solved once quickly, as a job
+    bool is_screen_seen = true;                   ///< by the cloth: pages are black while it is photographed
+    int page_dark_ms = 500;                       ///< that they have to become so; 0 to 5000
     std::filesystem::path state;  ///< folder for its lock, address and log; empty: beside the rig file
   } daemon;
 };
 
 /// Reads and checks the file. kNoInput, kBadData with the key and what is allowed there.
 Result<Rig> read_rig(const std::filesystem::path& file);
+
+/// The calibration that the rig file names now, which may have changed since the rig was read; that of `rig`
+/// where the file cannot be read.
+std::filesystem::path calibration_now(const Rig& rig);
 
 /// The serial number of the rig's camera: the rig file's, else that of the body its calibration is of. Empty:
 /// neither names one, and any camera will do.

@@ -73,13 +73,8 @@ Run run_job(Options& options, CalibrateJob job, ExitCode of_verdicts) {
   const auto strict = std::make_shared<bool>(false);
   options.add_flag("--strict", strict.get(), "Exit with 2 where the report has something to say");
   return [strict, job = std::move(job), of_verdicts](const CommonArguments& common) -> Result<int> {
-    const Result<CalibrateOutcome> outcome = [&] {
-      ProgressLine line(common.quiet);
-      return job({common.threads, stop_on_signal(), line.callback()});
-    }();
+    const Result<CalibrateOutcome> outcome = run_and_print(job, common);
     if (!outcome) return outcome.error();
-    print_outcome(*outcome, common);
-    print_notes(*outcome);
     if (!outcome->report.verdicts.empty() && of_verdicts != kDone) return of_verdicts;
     const bool warned = !outcome->report.verdicts.empty() || !outcome->warnings.empty();
     return *strict && warned ? kDoneWithWarnings : kDone;
@@ -87,6 +82,17 @@ Run run_job(Options& options, CalibrateJob job, ExitCode of_verdicts) {
 }
 
 }  // namespace
+
+Result<CalibrateOutcome> run_and_print(const CalibrateJob& job, const CommonArguments& common) {
+  Result<CalibrateOutcome> outcome = [&] {
+    ProgressLine line(common.quiet);
+    return job({common.threads, stop_on_signal(), line.callback()});
+  }();
+  if (!outcome) return outcome;
+  print_outcome(*outcome, common);
+  print_notes(*outcome);
+  return outcome;
+}
 
 Run run_step(Options& options, CalibrateJob job) {
   return run_job(options, std::move(job), kDone);
@@ -101,8 +107,8 @@ Verb calibrate_verb() {
           .help = "Measure a rig; each step writes a new calibration",
           .verbs = {calibrate_camera_verb(), calibrate_response_verb(), calibrate_color_verb(),
                     calibrate_lights_verb(), calibrate_check_verb(), calibrate_accept_verb(),
-                    calibrate_grey_verb(), calibrate_patches_verb(), calibrate_update_verb(),
-                    calibrate_history_verb()}};
+                    calibrate_all_verb(), calibrate_refresh_verb(), calibrate_grey_verb(),
+                    calibrate_patches_verb(), calibrate_update_verb(), calibrate_history_verb()}};
 }
 
 }  // namespace weft::app

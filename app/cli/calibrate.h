@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
 
 #include "app/cli/options.h"
@@ -12,6 +13,16 @@ namespace weft::app {
 
 /// The work of one step, by what its options have read.
 using CalibrateJob = std::function<Result<CalibrateOutcome>(const JobContext&)>;
+
+/// Runs a job, and prints what came out of it: as JSON, or for people.
+Result<CalibrateOutcome> run_and_print(const CalibrateJob& job, const CommonArguments& common);
+
+/// Prints what a calibration makes different from the rig's own. `is_accepted` is said of it in JSON.
+Result<void> print_change(const std::filesystem::path& rig_file, const std::filesystem::path& calibration,
+                          bool is_accepted, const CommonArguments& common);
+/// Has the rig file name it, and says so.
+Result<void> accept_calibration(const std::filesystem::path& rig_file,
+                                const std::filesystem::path& calibration);
 
 /// Adds --strict. The step does its job, and prints what came out of it.
 Run run_step(Options& options, CalibrateJob job);
@@ -27,6 +38,8 @@ Verb calibrate_lights_verb();
 Verb calibrate_grey_verb();
 Verb calibrate_check_verb();
 Verb calibrate_accept_verb();
+Verb calibrate_all_verb();
+Verb calibrate_refresh_verb();
 Verb calibrate_patches_verb();
 Verb calibrate_update_verb();
 Verb calibrate_history_verb();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The steps that look at what was measured: whether it holds, what moved, and how it went over time.
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -10,13 +12,16 @@
 #include "app/cli/calibrate.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_options.h"
+#include "app/cli/rig_owner.h"
 #include "app/cli/terminal.h"
 #include "app/jobs/calibrate/accept.h"
 #include "app/jobs/calibrate/check.h"
 #include "app/jobs/calibrate/history.h"
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/update.h"
+#include "app/server/rig/rig_lock.h"
 #include "capture/rig.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -69,7 +74,11 @@ Run add_check(Options& options) {
   const auto a = std::make_shared<CalibrateCheckOptions>();
   const auto session = std::make_shared<std::filesystem::path>();
   const Option input = options.add("input", &a->input, "Session of a sheet, or a folder of sessions");
-  options.add("--session", session.get(), "Any scan that shows tags, white patches or the sheet")
+  options
+      .add("--session", session.get(),
+           "Any scan that shows tags, white patches or the sheet; or a folder of scans of the sheet in "
+           "several "
+           "poses (weft capture moved)")
       .excludes(input);
   add_evidence(options, a->from, a->sheet,
                "sheet.toml of the sheet in the pictures; default that beside them, with --session no sheet",
@@ -94,7 +103,11 @@ Run add_patches(Options& options) {
 
 Run add_update(Options& options) {
   const auto a = std::make_shared<CalibrateUpdateOptions>();
-  options.add("session", &a->session, "A scan after the move that shows tags, white patches or the sheet")
+  options
+      .add("session", &a->session,
+           "A scan after the move that shows tags, white patches or the sheet; or a folder of scans of the "
+           "sheet in "
+           "several poses (weft capture moved)")
       .required();
   add_evidence(options, a->from, a->sheet, "sheet.toml of the sheet in the pictures; default no sheet",
                a->paper_delta);
@@ -102,15 +115,54 @@ Run add_update(Options& options) {
   return run_step(options, [a](const JobContext& context) { return calibrate_update(*a, context); });
 }
 
+/// Has the daemon of the rig solve those again that were taken after a move.
+Result<void> solve_again(const std::vector<AffectedSession>& affected,
+                         const std::filesystem::path& calibration) {
+  const Result<capture::Rig> rig = capture::read_rig(find_rig({}));
+  if (!rig) return rig.error();
+  const Result<std::optional<std::string>> owner = address_of_owner(*rig);
+  if (!owner) return owner.error();
+  if (!*owner) {
+    return Error{ErrorKind::kTryAgain, "nobody takes jobs", rig->file.string(),
+                 "no daemon of this rig is running", "start weft serve"};
+  }
+  const Result<RigClient> daemon = connect_to_owner(*rig, **owner);
+  if (!daemon) return daemon.error();
+  const std::string folder =
+      absolute_folder(calibration).lexically_relative(absolute_folder(rig->file.parent_path())).string();
+  int queued = 0;
+  for (const AffectedSession& each : affected) {
+    if (!each.after_move) continue;
+    const Result<Json> job =
+        daemon->post("/api/v1/jobs",
+                     {{"kind", "solve"}, {"session", each.folder.stem().string()}, {"calibration", folder}});
+    if (!job) return job.error();
+    ++queued;
+  }
+  note(fmt::format("{} of {} sessions are solved again by {}; the others were perhaps taken before the move",
+                   queued, affected.size(), folder));
+  return {};
+}
+
 Run add_history(Options& options) {
   const auto a = std::make_shared<CalibrateHistoryOptions>();
+  const auto calibration = std::make_shared<std::filesystem::path>();
   options.add("rig", &a->rig, "Folder that holds calibrations and results of checks").required();
-  options.add("--affected", &a->sessions,
-              "Folder of sessions: lists those shot between the last check that passed and a move");
+  const Option affected =
+      options.add("--affected", &a->sessions,
+                  "Folder of sessions: lists those shot between the last check that passed and a move");
   options.add("-o,--output", &a->output, "Folder to make for the page; default none");
-  return run_step(options, [a](const JobContext& context) -> Result<CalibrateOutcome> {
+  options
+      .add("--solve", calibration.get(),
+           "With --affected: the rig's daemon solves those taken after a move again, by this calibration")
+      .needs(affected);
+  return run_step(options, [a, calibration](const JobContext& context) -> Result<CalibrateOutcome> {
     Result<CalibrationHistory> history = calibrate_history(*a, context);
     if (!history) return std::move(history).error();
+    if (!calibration->empty()) {
+      if (Result<void> queued = solve_again(history->affected, *calibration); !queued)
+        return std::move(queued).error();
+    }
     return CalibrateOutcome{a->output, {}, std::move(history->report), std::move(history->warnings)};
   });
 }
@@ -120,44 +172,47 @@ struct AcceptArguments {
   bool dry_run = false;
 };
 
-Result<int> accept(const AcceptArguments& a, const CommonArguments& common) {
-  const std::filesystem::path file = find_rig(a.rig);
-  const Result<capture::Rig> rig = capture::read_rig(file);
+}  // namespace
+
+Result<void> print_change(const std::filesystem::path& rig_file, const std::filesystem::path& calibration,
+                          bool is_accepted, const CommonArguments& common) {
+  const Result<capture::Rig> rig = capture::read_rig(rig_file);
   if (!rig) return rig.error();
-  const Result<CalibrationChange> change = change_between(rig->scan.calibration, a.calibration);
+  const Result<CalibrationChange> change = change_between(rig->scan.calibration, calibration);
   if (!change) return change.error();
-  const std::vector<std::string> words = words_of(*change);
   if (common.json) {
-    Json maps;
-    if (change->maps) {
-      maps = {{"mean_deg", change->maps->mean_deg},
-              {"worst_deg", change->maps->worst_deg},
-              {"albedo_factor", 1 / change->maps->albedo_factor},
-              {"albedo_unevenness", change->maps->albedo_unevenness}};
-    }
-    print_json({{"from", change->old_id},
-                {"to", change->new_id},
-                {"maps", maps},
-                {"gained", change->gained},
-                {"lost", change->lost},
-                {"warning", change->warning},
-                {"accepted", !a.dry_run}});
+    Json document = json_of(*change);
+    document["accepted"] = is_accepted;
+    print_json(document);
   } else {
-    for (const std::string& line : words) print(line);
+    for (const std::string& line : words_of(*change)) print(line);
   }
   if (!change->warning.empty()) note(change->warning);
-  if (a.dry_run) return kDone;
-  if (Result<void> named = name_calibration(file, a.calibration); !named) return named.error();
-  note(file.string() + " names it from now on; a daemon of this rig reads it when it starts again");
-  return kDone;
+  return {};
 }
+
+Result<void> accept_calibration(const std::filesystem::path& rig_file,
+                                const std::filesystem::path& calibration) {
+  if (Result<void> named = name_calibration(rig_file, calibration); !named) return named;
+  note(rig_file.string() + " names it from now on");
+  return {};
+}
+
+namespace {
 
 Run add_accept(Options& options) {
   const auto a = std::make_shared<AcceptArguments>();
   options.add("calibration", &a->calibration, "Folder of the calibration that is to be the rig's").required();
   add_rig_file(options, a->rig);
   options.add_flag("--dry-run", &a->dry_run, "Only say what would change");
-  return [a](const CommonArguments& common) { return accept(*a, common); };
+  return [a](const CommonArguments& common) -> Result<int> {
+    const std::filesystem::path file = find_rig(a->rig);
+    if (const Result<void> said = print_change(file, a->calibration, !a->dry_run, common); !said)
+      return said.error();
+    if (a->dry_run) return kDone;
+    const Result<void> accepted = accept_calibration(file, a->calibration);
+    return accepted ? Result<int>(kDone) : accepted.error();
+  };
 }
 
 }  // namespace

@@ -16,9 +16,14 @@ namespace weft::app {
 namespace {
 
 template <typename PartOptions>
-void add_folders(Options& options, PartOptions& a, const std::string& input) {
+void add_input(Options& options, PartOptions& a, const std::string& input) {
   options.add("input", &a.input, input).required();
   options.add("--from", &a.from, "Calibration whose other parts are kept; it is never changed");
+}
+
+template <typename PartOptions>
+void add_folders(Options& options, PartOptions& a, const std::string& input) {
+  add_input(options, a, input);
   options.add("-o,--output", &a.output, "Folder of the new calibration, which must not exist").required();
 }
 
@@ -66,6 +71,8 @@ Run add_response(Options& options) {
   add_folders(options, *a,
               "Folder with dark/, led01/, led02/, led01+led02/, scale/ of raw frames of a still scene");
   add_rig_name(options, a->rig);
+  options.add("--trap", &a->trap,
+              "Set of a black trap (weft capture trap): the lens's veil; default trap/ of input");
   return run_step(options, [a](const JobContext& context) { return calibrate_response(*a, context); });
 }
 
@@ -90,9 +97,11 @@ Run add_color(Options& options) {
 Run add_lights(Options& options) {
   const auto a = std::make_shared<CalibrateLightsOptions>();
   const auto method = std::make_shared<std::string>("physical");
-  add_folders(
+  add_input(
       options, *a,
       "Folder of sessions (*.weft) of a sheet with tags, sheet.toml and, where measured anew, rig.toml");
+  options.add("-o,--output", &a->output,
+              "Folder of the new calibration, which must not exist; default none: only says what comes out");
   options
       .add("--method", method.get(),
            "physical (a model of each LED), per-pixel (directions cell by cell), seed (the iteration of "

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "app/cli/exit_code.h"
 #include "app/cli/opened_devices.h"
@@ -28,6 +29,8 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr int kSettledLooks = 3;
 
 struct RigArguments {
   fs::path rig;
@@ -216,6 +219,60 @@ Run add_rig_shot(Options& options) {
   return run_shared(take_test_shot, a);
 }
 
+void print_grid(const Json& grid, double factor, const char* pattern) {
+  const auto columns = grid["columns"].get<std::size_t>();
+  std::string line;
+  for (std::size_t i = 0; i < grid["values"].size(); ++i) {
+    const Json& value = grid["values"][i];
+    line += value.is_number() ? fmt::format(fmt::runtime(pattern), factor * value.get<double>()) : "      -";
+    if ((i + 1) % columns == 0) print(std::exchange(line, ""));
+  }
+}
+
+/// What the finder sees of the table, and what the calibration knows of it.
+Result<int> show_framing(const capture::Rig& rig, const RigArguments&, const CommonArguments& common) {
+  const auto devices = OpenedDevices::open(rig);
+  if (!devices) return devices.error();
+  const RigClient& client = (*devices)->client();
+  const Result<Json> known = client.get("/api/v1/rig/framing");
+  if (!known && known.error().kind != ErrorKind::kNoInput) return known.error();
+  if (const Result<Json> lit = client.post("/api/v1/rig/light", {{"round", true}}); !lit) return lit.error();
+  Result<Json> seen = client.get("/api/v1/rig/live/framing?after=0");
+  for (int look = 0; seen && look < kSettledLooks; ++look)  // the first ones may be from before the light
+    seen = client.get(fmt::format("/api/v1/rig/live/framing?after={}", seen->at("frame").get<int>()));
+  static_cast<void>(client.post("/api/v1/rig/light", {{"leds", Json::array()}}));
+  if (!seen) return seen.error();
+  if (common.json) {
+    print_json({{"known", known ? *known : Json()}, {"seen", *seen}});
+    return kDone;
+  }
+  if (known) {
+    print(fmt::format("the camera sees {:.1f} x {:.1f} mm of the table", known->at("width_mm").get<double>(),
+                      known->at("height_mm").get<double>()));
+    if (!known->at("light").is_null()) {
+      print("light on it, percent of the brightest place's:");
+      print_grid(known->at("light"), 100, "{:>7.0f}");
+    }
+    if (!known->at("normal_deg").is_null()) {
+      print("predicted error of normals 20 degrees steep, degrees:");
+      print_grid(known->at("normal_deg"), 1, "{:>7.3f}");
+    }
+  }
+  std::string tags = fmt::format("tags in sight: {}", seen->at("tags").size());
+  if (const Json& off = seen->at("off_mm"); off.is_number()) {
+    tags += fmt::format("; {} of {} that stay on the table, {:.1f} mm from where they belong",
+                        seen->at("fiducials").get<int>(), known->at("tags").size(), off.get<double>());
+  }
+  print(tags);
+  return kDone;
+}
+
+Run add_rig_framing(Options& options) {
+  const auto a = std::make_shared<RigArguments>();
+  add_rig_file(options, a->rig);
+  return run_shared(show_framing, a);
+}
+
 Run add_rig_test(Options& options) {
   const auto a = std::make_shared<RigArguments>();
   add_rig_file(options, a->rig);
@@ -226,13 +283,16 @@ Run add_rig_test(Options& options) {
 }  // namespace
 
 Verb rig_verb() {
-  return {.name = "rig",
-          .help = "Try the parts of a rig",
-          .verbs = {
-              {"status", "What board and camera say of themselves", add_rig_status},
-              {"lights", "Light the LEDs one after another", add_rig_lights},
-              {"shot", "Take one photograph that is not kept: what is clipped, and a picture", add_rig_shot},
-              {"test", "Photograph the table under each LED: is each where it should be?", add_rig_test}}};
+  return {
+      .name = "rig",
+      .help = "Try the parts of a rig",
+      .verbs = {
+          {"status", "What board and camera say of themselves", add_rig_status},
+          {"lights", "Light the LEDs one after another", add_rig_lights},
+          {"shot", "Take one photograph that is not kept: what is clipped, and a picture", add_rig_shot},
+          {"framing", "What is in sight, how it is lit, and whether the table's tags are where they belong",
+           add_rig_framing},
+          {"test", "Photograph the table under each LED: is each where it should be?", add_rig_test}}};
 }
 
 }  // namespace weft::app

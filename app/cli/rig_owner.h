@@ -16,7 +16,8 @@ namespace weft::app {
 /// The daemon that owns this rig, at the address of address_of_owner(), by token_of_owner().
 Result<RigClient> connect_to_owner(const capture::Rig& rig, const std::string& address);
 
-/// A rig behind its interface: the daemon that owns it, or a server in this process for as long as this lives.
+/// A rig behind its interface: the daemon that owns it, or a server in this process for as long as this
+/// lives.
 struct ReachedRig {
   std::unique_ptr<RigServer> own;  ///< null where a daemon runs
   RigClient client;

@@ -101,8 +101,8 @@ Result<capture::Rig> rig_to_serve(const ServeArguments& arguments) {
   for (const std::string& archive : arguments.archives) {
     std::error_code error;
     if (!std::filesystem::is_directory(archive, error)) {
-      return Error{ErrorKind::kNoInput, "there is no such folder of sessions", archive,
-                   error.message(), "name one that is there with --archive"};
+      return Error{ErrorKind::kNoInput, "there is no such folder of sessions", archive, error.message(),
+                   "name one that is there with --archive"};
     }
     if (absolute_folder(archive) != absolute_folder(rig->scan.sessions))
       rig->daemon.archives.push_back(absolute_folder(archive));

@@ -2,6 +2,7 @@
 #include "app/cli/terminal.h"
 
 #include <fmt/format.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -125,6 +126,19 @@ std::stop_token stop_on_signal() {
   std::signal(SIGXFSZ, SIG_IGN);
   std::signal(SIGPIPE, SIG_IGN);
   return source.get_token();
+}
+
+std::optional<std::string> typed_line(const std::stop_token& stop) {
+  std::string line;
+  while (!stop.stop_requested()) {
+    pollfd waiting = {STDIN_FILENO, POLLIN, 0};
+    if (::poll(&waiting, 1, 100) <= 0) continue;
+    char c = 0;
+    if (::read(STDIN_FILENO, &c, 1) != 1) return std::nullopt;
+    if (c == '\n') return line;
+    line += c;
+  }
+  return std::nullopt;
 }
 
 void print(std::string_view text) {

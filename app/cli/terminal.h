@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <mutex>
+#include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 
@@ -41,6 +43,9 @@ class ProgressLine {
 
 /// The stop token that SIGINT and SIGTERM request; a second signal ends the program at once.
 std::stop_token stop_on_signal();
+
+/// A line that a person typed; nothing at the end of input or when stopped.
+std::optional<std::string> typed_line(const std::stop_token& stop);
 
 void print(std::string_view text);  ///< to standard output, with a line end
 void print_json(const Json& document);

@@ -42,10 +42,12 @@ struct RigServer::State {
         pictures(lock.folder() / "pictures"),
         views(lock.folder() / "views"),
         controls([this](const std::string& name) { tell_controls(name); }),
-        attendance(rig, std::move(open), lock.folder() / "test-shots",
+        screens(rig),
+        attendance(rig, std::move(open), lock.folder() / "test-shots", screens,
                    {[this] { keeper.tell_status(); }, [this](const TestShot& shot) { tell_shot(shot); }}),
         sets(rig, keeper, events),
-        keeper(rig, attendance, std::move(run), events, log, pictures) {
+        framing(rig),
+        keeper(rig, attendance, screens, std::move(run), events, log, pictures) {
     keeper.on_controls([this] { return controls.holder(); });
   }
 
@@ -90,8 +92,8 @@ struct RigServer::State {
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
     if (previews) keeper.on_scanned([this](const capture::ScanRequest& request) { solve_preview(request); });
-    parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, attendance, sets, controls, *jobs, *library,
-                           views, pixels, guard});
+    parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, attendance, screens, sets, framing, controls,
+                           *jobs, *library, views, pixels, guard});
     return {};
   }
 
@@ -105,8 +107,10 @@ struct RigServer::State {
   std::unique_ptr<LibraryService> library;
   std::unique_ptr<JobQueue> jobs;
   Controls controls;
+  Screens screens;
   Attendance attendance;
   SetKeeper sets;  // outlives what the keeper does for it
+  FramingGuide framing;
   RigKeeper keeper;
   std::optional<RigParts> parts;
   GuardRules guard;

@@ -70,8 +70,8 @@ enum class ReadingUse { kUsed, kSaturated, kMissing, kShadowed, kRejected };
 /// A reading as the solution of its pixel sees it. Where there is none, nothing is predicted.
 struct ReadingStory {
   ReadingUse use = ReadingUse::kMissing;
-  double predicted = 0;  ///< in plane 0; of RGB, and the next, the weighted sum of the planes over their
-                         ///< strengths
+  double predicted = 0;  ///< of a mosaic the reading; of RGB the weighted sum of its planes, each over its
+                         ///< strength
   double reading = 0;    ///< as predicted is; NaN where it is saturated or missing
   double sigma = 0;      ///< of the reading, by noise and by what no noise model knows
 };

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <thread>
@@ -22,8 +23,9 @@ constexpr const char* kWork = "/api/v1/calibrations/work";
 
 class CaptureAtTheRig : public testing::Test {
  protected:
+  explicit CaptureAtTheRig(double megapixels = 0.25) : megapixels_(megapixels) {}
   void SetUp() override {
-    ASSERT_TRUE(served_.start(WEFT_PROGRAMS, WEFT_SOURCE_DIR "/testdata/scenes/rig.toml", 0.25));
+    ASSERT_TRUE(served_.start(WEFT_PROGRAMS, WEFT_SOURCE_DIR "/testdata/scenes/rig.toml", megapixels_));
     ASSERT_TRUE(served_.serve());
   }
 
@@ -59,6 +61,9 @@ class CaptureAtTheRig : public testing::Test {
   }
 
   ServedRig served_;
+
+ private:
+  const double megapixels_;
 };
 
 TEST_F(CaptureAtTheRig, SaysOfEachBoardWhetherItIsOfUseAndWhyNot) {
@@ -80,6 +85,8 @@ TEST_F(CaptureAtTheRig, SaysOfEachBoardWhetherItIsOfUseAndWhyNot) {
   EXPECT_LT(set["figures"]["predicted"]["focal_percent"].get<double>(), focal_percent);
   set = photograph();
   EXPECT_THAT(of(set, "board05").dump(), HasSubstr("much like one before"));
+  lay("board mirrored=1");
+  EXPECT_THAT(of(photograph(), "board06")["why"].get<std::string>(), HasSubstr("mirrored"));
 }
 
 TEST_F(CaptureAtTheRig, GoesOnAfterTheDaemonWasKilled) {
@@ -151,6 +158,44 @@ TEST_F(CaptureAtTheRig, RefusesWhatItCannotWorkOn) {
   EXPECT_THAT(refusal({{"part", "board"}, {"name", "chart"}}), HasSubstr("it is a set of part chart"));
 }
 
+TEST_F(CaptureAtTheRig, SaysOfAChartHowItLies) {
+  begin("chart", "chart.toml");
+  lay("empty");
+  Json set = photograph();
+  EXPECT_THAT(of(set, "chart.weft")["why"].get<std::string>(), HasSubstr("no chart")) << set;
+  EXPECT_EQ(set["next"]["name"], "chart_2.weft");
+  lay("chart turn=180");
+  set = photograph();
+  EXPECT_TRUE(of(set, "chart_2")["used"]) << set;
+  EXPECT_THAT(of(set, "chart_2")["facts"].value("note", ""), HasSubstr("upside down")) << set;
+  EXPECT_TRUE(set["done"]) << set;
+  EXPECT_EQ(set["photographs"].size(), 2u) << "what was of no use is kept, left out";
+}
+
+TEST_F(CaptureAtTheRig, TellsASheetThatWearsAFold) {
+  begin("sheet", "sheet.toml");
+  lay("sheet fold=4");
+  const Json folded = photograph();
+  EXPECT_THAT(of(folded, "sheet01")["why"].get<std::string>(), HasSubstr("not smooth")) << folded;
+  lay("sheet");
+  const Json flat = photograph();
+  EXPECT_TRUE(of(flat, "sheet01_2")["used"]) << flat;
+}
+
+TEST_F(CaptureAtTheRig, TellsALampOfTheRoomBySheetAndSet) {
+  begin("sheet", "sheet.toml");
+  lay("sheet");
+  ASSERT_TRUE(served_.rig().say("light ambient 0.2"));
+  const Json lit = photograph();
+  const std::string said = lit["error"].is_null() ? of(lit, "sheet01")["why"].get<std::string>()
+                                                  : lit["error"]["what"].get<std::string>();
+  EXPECT_THAT(said, HasSubstr("lamp")) << lit;
+  ASSERT_TRUE(served_.rig().say("light normal"));
+  const Json dark = photograph();
+  EXPECT_EQ(dark["error"], Json()) << dark;
+  EXPECT_EQ(dark["next"]["name"].get<std::string>().substr(0, 7), "sheet02") << dark;
+}
+
 TEST_F(CaptureAtTheRig, TellsASheetThatLiesAsBefore) {
   begin("sheet", "sheet.toml");
   lay("sheet");
@@ -161,6 +206,47 @@ TEST_F(CaptureAtTheRig, TellsASheetThatLiesAsBefore) {
   EXPECT_THAT(of(again, "sheet02")["why"].get<std::string>(), HasSubstr("lies as it did in sheet01"));
   EXPECT_TRUE(of(again, "sheet02")["left_out"]) << "weft calibrate lights reads the folder as it is";
   EXPECT_EQ(again["next"]["name"], "sheet02_2.weft");
+}
+
+/// With a finder that has as many pixels as a camera's.
+class FramingAtTheRig : public CaptureAtTheRig {
+ protected:
+  FramingAtTheRig() : CaptureAtTheRig(1) {}
+};
+
+TEST_F(FramingAtTheRig, SeesInTheFinderThatTheCameraWasKnocked) {
+  const Json known = answer(served_.client().get("/api/v1/rig/framing"));
+  ASSERT_TRUE(known.is_object());
+  EXPECT_NEAR(known["width_mm"].get<double>(), 1536 * 0.13, 0.5) << "a tilted lens with distortion";
+  EXPECT_EQ(known["tags"].size(), 4u);
+  EXPECT_EQ(known["light"]["values"].size(), 96u);
+  const auto framing = [this](int after) {
+    EXPECT_TRUE(served_.client().post("/api/v1/rig/light", {{"leds", {1, 3}}}));
+    return answer(served_.client().get("/api/v1/rig/live/framing?after=" + std::to_string(after)));
+  };
+  ASSERT_TRUE(served_.client().post("/api/v1/rig/devices", {{"open", true}}));
+  const auto seen_now = [&framing] {
+    Json seen = framing(0);
+    for (int look = 0; look < 4; ++look) seen = framing(seen["frame"].get<int>());
+    return seen;
+  };
+  const Json still = seen_now();
+  ASSERT_TRUE(still["off_mm"].is_number()) << still;
+  EXPECT_LT(still["off_mm"].get<double>(), 0.4);
+  ASSERT_TRUE(served_.rig().say("knock camera x=3 y=-2"));
+  const Json knocked = seen_now();
+  ASSERT_TRUE(knocked["off_mm"].is_number()) << knocked;
+  EXPECT_NEAR(knocked["off_mm"].get<double>(), std::hypot(3, 2), 0.4);
+
+  begin("board", "board.toml");
+  lay("board");
+  const Json board = seen_now();
+  EXPECT_GE(board["corners"].get<int>(), 6) << board;
+  ASSERT_TRUE(board["board"].is_object()) << board;
+  for (const Json& corner : board["board"]["corners"]) {
+    EXPECT_GT(corner[0].get<double>(), 0.05);
+    EXPECT_LT(corner[0].get<double>(), 0.95);
+  }
 }
 
 }  // namespace

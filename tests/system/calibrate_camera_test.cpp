@@ -202,6 +202,14 @@ TEST_F(CalibrateCamera, NamesPhotographsOfAnotherCameraSizeApertureAndFocalLengt
   ASSERT_TRUE(zoomed) << zoomed.error().message();
   zoomed->shot.focal_mm = 55;
   ASSERT_TRUE(simulator::write_dng(input_ / "zoomed.dng", *zoomed));
+  Result<RawFrame> bright = capture::decode_raw(input_ / "board13.dng");
+  ASSERT_TRUE(bright) << bright.error().message();
+  for (int y = 0; y < bright->counts.height(); ++y) {
+    for (int x = 0; x < bright->counts.width(); ++x)
+      bright->counts(x, y) =
+          static_cast<std::uint16_t>(std::min(3 * bright->counts(x, y), static_cast<int>(bright->white)));
+  }
+  ASSERT_TRUE(simulator::write_dng(input_ / "bright.dng", *bright));
   photograph("empty.dng", rig_scene());
   const std::string whole = bytes_of(input_ / "board12.dng");
   put_bytes(input_ / "half.dng", whole.substr(0, whole.size() / 2));
@@ -212,6 +220,7 @@ TEST_F(CalibrateCamera, NamesPhotographsOfAnotherCameraSizeApertureAndFocalLengt
                                   {"other_size.dng", "600 x 420"},
                                   {"other_aperture.dng", "f/11"},
                                   {"zoomed.dng", "focal length 55 mm, not 50: turn the zoom back"},
+                                  {"bright.dng", "too bright"},
                                   {"empty.dng", "no board found"},
                                   {"half.dng", "half.dng"},
                                   {"words.dng", "words.dng"}}) {

@@ -378,7 +378,19 @@ TEST(CalibrateResponse, MeasuresTheVeilOfALensInABlackTrap) {
   EXPECT_THAT(outcome->report.summary, HasSubstr("a veil of 0.8"));
   EXPECT_EQ(read_calibration(work / "new")->response->veil, veil);
 
-  fs::remove_all(work / "response" / "trap");
+  fs::create_directories(work / "set");
+  fs::rename(work / "response" / "trap", work / "set" / "trap");
+  CalibrateResponseOptions beside = {work / "response", {}, work / "beside", {}};
+  beside.trap = work / "set";
+  const auto from_set = calibrate_response(beside, {});
+  ASSERT_TRUE(from_set) << from_set.error().message();
+  EXPECT_EQ(from_set->calibration.response->veil, veil) << "the same photographs in a set of their own";
+  beside.trap = work / "response";
+  beside.output = work / "nowhere";
+  const auto none = calibrate_response(beside, {});
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message(), HasSubstr("no photograph of a trap"));
+
   CalibrateResponseOptions again = {work / "response", work / "new", work / "again", {}};
   const auto kept = calibrate_response(again, {});
   ASSERT_TRUE(kept) << kept.error().message();

@@ -26,15 +26,6 @@ Error not_acceptable(const fs::path& calibration, std::string why, std::string r
           std::move(remedy)};
 }
 
-std::vector<std::string> parts_of(const Calibration& calibration) {
-  std::vector<std::string> parts;
-  if (calibration.camera) parts.emplace_back("camera");
-  if (calibration.response) parts.emplace_back("response");
-  if (calibration.lights) parts.emplace_back("lights");
-  if (calibration.color) parts.emplace_back("color");
-  return parts;
-}
-
 std::vector<std::string> without(std::vector<std::string> parts, const std::vector<std::string>& others) {
   std::erase_if(parts, [&](const std::string& part) { return std::ranges::count(others, part) > 0; });
   return parts;
@@ -92,6 +83,15 @@ std::string with_calibration(const std::string& text, const std::string& value) 
 
 }  // namespace
 
+std::vector<std::string> parts_of(const Calibration& calibration) {
+  std::vector<std::string> parts;
+  if (calibration.camera) parts.emplace_back("camera");
+  if (calibration.response) parts.emplace_back("response");
+  if (calibration.lights) parts.emplace_back("lights");
+  if (calibration.color) parts.emplace_back("color");
+  return parts;
+}
+
 Result<CalibrationChange> change_between(const fs::path& from, const fs::path& to) {
   const Result<Calibration> after = read_calibration(to);
   if (!after) return after.error();
@@ -116,6 +116,18 @@ Result<CalibrationChange> change_between(const fs::path& from, const fs::path& t
   if (are_comparable)
     change.maps = calibration::cost_of(*before->camera, *old_lights, *after->camera, *new_lights);
   return change;
+}
+
+Json json_of(const CalibrationChange& change) {
+  Json maps;
+  if (change.maps) {
+    maps = {{"mean_deg", change.maps->mean_deg},
+            {"worst_deg", change.maps->worst_deg},
+            {"albedo_factor", 1 / change.maps->albedo_factor},
+            {"albedo_unevenness", change.maps->albedo_unevenness}};
+  }
+  return {{"from", change.old_id},   {"to", change.new_id}, {"maps", std::move(maps)},
+          {"gained", change.gained}, {"lost", change.lost}, {"warning", change.warning}};
 }
 
 std::vector<std::string> words_of(const CalibrationChange& change) {

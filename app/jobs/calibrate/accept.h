@@ -8,6 +8,7 @@
 
 #include "calibration/checks/movement.h"
 #include "core/calibration.h"
+#include "core/json_document.h"
 #include "core/result.h"
 
 namespace weft::app {
@@ -22,10 +23,15 @@ struct CalibrationChange {
   std::string warning;  ///< that nobody checked the new one, or that it did not pass; empty: it did
 };
 
+/// "camera", "response", "lights", "color", those that there are.
+std::vector<std::string> parts_of(const Calibration& calibration);
+
 /// `from` is the folder of the rig's calibration; empty: it had none. kBadData where the new one has no
 /// camera, response and lights, or is of another body, aperture or size.
 Result<CalibrationChange> change_between(const std::filesystem::path& from, const std::filesystem::path& to);
 
+/// {"from", "to", "maps", "gained", "lost", "warning"}.
+Json json_of(const CalibrationChange& change);
 /// A few lines for people.
 std::vector<std::string> words_of(const CalibrationChange& change);
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <ranges>
 #include <utility>
 
 #include "app/jobs/linear_image.h"
@@ -21,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using calibration::BoardFault;
 
-constexpr double kMostBlur = 1.7;  // times the median
+constexpr double kMostBlur = 1.7;   // times the median
+constexpr double kMostFull = 0.02;  // of a board's photosites
 
 Result<std::vector<fs::path>> photographs_in(const fs::path& folder) {
   constexpr std::array kNoPhotographs = {".toml", ".json", ".txt", ".md", ".html"};
@@ -116,31 +118,63 @@ void keep_one_camera(const BoardFolderOptions& asked, BoardPhotographs& all) {
   }
 }
 
-Result<Image<std::uint8_t>> read_grey(const fs::path& file, Size size) {
+struct Picture {
+  Image<std::uint8_t> grey;
+  std::optional<RawFrame> raw;  ///< where it is no developed picture
+};
+
+Result<Picture> read_picture(const fs::path& file, Size size) {
   if (is_linear_image(file)) {
     const Result<Image<float>> image =
         read_linear_image(file, Transfer::kAuto, Clipped::kKeep, NotNumbers::kMark);
     if (!image) return image.error();
     const std::array<View<const float>, 3> rgb = {image->plane(0), image->plane(1), image->plane(2)};
-    return calibration::grey_picture(rgb);
+    return Picture{calibration::grey_picture(rgb), {}};
   }
-  const Result<RawFrame> frame = capture::decode_raw(file, {.size = size});
-  if (!frame) return frame.error();
-  return calibration::grey_picture(*frame);
+  Result<RawFrame> frame = capture::decode_raw(file, {.size = size});
+  if (!frame) return std::move(frame).error();
+  Image<std::uint8_t> grey = calibration::grey_picture(*frame);
+  return Picture{std::move(grey), std::move(*frame)};
+}
+
+/// Share of the photosites among a board's corners that the light has filled.
+double full_share(const RawFrame& frame, const calibration::BoardSighting& board) {
+  const auto across = [](const calibration::BoardCorner& c) { return c.px.x; };
+  const auto down = [](const calibration::BoardCorner& c) { return c.px.y; };
+  const auto [left, right] = std::ranges::minmax(board.corners | std::views::transform(across));
+  const auto [top, bottom] = std::ranges::minmax(board.corners | std::views::transform(down));
+  const auto [width, height] = frame.counts.size();
+  const int x0 = std::clamp(static_cast<int>(left), 0, width),
+            x1 = std::clamp(static_cast<int>(right), x0, width);
+  const int y0 = std::clamp(static_cast<int>(top), 0, height),
+            y1 = std::clamp(static_cast<int>(bottom), y0, height);
+  double full = 0;
+  for (int y = y0; y < y1; ++y) {
+    for (int x = x0; x < x1; ++x) full += frame.counts(x, y) >= frame.white ? 1 : 0;
+  }
+  return full / std::max(1.0, static_cast<double>(x1 - x0) * (y1 - y0));
 }
 
 Result<void> look_at(const fs::path& file, const BoardFolderOptions& options, BoardPhotograph& photograph) {
-  const Result<Image<std::uint8_t>> grey = read_grey(file, photograph.size);
-  if (!grey) {
-    photograph.left_out = grey.error().message();
+  const Result<Picture> picture = read_picture(file, photograph.size);
+  if (!picture) {
+    photograph.left_out = picture.error().message();
     return {};
   }
-  photograph.sighting = calibration::find_board(grey->plane(), options.board, options.limits);
+  const View<const std::uint8_t> grey = picture->grey.plane();
+  photograph.sighting = calibration::find_board(grey, options.board, options.limits);
   const calibration::BoardSighting& sighting = photograph.sighting;
-  if (sighting.fault != BoardFault::kNone)
+  if (sighting.fault != BoardFault::kNone) {
     photograph.left_out = fmt::format("{}: {}", name_of(sighting.fault), sighting.why);
+  } else if (const double full = picture->raw ? full_share(*picture->raw, sighting) : 0; full > kMostFull) {
+    photograph.left_out = fmt::format(
+        "too bright: {:.0f} percent of the board are as bright as the camera can count, and white that is "
+        "full "
+        "grows into black",
+        100 * full);
+  }
   if (!photograph.of_table) return {};
-  auto tags = calibration::find_tags(grey->plane(), options.tag_dictionary);
+  auto tags = calibration::find_tags(grey, options.tag_dictionary);
   if (!tags) return tags.error();
   const bool share_dictionary = options.board.kind == calibration::BoardKind::kCharuco &&
                                 options.board.dictionary == options.tag_dictionary;

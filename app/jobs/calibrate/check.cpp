@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <span>
 
 #include "app/jobs/calibrate/check_result.h"
 #include "app/jobs/calibrate/history.h"
@@ -114,7 +115,7 @@ Result<CheckedSheet> check_session(const CalibrateCheckOptions& options, const f
   const auto plane = planes.find(session.filename().string());
   if (plane != planes.end()) evidence->known_normal = plane->second;
   const fs::path folder = options.from.empty() ? session / "calibration" : options.from;
-  evidence->paper_delta = options.paper_delta.value_or(reported_delta(folder));
+  evidence->paper_delta = options.paper_delta.value_or(sheet.delta.value_or(reported_delta(folder)));
   const Result<std::vector<std::string>> shots = lit_sha256(plan->session);
   if (!shots) return shots.error();
   const std::set<std::string> fitted = fitted_sha256(folder);
@@ -297,6 +298,13 @@ std::string doubt_of(const calibration::Movement& movement) {
       movement.chi_square_after);
 }
 
+/// Whether maps would show it. What costs less is as likely the paper's waves.
+bool matters(const calibration::MovementCost& cost) {
+  constexpr double kLeast_deg = 0.02, kLeastAlbedo = 0.002;
+  return cost.worst_deg > kLeast_deg || std::abs(cost.albedo_factor - 1) > kLeastAlbedo ||
+         cost.albedo_unevenness > kLeastAlbedo;
+}
+
 CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
   CalibrationReport report;
   const calibration::Movement& movement = rig.movement;
@@ -326,9 +334,10 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
                     {"cost_worst_deg", rig.cost.worst_deg},
                     {"changes", Json::array()}};
   for (const calibration::RigChange& change : movement.changes) {
-    report.verdicts.push_back(verdict_of(change));
-    section.paragraphs.push_back(report.verdicts.back().text + ".");
+    Verdict verdict = verdict_of(change);
+    section.paragraphs.push_back(verdict.text + ".");
     report.numbers["changes"].push_back(json_of(change));
+    if (matters(rig.cost)) report.verdicts.push_back(std::move(verdict));
   }
   if (const std::string doubt = doubt_of(movement); !doubt.empty()) section.paragraphs.push_back(doubt + ".");
   if (movement.chi_square_after > calibration::kUnexplainedFrom) {
@@ -340,7 +349,11 @@ CalibrationReport rig_report(const RigCheck& rig, const std::string& session) {
              movement.chi_square_after),
          "see whether a patch is covered or a tag was laid elsewhere, else calibrate again"});
   }
-  if (!movement.changes.empty()) {
+  if (!movement.changes.empty() && !matters(rig.cost)) {
+    report.summary = fmt::format(
+        "The rig is where it was calibrated, but for what changes no map: {:.3f} degrees at worst",
+        rig.cost.worst_deg);
+  } else if (!movement.changes.empty()) {
     report.summary = fmt::format(
         "The rig has changed; scanning on would cost {:.2f} degrees in the mean and {:.2f} at worst",
         rig.cost.mean_deg, rig.cost.worst_deg);
@@ -361,29 +374,52 @@ struct Look {
   std::string taken_at;
 };
 
+/// What the sheet reads in one more session.
+Result<void> add_sheet(const LoadedSession& loaded, Size size, const fs::path& session,
+                       const Calibration& calibration, const TaggedSheet& sheet, const JobContext& context,
+                       calibration::RigEvidence& evidence) {
+  // Every reading is weighed against every other one: about 10 squares by 7, whatever the frame.
+  const int side = std::max(std::max(size.width, size.height) / 10 & ~1, 16);
+  const auto seen = sheet_evidence(calibration, loaded.photographs, sheet, side, session.string(), context);
+  if (!seen) return seen.error();
+  for (calibration::LitPlace& place : places_of(*seen, *calibration.camera))
+    evidence.places.push_back(std::move(place));
+  return {};
+}
+
 Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
-  const Result<SessionPlan> plan = plan_session({options.session, options.from, {}});
+  const Result<std::vector<fs::path>> sessions = sessions_in(options.session);
+  if (!sessions) return sessions.error();
+  const fs::path& first = sessions->front();
+  const Result<SessionPlan> plan = plan_session({first, options.from, {}});
   if (!plan) return plan.error();
   const Result<LoadedSession> loaded = load_session(*plan, context);
   if (!loaded) return loaded.error();
-  Look out = {{{}, {}, plan->calibration}, loaded->warnings, plan->lit.front().time};
+  const fs::path folder = options.from.empty() ? first / "calibration" : options.from;
+  Look out = {{{}, {}, plan->calibration, folder}, loaded->warnings, plan->lit.front().time};
   const Calibration& calibration = out.rig.calibration;
   Result<calibration::RigEvidence> evidence = rig_evidence(calibration, loaded->photographs);
   if (!evidence) return std::move(evidence).error();
-  if (!options.sheet.empty()) {
-    const Result<TaggedSheet> sheet = read_sheet_file(options.sheet);
-    if (!sheet) return sheet.error();
-    // Every reading is weighed against every other one: about 10 squares by 7, whatever the frame.
-    const int side = std::max(std::max(plan->size.width, plan->size.height) / 10 & ~1, 16);
-    const auto seen =
-        sheet_evidence(calibration, loaded->photographs, *sheet, side, options.session.string(), context);
-    if (!seen) return seen.error();
-    for (calibration::LitPlace& place : places_of(*seen, *calibration.camera))
-      evidence->places.push_back(std::move(place));
-  }
   calibration::MovementOptions settings = options.movement;
-  const fs::path folder = options.from.empty() ? options.session / "calibration" : options.from;
-  settings.paper_delta = options.paper_delta.value_or(reported_delta(folder));
+  double delta = reported_delta(folder);
+  const bool is_set = first != options.session;
+  if (is_set || !options.sheet.empty()) {
+    const Result<TaggedSheet> sheet =
+        read_sheet_file(options.sheet.empty() ? options.session / "sheet.toml" : options.sheet);
+    if (!sheet) return sheet.error();
+    delta = sheet->delta.value_or(delta);
+    Result<void> added = add_sheet(*loaded, plan->size, first, calibration, *sheet, context, *evidence);
+    for (const fs::path& pose : std::span(*sessions).subspan(1)) {
+      if (!added) break;
+      const Result<SessionPlan> another = plan_session({pose, folder, {}});
+      if (!another) return another.error();
+      const Result<LoadedSession> read = load_session(*another, context);
+      if (!read) return read.error();
+      added = add_sheet(*read, another->size, pose, calibration, *sheet, context, *evidence);
+    }
+    if (!added) return std::move(added).error();
+  }
+  settings.paper_delta = options.paper_delta.value_or(delta);
   Result<calibration::Movement> movement = find_movement(calibration, *evidence, settings);
   if (!movement) {
     Error error = movement.error();

@@ -25,8 +25,8 @@ struct CalibrateCheckOptions {
   std::filesystem::path output =
       {};              ///< folder for the result, which must not be there; empty: nothing is written
   int square_px = 32;  ///< side of the squares that are compared; even, 8 to 512
-  /// The paper's departure from Lambert's law, as `calibrate lights` reports it (-0.5 to 1); absent: of the
-  /// calibration's report, else 0.
+  /// The paper's departure from Lambert's law, as `calibrate lights` reports it (-0.5 to 1); absent: of
+  /// sheet.toml, else of the calibration's report, else 0.
   std::optional<double> paper_delta = {};
   calibration::CheckLimits limits = {};
 };
@@ -39,10 +39,13 @@ Result<CalibrateOutcome> calibrate_check(const CalibrateCheckOptions& options, c
 
 /// On what a scan shows beside its cloth: did the rig move since it was calibrated?
 struct CheckRigOptions {
-  std::filesystem::path session = {};  ///< any session that shows tags, white patches or the sheet
-  std::filesystem::path from = {};     ///< the calibration; empty: the session's own
-  std::filesystem::path sheet = {};    ///< sheet.toml where the session shows that sheet; empty: it does not
-  std::filesystem::path output = {};   ///< as above
+  /// Any session that shows tags, white patches or the sheet; or a folder of sessions (*.weft) of the sheet
+  /// in several poses, the first of which shows the table's tags, too.
+  std::filesystem::path session = {};
+  std::filesystem::path from = {};  ///< the calibration; empty: the session's own
+  /// sheet.toml where the session shows that sheet; empty: that in a folder of sessions, else it does not.
+  std::filesystem::path sheet = {};
+  std::filesystem::path output = {};       ///< as above
   std::optional<double> paper_delta = {};  ///< of patches and sheet, as above
   calibration::MovementOptions movement = {};
 };
@@ -51,11 +54,13 @@ struct CheckRigOptions {
 struct RigCheck {
   calibration::Movement movement;
   calibration::MovementCost cost;
-  Calibration calibration;  ///< that was checked
+  Calibration calibration;     ///< that was checked
+  std::filesystem::path from;  ///< its folder
 };
 Result<RigCheck> look_at_rig(const CheckRigOptions& options, const JobContext& context);
 
-/// The same with report and result. The verdicts name what happened, each with a remedy.
+/// The same with report and result. The verdicts name what happened, each with a remedy, where it costs more
+/// than 0.02 degrees or 0.2 percent of albedo.
 Result<CalibrateOutcome> calibrate_check_rig(const CheckRigOptions& options, const JobContext& context);
 
 }  // namespace weft::app

@@ -9,6 +9,7 @@
 #include <ctime>
 #include <limits>
 
+#include "app/jobs/calibrate/accept.h"
 #include "app/jobs/calibrate/check_result.h"
 #include "app/jobs/calibrate/movement_words.h"
 #include "calibration/camera/pose.h"
@@ -199,6 +200,18 @@ std::string plot_of_camera(const std::vector<DatedCalibration>& all) {
       {.x_label = "days", .y_label = "mm against the first calibration", .series = {x, y, height}});
 }
 
+Json json_of(const Vec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+Json leds_json(const NearLights& lights) {
+  Json leds = Json::array();
+  for (const NearLight& led : lights.leds)
+    leds.push_back(
+        {{"led", leds.size() + 1}, {"position_mm", json_of(led.position_mm)}, {"flux_rgb", led.flux_rgb}});
+  return leds;
+}
+
 report::Section calibrations_section(const std::vector<DatedCalibration>& all, Json& numbers) {
   report::Section section = {"Calibrations", {}, report::Table{}, {}};
   section.is_answer = true;
@@ -229,7 +242,9 @@ report::Section calibrations_section(const std::vector<DatedCalibration>& all, J
       json["led_moved_most_mm"] = most_mm;
       json["brightness_factor"] = flux;
     }
+    if (lights != nullptr) json["leds"] = leds_json(*lights);
     if (camera) {
+      json["camera_mm"] = json_of(camera_centre_mm(*camera));
       json["camera_height_mm"] = camera_centre_mm(*camera).z;
       json["camera_tilt_deg"] = camera_tilt_deg(*camera);
     }
@@ -361,6 +376,20 @@ report::Section affected_section(const std::vector<AffectedSession>& all, Json& 
 }
 
 }  // namespace
+
+Result<std::vector<ListedCalibration>> list_calibrations(const fs::path& rig) {
+  const Result<std::vector<fs::path>> folders = folders_with(rig, "calibration.json");
+  if (!folders) return folders.error();
+  std::vector<ListedCalibration> all;
+  for (const fs::path& folder : *folders) {
+    const Result<Calibration> calibration = read_calibration(folder);
+    if (!calibration) continue;
+    all.push_back({folder, calibration->id, calibration->subject.measured, parts_of(*calibration),
+                   last_check_of(folder, calibration->id)});
+  }
+  std::ranges::stable_sort(all, std::greater{}, &ListedCalibration::measured);
+  return all;
+}
 
 Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& options,
                                              const JobContext& context) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/jobs/calibrate/report.h"
+#include "app/jobs/last_check.h"
 #include "core/calibration.h"
 #include "core/job.h"
 #include "core/result.h"
@@ -18,6 +19,17 @@ struct CalibrateHistoryOptions {
   std::filesystem::path sessions;  ///< folder of sessions to look for affected ones in; empty: none
   std::filesystem::path output;    ///< folder to make for history.html and history.json; empty: none
 };
+
+/// A calibration beside a rig file, and what is known of it.
+struct ListedCalibration {
+  std::filesystem::path folder;
+  std::string id, measured;  ///< when; ISO 8601, empty: nobody said
+  std::vector<std::string> parts;
+  std::optional<LastCheck> check;
+};
+/// Every calibration below a folder, the newest first; what cannot be read is left out. Those in sessions are
+/// copies and none of these. kNoInput where the folder cannot be read.
+Result<std::vector<ListedCalibration>> list_calibrations(const std::filesystem::path& rig);
 
 /// A session that was taken with a calibration that did not hold any more, or may not have.
 struct AffectedSession {

@@ -101,7 +101,9 @@ Result<void> LightsJob::prepare() {
                fmt::format("{} percent is not 0.01 to 5", options_.flicker_percent),
                "say how much LEDs flicker from shot to shot");
   }
-  if (Result<void> ok = check_new(options_.output); !ok) return ok;
+  if (!options_.output.empty()) {
+    if (Result<void> ok = check_new(options_.output); !ok) return ok;
+  }
   Result<Calibration> from = read_calibration(options_.from);
   if (!from) return std::move(from).error();
   calibration_ = std::move(*from);
@@ -431,6 +433,7 @@ Result<CalibrateOutcome> LightsJob::write() {
   if (!calibration_.patches.empty()) outcome.warnings.push_back(patches_left_out("lights"));
   if (std::string lax = lax_gate(evidence_); !lax.empty()) outcome.warnings.push_back(std::move(lax));
   outcome.report = lights_report(evidence_, std::move(verdicts_));
+  if (options_.output.empty()) return outcome;
   std::vector<NamedFile> files = report_files(outcome.report);
   Result<std::vector<NamedFile>> pictures = maps();
   if (!pictures) return std::move(pictures).error();

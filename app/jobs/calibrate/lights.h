@@ -19,7 +19,7 @@ enum class LightsMethod {
 struct CalibrateLightsOptions {
   std::filesystem::path input;   ///< *.weft, sheet.toml and, where a tape measured the LEDs, rig.toml
   std::filesystem::path from;    ///< the calibration to change: camera and response are needed
-  std::filesystem::path output;  ///< the new one; must not be there
+  std::filesystem::path output;  ///< the new one, which must not be there; empty: nothing is written
   LightsMethod method = LightsMethod::kPhysical;
   double tape_sigma_mm = 10;     ///< how well positions were measured, along each axis: 0.1 to 1000
   double flatness_deg = 0.05;    ///< of the sheet's slow waves, rms: 0 to 2

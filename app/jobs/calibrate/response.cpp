@@ -405,7 +405,8 @@ Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& opti
     if (!read) return std::move(read).error();
     from = std::move(*read);
   }
-  const Result<ResponseFrames> frames = read_response_frames(options.input, from ? &*from : nullptr, context);
+  const Result<ResponseFrames> frames =
+      read_response_frames(options.input, options.trap, from ? &*from : nullptr, context);
   if (!frames) return frames.error();
   const Result<ResponseMeasurement> measured = calibration::measure_response(*frames);
   if (!measured) return measured.error();

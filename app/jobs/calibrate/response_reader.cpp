@@ -287,8 +287,8 @@ Result<std::vector<ExposureFrames>> listed(const fs::path& folder, Body& body) {
 
 }  // namespace
 
-Result<ResponseFrames> read_response_frames(const fs::path& folder, const Calibration* from,
-                                            const JobContext& context) {
+Result<ResponseFrames> read_response_frames(const fs::path& folder, const fs::path& trap,
+                                            const Calibration* from, const JobContext& context) {
   std::error_code failed;
   if (!fs::is_directory(folder, failed)) {
     return Error{ErrorKind::kNoInput, "no such folder", folder.string(), "",
@@ -296,7 +296,16 @@ Result<ResponseFrames> read_response_frames(const fs::path& folder, const Calibr
   }
   ResponseFrames out;
   Body body(from);
-  for (const fs::path& entry : sorted_entries(folder)) {
+  std::vector<fs::path> entries = sorted_entries(folder);
+  if (!trap.empty()) {
+    std::erase_if(entries, [](const fs::path& entry) { return entry.filename() == "trap"; });
+    entries.push_back(trap / "trap");
+    if (!fs::is_directory(entries.back(), failed)) {
+      return Error{ErrorKind::kNoInput, "there is no photograph of a trap", trap.string(),
+                   "it has no folder trap", "take them: weft capture trap"};
+    }
+  }
+  for (const fs::path& entry : entries) {
     const std::string name = entry.filename().string();
     if (!fs::is_directory(entry, failed)) continue;
     const std::optional<std::vector<int>> leds = leds_of(name);

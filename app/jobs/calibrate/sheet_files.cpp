@@ -24,7 +24,7 @@ Result<TaggedSheet> read_sheet_file(const fs::path& file) {
   TaggedSheet out;
   calibration::Sheet& sheet = out.sheet;
   TomlKeys keys(*table, file.string(), kCalibrationPage);
-  keys.know({"width_mm", "height_mm", "margin_mm", "reflectance", "tag"});
+  keys.know({"width_mm", "height_mm", "margin_mm", "reflectance", "delta", "tag"});
   sheet.width_mm = keys.number("width_mm", 1, 10000);
   sheet.height_mm = keys.number("height_mm", 1, 10000);
   sheet.margin_mm = keys.number_or("margin_mm", 5, 0, 10000);
@@ -37,6 +37,7 @@ Result<TaggedSheet> read_sheet_file(const fs::path& file) {
     if (values.size() == 1) values.resize(3, values[0]);
     if (values.size() == 3) sheet.reflectance_rgb = {values[0], values[1], values[2]};
   }
+  if (keys.has("delta")) out.delta = keys.number("delta", -0.5, 1);
   const std::vector<const toml::table*> tags = keys.tables("tag");
   if (Result<void> ok = keys.status(); !ok) return std::move(ok).error();
   for (std::size_t i = 0; i < tags.size(); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "calibration/camera/markers.h"
@@ -19,12 +20,13 @@ inline constexpr const char* kCalibrationPage = "docs/calibration.md";
 struct TaggedSheet {
   calibration::Sheet sheet;  ///< its printed squares are the tags with their quiet zone
   std::vector<calibration::SheetTag> tags;
+  std::optional<double> delta;  ///< it reflects 1 - delta (1 - cosine) of Lambert's law; absent: nobody knows
 };
 
 /// sheet.toml: width_mm and height_mm (to 10000), margin_mm (default 5), reflectance (0 to 1, one number or
-/// three; absent where nobody measured it), and for each tag a [[tag]] of dictionary (default
-/// DICT_APRILTAG_36h11), id, side_mm with its black border, centre_mm = [u, v] from the sheet's centre.
-/// kBadData names the key that is unknown, missing or wrong.
+/// three; absent where nobody measured it), delta (-0.5 to 1; absent where nobody measured it), and for each
+/// tag a [[tag]] of dictionary (default DICT_APRILTAG_36h11), id, side_mm with its black border, centre_mm =
+/// [u, v] from the sheet's centre. kBadData names the key that is unknown, missing or wrong.
 Result<TaggedSheet> read_sheet_file(const std::filesystem::path& file);
 
 }  // namespace weft::app

@@ -156,14 +156,13 @@ Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options,
   }
   CalibrateOutcome outcome;
   outcome.report = report_of(*rig, options.session);
-  const fs::path from = options.from.empty() ? options.session / "calibration" : options.from;
   Calibration change = change_of(*rig);
   if (change.camera && rig->calibration.camera_covariance)
     outcome.warnings.emplace_back(
         "the covariance of the camera was left out, for it says nothing of the move: weft calibrate camera "
         "measures it again");
   Result<Calibration> written =
-      derive_calibration(from, std::move(change), options.output, report_files(outcome.report));
+      derive_calibration(rig->from, std::move(change), options.output, report_files(outcome.report));
   if (!written) return std::move(written).error();
   outcome.folder = options.output;
   outcome.calibration = std::move(*written);

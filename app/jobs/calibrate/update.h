@@ -12,7 +12,7 @@
 namespace weft::app {
 
 struct CalibrateUpdateOptions {
-  /// Taken after the move: any session that shows tags, white patches or the sheet.
+  /// Taken after the move: a session, or a folder of sessions of the sheet, as CheckRigOptions has it.
   std::filesystem::path session = {};
   std::filesystem::path from = {};    ///< the calibration to update; empty: the session's own
   std::filesystem::path sheet = {};   ///< sheet.toml where the session shows that sheet; empty: it does not

@@ -20,12 +20,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSetFile = "set.json";
-constexpr std::array<std::pair<SetPart, const char*>, 6> kParts = {{{SetPart::kBoard, "board"},
+constexpr std::array<std::pair<SetPart, const char*>, 7> kParts = {{{SetPart::kBoard, "board"},
                                                                     {SetPart::kResponse, "response"},
                                                                     {SetPart::kTrap, "trap"},
                                                                     {SetPart::kSheet, "sheet"},
                                                                     {SetPart::kChart, "chart"},
-                                                                    {SetPart::kCheck, "check"}}};
+                                                                    {SetPart::kCheck, "check"},
+                                                                    {SetPart::kMoved, "moved"}}};
 
 /// The file that a part's thing is described in; null where there is nothing to say of it.
 const char* description_of(SetPart part) {
@@ -34,6 +35,7 @@ const char* description_of(SetPart part) {
       return "board.toml";
     case SetPart::kSheet:
     case SetPart::kCheck:
+    case SetPart::kMoved:
       return "sheet.toml";
     case SetPart::kChart:
       return "chart.toml";
@@ -49,18 +51,23 @@ Result<void> check_description(const PhotographSet& set) {
     const Result<PrintedBoard> board = read_board_file(set.board_file(), {});
     return board ? Result<void>() : board.error();
   }
-  if (set.part == SetPart::kSheet || set.part == SetPart::kCheck) {
+  if (set.is_of_sheets()) {
     const Result<TaggedSheet> sheet = read_sheet_file(set.sheet_file());
     return sheet ? Result<void>() : sheet.error();
   }
   return {};
 }
 
-Result<void> check_described(const SetRequest& request) {
+/// What a person said of the thing, else what the newest set of such a thing says.
+Result<std::string> described(const SetRequest& request) {
   const char* name = description_of(request.part);
-  if (name == nullptr || !request.description.empty() || request.part == SetPart::kChart) return {};
-  return Error{ErrorKind::kUsage, fmt::format("nobody said what the {} is", name_of(request.part)), name,
-               "its size and pattern must be known to find it",
+  if (name == nullptr) return std::string();
+  std::string text = request.description.empty()
+                         ? newest_description(request.folder.parent_path(), request.part)
+                         : request.description;
+  if (!text.empty() || request.part == SetPart::kChart) return text;
+  return Error{ErrorKind::kUsage, fmt::format("nobody said what the {} is", fs::path(name).stem().string()),
+               name, "its size and pattern must be known to find it",
                fmt::format("write a {} (docs/calibration.md) and name it", name)};
 }
 
@@ -98,12 +105,27 @@ std::vector<std::string> set_part_names() {
   return names;
 }
 
+std::string newest_description(const fs::path& sets, SetPart part) {
+  const char* name = description_of(part);
+  fs::path newest;
+  std::error_code ignored;
+  for (const auto& set : fs::directory_iterator(sets, ignored)) {
+    const fs::path each = name == nullptr ? fs::path() : set.path() / name;
+    const bool is_newer =
+        newest.empty() || fs::last_write_time(each, ignored) > fs::last_write_time(newest, ignored);
+    if (is_there(each) && is_newer) newest = each;
+  }
+  const Result<std::string> text = newest.empty() ? Result<std::string>("") : read_text(newest);
+  return text ? *text : "";
+}
+
 Result<PhotographSet> begin_set(const SetRequest& request) {
   if (is_there(request.folder / kSetFile)) return taken_up(request);
   std::error_code failed;
   if (is_there(request.folder) && !fs::is_empty(request.folder, failed))
     return not_this_set(request, "there is something in it, and no set.json");
-  if (Result<void> ok = check_described(request); !ok) return ok.error();
+  const Result<std::string> description = described(request);
+  if (!description) return description.error();
   if (!request.from.empty()) {
     if (const Result<Calibration> before = read_calibration(request.from); !before) return before.error();
   }
@@ -114,10 +136,8 @@ Result<PhotographSet> begin_set(const SetRequest& request) {
   set.created = iso_time_now();
   set.from = request.from.empty() ? fs::path() : absolute_folder(request.from);
   if (Result<void> made = make_writable_folder(set.folder); !made) return made.error();
-  const char* file = description_of(set.part);
   Result<void> written;
-  if (file != nullptr && !request.description.empty())
-    written = write_file(set.folder / file, request.description);
+  if (!description->empty()) written = write_file(set.folder / description_of(set.part), *description);
   if (written) written = check_description(set);
   if (written) written = write_set(set);
   if (written) return set;

@@ -15,7 +15,7 @@
 namespace weft::app {
 
 /// What a set is of: the folders of docs/calibration.md.
-enum class SetPart { kBoard, kResponse, kTrap, kSheet, kChart, kCheck };
+enum class SetPart { kBoard, kResponse, kTrap, kSheet, kChart, kCheck, kMoved };
 const char* name_of(SetPart part);  ///< "board"
 std::optional<SetPart> set_part_of(const std::string& name);
 std::vector<std::string> set_part_names();
@@ -36,6 +36,10 @@ struct PhotographSet {
   std::filesystem::path board_file() const { return folder / "board.toml"; }
   std::filesystem::path sheet_file() const { return folder / "sheet.toml"; }
   std::filesystem::path left_out() const { return folder / "left_out"; }
+  /// Its photographs are sessions of a white sheet.
+  bool is_of_sheets() const {
+    return part == SetPart::kSheet || part == SetPart::kCheck || part == SetPart::kMoved;
+  }
 };
 
 /// What a set is begun with.
@@ -44,8 +48,12 @@ struct SetRequest {
   SetPart part = SetPart::kBoard;
   std::string rig;
   std::filesystem::path from;
-  std::string description;  ///< text of board.toml, sheet.toml or chart.toml; not of a set that is there
+  /// Text of board.toml, sheet.toml or chart.toml; empty: newest_description(). Not of a set that is there.
+  std::string description;
 };
+
+/// What the newest set in a folder says of such a thing; empty: none does.
+std::string newest_description(const std::filesystem::path& sets, SetPart part);
 
 /// Begins a set, or takes up the one that is in the folder. kCannotCreate where the folder holds another part
 /// or another rig's, or something that is no set; kNoInput, kBadData for what is written about the board or

@@ -14,6 +14,7 @@
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/sets/pose_words.h"
 #include "app/jobs/sets/response_series.h"
+#include "app/jobs/sets/scan_judgement.h"
 #include "calibration/camera/guidance.h"
 #include "calibration/camera/markers.h"
 #include "capture/raw/decode.h"
@@ -50,7 +51,7 @@ std::vector<std::string> names_in(const fs::path& folder, bool sessions) {
 }
 
 void add_left_out(const PhotographSet& set, SetStanding& standing) {
-  const bool of_sessions = set.part == SetPart::kSheet || set.part == SetPart::kCheck;
+  const bool of_sessions = set.is_of_sheets() || set.part == SetPart::kChart;
   for (const std::string& name : names_in(set.left_out(), of_sessions))
     standing.photographs.push_back(
         {name, false, true, set.why.value(name, "it was left out"), Json::object()});
@@ -88,15 +89,19 @@ Json json_of(const calibration::PixelPoint& p) {
   return {std::round(10 * p.x) / 10, std::round(10 * p.y) / 10};
 }
 
-Json json_of(const BoardPose& pose) {
-  Json outline = Json::array();
-  for (const calibration::PixelPoint& p : pose.outline_px) outline.push_back(json_of(p));
+Json json_of(const BoardPose& pose, Size size) {
+  Json outline_px = Json::array(), outline = Json::array();
+  for (const calibration::PixelPoint& p : pose.outline_px) {
+    outline_px.push_back(json_of(p));
+    outline.push_back({(p.x + 0.5) / size.width, (p.y + 0.5) / size.height});
+  }
   return {{"x_mm", pose.x_mm},
           {"y_mm", pose.y_mm},
           {"height_mm", pose.height_mm},
           {"tilt_deg", pose.tilt_deg},
           {"azimuth_deg", pose.azimuth_deg},
-          {"outline_px", std::move(outline)}};
+          {"outline_px", std::move(outline_px)},
+          {"outline", std::move(outline)}};
 }
 
 Json json_of(const calibration::LensForecast& forecast) {
@@ -122,7 +127,7 @@ void judge_residuals(const std::vector<std::size_t>& viewed, const BoardGuidance
 SetStep step_to(const PhotographSet& set, const BoardGuidance& guidance) {
   SetStep step;
   step.name = free_name(set, "board");
-  step.pose = json_of(*guidance.next);
+  step.pose = json_of(*guidance.next, guidance.camera.size);
   step.says = words_of(*guidance.next, guidance.camera);
   return step;
 }
@@ -264,6 +269,11 @@ constexpr std::array kChecks = {
     WantedSheet{"turned", 0, 0, "lay the sheet flat again, turned by 90 degrees in its plane"},
     WantedSheet{"other", 0, 0, "lay another white sheet flat on the table; the same one turned over will do"},
     WantedSheet{"plane", 15, 210, "tilt the sheet by about 15 degrees, raising a corner"}};
+constexpr std::array kMoved = {
+    WantedSheet{"moved", 0, 0,
+                "clear the table but for its tags and patches, and lay the white sheet flat in the middle"},
+    WantedSheet{"tilted", 20, 0, "tilt the sheet by 20 degrees: raise its left edge"},
+    WantedSheet{"turned", 20, 90, "tilt the sheet by 20 degrees: raise the edge towards you"}};
 
 /// Where a sheet lies that the first lit frame of a session shows.
 Result<calibration::SheetPose> sheet_in(const fs::path& folder, const TaggedSheet& sheet,
@@ -298,6 +308,10 @@ SetPhotograph judged(const fs::path& folder, const TaggedSheet& sheet, const Cam
     photograph.why = pose.error().message();
     return photograph;
   }
+  const Result<Session> session = read_session(folder);
+  photograph.why = session ? lamp_in(*session) : session.error().message();
+  if (photograph.why.empty()) photograph.why = unevenness_of(*session, camera, sheet, *pose);
+  photograph.is_used = photograph.why.empty();
   constexpr double kDegrees = 180 / std::numbers::pi;
   const Mat3& r = pose->rig_from_sheet.rotation;
   const Vec3 normal = {r[0][2], r[1][2], r[2][2]};
@@ -306,6 +320,17 @@ SetPhotograph judged(const fs::path& folder, const TaggedSheet& sheet, const Cam
                       {"azimuth_deg", kDegrees * std::atan2(normal.y, normal.x)},
                       {"residual_px", pose->residual_px},
                       {"normal", {normal.x, normal.y, normal.z}}};
+  return photograph;
+}
+
+SetPhotograph judged_chart(const Session& session, const PhotographSet& set) {
+  SetPhotograph photograph;
+  photograph.name = session.folder.filename().string();
+  photograph.why = lamp_in(session);
+  const ChartLook look = look_at_chart_scan(session, set.folder, set.from);
+  if (photograph.why.empty()) photograph.why = look.why_not;
+  photograph.is_used = photograph.why.empty();
+  if (!look.note.empty()) photograph.facts["note"] = look.note;
   return photograph;
 }
 
@@ -376,7 +401,7 @@ Result<SetStanding> SetGuide::look_at_sheets(const PhotographSet& set) {
     }
     standing.photographs.push_back(sessions_.at(name));
   }
-  if (set.part == SetPart::kSheet) judge_likeness(standing);
+  if (set.part != SetPart::kCheck) judge_likeness(standing);
   const auto has = [&](const WantedSheet& wanted) {
     return std::ranges::any_of(standing.photographs, [&](const SetPhotograph& p) {
       return p.is_used &&
@@ -388,7 +413,9 @@ Result<SetStanding> SetGuide::look_at_sheets(const PhotographSet& set) {
       if (!standing.next && !has(each)) standing.next = step_to(each, unfinished_or_free(set, each.name));
     }
   };
-  set.part == SetPart::kSheet ? next_of(kSheets) : next_of(kChecks);
+  if (set.part == SetPart::kSheet) next_of(kSheets);
+  if (set.part == SetPart::kCheck) next_of(kChecks);
+  if (set.part == SetPart::kMoved) next_of(kMoved);
   standing.is_done = !standing.next;
   add_left_out(set, standing);
   return standing;
@@ -396,16 +423,19 @@ Result<SetStanding> SetGuide::look_at_sheets(const PhotographSet& set) {
 
 Result<SetStanding> SetGuide::look_at_chart(const PhotographSet& set) {
   SetStanding standing;
-  constexpr const char* kName = "chart.weft";
-  const Result<Session> session = read_session(set.folder / kName);
-  standing.is_done = session && session->state == "complete";
-  if (standing.is_done) {
-    standing.photographs.push_back({kName, true, false, "", Json::object()});
-  } else {
+  for (const std::string& name : names_in(set.folder, true)) {
+    const Result<Session> session = read_session(set.folder / name);
+    if (!session || session->state != "complete") continue;
+    if (!sessions_.contains(name)) sessions_.emplace(name, judged_chart(*session, set));
+    standing.photographs.push_back(sessions_.at(name));
+    standing.is_done = standing.is_done || standing.photographs.back().is_used;
+  }
+  if (!standing.is_done) {
     standing.next =
-        SetStep{StepKind::kScan, kName,
+        SetStep{StepKind::kScan, unfinished_or_free(set, "chart"),
                 "lay the colour chart flat on the table, dark skin at the upper left of the picture", Json()};
   }
+  add_left_out(set, standing);
   return standing;
 }
 
@@ -415,6 +445,7 @@ Result<SetStanding> SetGuide::look(const PhotographSet& set) {
       return look_at_boards(set);
     case SetPart::kSheet:
     case SetPart::kCheck:
+    case SetPart::kMoved:
       return look_at_sheets(set);
     case SetPart::kChart:
       return look_at_chart(set);

@@ -11,6 +11,7 @@
 #include "app/server/rig/attendance.h"
 #include "app/server/rig/controls.h"
 #include "app/server/rig/frame_pictures.h"
+#include "app/server/rig/framing_guide.h"
 #include "app/server/rig/rig_keeper.h"
 #include "app/server/rig/set_keeper.h"
 #include "app/server/view/pixel_tables.h"
@@ -27,7 +28,9 @@ struct RigParts {
   RigKeeper& keeper;
   FramePictures& pictures;
   Attendance& attendance;
+  Screens& screens;
   SetKeeper& sets;
+  FramingGuide& framing;
   Controls& controls;
   JobQueue& jobs;
   LibraryService& library;

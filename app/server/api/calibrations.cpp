@@ -2,13 +2,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "app/jobs/calibrate/accept.h"
+#include "app/jobs/calibrate/history.h"
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
+#include "app/server/api/job_body.h"
 #include "app/server/api/scan_body.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -36,7 +41,8 @@ Result<Reply> begin_or_go_on(const RigParts& parts, const Call& call) {
   wish.part = *part;
   wish.name = body->value("name", "");
   wish.description = body->value("description", "");
-  wish.from = body->value("from", "");
+  const std::string from = body->value("from", "");
+  if (!from.empty()) wish.from = parts.rig.file.parent_path() / from;
   return replied(parts.sets.begin(wish));
 }
 
@@ -56,6 +62,63 @@ Result<Reply> leave_out_or_take_back(const RigParts& parts, const Call& call) {
   return replied(parts.sets.leave_out(name.get<std::string>(), out.get<bool>()));
 }
 
+Json json_of(const ListedCalibration& one, const std::filesystem::path& root,
+             const std::filesystem::path& current) {
+  Json check;
+  if (one.check) check = {{"date", one.check->date}, {"passed", one.check->passed}};
+  return {{"folder", one.folder.lexically_relative(root).string()},
+          {"id", one.id},
+          {"measured", one.measured.empty() ? Json() : Json(one.measured)},
+          {"parts", one.parts},
+          {"check", std::move(check)},
+          {"is_rigs", !current.empty() && absolute_folder(one.folder) == absolute_folder(current)}};
+}
+
+Result<Reply> list_of_calibrations(const RigParts& parts, const Call&) {
+  const std::filesystem::path root = parts.rig.file.parent_path();
+  const Result<std::vector<ListedCalibration>> all = list_calibrations(root);
+  if (!all) return all.error();
+  const std::filesystem::path current = capture::calibration_now(parts.rig);
+  Json calibrations = Json::array();
+  for (const ListedCalibration& one : *all) calibrations.push_back(json_of(one, root, current));
+  return json_reply({{"calibrations", std::move(calibrations)}});
+}
+
+Result<Reply> history_of_rig(const RigParts& parts, const Call&) {
+  CalibrateHistoryOptions options;
+  options.rig = parts.rig.file.parent_path();
+  if (is_there(parts.rig.scan.sessions)) options.sessions = parts.rig.scan.sessions;
+  const Result<CalibrationHistory> history = calibrate_history(options, {});
+  if (!history) return history.error();
+  Json document = document_of(history->report);
+  document["warnings"] = history->warnings;
+  return json_reply(document);
+}
+
+Result<Reply> accept(const RigParts& parts, const Call& call) {
+  const Result<Json> body = command_in(parts, call);
+  if (!body) return body.error();
+  const Result<std::filesystem::path> folder =
+      folder_below(parts.rig.file.parent_path(), *body, "calibration");
+  if (!folder && folder.error().kind == ErrorKind::kUsage) {
+    return Error{ErrorKind::kUsage, "no calibration can be accepted so", "calibration", folder.error().why,
+                 "see calibrations/accept in openapi.json"};
+  }
+  if (!folder) return folder.error();
+  const Json dry = body->value("dry_run", Json(false));
+  if (!dry.is_boolean()) return refused_set("dry_run", "must be true or false");
+  const Result<CalibrationChange> change = change_between(capture::calibration_now(parts.rig), *folder);
+  if (!change) return change.error();
+  if (dry == false) {
+    if (Result<void> named = name_calibration(parts.rig.file, *folder); !named)
+      return std::move(named).error();
+  }
+  Json document = json_of(*change);
+  document["words"] = words_of(*change);
+  document["accepted"] = dry == false;
+  return json_reply(document);
+}
+
 }  // namespace
 
 Resource calibrations_resource(const RigParts& parts) {
@@ -63,7 +126,10 @@ Resource calibrations_resource(const RigParts& parts) {
     return Route{method, path, [&parts, handle](const Call& asked) { return handle(parts, asked); }, false,
                  pool};
   };
-  return {{call("POST", "/api/v1/calibrations/work", begin_or_go_on, Pool::kDevices),
+  return {{call("GET", "/api/v1/calibrations", list_of_calibrations, Pool::kDisk),
+           call("GET", "/api/v1/calibrations/history", history_of_rig, Pool::kDisk),
+           call("POST", "/api/v1/calibrations/accept", accept, Pool::kDisk),
+           call("POST", "/api/v1/calibrations/work", begin_or_go_on, Pool::kDevices),
            call(
                "GET", "/api/v1/calibrations/work",
                [](const RigParts& all, const Call&) { return replied(all.sets.document()); }, Pool::kQuick),

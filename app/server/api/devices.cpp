@@ -110,7 +110,8 @@ Result<Reply> picture(const RigParts& parts, const Call& call) {
   return reply;
 }
 
-Result<Reply> live_frame(const RigParts& parts, const Call& call) {
+/// The finder's next picture after the one that the call names.
+Result<Attendance::Look> next_look(const RigParts& parts, const Call& call) {
   std::int64_t after = 0;
   if (const auto found = call.query.find("after"); found != call.query.end()) {
     const std::string& text = found->second;
@@ -118,7 +119,20 @@ Result<Reply> live_frame(const RigParts& parts, const Call& call) {
     if (error != std::errc() || end != text.data() + text.size() || after < 0)
       return refused("after", "must be the number of a picture, from 0");
   }
-  Result<Attendance::Look> look = parts.attendance.look(after);
+  return parts.attendance.look(after);
+}
+
+Result<Reply> live_framing(const RigParts& parts, const Call& call) {
+  const Result<Attendance::Look> look = next_look(parts, call);
+  if (!look) return look.error();
+  Result<Json> seen = parts.framing.seen(look->jpeg, parts.sets.board());
+  if (!seen) return std::move(seen).error();
+  (*seen)["frame"] = look->number;
+  return json_reply(*seen);
+}
+
+Result<Reply> live_frame(const RigParts& parts, const Call& call) {
+  Result<Attendance::Look> look = next_look(parts, call);
   if (!look) return std::move(look).error();
   Reply reply;
   reply.type = "image/jpeg";
@@ -142,6 +156,14 @@ Resource devices_resource(const RigParts& parts) {
            call("POST", "/api/v1/rig/light", light, Pool::kDevices),
            call("POST", "/api/v1/rig/test-shot", begin_shot, Pool::kDevices),
            call("GET", "/api/v1/rig/live/frame", live_frame, Pool::kDevices),
+           call("GET", "/api/v1/rig/live/framing", live_framing, Pool::kDevices),
+           call(
+               "GET", "/api/v1/rig/framing",
+               [](const RigParts& all, const Call&) -> Result<Reply> {
+                 const Result<Json> known = all.framing.known();
+                 return known ? json_reply(*known) : Result<Reply>(known.error());
+               },
+               Pool::kDisk),
            call("GET", "/api/v1/rig/test-shots/{id}", one_shot, Pool::kPictures),
            call("GET", "/api/v1/rig/test-shots/{id}/picture", picture, Pool::kPictures)},
           devices_description()};

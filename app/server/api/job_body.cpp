@@ -67,9 +67,12 @@ const std::vector<JobKind>& job_kinds() {
   static const std::vector<JobKind> kinds = {
       {"solve",
        {"solve"},
-       {kSession, word("quality", "--quality", {"preview", "fast", "standard", "robust", "reference"}),
-        word("method", "--method"), number("within_s", "--within", 1e-3, 1e9),
-        number("to_deg", "--to", 1e-6, 180)}},
+       {kSession,
+        word("quality", "--quality", {"preview", "fast", "standard", "robust", "reference"}),
+        word("method", "--method"),
+        number("within_s", "--within", 1e-3, 1e9),
+        number("to_deg", "--to", 1e-6, 180),
+        {"calibration", "--calibration", Holds::kFolder}}},
       {"price", {"solve", "--explain"}, {kSession}},
       {"rectify",
        {"rectify"},
@@ -81,6 +84,7 @@ const std::vector<JobKind>& job_kinds() {
        {{"session", "--session", Holds::kSession},
         {"input", "", Holds::kFolder},
         kFrom,
+        {"moved", "--session", Holds::kFolder},
         {"output", "--output", Holds::kNewFolder}}},
       {"calibrate_camera",
        {"calibrate", "camera"},
@@ -88,16 +92,25 @@ const std::vector<JobKind>& job_kinds() {
         number("squares_x", "--squares-x", 2, 100), number("squares_y", "--squares-y", 2, 100),
         number("square_mm", "--square-mm", 1e-3, 1e4), number("thickness_mm", "--thickness-mm", 0, 1000)},
        true},
-      {"calibrate_response", {"calibrate", "response"}, {kInput, kOutput, kFrom}, true},
+      {"calibrate_response",
+       {"calibrate", "response"},
+       {kInput, kOutput, kFrom, {"trap", "--trap", Holds::kFolder}},
+       true},
       {"calibrate_color", {"calibrate", "color"}, {kInput, kOutput, kFrom}, true},
       {"calibrate_lights",
        {"calibrate", "lights"},
-       {kInput, kOutput, kFrom, word("method", "--method", {"physical", "per-pixel", "seed"}),
-        number("tape_sigma_mm", "--tape-sigma", 1e-3, 1e4), number("flatness_deg", "--flatness", 0, 90),
+       {kInput,
+        {"output", "--output", Holds::kNewFolder},
+        kFrom,
+        word("method", "--method", {"physical", "per-pixel", "seed"}),
+        number("tape_sigma_mm", "--tape-sigma", 1e-3, 1e4),
+        number("flatness_deg", "--flatness", 0, 90),
         number("flicker_percent", "--flicker", 0, 100)}},
       {"calibrate_grey", {"calibrate", "grey"}, {kSession, kOutput, kFrom}},
       {"calibrate_patches", {"calibrate", "patches"}, {kSession, kOutput, kFrom}},
-      {"calibrate_update", {"calibrate", "update"}, {kSession, kOutput, kFrom}}};
+      {"calibrate_update",
+       {"calibrate", "update"},
+       {{"session", "", Holds::kSession}, {"moved", "", Holds::kFolder}, kOutput, kFrom}}};
   return kinds;
 }
 
@@ -116,30 +129,40 @@ Result<std::string> word_in(const Json& body, const char* field) {
   return text;
 }
 
-// Words between slashes, below the rig's folder, where no link leads out of it.
-Result<fs::path> folder_in(const Json& body, const JobField& field, const JobPlaces& places) {
-  const Json& value = body[field.field];
-  if (!value.is_string()) return unfit(field.field, "must be a text");
-  const std::string& text = value.get_ref<const std::string&>();
-  bool fits = text.size() <= kLongestFolder && !places.folder.empty();
+// Words between slashes, below a folder.
+Result<fs::path> place_below(const fs::path& root, const Json& body, const char* field) {
+  const auto value = body.find(field);
+  if (value == body.end() || !value->is_string()) return unfit(field, "must be a text");
+  const std::string& text = value->get_ref<const std::string&>();
+  bool fits = text.size() <= kLongestFolder && !root.empty();
   for (std::string_view rest = text; fits; rest.remove_prefix(rest.find('/') + 1)) {
     fits = is_plain(rest.substr(0, rest.find('/')));
     if (rest.find('/') == std::string_view::npos) break;
   }
-  if (!fits) return unfit(field.field, "must name a folder below that of the rig file: photographs/board");
-  fs::path folder = places.folder / text;
-  const bool is_new = field.holds == Holds::kNewFolder;
-  if (is_new && is_there(folder)) {
-    return Error{ErrorKind::kCannotCreate, "there is something of this name already", text, "",
-                 "name another folder"};
-  }
+  if (!fits) return unfit(field, "must name a folder below that of the rig file: photographs/board");
+  return root / text;
+}
+
+// Where no link leads out of the root.
+Result<void> check_inside(const fs::path& folder, const fs::path& root) {
   std::error_code error;
-  const fs::path there = is_new ? folder.parent_path() : folder;
-  if (!fs::is_directory(there, error) || !library::lies_in(there, places.folder)) {
-    return Error{ErrorKind::kNoInput, "there is no such folder", text,
-                 "it is looked for below the rig file's", "copy it there first"};
+  if (fs::is_directory(folder, error) && library::lies_in(folder, root)) return {};
+  return Error{ErrorKind::kNoInput, "there is no such folder", folder.lexically_relative(root).string(),
+               "it is looked for below the rig file's", "copy it there first"};
+}
+
+Result<fs::path> new_folder_below(const fs::path& root, const Json& body, const char* field) {
+  Result<fs::path> folder = place_below(root, body, field);
+  if (!folder) return folder;
+  if (is_there(*folder)) {
+    return Error{ErrorKind::kCannotCreate, "there is something of this name already",
+                 folder->lexically_relative(root).string(), "", "name another folder"};
   }
-  return folder;
+  fs::path parent = folder->parent_path();
+  while (!is_there(parent)) parent = parent.parent_path();
+  if (Result<void> inside = check_inside(parent, root); !inside) return inside.error();
+  const Result<void> made = make_writable_folder(folder->parent_path());
+  return made ? folder : made.error();
 }
 
 // What the field becomes; what the job needs of it is added to its needs.
@@ -163,16 +186,24 @@ Result<std::string> argument_of(const Json& body, const JobField& field, const J
     if (!name.is_string()) return unfit(field.field, "must be the name of a session");
     folder = places.session(name.get<std::string>());
   } else {
-    folder = folder_in(body, field, places);
+    folder = field.holds == Holds::kFolder ? folder_below(places.folder, body, field.field)
+                                           : new_folder_below(places.folder, body, field.field);
   }
   if (!folder) return std::move(folder).error();
   if (field.holds != Holds::kNewFolder) spec.needs.push_back(folder->string());
-  if (std::string_view(field.field) == "session" || std::string_view(field.field) == "input")
-    spec.of = body[field.field].get<std::string>();
+  const std::string_view option = field.option;
+  if (option.empty() || option == "--session") spec.of = body[field.field].get<std::string>();
   return folder->string();
 }
 
 }  // namespace
+
+Result<fs::path> folder_below(const fs::path& root, const Json& body, const char* field) {
+  Result<fs::path> folder = place_below(root, body, field);
+  if (!folder) return folder;
+  const Result<void> inside = check_inside(*folder, root);
+  return inside ? folder : inside.error();
+}
 
 Result<JobSpec> read_job_body(const Json& body, const JobPlaces& places) {
   const Result<std::string> name = word_in(body, "kind");
@@ -204,8 +235,11 @@ Result<JobSpec> read_job_body(const Json& body, const JobPlaces& places) {
     if (*field.option != '\0') spec.arguments.emplace_back(field.option);
     spec.arguments.push_back(std::move(*argument));
   }
-  if (*name == "check" && body.contains("session") == body.contains("input"))
-    return unfit("session", "either it or input must be named");
+  const auto named = [&](const char* field) { return static_cast<int>(body.contains(field)); };
+  if (*name == "check" && named("session") + named("input") + named("moved") != 1)
+    return unfit("session", "either it or input or moved must be named");
+  if (*name == "calibrate_update" && named("session") + named("moved") != 1)
+    return unfit("session", "either it or moved must be named");
   if (*name == "copy" && !places.copy.empty())
     spec.arguments.insert(spec.arguments.end(), {"--to", places.copy.string()});
   if (kind->names_rig && !body.contains("from"))

@@ -20,6 +20,11 @@ struct JobPlaces {
   std::filesystem::path copy;    ///< of finished sessions; empty: where each session says
 };
 
+/// The folder that a field of a body names, below another one where no link leads out of it. kUsage,
+/// kNoInput.
+Result<std::filesystem::path> folder_below(const std::filesystem::path& root, const Json& body,
+                                           const char* field);
+
 /// The body of POST /api/v1/jobs: {"kind", "session" or "input", "output", "from", "request_id", ...} with
 /// the fields of its kind (docs/http.md). All that can be told before the verb runs is: kUsage with the field
 /// and its rule; kNoInput where what it works on is not there; kCannotCreate where its output is.

@@ -31,12 +31,12 @@ Json age_of(const Calibration& calibration, const std::optional<LastCheck>& chec
 
 /// Whether the last check of the rig's calibration passed. One that did not must be accepted, and then is
 /// recorded with what it costs. The age of the calibration is recorded in any case.
-Result<void> check_moved(const capture::Rig& rig, capture::ScanRequest& request) {
+Result<void> check_moved(capture::ScanRequest& request) {
   const Json accepted = std::exchange(request.accepted_moved, Json());
-  if (rig.scan.calibration.empty()) return {};
-  const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
+  if (request.calibration.empty()) return {};
+  const Result<Calibration> calibration = read_calibration(request.calibration);
   if (!calibration) return {};  // the scan says what is wrong with it
-  const std::optional<LastCheck> check = last_check_of(rig.scan.calibration, calibration->id);
+  const std::optional<LastCheck> check = last_check_of(request.calibration, calibration->id);
   request.calibrated = age_of(*calibration, check);
   if (!check || check->passed) return {};
   if (accepted.is_null()) {
@@ -59,7 +59,7 @@ Result<Reply> start_scan(const RigParts& parts, const Call& call) {
   if (const auto dry = body->find("dry_run"); dry != body->end() && *dry == true)
     return json_reply(to_json(*choice));
   if (!choice->resumed) {
-    if (Result<void> ok = check_moved(parts.rig, choice->request); !ok) return std::move(ok).error();
+    if (Result<void> ok = check_moved(choice->request); !ok) return std::move(ok).error();
   }
   if (Result<void> made = make_writable_folder(parts.rig.scan.sessions); !made)
     return std::move(made).error();

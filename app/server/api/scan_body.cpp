@@ -162,7 +162,7 @@ Result<std::string> session_in_body(const Json& body) {
 capture::ScanRequest request_of_rig(const capture::Rig& rig) {
   capture::ScanRequest request;
   request.rig = rig.name;
-  request.calibration = rig.scan.calibration;
+  request.calibration = capture::calibration_now(rig);
   request.cloth_height_mm = rig.scan.cloth_height_mm;
   request.exposure = {rig.scan.exposure_us.value_or(0), rig.scan.iso, rig.scan.f_number};
   request.copy = rig.scan.copy;

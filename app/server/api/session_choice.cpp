@@ -26,8 +26,9 @@ constexpr int kMostUnfinished = 1000;
 
 /// The calibration that this rig's sessions are begun with now.
 std::string calibration_id(const capture::Rig& rig) {
-  if (rig.scan.calibration.empty()) return "";
-  const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
+  const fs::path folder = capture::calibration_now(rig);
+  if (folder.empty()) return "";
+  const Result<Calibration> calibration = read_calibration(folder);
   return calibration ? calibration->id : "";
 }
 

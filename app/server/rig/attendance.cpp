@@ -36,8 +36,9 @@ bool may_pass(const Error& error) {
 
 /// Where the rig's calibration knows it.
 std::optional<capture::PhotositeNoise> noise_of(const capture::Rig& rig) {
-  if (rig.scan.calibration.empty()) return std::nullopt;
-  const Result<Calibration> calibration = read_calibration(rig.scan.calibration);
+  const fs::path folder = capture::calibration_now(rig);
+  if (folder.empty()) return std::nullopt;
+  const Result<Calibration> calibration = read_calibration(folder);
   if (!calibration || !calibration->response) return std::nullopt;
   return capture::PhotositeNoise{calibration->response->electrons_per_count,
                                  calibration->response->read_noise_counts};
@@ -45,8 +46,13 @@ std::optional<capture::PhotositeNoise> noise_of(const capture::Rig& rig) {
 
 }  // namespace
 
-Attendance::Attendance(capture::Rig rig, capture::OpenDevices open, fs::path folder, Told told)
-    : rig_(std::move(rig)), open_(std::move(open)), folder_(std::move(folder)), told_(std::move(told)) {
+Attendance::Attendance(capture::Rig rig, capture::OpenDevices open, fs::path folder, const Screens& screens,
+                       Told told)
+    : rig_(std::move(rig)),
+      open_(std::move(open)),
+      folder_(std::move(folder)),
+      screens_(screens),
+      told_(std::move(told)) {
   std::error_code ignored;
   fs::remove_all(folder_, ignored);  // shots of a daemon before this one
   watch_ = std::jthread([this](const std::stop_token& stop) { watch(stop); });
@@ -233,6 +239,7 @@ void Attendance::end_look_held() {
 }
 
 Result<int> Attendance::shoot(int led, double exposure_us) {
+  std::jthread last;  // may still tell of its shot: joined once nothing is locked
   const std::lock_guard lock(mutex_);
   if (is_lent_) return is_scanning(rig_.name);
   if (!status_.is_open || is_stopping_) return is_closed(rig_.name);
@@ -244,13 +251,17 @@ Result<int> Attendance::shoot(int led, double exposure_us) {
   is_shooting_ = true;
   TestShot shot = {++newest_, led, exposure_us, {}, {}, {}};
   shots_.push_back(shot);
-  // The last one's thread has done its last deed once is_shooting_ is false.
+  last = std::move(shooter_);
   shooter_ = std::jthread([this, shot = std::move(shot)] { take(shot); });
   return newest_;
 }
 
 void Attendance::take(TestShot shot) {
-  change([](Status& status) { status.doing = "shooting"; });
+  change([this](Status& status) {
+    status.doing = "shooting";
+    status.is_dark = screens_.go_black();
+  });
+  screens_.wait_until_black();
   {
     const std::lock_guard devices(devices_mutex_);
     Result<FrameFile> frame = devices_ ? photograph_held(shot) : Result<FrameFile>(is_closed(rig_.name));
@@ -272,14 +283,12 @@ void Attendance::take(TestShot shot) {
     }
     change([&](Status& status) {
       status.doing.clear();
+      status.is_dark = false;
       status.lit = again;
     });
   }
   keep(shot);
   told_.shot(shot);
-  const std::lock_guard lock(mutex_);
-  is_shooting_ = false;
-  changed_.notify_all();
 }
 
 Result<FrameFile> Attendance::photograph_held(const TestShot& shot) {
@@ -326,6 +335,8 @@ void Attendance::keep(TestShot shot) {
   std::vector<fs::path> gone;
   {
     const std::lock_guard lock(mutex_);
+    is_shooting_ = false;
+    changed_.notify_all();
     shots_.back() = std::move(shot);
     for (; shots_.size() > kKeptShots; shots_.pop_front()) {
       if (shots_.front().frame) gone.push_back(shots_.front().frame->file);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "app/server/rig/frame_pictures.h"
+#include "app/server/rig/screens.h"
 #include "capture/framing/focus.h"
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"
@@ -53,6 +54,7 @@ class Attendance {
     std::string doing;                ///< "opening", "shooting", "scanning"; empty: nothing
     std::vector<int> lit;             ///< as asked for last, until its lease ends
     bool is_live = false;             ///< the camera is in live view
+    bool is_dark = false;             ///< a test shot is taken: screens are to be black
     std::vector<double> can_light_s;  ///< by LED: how long it may be lit at once from now; empty: not known
     std::optional<capture::CameraFacts> camera;
     std::optional<Error> error;
@@ -63,7 +65,8 @@ class Attendance {
   };
 
   /// Test shots lie in `folder`, the last kKeptShots of them.
-  Attendance(capture::Rig rig, capture::OpenDevices open, std::filesystem::path folder, Told told);
+  Attendance(capture::Rig rig, capture::OpenDevices open, std::filesystem::path folder,
+             const Screens& screens, Told told);
   ~Attendance();
 
   /// Opens the devices, which takes seconds, or renews their lease. Errors: those of capture::open_devices()
@@ -116,7 +119,7 @@ class Attendance {
   void take(TestShot shot);
   Result<FrameFile> photograph_held(const TestShot& shot);
   std::optional<capture::FocusStanding> focus_of(const TestShot& shot);
-  void keep(TestShot shot);
+  void keep(TestShot shot);  ///< the next one may begin from here on
   void fail_held(const Error& error);
   void end_look_held();
   void watch(const std::stop_token& stop);
@@ -127,6 +130,7 @@ class Attendance {
   const capture::Rig rig_;
   const capture::OpenDevices open_;
   const std::filesystem::path folder_;
+  const Screens& screens_;
   const Told told_;
 
   std::mutex devices_mutex_;  ///< of the devices; held while one of them works

@@ -33,6 +33,13 @@ struct Lent {
   ~Lent() { to.take_back(std::move(devices)); }
 };
 
+/// Whether the table is photographed, and must get no light but that of a LED.
+bool exposes(capture::ScanPhase phase) {
+  using capture::ScanPhase;
+  return phase == ScanPhase::kMetering || phase == ScanPhase::kCooling || phase == ScanPhase::kExposing ||
+         phase == ScanPhase::kFetching;
+}
+
 /// What every frame is told with, kept or not.
 Json frame_event(const std::string& session, int index, int led, ShotRole role, Polariser polariser,
                  const capture::FrameFinding& finding) {
@@ -49,10 +56,11 @@ Json frame_event(const std::string& session, int index, int led, ShotRole role, 
 
 }  // namespace
 
-RigKeeper::RigKeeper(capture::Rig rig, Attendance& attendance, RunScan run, EventLog& events, Logbook& log,
-                     FramePictures& pictures)
+RigKeeper::RigKeeper(capture::Rig rig, Attendance& attendance, const Screens& screens, RunScan run,
+                     EventLog& events, Logbook& log, FramePictures& pictures)
     : rig_(std::move(rig)),
       attendance_(attendance),
+      screens_(screens),
       run_(std::move(run)),
       events_(events),
       log_(log),
@@ -206,7 +214,15 @@ LedStatus* RigKeeper::lit_shot_of(int led, ShotRole role, Polariser polariser) {
   return found != status_.leds.end() ? &*found : nullptr;
 }
 
+// No light is lit yet in the first of these phases.
 void RigKeeper::on_status(const capture::ScanStatus& status) {
+  const bool is_dark = screens_.go_black() && exposes(status.phase);
+  const bool was_dark = tell_scan(status, is_dark);
+  if (is_dark && !was_dark) screens_.wait_until_black();
+}
+
+/// Whether screens were to be black before.
+bool RigKeeper::tell_scan(const capture::ScanStatus& status, bool is_dark) {
   if (status.phase == capture::ScanPhase::kRecovering) {
     log_once("recovering", status.why);
   } else if (status.phase == capture::ScanPhase::kPaused) {
@@ -215,6 +231,7 @@ void RigKeeper::on_status(const capture::ScanStatus& status) {
     logged_.clear();
   }
   const std::lock_guard lock(mutex_);
+  const bool was_dark = std::exchange(status_.is_dark, is_dark);
   status_.scan = status;
   if (LedStatus* led = lit_shot_of(status.led, status.role, status.polariser); led != nullptr) {
     const bool is_kept = led->state == LedStatus::State::kKept;
@@ -232,6 +249,7 @@ void RigKeeper::on_status(const capture::ScanStatus& status) {
       status_.state = RigStatus::State::kScanning;  // until on_end() says how it ended
   }
   tell_status_locked();
+  return was_dark;
 }
 
 void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::KeptFrame& frame) {
@@ -305,6 +323,7 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
   }
   status_.state = outcome || cancelled ? RigStatus::State::kIdle : RigStatus::State::kFailed;
   status_.scan.led = 0;
+  status_.is_dark = false;
   status_.devices_open = false;
   running_ = false;
   busy_(false);
@@ -329,6 +348,7 @@ RigStatus RigKeeper::status_locked() const {
     status.can_light_s = attended.can_light_s;
   }
   if (attended.camera && !status.camera) status.camera = attended.camera;
+  status.is_dark = status.is_dark || attended.is_dark;
   status.lit = attended.lit;
   status.controls = controls_();
   return status;

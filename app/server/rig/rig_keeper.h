@@ -40,8 +40,8 @@ using RunScan =
 /// Safe from any thread.
 class RigKeeper {
  public:
-  RigKeeper(capture::Rig rig, Attendance& attendance, RunScan run, EventLog& events, Logbook& log,
-            FramePictures& pictures);
+  RigKeeper(capture::Rig rig, Attendance& attendance, const Screens& screens, RunScan run, EventLog& events,
+            Logbook& log, FramePictures& pictures);
   ~RigKeeper();
 
   /// Hears whether a scan runs; set before the first begins. Must not call the keeper.
@@ -82,6 +82,7 @@ class RigKeeper {
   Result<capture::ScanOutcome> scan_with_devices(const capture::ScanRequest& request, const RunScan& work,
                                                  const std::stop_token& cancel);
   void on_status(const capture::ScanStatus& status);
+  bool tell_scan(const capture::ScanStatus& status, bool is_dark);
   void on_kept(const capture::ScanRequest& request, const capture::KeptFrame& frame);
   void on_refused(const capture::ScanRequest& request, const capture::RefusedFrame& frame);
   void on_facts(const capture::CameraFacts& facts);
@@ -93,6 +94,7 @@ class RigKeeper {
 
   const capture::Rig rig_;
   Attendance& attendance_;
+  const Screens& screens_;
   const RunScan run_;
   EventLog& events_;
   Logbook& log_;

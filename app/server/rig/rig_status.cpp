@@ -108,6 +108,7 @@ Json to_json(const RigStatus& status, const capture::Rig& rig) {
           {"leds", std::move(leds)},
           {"left_s", status.left_s ? Json(*status.left_s) : nothing},
           {"can", commands_of(status, rig)},
+          {"dark", status.is_dark},
           {"lit", status.lit},
           {"controls", status.controls},
           {"by", status.by},

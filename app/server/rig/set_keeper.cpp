@@ -47,7 +47,7 @@ Result<Json> SetKeeper::begin(const Wish& wish) {
   request.folder = std::move(*folder);
   request.part = wish.part;
   request.rig = rig_.name;
-  request.from = wish.from.empty() ? rig_.scan.calibration : wish.from;
+  request.from = wish.from.empty() ? capture::calibration_now(rig_) : wish.from;
   request.description = wish.description;
   Result<PhotographSet> set = begin_set(request);
   if (!set) return std::move(set).error();
@@ -151,6 +151,17 @@ Result<Json> SetKeeper::document() const {
   const std::lock_guard lock(mutex_);
   if (!work_) return no_set(rig_.name);
   return document_locked();
+}
+
+std::optional<PrintedBoard> SetKeeper::board() const {
+  std::filesystem::path file;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!work_ || work_->set.part != SetPart::kBoard) return std::nullopt;
+    file = work_->set.board_file();
+  }
+  const Result<PrintedBoard> board = read_board_file(file, {});
+  return board ? std::optional(*board) : std::nullopt;
 }
 
 void SetKeeper::close() {

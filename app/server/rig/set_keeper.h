@@ -40,6 +40,8 @@ class SetKeeper {
   /// {"name", "part", "folder", "from", "busy", "error", "photographs", "figures", "next", "done"}.
   /// kNoInput where none is worked on.
   Result<Json> document() const;
+  /// The board of the set that is worked on, where it is of one.
+  std::optional<PrintedBoard> board() const;
   void close();
 
  private:

@@ -45,6 +45,12 @@ using Words = std::vector<std::string>;
 TEST_F(JobBody, BecomesAVerbWithItsArguments) {
   EXPECT_EQ(arguments(R"({"kind": "solve", "session": "satin", "quality": "robust"})"),
             (Words{"solve", "/scans/satin.weft", "--quality", "robust"}));
+  EXPECT_EQ(arguments(R"({"kind": "solve", "session": "satin", "calibration": "calibrations/may"})"),
+            (Words{"solve", "/scans/satin.weft", "--calibration", path("calibrations/may")}));
+  EXPECT_EQ(arguments(R"({"kind": "calibrate_update", "moved": "photographs", "output": "new"})"),
+            (Words{"calibrate", "update", path("photographs"), "--output", path("new")}));
+  EXPECT_EQ(arguments(R"({"kind": "check", "moved": "photographs"})"),
+            (Words{"calibrate", "check", "--session", path("photographs")}));
   EXPECT_EQ(arguments(R"({"kind": "price", "session": "satin"})"),
             (Words{"solve", "--explain", "/scans/satin.weft"}));
   EXPECT_EQ(arguments(R"({"kind": "copy", "session": "satin"})"),
@@ -97,8 +103,6 @@ TEST_F(JobBody, IsRefusedBeforeItsVerbRuns) {
   }
   EXPECT_EQ(kind_of(R"({"kind": "solve", "session": "none"})"), ErrorKind::kNoInput);
   EXPECT_EQ(kind_of(R"({"kind": "check", "input": "none"})"), ErrorKind::kNoInput);
-  EXPECT_EQ(kind_of(R"({"kind": "calibrate_grey", "session": "satin", "output": "none/new"})"),
-            ErrorKind::kNoInput);
   EXPECT_EQ(kind_of(R"({"kind": "calibrate_grey", "session": "satin", "output": "calibrations/may"})"),
             ErrorKind::kCannotCreate);
 }

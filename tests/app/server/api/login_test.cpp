@@ -111,8 +111,15 @@ TEST_F(Login, BeginsAtAPageThatNeedsNoToken) {
   EXPECT_EQ(page.status, 200);
   EXPECT_THAT(page.head, testing::AllOf(HasSubstr("Content-Type: text/html"), HasSubstr("script-src 'self'"),
                                         HasSubstr("frame-ancestors 'none'")));
-  EXPECT_THAT(page.body, HasSubstr("/enter.js"));
-  EXPECT_EQ(ask(server->port(), "GET", "/enter.js").status, 200);
+  const std::size_t script = page.body.find("/assets/");
+  ASSERT_NE(script, std::string::npos);
+  EXPECT_EQ(ask(server->port(), "GET", page.body.substr(script, page.body.find('"', script) - script)).status,
+            200);
+  EXPECT_EQ(ask(server->port(), "GET", "/viewer/NAME/ID", "",
+                {{"Sec-Fetch-Site", "cross-site"}, {"Sec-Fetch-Mode", "navigate"}})
+                .status,
+            200)
+      << "a place of the page that somebody shared";
   EXPECT_EQ(ask(server->port(), "GET", "/api/v1/rig?token=correct-horse-battery").status, 401)
       << "no token is read from an address";
 }
