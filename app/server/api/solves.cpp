@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <utility>
+#include <variant>
 
 #include "app/jobs/compare.h"
 #include "app/jobs/view/layers.h"
@@ -15,6 +18,8 @@
 #include "app/server/api/tile_query.h"
 #include "core/calibration.h"
 #include "core/files.h"
+#include "core/iso_time.h"
+#include "core/lights.h"
 #include "core/solve.h"
 #include "report/preview.h"
 
@@ -110,10 +115,42 @@ Result<Calibrated> calibration_of(const Viewed& viewed) {
                "its calibration has no camera", "calibrate the camera with weft calibrate camera"};
 }
 
-Json summary_of(const SolveFacts& solve) {
+std::int64_t bytes_in(const fs::path& folder) {
+  std::int64_t sum = 0;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    if (entry.is_regular_file(ignored)) sum += static_cast<std::int64_t>(entry.file_size(ignored));
+  }
+  return sum;
+}
+
+/// Maps carry no dates: it was made when its folder was.
+std::string created(const fs::path& folder) {
+  std::error_code ignored;
+  const auto written = fs::last_write_time(folder / kSolveProduct.document, ignored);
+  const auto since_1970 = std::chrono::file_clock::to_sys(written).time_since_epoch();
+  return iso_time(std::chrono::duration<double>(since_1970).count());
+}
+
+/// Where the LEDs are that the session was scanned with; empty where nobody knows.
+Json leds_of(const Viewed& viewed) {
+  Json leds = Json::array();
+  const Result<Calibration> calibration = read_calibration(viewed.session.calibration_folder());
+  if (!calibration || !calibration->lights) return leds;
+  const auto* near = std::get_if<NearLights>(&*calibration->lights);
+  if (near == nullptr) return leds;
+  for (const NearLight& led : near->leds)
+    leds.push_back({{"led", leds.size() + 1},
+                    {"position_mm", {led.position_mm.x, led.position_mm.y, led.position_mm.z}}});
+  return leds;
+}
+
+Json summary_of(const SolveFacts& solve, const fs::path& folder) {
   Json warnings = Json::array();
   for (const Verdict& verdict : solve.warnings) warnings.push_back(verdict.name);
   return {{"id", solve.id},
+          {"created", created(folder)},
+          {"bytes", bytes_in(folder)},
           {"method", solve.method},
           {"width", solve.size.width},
           {"height", solve.size.height},
@@ -129,7 +166,7 @@ Result<Reply> solves(const RigParts& parts, const Call& call) {
     const Result<std::optional<Json>> document = find_finished(product);
     if (!document || !*document) continue;
     const Result<SolveFacts> facts = solve_facts_from_json(**document);
-    if (facts) list.push_back(summary_of(*facts));
+    if (facts) list.push_back(summary_of(*facts, product.folder));
   }
   std::ranges::reverse(list);
   return json_reply(
@@ -155,12 +192,16 @@ Result<Reply> one_solve(const RigParts& parts, const Call& call) {
   }
   Json document =
       viewed->solve
-          ? summary_of(*viewed->solve)
+          ? summary_of(*viewed->solve, viewed->folder)
           : Json{{"id", kTruth},          {"method", kTruth},           {"width", size.width},
                  {"height", size.height}, {"albedo_scale", "absolute"}, {"warnings", Json::array()}};
   document["tile"] = kTileSide;
   document["levels"] = levels;
   document["layers"] = std::move(layers);
+  const Result<double> gain = gain_of(parts, *viewed);
+  if (!gain) return gain.error();
+  document["display_gain"] = *gain;
+  document["leds"] = leds_of(*viewed);
   document["mm_per_pixel"] = nullptr;
   document["cloth_height_mm"] = viewed->session.cloth_height_mm;
   if (const Result<Calibrated> calibrated = calibration_of(*viewed)) {
@@ -172,6 +213,18 @@ Result<Reply> one_solve(const RigParts& parts, const Call& call) {
     document["mm_per_pixel"] = std::hypot(b.x - a.x, b.y - a.y);
   }
   return json_reply(document);
+}
+
+/// What the solver said of the scan and of itself: report.json, and what `reference` did.
+Result<Reply> report_of_solve(const RigParts& parts, const Call& call) {
+  const Result<Viewed> viewed = viewed_of(parts, call);
+  if (!viewed) return viewed.error();
+  if (!viewed->solve) return Error{ErrorKind::kNoInput, "a truth has no report", kTruth, "", "name a solve"};
+  Result<Json> report = read_json(viewed->folder / "report.json", "weft.solve-report", 1);
+  if (!report) return std::move(report).error();
+  (*report)["reference"] = viewed->solve->reference;
+  (*report)["solved_by"] = viewed->solve->solved_by;
+  return json_reply(*report);
 }
 
 /// The number of the bit that the query names; -1 where it names none.
@@ -218,8 +271,12 @@ Result<std::string> relit(const RigParts& parts, const Viewed& viewed, const Ask
 Result<std::string> difference(const RigParts& parts, const Viewed& viewed, const Asked& asked,
                                const Call& call) {
   const auto with = call.query.find("with");
-  if (with == call.query.end()) return no_such_tile("with", "must name another solve of this session");
-  const Result<Viewed> other = viewed_of(parts, call.segments.at(0), with->second);
+  if (with == call.query.end()) return no_such_tile("with", "must name another solve");
+  const std::size_t slash = with->second.find('/');
+  const bool is_elsewhere = slash != std::string::npos;
+  const Result<Viewed> other =
+      viewed_of(parts, is_elsewhere ? with->second.substr(0, slash) : call.segments.at(0),
+                with->second.substr(is_elsewhere ? slash + 1 : 0));
   if (!other) return other.error();
   if (!(other->layers.size == viewed.layers.size))
     return no_such_tile(with->second.substr(0, 40), "these maps have another size");
@@ -393,6 +450,7 @@ Resource solves_resource(const RigParts& parts) {
   return {
       {{"GET", of, [&parts](const Call& call) { return solves(parts, call); }},
        {"GET", one, [&parts](const Call& call) { return one_solve(parts, call); }},
+       {"GET", one + "/report", [&parts](const Call& call) { return report_of_solve(parts, call); }},
        {"GET", one + "/tiles/{layer}/{level}/{tile}",
         [&parts](const Call& call) { return tile(parts, call); }, false, Pool::kTiles},
        {"GET", one + "/pixel", [&parts](const Call& call) { return pixel(parts, call); }, false,
