@@ -179,10 +179,6 @@ Entry read_entry(const Found& found) {
   return entry;
 }
 
-// Null where nobody said.
-Json amount(double value) {
-  return value > 0 ? Json(value) : Json();
-}
 
 // Paths may hold bytes that are no UTF-8.
 std::string text_of(const Error& error) {
@@ -265,30 +261,20 @@ Result<Database> with_tables(const fs::path& file) {
 }  // namespace
 
 Json json_of(const Entry& e) {
-  return {{"key", e.key},
-          {"name", e.name},
-          {"folder", e.folder.string()},
-          {"fabric", e.fabric},
-          {"id", e.metadata.id},
-          {"tags", e.metadata.tags},
-          {"composition", e.metadata.composition},
-          {"construction", e.metadata.construction},
-          {"side", e.metadata.side},
-          {"notes", e.metadata.notes},
-          {"weight_g_m2", amount(e.metadata.weight_g_m2)},
-          {"thickness_mm", amount(e.metadata.thickness_mm)},
-          {"revision", e.metadata.revision},
-          {"rig", e.rig},
-          {"calibration", e.calibration},
-          {"state", e.state},
-          {"taken", e.taken},
-          {"shots", e.shots},
-          {"solves", e.solves},
-          {"current_solve", e.current_solve},
-          {"written", e.written},
-          {"bytes", e.bytes},
-          {"warnings", e.warnings},
-          {"error", e.error ? weft::json_of(*e.error) : Json()}};
+  Json json = {{"key", e.key}, {"name", e.name}, {"folder", e.folder.string()}, {"fabric", e.fabric}};
+  json.update(json_of(e.metadata));
+  json.update({{"rig", e.rig},
+               {"calibration", e.calibration},
+               {"state", e.state},
+               {"taken", e.taken},
+               {"shots", e.shots},
+               {"solves", e.solves},
+               {"current_solve", e.current_solve},
+               {"written", e.written},
+               {"bytes", e.bytes},
+               {"warnings", e.warnings},
+               {"error", e.error ? weft::json_of(*e.error) : Json()}});
+  return json;
 }
 
 Result<Catalogue> Catalogue::open(const fs::path& file) {

@@ -219,6 +219,19 @@ Result<Metadata> metadata_of(const Session& session) {
   return metadata_from_json(*found, (session.folder / "session.json").string());
 }
 
+Json json_of(const Metadata& m) {
+  const auto amount = [](double value) { return value > 0 ? Json(value) : Json(); };
+  return {{"id", m.id},
+          {"tags", m.tags},
+          {"composition", m.composition},
+          {"construction", m.construction},
+          {"side", m.side},
+          {"notes", m.notes},
+          {"weight_g_m2", amount(m.weight_g_m2)},
+          {"thickness_mm", amount(m.thickness_mm)},
+          {"revision", m.revision}};
+}
+
 Result<Change> change_metadata(const std::filesystem::path& folder, const Json& fields,
                                const Provided& provided) {
   if (Result<void> ok = check_fields(fields); !ok) return std::move(ok).error();

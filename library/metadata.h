@@ -41,6 +41,9 @@ Result<Metadata> metadata_from_json(const Json& document, const std::string& whe
 Result<void> check_new_metadata(const Json& metadata);
 /// What a session says; empty where it says nothing. kBadData.
 Result<Metadata> metadata_of(const Session& session);
+/// {"id", "tags", "composition", "construction", "side", "notes", "weight_g_m2", "thickness_mm", "revision"};
+/// amounts that nobody said are null.
+Json json_of(const Metadata& metadata);
 
 /// A change that was made, and what undoes it: `before` and `after` hold the fields that differ, null where
 /// there was none.

@@ -37,7 +37,8 @@ struct Plot {
   bool large = false;  ///< few marks and large letters, to be read from two metres
 };
 
-/// The drawing: 760 x 520 units, without a title 760 x 372, large 420 x 300 of the same letters. The same plot gives the same bytes.
+/// The drawing: 760 x 520 units, without a title 760 x 372, large 420 x 300 of the same letters. The same
+/// plot gives the same bytes.
 std::string plot_svg(const Plot& plot);
 
 /// The same numbers for programs: schema weft.plot/1.

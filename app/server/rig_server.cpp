@@ -23,10 +23,11 @@ namespace {
 
 constexpr const char* kScan = "scan";  // who asks for a preview
 
-// A job without what it made, which is asked for by its id.
+// A job without what it made and where it waits, which is asked for by its id.
 Json event_of(const JobStatus& job) {
   Json event = json_of(job);
   event.erase("result");
+  event.erase("place");
   event.erase("notes");
   return event;
 }
@@ -66,7 +67,8 @@ struct RigServer::State {
     if (!calibration || !calibration->camera || !calibration->lights || !calibration->response) return;
     const std::string session = request.session.string(), name = request.session.stem().string();
     const Result<JobStatus> job =
-        jobs->add({"solve", name, {"solve", session, "--quality", "preview"}, kScan, "", {session}});
+        jobs->add({"solve", name, {"solve", session, "--quality", "preview"}, kScan, "", {session},
+                   {{"session", name}, {"quality", "preview"}}});
     if (!job) {
       log.add("preview_failed", job.error().message(), {{"session", name}});
     } else {
@@ -92,7 +94,7 @@ struct RigServer::State {
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
     if (previews) keeper.on_scanned([this](const capture::ScanRequest& request) { solve_preview(request); });
-    parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, attendance, screens, sets, framing, controls,
+    parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, attendance, screens, scans, sets, framing, controls,
                            *jobs, *library, views, pixels, guard});
     return {};
   }
@@ -108,6 +110,7 @@ struct RigServer::State {
   std::unique_ptr<JobQueue> jobs;
   Controls controls;
   Screens screens;
+  Once scans;
   Attendance attendance;
   SetKeeper sets;  // outlives what the keeper does for it
   FramingGuide framing;

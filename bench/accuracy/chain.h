@@ -16,7 +16,8 @@ namespace weft::bench {
 struct ChainCase {
   std::string name;  ///< "plain, blur 0.4 px"
   simulator::Scene scene;
-  bool knows_paper = true;  ///< else its reflectance is unknown when lights are calibrated: albedo is relative
+  bool knows_paper =
+      true;  ///< else its reflectance is unknown when lights are calibrated: albedo is relative
 };
 
 /// The cases: weaves of the accuracy set, 12.5 pixels a yarn, over the rig of `rig` with its lens, its dark

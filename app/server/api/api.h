@@ -12,6 +12,7 @@
 #include "app/server/rig/controls.h"
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/framing_guide.h"
+#include "app/server/rig/once.h"
 #include "app/server/rig/rig_keeper.h"
 #include "app/server/rig/set_keeper.h"
 #include "app/server/view/pixel_tables.h"
@@ -29,6 +30,7 @@ struct RigParts {
   FramePictures& pictures;
   Attendance& attendance;
   Screens& screens;
+  Once& scans;
   SetKeeper& sets;
   FramingGuide& framing;
   Controls& controls;

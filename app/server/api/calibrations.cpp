@@ -132,7 +132,7 @@ Resource calibrations_resource(const RigParts& parts) {
            call("POST", "/api/v1/calibrations/work", begin_or_go_on, Pool::kDevices),
            call(
                "GET", "/api/v1/calibrations/work",
-               [](const RigParts& all, const Call&) { return replied(all.sets.document()); }, Pool::kQuick),
+               [](const RigParts& all, const Call&) { return json_reply(all.sets.document()); }, Pool::kQuick),
            call("POST", "/api/v1/calibrations/work/photograph", photograph_next, Pool::kQuick),
            call("POST", "/api/v1/calibrations/work/leave-out", leave_out_or_take_back, Pool::kDevices)},
           calibrations_description()};

@@ -7,6 +7,7 @@
 
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
+#include "app/server/api/frame_tile.h"
 #include "app/server/api/scan_body.h"
 
 namespace weft::app {
@@ -94,20 +95,30 @@ Result<Reply> one_shot(const RigParts& parts, const Call& call) {
   return json_reply(document_of(*shot, parts.pictures));
 }
 
-Result<Reply> picture(const RigParts& parts, const Call& call) {
+Result<FrameFile> frame_of_shot(const RigParts& parts, const Call& call) {
   const Result<TestShot> shot = shot_in(parts, call);
   if (!shot) return shot.error();
-  if (!shot->frame) {
-    return Error{ErrorKind::kNoInput, "the test shot has no picture", call.segments.at(0),
-                 shot->error ? "it failed" : "it is being taken", "ask again, or take another one"};
-  }
-  Result<std::string> png = parts.pictures.thumbnail(*shot->frame);
+  if (shot->frame) return *shot->frame;
+  return Error{ErrorKind::kNoInput, "the test shot has no picture", call.segments.at(0),
+               shot->error ? "it failed" : "it is being taken", "ask again, or take another one"};
+}
+
+Result<Reply> picture(const RigParts& parts, const Call& call) {
+  const Result<FrameFile> frame = frame_of_shot(parts, call);
+  if (!frame) return frame.error();
+  Result<std::string> png = parts.pictures.thumbnail(*frame);
   if (!png) return std::move(png).error();
   Reply reply;
   reply.type = "image/png";
   reply.body = std::move(*png);
-  reply.tag = shot->frame->sha256;
+  reply.tag = frame->sha256;
   return reply;
+}
+
+Result<Reply> shot_tile(const RigParts& parts, const Call& call) {
+  const Result<FrameFile> frame = frame_of_shot(parts, call);
+  if (!frame) return frame.error();
+  return tile_of_frame(parts, *frame, call.segments.at(1), call.segments.at(2), call);
 }
 
 /// The finder's next picture after the one that the call names.
@@ -165,7 +176,8 @@ Resource devices_resource(const RigParts& parts) {
                },
                Pool::kDisk),
            call("GET", "/api/v1/rig/test-shots/{id}", one_shot, Pool::kPictures),
-           call("GET", "/api/v1/rig/test-shots/{id}/picture", picture, Pool::kPictures)},
+           call("GET", "/api/v1/rig/test-shots/{id}/picture", picture, Pool::kPictures),
+           call("GET", "/api/v1/rig/test-shots/{id}/tiles/{level}/{tile}", shot_tile, Pool::kTiles)},
           devices_description()};
 }
 

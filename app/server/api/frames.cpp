@@ -7,9 +7,9 @@
 
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
+#include "app/server/api/frame_tile.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_choice.h"
-#include "app/server/api/tile_query.h"
 #include "app/server/http/error_json.h"
 #include "library/session_files.h"
 
@@ -64,37 +64,18 @@ Result<Reply> thumbnail(const RigParts& parts, const Call& call) {
   return reply;
 }
 
-/// Of the frame's own pixels, without white balance.
 Result<Reply> frame_tile(const RigParts& parts, const Call& call) {
   const Result<FrameFile> frame = frame_of(parts, call);
   if (!frame) return frame.error();
-  const Result<TileName> name = tile_name_of(call.segments.at(3));
-  if (!name) return name.error();
-  const Result<Look> look = look_of(call, 1);
-  if (!look) return look.error();
-  Result<Reply> reply = kept_reply(call, *frame, name->type(), "tile-");
-  if (!reply) return reply;
-  if (reply->tag.empty()) {
+  const Result<Reply> kept = kept_reply(call, *frame, "", "tile-");
+  if (!kept) return kept;
+  if (kept->tag.empty()) {
     return Error{ErrorKind::kBadData, "the frame has no digest", frame->file.string(), "",
                  "check the session's session.json"};
   }
-  // One frame has many tiles, and each can be looked at in many ways.
-  reply->tag.clear();
-  if (reply->keeping == Keeping::kAskAgain) reply->keeping = Keeping::kNever;
-  const Result<std::shared_ptr<Pyramid>> pyramid = parts.views.frame(frame->file, frame->sha256);
-  if (!pyramid) return pyramid.error();
-  const int level = level_of(call.segments.at(2));
-  const std::optional<Rect> part = (*pyramid)->tile(level, name->column, name->row);
-  if (!part) return no_such_tile(call.segments.at(3), "it is beyond the frame");
-  const Result<Image<float>> planes = (*pyramid)->read(level, *part);
-  if (!planes) return planes.error();
-  if (name->form == TileName::Form::kRaw) {
-    reply->body = raw_tile(LayerKind::kColor, *planes);
-    return reply;
-  }
-  Result<std::string> picture = picture_tile(LayerKind::kColor, *planes, *look, name->picture());
-  if (!picture) return std::move(picture).error();
-  reply->body = std::move(*picture);
+  Result<Reply> reply = tile_of_frame(parts, *frame, call.segments.at(2), call.segments.at(3), call);
+  // One frame has many tiles, and each can be looked at in many ways: a tag would have to name them.
+  if (reply && kept->keeping == Keeping::kForever) reply->keeping = Keeping::kForever;
   return reply;
 }
 

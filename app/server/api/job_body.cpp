@@ -215,6 +215,8 @@ Result<JobSpec> read_job_body(const Json& body, const JobPlaces& places) {
     return unfit("kind", fmt::format("must be one of {}", fmt::join(names, ", ")));
   }
   JobSpec spec = {*name, "", kind->verb, "", ""};
+  spec.wants = body;
+  for (const char* told : {"kind", "request_id"}) spec.wants.erase(told);
   for (const auto& [key, value] : body.items()) {
     const auto is_it = [&key = key](const JobField& field) { return key == field.field; };
     const bool is_known = key == "kind" || key == "request_id" || std::ranges::any_of(kind->fields, is_it);

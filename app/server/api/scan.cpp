@@ -48,26 +48,38 @@ Result<void> check_moved(capture::ScanRequest& request) {
   return {};
 }
 
-Result<Reply> start_scan(const RigParts& parts, const Call& call) {
-  const Result<Json> body = parse_body(call.body);
-  if (!body) return body.error();
-  const Result<std::string> by = parts.controls.commander(call.control);
-  if (!by) return by.error();
-  Result<SessionChoice> choice =
-      choose_session(*body, parts.rig, parts.library, std::chrono::system_clock::now());
+Result<SessionChoice> session_for(const RigParts& parts, const Json& body) {
+  return choose_session(body, parts.rig, parts.library, std::chrono::system_clock::now());
+}
+
+Result<Json> begin_scan(const RigParts& parts, const Json& body, const std::string& by) {
+  Result<SessionChoice> choice = session_for(parts, body);
   if (!choice) return std::move(choice).error();
-  if (const auto dry = body->find("dry_run"); dry != body->end() && *dry == true)
-    return json_reply(to_json(*choice));
   if (!choice->resumed) {
     if (Result<void> ok = check_moved(choice->request); !ok) return std::move(ok).error();
   }
   if (Result<void> made = make_writable_folder(parts.rig.scan.sessions); !made)
     return std::move(made).error();
   const std::filesystem::path folder = choice->request.session;
-  if (Result<void> begun = parts.keeper.begin(std::move(choice->request), *by); !begun)
+  if (Result<void> begun = parts.keeper.begin(std::move(choice->request), by); !begun)
     return std::move(begun).error();
   parts.library.watch(folder);
-  return json_reply(to_json(*choice), kAccepted);
+  return to_json(*choice);
+}
+
+Result<Reply> start_scan(const RigParts& parts, const Call& call) {
+  const Result<Json> body = parse_body(call.body);
+  if (!body) return body.error();
+  const Result<std::string> by = parts.controls.commander(call.control);
+  if (!by) return by.error();
+  if (const auto dry = body->find("dry_run"); dry != body->end() && *dry == true) {
+    const Result<SessionChoice> choice = session_for(parts, *body);
+    return choice ? json_reply(to_json(*choice)) : Result<Reply>(choice.error());
+  }
+  const Json id = body->value("request_id", Json(""));
+  const Result<Json> begun = parts.scans.answer(id.is_string() ? id.get<std::string>() : "",
+                                                [&] { return begin_scan(parts, *body, *by); });
+  return begun ? json_reply(*begun, kAccepted) : Result<Reply>(begun.error());
 }
 
 /// A step whose success is told by the status it leads to; it hears who commands it.

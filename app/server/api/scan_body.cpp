@@ -18,10 +18,10 @@ namespace {
 
 constexpr int kMostDepth = 32;
 constexpr std::size_t kMostFabricBytes = 200;
-constexpr std::array<std::string_view, 15> kFields = {
+constexpr std::array<std::string_view, 16> kFields = {
     "session", "fabric", "cloth_height_mm", "metadata", "exposure_us", "iso",          "f_number",
     "leds",    "repeat", "bracket",         "copy",     "dry_run",     "accept_moved", "polariser",
-    "below"};
+    "below",   "request_id"};
 
 Error refuse(const std::string& where, std::string why, std::string remedy) {
   return {ErrorKind::kUsage, "the request cannot be used", where, std::move(why), std::move(remedy)};
@@ -210,6 +210,8 @@ Result<ScanWish> read_scan_body(const Json& body, int leds, const capture::ScanR
   std::string accept_moved;
   fields.text("accept_moved", "the reason in 1 to 200 characters", accept_moved, is_fabric);
   if (!accept_moved.empty()) request.accepted_moved = {{"why", accept_moved}};
+  std::string request_id;  // whoever begins the scan looks at it
+  fields.text("request_id", "1 to 200 characters", request_id, is_fabric);
   fields.flag("copy", copy);
   fields.flag("dry_run", wish.dry_run);
   if (fields.error()) return *fields.error();

@@ -9,6 +9,9 @@
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
 #include "app/server/api/session_choice.h"
+#include "library/current.h"
+#include "library/left_out.h"
+#include "library/metadata.h"
 #include "library/session_files.h"
 #include "library/session_name.h"
 
@@ -115,7 +118,12 @@ Result<Reply> one_session(const RigParts& parts, const Call& call) {
     for (const Json& warning : frame["warnings"]) warnings.push_back(warning);
     frames.push_back(std::move(frame));
   }
+  const Result<library::Metadata> said = library::metadata_of(*session);
   return json_reply({{"name", name},
+                     {"folder", session->folder.string()},
+                     {"said", said ? library::json_of(*said) : Json()},
+                     {"left_out", library::left_out(*session)},
+                     {"current_solve", library::current_solve(*session)},
                      {"fabric", session->fabric},
                      {"rig", session->rig},
                      {"state", session->state},

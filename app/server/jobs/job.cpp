@@ -33,9 +33,11 @@ Json json_of(const JobStatus& job) {
   return {{"id", job.id},
           {"kind", job.spec.kind},
           {"of", job.spec.of},
+          {"wants", job.spec.wants},
           {"by", job.spec.by},
           {"state", name_of(job.state)},
           {"held", job.is_held},
+          {"place", job.place ? Json(*job.place) : Json()},
           {"phase", job.phase},
           {"share", job.share},
           {"left_s", job.left_s ? Json(*job.left_s) : Json()},
@@ -66,6 +68,7 @@ Result<JobStatus> job_from_json(const Json& document, const std::string& where) 
   job.spec.of = fields.text("of");
   job.spec.by = fields.text("by");
   job.spec.request_id = fields.text_or("request_id", "");
+  job.spec.wants = document.value("wants", Json::object());
   job.state = fields.one_of<JobState>("state", kStates);
   job.asked = fields.text("asked");
   job.began = fields.text("began");

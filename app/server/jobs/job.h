@@ -18,6 +18,7 @@ struct JobSpec {
   std::string by;                       ///< who asked for it
   std::string request_id;               ///< the same again is the same job; empty: none
   std::vector<std::string> needs = {};  ///< files and folders that must be there when it begins
+  Json wants = Json::object();          ///< what was asked of it beside its kind: "quality", "session", ...
 };
 
 enum class JobState { kQueued, kRunning, kDone, kFailed, kCancelled };
@@ -29,6 +30,7 @@ struct JobStatus {
   JobSpec spec;
   JobState state = JobState::kQueued;
   bool is_held = false;  ///< it runs, and waits until a scan lets it go on
+  std::optional<int> place;  ///< among those that wait, from 1
   std::string phase;     ///< of a running one, as its verb calls it; and how much of it is done
   double share = 0;
   std::optional<double> left_s;  ///< by how long the last job like it took; of the phase where there was none
@@ -40,7 +42,7 @@ struct JobStatus {
   Json result;                     ///< the document that its verb prints with --json; null until it is done
 };
 
-/// {"id", "kind", "of", "by", "state", "held", "phase", "share", "left_s", "asked", "began", "ended",
+/// {"id", "kind", "of", "wants", "by", "state", "held", "place", "phase", "share", "left_s", "asked", "began", "ended",
 /// "seconds", "exit_code", "notes", "error", "result"}.
 Json json_of(const JobStatus& job);
 

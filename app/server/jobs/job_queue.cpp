@@ -124,7 +124,7 @@ Result<JobStatus> JobQueue::add(const JobSpec& spec) {
 std::vector<JobStatus> JobQueue::list() const {
   const std::lock_guard lock(mutex_);
   std::vector<JobStatus> jobs;
-  for (const auto& [id, job] : jobs_) jobs.push_back(job);
+  for (const auto& [id, job] : jobs_) jobs.push_back(as_it_stands(job));
   std::ranges::reverse(jobs);
   return jobs;
 }
@@ -133,7 +133,13 @@ Result<JobStatus> JobQueue::find(const std::string& id) const {
   const std::lock_guard lock(mutex_);
   const auto found = jobs_.find(id);
   if (found == jobs_.end()) return no_job(id);
-  return found->second;
+  return as_it_stands(found->second);
+}
+
+JobStatus JobQueue::as_it_stands(JobStatus job) const {
+  const auto waits = std::ranges::find(waiting_, job.id);
+  if (waits != waiting_.end()) job.place = static_cast<int>(waits - waiting_.begin()) + 1;
+  return job;
 }
 
 Result<std::string> JobQueue::log(const std::string& id) const {

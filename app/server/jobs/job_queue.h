@@ -63,6 +63,7 @@ class JobQueue {
  private:
   explicit JobQueue(JobQueueOptions options) : options_(std::move(options)) {}
   Result<void> load();
+  JobStatus as_it_stands(JobStatus job) const;
   void work(const std::stop_token& stop);
   std::string missing(const std::string& id) const;
   void fail(JobStatus& job, const Error& error);

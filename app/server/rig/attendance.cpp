@@ -8,6 +8,8 @@
 #include <utility>
 
 #include "capture/raw/decode.h"
+#include "capture/scan/histogram.h"
+#include "capture/scan/meter.h"
 #include "core/calibration.h"
 #include "core/error_json.h"
 #include "core/files.h"
@@ -32,6 +34,14 @@ Error is_scanning(const std::string& rig) {
 
 bool may_pass(const Error& error) {
   return error.kind == ErrorKind::kTryAgain || error.kind == ErrorKind::kProtocol;
+}
+
+/// As the meter of a scan takes it; of one that is full a quarter of its exposure, of a dark one nothing.
+double suggested_us(const TestShot& shot, const capture::Brightness& seen) {
+  constexpr double kMostFull = 1e-3, kLeastBright = 0.002, kStepDown = 0.25;
+  if (shot.led == 0 || seen.bright < kLeastBright) return 0;
+  if (seen.clipped > kMostFull) return kStepDown * shot.exposure_us;
+  return capture::MeteredShot{shot.led, shot.exposure_us, seen}.longest_us();
 }
 
 /// Where the rig's calibration knows it.
@@ -249,7 +259,10 @@ Result<int> Attendance::shoot(int led, double exposure_us) {
   }
   renew();
   is_shooting_ = true;
-  TestShot shot = {++newest_, led, exposure_us, {}, {}, {}};
+  TestShot shot;
+  shot.id = ++newest_;
+  shot.led = led;
+  shot.exposure_us = exposure_us;
   shots_.push_back(shot);
   last = std::move(shooter_);
   shooter_ = std::jthread([this, shot = std::move(shot)] { take(shot); });
@@ -267,7 +280,7 @@ void Attendance::take(TestShot shot) {
     Result<FrameFile> frame = devices_ ? photograph_held(shot) : Result<FrameFile>(is_closed(rig_.name));
     if (frame) {
       shot.frame = std::move(*frame);
-      shot.focus = focus_of(shot);
+      look_at(shot);
     } else {
       shot.error = std::move(frame).error();
     }
@@ -322,13 +335,15 @@ Result<FrameFile> Attendance::photograph_held(const TestShot& shot) {
 }
 
 /// Of one that cannot be decoded nothing is told here: its histogram says why.
-std::optional<capture::FocusStanding> Attendance::focus_of(const TestShot& shot) {
+void Attendance::look_at(TestShot& shot) {
   const Result<RawFrame> frame = capture::decode_raw(shot.frame->file);
-  if (!frame) return std::nullopt;
+  if (!frame) return;
+  shot.size = frame->counts.size();
+  shot.suggested_us = suggested_us(shot, capture::brightness_of(*frame));
   if (shot.led != series_led_ || shot.exposure_us != series_us_) series_ = {};
   series_led_ = shot.led;
   series_us_ = shot.exposure_us;
-  return series_.add(capture::focus_of(*frame, noise_));
+  shot.focus = series_.add(capture::focus_of(*frame, noise_));
 }
 
 void Attendance::keep(TestShot shot) {
@@ -457,6 +472,9 @@ Json document_of(const TestShot& shot, FramePictures& pictures) {
                    {"state", shot.error   ? "failed"
                              : shot.frame ? "taken"
                                           : "taking"},
+                   {"width", shot.size.width},
+                   {"height", shot.size.height},
+                   {"suggested_us", shot.suggested_us > 0 ? Json(shot.suggested_us) : Json()},
                    {"clipped_rgb", Json()},
                    {"histogram", Json()},
                    {"focus", shot.focus ? to_json(*shot.focus) : Json()},

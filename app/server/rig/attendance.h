@@ -29,6 +29,8 @@ struct TestShot {
   int led = 0;  ///< 0: none was lit
   double exposure_us = 0;
   std::optional<FrameFile> frame;               ///< once it is taken
+  Size size = {};                               ///< of that
+  double suggested_us = 0;                      ///< exposure that a scan would be given by it; 0: nobody can tell
   std::optional<capture::FocusStanding> focus;  ///< among those of its LED and exposure, one after another
   std::optional<Error> error;                   ///< why it is not
 };
@@ -118,7 +120,7 @@ class Attendance {
   void feel_heat_held();
   void take(TestShot shot);
   Result<FrameFile> photograph_held(const TestShot& shot);
-  std::optional<capture::FocusStanding> focus_of(const TestShot& shot);
+  void look_at(TestShot& shot);
   void keep(TestShot shot);  ///< the next one may begin from here on
   void fail_held(const Error& error);
   void end_look_held();
@@ -157,7 +159,7 @@ class Attendance {
   std::jthread shooter_, watch_;
 };
 
-/// {"id", "led", "exposure_us", "state" (taking, taken, failed), "clipped_rgb", "histogram", "focus",
+/// {"id", "led", "exposure_us", "state" (taking, taken, failed), "width", "height", "suggested_us", "clipped_rgb", "histogram", "focus",
 /// "error"}: of one that is taken the histogram is counted now, if it is not yet.
 Json document_of(const TestShot& shot, FramePictures& pictures);
 

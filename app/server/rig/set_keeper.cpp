@@ -147,10 +147,9 @@ Result<Json> SetKeeper::leave_out(const std::string& name, bool out) {
   return document_locked();
 }
 
-Result<Json> SetKeeper::document() const {
+Json SetKeeper::document() const {
   const std::lock_guard lock(mutex_);
-  if (!work_) return no_set(rig_.name);
-  return document_locked();
+  return work_ ? document_locked() : Json();
 }
 
 std::optional<PrintedBoard> SetKeeper::board() const {

@@ -38,8 +38,8 @@ class SetKeeper {
   /// Leaves a photograph out, or takes it back. Errors: those of leave_out().
   Result<Json> leave_out(const std::string& name, bool out);
   /// {"name", "part", "folder", "from", "busy", "error", "photographs", "figures", "next", "done"}.
-  /// kNoInput where none is worked on.
-  Result<Json> document() const;
+  /// Null where none is worked on.
+  Json document() const;
   /// The board of the set that is worked on, where it is of one.
   std::optional<PrintedBoard> board() const;
   void close();

@@ -331,6 +331,25 @@ TEST(RigServer, ScansWithACalibrationWhoseCheckFailedOnlyForAReason) {
   wait_for_state(port, "idle");
 }
 
+TEST(RigServer, ScansOnceForAClickThatComesTwice) {
+  ScriptedRig scripted("clicks");
+  scripted.rig.scan.session_name = "{fabric}_{count}";
+  const auto server = scripted.started();
+  const int port = server->port();
+  constexpr const char* kClick = R"({"fabric": "silk", "request_id": "click-1"})";
+  const Answer first = ask(port, "POST", kScan, kClick), second = ask(port, "POST", kScan, kClick);
+  EXPECT_EQ(first.status, 202) << first.body;
+  EXPECT_EQ(second.status, 202) << second.body;
+  EXPECT_EQ(first.json(), second.json());
+  wait_for_state(port, "idle");
+  EXPECT_EQ(ask(port, "POST", kScan, kClick).json(), first.json());
+  EXPECT_EQ(ask(port, "GET", "/api/v1/rig").json()["state"], "idle") << "nothing began";
+  const Answer another = ask(port, "POST", kScan, R"({"fabric": "silk", "request_id": "click-2"})");
+  EXPECT_NE(another.json()["session"], first.json()["session"]);
+  EXPECT_EQ(ask(port, "POST", kScan, R"({"fabric": "silk", "request_id": 7})").status, 400);
+  wait_for_state(port, "idle");
+}
+
 TEST(RigServer, TakesUpTheSessionThatTheSameRequestBegan) {
   ScriptedRig scripted("takesup");
   scripted.rig.scan.session_name = "{fabric}_{count}";

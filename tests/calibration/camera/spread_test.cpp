@@ -25,8 +25,8 @@ TEST(EdgeSpread, IsTheSimulatorsBlurToATenthOfAPixel) {
   const Board board = {BoardKind::kCheckerboard, 9, 6, 15, 0, ""};
   for (const BlurSettings& blur : {BlurSettings{.defocus_px = 0.5, .spread_px = 0.4}, {.spread_px = 0.8}}) {
     const simulator::Scene scene = board_behind(blur);
-    const std::vector<BoardEdge> seen = find_edges(test::photographed(scene), test::camera_of(scene),
-                                                   test::pose_of(scene.targets[0]), board);
+    const std::vector<BoardEdge> seen =
+        find_edges(test::photographed(scene), test::camera_of(scene), test::pose_of(scene.targets[0]), board);
     const std::optional<PointSpread> spread = median_spread(seen);
     ASSERT_TRUE(spread) << seen.size() << " edges";
     for (const double sigma_px : spread->sigma_px) EXPECT_NEAR(sigma_px, spread_px(blur), 0.1);
