@@ -168,6 +168,7 @@ Result<std::string> send_command(const fs::path& socket, const std::string& line
       pollfd waiting = {fd, POLLIN, 0};
       const int ready = ::poll(&waiting, 1, milliseconds_until(until));
       if (ready < 0 && errno == EINTR) continue;
+      if (ready == 0 && Clock::now() < until) continue;
       if (ready == 0) {
         return Error{ErrorKind::kTryAgain, "the virtual rig does not answer", socket.string(),
                      fmt::format("nothing came in {} s", deadline_s), "send the command again"};

@@ -37,8 +37,8 @@ class ControlSocket {
 };
 
 /// Sends one command and returns its answer. kNoDevice where nothing listens, kTryAgain where no answer comes
-/// in `deadline_s`.
+/// in `deadline_s`: what is laid on the table of a large camera is rendered first.
 Result<std::string> send_command(const std::filesystem::path& socket, const std::string& line,
-                                 double deadline_s = 10);
+                                 double deadline_s = 600);
 
 }  // namespace weft::virtual_rig

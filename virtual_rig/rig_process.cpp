@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 using Steady = std::chrono::steady_clock;
 
 constexpr double kStart_s = 600;  // the first rig of a scene renders it, on whatever machine
-constexpr double kAnswer_s = 10;
 constexpr auto kPoll = std::chrono::milliseconds(5);
 
 std::vector<std::string> lines_of(const fs::path& file) {
@@ -62,7 +61,7 @@ Result<std::unique_ptr<RigProcess>> RigProcess::start(const RigProcessOptions& o
 }
 
 Result<std::string> RigProcess::say(const std::string& line) const {
-  Result<std::string> answer = send_command(options_.folder / "control", line, kAnswer_s);
+  Result<std::string> answer = send_command(options_.folder / "control", line);
   if (answer && answer->starts_with("error"))
     return Error{ErrorKind::kUsage, "the virtual rig refuses a command", line, *answer,
                  "use one that it has"};
