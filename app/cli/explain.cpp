@@ -16,8 +16,8 @@ namespace {
 Result<Ladder> price(const SolveArguments& a, const CommonArguments& common) {
   ProgressLine line(common.quiet);
   const JobContext context = {common.threads, stop_on_signal(), line.callback()};
-  return a.session.folder.empty() ? explain_photos(a.photos, a.options, context)
-                                  : explain_session(a.session, a.options, context);
+  return a.session.folder.empty() ? explain_photos(a.photos, a.options, a.crops, context)
+                                  : explain_session(a.session, a.options, a.crops, context);
 }
 
 void print_words(const Ladder& ladder, std::optional<std::size_t> chosen) {

@@ -181,6 +181,11 @@ Level add_level(Options& options, const Option& session, SolveArguments& a) {
   const Option explain = options.add_flag(
       "--explain", &a.explain,
       "Solve nothing: predict, from sample tiles, each level's mean error in degrees and its seconds here");
+  options
+      .add("--crops", &a.crops,
+           "With --explain: folder for what each level made of the same 512 x 256 pixels, LEVEL_relit.png and "
+           "LEVEL_normal.png")
+      .needs(explain);
   const Option within = options
                             .add("--within", &a.wish.within_seconds,
                                  "Choose the best level that takes so many seconds, by --explain")

@@ -15,6 +15,7 @@ struct SolveArguments {
   PhotoOptions photos;
   SolveOptions options;
   bool explain = false;
+  std::filesystem::path crops;  ///< where explain keeps what each level made of its cut; empty: nowhere
   LevelWish wish;
   std::filesystem::path ladder;  ///< a picture of all levels, instead of one solve
   std::string accept_moved;      ///< why to solve though the rig is known to have moved; empty: not

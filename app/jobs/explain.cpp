@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/jobs/facts_json.h"
+#include "core/files.h"
 #include "pipeline/cut.h"
 #include "pipeline/shifts.h"
 #include "report/downsampler.h"
@@ -37,9 +38,21 @@ struct Scratch {
   }
 };
 
+Result<void> keep_pictures(const fs::path& solve, const std::string& level, const fs::path& crops) {
+  if (crops.empty()) return {};
+  if (Result<void> made = make_writable_folder(crops); !made) return made;
+  for (const char* name : {"relit.png", "normal.png"}) {
+    const fs::path kept = crops / fmt::format("{}_{}", level, name);
+    std::error_code failed;
+    fs::copy_file(solve / name, kept, fs::copy_options::overwrite_existing, failed);
+    if (failed) return cannot_write(kept, failed.value());
+  }
+  return {};
+}
+
 // What the level makes of the middle of the frame: the quicker of two solves unless the first is long.
 Result<SolveReport> solve_cut(const Photographs& photographs, const std::string& level,
-                              const SolveOptions& options, const JobContext& context) {
+                              const SolveOptions& options, const fs::path& crops, const JobContext& context) {
   constexpr double kLong_s = 0.5;
   std::optional<SolveReport> quickest;
   for (int run = 0; run < 2; ++run) {
@@ -51,6 +64,7 @@ Result<SolveReport> solve_cut(const Photographs& photographs, const std::string&
     one.output = scratch.path;
     Result<SolveReport> solved = solve_loaded(std::move(*part), one, context);
     if (!solved) return std::move(solved).error();
+    if (Result<void> kept = keep_pictures(solved->folder, level, crops); !kept) return kept.error();
     if (!quickest || solved->seconds.total < quickest->seconds.total) quickest = std::move(*solved);
     if (quickest->seconds.total > kLong_s) break;
   }
@@ -124,7 +138,7 @@ void add_notes(Ladder& ladder) {
 }
 
 Result<Ladder> price(const Photographs& photographs, double read, double prepare, const SolveOptions& options,
-                     const JobContext& context) {
+                     const fs::path& crops, const JobContext& context) {
   const JobContext silent = {context.threads, context.stop};
   context.progress("explain", 0);
   Ladder ladder;
@@ -134,7 +148,7 @@ Result<Ladder> price(const Photographs& photographs, double read, double prepare
   for (const solver::MethodName& level : solver::method_names()) {
     if (!level.level) continue;
     const bool is_half = level.extent == solver::Extent::kHalfSize;
-    const Result<SolveReport> cut = solve_cut(photographs, level.name, options, silent);
+    const Result<SolveReport> cut = solve_cut(photographs, level.name, options, crops, silent);
     if (!cut) return cut.error();
     LevelSeconds seconds = scaled(cut->seconds, photographs.size, is_half);
     seconds.read = read;
@@ -154,14 +168,14 @@ Result<Ladder> price(const Photographs& photographs, double read, double prepare
 }
 
 Result<Ladder> explain(Photographs photographs, double read, const SolveOptions& options,
-                       const JobContext& context) {
+                       const fs::path& crops, const JobContext& context) {
   Stopwatch watch;
   Result<pipeline::SessionShifts> shifts = register_shots(photographs, context);
   if (!shifts) return std::move(shifts).error();
   if (Result<void> ok = leave_out(shifts->with(pipeline::ShiftVerdict::kLeftOut), photographs); !ok)
     return std::move(ok).error();
   const double prepare = watch.lap();
-  return price(photographs, read, prepare, options, context);
+  return price(photographs, read, prepare, options, crops, context);
 }
 
 Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
@@ -196,23 +210,23 @@ Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
 }  // namespace
 
 Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& options,
-                               const JobContext& context) {
+                               const fs::path& crops, const JobContext& context) {
   const Result<SessionPlan> plan = plan_session(input);
   if (!plan) return plan.error();
   Stopwatch watch;
   Result<LoadedSession> loaded = load_session(*plan, context);
   if (!loaded) return std::move(loaded).error();
-  return explain(std::move(loaded->photographs), watch.lap(), options, context);
+  return explain(std::move(loaded->photographs), watch.lap(), options, crops, context);
 }
 
 Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,
-                              const JobContext& context) {
+                              const fs::path& crops, const JobContext& context) {
   const Result<PhotoPlan> plan = plan_photos(input);
   if (!plan) return plan.error();
   Stopwatch watch;
   Result<Photographs> photographs = load_photos(*plan, context);
   if (!photographs) return std::move(photographs).error();
-  return explain(std::move(*photographs), watch.lap(), options, context);
+  return explain(std::move(*photographs), watch.lap(), options, crops, context);
 }
 
 Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,11 +57,13 @@ inline constexpr double kWorthwhileGain = 0.05;
 /// from the middle of the frame at every level as `weft solve` does, on the threads of `context`: the quicker
 /// of two runs, or one where it takes long. The error to expect is what sigma.exr says of the cut. That the
 /// height's transform of the reference level grows by a logarithm faster than the frame is left out, and so
-/// is holding a simulated session against its truth. Nothing is written beside the photographs.
+/// is holding a simulated session against its truth. Nothing is written beside the photographs. What each
+/// level made of the cut is kept in the folder `crops`, LEVEL_relit.png and LEVEL_normal.png, unless that is
+/// empty.
 Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& options,
-                               const JobContext& context);
+                               const std::filesystem::path& crops, const JobContext& context);
 Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,
-                              const JobContext& context);
+                              const std::filesystem::path& crops, const JobContext& context);
 
 /// What somebody asks of a level; at least one of them.
 struct LevelWish {

@@ -2,6 +2,7 @@
 // What a level is expected to give and cost, before it is paid.
 #include "app/jobs/explain.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,6 +50,22 @@ TEST_F(Explain, PricesEveryLevelAndLeavesNothingBehind) {
   }
   EXPECT_EQ(document.at("gates").size(), 4u);
   EXPECT_TRUE(document.at("chosen").is_null());
+}
+
+TEST_F(Explain, KeepsWhatEachLevelMadeOfItsCut) {
+  const fs::path crops = work_ / "crops";
+  const Outcome told =
+      run_weft({"solve", session_.string(), "--explain", "--crops", crops.string(), "--json", "-q"});
+  ASSERT_EQ(told.exit_code, 0) << told.error;
+  for (const std::string& level : kLevels) {
+    for (const char* picture : {"relit", "normal"}) {
+      const Result<ImageFileInfo> info = read_image_info(crops / fmt::format("{}_{}.png", level, picture));
+      ASSERT_TRUE(info) << info.error().message();
+      const int shrunk = level == "preview" ? 2 : 1;
+      EXPECT_EQ(info->size, (Size{160 / shrunk, 128 / shrunk})) << level;
+    }
+  }
+  EXPECT_EQ(run_weft({"solve", session_.string(), "--crops", crops.string()}).exit_code, 64) << "no --explain";
 }
 
 TEST_F(Explain, ForecastsTheErrorOfASmoothClothWithinAFactorOfTwo) {

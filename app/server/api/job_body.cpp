@@ -73,7 +73,7 @@ const std::vector<JobKind>& job_kinds() {
         number("within_s", "--within", 1e-3, 1e9),
         number("to_deg", "--to", 1e-6, 180),
         {"calibration", "--calibration", Holds::kFolder}}},
-      {"price", {"solve", "--explain"}, {kSession}},
+      {"price", {"solve", "--explain", "--crops", kJobFiles}, {kSession}},
       {"rectify",
        {"rectify"},
        {kSession, word("solve", "--solve"), number("mm_per_pixel", "--mm-per-pixel", 1e-4, 100),

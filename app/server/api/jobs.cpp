@@ -9,6 +9,7 @@
 #include "app/server/api/descriptions.h"
 #include "app/server/api/job_body.h"
 #include "app/server/api/scan_body.h"
+#include "library/session_name.h"
 
 namespace weft::app {
 namespace {
@@ -78,6 +79,22 @@ Result<Reply> log_of_job(const RigParts& parts, const Call& call) {
   return Reply{200, "text/plain; charset=utf-8", std::move(*log)};
 }
 
+/// A picture that the job made.
+Result<Reply> file_of_job(const RigParts& parts, const Call& call) {
+  const Result<JobStatus> job = parts.jobs.find(call.segments.at(0));
+  if (!job) return job.error();
+  const std::string& name = call.segments.at(1);
+  const bool is_picture = library::is_session_name(name) && name.ends_with(".png");
+  Result<std::shared_ptr<const FileBody>> file =
+      is_picture ? open_file_body(parts.jobs.files_of(job->id) / name)
+                 : Error{ErrorKind::kNoInput, "the job made no such picture", name.substr(0, 40), "", ""};
+  if (!file) return std::move(file).error();
+  Reply reply = {200, "image/png"};
+  reply.file = std::move(*file);
+  reply.keeping = Keeping::kForever;
+  return reply;
+}
+
 using JobStep = Result<JobStatus> (JobQueue::*)(const std::string&);
 
 Route step_route(const RigParts& parts, const char* path, JobStep step) {
@@ -97,6 +114,8 @@ Resource jobs_resource(const RigParts& parts) {
            {"GET", "/api/v1/jobs/{id}", [&parts](const Call& call) { return one_job(parts, call); }},
            {"DELETE", "/api/v1/jobs/{id}", [&parts](const Call& call) { return forget_job(parts, call); }},
            {"GET", "/api/v1/jobs/{id}/log", [&parts](const Call& call) { return log_of_job(parts, call); }},
+           {"GET", "/api/v1/jobs/{id}/files/{name}",
+            [&parts](const Call& call) { return file_of_job(parts, call); }, false, Pool::kFiles},
            step_route(parts, "/api/v1/jobs/{id}/cancel", &JobQueue::cancel),
            step_route(parts, "/api/v1/jobs/{id}/retry", &JobQueue::retry),
            step_route(parts, "/api/v1/jobs/{id}/first", &JobQueue::first)},

@@ -10,11 +10,15 @@
 
 namespace weft::app {
 
+/// In the arguments of a job: the folder of what it makes beside its result, which is forgotten with it.
+inline constexpr const char* kJobFiles = "{files}";
+
 /// What a job is to do: a verb of weft with its arguments, as a process of its own.
 struct JobSpec {
   std::string kind;                     ///< "solve", "rectify", "calibrate lights", ...
   std::string of;                       ///< what it works on, for people: the name of a session
-  std::vector<std::string> arguments;   ///< of weft: {"solve", "/data/a.weft", "--quality", "robust"}
+  /// Of weft: {"solve", "/data/a.weft", "--quality", "robust"}. kJobFiles stands for a folder of its own.
+  std::vector<std::string> arguments;
   std::string by;                       ///< who asked for it
   std::string request_id;               ///< the same again is the same job; empty: none
   std::vector<std::string> needs = {};  ///< files and folders that must be there when it begins

@@ -203,6 +203,7 @@ Result<JobStatus> JobQueue::forget(const std::string& id) {
 void JobQueue::remove_files(const std::string& id) const {
   std::error_code ignored;
   for (const char* ending : {".json", ".log", ".out"}) fs::remove(file_of(id, ending), ignored);
+  fs::remove_all(files_of(id), ignored);
 }
 
 void JobQueue::hold(bool is_held) {
@@ -264,7 +265,8 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
     command.insert(command.end(), {"/usr/bin/prlimit", fmt::format("--data={}", options_.memory_bytes)});
   }
   command.push_back(options_.program.string());
-  command.insert(command.end(), job.spec.arguments.begin(), job.spec.arguments.end());
+  for (const std::string& argument : job.spec.arguments)
+    command.push_back(argument == kJobFiles ? files_of(id).string() : argument);
   command.insert(command.end(), {"--json", "--json-events"});
   const fs::path output = file_of(id, ".out");
   Result<std::unique_ptr<ChildProcess>> started =

@@ -49,6 +49,9 @@ class JobQueue {
   /// What its verb has printed on standard error, as lines of JSON.
   Result<std::string> log(const std::string& id) const;
 
+  /// The folder of what it makes beside its result (kJobFiles), which need not be there.
+  std::filesystem::path files_of(const std::string& id) const { return file_of(id, ".files"); }
+
   /// Ends a job, or takes it out of the queue; nothing of it is left. kUsage where it has ended.
   Result<JobStatus> cancel(const std::string& id);
   /// Queues it once more under a new id. kUsage where it has not ended.

@@ -52,7 +52,7 @@ TEST_F(JobBody, BecomesAVerbWithItsArguments) {
   EXPECT_EQ(arguments(R"({"kind": "check", "moved": "photographs"})"),
             (Words{"calibrate", "check", "--session", path("photographs")}));
   EXPECT_EQ(arguments(R"({"kind": "price", "session": "satin"})"),
-            (Words{"solve", "--explain", "/scans/satin.weft"}));
+            (Words{"solve", "--explain", "--crops", "{files}", "/scans/satin.weft"}));
   EXPECT_EQ(arguments(R"({"kind": "copy", "session": "satin"})"),
             (Words{"copy", "/scans/satin.weft", "--to", "/copies"}));
   EXPECT_EQ(
