@@ -14,6 +14,7 @@
 #include "bench/capture/evidence.h"
 #include "bench/capture/fault_matrix.h"
 #include "bench/capture/focus.h"
+#include "bench/capture/live_view.h"
 #include "bench/capture/minutes.h"
 #include "bench/capture/scans.h"
 #include "bench/program/rows.h"
@@ -27,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CaptureArguments {
-  std::string part = "scans";  ///< board, camera, scans: of a running rig; the others: of what they start
+  std::string part = "scans";  ///< board, camera, live, scans: of a running rig; the others: of what they start
   fs::path rig;
   int runs = 0;  ///< commands, shots, scans or runs; 0: as many as docs/reliability.md
   fs::path scene = "testdata/scenes/satin.toml";
@@ -65,6 +66,10 @@ Result<Rows> measure_rig(const CaptureArguments& a, app::ProgressLine& line) {
   if (a.part == "camera")
     return capture_camera_table(
         {.port = rig->camera.port, .profile = rig->camera.profile, .shots = a.runs > 0 ? a.runs : 10});
+  if (a.part == "live") {
+    return capture_live_view_table(
+        {.rig = *rig, .open = capture::open_devices, .rounds = a.runs > 0 ? a.runs : 5});
+  }
   const int scans = a.runs > 0 ? a.runs : 3;
   return capture_scans_table(
       {.rig = *rig,
@@ -107,11 +112,10 @@ app::Run add_capture(app::Options& options) {
   const auto a = std::make_shared<CaptureArguments>();
   options
       .add("--part", &a->part,
-           "board, camera, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that "
-           "it starts; evidence: what light tells of LEDs; focus: how well a photograph tells blur; minutes: "
-           "what "
+           "board, camera, live, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that it "
+           "starts; evidence: what light tells of LEDs; focus: how well a photograph tells blur; minutes: what "
            "each further minute of calibrating takes away")
-      .one_of({"board", "camera", "scans", "faults", "evidence", "focus", "minutes"})
+      .one_of({"board", "camera", "live", "scans", "faults", "evidence", "focus", "minutes"})
       .shows_default();
   options.add("--rig", &a->rig, "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
   options.add("--runs", &a->runs, "Commands, shots, scans or runs; 0 is as many as docs/reliability.md")
