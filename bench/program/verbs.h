@@ -23,5 +23,6 @@ app::Verb transport_verb();
 app::Verb calibration_verb();
 app::Verb capture_verb();
 app::Verb server_verb();
+app::Verb page_verb();
 
 }  // namespace weft::bench

@@ -14,6 +14,7 @@
 #include <cctype>
 
 #include "app/server/http/cookies.h"
+#include "app/server/http/path_pattern.h"
 #include "core/files.h"
 
 namespace weft::app {
@@ -103,10 +104,16 @@ std::optional<Credential> credential_of(const Visitor& visitor, const GuardRules
   return std::nullopt;
 }
 
+bool is_open(const Visitor& visitor, const GuardRules& rules) {
+  const std::string call = visitor.method + " " + visitor.path;
+  return std::ranges::any_of(rules.open, [&](const std::string& pattern) { return fits(pattern, call); });
+}
+
 /// What a browser fetches for a page of another site or port. Who follows a link to the page itself may.
-bool is_fetched_from_elsewhere(const Visitor& visitor) {
+bool is_fetched_from_elsewhere(const Visitor& visitor, const GuardRules& rules) {
   const bool elsewhere = visitor.fetch_site == "cross-site" || visitor.fetch_site == "same-site";
-  const bool to_the_page = visitor.method == "GET" && visitor.fetch_mode == "navigate" && visitor.path == "/";
+  const bool to_the_page =
+      visitor.method == "GET" && visitor.fetch_mode == "navigate" && is_open(visitor, rules);
   return elsewhere && !to_the_page;
 }
 
@@ -131,12 +138,12 @@ std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rul
                   "ask by the address that weft serve printed, by localhost, or by one of daemon.names");
   }
   const bool from_elsewhere = !visitor.origin.empty() && !is_our_origin(visitor.origin, visitor.host, rules);
-  if (from_elsewhere || is_fetched_from_elsewhere(visitor)) {
+  if (from_elsewhere || is_fetched_from_elsewhere(visitor, rules)) {
     return refuse(403, "pages from elsewhere may not use this daemon",
                   from_elsewhere ? visitor.origin : visitor.fetch_site,
                   "open the daemon's own page; a proxy's origin goes into daemon.origins of the rig file");
   }
-  if (std::ranges::find(rules.open, visitor.method + " " + visitor.path) == rules.open.end()) {
+  if (!is_open(visitor, rules)) {
     const auto credential = credential_of(visitor, rules);
     if (!credential) {
       return refuse(401, "the token is missing or wrong", "",

@@ -27,7 +27,7 @@ struct GuardRules {
   std::string look_token = {};            ///< of who may only look; empty: nobody
   std::vector<std::string> names = {};    ///< more names of this server, without a port
   std::vector<std::string> origins = {};  ///< of its pages, where a proxy stands before it
-  std::vector<std::string> open = {};     ///< "METHOD path" of what needs no token
+  std::vector<std::string> open = {};     ///< "METHOD /path/{of}" of what needs no token
   int port = 0;                           ///< in the cookie's name: cookies do not know ports
 };
 
@@ -40,10 +40,10 @@ struct Refused {
 /// Nothing where the visitor may come in. Refused are: methods but GET, HEAD, POST, PATCH and DELETE (405); a
 /// Host that is neither localhost nor the address that is listened on nor one of `names`, since a page from
 /// elsewhere can have its own name lead to this machine (DNS rebinding, 421); an Origin that is not this very
-/// server (403); what a page of another site or port has its browser fetch, but for a way to `/` (403); a
-/// missing or wrong token or cookie (401); a change by a cookie without an Origin, or by who may only look
-/// (403); a POST or PATCH that is not JSON, which a page from elsewhere could send without asking (415). The
-/// port in Host is not looked at, so that a tunnel may begin at another one.
+/// server (403); what a page of another site or port has its browser fetch, but for a way to a page of `open`
+/// (403); a missing or wrong token or cookie (401); a change by a cookie without an Origin, or by who may
+/// only look (403); a POST or PATCH that is not JSON, which a page from elsewhere could send without asking
+/// (415). The port in Host is not looked at, so that a tunnel may begin at another one.
 std::optional<Refused> turned_away(const Visitor& visitor, const GuardRules& rules);
 
 /// Whose token it is; nothing: nobody's.

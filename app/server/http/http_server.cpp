@@ -23,6 +23,7 @@
 
 #include "app/server/http/conditions.h"
 #include "app/server/http/error_json.h"
+#include "app/server/http/path_pattern.h"
 #include "core/files.h"
 
 namespace weft::app {
@@ -96,18 +97,6 @@ class RequestStream : public httplib::Stream {
 
 std::string pattern_of(const std::string& path) {
   return std::regex_replace(path, std::regex(R"(\{[a-z]+\})"), "([^/]+)");
-}
-
-/// Whether a path, not decoded, is of this pattern: {...} stands for one segment.
-bool fits(std::string_view pattern, std::string_view path) {
-  while (!pattern.empty() && !path.empty()) {
-    const std::string_view wanted = pattern.substr(0, pattern.find('/', 1));
-    const std::string_view is = path.substr(0, path.find('/', 1));
-    if (!wanted.starts_with("/{") && wanted != is) return false;
-    pattern.remove_prefix(wanted.size());
-    path.remove_prefix(is.size());
-  }
-  return pattern.empty() && path.empty();
 }
 
 /// From a file, or from a text that is not to be compressed: its tag names these bytes.

@@ -2,7 +2,9 @@
 #include "app/server/page/page.h"
 
 #include <array>
+#include <memory>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "core/files.h"
@@ -34,7 +36,25 @@ const char* type_of(std::string_view path) {
   return "application/octet-stream";
 }
 
-Route page_file(const PageFile& file) {
+// The first words of the addresses that the page itself takes apart.
+constexpr std::array<const char*, 6> kScreens = {"desk", "sessions", "viewer", "calibrate", "jobs", "doctor"};
+constexpr const char* kIndex = "/index.html";
+
+std::vector<std::string> addresses_of(std::string_view path) {
+  if (path != kIndex) return {std::string(path)};
+  std::vector<std::string> addresses = {"/"};
+  for (const char* screen : kScreens) {
+    for (const char* further : {"", "/{a}", "/{a}/{b}"}) {
+      addresses.push_back(std::string("/") + screen + further);
+    }
+  }
+  return addresses;
+}
+
+/// As it is, and packed for who takes that.
+using Replies = std::pair<Reply, Reply>;
+
+Replies replies_of(const PageFile& file) {
   Reply plain = {200,
                  type_of(file.path),
                  std::string(file.bytes),
@@ -50,17 +70,22 @@ Route page_file(const PageFile& file) {
     packed.tag += "-gzip";
     packed.headers.emplace_back("Content-Encoding", "gzip");
   }
-  const std::string path(file.path == "/index.html" ? "/" : file.path);
-  return {"GET", path,
-          [plain, packed](const Call& call) -> Result<Reply> { return call.takes_gzip ? packed : plain; },
-          true, Pool::kQuick};
+  return {std::move(plain), std::move(packed)};
 }
 
 }  // namespace
 
 std::vector<Route> page_routes(const std::vector<PageFile>& files) {
   std::vector<Route> routes;
-  for (const PageFile& file : files) routes.push_back(page_file(file));
+  for (const PageFile& file : files) {
+    const auto replies = std::make_shared<const Replies>(replies_of(file));
+    const auto handle = [replies](const Call& call) -> Result<Reply> {
+      return call.takes_gzip ? replies->second : replies->first;
+    };
+    for (std::string& address : addresses_of(file.path)) {
+      routes.push_back({"GET", std::move(address), handle, true, Pool::kQuick});
+    }
+  }
   return routes;
 }
 

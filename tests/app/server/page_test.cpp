@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <regex>
 #include <string>
 
 #include "app/server/http/http_server.h"
@@ -36,7 +37,7 @@ class Page : public testing::Test {
 
 TEST_F(Page, IsGivenPackedToWhoTakesThat) {
   const Answer plain = get("/"), packed = get("/", {{"Accept-Encoding", "gzip, br"}});
-  EXPECT_THAT(plain.body, AllOf(HasSubstr("<!doctype html>"), HasSubstr("/enter.js")));
+  EXPECT_THAT(plain.body, AllOf(HasSubstr("<!doctype html>"), HasSubstr("/assets/")));
   EXPECT_THAT(packed.head, AllOf(HasSubstr("Content-Encoding: gzip"), HasSubstr("Vary: Accept-Encoding"),
                                  HasSubstr("Content-Type: text/html")));
   EXPECT_EQ(packed.body.substr(0, 2), "\x1f\x8b");
@@ -47,7 +48,7 @@ TEST_F(Page, IsGivenPackedToWhoTakesThat) {
 }
 
 TEST_F(Page, IsAskedForAgainByItsTagAndItsAssetsNever) {
-  for (const char* path : {"/", "/enter.js"}) {
+  for (const char* path : {"/", "/jobs"}) {
     const Answer first = get(path);
     EXPECT_THAT(first.head, HasSubstr("Cache-Control: public, no-cache")) << path;
     const std::size_t at = first.head.find("ETag: ") + 6;
@@ -60,6 +61,29 @@ TEST_F(Page, IsAskedForAgainByItsTagAndItsAssetsNever) {
                                                    HasSubstr("Content-Type: text/javascript")));
   EXPECT_EQ(get("/assets/none.js").status, 404);
   EXPECT_EQ(get("/index.html").status, 404) << "one file, one address";
+}
+
+TEST_F(Page, IsThereAtTheAddressOfEachScreen) {
+  const std::string page = get("/").body;
+  for (const char* path : {"/desk", "/sessions/2026-11-21_wool.2_001", "/viewer/a%20b/d043ba17c8aaa1fc",
+                           "/calibrate", "/jobs", "/doctor"}) {
+    EXPECT_EQ(get(path).body, page) << path;
+  }
+  for (const char* path : {"/nothing", "/desks", "/viewer/a/b/c", "/api/v1/desk", "/api", "/desk.js"}) {
+    EXPECT_THAT(get(path), AllOf(testing::Field(&Answer::status, 404),
+                                 testing::Field(&Answer::head, HasSubstr("application/json"))))
+        << path;
+  }
+}
+
+TEST_F(Page, NamesNoFileThatIsNotThere) {
+  const std::string page = get("/").body;
+  const std::regex named("(?:src|href)=\"(/assets/[^\"]+)\"");
+  int files = 0;
+  for (std::sregex_iterator file(page.begin(), page.end(), named), end; file != end; ++file, ++files) {
+    EXPECT_EQ(get((*file)[1]).status, 200) << (*file)[1];
+  }
+  EXPECT_GE(files, 2) << "a script and a style sheet";
 }
 
 TEST_F(Page, MayDoNothingButAskThisServer) {

@@ -86,12 +86,16 @@ TEST(HttpGuard, TurnsAwayWhatOtherPagesFetch) {
   const auto fetched = [](const std::string& site, const std::string& mode, const std::string& path) {
     Visitor visitor = getting("localhost:8470");
     visitor.path = path, visitor.fetch_site = site, visitor.fetch_mode = mode;
-    return status_of(visitor, kLoopback);
+    GuardRules rules = kLoopback;
+    rules.open = {"GET /", "GET /viewer/{a}"};
+    return status_of(visitor, rules);
   };
   for (const char* site : {"cross-site", "same-site"}) {
     EXPECT_EQ(fetched(site, "no-cors", "/api/v1/events"), 403) << site;
     EXPECT_EQ(fetched(site, "navigate", "/api/v1/rig"), 403) << site;
     EXPECT_EQ(fetched(site, "navigate", "/"), 0) << "a link to the page, " << site;
+    EXPECT_EQ(fetched(site, "navigate", "/viewer/NAME"), 0) << "a place of it, " << site;
+    EXPECT_EQ(fetched(site, "no-cors", "/viewer/NAME"), 403) << "not to be framed, " << site;
   }
   EXPECT_EQ(fetched("same-origin", "cors", "/api/v1/events"), 0);
   EXPECT_EQ(fetched("none", "navigate", "/api/v1/rig"), 0) << "typed into the address bar";

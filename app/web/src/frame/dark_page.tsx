@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// Black and still while the rig exposes. A key or a touch shows how things are for a moment, at the price of some light.
+import {useEffect, useRef, useState} from 'preact/hooks';
+import {answer, api} from '../api/client';
+import {rig} from '../state/rig';
+import {stateInWords} from './words';
+
+const glimpse_ms = 2000;
+
+function cancelScan(): void {
+  answer(api.POST('/api/v1/scan/cancel', {body: {}})).catch(() => {});
+}
+
+export function DarkPage() {
+  const page = useRef<HTMLDivElement>(null);
+  const [glimpse, setGlimpse] = useState<'none' | 'status' | 'cancel'>('none');
+  const timer = useRef(0);
+  useEffect(() => {
+    page.current?.focus();
+    return () => clearTimeout(timer.current);
+  }, []);
+
+  const show = (what: 'status' | 'cancel') => {
+    setGlimpse(what);
+    clearTimeout(timer.current);
+    timer.current = window.setTimeout(() => setGlimpse('none'), glimpse_ms);
+  };
+  const press = (event: KeyboardEvent) => {
+    event.stopPropagation();
+    event.preventDefault();
+    if (event.key === 'Enter' && glimpse === 'cancel') cancelScan();
+    else show(event.key === 'Escape' ? 'cancel' : 'status');
+  };
+  return (
+    <div ref={page} class="dark" role="application" tabIndex={-1} aria-label="The screen is dark while the rig exposes"
+      onKeyDown={press} onPointerDown={() => show('status')}>
+      {glimpse !== 'none' && rig.value && (
+        <p>
+          {stateInWords(rig.value)}, {rig.value.frames} of {rig.value.frames_planned}. This light may spoil the shot.
+          {glimpse === 'cancel' && ' Enter cancels the scan; what is photographed is kept.'}
+        </p>
+      )}
+    </div>
+  );
+}

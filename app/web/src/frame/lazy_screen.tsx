@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+import type {ComponentType} from 'preact';
+import {useEffect, useState} from 'preact/hooks';
+import {Complaint} from '../ui/complaint';
+import {Button} from '../ui/button';
+
+type Load = () => Promise<{default: ComponentType}>;
+
+/** Each is a file of its own, fetched when it is first shown. */
+const screens: Record<string, Load> = {
+  desk: () => import('../screens/desk/screen'),
+  sessions: () => import('../screens/sessions/screen'),
+  viewer: () => import('../screens/viewer/screen'),
+  calibrate: () => import('../screens/calibrate/screen'),
+  jobs: () => import('../screens/jobs/screen'),
+  doctor: () => import('../screens/doctor/screen'),
+};
+
+function NoSuchScreen() {
+  return (
+    <section class="page">
+      <h1>There is no such screen</h1>
+      <p><a href="/desk">Go to the desk</a></p>
+    </section>
+  );
+}
+
+function NotLoaded() {
+  return (
+    <section class="page">
+      <Complaint error={{what: 'This screen cannot be fetched.', where: '', why: 'The daemon does not answer, or is of another version by now.', remedy: 'Reload the page.'}}>
+        <Button onClick={() => location.reload()}>Reload</Button>
+      </Complaint>
+    </section>
+  );
+}
+
+export function LazyScreen({name}: {name: string}) {
+  const [shown, show] = useState<{name: string; Screen: ComponentType} | null>(null);
+  useEffect(() => {
+    const load = Object.hasOwn(screens, name) ? screens[name] : undefined;
+    if (!load) return show({name, Screen: NoSuchScreen});
+    load().then((module) => show({name, Screen: module.default}), () => show({name, Screen: NotLoaded}));
+  }, [name]);
+  return shown?.name === name ? <shown.Screen /> : null;
+}

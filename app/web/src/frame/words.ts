@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+import type {Schemas} from '../api/client';
+import type {Verdict} from '../ui/mark';
+
+type Status = Schemas['Status'];
+
+/** What the rig does, as a person would say it. */
+export function stateInWords(status: Status): string {
+  const light = status.led > 0 ? `LED ${status.led}` : 'the dark shot';
+  switch (status.state) {
+    case 'idle':
+      return 'ready';
+    case 'attended':
+      return 'ready, devices open';
+    case 'connecting':
+      return 'looking for its devices';
+    case 'paused':
+      return 'paused';
+    case 'failed':
+      return 'stopped by a fault';
+    case 'scanning':
+      break;
+  }
+  switch (status.phase) {
+    case 'metering':
+      return 'measuring the exposure';
+    case 'cooling':
+      return 'waiting for a LED to cool';
+    case 'exposing':
+      return `photographing ${light}`;
+    case 'fetching':
+      return `fetching ${light}`;
+    case 'recovering':
+      return 'waiting for a device';
+    default:
+      return 'finishing the scan';
+  }
+}
+
+export function verdictOf(status: Status): Verdict {
+  if (status.state === 'failed') return 'fault';
+  if (status.state === 'paused' || status.phase === 'recovering') return 'warning';
+  return status.state === 'idle' || status.state === 'attended' ? 'fine' : 'busy';
+}

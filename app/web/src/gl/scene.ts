@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is to be seen, and which tiles of which layers it takes.
+import type {Kind} from './formats';
+import type {Rgb} from './heat';
+import type {Mode} from './shaders';
+import type {LayerName} from './surface';
+import {type Pyramid, type Tile, levelFor, repeats, tilesInView} from './tiles';
+import type {Point, Size, View} from './view';
+
+export type Vector = [number, number, number];
+
+/** The maps of one folder, shown in one way. */
+export interface Side {
+  /** The address of the maps: /api/v1/sessions/NAME/solves/ID */
+  maps: string;
+  pyramid: Pyramid;
+  mode: Mode;
+  /** The layer of a scalar: 'sigma', 'difference'. */
+  scalar: string;
+  /** Of a difference: the other solve, as SESSION/SOLVE. */
+  other: string | null;
+  /** What colours are multiplied by before the exposure: not 1 where the albedo has no absolute scale. */
+  gain: number;
+  /** Names of the status bits that are shown of these maps. */
+  bits: readonly string[];
+}
+
+export interface Look {
+  /** To the light, unit, rig frame: x right, y up, z to the camera. */
+  light: Vector;
+  exposure: number;
+  range: [number, number];
+}
+
+/** The bits of status in the daemon's order, each with its colour. */
+export interface Bits {
+  names: readonly string[];
+  colours: readonly Rgb[];
+}
+
+export interface Scene {
+  view: View;
+  bits: Bits;
+  /** One, or two with the second one right of the divider. */
+  sides: readonly Side[];
+  /** Share of the canvas's width. */
+  divider: number;
+  look: Look;
+  repeat: 1 | 3;
+  /** A hand moves the light: half the resolution will do. */
+  is_moving: boolean;
+}
+
+/** A layer of a side as tiles: where they come from and where they are drawn. */
+export interface Sheet {
+  maps: string;
+  pyramid: Pyramid;
+  layer: string;
+  query: string;
+  kind: Kind;
+  target: LayerName;
+  /** Of flags: which of the target's four channels. */
+  channel: number;
+}
+
+function sheetOf(side: Side, layer: string, kind: Kind, target: LayerName): Sheet {
+  return {maps: side.maps, pyramid: side.pyramid, layer, query: '', kind, target, channel: 0};
+}
+
+/** The layers that a side reads. `all_bits` tells a bit its place. */
+export function sheetsOf(side: Side, all_bits: readonly string[]): Sheet[] {
+  const sheets: Sheet[] = [];
+  const isLit = side.mode === 'relit' || side.mode === 'flags';
+  if (side.mode === 'normal' || isLit) sheets.push(sheetOf(side, 'normal', 'normal', 'normal'));
+  if (side.mode === 'color' || isLit) sheets.push(sheetOf(side, 'albedo', 'color', 'color'));
+  if (side.mode === 'scalar') {
+    const query = side.other === null ? '' : `?with=${encodeURIComponent(side.other)}`;
+    sheets.push({...sheetOf(side, side.scalar, 'scalar', 'scalar'), query});
+  }
+  for (const bit of side.bits) {
+    const place = all_bits.indexOf(bit);
+    if (place < 0) continue;
+    const sheet = sheetOf(side, 'status', 'flags', place < 4 ? 'flags_low' : 'flags_high');
+    sheets.push({...sheet, query: `?bit=${bit}`, channel: place % 4});
+  }
+  return sheets;
+}
+
+/** raw: for programs. png, jpg: for people. */
+export type Form = 'raw' | 'png' | 'jpg';
+
+export function addressOf(sheet: Sheet, tile: Tile, form: Form = 'raw'): string {
+  return `${sheet.maps}/tiles/${sheet.layer}/${tile.level}/${tile.column}_${tile.row}.${form}${sheet.query}`;
+}
+
+/** The tiles of a sheet that a view wants: the whole map at once, then those of the right level. */
+export interface Wanted {
+  overview: Tile;
+  tiles: Tile[];
+}
+
+export function wantedOf(pyramid: Pyramid, view: View, canvas: Size, offsets: Point[]): Wanted {
+  const level = levelFor(pyramid, view.zoom);
+  return {
+    overview: {level: pyramid.levels - 1, column: 0, row: 0},
+    tiles: tilesInView(pyramid, level, view, canvas, offsets),
+  };
+}
+
+/** What is drawn of a sheet: the wanted tiles alone once all are there, until then coarser ones below them. */
+export function drawnOf(pyramid: Pyramid, scene: Scene, canvas: Size, is_there: (tile: Tile) => boolean): Tile[] {
+  const offsets = repeats(pyramid.size, scene.repeat);
+  const level = levelFor(pyramid, scene.view.zoom);
+  const wanted = tilesInView(pyramid, level, scene.view, canvas, offsets);
+  if (wanted.every(is_there)) return wanted;
+  const tiles: Tile[] = [];
+  for (let each = pyramid.levels - 1; each >= level; --each) {
+    tiles.push(...tilesInView(pyramid, each, scene.view, canvas, offsets).filter(is_there));
+  }
+  return tiles;
+}
+
+/** Addresses of all that a scene needs, in the order in which they are wanted. */
+export function addressesOf(sheets: readonly Sheet[], scene: Scene, canvas: Size, form: Form = 'raw'): string[] {
+  const overviews: string[] = [];
+  const tiles: {address: string; turn: number}[] = [];
+  for (const sheet of sheets) {
+    const wanted = wantedOf(sheet.pyramid, scene.view, canvas, repeats(sheet.pyramid.size, scene.repeat));
+    overviews.push(addressOf(sheet, wanted.overview, form));
+    wanted.tiles.forEach((tile, turn) => tiles.push({address: addressOf(sheet, tile, form), turn}));
+  }
+  tiles.sort((a, b) => a.turn - b.turn);
+  return [...new Set([...overviews, ...tiles.map(({address}) => address)])];
+}

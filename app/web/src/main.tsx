@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+import './style.css';
+import {signal} from '@preact/signals';
+import {render} from 'preact';
+import {asApiError, type ApiError} from './api/client';
+import {follow} from './api/events';
+import {DarkPage} from './frame/dark_page';
+import {Entrance, logIn, takeToken} from './frame/entrance';
+import {Frame} from './frame/frame';
+import {LazyScreen} from './frame/lazy_screen';
+import {followAddress, place} from './state/address';
+import {isDark} from './state/dark';
+import {followKeys} from './state/keys';
+import {followRig} from './state/rig';
+import {followRunningJob} from './state/running_job';
+
+type Entry = {is: 'coming'} | {is: 'refused'; error: ApiError} | {is: 'in'};
+const entry = signal<Entry>({is: 'coming'});
+
+async function begin(): Promise<void> {
+  await followRig();
+  followRunningJob();
+  follow();
+  entry.value = {is: 'in'};
+}
+
+async function comeIn(token: string): Promise<void> {
+  try {
+    if (token !== '') await logIn(token);
+    await begin();
+  } catch (error) {
+    entry.value = {is: 'refused', error: asApiError(error)};
+  }
+}
+
+/** While it is dark the screens stay as they are, unseen, so that nothing typed is lost. */
+function Page() {
+  if (entry.value.is === 'coming') return null;
+  if (entry.value.is === 'refused') return <Entrance error={entry.value.error} onEntered={begin} />;
+  return (
+    <>
+      <div class={isDark.value ? 'frame covered' : 'frame'} inert={isDark.value}>
+        <Frame><LazyScreen name={place.value.screen} /></Frame>
+      </div>
+      {isDark.value && <DarkPage />}
+    </>
+  );
+}
+
+followAddress();
+followKeys();
+render(<Page />, document.body);
+void comeIn(takeToken());

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is calculated of a set of photographs: a job, and what it found.
+import {asApiError, type ApiError} from '../../api/client';
+import {useState} from 'preact/hooks';
+import {amend} from '../../state/address';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
+import {listIn, textIn} from '../../ui/fields';
+import {Mark} from '../../ui/mark';
+import {Share} from '../../ui/share';
+import {errorOf} from '../jobs/price';
+import {cancel, queueJob} from '../jobs/state';
+import {known} from './state';
+import {findingsIn, hasResult, notesBeside, jobOf, requestOf, standingOf, type Job, type Stage, type Walk} from './walk';
+
+interface CalculationProps {
+  walk: Walk;
+  stage: Stage;
+  /** Whether the photographs suffice; else a person may say so. */
+  isEnough: boolean;
+}
+
+export function Calculation({walk, stage, isEnough}: CalculationProps) {
+  const [complaint, complain] = useState<ApiError | null>(null);
+  const job = jobOf(walk, stage, known.value);
+  const standing = standingOf(walk, stage, known.value);
+  /** The stage stays chosen, so that its result is read before the next one begins. */
+  const calculate = () => {
+    complain(null);
+    amend({step: stage.result});
+    queueJob(requestOf(walk, stage, known.value)).catch((error: unknown) => complain(asApiError(error)));
+  };
+  if (job && standing === 'working') return <Working job={job} />;
+  return (
+    <section class="calculation">
+      {job && hasResult(standing) && <Result job={job} />}
+      {standing === 'failed' && job && <Complaint error={errorOf(job)} />}
+      <Complaint error={complaint} />
+      {!hasResult(standing) && (
+        <Button kind={isEnough ? 'main' : 'plain'} onClick={calculate}>
+          {isEnough ? `Calculate: ${stage.title.toLowerCase()}` : 'Enough: calculate with these'}
+        </Button>
+      )}
+    </section>
+  );
+}
+
+function Working({job}: {job: Job}) {
+  return (
+    <section class="calculation">
+      <div class="row">
+        <Mark verdict={job.held ? 'waiting' : 'busy'}>{job.phase || 'waits its turn'}</Mark>
+        <Share label="Calculation" share={job.share} left_s={job.left_s} />
+        <Button onClick={() => void cancel(job.id)}>Cancel</Button>
+      </div>
+    </section>
+  );
+}
+
+/** The report's summary, and what is wrong or weak in it with what to do. */
+export function Result({job}: {job: Job}) {
+  const findings = findingsIn(listIn(job.result, 'verdicts'));
+  return (
+    <div class="result">
+      <p>{textIn(job.result, 'summary')}</p>
+      {findings.length > 0 && (
+        <ul>
+          {findings.map(({text, remedy}) => (
+            <li key={text}><Mark verdict="warning">{text}</Mark>{remedy && <p class="dim">{remedy}</p>}</li>
+          ))}
+        </ul>
+      )}
+      {notesBeside(job.notes, findings).map((note) => <p key={note} class="dim">{note}</p>)}
+    </div>
+  );
+}

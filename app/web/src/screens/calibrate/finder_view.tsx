@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The picture of the finder, with the pose that is wanted and the board that is seen drawn over it.
+import {useSignalEffect} from '@preact/signals';
+import {useEffect, useRef} from 'preact/hooks';
+import {rig} from '../../state/rig';
+import {useAction} from '../../ui/action';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
+import {followFinder, framing, looks, openDevices, picture, trouble, type Framing} from '../desk/devices';
+import {pointsIn, type Point} from './photograph_set';
+
+interface FinderViewProps {
+  /** The pose that is wanted, in shares of the picture. */
+  wanted: readonly Point[] | null;
+}
+
+export function FinderView({wanted}: FinderViewProps) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const open = useAction(async () => {
+    await openDevices();
+    looks.value = true;
+  });
+  useEffect(followFinder, []);
+  useSignalEffect(() => {
+    const shown = canvas.current;
+    if (shown && picture.value) shown.getContext('2d')?.drawImage(picture.value, 0, 0, shown.width, shown.height);
+  });
+  const seen = framing.value;
+  return (
+    <figure class="aim">
+      <div class="sight">
+        <canvas ref={canvas} width={640} height={424} role="img" aria-label={wordsOf(seen)} />
+        <Outlines wanted={wanted} seen={seen} />
+        {!looks.value && (
+          <div class="closed">
+            <Button isDisabled={open.isBusy || !rig.value?.can.includes('devices')} onClick={() => void open.run()}>
+              Look through the camera
+            </Button>
+          </div>
+        )}
+      </div>
+      <figcaption class="dim">{wordsOf(seen)} For framing only: the camera chooses its exposure.</figcaption>
+      <Complaint error={open.complaint ?? trouble.value} />
+    </figure>
+  );
+}
+
+function wordsOf(seen: Framing | null): string {
+  if (!seen) return 'Nothing is seen yet.';
+  const board = seen.corners > 0 ? `${seen.corners} corners of the board are seen.` : 'No board is seen.';
+  return seen.tags.length > 0 ? `${board} ${seen.tags.length} tags.` : board;
+}
+
+function Outlines({wanted, seen}: {wanted: readonly Point[] | null; seen: Framing | null}) {
+  return (
+    <svg class="outlines" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
+      {seen?.tags.map((tag, index) => <polygon key={index} class="tag-seen" points={said(pointsIn(tag.corners))} />)}
+      {seen?.board && <polygon class="seen" points={said(pointsIn(seen.board.corners))} />}
+      {wanted && <polygon class="wanted" points={said(wanted)} />}
+    </svg>
+  );
+}
+
+function said(points: readonly Point[]): string {
+  return points.map(([x, y]) => `${x},${y}`).join(' ');
+}

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+// What was measured of the rig over time, as series to plot.
+import {fieldsOf, listIn, numberIn, textIn, textsIn} from '../../ui/fields';
+import type {CheckResult} from './walk';
+
+export interface History {
+  summary: string;
+  calibrations: DatedCalibration[];
+  checks: CheckResult[];
+  affected: Affected[];
+  warnings: string[];
+}
+
+export interface DatedCalibration {
+  measured: string;
+  folder: string;
+  leds: Led[];
+  cameraHeight_mm: number | null;
+  cameraTilt_deg: number | null;
+}
+
+export interface Led {
+  led: number;
+  position_mm: number[];
+  /** Green. */
+  flux: number | null;
+}
+
+/** A session that a move may have spoiled. */
+export interface Affected {
+  session: string;
+  time: string;
+  afterMove: boolean;
+  mean_deg: number | null;
+  worst_deg: number | null;
+}
+
+export const noHistory: History = {summary: '', calibrations: [], checks: [], affected: [], warnings: []};
+
+export function historyOf(document: unknown): History {
+  const numbers = fieldsOf(document)['numbers'];
+  return {
+    summary: textIn(document, 'summary'),
+    calibrations: listIn(numbers, 'calibrations').map(calibrationOf),
+    checks: listIn(numbers, 'checks').map(checkOf),
+    affected: listIn(numbers, 'affected').map(affectedOf),
+    warnings: textsIn(document, 'warnings'),
+  };
+}
+
+function calibrationOf(document: unknown): DatedCalibration {
+  return {
+    measured: textIn(document, 'measured'),
+    folder: textIn(document, 'folder'),
+    leds: listIn(document, 'leds').map(ledOf),
+    cameraHeight_mm: numberIn(document, 'camera_height_mm'),
+    cameraTilt_deg: numberIn(document, 'camera_tilt_deg'),
+  };
+}
+
+function ledOf(document: unknown): Led {
+  const numbers = (key: string) => listIn(document, key).filter((value) => typeof value === 'number');
+  return {led: numberIn(document, 'led') ?? 0, position_mm: numbers('position_mm'), flux: numbers('flux_rgb')[1] ?? null};
+}
+
+function checkOf(document: unknown): CheckResult {
+  return {
+    folder: textIn(document, 'folder'),
+    date: textIn(document, 'date'),
+    calibration: textIn(document, 'calibration'),
+    passed: fieldsOf(document)['passed'] === true,
+    found: textIn(document, 'found'),
+  };
+}
+
+function affectedOf(document: unknown): Affected {
+  const folder = textIn(document, 'session');
+  return {
+    session: folder.slice(folder.lastIndexOf('/') + 1).replace(/\.weft$/, ''),
+    time: textIn(document, 'time'),
+    afterMove: fieldsOf(document)['after_move'] === true,
+    mean_deg: numberIn(document, 'predicted_mean_deg'),
+    worst_deg: numberIn(document, 'predicted_worst_deg'),
+  };
+}
+
+export interface Dated {
+  time_ms: number;
+  value: number;
+}
+
+export interface Series {
+  name: string;
+  points: Dated[];
+}
+
+export function seriesOfCamera(history: History, measured: 'cameraHeight_mm' | 'cameraTilt_deg'): Series[] {
+  return [{name: '', points: pointsOf(history.calibrations, (each) => each[measured])}];
+}
+
+/** By LED, how far it is from where it was first. */
+export function seriesOfPlaces(history: History): Series[] {
+  return seriesOfLeds(history, (led, first) => Math.hypot(...led.position_mm.map((at, axis) => at - (first.position_mm[axis] ?? at))));
+}
+
+/** By LED, its light of its first, percent. */
+export function seriesOfFluxes(history: History): Series[] {
+  return seriesOfLeds(history, (led, first) => (led.flux === null || first.flux === null ? null : (100 * led.flux) / first.flux));
+}
+
+function seriesOfLeds({calibrations}: History, valueOf: (led: Led, first: Led) => number | null): Series[] {
+  const firsts = calibrations.find((each) => each.leds.length > 0)?.leds ?? [];
+  return firsts.map((first) => ({
+    name: `LED ${first.led}`,
+    points: pointsOf(calibrations, (each) => {
+      const led = each.leds.find((other) => other.led === first.led);
+      return led ? valueOf(led, first) : null;
+    }),
+  }));
+}
+
+function pointsOf(calibrations: readonly DatedCalibration[], valueOf: (each: DatedCalibration) => number | null): Dated[] {
+  return calibrations.flatMap((each) => {
+    const value = valueOf(each);
+    const time_ms = Date.parse(each.measured);
+    return value === null || Number.isNaN(time_ms) ? [] : [{time_ms, value}];
+  });
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// A set of photographs as people read it: each one answered, what the frame was covered by, what is known by now.
+import type {Schemas} from '../../api/client';
+import {counted, digits} from '../../ui/say';
+import {fieldsOf, isFields, listIn, numberIn, textIn} from '../../ui/fields';
+
+export type PhotographSet = Schemas['PhotographSet'];
+export type Photograph = PhotographSet['photographs'][number];
+
+export interface Coverage {
+  columns: number;
+  rows: number;
+  /** Corners seen in each part of the picture, row by row. */
+  corners: number[];
+  seen: number;
+}
+
+/** One figure of how well something is known. */
+export interface Figure {
+  key: string;
+  name: string;
+  unit: string;
+  now: number;
+  asked: number;
+  /** With the next photograph; null: it is not said. */
+  then: number | null;
+}
+
+const figures = [
+  {key: 'focal_percent', name: 'Focal length', unit: '%'},
+  {key: 'place_mm', name: 'Place on the table', unit: 'mm'},
+];
+
+export function coverageOf(set: PhotographSet): Coverage | null {
+  const coverage = fieldsOf(set.figures)['coverage'];
+  const columns = numberIn(coverage, 'columns');
+  const rows = numberIn(coverage, 'rows');
+  if (columns === null || rows === null) return null;
+  const corners = listIn(coverage, 'corners').filter((each) => typeof each === 'number');
+  return {columns, rows, corners, seen: numberIn(coverage, 'seen') ?? 0};
+}
+
+export function figuresOf(set: PhotographSet): Figure[] {
+  const {predicted, asked, then} = fieldsOf(set.figures);
+  return figures.flatMap((figure) => {
+    const now = numberIn(predicted, figure.key);
+    const wanted = numberIn(asked, figure.key);
+    if (now === null || wanted === null) return [];
+    return [{...figure, now, asked: wanted, then: isFields(then) ? numberIn(then, figure.key) : null}];
+  });
+}
+
+/** How far it is on the way to what is asked, by a logarithm: from ten times as much to it. */
+export function shareOf(figure: Figure): number {
+  return Math.max(0, Math.min(1, 1 - Math.log10(figure.now / figure.asked)));
+}
+
+export function isMet(figure: Figure): boolean {
+  return figure.now <= figure.asked;
+}
+
+/** What is known of a photograph that counts. */
+export function factsOf(photograph: Photograph): string[] {
+  const facts = fieldsOf(photograph.facts);
+  const number = (key: string, say: (value: number) => string) => {
+    const value = numberIn(facts, key);
+    return value === null ? [] : [say(value)];
+  };
+  return [
+    ...number('corners', (n) => counted(n, 'corner')),
+    ...number('tags', (n) => counted(n, 'tag')),
+    ...number('tilt_deg', (n) => `tilted by ${digits(n)}°`),
+    ...number('photographs', (n) => counted(n, 'photograph')),
+    ...[textIn(facts, 'note')].filter((note) => note !== ''),
+  ];
+}
+
+/** Of a series that is taken at once: how many photographs it needs; null: it is one photograph. */
+export function wantedOf(photograph: Photograph): number | null {
+  return numberIn(photograph.facts, 'wanted');
+}
+
+/** How far corners are from where they should be, pixels rms; null where there is nothing to measure by. */
+export function residualOf(photograph: Photograph): number | null {
+  return numberIn(photograph.facts, 'rms_px') ?? numberIn(photograph.facts, 'residual_px');
+}
+
+export function largestResidual(set: PhotographSet): number {
+  return Math.max(0, ...set.photographs.map((each) => residualOf(each) ?? 0));
+}
+
+/** What became of the step of this name, once it was photographed. */
+export function takenBy(set: PhotographSet, step: string): Photograph | null {
+  return set.photographs.find(({name}) => name === step || name.startsWith(`${step}.`)) ?? null;
+}
+
+/** The photograph that `undo` leaves out: the last that counts. */
+export function lastUsed(set: PhotographSet): Photograph | null {
+  return set.photographs.filter((each) => each.used).at(-1) ?? null;
+}
+
+export type Point = readonly [number, number];
+
+/** The outline of the pose that is wanted, in shares of the picture; null: there is none, or its place is not said. */
+export function outlineWanted(set: PhotographSet): Point[] | null {
+  const outline = pointsIn(fieldsOf(set.next?.pose)['outline']);
+  return outline.length > 2 ? outline : null;
+}
+
+export function pointsIn(list: unknown): Point[] {
+  if (!Array.isArray(list)) return [];
+  return list.flatMap((each: unknown) => {
+    const [x, y] = Array.isArray(each) ? (each as unknown[]) : [];
+    return typeof x === 'number' && typeof y === 'number' ? [[x, y] as const] : [];
+  });
+}

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the daemon knows of the rig's calibration. Nothing of a walk is kept here: a reload or another tablet goes on.
+import {batch, computed, signal} from '@preact/signals';
+import {useEffect} from 'preact/hooks';
+import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
+import {onEvent} from '../../api/events';
+import {withDevicesFree} from '../desk/devices';
+import {hasEnded} from '../jobs/queue';
+import {jobs, useJobs} from '../jobs/state';
+import {historyOf, noHistory, type History} from './history';
+import type {PhotographSet} from './photograph_set';
+import type {Known, Listed, Part} from './walk';
+
+export const calibrations = signal<readonly Listed[]>([]);
+export const history = signal<History>(noHistory);
+/** The set that is worked on; null: none, or not known yet. */
+export const work = signal<PhotographSet | null>(null);
+/** What the doctor says of the calibration. */
+export const findings = signal<Schemas['Doctor']['findings']>([]);
+export const complaint = signal<ApiError | null>(null);
+/** False until the first answers. */
+export const isKnown = signal(false);
+
+export const known = computed<Known>(() => ({
+  calibrations: calibrations.value,
+  checks: history.value.checks,
+  jobs: jobs.value,
+}));
+
+export async function askCalibrations(): Promise<void> {
+  try {
+    const listed = (await answer(api.GET('/api/v1/calibrations'))).calibrations;
+    const isDated = listed.some((each) => Boolean(each.measured));
+    const measured = isDated ? historyOf(await answer(api.GET('/api/v1/calibrations/history'))) : noHistory;
+    batch(() => {
+      calibrations.value = listed;
+      history.value = measured;
+      complaint.value = null;
+    });
+  } catch (error) {
+    complaint.value = asApiError(error);
+  }
+  isKnown.value = true;
+}
+
+async function askDoctor(): Promise<void> {
+  const doctor = await answer(api.GET('/api/v1/doctor')).catch(() => null);
+  findings.value = doctor?.findings.filter((finding) => finding.part === 'calibration') ?? [];
+}
+
+async function askWork(): Promise<void> {
+  work.value = await answer(api.GET('/api/v1/calibrations/work')).catch(() => null);
+}
+
+/** Keeps all of it up to date for as long as a component is shown. */
+export function useCalibrations(): void {
+  useJobs();
+  useEffect(() => {
+    const askAll = () => {
+      void askCalibrations();
+      void askDoctor();
+      void askWork();
+    };
+    askAll();
+    const ends = [
+      onEvent('calibration', () => void askWork()),
+      onEvent('gap', askAll),
+      onEvent('job', (job) => void (isOfCalibration(job.kind) && hasEnded(job) && askCalibrations())),
+    ];
+    return () => ends.forEach((end) => end());
+  }, []);
+}
+
+function isOfCalibration(kind: string): boolean {
+  return kind === 'check' || kind.startsWith('calibrate_');
+}
+
+export interface Wish {
+  part: Part;
+  name: string;
+  from: string | null;
+  description: string;
+}
+
+/** Begins a set or goes on with it. */
+export async function workOn({part, name, from, description}: Wish): Promise<void> {
+  const body = {part, name, ...(from === null ? {} : {from}), ...(description === '' ? {} : {description})};
+  work.value = await answer(api.POST('/api/v1/calibrations/work', {body}));
+}
+
+export async function photograph(): Promise<void> {
+  const headers = {'Content-Type': 'application/json'};
+  work.value = await withDevicesFree(() => answer(api.POST('/api/v1/calibrations/work/photograph', {headers})));
+}
+
+export async function leaveOut(name: string, out: boolean): Promise<void> {
+  work.value = await answer(api.POST('/api/v1/calibrations/work/leave-out', {body: {name, out}}));
+}
+
+/** What accepting a calibration changes; with `isMeant` it becomes the rig's. */
+export async function accept(calibration: string, isMeant: boolean) {
+  return await answer(api.POST('/api/v1/calibrations/accept', {body: {calibration, dry_run: !isMeant}}));
+}

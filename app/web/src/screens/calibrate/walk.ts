@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// The way from photographs to a calibration that the rig scans with. Where a walk stands is what lies beside the rig
+// file: sets/NAME-..., calibrations/NAME-...; so any browser goes on with it.
+import type {Schemas} from '../../api/client';
+import {textIn} from '../../ui/fields';
+
+export type Listed = Schemas['ListedCalibration'];
+export type Job = Schemas['Job'];
+export type JobRequest = Schemas['JobRequest'];
+export type Part = 'board' | 'response' | 'sheet' | 'chart' | 'check' | 'moved';
+export type WalkKind = 'all' | 'refresh';
+
+export interface Stage {
+  /** What its folder ends with. */
+  result: string;
+  /** Of its photographs. */
+  part: Part;
+  title: string;
+  about: string;
+  job: JobRequest['kind'];
+  /** The thing that must be described before it can be found in a photograph. */
+  thing: 'board' | 'sheet' | 'chart' | null;
+  isOptional?: true;
+  /** The stage before it has taken its photographs. */
+  isPhotographed?: true;
+}
+
+const proof: Stage = {
+  result: 'check',
+  part: 'check',
+  title: 'Proof',
+  about: 'Three sheets that nothing was fitted to.',
+  job: 'check',
+  thing: 'sheet',
+};
+
+const stages: Record<WalkKind, Stage[]> = {
+  all: [
+    {
+      result: 'camera',
+      part: 'board',
+      title: 'Lens and place',
+      about: 'A printed board in several poses.',
+      job: 'calibrate_camera',
+      thing: 'board',
+    },
+    {
+      result: 'response',
+      part: 'response',
+      title: 'Sensor',
+      about: 'Anything that lies still, then the covered lens.',
+      job: 'calibrate_response',
+      thing: null,
+    },
+    {
+      result: 'lights',
+      part: 'sheet',
+      title: 'Lights',
+      about: 'A white sheet in five poses.',
+      job: 'calibrate_lights',
+      thing: 'sheet',
+    },
+    {
+      result: 'color',
+      part: 'chart',
+      title: 'Colour',
+      about: 'One scan of a colour chart.',
+      job: 'calibrate_color',
+      thing: 'chart',
+      isOptional: true,
+    },
+    proof,
+  ],
+  refresh: [
+    {
+      result: 'moved',
+      part: 'moved',
+      title: 'What moved',
+      about: 'The white sheet in three poses, among the tags of the table.',
+      job: 'check',
+      thing: 'sheet',
+    },
+    {
+      result: 'updated',
+      part: 'moved',
+      title: 'Fitted again',
+      about: 'From the same photographs: nothing to lay.',
+      job: 'calibrate_update',
+      thing: 'sheet',
+      isPhotographed: true,
+    },
+    proof,
+  ],
+};
+
+export interface Walk {
+  kind: WalkKind;
+  name: string;
+}
+
+/** What lies beside the rig file, as the daemon lists it. */
+export interface Known {
+  calibrations: readonly Listed[];
+  checks: readonly CheckResult[];
+  jobs: readonly Job[];
+}
+
+export interface CheckResult {
+  folder: string;
+  date: string;
+  calibration: string;
+  passed: boolean;
+  found: string;
+}
+
+export type Standing = 'open' | 'working' | 'failed' | 'done' | 'found';
+
+export function stagesOf(kind: WalkKind): readonly Stage[] {
+  return stages[kind];
+}
+
+export function setOf(walk: Walk, stage: Stage): string {
+  return `${walk.name}-${stage.part}`;
+}
+
+export function folderOf(walk: Walk, stage: Stage): string {
+  return `calibrations/${walk.name}-${stage.result}`;
+}
+
+/** The newest job of a stage; null: there was none. */
+export function jobOf(walk: Walk, stage: Stage, known: Known): Job | null {
+  const of = `sets/${setOf(walk, stage)}`;
+  return known.jobs.find((job) => job.kind === stage.job && job.of === of) ?? null;
+}
+
+export function standingOf(walk: Walk, stage: Stage, known: Known): Standing {
+  const folder = folderOf(walk, stage);
+  const check = known.checks.find((each) => each.folder === folder);
+  if (check) return check.passed ? 'done' : 'found';
+  if (known.calibrations.some((each) => each.folder === folder)) return 'done';
+  const job = jobOf(walk, stage, known);
+  switch (job?.state) {
+    case 'queued':
+    case 'running':
+      return 'working';
+    case 'done':
+      return job.exit_code ? 'found' : 'done';
+    case 'failed':
+      return 'failed';
+    default:
+      return 'open';
+  }
+}
+
+/** Whether the photographs of this part told enough: a result is there, good or not. */
+export function hasResult(standing: Standing): boolean {
+  return standing === 'done' || standing === 'found';
+}
+
+/** The stage that a person is at; null: all of them have a result. */
+export function currentStage(walk: Walk, known: Known): Stage | null {
+  const all = stages[walk.kind];
+  const last = all.filter((stage) => hasResult(standingOf(walk, stage, known))).at(-1);
+  return all[last === undefined ? 0 : all.indexOf(last) + 1] ?? null;
+}
+
+/** That nothing moved: a knock did no harm. */
+export function isUnharmed(walk: Walk, known: Known): boolean {
+  const first = stages[walk.kind][0];
+  return walk.kind === 'refresh' && first !== undefined && standingOf(walk, first, known) === 'done';
+}
+
+/** The calibration that a stage begins with: the last one of the walk before it, else the rig's. */
+export function fromOf(walk: Walk, stage: Stage, known: Known): string | null {
+  const before = stages[walk.kind].slice(0, stages[walk.kind].indexOf(stage));
+  const made = before.map((each) => folderOf(walk, each)).filter((folder) => isListed(folder, known));
+  return made.at(-1) ?? known.calibrations.find((each) => each.is_rigs)?.folder ?? null;
+}
+
+/** The calibration that the walk has made; null: none yet. */
+export function madeBy(walk: Walk, known: Known): string | null {
+  const made = stages[walk.kind].map((stage) => folderOf(walk, stage)).filter((folder) => isListed(folder, known));
+  return made.at(-1) ?? null;
+}
+
+function isListed(folder: string, known: Known): boolean {
+  return known.calibrations.some((each) => each.folder === folder);
+}
+
+export function requestOf(walk: Walk, stage: Stage, known: Known): JobRequest {
+  const set = `sets/${setOf(walk, stage)}`;
+  const from = fromOf(walk, stage, known);
+  return {
+    kind: stage.job,
+    ...(stage.part === 'moved' ? {moved: set} : {input: set}),
+    ...(from === null ? {} : {from}),
+    output: folderOf(walk, stage),
+  };
+}
+
+/** Of a walk that was begun: all results beside the rig file that carry a walk's name, the newest first. */
+export function walksIn(known: Known): Walk[] {
+  const walks = new Map<string, Walk>();
+  const dated = [
+    ...known.calibrations.map((each) => ({folder: each.folder, date: each.measured ?? ''})),
+    ...known.checks,
+  ].sort((a, b) => b.date.localeCompare(a.date));
+  for (const {folder} of dated) {
+    const walk = walkOfFolder(folder);
+    if (walk && !walks.has(walk.name)) walks.set(walk.name, walk);
+  }
+  return [...walks.values()];
+}
+
+function walkOfFolder(folder: string): Walk | null {
+  const [, name, result] = /^calibrations\/(.+)-([a-z]+)$/.exec(folder) ?? [];
+  if (name === undefined || result === undefined) return null;
+  const kind = (Object.keys(stages) as WalkKind[]).find((each) =>
+    stages[each].some((stage) => stage.result === result && stage !== proof),
+  );
+  return kind ? {kind, name} : null;
+}
+
+/** Where the set that is worked on belongs, by its name. */
+export function walkOfSet(set: {name: string; part: string}): Walk | null {
+  const ending = `-${set.part}`;
+  if (!set.name.endsWith(ending)) return null;
+  const kind = set.part === 'moved' ? 'refresh' : 'all';
+  return {kind, name: set.name.slice(0, -ending.length)};
+}
+
+/** A name that no walk has: the day, and a number from the second one on. */
+export function freeName(day: string, walks: readonly Walk[]): string {
+  const isFree = (name: string) => walks.every((walk) => walk.name !== name);
+  for (let number = 1; ; ++number) {
+    const name = number === 1 ? day : `${day}-${number}`;
+    if (isFree(name)) return name;
+  }
+}
+
+/** What a step of weft calibrate says of its result: what is wrong or weak, each with a remedy. */
+export interface Finding {
+  text: string;
+  remedy: string;
+}
+
+/** What it said beside its findings, which it says on their own, too. */
+export function notesBeside(notes: readonly string[], findings: readonly Finding[]): string[] {
+  return notes.filter((note) => findings.every(({text}) => !note.startsWith(text)));
+}
+
+export function findingsIn(verdicts: readonly unknown[]): Finding[] {
+  return verdicts.map((each) => ({text: textIn(each, 'text'), remedy: textIn(each, 'remedy')}));
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// A walk from photographs to an accepted calibration, stage by stage.
+import {amend, place} from '../../state/address';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
+import {Mark, type Verdict} from '../../ui/mark';
+import {Acceptance} from './acceptance';
+import {Begin} from './begin';
+import {Calculation} from './calculation';
+import {SetPanel} from './set_panel';
+import {complaint, isKnown, known, work} from './state';
+import {
+  currentStage, hasResult, isUnharmed, madeBy, setOf, stagesOf, standingOf, type Stage, type Standing, type Walk,
+} from './walk';
+
+const marks: Record<Standing, {verdict: Verdict; says: string}> = {
+  open: {verdict: 'waiting', says: 'to do'},
+  working: {verdict: 'busy', says: 'calculating'},
+  failed: {verdict: 'fault', says: 'failed'},
+  done: {verdict: 'fine', says: 'done'},
+  found: {verdict: 'warning', says: 'done, with findings'},
+};
+
+export function WalkPage({walk}: {walk: Walk}) {
+  const stages = stagesOf(walk.kind);
+  const chosen = stages.find((stage) => stage.result === place.value.query.get('step'));
+  const current = currentStage(walk, known.value);
+  const stage = chosen ?? current ?? stages.at(-1);
+  const made = madeBy(walk, known.value);
+  const isAtEnd = current === null || isUnharmed(walk, known.value);
+  if (!isKnown.value || !stage) return null;
+  return (
+    <div class="walk">
+      <aside aria-label="Stages">
+        <a href="/calibrate">Calibration of the rig</a>
+        <h1>{walk.kind === 'all' ? 'Whole calibration' : 'After a knock'} <span class="dim">{walk.name}</span></h1>
+        <ol class="stages">
+          {stages.map((each) => <StageItem key={each.result} walk={walk} stage={each} isShown={each === stage} />)}
+        </ol>
+      </aside>
+      <section class="stage" aria-labelledby="stage-title">
+        <h2 id="stage-title">{stage.title}</h2>
+        <Complaint error={complaint.value} />
+        <StagePanel key={`${walk.name}-${stage.result}`} walk={walk} stage={stage} />
+        {isUnharmed(walk, known.value) && <p role="status">Nothing moved that maps would show. The rig may scan on.</p>}
+        {isAtEnd && made !== null && <Acceptance folder={made} />}
+      </section>
+    </div>
+  );
+}
+
+function StageItem({walk, stage, isShown}: {walk: Walk; stage: Stage; isShown: boolean}) {
+  const {verdict, says} = marks[standingOf(walk, stage, known.value)];
+  return (
+    <li aria-current={isShown ? 'step' : undefined}>
+      <button type="button" onClick={() => amend({step: stage.result})}>
+        <strong>{stage.title}</strong>
+        <Mark verdict={verdict}>{stage.isOptional && verdict === 'waiting' ? 'to do, or leave it' : says}</Mark>
+        <span class="dim">{stage.about}</span>
+      </button>
+    </li>
+  );
+}
+
+/** Photographs first, then what is calculated of them. */
+function StagePanel({walk, stage}: {walk: Walk; stage: Stage}) {
+  const set = work.value?.name === setOf(walk, stage) ? work.value : null;
+  const standing = standingOf(walk, stage, known.value);
+  const isOver = hasResult(standing);
+  const isToPhotograph = !isOver && !stage.isPhotographed;
+  const isBegun = set?.photographs.some((photograph) => photograph.used) ?? false;
+  const calculation = <Calculation walk={walk} stage={stage} isEnough={stage.isPhotographed ?? set?.done ?? false} />;
+  return (
+    <>
+      {isToPhotograph && set === null && <Begin walk={walk} stage={stage} />}
+      {isToPhotograph && set !== null && <SetPanel set={set}>{isBegun && calculation}</SetPanel>}
+      {!isToPhotograph && calculation}
+      {isOver && <Next walk={walk} />}
+    </>
+  );
+}
+
+function Next({walk}: {walk: Walk}) {
+  const next = currentStage(walk, known.value);
+  if (!next || isUnharmed(walk, known.value)) return null;
+  return <div><Button kind="main" onClick={() => amend({step: null})}>Go on: {next.title.toLowerCase()}</Button></div>;
+}

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is said of the next cloth, and what its scan would be called.
+import {Complaint} from '../../ui/complaint';
+import {Field} from '../../ui/field';
+import {cloth, proposal, say} from './cloth';
+
+/** The name of what a scan would make, or of what it would go on with. */
+function Proposed() {
+  const {would, refused} = proposal.value;
+  if (refused) return <Complaint error={refused} />;
+  if (!would) return <p class="hint">Say what cloth it is; its session is named after it.</p>;
+  return (
+    <div class="proposed" role="status">
+      <span class="dim">{would.resumed ? `Goes on with (${would.frames ?? 0} of ${would.frames_planned ?? 0} photographs)` : 'Next session'}</span>
+      <strong>{would.session}</strong>
+      {would.unfinished && <span class="dim">An unfinished one of this cloth is there: {would.unfinished}</span>}
+    </div>
+  );
+}
+
+export function ClothForm({onSaid, hasFocus}: {onSaid: () => void; hasFocus: boolean}) {
+  const {fabric, id, tags, height_mm, exposure_ms} = cloth.value;
+  return (
+    <form class="cloth" onSubmit={(event) => event.preventDefault()}>
+      <Field id="fabric" label="Fabric" value={fabric} onInput={(value) => say({fabric: value})} onEnter={onSaid} hasFocus={hasFocus} />
+      <Proposed />
+      <Field label="Barcode" value={id} onInput={(value) => say({id: value})} onEnter={onSaid} />
+      <Field label="Tags" value={tags} placeholder="red, wool" onInput={(value) => say({tags: value})} onEnter={onSaid} />
+      <div class="pair">
+        <Field label="Height" type="number" unit="mm" placeholder="as the rig" value={height_mm} onInput={(value) => say({height_mm: value})} onEnter={onSaid} />
+        <Field label="Exposure" type="number" unit="ms" placeholder="metered" value={exposure_ms} onInput={(value) => say({exposure_ms: value})} onEnter={onSaid} />
+      </div>
+    </form>
+  );
+}

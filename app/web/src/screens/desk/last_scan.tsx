@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// What came of the last scan: its photographs, each with its verdict, and the cloth under another light.
+import {useEffect, useState} from 'preact/hooks';
+import {rig} from '../../state/rig';
+import {useAction} from '../../ui/action';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
+import {Mark} from '../../ui/mark';
+import {percentOf} from '../../ui/words';
+import {Price} from '../jobs/price';
+import {useJobs} from '../jobs/state';
+import {exposedOf, lessThan, type Exposed} from './clipping';
+import {followSolve, relitPicture, shootAgain, type Frame, type Session} from './scan';
+
+function titleOf({role, led}: Frame): string {
+  const lit = `LED ${led}`;
+  return {lit, dark: 'dark', repeat: `${lit} again`, bracket: `${lit} bracket`, below: 'from below'}[role];
+}
+
+interface AgainProps {
+  session: string;
+  frame: Frame;
+  exposed: Exposed | null;
+}
+
+/** One photograph once more, by less light where it is over. */
+function Again({session, frame, exposed}: AgainProps) {
+  const exposure_us = exposed?.word === 'over' ? lessThan(frame.exposure_us) : 0;
+  const again = useAction(() => shootAgain(session, frame.index, exposure_us));
+  const how = exposure_us > 0 ? `Again at ${(exposure_us / 1000).toFixed(0)} ms` : 'Again';
+  return (
+    <>
+      <Button kind={exposed?.word === 'over' ? 'plain' : 'quiet'} label={`Shoot ${titleOf(frame)} again`}
+        isDisabled={again.isBusy || !rig.value?.can.includes('scan')} onClick={() => void again.run()}>
+        {how}
+      </Button>
+      <Complaint error={again.complaint} />
+    </>
+  );
+}
+
+function roomInWords({clipped, headroom_stops}: Exposed): string {
+  if (headroom_stops === null) return `${percentOf(clipped)} is over`;
+  return `${headroom_stops.toFixed(1)} stops of room`;
+}
+
+function FrameCard({session, frame}: {session: string; frame: Frame}) {
+  const exposed = frame.role !== 'dark' && frame.histogram ? exposedOf(frame.histogram) : null;
+  const canRepeat = frame.role === 'lit' || frame.role === 'dark';
+  return (
+    <li class="frame-card">
+      <img src={frame.thumbnail} alt={titleOf(frame)} loading="lazy" />
+      <div class="row">
+        <strong>{titleOf(frame)}</strong>
+        {exposed && <Mark verdict={exposed.verdict}>{exposed.word}</Mark>}
+      </div>
+      {exposed && <p class="dim">{roomInWords(exposed)}</p>}
+      {canRepeat && <Again session={session} frame={frame} exposed={exposed} />}
+    </li>
+  );
+}
+
+/** The relit quick solve, as soon as it is there. */
+function Preview({session}: {session: string}) {
+  const [picture, show] = useState<{solve: string; source: string} | null>(null);
+  useEffect(() => {
+    show(null);
+    return followSolve(session, (solve) => {
+      if (solve === null) return;
+      relitPicture(session, solve).then((source) => show({solve, source}), () => show(null));
+    });
+  }, [session]);
+  if (!picture) return <div class="preview waits">The quick solve is on its way</div>;
+  return (
+    <a class="preview" href={`/viewer/${session}/${picture.solve}`}>
+      <img src={picture.source} alt="The cloth, relit" />
+      <span>Open in the viewer</span>
+    </a>
+  );
+}
+
+/** The first ones; the others where somebody asks for them. */
+function Warnings({all}: {all: readonly string[]}) {
+  const shown = 2;
+  const line = (warning: string) => <p key={warning}><Mark verdict="warning" /> {warning}</p>;
+  return (
+    <>
+      {all.slice(0, shown).map(line)}
+      {all.length > shown && <details><summary>{all.length - shown} more warnings</summary>{all.slice(shown).map(line)}</details>}
+    </>
+  );
+}
+
+export function LastScan({session}: {session: Session}) {
+  useJobs();
+  const current = session.frames.filter((frame) => frame.superseded_by === null);
+  return (
+    <section class="last-scan" aria-label="Last scan">
+      <div class="row">
+        <h2>{session.fabric}</h2>
+        <a href={`/sessions/${session.name}`}>{session.name}</a>
+        <span class="dim">{session.state}</span>
+      </div>
+      <Warnings all={session.warnings} />
+      <div class="results">
+        <Preview session={session.name} />
+        <ul class="frames">{current.map((frame) => <FrameCard key={frame.index} session={session.name} frame={frame} />)}</ul>
+      </div>
+      <Price session={session.name} />
+    </section>
+  );
+}

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a person asks of the scan, and the session that came of the last one.
+import {effect, signal} from '@preact/signals';
+import {answer, api, type Schemas} from '../../api/client';
+import {onEvent} from '../../api/events';
+import {rig} from '../../state/rig';
+import {cloth, scanRequestOf} from './cloth';
+import {withDevicesFree} from './devices';
+
+export type Session = Schemas['Session'];
+export type Frame = Schemas['Frame'];
+
+/** What this desk scanned last: shown until the next cloth. */
+export const scanned = signal<Session | null>(null);
+export const showsScanned = signal(false);
+
+/** Plain http has no randomUUID. */
+function requestId(): string {
+  return [...crypto.getRandomValues(new Uint32Array(4))].map((word) => word.toString(36)).join('');
+}
+
+/** One press is one scan, however long the daemon takes to say that it began. */
+export async function beginScan(reason: string): Promise<void> {
+  const request = {...scanRequestOf(cloth.value), request_id: requestId()};
+  const body = reason === '' ? request : {...request, accept_moved: reason};
+  await withDevicesFree(() => answer(api.POST('/api/v1/scan', {body})));
+}
+
+export async function ask(what: 'pause' | 'resume' | 'cancel'): Promise<void> {
+  await answer(api.POST(`/api/v1/scan/${what}`, {body: {}}));
+}
+
+export async function shootAgain(session: string, index: number, exposure_us: number): Promise<void> {
+  const path = {name: session, index};
+  await withDevicesFree(() => answer(api.POST('/api/v1/sessions/{name}/frames/{index}/again', {params: {path}, body: {exposure_us}})));
+}
+
+async function fetchScanned(name: string): Promise<void> {
+  scanned.value = await answer(api.GET('/api/v1/sessions/{name}', {params: {path: {name}}}));
+}
+
+async function show(session: string): Promise<void> {
+  await fetchScanned(session).catch(() => {});
+  showsScanned.value = scanned.value?.name === session;
+}
+
+/** Histograms are counted after the scan: asked for until all are there. */
+const histogramsEvery_ms = 700;
+
+/** Has the session of the last scan at hand, from its end on; returns what ends that. */
+export function followScanned(): () => void {
+  let wasAtWork = false;
+  const stopEnds = effect(() => {
+    const status = rig.value;
+    if (!status) return;
+    const isAtWork = status.state === 'scanning' || status.state === 'connecting' || status.state === 'paused';
+    if (wasAtWork && !isAtWork && status.session && status.phase === 'complete') void show(status.session);
+    wasAtWork = isAtWork;
+  });
+  const stopCounting = effect(() => {
+    const session = scanned.value;
+    if (!session || session.histograms_complete || session.state !== 'complete') return undefined;
+    const timer = setTimeout(() => void fetchScanned(session.name).catch(() => {}), histogramsEvery_ms);
+    return () => clearTimeout(timer);
+  });
+  return () => {
+    stopEnds();
+    stopCounting();
+  };
+}
+
+/** The newest solve of a session; null: none yet. */
+export async function newestSolve(session: string): Promise<string | null> {
+  const {current_solve} = await sessionSummary(session);
+  return current_solve || null;
+}
+
+async function sessionSummary(session: string): Promise<Schemas['Summary']> {
+  const {sessions} = await answer(api.GET('/api/v1/sessions', {params: {query: {query: session}}}));
+  const found = sessions.find(({name}) => name === session);
+  if (!found) throw new Error(`the library does not have ${session} yet`);
+  return found;
+}
+
+/** Calls `changed` with the newest solve of a session, now and when one is done; returns what ends that. */
+export function followSolve(session: string, changed: (solve: string | null) => void): () => void {
+  const askNow = () => newestSolve(session).then(changed, () => changed(null));
+  void askNow();
+  return onEvent('job', (job) => {
+    if (job.of === session && job.kind === 'solve' && job.state === 'done') void askNow();
+  });
+}
+
+/** A low lamp from the upper left, which shows the weave. */
+const lamp = '-0.6,0.5,0.62';
+
+/** The whole cloth in one picture of at most 512 pixels, under one lamp. */
+export async function relitPicture(session: string, solve: string): Promise<string> {
+  const path = {name: session, solve};
+  const {levels} = await answer(api.GET('/api/v1/sessions/{name}/solves/{solve}', {params: {path}}));
+  return `/api/v1/sessions/${session}/solves/${solve}/tiles/relit/${levels - 1}/0_0.jpg?light=${lamp}`;
+}

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one Scan key, and what can be done while a scan runs.
+import {useState} from 'preact/hooks';
+import {rig} from '../../state/rig';
+import {useKeys} from '../../state/keys';
+import {useAction} from '../../ui/action';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
+import {Dialog} from '../../ui/dialog';
+import {Field} from '../../ui/field';
+import {Share} from '../../ui/share';
+import {cloth, forgetCloth} from './cloth';
+import {ask, beginScan, scanned, showsScanned} from './scan';
+
+export const scanButton = 'scan';
+export const nextButton = 'next-cloth';
+
+export function focusOn(id: string): void {
+  document.getElementById(id)?.focus();
+}
+
+export function nextCloth(): void {
+  forgetCloth();
+  showsScanned.value = false;
+  focusOn('fabric');
+}
+
+function Cancel({onClose}: {onClose: () => void}) {
+  const cancel = useAction(() => ask('cancel'));
+  return (
+    <Dialog title="Cancel the scan?" onClose={onClose}>
+      <p>The shot on its way is finished. What is photographed is kept, and the same cloth goes on from there.</p>
+      <Complaint error={cancel.complaint} />
+      <form method="dialog" class="row">
+        <Button kind="danger" onClick={() => void cancel.run().then((done) => done && onClose())}>Cancel the scan</Button>
+        <Button type="submit">Go on</Button>
+      </form>
+    </Dialog>
+  );
+}
+
+/** While it runs, and where it stopped. */
+function Running({onCancel}: {onCancel: () => void}) {
+  const status = rig.value;
+  const pause = useAction(() => ask(status?.state === 'paused' ? 'resume' : 'pause'));
+  if (!status) return null;
+  const {can} = status;
+  return (
+    <div class="running">
+      <strong>{status.session}</strong>
+      <Share label="Photographs" share={status.frames_planned > 0 ? status.frames / status.frames_planned : null} left_s={status.left_s} />
+      <p class="dim">{status.frames} of {status.frames_planned} photographs. {status.why}</p>
+      <div class="row">
+        {can.includes('pause') && <Button keyHint="p" isDisabled={pause.isBusy} onClick={() => void pause.run()}>Pause</Button>}
+        {can.includes('resume') && <Button kind="main" keyHint="p" isDisabled={pause.isBusy} onClick={() => void pause.run()}>Go on</Button>}
+        {can.includes('cancel') && <Button keyHint="Esc" onClick={onCancel}>Cancel</Button>}
+      </div>
+      <Complaint error={status.error ?? pause.complaint} />
+    </div>
+  );
+}
+
+/** Why the rig may be scanned with although it has moved: kept with the session. */
+function Moved({reason, onInput}: {reason: string; onInput: (reason: string) => void}) {
+  return (
+    <>
+      <p><a href="/calibrate">Check the rig again</a>, or say why it is scanned all the same:</p>
+      <Field label="Reason" value={reason} onInput={onInput} />
+    </>
+  );
+}
+
+export function ScanControls() {
+  const [asksToCancel, askToCancel] = useState(false);
+  const [reason, setReason] = useState('');
+  const scan = useAction(() => beginScan(reason));
+  const pauseOrGoOn = () => ask(rig.value?.state === 'paused' ? 'resume' : 'pause').catch(() => {});
+  const status = rig.value;
+  const can = status?.can ?? [];
+  const isReady = can.includes('scan') && cloth.value.fabric.trim() !== '' && !scan.isBusy;
+  const start = () => {
+    if (isReady) void scan.run();
+    else if (can.includes('scan')) focusOn('fabric');
+  };
+  useKeys('desk', [
+    {key: 'Space', does: 'scan', run: start},
+    {key: 'Escape', does: 'cancel the scan (asks)', run: () => askToCancel(rig.value?.can.includes('cancel') ?? false)},
+    {key: 'p', does: 'pause the scan, or go on', run: () => void pauseOrGoOn()},
+    {key: 'n', does: 'next cloth', run: nextCloth},
+  ]);
+  if (!status) return null;
+  const isAtWork = ['connecting', 'scanning', 'paused'].includes(status.state);
+  const isDone = showsScanned.value && scanned.value !== null;
+  return (
+    <div class="scan-controls">
+      {(isAtWork || status.state === 'failed') && <Running onCancel={() => askToCancel(true)} />}
+      {!isAtWork && isDone && <Button id={nextButton} kind="main" keyHint="n" onClick={nextCloth}>Next cloth</Button>}
+      {!isAtWork && !isDone && <Button id={scanButton} kind="main" keyHint="Space" isDisabled={!isReady} onClick={start}>Scan</Button>}
+      <Complaint error={scan.complaint} />
+      {scan.complaint?.code === 'rig_moved' && <Moved reason={reason} onInput={setReason} />}
+      {asksToCancel && <Cancel onClose={() => askToCancel(false)} />}
+    </div>
+  );
+}

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+import {useState} from 'preact/hooks';
+import {asApiError, type ApiError} from '../../api/client';
+import {textIn} from '../../ui/fields';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
+import {Mark, type Verdict} from '../../ui/mark';
+import {Share} from '../../ui/share';
+import {durationOf, timeOf} from '../../ui/words';
+import {errorOf} from './price';
+import {hasEnded, stateOf, titleOf, wishOf, type Job} from './queue';
+import {cancel, forget, putFirst, retry} from './state';
+
+interface JobRowProps {
+  job: Job;
+  /** Whether putting it first changes anything. */
+  canGoFirst?: boolean;
+  onLog: (job: Job) => void;
+}
+
+/** What a job is, how it is, and what can be done with it. */
+export function JobRow({job, canGoFirst = false, onLog}: JobRowProps) {
+  const [complaint, complain] = useState<ApiError | null>(null);
+  const on = (act: (id: string) => Promise<void>) => () => {
+    complain(null);
+    act(job.id).catch((error: unknown) => complain(asApiError(error)));
+  };
+  return (
+    <li class="job">
+      <div class="what">
+        <strong>{titleOf(job.kind)}</strong> {wishOf(job)} <Subject job={job} />
+      </div>
+      <div class="state"><Mark verdict={verdictOf(job)}>{stateOf(job)}</Mark></div>
+      <div class="how-far">
+        {job.state === 'running' ? <Share label={`Job ${job.id}`} share={job.share} left_s={job.left_s} /> : <Times job={job} />}
+      </div>
+      <div class="actions row">
+        {canGoFirst && <Button onClick={on(putFirst)} label={`Put ${job.id} first`}>First</Button>}
+        {hasEnded(job)
+          ? <Button onClick={on(retry)} label={`Do ${job.id} again`}>Again</Button>
+          : <Button onClick={on(cancel)} label={`Cancel ${job.id}`}>Cancel</Button>}
+        <Button kind="quiet" onClick={() => onLog(job)} label={`Log of ${job.id}`}>Log</Button>
+        {hasEnded(job) && <Button kind="quiet" onClick={on(forget)} label={`Forget ${job.id}`}>Forget</Button>}
+      </div>
+      <Complaint error={complaint ?? (job.state === 'failed' ? errorOf(job) : null)} />
+    </li>
+  );
+}
+
+/** The session or folder, and where its result can be looked at. */
+function Subject({job}: {job: Job}) {
+  const solve = job.kind === 'solve' && job.state === 'done' ? textIn(job.result, 'id') : '';
+  if (job.of.includes('/')) return <span>{job.of}</span>;
+  return (
+    <>
+      <a href={`/sessions/${job.of}`}>{job.of}</a>
+      {solve && <> <a href={`/viewer/${job.of}/${solve}`}>Look at it</a></>}
+      {job.kind === 'price' && job.state === 'done' && <> <a href={`/jobs?price=${job.of}`}>Levels</a></>}
+    </>
+  );
+}
+
+function Times({job}: {job: Job}) {
+  if (!hasEnded(job)) return <span class="dim">asked {timeOf(job.asked)}</span>;
+  return (
+    <span class="dim">
+      {job.began && `took ${durationOf(job.seconds)}, `}ended {timeOf(job.ended)}{job.by && `, for ${job.by}`}
+    </span>
+  );
+}
+
+function verdictOf(job: Job): Verdict {
+  if (job.state === 'failed') return 'fault';
+  if (job.state === 'running') return job.held ? 'waiting' : 'busy';
+  if (job.state === 'done') return job.exit_code ? 'warning' : 'fine';
+  return 'waiting';
+}

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// Accuracy against time: each level as a point, and its error's parts as small marks below it.
+import {Axes} from '../../ui/axes';
+import {lanesOf, logScale} from '../../ui/plot_scale';
+import {degrees} from '../../ui/say';
+import {durationOf} from '../../ui/words';
+import type {Level, Quality} from './ladder';
+
+interface LadderPlotProps {
+  levels: readonly Level[];
+  /** Those worth their time are joined. */
+  worthwhile: readonly Level[];
+  onChoose: (quality: Quality) => void;
+}
+
+const partMarks = {noise: '○', model: '△', calibration: '□'} as const;
+type PartName = keyof typeof partMarks;
+const partNames = Object.keys(partMarks) as PartName[];
+/** Of the whole error: a smaller part says nothing of it, and would stretch the axis. */
+const leastShare = 0.02;
+const nameWidth_px = 74;
+const lane_px = 15;
+
+function drawnParts(level: Level): PartName[] {
+  return partNames.filter((part) => level.parts_deg[part] > leastShare * level.predicted_deg);
+}
+
+export function LadderPlot({levels, worthwhile, onChoose}: LadderPlotProps) {
+  const x = {scale: logScale(levels.map((level) => level.seconds)), label: 'seconds on this machine', say: String};
+  const y = {
+    scale: logScale(levels.flatMap((level) => [level.predicted_deg, ...drawnParts(level).map((part) => level.parts_deg[part])])),
+    label: 'predicted error of normals, degrees',
+    say: String,
+  };
+  return (
+    <figure class="ladder">
+      <Axes title="Accuracy against time" x={x} y={y} height={360}>
+        {(placeX, placeY) => {
+          const lanes = lanesOf(levels, (level) => placeX(level.seconds), nameWidth_px);
+          return <>
+            <polyline class="line" points={pointsOf(worthwhile, placeX, placeY)} />
+            {levels.map((level) => (
+              <LevelPoint key={level.quality} level={level} x={placeX(level.seconds)} placeY={placeY}
+                lane={lanes.get(level) ?? 0} isWorthwhile={worthwhile.includes(level)} onChoose={onChoose} />
+            ))}
+          </>;
+        }}
+      </Axes>
+      <figcaption class="dim">
+        ● the whole error; of it, where it matters, {partNames.map((part) => `${partMarks[part]} ${part}`).join(', ')}.
+        The line joins the levels that nothing cheaper equals. Press a level to queue it.
+      </figcaption>
+    </figure>
+  );
+}
+
+function pointsOf(levels: readonly Level[], x: (value: number) => number, y: (value: number) => number): string {
+  const ordered = [...levels].sort((a, b) => a.seconds - b.seconds);
+  return ordered.map((level) => `${x(level.seconds)},${y(level.predicted_deg)}`).join(' ');
+}
+
+interface LevelPointProps {
+  level: Level;
+  x: number;
+  placeY: (value: number) => number;
+  /** How far its name is lifted over those beside it. */
+  lane: number;
+  isWorthwhile: boolean;
+  onChoose: (quality: Quality) => void;
+}
+
+function LevelPoint({level, x, placeY, lane, isWorthwhile, onChoose}: LevelPointProps) {
+  const y = placeY(level.predicted_deg);
+  const choose = () => onChoose(level.quality);
+  const press = (event: KeyboardEvent) => {
+    if (event.key !== 'Enter' && event.key !== ' ') return;
+    event.preventDefault();
+    choose();
+  };
+  const says = `${level.quality}: ${durationOf(level.seconds)}, ${degrees(level.predicted_deg)}. Queue it`;
+  return (
+    <g class="level" role="button" tabIndex={0} aria-label={says} onClick={choose} onKeyDown={press}>
+      {drawnParts(level).map((part) => (
+        <text key={part} class="part" x={x} y={placeY(level.parts_deg[part]) + 4} text-anchor="middle">{partMarks[part]}</text>
+      ))}
+      <circle class="target" cx={x} cy={y} r={20} />
+      <circle class={isWorthwhile ? 'dot' : 'dot idle'} cx={x} cy={y} r={6} />
+      {lane > 0 && <line class="leader" x1={x} x2={x} y1={y - 8} y2={y - 11 - lane_px * lane} />}
+      <text class="name" x={x} y={y - 13 - lane_px * lane} text-anchor="middle">{level.quality}</text>
+    </g>
+  );
+}

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each level would cost and give for one session, and a button to have it.
+import './price.css';
+import {useState} from 'preact/hooks';
+import {asApiError, type ApiError, type Schemas} from '../../api/client';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
+import {Empty} from '../../ui/empty';
+import {degrees} from '../../ui/say';
+import {Share} from '../../ui/share';
+import {Table} from '../../ui/table';
+import {durationOf} from '../../ui/words';
+import {Crops} from './crops';
+import {levelsIn, worthwhile, type Level, type Quality} from './ladder';
+import {LadderPlot} from './ladder_plot';
+import {hasEnded, type Job} from './queue';
+import {jobs, queueJob} from './state';
+
+export function Price({session}: {session: string}) {
+  const [complaint, complain] = useState<ApiError | null>(null);
+  const priced = jobs.value.find((job) => job.kind === 'price' && job.of === session && job.state !== 'cancelled');
+  const levels = levelsIn(priced?.result);
+
+  const queue = (request: Schemas['JobRequest']) => {
+    complain(null);
+    queueJob(request).catch((error: unknown) => complain(asApiError(error)));
+  };
+  const price = () => queue({kind: 'price', session});
+  const solve = (quality: Quality) => queue({kind: 'solve', session, quality});
+
+  return (
+    <section class="panel price" aria-labelledby="price-title">
+      <div class="row">
+        <h2 id="price-title">Accuracy against time of <a href={`/sessions/${session}`}>{session}</a></h2>
+        {levels.length > 0 && <Button kind="quiet" onClick={price}>Measure again</Button>}
+      </div>
+      <Complaint error={complaint} />
+      {priced && !hasEnded(priced) && <Share label="Price" share={priced.share} left_s={priced.left_s} />}
+      {priced?.state === 'failed' && <Complaint error={errorOf(priced)} />}
+      {levels.length === 0 && (!priced || hasEnded(priced)) && (
+        <Empty says="A cut from the middle of this cloth is solved at every level: some seconds tell what each would cost and give.">
+          <Button kind="main" onClick={price}>Measure the levels</Button>
+        </Empty>
+      )}
+      {priced && levels.length > 0 && <Levels job={priced} levels={levels} onSolve={solve} />}
+    </section>
+  );
+}
+
+interface LevelsProps {
+  job: Job;
+  levels: readonly Level[];
+  onSolve: (quality: Quality) => void;
+}
+
+function Levels({job, levels, onSolve}: LevelsProps) {
+  return (
+    <>
+      <LadderPlot levels={levels} worthwhile={worthwhile(levels)} onChoose={onSolve} />
+      <Crops job={job.id} levels={levels} onChoose={onSolve} />
+      <Table caption={`Levels of ${job.of}`} heads={['Level', 'Time', 'Error', 'noise', 'model', 'calibration', 'Note', 'Solve']}
+        rows={levels.map((level) => ({
+          key: level.quality,
+          cells: [
+            level.quality,
+            durationOf(level.seconds),
+            degrees(level.predicted_deg),
+            degrees(level.parts_deg.noise),
+            degrees(level.parts_deg.model),
+            degrees(level.parts_deg.calibration),
+            level.note,
+            <Button label={`Queue ${level.quality}`} onClick={() => onSolve(level.quality)}>Queue</Button>,
+          ],
+        }))} />
+    </>
+  );
+}
+
+/** What a job that failed says, as a complaint. */
+export function errorOf(job: Job): Pick<ApiError, 'what' | 'where' | 'why' | 'remedy'> {
+  const said = (job.error ?? {}) as Partial<Record<'what' | 'where' | 'why' | 'remedy', string>>;
+  return {what: said.what ?? 'The job failed.', where: said.where ?? '', why: said.why ?? '', remedy: said.remedy ?? ''};
+}

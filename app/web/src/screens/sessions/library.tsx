@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// All sessions: found, chosen, tagged, sent to be solved.
+import {useEffect, useState} from 'preact/hooks';
+import {amend, place} from '../../state/address';
+import {rig} from '../../state/rig';
+import {useKeys} from '../../state/keys';
+import {Complaint} from '../../ui/complaint';
+import {Empty} from '../../ui/empty';
+import {counted} from '../../ui/say';
+import {VirtualList} from '../../ui/virtual_list';
+import {BatchBar} from './batch_bar';
+import {addressOf, filtersIn, isNarrowed, type Filters} from './filters';
+import {FilterBar} from './filter_bar';
+import {LastWord} from './last_word';
+import {SessionRow} from './session_row';
+import {all, extended, nothing, toggled} from './selection';
+import {askMore, askTags, complaint, look, shelf} from './shelf';
+
+const row_px = 72;
+/** Sessions are asked for before they come into view. */
+const rowsAhead = 100;
+
+export function Library() {
+  const filters = filtersIn(place.value.query);
+  const asked = place.value.query.toString();
+  const [selection, select] = useState(nothing);
+  const [end, setEnd] = useState(0);
+  const {sessions, total} = shelf.value;
+  const isKnown = shelf.value.search > 0;
+  const shown = filters.warned ? sessions.filter((session) => session.warnings.length > 0) : sessions;
+  const names = shown.map((session) => session.name);
+
+  const again = () => {
+    void look(filters);
+    void askTags();
+  };
+  useEffect(again, [asked, rig.value?.state, rig.value?.session]);
+  useEffect(() => {
+    addEventListener('focus', again);
+    return () => removeEventListener('focus', again);
+  }, [asked]);
+  useEffect(() => {
+    if (filters.warned || end + rowsAhead > sessions.length) void askMore();
+  }, [end, filters.warned, shelf.value]);
+  useKeys('sessions', [
+    {key: 'Escape', does: 'choose none', run: () => select(nothing)},
+    {key: 'Ctrl+a', does: 'choose all', run: () => select(all(names))},
+    {key: 'ArrowDown', does: 'next session', run: () => step(1)},
+    {key: 'ArrowUp', does: 'session before', run: () => step(-1)},
+  ]);
+
+  const choose = (name: string, withRange: boolean) =>
+    select(withRange ? extended(selection, name, names) : toggled(selection, name));
+  const count = filters.warned ? shown.length : total;
+  const chosen = shown.filter((session) => selection.names.has(session.name));
+  return (
+    <div class="library">
+      <div class="row head">
+        <h1>Library</h1>
+        <span class="dim" role="status">{isKnown && counted(count, 'session')}</span>
+        <LastWord onStep={again} />
+      </div>
+      <FilterBar filters={filters} onChange={(changed: Filters) => amend(addressOf(changed))} />
+      <Complaint error={complaint.value} />
+      {isKnown && count === 0 && <Nothing isNarrowed={isNarrowed(filters)} />}
+      <VirtualList label="Sessions" count={count} row_px={row_px} keyOf={(index) => names[index] ?? index}
+        onRange={(range) => setEnd(range.end)} render={(index) => {
+          const session = shown[index];
+          if (!session) return <div class="session dim">...</div>;
+          return (
+            <SessionRow session={session} isChosen={selection.names.has(session.name)}
+              onChoose={(withRange) => choose(session.name, withRange)} />
+          );
+        }} />
+      {chosen.length > 0 && (
+        <BatchBar chosen={chosen} onAll={() => select(all(names))} onNone={() => select(nothing)} onChanged={again} />
+      )}
+    </div>
+  );
+}
+
+function Nothing({isNarrowed: isSearch}: {isNarrowed: boolean}) {
+  if (isSearch) return <Empty says="No session is like that. Take a word or a filter away." />;
+  return (
+    <Empty says="No cloth was scanned yet.">
+      <a href="/desk">Scan one at the desk</a>
+    </Empty>
+  );
+}
+
+/** The focus goes to the row before or after the one that has it. */
+function step(by: 1 | -1): void {
+  const links = [...document.querySelectorAll<HTMLElement>('.library .session .what a')];
+  const row = document.activeElement?.closest('.session');
+  const at = links.findIndex((link) => row?.contains(link));
+  links[Math.max(0, Math.min(at + by, links.length - 1))]?.focus();
+}

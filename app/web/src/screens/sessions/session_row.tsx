@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+import {counted} from '../../ui/say';
+import {textIn} from '../../ui/fields';
+import {Mark} from '../../ui/mark';
+import {bytesOf, timeOf} from '../../ui/words';
+import type {Summary} from './metadata';
+import {SessionState} from './session_state';
+import {Thumbnail} from './thumbnail';
+
+interface SessionRowProps {
+  session: Summary;
+  isChosen: boolean;
+  onChoose: (withRange: boolean) => void;
+}
+
+export function SessionRow({session, isChosen, onChoose}: SessionRowProps) {
+  const {name, fabric, tags, taken, warnings} = session;
+  return (
+    <div class={isChosen ? 'session chosen' : 'session'}>
+      <label class="choose">
+        <input type="checkbox" checked={isChosen} aria-label={`Choose ${name}`}
+          onClick={(event) => onChoose(event.shiftKey)} />
+      </label>
+      <Thumbnail session={session} />
+      <div class="what">
+        <a href={`/sessions/${name}`}>{fabric || name}</a>
+        <span class="name dim">{name}</span>
+      </div>
+      <div class="tags">{tags.map((tag) => <span key={tag} class="tag">{tag}</span>)}</div>
+      {session.error ? (
+        <span class="error">{textIn(session.error, 'what')}: {textIn(session.error, 'why')}</span>
+      ) : (
+        <>
+          <span class="state">
+            <SessionState state={session.state} />
+            {warnings.length > 0 && <Mark verdict="warning">{counted(warnings.length, 'warning')}</Mark>}
+          </span>
+          <span class="numbers dim">{session.solves > 0 ? counted(session.solves, 'solve') : 'not solved'}</span>
+          <span class="numbers dim">{taken && timeOf(taken)}</span>
+          <span class="numbers dim">{bytesOf(session.bytes)}</span>
+        </>
+      )}
+    </div>
+  );
+}

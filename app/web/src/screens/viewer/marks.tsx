@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lies over the picture: ruler, rectangle, held pixel, divider, lamp.
+import {type Point, type Size, type View, toCanvas} from '../../gl/view';
+import {placeOf} from './light';
+import {type Maps, solveInWords} from './maps';
+import type {Viewer} from './viewer';
+
+/** Where the centre of a pixel is on the canvas. */
+function centreOf(pixel: Point, view: View, canvas: Size): Point {
+  return toCanvas({x: pixel.x + 0.5, y: pixel.y + 0.5}, view, canvas);
+}
+
+function Ruler({ends}: {ends: [Point, Point]}) {
+  const [a, b] = ends;
+  const length = Math.max(1, Math.hypot(b.x - a.x, b.y - a.y));
+  const across = {x: (-6 * (b.y - a.y)) / length, y: (6 * (b.x - a.x)) / length};
+  const end = (p: Point) => <line x1={p.x - across.x} y1={p.y - across.y} x2={p.x + across.x} y2={p.y + across.y} />;
+  return (
+    <g class="ruler">
+      <line x1={a.x} y1={a.y} x2={b.x} y2={b.y} />
+      {end(a)}
+      {end(b)}
+    </g>
+  );
+}
+
+function HeldPixel({at, side}: {at: Point; side: number}) {
+  const half = Math.max(side, 9) / 2;
+  return (
+    <g class="held">
+      <rect x={at.x - half} y={at.y - half} width={2 * half} height={2 * half} />
+      <path d={`M${at.x - half - 8} ${at.y}h6M${at.x + half + 2} ${at.y}h6M${at.x} ${at.y - half - 8}v6M${at.x} ${at.y + half + 2}v6`} />
+    </g>
+  );
+}
+
+/** Where the light comes from. Small, since it moves while the picture below it is drawn anew. */
+export function LampMark({viewer, density}: {viewer: Viewer; density: number}) {
+  if (viewer.tool.value !== 'light') return null;
+  const {width, height} = viewer.canvas.value;
+  const radius = Math.min(width, height) / 2;
+  const place = placeOf(viewer.sight.value.light);
+  const x = (width / 2 + place.x * radius) / density;
+  const y = (height / 2 + place.y * radius) / density;
+  return <div class="lamp-mark" aria-hidden="true" style={{transform: `translate(${x}px, ${y}px)`}} />;
+}
+
+export function Marks({viewer}: {viewer: Viewer}) {
+  const view = viewer.view.value;
+  const canvas = viewer.canvas.value;
+  const {line, box, pixel, divider} = viewer.sight.value;
+  const isDivided = divider !== null && (viewer.scene.value?.sides.length ?? 0) > 1;
+  if (!view || !(line || box || pixel || isDivided)) return null;
+  const corner = box && toCanvas(box, view, canvas);
+  return (
+    <svg class="marks" viewBox={`0 0 ${canvas.width} ${canvas.height}`} aria-hidden="true">
+      {box && corner && <rect class="box" x={corner.x} y={corner.y} width={box.width * view.zoom} height={box.height * view.zoom} />}
+      {line && <Ruler ends={[centreOf(line[0], view, canvas), centreOf(line[1], view, canvas)]} />}
+      {pixel && <HeldPixel at={centreOf(pixel, view, canvas)} side={view.zoom} />}
+      {isDivided && <line class="divider" x1={divider * canvas.width} y1={0} x2={divider * canvas.width} y2={canvas.height} />}
+    </svg>
+  );
+}
+
+/** Which solve is on which side of the divider. */
+export function SideNames({viewer}: {viewer: Viewer}) {
+  const maps = viewer.maps.value;
+  const other = viewer.other.value;
+  if (!maps || !other || (viewer.scene.value?.sides.length ?? 0) < 2) return null;
+  return (
+    <div class="side-names">
+      <span>{nameOf(maps, other)}</span>
+      <span>{nameOf(other, maps)}</span>
+    </div>
+  );
+}
+
+function nameOf({name, solve}: Maps, beside: Maps): string {
+  const what = name.solve === 'truth' ? 'truth' : solveInWords(solve);
+  return name.session === beside.name.session ? what : `${name.session}, ${what}`;
+}

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+import './viewer.css';
+import {useEffect, useMemo, useState} from 'preact/hooks';
+import {answer, api, ApiError, asApiError} from '../../api/client';
+import {go, place} from '../../state/address';
+import {placeOf} from '../../state/place';
+import {Choice} from '../../ui/choice';
+import {Complaint} from '../../ui/complaint';
+import {Tabs} from '../../ui/tabs';
+import type {PictureCanvas} from './canvas';
+import {ComparePanel, optionsOf, useSolves} from './compare_panel';
+import {LightPanel} from './light_panel';
+import {LayerPanel} from './look_panel';
+import {NoSession} from './no_session';
+import {Picture} from './picture';
+import {PixelPanel} from './pixel_panel';
+import {RegionPanel} from './region_panel';
+import {RulerPanel} from './ruler_panel';
+import {addressOfViewer, type Panel, PANELS, solveNameOf, type SolveName, textOf} from './sight';
+import {StatusLine} from './status_line';
+import {Toolbar, useViewerKeys} from './toolbar';
+import {Viewer} from './viewer';
+import {WhyPanel} from './why_panel';
+
+export default function ViewerScreen() {
+  const [session, solve] = place.value.parts;
+  if (session === undefined) return <NoSession />;
+  if (solve === undefined) return <NewestSolve key={session} session={session} />;
+  return <Viewing key={`${session}/${solve}`} name={{session, solve}} />;
+}
+
+function noSolveOf(session: string): ApiError {
+  return new ApiError('There is nothing to look at yet.', session, 'This session was not solved.', 'Queue a solve under Jobs.', 404);
+}
+
+/** An address without a solve becomes that of the session's newest. */
+function NewestSolve({session}: {session: string}) {
+  const [complaint, setComplaint] = useState<ApiError | null>(null);
+  useEffect(() => {
+    answer(api.GET('/api/v1/sessions/{name}/solves', {params: {path: {name: session}}})).then(({solves, truth}) => {
+      const solve = solves[0]?.id ?? (truth ? 'truth' : null);
+      if (solve === null) return setComplaint(noSolveOf(session));
+      history.replaceState(null, '', addressOfViewer({session, solve}) + location.search);
+      place.value = placeOf(new URL(location.href));
+    }, (error: unknown) => setComplaint(asApiError(error)));
+  }, [session]);
+  return <section class="page"><h1>{session}</h1><Complaint error={complaint} /></section>;
+}
+
+/** The session beside this one in the library, with its solve. */
+async function neighbour(session: string, step: 1 | -1): Promise<SolveName | null> {
+  const page = await answer(api.GET('/api/v1/sessions', {params: {query: {limit: 1000}}}));
+  const all = page.sessions.filter(({current_solve}) => current_solve !== '');
+  const next = all[all.findIndex(({name}) => name === session) + step];
+  return next ? {session: next.name, solve: next.current_solve} : null;
+}
+
+function Viewing({name}: {name: SolveName}) {
+  const viewer = useMemo(() => new Viewer(name), []);
+  const [picture, setPicture] = useState<PictureCanvas | null>(null);
+  useEffect(() => () => viewer.close(), [viewer]);
+  const turn = (step: 1 | -1) => {
+    neighbour(name.session, step).then(
+      (next) => next && go(addressOfViewer(next)),
+      (error: unknown) => (viewer.complaint.value = asApiError(error)),
+    );
+  };
+  useViewerKeys(viewer, {previous: () => turn(-1), next: () => turn(1)});
+  return (
+    <div class="viewer">
+      <div class="stage">
+        <Toolbar viewer={viewer} picture={picture} />
+        <Picture viewer={viewer} onCanvas={setPicture} />
+        <StatusLine viewer={viewer} />
+      </div>
+      <aside aria-label="What is seen">
+        <Head viewer={viewer} />
+        <Complaint error={viewer.complaint.value} />
+        <Tabs label="Panels" value={viewer.panel.value} options={panels} onChange={(panel) => viewer.see({panel})}>
+          <Chosen viewer={viewer} panel={viewer.panel.value} />
+        </Tabs>
+      </aside>
+    </div>
+  );
+}
+
+const names: Record<Panel, string> = {look: 'Look', pixel: 'Pixel', measure: 'Measure', compare: 'Compare', why: 'Why'};
+const panels = PANELS.map((value) => ({value, says: names[value]}));
+
+function Chosen({viewer, panel}: {viewer: Viewer; panel: Panel}) {
+  switch (panel) {
+    case 'look':
+      return <><LayerPanel viewer={viewer} /><LightPanel viewer={viewer} /></>;
+    case 'pixel':
+      return <PixelPanel viewer={viewer} />;
+    case 'measure':
+      return <><MeasureHint viewer={viewer} /><RulerPanel viewer={viewer} /><RegionPanel viewer={viewer} /></>;
+    case 'compare':
+      return <ComparePanel viewer={viewer} />;
+    case 'why':
+      return <WhyPanel viewer={viewer} />;
+  }
+}
+
+function MeasureHint({viewer}: {viewer: Viewer}) {
+  const {line, box} = viewer.sight.value;
+  if (line || box) return null;
+  return (
+    <section>
+      <p class="dim">Take the ruler and drag from one end to the other. Take the rectangle and drag over a part of the cloth.</p>
+    </section>
+  );
+}
+
+function Head({viewer}: {viewer: Viewer}) {
+  const solves = useSolves(viewer.name.session);
+  const maps = viewer.maps.value;
+  const choose = (text: string) => {
+    const chosen = solveNameOf(text);
+    if (chosen) go(addressOfViewer(chosen) + location.search);
+  };
+  return (
+    <section class="head">
+      <div class="row">
+        <h1>{viewer.name.session}</h1>
+        {solves && (
+          <Choice label="Solve" value={textOf(viewer.name)} options={optionsOf(viewer.name.session, solves)} onChange={choose} />
+        )}
+      </div>
+      {maps && (
+        <p class="dim numbers">
+          {maps.solve.width} × {maps.solve.height} pixels
+          {maps.solve.mm_per_pixel != null && `, ${maps.solve.mm_per_pixel.toFixed(4)} mm a pixel`}
+          {maps.solve.albedo_scale === 'relative' && ', albedo without an absolute scale'}
+        </p>
+      )}
+      {maps?.solve.warnings.map((warning) => <p key={warning} class="warning">▲ {warning}</p>)}
+    </section>
+  );
+}

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+import {nextZoom, zoomed, type Point, panned} from '../../gl/view';
+import {useKeys} from '../../state/keys';
+import {useAction} from '../../ui/action';
+import {Button} from '../../ui/button';
+import {Complaint} from '../../ui/complaint';
+import {Copy} from '../../ui/copy';
+import type {PictureCanvas} from './canvas';
+import {toggleDifference, toggleDivider} from './compare_panel';
+import {LAYERS} from './layers';
+import {nudged} from './light';
+import {toggleLight} from './light_panel';
+import {addressOfViewer} from './sight';
+import {save, snapshot} from './snapshot';
+import type {Tool, Viewer} from './viewer';
+
+/** How far an arrow goes: a share of the canvas, or of the disc of lights. */
+const ARROW_SHARE = 1 / 8;
+const ARROW_LIGHT = 0.08;
+
+function zoomBy(viewer: Viewer, direction: 1 | -1): void {
+  viewer.move((view, canvas) => {
+    const middle = {x: canvas.width / 2, y: canvas.height / 2};
+    return zoomed(view, nextZoom(view.zoom, direction) / view.zoom, middle, canvas);
+  });
+}
+
+function zoomTo(viewer: Viewer, zoom: number): void {
+  viewer.move((view) => ({...view, zoom}));
+}
+
+/** Takes a tool that measures, or puts it away. */
+function toggleTool(viewer: Viewer, tool: Tool): void {
+  const isOn = viewer.tool.value === tool;
+  viewer.tool.value = isOn ? 'move' : tool;
+  if (!isOn) viewer.see({panel: 'measure'});
+}
+
+/** Arrows move the view, or the light while it is held. */
+function arrow(viewer: Viewer, by: Point): void {
+  if (viewer.tool.value === 'light') {
+    viewer.shine(nudged(viewer.sight.value.light, {x: by.x * ARROW_LIGHT, y: by.y * ARROW_LIGHT}));
+    return;
+  }
+  viewer.move((view, canvas) => panned(view, {x: -by.x * canvas.width * ARROW_SHARE, y: -by.y * canvas.height * ARROW_SHARE}));
+}
+
+function tile(viewer: Viewer): void {
+  viewer.see({repeat: viewer.sight.value.repeat === 3 ? 1 : 3}, 'step');
+}
+
+interface Neighbours {
+  previous: () => void;
+  next: () => void;
+}
+
+export function useViewerKeys(viewer: Viewer, {previous, next}: Neighbours): void {
+  useKeys('viewer', [
+    ...LAYERS.map(({name, says, key}) => ({key, does: says, run: () => viewer.seeLayer(name)})),
+    {key: 'd', does: 'difference to the other', run: () => toggleDifference(viewer)},
+    {key: 'b', does: 'divider', run: () => toggleDivider(viewer)},
+    {key: 'l', does: 'light by drag', run: () => toggleLight(viewer)},
+    {key: 'r', does: 'ruler', run: () => toggleTool(viewer, 'ruler')},
+    {key: 's', does: 'figures of a rectangle', run: () => toggleTool(viewer, 'region')},
+    {key: 't', does: '3 x 3 tiles', run: () => tile(viewer)},
+    {key: '+', does: 'nearer', run: () => zoomBy(viewer, 1)},
+    {key: '-', does: 'farther', run: () => zoomBy(viewer, -1)},
+    {key: '0', does: 'all of it', run: () => viewer.see({view: null})},
+    {key: 'ArrowLeft', does: 'to the left', run: () => arrow(viewer, {x: -1, y: 0})},
+    {key: 'ArrowRight', does: 'to the right', run: () => arrow(viewer, {x: 1, y: 0})},
+    {key: 'ArrowUp', does: 'up', run: () => arrow(viewer, {x: 0, y: -1})},
+    {key: 'ArrowDown', does: 'down', run: () => arrow(viewer, {x: 0, y: 1})},
+    {key: '[', does: 'previous session', run: previous},
+    {key: ']', does: 'next session', run: next},
+  ]);
+}
+
+export function Toolbar({viewer, picture}: {viewer: Viewer; picture: PictureCanvas | null}) {
+  const tool = viewer.tool.value;
+  const {repeat} = viewer.sight.value;
+  const take = useAction(async () => {
+    if (picture) save(await snapshot(viewer, picture), `${viewer.name.session}-${viewer.sight.value.layer}.png`);
+  });
+  return (
+    <div class="toolbar" role="toolbar" aria-label="Tools">
+      <div class="row">
+        <Button keyHint="l" isPressed={tool === 'light'} onClick={() => toggleLight(viewer)}>Light</Button>
+        <Button keyHint="r" isPressed={tool === 'ruler'} onClick={() => toggleTool(viewer, 'ruler')}>Ruler</Button>
+        <Button keyHint="s" isPressed={tool === 'region'} onClick={() => toggleTool(viewer, 'region')}>Rectangle</Button>
+      </div>
+      <div class="row">
+        <Button kind="quiet" label="Farther" onClick={() => zoomBy(viewer, -1)}>−</Button>
+        <Button kind="quiet" onClick={() => viewer.see({view: null})}>All</Button>
+        <Button kind="quiet" onClick={() => zoomTo(viewer, 1)}>1:1</Button>
+        <Button kind="quiet" label="Nearer" onClick={() => zoomBy(viewer, 1)}>+</Button>
+        <Button kind="quiet" keyHint="t" isPressed={repeat === 3} onClick={() => tile(viewer)}>3 × 3</Button>
+      </div>
+      <div class="row">
+        <Button kind="quiet" isDisabled={!picture || take.isBusy} onClick={() => void take.run()}>Snapshot</Button>
+        <Copy text={location.origin + addressOfViewer(viewer.name, viewer.sight.value)} what="Copy address" />
+      </div>
+      <Complaint error={take.complaint} />
+    </div>
+  );
+}

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+
+interface ChoiceProps<T extends string> {
+  label: string;
+  value: T;
+  options: readonly {value: T; says: string}[];
+  onChange: (value: T) => void;
+}
+
+/** One of a few. */
+export function Choice<T extends string>({label, value, options, onChange}: ChoiceProps<T>) {
+  const name = `choice-${label.toLowerCase().replace(/[^a-z]+/g, '-')}`;
+  return (
+    <div class="field">
+      <label for={name}>{label}</label>
+      <select id={name} value={value} onChange={(event) => onChange(event.currentTarget.value as T)}>
+        {options.map((option) => <option key={option.value} value={option.value}>{option.says}</option>)}
+      </select>
+    </div>
+  );
+}

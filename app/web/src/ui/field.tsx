@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+import type {ComponentChildren} from 'preact';
+import {useEffect, useRef} from 'preact/hooks';
+
+interface FieldProps {
+  label: string;
+  value: string;
+  onInput: (value: string) => void;
+  onEnter?: () => void;
+  unit?: string;
+  hint?: ComponentChildren;
+  placeholder?: string;
+  type?: 'text' | 'number' | 'search' | 'password' | 'date';
+  isDisabled?: boolean;
+  /** Proposals. */
+  list?: readonly string[];
+  id?: string;
+  /** When it is first shown. */
+  hasFocus?: boolean;
+}
+
+/** A line to type in, with its name above and what is to be known of it below. */
+export function Field({label, value, onInput, onEnter, unit, hint, placeholder, type = 'text', isDisabled, list, id, hasFocus}: FieldProps) {
+  const name = id ?? `field-${label.toLowerCase().replace(/[^a-z]+/g, '-')}`;
+  const input = useRef<HTMLInputElement>(null);
+  useEffect(() => {
+    if (hasFocus) input.current?.focus();
+  }, [hasFocus]);
+  const enter = (event: KeyboardEvent) => {
+    if (event.key !== 'Enter' || !onEnter) return;
+    event.preventDefault();
+    onEnter();
+  };
+  return (
+    <div class="field">
+      <label for={name}>{label}</label>
+      <div class="row">
+        <input ref={input} id={name} type={type} value={value} placeholder={placeholder} disabled={isDisabled} autocomplete="off"
+          spellcheck={false} list={list && `${name}-list`} aria-describedby={hint ? `${name}-hint` : undefined}
+          step={type === 'number' ? 'any' : undefined}
+          onInput={(event) => onInput(event.currentTarget.value)} onKeyDown={enter} />
+        {unit && <span class="unit">{unit}</span>}
+      </div>
+      {list && <datalist id={`${name}-list`}>{list.map((word) => <option key={word} value={word} />)}</datalist>}
+      {hint && <div class="hint" id={`${name}-hint`}>{hint}</div>}
+    </div>
+  );
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+import type {ComponentChildren} from 'preact';
+import {useLayoutEffect, useRef, useState} from 'preact/hooks';
+import {rowsInView, type RowRange, type Viewport} from './virtual_rows';
+
+interface VirtualListProps {
+  label: string;
+  /** Rows in all, drawn or not. */
+  count: number;
+  row_px: number;
+  keyOf: (index: number) => string | number;
+  render: (index: number) => ComponentChildren;
+  /** The rows that are drawn now. */
+  onRange?: (range: RowRange) => void;
+}
+
+/** A long list of rows of one height, of which those in view exist. */
+export function VirtualList({label, count, row_px, keyOf, render, onRange}: VirtualListProps) {
+  const scroller = useRef<HTMLDivElement>(null);
+  const [view, setView] = useState<Viewport>({top_px: 0, height_px: 0});
+  const look = () => {
+    const box = scroller.current;
+    if (box) setView({top_px: box.scrollTop, height_px: box.clientHeight});
+  };
+  useLayoutEffect(() => {
+    look();
+    const observer = new ResizeObserver(look);
+    if (scroller.current) observer.observe(scroller.current);
+    return () => observer.disconnect();
+  }, []);
+  const range = rowsInView(view, row_px, count);
+  useLayoutEffect(() => onRange?.(range), [range.first, range.end]);
+  const indices = Array.from({length: range.end - range.first}, (_, i) => range.first + i);
+  return (
+    <div class="virtual" ref={scroller} onScroll={look} tabIndex={-1}>
+      <ul aria-label={label} style={{height: `${count * row_px}px`}}>
+        {indices.map((index) => (
+          <li key={keyOf(index)} aria-setsize={count} aria-posinset={index + 1}
+            style={{height: `${row_px}px`, transform: `translateY(${index * row_px}px)`}}>
+            {render(index)}
+          </li>
+        ))}
+      </ul>
+    </div>
+  );
+}

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// How long a person waits for the page in a window of 1280 x 720, drawn by software: `weft bench page` runs
+// this on folders of sessions and reads its rows. Milliseconds by the clock on the wall: nothing else should run.
+import path from 'node:path';
+import {Archive} from '../page/support/archive.mjs';
+import {launch, visit} from '../page/support/browser.mjs';
+import {startRig} from '../page/support/rig.mjs';
+
+const solve = {session: 'wide', id: '0123456789abcdef'};
+const places = [[0.2, 0.2], [0.8, 0.3], [0.3, 0.8], [0.7, 0.7], [0.5, 0.2]];
+const window = {width: 1280, height: 720};
+
+function median(values) {
+  return [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
+}
+
+/** A row: what is asked for is the most, or of frames a second the least. */
+function row(what, megapixels, reached, asked, isLeast = false) {
+  return {what, megapixels, reached: Math.round(reached), asked, holds: isLeast ? reached >= asked : reached <= asked};
+}
+
+async function whole(page) {
+  await page.locator('canvas[data-ready=true]').waitFor();
+}
+
+async function opened(visitor, address, wait) {
+  const page = await visitor.context.newPage();
+  const began = performance.now();
+  await page.goto(address);
+  await wait(page);
+  return {page, ms: performance.now() - began};
+}
+
+/** Frames a second while the light goes round under a hand. */
+async function dragLight(page) {
+  const box = await page.locator('canvas').boundingBox();
+  await page.keyboard.press('l');
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  const rate = await page.locator('canvas').evaluate((canvas) => new Promise((done) => {
+    const bounds = canvas.getBoundingClientRect();
+    const began = performance.now();
+    let frames = 0;
+    const turn = (now) => {
+      if (now - began > 3000) return done((1000 * frames) / (now - began));
+      frames++;
+      const clientX = bounds.x + bounds.width * (0.5 + 0.3 * Math.cos(frames / 9));
+      const clientY = bounds.y + bounds.height * (0.5 + 0.3 * Math.sin(frames / 9));
+      canvas.dispatchEvent(new PointerEvent('pointermove', {pointerId: 1, clientX, clientY, bubbles: true}));
+      requestAnimationFrame(turn);
+    };
+    requestAnimationFrame(turn);
+  }));
+  await page.mouse.up();
+  await page.keyboard.press('l');
+  return rate;
+}
+
+/** From a jump to another place at 1:1 to all of its tiles. */
+async function jump(page, query) {
+  return page.evaluate((words) => new Promise((done) => {
+    const began = performance.now();
+    history.replaceState(null, '', `?${words}`);
+    dispatchEvent(new PopStateEvent('popstate'));
+    const canvas = document.querySelector('canvas');
+    const watch = () => (canvas.dataset.ready === 'true' ? done(performance.now() - began) : requestAnimationFrame(watch));
+    requestAnimationFrame(watch);
+  }), query);
+}
+
+async function newPlaces(page, size) {
+  const times = [];
+  for (const [x, y] of places) times.push(await jump(page, `view=${Math.round(x * size.width)},${Math.round(y * size.height)},1`));
+  return median(times);
+}
+
+async function viewerRows(browser, folder) {
+  const archive = new Archive(path.resolve(folder));
+  await archive.serve();
+  const visitor = await visit(browser, archive, window);
+  visitor.mayFail(/\/pixel\?/);  // these sessions have maps and no photographs
+  const size = await archive.ask(`sessions/${solve.session}/solves/${solve.id}`);
+  const megapixels = Math.round((size.width * size.height) / 1e6);
+  const {page, ms} = await opened(visitor, `${archive.address}/viewer/${solve.session}/${solve.id}`, whole);
+  const rows = [
+    row('first view, ms', megapixels, ms, megapixels > 50 ? 3000 : 2000),
+    row('light under a hand, frames a second', megapixels, await dragLight(page), 25, true),
+    row('a new place at 1:1, ms', megapixels, await newPlaces(page, size), 300),
+  ];
+  await visitor.leave();
+  await archive.stop();
+  return rows;
+}
+
+async function deskRow(browser) {
+  const rig = await startRig();
+  const visitor = await visit(browser, rig, window);
+  const {ms} = await opened(visitor, `${rig.address}/desk`, (page) => page.locator('#fabric:focus').waitFor());
+  await visitor.leave();
+  await rig.stop();
+  return row('the desk can be used, ms', 0, ms, 1500);
+}
+
+const browser = await launch();
+const rows = [await deskRow(browser)];
+for (const folder of process.argv.slice(2)) rows.push(...await viewerRows(browser, folder));
+await browser.close();
+console.log(JSON.stringify(rows));

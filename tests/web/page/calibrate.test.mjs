@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// The wizard: a board seen and not seen, and a rig that was knocked brought back, with nothing but the page.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+import {launch, picture, violations, visit} from './support/browser.mjs';
+import {startRig} from './support/rig.mjs';
+
+const isSoak = process.env.WEFT_SOAK !== undefined;
+const photograph_ms = 30_000;
+const calculation_ms = 60_000;
+let browser;
+before(async () => { browser = await launch(); });
+after(async () => { await browser?.close(); });
+
+function described(rig, thing) {
+  return fs.readFileSync(path.join(rig.folder, 'things', `${thing}.toml`), 'utf8');
+}
+
+async function begin(page, description) {
+  if (description) await page.getByLabel(/^Text of/).fill(description);
+  await page.getByRole('button', {name: 'Begin, or go on'}).click();
+  await page.locator('.set').waitFor();
+}
+
+async function countOf(page) {
+  return Number(await page.locator('.known .count').innerText());
+}
+
+/** Presses Space and reads the answer to what was taken. */
+async function take(page) {
+  await page.keyboard.press('Space');
+  const answer = page.locator('.answer');
+  await answer.waitFor({state: 'detached'});
+  await answer.waitFor({timeout: photograph_ms});
+  return answer.innerText();
+}
+
+async function lay(rig, page, thing) {
+  await rig.inject(`table ${thing}`);
+  assert.match(await take(page), /taken/);
+}
+
+async function scan(rig, fabric) {
+  const {session} = await rig.ask('scan', {fabric, cloth_height_mm: 0.8});
+  for (let asked = 0; asked < 300 && (await rig.ask('rig')).phase !== 'complete'; asked++) await new Promise((resolve) => setTimeout(resolve, 100));
+  return session;
+}
+
+async function focal(page) {
+  return parseFloat((await page.locator('[data-figure=focal_percent]').innerText()).replace(/^[^\d]+/, ''));
+}
+
+/** By the button that offers it, or the one that says that these photographs are enough. */
+async function calculate(page, button) {
+  await page.getByRole('button', {name: button}).click();
+  await page.locator('.result').waitFor({timeout: calculation_ms});
+  return page.locator('.result').innerText();
+}
+
+test('photographs of a board are answered, counted and left out, and the set outlives a reload', async () => {
+  const rig = await startRig({options: ['--bare']});
+  try {
+    const visitor = await visit(browser, rig);
+    const page = await visitor.open(`${rig.address}/calibrate/all/first`);
+    await begin(page, described(rig, 'board'));
+    assert.match(await page.locator('.says').innerText(), /lay the board flat/i);
+
+    await rig.inject('table board');
+    await page.getByRole('button', {name: 'Look through the camera'}).click();
+    await page.getByText(/[1-9]\d* corners of the board are seen/).waitFor();
+    assert.equal(await page.locator('.aim .seen').count(), 1, 'the board that is seen has an outline');
+    const atFirst = await focal(page);
+    assert.match(await take(page), /taken, 45 corners/);
+    await page.locator('.aim .wanted').waitFor({state: 'attached'});
+
+    await rig.inject('table board x=75 y=45');
+    assert.match(await take(page), /not used: .+/);
+
+    await rig.inject('table board tilt=40 azimuth=225 x=17 y=-14 height=57');
+    assert.match(await take(page), /taken/);
+    const afterTilt = await focal(page);
+    assert.ok(afterTilt < atFirst, `${afterTilt} is not below ${atFirst}`);
+    assert.deepEqual(await violations(page), []);
+    await picture(page, 'calibrate_board');
+
+    await page.reload();
+    await page.locator('.set').waitFor();
+    assert.equal(await countOf(page), 3);
+    assert.equal(await focal(page), afterTilt);
+
+    const [best] = await page.locator('.photographs li:has-text("taken") strong').allInnerTexts();
+    await page.getByRole('button', {name: `Leave out ${best}`}).click();
+    await page.getByRole('button', {name: `Take back ${best}`}).waitFor();
+    assert.ok(await focal(page) > afterTilt, 'without it the lens is known less');
+    await page.keyboard.press('Control+z');
+    await page.getByRole('button', {name: `Leave out ${best}`}).waitFor();
+    assert.equal(await focal(page), afterTilt);
+    await visitor.leave();
+  } finally {
+    await rig.stop();
+  }
+});
+
+test('a rig that was knocked is brought back: seen, fitted, proven, accepted', async () => {
+  const rig = await startRig({options: ['--first', 'knock camera x=3 turn=0.4', '--first', 'knock led 3 x=6 z=-4']});
+  try {
+    const spoiled = await scan(rig, 'madder twill');
+    const visitor = await visit(browser, rig);
+    const page = await visitor.open(`${rig.address}/calibrate`);
+    await page.getByRole('button', {name: 'After a knock'}).click();
+    await begin(page, described(rig, 'sheet'));
+    await lay(rig, page, 'sheet');
+    await lay(rig, page, 'sheet tilt=20 azimuth=0');
+    await lay(rig, page, 'sheet tilt=20 azimuth=90');
+    const moved = await calculate(page, 'Calculate: what moved');
+    assert.match(moved, /scanning on would cost/);
+    assert.match(moved, /LED 3/);
+    await picture(page, 'calibrate_moved');
+
+    await page.getByRole('button', {name: 'Go on: fitted again'}).click();
+    await calculate(page, 'Calculate: fitted again');
+    await page.getByRole('button', {name: 'Go on: proof'}).click();
+    await begin(page);
+    await lay(rig, page, 'sheet turn=90');
+    await lay(rig, page, 'sheet other=1');
+    await lay(rig, page, 'sheet other=1 tilt=15 azimuth=210');
+    assert.match(await calculate(page, 'Calculate: proof'), /Accepted: 3 sheets/);
+
+    const change = page.locator('.acceptance');
+    await change.getByText(/normals turn by .* degrees/).waitFor();
+    await change.getByText(/albedo becomes/).waitFor();
+    assert.deepEqual(await violations(page), []);
+    await picture(page, 'calibrate_accept');
+    await page.getByRole('button', {name: "Make it the rig's"}).click();
+    await page.getByText(/The rig scans by calibrations\/.*-updated/).waitFor();
+    assert.match(fs.readFileSync(path.join(rig.folder, 'rig.toml'), 'utf8'), /calibration = "calibrations\/.*-updated"/);
+
+    await page.goto(`${rig.address}/calibrate`);
+    await page.getByText(/passed, just now/).first().waitFor();
+    assert.deepEqual(await page.locator('.overview td, .overview th').filter({hasText: spoiled}).count(), 1, 'the scan after the knock is listed');
+    await page.getByRole('button', {name: 'Solve 1 session again'}).click();
+    await page.getByText('1 job queued').waitFor();
+    const {jobs: [job]} = await rig.ask('jobs?limit=1');
+    assert.equal(job.of, spoiled);
+    assert.match(job.wants.calibration, /-updated$/);
+    assert.deepEqual(await violations(page), []);
+    await picture(page, 'calibrate_history');
+    await visitor.leave();
+  } finally {
+    await rig.stop();
+  }
+});
+
+const boards = [
+  'board', 'board tilt=40 azimuth=225 x=17 y=-14 height=57', 'board tilt=40 azimuth=0 x=20 y=11 height=57',
+  'board tilt=40 azimuth=180 x=-20 y=11 height=57', 'board tilt=40 azimuth=45 x=-18 y=-14 height=57',
+  'board tilt=15 azimuth=135 x=-25 y=-19 height=57', 'board x=-35 y=21',
+];
+const sheets = ['sheet', ...[0, 180, 90, 270].map((azimuth) => `sheet tilt=20 azimuth=${azimuth}`)];
+const proofs = ['sheet turn=90', 'sheet other=1', 'sheet other=1 tilt=15 azimuth=210'];
+
+test('a bare rig is calibrated with nothing but the page', {skip: !isSoak && 'it takes minutes: WEFT_SOAK=1 runs it'}, async () => {
+  const rig = await startRig({options: ['--bare']});
+  const goOn = (page, stage) => page.getByRole('button', {name: `Go on: ${stage}`}).click();
+  try {
+    const visitor = await visit(browser, rig);
+    const page = await visitor.open(`${rig.address}/calibrate/all/first`);
+    await begin(page, described(rig, 'board'));
+    for (const board of boards) await lay(rig, page, board);
+    await calculate(page, /^(Calculate|Enough)/);
+
+    await goOn(page, 'sensor');
+    await begin(page);
+    await lay(rig, page, 'sheet');
+    await lay(rig, page, 'empty');
+    await calculate(page, 'Calculate: sensor');
+
+    await goOn(page, 'lights');
+    await begin(page, described(rig, 'sheet'));
+    for (const sheet of sheets) await lay(rig, page, sheet);
+    await calculate(page, 'Calculate: lights');
+
+    await goOn(page, 'colour');
+    await begin(page, described(rig, 'chart'));
+    await lay(rig, page, 'chart');
+    await calculate(page, 'Calculate: colour');
+
+    await goOn(page, 'proof');
+    await begin(page);
+    for (const sheet of proofs) await lay(rig, page, sheet);
+    assert.match(await calculate(page, 'Calculate: proof'), /Accepted: 3 sheets/);
+    await page.getByRole('button', {name: "Make it the rig's"}).click();
+    await page.getByText('The rig scans by calibrations/first-color').waitFor();
+    await page.goto(`${rig.address}/calibrate`);
+    await page.getByText(/passed, just now/).first().waitFor();
+    await picture(page, 'calibrate_whole');
+    await visitor.leave();
+  } finally {
+    await rig.stop();
+  }
+});

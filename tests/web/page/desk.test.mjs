@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+// The desk: frame, focus, scan, look, next; and the room that stays dark.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {launch, luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
+import {startRig} from './support/rig.mjs';
+
+const scanTakes_ms = 20_000;
+let browser, rig;
+before(async () => {
+  [browser, rig] = await Promise.all([launch(), startRig()]);
+});
+after(async () => {
+  await browser?.close();
+  await rig?.stop();
+});
+
+async function atTheDesk(visitor) {
+  const page = await visitor.open(`${rig.address}/desk`);
+  await page.locator('#fabric:focus').waitFor();
+  return page;
+}
+
+/** By keys alone, from the name to the photographs. */
+async function scanByKeys(page, name) {
+  await page.keyboard.type(name);
+  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Space');
+  await page.getByRole('region', {name: 'Last scan'}).getByText(name, {exact: true}).waitFor({timeout: scanTakes_ms});
+}
+
+test('three swatches without a mouse: name, Enter, Space, next', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  for (const name of ['red satin', 'blue satin', 'green satin']) {
+    await scanByKeys(page, name);
+    await page.locator('#next-cloth:focus').waitFor();
+    await page.keyboard.press('Space');
+    await page.locator('#fabric:focus').waitFor();
+    assert.equal(await page.getByLabel('Fabric').inputValue(), '');
+  }
+  const {sessions} = await rig.ask('sessions');
+  assert.deepEqual(sessions.map(({fabric, state}) => [fabric, state]), [['green satin', 'complete'], ['blue satin', 'complete'], ['red satin', 'complete']]);
+  await visitor.leave();
+});
+
+test('the name to come follows the fabric, and counts on where there is one', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await page.keyboard.type('red satin');
+  await page.getByText(/_red-satin_002$/).waitFor();
+  await page.getByLabel('Fabric').fill('linen');
+  await page.getByText(/_linen_001$/).waitFor();
+  await visitor.leave();
+});
+
+test('barcode, tags and height are kept with the scan', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await page.getByLabel('Fabric').fill('denim');
+  await page.getByLabel('Tags').fill('blue, raw');
+  await page.getByLabel('Height').fill('1.5');
+  await page.getByLabel('Barcode').fill('4006381333931');
+  await page.keyboard.press('Enter');
+  await page.locator('#scan:focus').waitFor();
+  await page.keyboard.press('Space');
+  await page.getByRole('region', {name: 'Last scan'}).waitFor({timeout: scanTakes_ms});
+  const {sessions: [denim]} = await rig.ask('sessions?query=denim');
+  assert.deepEqual([denim.id, denim.tags], ['4006381333931', ['blue', 'raw']]);
+  assert.equal((await rig.ask(`sessions/${denim.name}`)).cloth_height_mm, 1.5);
+  await visitor.leave();
+});
+
+test('after a scan there are ten photographs with their verdict and the relit cloth, and one LED is shot again', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await scanByKeys(page, 'twill');
+  const result = page.getByRole('region', {name: 'Last scan'});
+  await result.getByText('good').nth(9).waitFor();
+  await result.getByRole('img', {name: 'The cloth, relit'}).waitFor({timeout: scanTakes_ms});
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'desk-scanned');
+  await result.getByRole('button', {name: 'Shoot LED 3 again'}).click();
+  await page.locator('.dark').waitFor();
+  await page.locator('.dark').waitFor({state: 'detached', timeout: scanTakes_ms});
+  const {sessions: [twill]} = await rig.ask('sessions?query=twill');
+  const {frames} = await rig.ask(`sessions/${twill.name}`);
+  const first = frames.find(({led, role}) => led === 3 && role === 'lit');
+  assert.notEqual(first.superseded_by, null);
+  await visitor.leave();
+});
+
+test('what is over says so on its number, and the answer to one click is there in words', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await page.getByLabel('Fabric').fill('white');
+  await page.getByLabel('Exposure').fill('66.6667');
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Space');
+  const result = page.getByRole('region', {name: 'Last scan'});
+  await result.getByText(/is over/).nth(9).waitFor({timeout: scanTakes_ms});
+  await page.getByRole('list', {name: 'LEDs'}).getByText(/clipped/).nth(9).waitFor();
+  await result.getByRole('button', {name: 'Shoot LED 7 again'}).click();
+  await page.getByText('nobody measured the ratio').first().waitFor({timeout: scanTakes_ms});
+  await visitor.leave();
+});
+
+test('levels are priced, and one of them is queued', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await scanByKeys(page, 'priced');
+  await page.getByRole('button', {name: 'Measure the levels'}).click();
+  await page.getByRole('button', {name: 'Queue fast'}).click({timeout: scanTakes_ms});
+  await page.waitForFunction(async () => {
+    const {jobs} = await (await fetch('/api/v1/jobs')).json();
+    return jobs.some((job) => job.kind === 'solve' && job.by !== 'scan' && job.state === 'done');
+  }, null, {timeout: scanTakes_ms, polling: 500});
+  await visitor.leave();
+});
+
+test('from before the first exposure to the close of the last every tab is black and still', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  const other = await visitor.open(`${rig.address}/sessions`);
+  await other.getByRole('heading', {level: 1}).waitFor();
+  await page.bringToFront();
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('v');
+  await page.getByRole('img', {name: 'Live view'}).waitFor();
+  await page.getByLabel('Fabric').fill('velvet');
+  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await page.keyboard.press('Enter');
+  const lives = [];
+  await page.keyboard.press('Space');
+  await Promise.all([page, other].map((tab) => tab.locator('.dark').waitFor()));
+  visitor.context.on('request', (request) => { if (/live|light/.test(request.url())) lives.push(request.url()); });
+  const exposing = rig.ask('rig');
+  const [first, elsewhere] = [await pixelsOf(page), await pixelsOf(other)];
+  const second = await pixelsOf(page);
+  assert.equal((await exposing).dark, true, 'the daemon says that it is dark');
+  for (const pixels of [first, elsewhere]) {
+    assert.ok(luminanceOf(pixels) < 0.0005, `mean luminance ${luminanceOf(pixels)}`);
+  }
+  assert.ok(first.data.equals(second.data), 'two pictures of the dark page differ');
+  assert.deepEqual(lives, [], 'live view and light are let be');
+  await page.locator('.dark').waitFor({state: 'detached', timeout: scanTakes_ms});
+  const exposures = await rig.exposures();
+  const {session} = await rig.ask('rig');
+  assert.ok(exposures.length >= 11, `${exposures.length} exposures of ${session}`);
+  await visitor.leave();
+});
+
+test('a key at the dark page shows how things are for two seconds, and Escape and Enter cancel', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await page.keyboard.type('cancelled');
+  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Space');
+  await page.locator('.dark').waitFor();
+  await page.keyboard.press('Escape');
+  await page.getByText('Enter cancels the scan').waitFor();
+  await page.keyboard.press('Enter');
+  await page.locator('.dark').waitFor({state: 'detached', timeout: scanTakes_ms});
+  await page.getByText('Goes on with').waitFor();
+  await page.keyboard.press('Space');
+  await page.getByRole('region', {name: 'Last scan'}).getByText('cancelled', {exact: true}).waitFor({timeout: scanTakes_ms});
+  const {sessions} = await rig.ask('sessions?query=cancelled');
+  assert.deepEqual(sessions.map(({state}) => state), ['complete'], 'the same session went on');
+  await visitor.leave();
+});
+
+test('live view asks for one picture at a time, and for none while its tab is hidden', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  const asked = [];
+  let atOnce = 0;
+  let most = 0;
+  const isFrame = (request) => request.url().includes('/rig/live/frame');
+  page.on('request', (request) => { if (isFrame(request)) { asked.push(Date.now()); most = Math.max(most, ++atOnce); } });
+  for (const end of ['requestfinished', 'requestfailed']) page.on(end, (request) => { if (isFrame(request)) atOnce--; });
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('v');
+  await page.getByRole('img', {name: 'Live view'}).waitFor();
+  await page.keyboard.press('e');
+  await page.getByRole('button', {name: 'Edges'}).and(page.locator('[aria-pressed=true]')).waitFor();
+  await page.waitForFunction(() => document.querySelectorAll('.led.lit').length === 1);
+  assert.equal(most, 1);
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'desk-live');
+  await page.evaluate(() => {
+    Object.defineProperty(document, 'hidden', {configurable: true, value: true});
+    document.dispatchEvent(new Event('visibilitychange'));
+  });
+  const hidden = Date.now();
+  await page.waitForFunction(async () => !(await (await fetch('/api/v1/rig/devices')).json()).live, null, {timeout: 10_000, polling: 200});
+  assert.deepEqual(asked.filter((time) => time > hidden + 100), []);
+  await visitor.leave();
+});
+
+test('a test shot tells exposure and focus, and a turned ring is seen', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('t');
+  await page.locator('.dark').waitFor();
+  await page.getByText('The first of its kind').waitFor({timeout: scanTakes_ms});
+  await rig.inject('focus 3');
+  await page.keyboard.press('t');
+  await page.getByText(/of the sharpest, shot 1 of 2/).waitFor({timeout: scanTakes_ms});
+  const [tile] = await page.locator('.loupe img').evaluateAll(async (pictures) => {
+    await Promise.all(pictures.map((one) => one.decode()));
+    return pictures.map(({naturalWidth}) => naturalWidth);
+  });
+  assert.equal(tile, 512, 'the loupe shows the photograph pixel by pixel');
+  await picture(page, 'desk-focus');
+  assert.deepEqual(await violations(page), []);
+  await rig.inject('focus 0');
+  await visitor.leave();
+});
+
+test('a board whose cable is pulled is told of in words, and the scan goes on once it is back', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await page.keyboard.type('cable');
+  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await rig.inject('board unplug');
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Space');
+  await page.getByRole('complementary', {name: 'Scan'}).getByText(/board/).waitFor();
+  await rig.inject('board replug');
+  await page.getByRole('region', {name: 'Last scan'}).getByText('cable', {exact: true}).waitFor({timeout: scanTakes_ms});
+  await visitor.leave();
+});

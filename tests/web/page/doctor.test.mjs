@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The doctor: what is wrong, in words, with what mends it.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {launch, violations, visit} from './support/browser.mjs';
+import {startRig} from './support/rig.mjs';
+
+let browser, rig;
+before(async () => {
+  [browser, rig] = await Promise.all([launch(), startRig()]);
+});
+after(async () => {
+  await browser?.close();
+  await rig?.stop();
+});
+
+test('a board that is gone is told of within five seconds with a remedy to copy, and is back when one asks again', async () => {
+  await rig.inject('board unplug');
+  const visitor = await visit(browser, rig);
+  await visitor.context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  const page = await visitor.open(`${rig.address}/doctor`);
+  const board = page.getByRole('listitem').filter({has: page.getByRole('heading', {name: 'board', exact: true})});
+  await board.getByText('fault').waitFor({timeout: 5000});
+  assert.deepEqual(await violations(page), []);
+  await board.getByRole('button', {name: 'Copy'}).click();
+  await board.getByRole('button', {name: 'Copied'}).waitFor();
+  const {findings} = await rig.ask('doctor');
+  assert.equal(await page.evaluate(() => navigator.clipboard.readText()), findings.find(({part}) => part === 'board').remedy);
+  await rig.inject('board replug');
+  await page.getByRole('button', {name: 'Examine again'}).click();
+  await board.getByText('fault').waitFor({state: 'detached', timeout: 5000});
+  await visitor.leave();
+});

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is around every screen: coming in, the connection, the tabs.
+import assert from 'node:assert/strict';
+import {after, before, test} from 'node:test';
+import {launch, luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
+import {startRig} from './support/rig.mjs';
+
+const screens = ['desk', 'sessions', 'viewer', 'calibrate', 'jobs', 'doctor'];
+let browser, rig;
+before(async () => {
+  [browser, rig] = await Promise.all([launch('--host-resolver-rules=MAP rig.lan 127.0.0.1'), startRig({names: ['rig.lan'], token: true})]);
+});
+after(async () => {
+  await browser?.close();
+  await rig?.stop();
+});
+
+/** Somebody who came in by the link. */
+async function enter(visitor, screen = 'desk', address = rig.address) {
+  const page = await visitor.open(`${address}/${screen}#${rig.token}`);
+  await page.locator('header .rig').waitFor();
+  return page;
+}
+
+test('the token of the link is taken off the address, and lets one in by a cookie', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor);
+  assert.equal(new URL(page.url()).hash, '');
+  assert.equal(await page.evaluate(() => document.cookie), '', 'no script reads the cookie');
+  await page.goto(`${rig.address}/doctor`);
+  await page.getByRole('heading', {level: 1}).waitFor();
+  await visitor.leave();
+});
+
+test('who has no token is asked for it, and a wrong one is refused in words', async () => {
+  const visitor = await visit(browser, rig);
+  visitor.mayFail(/status of 401/);
+  const page = await visitor.open(`${rig.address}/#wrong`);
+  await page.getByText('asks for its token').waitFor();
+  assert.equal(new URL(page.url()).hash, '');
+  await page.getByLabel('Token or link').fill(`${rig.address}/#${rig.token}`);
+  await page.keyboard.press('Enter');
+  await page.locator('header .rig').waitFor();
+  await visitor.leave();
+});
+
+test('by plain http from another name it works as well, where a browser offers no locks', async () => {
+  const address = `http://rig.lan:${rig.port}`;
+  const visitor = await visit(browser, rig, {origins: [address]});
+  visitor.mayFail(/Cross-Origin-Opener-Policy header has been ignored/);
+  const page = await enter(visitor, 'desk', address);
+  assert.equal(await page.evaluate(() => navigator.locks), undefined, 'this context has locks: the test is void');
+  await page.getByRole('status').filter({hasText: 'ready'}).waitFor();
+  await visitor.leave();
+});
+
+for (const screen of screens) {
+  test(`${screen} opens by its address, passes axe and is dark`, async () => {
+    const visitor = await visit(browser, rig);
+    const page = await enter(visitor, screen);
+    await page.getByRole('heading', {level: 1}).waitFor({state: 'attached'});
+    assert.deepEqual(await violations(page), []);
+    const luminance = luminanceOf(await pixelsOf(page));
+    assert.ok(luminance < 0.015, `mean luminance ${luminance}`);
+    await picture(page, `${screen}-empty`);
+    await visitor.leave();
+  });
+}
+
+test('an unknown address says so', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor);
+  await page.evaluate(() => history.pushState(null, '', '/nowhere'));
+  await page.evaluate(() => dispatchEvent(new PopStateEvent('popstate')));
+  await page.getByRole('heading', {name: 'There is no such screen'}).waitFor();
+  await visitor.leave();
+});
+
+test('ten tabs share one stream, and another one listens when the first is closed', async () => {
+  const visitor = await visit(browser, rig);
+  let streams = 0;
+  visitor.context.on('request', (request) => { streams += request.url().includes('/api/v1/events'); });
+  const pages = [];
+  for (let tab = 0; tab < 10; tab++) pages.push(await enter(visitor, 'doctor'));
+  assert.equal(streams, 1);
+  const [first, ...others] = pages;
+  const listens = visitor.context.waitForEvent('request', (request) => request.url().includes('/api/v1/events'));
+  await first.close();
+  await listens;
+  await rig.ask('control', {name: 'Ann'});
+  await Promise.all(others.map((page) => page.getByText('Ann has the controls').waitFor()));
+  await visitor.leave();
+});
+
+test('when the daemon is stopped the page greys, and is back by itself within ten seconds', async () => {
+  const visitor = await visit(browser, rig);
+  visitor.mayFail(/ERR_CONNECTION_REFUSED|ERR_INCOMPLETE_CHUNKED|ERR_EMPTY_RESPONSE|ERR_CONNECTION_RESET/);
+  const page = await enter(visitor);
+  const {port} = rig;
+  await rig.stopServing();
+  const silence = page.getByText('The daemon has said nothing for');
+  await silence.waitFor({timeout: 25_000});
+  await rig.serve({port});
+  const began = Date.now();
+  await silence.waitFor({state: 'detached', timeout: 12_000});
+  assert.ok(Date.now() - began < 11_000, `it took ${Date.now() - began} ms`);
+  await page.getByRole('status').filter({hasText: 'ready'}).waitFor();
+  await visitor.leave();
+});
+
+test('the keys are listed by ?, and none of them fires in a text field', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor);
+  await page.locator('#fabric:focus').waitFor();
+  await page.keyboard.type('what?');
+  assert.equal(await page.getByLabel('Fabric').inputValue(), 'what?');
+  assert.equal(await page.getByRole('dialog').count(), 0);
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('?');
+  await page.getByRole('dialog').getByText('full screen').waitFor();
+  await page.keyboard.press('Escape');
+  await page.getByRole('dialog').waitFor({state: 'detached'});
+  await visitor.leave();
+});

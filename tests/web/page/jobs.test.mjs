@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// Jobs: what each level costs and gives, one job however often it is asked for, and the queue as two people see it.
+import assert from 'node:assert/strict';
+import {execFile} from 'node:child_process';
+import fs from 'node:fs';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+import {promisify} from 'node:util';
+import {launch, picture, violations, visit} from './support/browser.mjs';
+import {root, startRig} from './support/rig.mjs';
+
+const run = promisify(execFile);
+const weft = path.join(process.env.WEFT_PROGRAMS ?? path.join(root, 'build/release/bin'), 'weft');
+const price_ms = 60_000;
+let browser, rig, session;
+before(async () => {
+  [browser, rig] = await Promise.all([launch(), startRig({megapixels: 0.1})]);
+  await rig.inject('table cloth');
+  ({session} = await rig.ask('scan', {fabric: 'madder twill', cloth_height_mm: 0.8}));
+  await until(async () => (await rig.ask('rig')).phase === 'complete');
+  await until(async () => (await jobsOf('solve')).some((job) => job.state === 'done'));
+});
+after(async () => {
+  await browser?.close();
+  await rig?.stop();
+});
+
+async function until(isSo) {
+  for (let asked = 0; asked < 300; asked++) {
+    if (await isSo()) return;
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+  assert.fail('it never was so');
+}
+
+async function jobsOf(kind) {
+  return (await rig.ask('jobs?limit=50')).jobs.filter((job) => job.kind === kind);
+}
+
+async function pricePage(visitor) {
+  const page = await visitor.open(`${rig.address}/jobs?price=${session}`);
+  await page.getByRole('heading', {name: 'Accuracy against time'}).waitFor();
+  return page;
+}
+
+/** The degrees of each level, as the table writes them. */
+async function tableOf(page) {
+  const rows = await page.locator('.price tbody tr').all();
+  return Promise.all(rows.map(async (row) => [await row.locator('th').innerText(), ...(await row.locator('td').allInnerTexts()).slice(1, 5)]));
+}
+
+function degrees(value) {
+  if (value === 0) return '0°';
+  return `${value.toFixed(Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(Math.abs(value))))))}°`;
+}
+
+test('the levels are priced as the command prices them, as a table and as points', async () => {
+  const visitor = await visit(browser, rig, {height: 1400});
+  const page = await pricePage(visitor);
+  await page.getByRole('button', {name: 'Measure the levels'}).click();
+  await page.getByRole('button', {name: 'Queue standard'}).waitFor({timeout: price_ms});
+  const folder = path.join(rig.folder, 'scans', `${session}.weft`);
+  const {stdout} = await run(weft, ['solve', folder, '--explain', '--json'], {env: rig.environment});
+  const expected = JSON.parse(stdout).levels.map(({quality, predicted_deg, parts_deg}) => [
+    quality, ...[predicted_deg, parts_deg.noise, parts_deg.model, parts_deg.calibration].map(degrees),
+  ]);
+  assert.deepEqual(await tableOf(page), expected);
+  assert.equal(await page.locator('.ladder .level').count(), expected.length);
+  await page.waitForFunction((count) => [...document.querySelectorAll('.crops img')].filter((crop) => crop.naturalWidth > 0).length === count, expected.length);
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'jobs_price');
+  await visitor.leave();
+});
+
+test('two clicks are one job, by the table and by a point of the plot', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await pricePage(visitor);
+  await page.getByRole('button', {name: 'Queue fast'}).dblclick();
+  await page.locator('.ladder .level', {hasText: 'fast'}).press('Enter');
+  await page.locator('.ladder .level', {hasText: 'preview'}).locator('.target').click();
+  await until(async () => (await jobsOf('solve')).filter((job) => job.state === 'done').length >= 3);
+  assert.equal((await jobsOf('solve')).length, 3, 'the quick solve, fast and preview');
+  await page.getByRole('link', {name: 'Look at it'}).nth(1).waitFor();
+  await visitor.leave();
+});
+
+test('the queue is the same in another browser: put first, cancelled, done again, read', async () => {
+  const [ann, bob] = await Promise.all([visit(browser, rig), visit(browser, rig)]);
+  const page = await pricePage(ann);
+  for (const level of ['reference', 'standard', 'preview']) await page.getByRole('button', {name: `Queue ${level}`}).click();
+  const theirs = await bob.open(`${rig.address}/jobs`);
+  const [last, second] = await jobsOf('solve');
+  await theirs.getByRole('button', {name: `Put ${last.id} first`}).click();
+  await theirs.getByRole('button', {name: `Cancel ${second.id}`}).click();
+  await page.getByRole('button', {name: `Do ${second.id} again`}).waitFor();
+  await until(async () => (await rig.ask(`jobs/${last.id}`)).state === 'done');
+  const cancelled = await rig.ask(`jobs/${second.id}`);
+  assert.equal(cancelled.state, 'cancelled');
+  assert.equal(cancelled.began, '', 'it was taken out of the queue');
+  const solves = fs.readdirSync(path.join(rig.folder, 'scans', `${session}.weft`, 'solve'));
+  assert.ok(solves.every((name) => !name.startsWith('.') && !name.includes('partial')), `left behind: ${solves}`);
+
+  await page.getByRole('button', {name: `Do ${second.id} again`}).click();
+  await until(async () => (await jobsOf('solve'))[0].state === 'done');
+  await page.getByRole('button', {name: `Log of ${last.id}`}).click();
+  assert.notEqual(await page.getByRole('dialog').getByLabel('Log').innerText(), '');
+  await page.keyboard.press('Escape');
+  await page.getByRole('button', {name: `Forget ${second.id}`}).click();
+  await page.getByRole('button', {name: `Forget ${second.id}`}).waitFor({state: 'detached'});
+  assert.deepEqual(await violations(theirs), []);
+  await picture(theirs, 'jobs');
+  await Promise.all([ann.leave(), bob.leave()]);
+});

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+// The library: a thousand sessions, tags across tabs, edits that outlive the daemon, and one that cannot be read.
+import assert from 'node:assert/strict';
+import fs from 'node:fs';
+import path from 'node:path';
+import {after, before, test} from 'node:test';
+import {launch, picture, violations, visit} from './support/browser.mjs';
+import {startRig} from './support/rig.mjs';
+
+const many = 1000;
+const mostRows = 60;
+let browser, rig, scanned;
+before(async () => {
+  [browser, rig] = await Promise.all([launch(), startRig({megapixels: 0.1})]);
+  await rig.inject('table cloth');
+  ({session: scanned} = await rig.ask('scan', {fabric: 'madder twill', cloth_height_mm: 0.8}));
+  await until(async () => (await rig.ask('rig')).phase === 'complete');
+  writeSessions(path.join(rig.folder, 'scans'));
+  await until(async () => (await rig.ask('sessions?limit=1')).total === many + 2);
+});
+after(async () => {
+  await browser?.close();
+  await rig?.stop();
+});
+
+/** Asks until it is so. */
+async function until(isSo) {
+  for (let asked = 0; asked < 300; asked++) {
+    if (await isSo()) return;
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+  assert.fail('it never was so');
+}
+
+function writeSession(folder, name, text) {
+  fs.mkdirSync(path.join(folder, `${name}.weft`), {recursive: true});
+  fs.writeFileSync(path.join(folder, `${name}.weft`, 'session.json'), text);
+}
+
+/** Folders without photographs, and one whose document is torn. */
+function writeSessions(folder) {
+  for (let index = 0; index < many; index++) {
+    const name = `s${String(index).padStart(4, '0')}`;
+    const document = {schema: 'weft.session/1.1', fabric: `cloth ${index}`, cloth_height_mm: 0.5, rig: 'another', calibration: '', state: 'complete', metadata: {tags: ['made']}, shots: []};
+    writeSession(folder, name, JSON.stringify(document));
+  }
+  writeSession(folder, 'torn', '{"schema": "weft.session/1.1", ');
+}
+
+async function enter(visitor, address = 'sessions') {
+  const page = await visitor.open(`${rig.address}/${address}`);
+  await page.getByRole('heading', {level: 1}).waitFor();
+  return page;
+}
+
+function rowOf(page, name) {
+  return page.locator('.session').filter({hasText: name});
+}
+
+test('of a thousand sessions at most sixty rows exist, however one scrolls', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor);
+  await page.getByText(`${many + 2} sessions`).waitFor();
+  await page.locator('.session').nth(8).waitFor();
+  await picture(page, 'sessions');
+
+  const list = page.locator('.virtual');
+  const isFilled = () => document.querySelectorAll('.session a').length === document.querySelectorAll('.virtual li').length;
+  for (const share of [0.1, 0.35, 0.7, 1]) {
+    await list.evaluate((box, part) => box.scrollTo(0, part * box.scrollHeight), share);
+    await page.waitForFunction(isFilled);
+    const rows = await page.locator('.virtual li').count();
+    assert.ok(rows <= mostRows, `${rows} rows at ${share}`);
+  }
+  const last = page.locator(`.virtual li[aria-posinset="${many + 2}"] .what a`);
+  await last.waitFor();
+  await visitor.leave();
+});
+
+test('the library passes axe, also with sessions chosen, at the width of a tablet', async () => {
+  const visitor = await visit(browser, rig, {width: 900});
+  const page = await enter(visitor);
+  await page.locator('.session').first().getByRole('checkbox').check();
+  await page.getByText('1 session chosen').waitFor();
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'sessions_narrow');
+  await visitor.leave();
+});
+
+test('a tag that is given to two sessions is found in another tab, and taken back by Ctrl+Z', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'sessions?words=wool');
+  const other = await enter(visitor);
+  await page.bringToFront();
+  await page.getByText('No session is like that').waitFor();
+  await page.keyboard.press('/');
+  await page.keyboard.type('s000');
+  for (const name of ['s0003', 's0007']) await rowOf(page, name).getByRole('checkbox').check();
+  await page.getByLabel('Tags').fill('zebra');
+  await page.getByRole('button', {name: 'Add'}).click();
+  await rowOf(page, 's0007').getByText('zebra').waitFor();
+
+  await other.getByLabel('Tag', {exact: true}).fill('zebra');
+  await other.getByText('2 sessions').waitFor();
+
+  await page.locator('h1').click();
+  await page.keyboard.press('Control+z');
+  await page.getByText(/^Undone: .*s00/).waitFor();
+  await other.getByLabel('Tag', {exact: true}).fill('');
+  await other.getByLabel('Tag', {exact: true}).fill('zebra');
+  await other.getByText('1 session', {exact: true}).waitFor();
+  await page.keyboard.press('Control+Shift+z');
+  await page.getByText(/^Done again: /).waitFor();
+  await visitor.leave();
+});
+
+test('a session that cannot be read is shown with its error and breaks nothing', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'sessions?state=unreadable');
+  const row = rowOf(page, 'torn');
+  await row.waitFor();
+  assert.match(await row.locator('.error').innerText(), /JSON|parse|read/i);
+  assert.equal(await page.locator('.session').count(), 1);
+  await visitor.leave();
+});
+
+test('jobs are queued for each chosen session', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'sessions?words=cloth+11');
+  const names = ['s0011', 's0110'];
+  for (const name of names) await rowOf(page, name).getByRole('checkbox').check();
+  await page.getByRole('button', {name: 'Price'}).click();
+  await page.getByText('2 jobs queued').waitFor();
+  const {jobs} = await rig.ask('jobs?limit=20');
+  assert.deepEqual(jobs.filter((job) => job.kind === 'price').map((job) => job.of).sort(), names);
+  await visitor.leave();
+});
+
+test('one session shows its photographs and solves, and no change of somebody else is written over', async () => {
+  await until(async () => (await rig.ask(`sessions/${scanned}/solves`)).solves.length > 0);
+  const visitor = await visit(browser, rig);
+  visitor.mayFail(/409.*metadata/);
+  const page = await enter(visitor, `sessions/${scanned}`);
+  await page.getByAltText('LED 10').waitFor();
+  await page.getByText('in range').first().waitFor();
+  await page.getByText('current').first().waitFor();
+  assert.equal(await page.locator('.frames li').count(), 13);
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'session');
+
+  await rig.ask(`sessions/${scanned}/metadata`, {notes: 'for the coat'});
+  await page.getByLabel('Notes').fill('for the lining');
+  await page.getByRole('button', {name: 'Save'}).click();
+  const complaint = page.locator('.metadata .complaint');
+  await complaint.waitFor();
+  await complaint.getByRole('button', {name: 'Show what it is now'}).click();
+  await page.waitForFunction(() => document.getElementById('field-notes')?.value === 'for the coat');
+  await visitor.leave();
+});
+
+test('twenty edits are undone after the daemon was restarted', async () => {
+  const visitor = await visit(browser, rig);
+  visitor.mayFail(/ERR_CONNECTION_REFUSED|ERR_INCOMPLETE_CHUNKED|ERR_EMPTY_RESPONSE|ERR_CONNECTION_RESET/);
+  const page = await enter(visitor, 'sessions/s0500');
+  await page.getByLabel('Notes').waitFor();
+  for (let edit = 1; edit < 20; edit++) await rig.ask('sessions/s0500/metadata', {notes: `edit ${edit}`});
+  await page.reload();
+  await page.getByLabel('Notes').fill('edit 20');
+  await page.getByRole('button', {name: 'Save'}).click();
+  await page.getByText(/notes: edit 20/).waitFor();
+
+  const {port} = rig;
+  await rig.stopServing();
+  await rig.serve({port});
+  await page.locator('h1').click();
+  for (let edit = 19; edit >= 0; edit--) {
+    await page.keyboard.press('Control+z');
+    await page.getByText(edit > 0 ? `Undone: notes: edit ${edit} of` : 'Undone: notes: none of').waitFor();
+  }
+  const {sessions: [session]} = await rig.ask('sessions?query=s0500');
+  assert.equal(session.notes, '');
+  await visitor.leave();
+});

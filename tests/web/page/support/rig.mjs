@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// A virtual rig and the daemon that serves it: the real programs.
+import {execFile, spawn} from 'node:child_process';
+import fs from 'node:fs';
+import os from 'node:os';
+import path from 'node:path';
+import {fileURLToPath} from 'node:url';
+import {promisify} from 'node:util';
+
+const run = promisify(execFile);
+export const root = fileURLToPath(new URL('../../../../', import.meta.url));
+export const programs = process.env.WEFT_PROGRAMS ?? path.join(root, 'build/release/bin');
+const virtualRig = path.join(programs, 'weft-virtual-rig');
+const weft = path.join(programs, 'weft');
+
+function readEnvironment(folder) {
+  const lines = fs.readFileSync(path.join(folder, 'environment'), 'utf8').trim().split('\n');
+  return {...process.env, ...Object.fromEntries(lines.map((line) => line.split(/=(.*)/s).slice(0, 2)))};
+}
+
+/** The first line that a program prints. */
+export function firstLine(program) {
+  return new Promise((resolve, reject) => {
+    let said = '';
+    program.stdout.on('data', (text) => {
+      said += text;
+      if (said.includes('\n')) resolve(said.slice(0, said.indexOf('\n')));
+    });
+    program.on('exit', (code) => reject(new Error(`it ended with ${code} before it said anything`)));
+  });
+}
+
+export class Rig {
+  #daemon = null;
+
+  constructor(folder) {
+    this.folder = folder;
+    this.environment = readEnvironment(folder);
+  }
+
+  /** A command of docs/virtual_rig.md. */
+  async inject(command) {
+    const {stdout} = await run(virtualRig, ['--folder', this.folder, '--inject', command]);
+    return stdout;
+  }
+
+  /** Starts `weft serve`; `this.address` is where it answers. */
+  async serve({port = 0, more = []} = {}) {
+    this.#daemon = spawn(weft, ['serve', '--port', String(port), ...more], {env: this.environment, stdio: ['ignore', 'pipe', 'pipe']});
+    this.log = '';
+    this.#daemon.stderr.on('data', (text) => { this.log += text; });
+    this.address = (await firstLine(this.#daemon)).replace(/\/#.*/, '');
+    return this.address;
+  }
+
+  get port() {
+    return Number(new URL(this.address).port);
+  }
+
+  async stopServing() {
+    const daemon = this.#daemon;
+    this.#daemon = null;
+    if (!daemon || daemon.exitCode !== null) return;
+    const ended = new Promise((resolve) => daemon.once('exit', resolve));
+    daemon.kill('SIGTERM');
+    await ended;
+  }
+
+  /** Asks the daemon as curl would. */
+  async ask(call, body) {
+    const headers = {'Content-Type': 'application/json', ...(this.token && {Authorization: `Bearer ${this.token}`})};
+    const response = await fetch(`${this.address}/api/v1/${call}`, body === undefined ? {headers} : {method: 'POST', headers, body: JSON.stringify(body)});
+    return response.json();
+  }
+
+  /** What the camera's shutter was open for, from the rig's own diary. */
+  async exposures() {
+    const diary = await fs.promises.readFile(path.join(this.folder, 'exposures.jsonl'), 'utf8');
+    return diary.trim().split('\n').map((line) => JSON.parse(line));
+  }
+
+  async stop() {
+    await this.stopServing();
+    await this.inject('end').catch(() => {});
+    fs.rmSync(this.folder, {recursive: true, force: true});
+  }
+}
+
+/** A server without a rig, which shows an empty archive. */
+export async function serveArchive() {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'weft-page-'));
+  const {WEFT_RIG: _, ...environment} = process.env;
+  const daemon = spawn(weft, ['serve', '--port', '0', '--archive', folder], {cwd: folder, env: {...environment, HOME: folder, XDG_STATE_HOME: folder}, stdio: ['ignore', 'pipe', 'pipe']});
+  const ended = new Promise((resolve) => daemon.once('exit', resolve));
+  const stop = async () => {
+    daemon.kill('SIGTERM');
+    await ended;
+    fs.rmSync(folder, {recursive: true, force: true});
+  };
+  return {address: await firstLine(daemon), stop};
+}
+
+/** Appends to the rig file. */
+function configure(folder, lines) {
+  fs.appendFileSync(path.join(folder, 'rig.toml'), `${lines.join('\n')}\n`);
+}
+
+function leaveOut(folder, pattern) {
+  const file = path.join(folder, 'rig.toml');
+  fs.writeFileSync(file, fs.readFileSync(file, 'utf8').replace(pattern, ''));
+}
+
+function makeToken(folder) {
+  const token = 'a-token-that-nobody-guesses';
+  fs.writeFileSync(path.join(folder, 'token'), token, {mode: 0o600});
+  configure(folder, ['token = "token"']);
+  return token;
+}
+
+/**
+ * A virtual rig of a scene of testdata/scenes, served. `names`: more names that the daemon answers to; `token`: it wants
+ * one; `without`: what is taken out of the rig file; `options`: of weft-virtual-rig.
+ */
+export async function startRig({scene = 'rig.toml', megapixels = 0.25, options = [], names = [], token = false, without = null} = {}) {
+  const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'weft-page-'));
+  await run(virtualRig, [path.join(root, 'testdata/scenes', scene), '--folder', folder, '--megapixels', String(megapixels), '--no-wait', ...options]);
+  const rig = new Rig(folder);
+  if (without) leaveOut(folder, without);
+  if (names.length) configure(folder, [`names = ${JSON.stringify(names)}`]);
+  if (token) rig.token = makeToken(folder);
+  await rig.serve();
+  return rig;
+}

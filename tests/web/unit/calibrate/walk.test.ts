@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+import {describe, expect, test} from 'vitest';
+import {
+  currentStage, findingsIn, freeName, fromOf, isUnharmed, jobOf, madeBy, notesBeside, requestOf, stagesOf, standingOf, walkOfSet, walksIn,
+  type CheckResult, type Job, type Known, type Listed, type Stage, type Walk,
+} from '../../../../app/web/src/screens/calibrate/walk';
+
+const all: Walk = {kind: 'all', name: 'first'};
+const refresh: Walk = {kind: 'refresh', name: 'knock'};
+
+function listed(folder: string, changes: Partial<Listed> = {}): Listed {
+  return {folder, id: folder, measured: '2026-11-20T10:00:00Z', parts: [], check: null, is_rigs: false, ...changes};
+}
+
+function check(folder: string, passed: boolean): CheckResult {
+  return {folder, date: '2026-11-21T10:00:00Z', calibration: '', passed, found: ''};
+}
+
+function job(kind: string, of: string, state: Job['state']): Job {
+  return {kind, of, state} as Job;
+}
+
+const rigs = listed('calibration', {is_rigs: true});
+const bare: Known = {calibrations: [rigs], checks: [], jobs: []};
+
+function stage(walk: Walk, result: string): Stage {
+  const found = stagesOf(walk.kind).find((each) => each.result === result);
+  if (!found) throw new Error(`there is no stage ${result}`);
+  return found;
+}
+
+describe('a walk', () => {
+  test('begins with the board by what the rig has', () => {
+    expect(currentStage(all, bare)?.part).toBe('board');
+    expect(requestOf(all, stage(all, 'camera'), bare)).toEqual({
+      kind: 'calibrate_camera', input: 'sets/first-board', from: 'calibration', output: 'calibrations/first-camera',
+    });
+  });
+
+  test('begins with nothing at a rig that has nothing', () => {
+    const nothing: Known = {calibrations: [], checks: [], jobs: []};
+    expect(fromOf(all, stage(all, 'camera'), nothing)).toBeNull();
+    expect(requestOf(all, stage(all, 'camera'), nothing)).not.toHaveProperty('from');
+  });
+
+  test('goes on by the result before', () => {
+    const known = {...bare, calibrations: [rigs, listed('calibrations/first-camera'), listed('calibrations/first-response')]};
+    expect(currentStage(all, known)?.part).toBe('sheet');
+    expect(fromOf(all, stage(all, 'lights'), known)).toBe('calibrations/first-response');
+    expect(fromOf(all, stage(all, 'response'), known)).toBe('calibrations/first-camera');
+    expect(madeBy(all, known)).toBe('calibrations/first-response');
+  });
+
+  test('may leave the colour chart out', () => {
+    const made = ['camera', 'response', 'lights'].map((part) => listed(`calibrations/first-${part}`));
+    const known = {...bare, calibrations: made, checks: [check('calibrations/first-check', true)]};
+    expect(currentStage(all, known)).toBeNull();
+    expect(madeBy(all, known)).toBe('calibrations/first-lights');
+  });
+
+  test('takes no result of another walk for its own', () => {
+    expect(currentStage({kind: 'all', name: 'second'}, {...bare, calibrations: [listed('calibrations/first-camera')]})?.part).toBe('board');
+  });
+});
+
+describe('after a knock', () => {
+  test('the same photographs tell what moved and are fitted', () => {
+    expect(requestOf(refresh, stage(refresh, 'moved'), bare)).toEqual({
+      kind: 'check', moved: 'sets/knock-moved', from: 'calibration', output: 'calibrations/knock-moved',
+    });
+    expect(requestOf(refresh, stage(refresh, 'updated'), bare)).toMatchObject({kind: 'calibrate_update', moved: 'sets/knock-moved'});
+  });
+
+  test('a rig that did not move needs nothing', () => {
+    const known = {...bare, checks: [check('calibrations/knock-moved', true)]};
+    expect(isUnharmed(refresh, known)).toBe(true);
+    expect(isUnharmed(refresh, {...bare, checks: [check('calibrations/knock-moved', false)]})).toBe(false);
+    expect(isUnharmed(all, known)).toBe(false);
+  });
+});
+
+describe('how a stage stands', () => {
+  const camera = stage(all, 'camera');
+
+  test('is what its job does until there is a result', () => {
+    const standing = (state: Job['state']) => standingOf(all, camera, {...bare, jobs: [job('calibrate_camera', 'sets/first-board', state)]});
+    expect([standing('queued'), standing('running'), standing('failed'), standing('cancelled')]).toEqual(['working', 'working', 'failed', 'open']);
+  });
+
+  test('is told by a job that is done before anybody listed its result', () => {
+    const standing = (exit_code: number) => {
+      const done = {...job('check', 'sets/first-check', 'done'), exit_code};
+      return standingOf(all, stage(all, 'check'), {...bare, jobs: [done]});
+    };
+    expect([standing(0), standing(65)]).toEqual(['done', 'found']);
+  });
+
+  test('is done once its folder is there, whatever a job said', () => {
+    const jobs = [job('calibrate_camera', 'sets/first-board', 'failed')];
+    expect(standingOf(all, camera, {calibrations: [listed('calibrations/first-camera')], checks: [], jobs})).toBe('done');
+  });
+
+  test('tells a check that found something', () => {
+    expect(standingOf(all, stage(all, 'check'), {...bare, checks: [check('calibrations/first-check', false)]})).toBe('found');
+  });
+
+  test('is of the newest job of its own photographs', () => {
+    const jobs = [job('check', 'sets/other-check', 'running'), job('check', 'sets/first-check', 'failed'), job('check', 'sets/first-check', 'done')];
+    expect(jobOf(all, stage(all, 'check'), {...bare, jobs})).toBe(jobs[1]);
+  });
+});
+
+describe('the names of walks', () => {
+  test('are found in what lies beside the rig file, the newest first', () => {
+    const known: Known = {
+      calibrations: [rigs, listed('calibrations/first-camera'), listed('calibrations/knock-updated', {measured: '2026-11-22T10:00:00Z'})],
+      checks: [check('calibrations/first-check', true), check('calibrations/leaned-moved', true)],
+      jobs: [],
+    };
+    expect(walksIn(known)).toEqual([
+      {kind: 'refresh', name: 'knock'}, {kind: 'refresh', name: 'leaned'}, {kind: 'all', name: 'first'},
+    ]);
+  });
+
+  test('are in the name of the set that is worked on', () => {
+    expect(walkOfSet({name: '2026-11-24-board', part: 'board'})).toEqual({kind: 'all', name: '2026-11-24'});
+    expect(walkOfSet({name: 'knock-moved', part: 'moved'})).toEqual({kind: 'refresh', name: 'knock'});
+    expect(walkOfSet({name: 'board', part: 'board'})).toBeNull();
+  });
+
+  test('are the day, with a number from the second on', () => {
+    expect(freeName('2026-11-24', [])).toBe('2026-11-24');
+    expect(freeName('2026-11-24', [{kind: 'all', name: '2026-11-24'}, {kind: 'refresh', name: '2026-11-24-2'}])).toBe('2026-11-24-3');
+  });
+});
+
+test('what a step says twice is shown once', () => {
+  const findings = findingsIn([{text: 'LED 3 has moved by 7 mm', remedy: 'run weft calibrate update'}]);
+  expect(notesBeside(['LED 3 has moved by 7 mm. To do: run weft calibrate update.', 'one frame is dark'], findings)).toEqual(['one frame is dark']);
+});
