@@ -182,9 +182,10 @@ Level add_level(Options& options, const Option& session, SolveArguments& a) {
       "--explain", &a.explain,
       "Solve nothing: predict, from sample tiles, each level's mean error in degrees and its seconds here");
   options
-      .add("--crops", &a.crops,
-           "With --explain: folder for what each level made of the same 512 x 256 pixels, LEVEL_relit.png and "
-           "LEVEL_normal.png")
+      .add(
+          "--crops", &a.crops,
+          "With --explain: folder for what each level made of the same 512 x 256 pixels, LEVEL_relit.png and "
+          "LEVEL_normal.png")
       .needs(explain);
   const Option within = options
                             .add("--within", &a.wish.within_seconds,

@@ -219,8 +219,8 @@ Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& 
   return explain(std::move(loaded->photographs), watch.lap(), options, crops, context);
 }
 
-Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,
-                              const fs::path& crops, const JobContext& context) {
+Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options, const fs::path& crops,
+                              const JobContext& context) {
   const Result<PhotoPlan> plan = plan_photos(input);
   if (!plan) return plan.error();
   Stopwatch watch;

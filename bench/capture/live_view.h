@@ -17,9 +17,10 @@ struct LiveViewOptions {
 };
 
 /// How soon and how often a camera's finder shows something through CameraLink, and that a photograph between
-/// two rounds costs what it costs without. Rows: "first picture" (seconds, the longest of the rounds), "pictures"
-/// ("a_second", over all rounds), "photograph after live view" and "photograph" (seconds, medians); "asked" is
-/// what is asked for.
+/// two rounds costs what it costs without. Rows: "first picture" (seconds, the longest of the rounds),
+/// "pictures"
+/// ("a_second", over all rounds), "photograph after live view" and "photograph" (seconds, medians); "asked"
+/// is what is asked for.
 Result<Rows> capture_live_view_table(const LiveViewOptions& options);
 
 }  // namespace weft::bench

@@ -30,14 +30,16 @@ struct PageArguments {
 Result<Rows> measure(const PageArguments& a, bool quiet) {
   if (!is_there(kScript)) {
     return Error{ErrorKind::kNoInput, "the page cannot be measured here", kScript,
-                 "the scripts for the browser are not in this folder", "run it in a clone of weft: ./dev bench page"};
+                 "the scripts for the browser are not in this folder",
+                 "run it in a clone of weft: ./dev bench page"};
   }
   app::ProgressLine line(quiet);
   const TemporaryFolder scratch;
   std::vector<std::string> command = {"/usr/bin/env", "node", kScript};
   for (const int megapixels : a.megapixels) {
     const fs::path sessions = scratch.path() / std::to_string(megapixels);
-    if (Result<void> ok = write_wide_solve(sessions, wide_size(megapixels)); !ok) return std::move(ok).error();
+    if (Result<void> ok = write_wide_solve(sessions, wide_size(megapixels)); !ok)
+      return std::move(ok).error();
     command.push_back(sessions.string());
   }
   line.update("browser", 0);

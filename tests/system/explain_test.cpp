@@ -65,7 +65,8 @@ TEST_F(Explain, KeepsWhatEachLevelMadeOfItsCut) {
       EXPECT_EQ(info->size, (Size{160 / shrunk, 128 / shrunk})) << level;
     }
   }
-  EXPECT_EQ(run_weft({"solve", session_.string(), "--crops", crops.string()}).exit_code, 64) << "no --explain";
+  EXPECT_EQ(run_weft({"solve", session_.string(), "--crops", crops.string()}).exit_code, 64)
+      << "no --explain";
 }
 
 TEST_F(Explain, ForecastsTheErrorOfASmoothClothWithinAFactorOfTwo) {

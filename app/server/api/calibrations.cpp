@@ -126,16 +126,17 @@ Resource calibrations_resource(const RigParts& parts) {
     return Route{method, path, [&parts, handle](const Call& asked) { return handle(parts, asked); }, false,
                  pool};
   };
-  return {{call("GET", "/api/v1/calibrations", list_of_calibrations, Pool::kDisk),
-           call("GET", "/api/v1/calibrations/history", history_of_rig, Pool::kDisk),
-           call("POST", "/api/v1/calibrations/accept", accept, Pool::kDisk),
-           call("POST", "/api/v1/calibrations/work", begin_or_go_on, Pool::kDevices),
-           call(
-               "GET", "/api/v1/calibrations/work",
-               [](const RigParts& all, const Call&) { return json_reply(all.sets.document()); }, Pool::kQuick),
-           call("POST", "/api/v1/calibrations/work/photograph", photograph_next, Pool::kQuick),
-           call("POST", "/api/v1/calibrations/work/leave-out", leave_out_or_take_back, Pool::kDevices)},
-          calibrations_description()};
+  return {
+      {call("GET", "/api/v1/calibrations", list_of_calibrations, Pool::kDisk),
+       call("GET", "/api/v1/calibrations/history", history_of_rig, Pool::kDisk),
+       call("POST", "/api/v1/calibrations/accept", accept, Pool::kDisk),
+       call("POST", "/api/v1/calibrations/work", begin_or_go_on, Pool::kDevices),
+       call(
+           "GET", "/api/v1/calibrations/work",
+           [](const RigParts& all, const Call&) { return json_reply(all.sets.document()); }, Pool::kQuick),
+       call("POST", "/api/v1/calibrations/work/photograph", photograph_next, Pool::kQuick),
+       call("POST", "/api/v1/calibrations/work/leave-out", leave_out_or_take_back, Pool::kDevices)},
+      calibrations_description()};
 }
 
 }  // namespace weft::app

@@ -9,6 +9,7 @@
 #include "app/jobs/last_check.h"
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
+#include "app/server/api/scan_bill.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_choice.h"
 #include "core/calibration.h"
@@ -52,6 +53,16 @@ Result<SessionChoice> session_for(const RigParts& parts, const Json& body) {
   return choose_session(body, parts.rig, parts.library, std::chrono::system_clock::now());
 }
 
+/// What a scan would be; of a new one with its price.
+Json told_before(const RigParts& parts, const SessionChoice& choice) {
+  Json told = to_json(choice);
+  if (choice.resumed) return told;
+  told["bill"] = Json::array();
+  for (const BillLine& line : bill_of(choice.request, parts.keeper.pace_s()))
+    told["bill"].push_back(json_of(line));
+  return told;
+}
+
 Result<Json> begin_scan(const RigParts& parts, const Json& body, const std::string& by) {
   Result<SessionChoice> choice = session_for(parts, body);
   if (!choice) return std::move(choice).error();
@@ -74,7 +85,7 @@ Result<Reply> start_scan(const RigParts& parts, const Call& call) {
   if (!by) return by.error();
   if (const auto dry = body->find("dry_run"); dry != body->end() && *dry == true) {
     const Result<SessionChoice> choice = session_for(parts, *body);
-    return choice ? json_reply(to_json(*choice)) : Result<Reply>(choice.error());
+    return choice ? json_reply(told_before(parts, *choice)) : Result<Reply>(choice.error());
   }
   const Json id = body->value("request_id", Json(""));
   const Result<Json> begun = parts.scans.answer(id.is_string() ? id.get<std::string>() : "",

@@ -19,9 +19,9 @@ namespace {
 constexpr int kMostDepth = 32;
 constexpr std::size_t kMostFabricBytes = 200;
 constexpr std::array<std::string_view, 16> kFields = {
-    "session", "fabric", "cloth_height_mm", "metadata", "exposure_us", "iso",          "f_number",
-    "leds",    "repeat", "bracket",         "copy",     "dry_run",     "accept_moved", "polariser",
-    "below",   "request_id"};
+    "session",      "fabric",    "cloth_height_mm", "metadata",  "exposure_us", "iso",
+    "f_number",     "leds",      "repeat",          "bracket",   "copy",        "dry_run",
+    "accept_moved", "polariser", "below",           "request_id"};
 
 Error refuse(const std::string& where, std::string why, std::string remedy) {
   return {ErrorKind::kUsage, "the request cannot be used", where, std::move(why), std::move(remedy)};

@@ -28,9 +28,9 @@ struct TestShot {
   int id = 0;
   int led = 0;  ///< 0: none was lit
   double exposure_us = 0;
-  std::optional<FrameFile> frame;               ///< once it is taken
-  Size size = {};                               ///< of that
-  double suggested_us = 0;                      ///< exposure that a scan would be given by it; 0: nobody can tell
+  std::optional<FrameFile> frame;  ///< once it is taken
+  Size size = {};                  ///< of that
+  double suggested_us = 0;         ///< exposure that a scan would be given by it; 0: nobody can tell
   std::optional<capture::FocusStanding> focus;  ///< among those of its LED and exposure, one after another
   std::optional<Error> error;                   ///< why it is not
 };
@@ -159,8 +159,9 @@ class Attendance {
   std::jthread shooter_, watch_;
 };
 
-/// {"id", "led", "exposure_us", "state" (taking, taken, failed), "width", "height", "suggested_us", "clipped_rgb", "histogram", "focus",
-/// "error"}: of one that is taken the histogram is counted now, if it is not yet.
+/// {"id", "led", "exposure_us", "state" (taking, taken, failed), "width", "height", "suggested_us",
+/// "clipped_rgb", "histogram", "focus", "error"}: of one that is taken the histogram is counted now, if it is
+/// not yet.
 Json document_of(const TestShot& shot, FramePictures& pictures);
 
 /// {"open", "doing", "lit", "error"}.

@@ -10,8 +10,8 @@
 
 namespace weft::app {
 
-/// A deed that a client asks for by an id of its own, so that a click that comes twice is done once. Safe from
-/// any thread.
+/// A deed that a client asks for by an id of its own, so that a click that comes twice is done once. Safe
+/// from any thread.
 class Once {
  public:
   /// What `deed` answers; the last answer where this id asked for it. Without an id it is done each time.

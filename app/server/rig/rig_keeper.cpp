@@ -313,6 +313,7 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
     log_.add(cancelled ? "scan_cancelled" : "scan_failed", outcome.error().message(), std::move(record));
   }
   const std::lock_guard lock(mutex_);
+  if (outcome && is_scan && pace_held()) pace_s_ = pace_held();
   if (outcome) {
     status_.scan.phase = capture::ScanPhase::kComplete;
     status_.warnings = outcome->warnings;
@@ -334,11 +335,8 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
 RigStatus RigKeeper::status_locked() const {
   RigStatus status = status_;
   Attendance::Status attended = attendance_.status();
-  if (running_ && first_kept_ && status.scan.frames > first_frames_) {
-    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - *first_kept_;
-    status.left_s = passed.count() / (status.scan.frames - first_frames_) *
-                    (status.scan.frames_planned - status.scan.frames);
-  }
+  if (const auto pace_s = pace_held(); running_ && pace_s)
+    status.left_s = *pace_s * (status.scan.frames_planned - status.scan.frames);
   const bool is_finished = status.scan.phase == capture::ScanPhase::kComplete;
   status.can_go_on = !running_ && request_ && !is_finished;
   const bool is_free = status.state == RigStatus::State::kIdle || status.state == RigStatus::State::kFailed;
@@ -352,6 +350,18 @@ RigStatus RigKeeper::status_locked() const {
   status.lit = attended.lit;
   status.controls = controls_();
   return status;
+}
+
+/// Seconds a shot of the scan, once two of its frames were kept.
+std::optional<double> RigKeeper::pace_held() const {
+  if (!first_kept_ || status_.scan.frames <= first_frames_) return std::nullopt;
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - *first_kept_;
+  return passed.count() / (status_.scan.frames - first_frames_);
+}
+
+std::optional<double> RigKeeper::pace_s() const {
+  const std::lock_guard lock(mutex_);
+  return pace_s_;
 }
 
 RigStatus RigKeeper::status() const {

@@ -69,6 +69,8 @@ class RigKeeper {
   Result<void> cancel();
 
   RigStatus status() const;
+  /// Seconds a shot of the last scan that came to its end; none: nothing was scanned yet.
+  std::optional<double> pace_s() const;
   /// The name of the session being scanned; empty: none.
   std::string session() const;
 
@@ -89,6 +91,7 @@ class RigKeeper {
   void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome, bool is_scan);
   void log_once(const char* event, const std::string& why);
   RigStatus status_locked() const;
+  std::optional<double> pace_held() const;
   LedStatus* lit_shot_of(int led, ShotRole role, Polariser polariser);
   void tell_status_locked() { events_.add("status", to_json(status_locked(), rig_)); }
 
@@ -111,6 +114,7 @@ class RigKeeper {
   std::optional<capture::ScanRequest> request_;  ///< of the last scan; none: something else was done
   int first_frames_ = 0;                         ///< kept when the scan was first told of a frame
   std::optional<std::chrono::steady_clock::time_point> first_kept_;
+  std::optional<double> pace_s_;
   std::atomic<bool> pause_ = false;
   std::string logged_;  ///< the last trouble that log_once() wrote; the scan's own
   std::jthread scan_;
