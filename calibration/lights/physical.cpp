@@ -474,6 +474,8 @@ Eigen::MatrixXd Fit::inverse_of_normal_matrix() const {
 // rest, readings alone say 1 / told times what was found, and gains of mere flicker scatter by the root of
 // told. Sigmas are those of a normal as rare as Student's residual: of few shots a large one is not rare.
 void Fit::find_other_shot(const Eigen::MatrixXd& sigma) {
+  constexpr std::size_t kFewestSheets = 3;  // of two shots neither is the other one
+  if (p_.sheets.size() < kFewestSheets) return;
   const double variance = fit_.flicker * fit_.flicker;
   const auto told_of = [&](double* shot) {
     const Eigen::Index at = begin_.at(shot);

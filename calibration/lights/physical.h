@@ -79,7 +79,7 @@ struct LightFit {
   bool settled = false;  ///< whether one more step would change no parameter by a third of its sigma
   double flicker = 0;    ///< LightFitOptions::flicker as the readings show it
   bool flickers_too_much = false;                ///< kMostFlicker
-  std::optional<OtherShot> other_shot;           ///< the worst, where there is one
+  std::optional<OtherShot> other_shot;           ///< the worst, where there is one; from three sheets on
   std::vector<std::array<double, 3>> residuals;  ///< of each reading: log of measured over predicted
 
   double worst_position_sigma_mm() const;

@@ -285,8 +285,9 @@ CalibrationReport lights_report(const LightsEvidence& e, std::vector<Verdict> ve
   report.title = fmt::format("Lights of {}", e.rig);
   if (e.fit) {
     report.summary = fmt::format(
-        "{} LEDs from {} photographed sheets: positions to {:.2f} mm at worst, chi-square {:.2f}",
-        e.start.lights.leds.size(), e.captures.size(), e.fit->worst_position_sigma_mm(), e.fit->chi_square);
+        "{} LEDs from {} photographed {}: positions to {:.2f} mm at worst, chi-square {:.2f}",
+        e.start.lights.leds.size(), e.captures.size(), e.captures.size() == 1 ? "sheet" : "sheets",
+        e.fit->worst_position_sigma_mm(), e.fit->chi_square);
     if (e.predicted)
       report.summary += fmt::format(
           ", normals at 20 degrees of slope to {:.2f} degrees at the centre and {:.2f} in the corner",

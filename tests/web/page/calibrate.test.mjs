@@ -42,12 +42,6 @@ async function lay(rig, page, thing) {
   assert.match(await take(page), /taken/);
 }
 
-async function scan(rig, fabric) {
-  const {session} = await rig.ask('scan', {fabric, cloth_height_mm: 0.8});
-  for (let asked = 0; asked < 300 && (await rig.ask('rig')).phase !== 'complete'; asked++) await new Promise((resolve) => setTimeout(resolve, 100));
-  return session;
-}
-
 async function focal(page) {
   return parseFloat((await page.locator('[data-figure=focal_percent]').innerText()).replace(/^[^\d]+/, ''));
 }
@@ -103,10 +97,36 @@ test('photographs of a board are answered, counted and left out, and the set out
   }
 });
 
+test('after each sheet the page says what the lights would be so far', async () => {
+  const rig = await startRig();
+  try {
+    const visitor = await visit(browser, rig);
+    const page = await visitor.open(`${rig.address}/calibrate/all/first?step=lights`);
+    await begin(page, described(rig, 'sheet'));
+    assert.equal(await page.getByRole('region', {name: 'So far'}).count(), 0, 'nothing before there is a sheet');
+    const soFar = (sheets) => page.getByRole('region', {name: 'So far'}).getByText(sheets).waitFor({timeout: calculation_ms});
+    await lay(rig, page, 'sheet');
+    await soFar(/from 1 photographed sheet: positions to .* mm at worst/);
+    await lay(rig, page, 'sheet tilt=20 azimuth=0');
+    await lay(rig, page, 'sheet tilt=20 azimuth=180');
+    await soFar(/from 3 photographed sheets: positions to .* mm at worst/);
+    assert.deepEqual(await violations(page), []);
+    await picture(page, 'calibrate_so_far');
+    await page.reload();
+    await soFar(/from 3 photographed sheets/);
+    const {jobs} = await rig.ask('jobs?limit=10');
+    assert.deepEqual(jobs.map(({kind, wants}) => [kind, wants.output]), Array(3).fill(['calibrate_lights', undefined]), 'one a sheet');
+    await page.getByRole('button', {name: 'Enough: calculate with these'}).waitFor();
+    await visitor.leave();
+  } finally {
+    await rig.stop();
+  }
+});
+
 test('a rig that was knocked is brought back: seen, fitted, proven, accepted', async () => {
   const rig = await startRig({options: ['--first', 'knock camera x=3 turn=0.4', '--first', 'knock led 3 x=6 z=-4']});
   try {
-    const spoiled = await scan(rig, 'madder twill');
+    const spoiled = await rig.scan('madder twill');
     const visitor = await visit(browser, rig);
     const page = await visitor.open(`${rig.address}/calibrate`);
     await page.getByRole('button', {name: 'After a knock'}).click();

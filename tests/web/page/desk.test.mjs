@@ -2,18 +2,15 @@
 // The desk: frame, focus, scan, look, next; and the room that stays dark.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {launch, luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
-import {startRig} from './support/rig.mjs';
+import {luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
+import {setUp, takeDown} from './support/setting.mjs';
 
 const scanTakes_ms = 20_000;
 let browser, rig;
 before(async () => {
-  [browser, rig] = await Promise.all([launch(), startRig()]);
+  ({browser, rig} = await setUp());
 });
-after(async () => {
-  await browser?.close();
-  await rig?.stop();
-});
+after(() => takeDown(browser, rig));
 
 async function atTheDesk(visitor) {
   const page = await visitor.open(`${rig.address}/desk`);
@@ -52,6 +49,35 @@ test('the name to come follows the fabric, and counts on where there is one', as
   await page.getByText(/_red-satin_002$/).waitFor();
   await page.getByLabel('Fabric').fill('linen');
   await page.getByText(/_linen_001$/).waitFor();
+  await visitor.leave();
+});
+
+test('the bill of a scan follows what is asked of it, and the scan takes what was billed', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  const bill = page.getByRole('region', {name: 'What the scan takes'});
+  await page.keyboard.type('billed');
+  await bill.getByText(/^13 shots/).waitFor();
+  await bill.getByText('0.40° without, 0.0013° with').waitFor();
+  await page.getByLabel('Repeat').uncheck();
+  await bill.getByText(/^11 shots/).waitFor();
+  assert.equal(await bill.getByText('0.0013° with').count(), 0);
+  await page.getByLabel('Bracket').fill('0.25');
+  await bill.getByText(/^21 shots/).waitFor();
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'desk-bill');
+
+  await page.reload();
+  await page.getByLabel('Fabric').fill('billed');
+  await bill.getByText(/^21 shots/).waitFor();
+  assert.equal(await page.getByLabel('Repeat').isChecked(), false);
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Space');
+  await page.getByRole('region', {name: 'Last scan'}).waitFor({timeout: scanTakes_ms});
+  const {sessions: [billed]} = await rig.ask('sessions?query=billed');
+  const {frames} = await rig.ask(`sessions/${billed.name}`);
+  const count = (role) => frames.filter((frame) => frame.role === role).length;
+  assert.deepEqual(['lit', 'dark', 'repeat', 'bracket'].map(count), [10, 1, 0, 10]);
   await visitor.leave();
 });
 

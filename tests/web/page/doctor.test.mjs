@@ -2,17 +2,14 @@
 // The doctor: what is wrong, in words, with what mends it.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {launch, violations, visit} from './support/browser.mjs';
-import {startRig} from './support/rig.mjs';
+import {violations, visit} from './support/browser.mjs';
+import {setUp, takeDown} from './support/setting.mjs';
 
 let browser, rig;
 before(async () => {
-  [browser, rig] = await Promise.all([launch(), startRig()]);
+  ({browser, rig} = await setUp());
 });
-after(async () => {
-  await browser?.close();
-  await rig?.stop();
-});
+after(() => takeDown(browser, rig));
 
 test('a board that is gone is told of within five seconds with a remedy to copy, and is back when one asks again', async () => {
   await rig.inject('board unplug');

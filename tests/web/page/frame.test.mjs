@@ -2,18 +2,15 @@
 // What is around every screen: coming in, the connection, the tabs.
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
-import {launch, luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
-import {startRig} from './support/rig.mjs';
+import {luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
+import {setUp, takeDown} from './support/setting.mjs';
 
 const screens = ['desk', 'sessions', 'viewer', 'calibrate', 'jobs', 'doctor'];
 let browser, rig;
 before(async () => {
-  [browser, rig] = await Promise.all([launch('--host-resolver-rules=MAP rig.lan 127.0.0.1'), startRig({names: ['rig.lan'], token: true})]);
+  ({browser, rig} = await setUp({names: ['rig.lan'], token: true}, '--host-resolver-rules=MAP rig.lan 127.0.0.1'));
 });
-after(async () => {
-  await browser?.close();
-  await rig?.stop();
-});
+after(() => takeDown(browser, rig));
 
 /** Somebody who came in by the link. */
 async function enter(visitor, screen = 'desk', address = rig.address) {

@@ -6,32 +6,20 @@ import fs from 'node:fs';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
 import {promisify} from 'node:util';
-import {launch, picture, violations, visit} from './support/browser.mjs';
-import {root, startRig} from './support/rig.mjs';
+import {picture, violations, visit} from './support/browser.mjs';
+import {until, weft} from './support/rig.mjs';
+import {setUp, takeDown} from './support/setting.mjs';
 
 const run = promisify(execFile);
-const weft = path.join(process.env.WEFT_PROGRAMS ?? path.join(root, 'build/release/bin'), 'weft');
 const price_ms = 60_000;
 let browser, rig, session;
 before(async () => {
-  [browser, rig] = await Promise.all([launch(), startRig({megapixels: 0.1})]);
+  ({browser, rig} = await setUp({megapixels: 0.1}));
   await rig.inject('table cloth');
-  ({session} = await rig.ask('scan', {fabric: 'madder twill', cloth_height_mm: 0.8}));
-  await until(async () => (await rig.ask('rig')).phase === 'complete');
+  session = await rig.scan('madder twill');
   await until(async () => (await jobsOf('solve')).some((job) => job.state === 'done'));
 });
-after(async () => {
-  await browser?.close();
-  await rig?.stop();
-});
-
-async function until(isSo) {
-  for (let asked = 0; asked < 300; asked++) {
-    if (await isSo()) return;
-    await new Promise((resolve) => setTimeout(resolve, 100));
-  }
-  assert.fail('it never was so');
-}
+after(() => takeDown(browser, rig));
 
 async function jobsOf(kind) {
   return (await rig.ask('jobs?limit=50')).jobs.filter((job) => job.kind === kind);

@@ -4,33 +4,21 @@ import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
-import {launch, picture, violations, visit} from './support/browser.mjs';
-import {startRig} from './support/rig.mjs';
+import {picture, violations, visit} from './support/browser.mjs';
+import {until} from './support/rig.mjs';
+import {setUp, takeDown} from './support/setting.mjs';
 
 const many = 1000;
 const mostRows = 60;
 let browser, rig, scanned;
 before(async () => {
-  [browser, rig] = await Promise.all([launch(), startRig({megapixels: 0.1})]);
+  ({browser, rig} = await setUp({megapixels: 0.1}));
   await rig.inject('table cloth');
-  ({session: scanned} = await rig.ask('scan', {fabric: 'madder twill', cloth_height_mm: 0.8}));
-  await until(async () => (await rig.ask('rig')).phase === 'complete');
+  scanned = await rig.scan('madder twill');
   writeSessions(path.join(rig.folder, 'scans'));
   await until(async () => (await rig.ask('sessions?limit=1')).total === many + 2);
 });
-after(async () => {
-  await browser?.close();
-  await rig?.stop();
-});
-
-/** Asks until it is so. */
-async function until(isSo) {
-  for (let asked = 0; asked < 300; asked++) {
-    if (await isSo()) return;
-    await new Promise((resolve) => setTimeout(resolve, 100));
-  }
-  assert.fail('it never was so');
-}
+after(() => takeDown(browser, rig));
 
 function writeSession(folder, name, text) {
   fs.mkdirSync(path.join(folder, `${name}.weft`), {recursive: true});

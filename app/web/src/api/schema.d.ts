@@ -4196,6 +4196,18 @@ export interface components {
             /** @description false: no second copy though the rig file names a folder for one */
             copy?: boolean;
         };
+        BillLine: {
+            /** @enum {string} */
+            what: "lit" | "dark" | "repeat" | "bracket" | "polariser" | "below";
+            shots: number;
+            /** @description By the pace of the last scan; null: not known yet */
+            seconds: number | null;
+            /** @description One sentence */
+            for: string;
+            /** @description Error of normals without it, as docs/conditions.md measured it; null: it did not */
+            without_deg: number | null;
+            with_deg: number | null;
+        };
         Started: {
             session: string;
             /** @description It was there, unfinished */
@@ -4206,6 +4218,8 @@ export interface components {
             frames_planned?: number;
             /** @description Another unfinished session of the same cloth, which a scan of its name would finish; only where there is one */
             unfinished?: string;
+            /** @description Of a new session, only with dry_run: what each kind of shot costs, and what it is for */
+            bill?: components["schemas"]["BillLine"][];
         };
         Version: {
             weft: string;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Paints scenes where the browser has no WebGL 2: the daemon shades the tiles, a 2D canvas shows them.
 import {fetched} from '../api/client';
-import type {Painter} from './painter';
+import {Painter} from './painter';
 import {type Form, type Look, type Scene, type Sheet, type Side, addressOf, addressesOf, drawnOf} from './scene';
 import {TileStore} from './tile_store';
 import {type Tile, boxOnCanvas, repeats, tileBox} from './tiles';
@@ -44,13 +44,14 @@ export function pictureOf(side: Side, look: Look): {sheet: Sheet; form: Form} {
 /** A picture of the daemon knows its size by itself, so that only its bytes as texels are counted. */
 const BYTES_PER_PIXEL = 4;
 
-export class PlainPainter implements Painter {
-  private readonly store: TileStore<ImageBitmap>;
+export class PlainPainter extends Painter {
+  protected readonly store: TileStore<ImageBitmap>;
 
   constructor(
     private readonly context: CanvasRenderingContext2D,
     changed: () => void,
   ) {
+    super();
     this.store = new TileStore<ImageBitmap>(
       {
         load: async (address, signal) => createImageBitmap(await (await fetched(address, signal)).blob()),
@@ -59,22 +60,6 @@ export class PlainPainter implements Painter {
       },
       changed,
     );
-  }
-
-  get isComplete(): boolean {
-    return this.store.isComplete;
-  }
-
-  get failure(): unknown {
-    return this.store.failure;
-  }
-
-  retry(): void {
-    this.store.retry();
-  }
-
-  close(): void {
-    this.store.close();
   }
 
   paint(scene: Scene, canvas: Size): void {

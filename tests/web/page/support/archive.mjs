@@ -5,10 +5,9 @@ import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
 import {promisify} from 'node:util';
-import {firstLine, programs} from './rig.mjs';
+import {firstLine, weft} from './rig.mjs';
 
 const run = promisify(execFile);
-const weft = path.join(programs, 'weft');
 
 export class Archive {
   #daemon = null;

@@ -8,10 +8,10 @@ import {fileURLToPath} from 'node:url';
 import {promisify} from 'node:util';
 
 const run = promisify(execFile);
-export const root = fileURLToPath(new URL('../../../../', import.meta.url));
-export const programs = process.env.WEFT_PROGRAMS ?? path.join(root, 'build/release/bin');
+const root = fileURLToPath(new URL('../../../../', import.meta.url));
+const programs = process.env.WEFT_PROGRAMS ?? path.join(root, 'build/release/bin');
 const virtualRig = path.join(programs, 'weft-virtual-rig');
-const weft = path.join(programs, 'weft');
+export const weft = path.join(programs, 'weft');
 
 function readEnvironment(folder) {
   const lines = fs.readFileSync(path.join(folder, 'environment'), 'utf8').trim().split('\n');
@@ -28,6 +28,15 @@ export function firstLine(program) {
     });
     program.on('exit', (code) => reject(new Error(`it ended with ${code} before it said anything`)));
   });
+}
+
+/** Asks until it is so. */
+export async function until(isSo) {
+  for (let asked = 0; asked < 300; asked++) {
+    if (await isSo()) return;
+    await new Promise((resolve) => setTimeout(resolve, 100));
+  }
+  throw new Error('it never was so');
 }
 
 export class Rig {
@@ -71,6 +80,13 @@ export class Rig {
     const headers = {'Content-Type': 'application/json', ...(this.token && {Authorization: `Bearer ${this.token}`})};
     const response = await fetch(`${this.address}/api/v1/${call}`, body === undefined ? {headers} : {method: 'POST', headers, body: JSON.stringify(body)});
     return response.json();
+  }
+
+  /** Scans what lies on the table, and returns its session. */
+  async scan(fabric) {
+    const {session} = await this.ask('scan', {fabric, cloth_height_mm: 0.8});
+    await until(async () => (await this.ask('rig')).phase === 'complete');
+    return session;
   }
 
   /** What the camera's shutter was open for, from the rig's own diary. */

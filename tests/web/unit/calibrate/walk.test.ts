@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 import {describe, expect, test} from 'vitest';
 import {
-  currentStage, findingsIn, freeName, fromOf, isUnharmed, jobOf, madeBy, notesBeside, requestOf, stagesOf, standingOf, walkOfSet, walksIn,
+  currentStage, findingsIn, freeName, fromOf, isUnharmed, jobOf, madeBy, notesBeside, requestOf, stagesOf, standingOf, trialOf, walkOfSet, walksIn,
   type CheckResult, type Job, type Known, type Listed, type Stage, type Walk,
 } from '../../../../app/web/src/screens/calibrate/walk';
+import type {PhotographSet} from '../../../../app/web/src/screens/calibrate/photograph_set';
 
 const all: Walk = {kind: 'all', name: 'first'};
 const refresh: Walk = {kind: 'refresh', name: 'knock'};
@@ -16,8 +17,16 @@ function check(folder: string, passed: boolean): CheckResult {
   return {folder, date: '2026-11-21T10:00:00Z', calibration: '', passed, found: ''};
 }
 
-function job(kind: string, of: string, state: Job['state']): Job {
-  return {kind, of, state} as Job;
+/** One that is to write calibrations/NAME. */
+function job(kind: string, name: string, state: Job['state']): Job {
+  return {kind, wants: {output: `calibrations/${name}`}, state} as Job;
+}
+
+function sheets(...photographs: [name: string, used: boolean][]): PhotographSet {
+  return {
+    photographs: photographs.map(([name, used]) => ({name, used, left_out: false, why: '', facts: {}})),
+    next: {name: 'sheet05', kind: 'scan', says: '', pose: null},
+  } as Partial<PhotographSet> as PhotographSet;
 }
 
 const rigs = listed('calibration', {is_rigs: true});
@@ -83,20 +92,20 @@ describe('how a stage stands', () => {
   const camera = stage(all, 'camera');
 
   test('is what its job does until there is a result', () => {
-    const standing = (state: Job['state']) => standingOf(all, camera, {...bare, jobs: [job('calibrate_camera', 'sets/first-board', state)]});
+    const standing = (state: Job['state']) => standingOf(all, camera, {...bare, jobs: [job('calibrate_camera', 'first-camera', state)]});
     expect([standing('queued'), standing('running'), standing('failed'), standing('cancelled')]).toEqual(['working', 'working', 'failed', 'open']);
   });
 
   test('is told by a job that is done before anybody listed its result', () => {
     const standing = (exit_code: number) => {
-      const done = {...job('check', 'sets/first-check', 'done'), exit_code};
+      const done = {...job('check', 'first-check', 'done'), exit_code};
       return standingOf(all, stage(all, 'check'), {...bare, jobs: [done]});
     };
     expect([standing(0), standing(65)]).toEqual(['done', 'found']);
   });
 
   test('is done once its folder is there, whatever a job said', () => {
-    const jobs = [job('calibrate_camera', 'sets/first-board', 'failed')];
+    const jobs = [job('calibrate_camera', 'first-camera', 'failed')];
     expect(standingOf(all, camera, {calibrations: [listed('calibrations/first-camera')], checks: [], jobs})).toBe('done');
   });
 
@@ -104,9 +113,31 @@ describe('how a stage stands', () => {
     expect(standingOf(all, stage(all, 'check'), {...bare, checks: [check('calibrations/first-check', false)]})).toBe('found');
   });
 
-  test('is of the newest job of its own photographs', () => {
-    const jobs = [job('check', 'sets/other-check', 'running'), job('check', 'sets/first-check', 'failed'), job('check', 'sets/first-check', 'done')];
+  test('is of the newest job of its own folder', () => {
+    const jobs = [job('check', 'other-check', 'running'), job('check', 'first-check', 'failed'), job('check', 'first-check', 'done')];
     expect(jobOf(all, stage(all, 'check'), {...bare, jobs})).toBe(jobs[1]);
+  });
+});
+
+describe('a trial of the lights', () => {
+  const lights = stage(all, 'lights');
+  const known = {...bare, calibrations: [rigs, listed('calibrations/first-response')]};
+
+  test('is of the sheets that are used, by the result before, and writes nothing', () => {
+    expect(trialOf(all, lights, sheets(['sheet01', true], ['sheet02', false], ['sheet03', true]), known)).toEqual({
+      kind: 'calibrate_lights', input: 'sets/first-sheet', from: 'calibrations/first-response', request_id: 'first-sheet.sheet01.sheet03',
+    });
+  });
+
+  test('is none before a sheet is used, nor once no more is wanted, nor of another stage', () => {
+    expect(trialOf(all, lights, sheets(['sheet01', false]), known)).toBeNull();
+    expect(trialOf(all, lights, {...sheets(['sheet01', true]), next: null}, known)).toBeNull();
+    expect(trialOf(all, stage(all, 'check'), sheets(['turned', true]), known)).toBeNull();
+  });
+
+  test('leaves the stage as it was', () => {
+    const trial = {...job('calibrate_lights', '', 'done'), of: 'sets/first-sheet', wants: {input: 'sets/first-sheet'}};
+    expect(standingOf(all, lights, {...known, jobs: [trial]})).toBe('open');
   });
 });
 

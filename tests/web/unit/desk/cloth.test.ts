@@ -3,20 +3,26 @@ import {expect, test} from 'vitest';
 import {scanRequestOf, tagsOf} from '../../../../app/web/src/screens/desk/cloth';
 
 const unsaid = {fabric: 'wool', id: '', tags: '', height_mm: '', exposure_ms: ''};
+const shots = {repeat: true, bracket: ''};
 
 test('what is not said is left to the rig file', () => {
-  expect(scanRequestOf({...unsaid, fabric: ' wool '})).toEqual({fabric: 'wool'});
+  expect(scanRequestOf({...unsaid, fabric: ' wool '}, shots)).toEqual({fabric: 'wool', repeat: true});
 });
 
 test('a height of zero is said', () => {
-  expect(scanRequestOf({...unsaid, height_mm: '0'})).toEqual({fabric: 'wool', cloth_height_mm: 0});
+  expect(scanRequestOf({...unsaid, height_mm: '0'}, shots).cloth_height_mm).toBe(0);
 });
 
 test('numbers may have a comma, and milliseconds become microseconds', () => {
-  expect(scanRequestOf({...unsaid, height_mm: '1,5', exposure_ms: '12.5'})).toEqual({fabric: 'wool', cloth_height_mm: 1.5, exposure_us: 12500});
+  expect(scanRequestOf({...unsaid, height_mm: '1,5', exposure_ms: '12.5'}, shots)).toMatchObject({cloth_height_mm: 1.5, exposure_us: 12500});
 });
 
 test('a barcode and tags are metadata', () => {
-  expect(scanRequestOf({...unsaid, id: ' 4006 ', tags: 'red, ,raw '}).metadata).toEqual({id: '4006', tags: ['red', 'raw']});
+  expect(scanRequestOf({...unsaid, id: ' 4006 ', tags: 'red, ,raw '}, shots).metadata).toEqual({id: '4006', tags: ['red', 'raw']});
   expect(tagsOf('')).toEqual([]);
+});
+
+test('that there is no repeat is said, and a bracket where there is one', () => {
+  expect(scanRequestOf(unsaid, {repeat: false, bracket: '0,25'})).toEqual({fabric: 'wool', repeat: false, bracket: 0.25});
+  expect(scanRequestOf(unsaid, {repeat: false, bracket: ' '})).not.toHaveProperty('bracket');
 });

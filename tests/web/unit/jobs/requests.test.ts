@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+import {webcrypto} from 'node:crypto';
 import {describe, expect, test} from 'vitest';
 import {Requests} from '../../../../app/web/src/screens/jobs/requests';
+
+globalThis.crypto ??= webcrypto as Crypto;  // Node 18 has it by import alone
 
 const solve = {kind: 'solve', session: 'satin', quality: 'fast'};
 const never = () => false;

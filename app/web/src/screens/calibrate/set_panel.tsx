@@ -23,11 +23,13 @@ interface Choice {
 
 interface SetPanelProps {
   set: PhotographSet;
+  /** What the photographs by now would give. */
+  soFar: ComponentChildren;
   /** What can be made of the photographs that there are. */
   children?: ComponentChildren;
 }
 
-export function SetPanel({set, children}: SetPanelProps) {
+export function SetPanel({set, soFar, children}: SetPanelProps) {
   const [complaint, complain] = useState<ApiError | null>(null);
   const {answered, begin} = useAnswer(set);
   const choices = useRef<Choice[]>([]);
@@ -73,6 +75,7 @@ export function SetPanel({set, children}: SetPanelProps) {
       <div class="known">
         <Figures figures={figuresOf(set)} />
         {coverage && <CoverageMap coverage={coverage} />}
+        {soFar}
         <h3>Photographs <span class="count">{set.photographs.length}</span></h3>
         <Photographs set={set} onLeaveOut={choose} />
       </div>

@@ -3,6 +3,7 @@
 // file: sets/NAME-..., calibrations/NAME-...; so any browser goes on with it.
 import type {Schemas} from '../../api/client';
 import {textIn} from '../../ui/fields';
+import type {PhotographSet} from './photograph_set';
 
 export type Listed = Schemas['ListedCalibration'];
 export type Job = Schemas['Job'];
@@ -127,10 +128,10 @@ export function folderOf(walk: Walk, stage: Stage): string {
   return `calibrations/${walk.name}-${stage.result}`;
 }
 
-/** The newest job of a stage; null: there was none. */
+/** The newest job that is to write a stage's folder; null: there was none. */
 export function jobOf(walk: Walk, stage: Stage, known: Known): Job | null {
-  const of = `sets/${setOf(walk, stage)}`;
-  return known.jobs.find((job) => job.kind === stage.job && job.of === of) ?? null;
+  const folder = folderOf(walk, stage);
+  return known.jobs.find((job) => job.kind === stage.job && textIn(job.wants, 'output') === folder) ?? null;
 }
 
 export function standingOf(walk: Walk, stage: Stage, known: Known): Standing {
@@ -187,15 +188,28 @@ function isListed(folder: string, known: Known): boolean {
   return known.calibrations.some((each) => each.folder === folder);
 }
 
-export function requestOf(walk: Walk, stage: Stage, known: Known): JobRequest {
+function inputsOf(walk: Walk, stage: Stage, known: Known): JobRequest {
   const set = `sets/${setOf(walk, stage)}`;
   const from = fromOf(walk, stage, known);
   return {
     kind: stage.job,
     ...(stage.part === 'moved' ? {moved: set} : {input: set}),
     ...(from === null ? {} : {from}),
-    output: folderOf(walk, stage),
   };
+}
+
+export function requestOf(walk: Walk, stage: Stage, known: Known): JobRequest {
+  return {...inputsOf(walk, stage, known), output: folderOf(walk, stage)};
+}
+
+/**
+ * What the sheets by now would give of the lights, while more are wanted: a job that writes nothing. The same sheets are
+ * the same job, whoever looks. Null: there is nothing to be told.
+ */
+export function trialOf(walk: Walk, stage: Stage, set: PhotographSet, known: Known): JobRequest | null {
+  const used = set.photographs.filter((photograph) => photograph.used).map(({name}) => name);
+  if (stage.part !== 'sheet' || set.next === null || used.length === 0) return null;
+  return {...inputsOf(walk, stage, known), request_id: [setOf(walk, stage), ...used].join('.')};
 }
 
 /** Of a walk that was begun: all results beside the rig file that carry a walk's name, the newest first. */

@@ -8,9 +8,10 @@ import {Acceptance} from './acceptance';
 import {Begin} from './begin';
 import {Calculation} from './calculation';
 import {SetPanel} from './set_panel';
+import {SoFar} from './so_far';
 import {complaint, isKnown, known, work} from './state';
 import {
-  currentStage, hasResult, isUnharmed, madeBy, setOf, stagesOf, standingOf, type Stage, type Standing, type Walk,
+  currentStage, hasResult, isUnharmed, madeBy, setOf, stagesOf, standingOf, trialOf, type Stage, type Standing, type Walk,
 } from './walk';
 
 const marks: Record<Standing, {verdict: Verdict; says: string}> = {
@@ -69,11 +70,13 @@ function StagePanel({walk, stage}: {walk: Walk; stage: Stage}) {
   const isOver = hasResult(standing);
   const isToPhotograph = !isOver && !stage.isPhotographed;
   const isBegun = set?.photographs.some((photograph) => photograph.used) ?? false;
+  const trial = set && trialOf(walk, stage, set, known.value);
+  const soFar = trial && <SoFar key={trial.request_id} trial={trial} />;
   const calculation = <Calculation walk={walk} stage={stage} isEnough={stage.isPhotographed ?? set?.done ?? false} />;
   return (
     <>
       {isToPhotograph && set === null && <Begin walk={walk} stage={stage} />}
-      {isToPhotograph && set !== null && <SetPanel set={set}>{isBegun && calculation}</SetPanel>}
+      {isToPhotograph && set !== null && <SetPanel set={set} soFar={soFar}>{isBegun && calculation}</SetPanel>}
       {!isToPhotograph && calculation}
       {isOver && <Next walk={walk} />}
     </>

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is said of the next cloth, and what its scan would be called.
+// What is said of the next cloth, and what its scan would be called and take.
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
-import {cloth, proposal, say} from './cloth';
+import {BillView} from './bill_view';
+import {cloth, say} from './cloth';
+import {bracket, repeats} from './preferences';
+import {proposal} from './proposal';
 
 /** The name of what a scan would make, or of what it would go on with. */
 function Proposed() {
@@ -14,6 +17,19 @@ function Proposed() {
       <span class="dim">{would.resumed ? `Goes on with (${would.frames ?? 0} of ${would.frames_planned ?? 0} photographs)` : 'Next session'}</span>
       <strong>{would.session}</strong>
       {would.unfinished && <span class="dim">An unfinished one of this cloth is there: {would.unfinished}</span>}
+    </div>
+  );
+}
+
+/** Kept from cloth to cloth. */
+function MoreShots({onSaid}: {onSaid: () => void}) {
+  return (
+    <div class="pair">
+      <label class="check">
+        <input type="checkbox" checked={repeats.value} onChange={(event) => { repeats.value = event.currentTarget.checked; }} />
+        Repeat
+      </label>
+      <Field label="Bracket" type="number" unit="×" placeholder="none" value={bracket.value} onInput={(value) => { bracket.value = value; }} onEnter={onSaid} />
     </div>
   );
 }
@@ -30,6 +46,8 @@ export function ClothForm({onSaid, hasFocus}: {onSaid: () => void; hasFocus: boo
         <Field label="Height" type="number" unit="mm" placeholder="as the rig" value={height_mm} onInput={(value) => say({height_mm: value})} onEnter={onSaid} />
         <Field label="Exposure" type="number" unit="ms" placeholder="metered" value={exposure_ms} onInput={(value) => say({exposure_ms: value})} onEnter={onSaid} />
       </div>
+      <MoreShots onSaid={onSaid} />
+      {proposal.value.would?.bill && <BillView bill={proposal.value.would.bill} />}
     </form>
   );
 }

@@ -4,8 +4,8 @@ import {effect, signal} from '@preact/signals';
 import {answer, api, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
 import {rig} from '../../state/rig';
-import {cloth, scanRequestOf} from './cloth';
 import {withDevicesFree} from './devices';
+import {scanRequest} from './proposal';
 
 export type Session = Schemas['Session'];
 export type Frame = Schemas['Frame'];
@@ -21,7 +21,7 @@ function requestId(): string {
 
 /** One press is one scan, however long the daemon takes to say that it began. */
 export async function beginScan(reason: string): Promise<void> {
-  const request = {...scanRequestOf(cloth.value), request_id: requestId()};
+  const request = {...scanRequest.value, request_id: requestId()};
   const body = reason === '' ? request : {...request, accept_moved: reason};
   await withDevicesFree(() => answer(api.POST('/api/v1/scan', {body})));
 }

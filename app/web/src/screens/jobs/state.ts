@@ -53,9 +53,9 @@ function isOver(id: string): boolean {
   return jobs.value.some((job) => job.id === id && hasEnded(job));
 }
 
-/** Asks for a job and shows it at once. The same again is the same job until that has ended. */
+/** Asks for a job and shows it at once. The same again is the same job until that has ended; one with an id, for good. */
 export async function queueJob(request: Schemas['JobRequest']): Promise<Job> {
-  const request_id = requests.idOf(request, isOver);
+  const request_id = request.request_id ?? requests.idOf(request, isOver);
   try {
     const job = await answer(api.POST('/api/v1/jobs', {body: {...request, request_id}}));
     requests.answered(request, job.id);

@@ -2,7 +2,8 @@
 // A canvas that shows the scene of a viewer: by WebGL, or by pictures of the daemon where there is none.
 import {effect, type Signal, signal} from '@preact/signals';
 import {type ApiError, asApiError} from '../../api/client';
-import {GlPainter, type Painter} from '../../gl/painter';
+import {GlPainter} from '../../gl/gl_painter';
+import type {Painter} from '../../gl/painter';
 import {PlainPainter} from '../../gl/plain_painter';
 import type {Viewer} from './viewer';
 
