@@ -179,7 +179,6 @@ Entry read_entry(const Found& found) {
   return entry;
 }
 
-
 // Paths may hold bytes that are no UTF-8.
 std::string text_of(const Error& error) {
   return weft::json_of(error).dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -66,9 +66,13 @@ struct RigServer::State {
     const Result<Calibration> calibration = read_calibration(request.session / "calibration");
     if (!calibration || !calibration->camera || !calibration->lights || !calibration->response) return;
     const std::string session = request.session.string(), name = request.session.stem().string();
-    const Result<JobStatus> job =
-        jobs->add({"solve", name, {"solve", session, "--quality", "preview"}, kScan, "", {session},
-                   {{"session", name}, {"quality", "preview"}}});
+    const Result<JobStatus> job = jobs->add({"solve",
+                                             name,
+                                             {"solve", session, "--quality", "preview"},
+                                             kScan,
+                                             "",
+                                             {session},
+                                             {{"session", name}, {"quality", "preview"}}});
     if (!job) {
       log.add("preview_failed", job.error().message(), {{"session", name}});
     } else {
@@ -94,8 +98,8 @@ struct RigServer::State {
     jobs = std::move(*opened);
     keeper.on_busy([this](bool is_busy) { jobs->hold(is_busy); });
     if (previews) keeper.on_scanned([this](const capture::ScanRequest& request) { solve_preview(request); });
-    parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, attendance, screens, scans, sets, framing, controls,
-                           *jobs, *library, views, pixels, guard});
+    parts.emplace(RigParts{rig, lock.folder(), keeper, pictures, attendance, screens, scans, sets, framing,
+                           controls, *jobs, *library, views, pixels, guard});
     return {};
   }
 

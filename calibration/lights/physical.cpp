@@ -474,8 +474,6 @@ Eigen::MatrixXd Fit::inverse_of_normal_matrix() const {
 // rest, readings alone say 1 / told times what was found, and gains of mere flicker scatter by the root of
 // told. Sigmas are those of a normal as rare as Student's residual: of few shots a large one is not rare.
 void Fit::find_other_shot(const Eigen::MatrixXd& sigma) {
-  constexpr std::size_t kFewestSheets = 3;  // of two shots neither is the other one
-  if (p_.sheets.size() < kFewestSheets) return;
   const double variance = fit_.flicker * fit_.flicker;
   const auto told_of = [&](double* shot) {
     const Eigen::Index at = begin_.at(shot);
@@ -503,7 +501,7 @@ void Fit::find_covariance() {
   find_normal_matrix();
   Eigen::MatrixXd sigma = inverse_of_normal_matrix();
   const Eigen::Index size = sigma.rows();
-  find_other_shot(sigma);
+  if (p_.sheets.size() > 2) find_other_shot(sigma);  // of two shots neither is the other one
   for (LedParameters& led : p_.leds) {  // what is held at its bound would not follow a step below it
     double& along = gradient_[begin_[&led.mu]];
     if (led.mu == 0) along = std::min(along, 0.0);

@@ -15,8 +15,8 @@ inline constexpr const char* kJobFiles = "{files}";
 
 /// What a job is to do: a verb of weft with its arguments, as a process of its own.
 struct JobSpec {
-  std::string kind;                     ///< "solve", "rectify", "calibrate lights", ...
-  std::string of;                       ///< what it works on, for people: the name of a session
+  std::string kind;  ///< "solve", "rectify", "calibrate lights", ...
+  std::string of;    ///< what it works on, for people: the name of a session
   /// Of weft: {"solve", "/data/a.weft", "--quality", "robust"}. kJobFiles stands for a folder of its own.
   std::vector<std::string> arguments;
   std::string by;                       ///< who asked for it
@@ -33,9 +33,9 @@ struct JobStatus {
   std::string id;  ///< "000042", in the order they were asked for
   JobSpec spec;
   JobState state = JobState::kQueued;
-  bool is_held = false;  ///< it runs, and waits until a scan lets it go on
+  bool is_held = false;      ///< it runs, and waits until a scan lets it go on
   std::optional<int> place;  ///< among those that wait, from 1
-  std::string phase;     ///< of a running one, as its verb calls it; and how much of it is done
+  std::string phase;         ///< of a running one, as its verb calls it; and how much of it is done
   double share = 0;
   std::optional<double> left_s;  ///< by how long the last job like it took; of the phase where there was none
   std::string asked, began, ended;  ///< ISO 8601; empty: not yet
@@ -46,8 +46,8 @@ struct JobStatus {
   Json result;                     ///< the document that its verb prints with --json; null until it is done
 };
 
-/// {"id", "kind", "of", "wants", "by", "state", "held", "place", "phase", "share", "left_s", "asked", "began", "ended",
-/// "seconds", "exit_code", "notes", "error", "result"}.
+/// {"id", "kind", "of", "wants", "by", "state", "held", "place", "phase", "share", "left_s", "asked",
+/// "began", "ended", "seconds", "exit_code", "notes", "error", "result"}.
 Json json_of(const JobStatus& job);
 
 /// A job as it lies on the disk (weft.job/1): json_of() with "arguments", "request_id" and "needs". kBadData.

@@ -131,6 +131,16 @@ TEST(PhysicalLights, AreRefusedWhereALedWasAnotherInOneShot) {
   }
 }
 
+TEST(PhysicalLights, CallNeitherOfTwoShotsTheOtherOne) {
+  PaperCaptures captures = small_captures(test::common_rig());
+  captures.start.sheets.resize(2);
+  std::erase_if(captures.readings, [](const PaperReading& reading) { return reading.sheet >= 2; });
+  for (PaperReading& reading : captures.readings) {
+    for (double& value : reading.reading_rgb) value *= reading.sheet == 1 && reading.led == 3 ? 1.03 : 1;
+  }
+  EXPECT_FALSE(fitted(captures).other_shot);
+}
+
 TEST(PhysicalLights, HaveTheSameCovarianceWhereverMemoryLies) {
   const PaperCaptures captures = small_captures(test::common_rig());
   const std::vector<double> first = fitted(captures).covariance.matrix;
