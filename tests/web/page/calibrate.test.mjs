@@ -8,8 +8,8 @@ import {launch, picture, violations, visit} from './support/browser.mjs';
 import {startRig} from './support/rig.mjs';
 
 const isSoak = process.env.WEFT_SOAK !== undefined;
-const photograph_ms = 30_000;
-const calculation_ms = 60_000;
+const photograph_ms = 60_000;
+const calculation_ms = 120_000;
 let browser;
 before(async () => { browser = await launch(); });
 after(async () => { await browser?.close(); });

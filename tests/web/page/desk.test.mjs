@@ -5,7 +5,7 @@ import {after, before, test} from 'node:test';
 import {luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
-const scanTakes_ms = 20_000;
+const scanTakes_ms = 60_000;
 let browser, rig;
 before(async () => {
   ({browser, rig} = await setUp());

@@ -11,7 +11,7 @@ import {until, weft} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
 const run = promisify(execFile);
-const price_ms = 60_000;
+const price_ms = 120_000;
 let browser, rig, session;
 before(async () => {
   ({browser, rig} = await setUp({megapixels: 0.1}));

@@ -13,7 +13,7 @@ const flags = [
   '--disable-background-networking', '--disable-component-update', '--disable-sync',
 ];
 const axe = fs.readFileSync(new URL('../../node_modules/axe-core/axe.min.js', import.meta.url), 'utf8');
-const impatience_ms = 15_000;
+const impatience_ms = 40_000;  // tiles are cut after everything else that a machine does
 
 /** Files from a folder have no address, and from there a browser lets nobody ask this machine. */
 const fromFolder = process.env.WEFT_DIST ? ['--disable-features=LocalNetworkAccessChecks'] : [];
