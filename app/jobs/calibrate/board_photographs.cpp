@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <optional>
-#include <ranges>
 #include <utility>
 
 #include "app/jobs/linear_image.h"
@@ -141,13 +140,13 @@ Result<Picture> read_picture(const fs::path& file, Size size) {
 double full_share(const RawFrame& frame, const calibration::BoardSighting& board) {
   const auto across = [](const calibration::BoardCorner& c) { return c.px.x; };
   const auto down = [](const calibration::BoardCorner& c) { return c.px.y; };
-  const auto [left, right] = std::ranges::minmax(board.corners | std::views::transform(across));
-  const auto [top, bottom] = std::ranges::minmax(board.corners | std::views::transform(down));
+  const auto [left, right] = std::ranges::minmax(board.corners, {}, across);
+  const auto [top, bottom] = std::ranges::minmax(board.corners, {}, down);
   const auto [width, height] = frame.counts.size();
-  const int x0 = std::clamp(static_cast<int>(left), 0, width),
-            x1 = std::clamp(static_cast<int>(right), x0, width);
-  const int y0 = std::clamp(static_cast<int>(top), 0, height),
-            y1 = std::clamp(static_cast<int>(bottom), y0, height);
+  const int x0 = std::clamp(static_cast<int>(left.px.x), 0, width),
+            x1 = std::clamp(static_cast<int>(right.px.x), x0, width);
+  const int y0 = std::clamp(static_cast<int>(top.px.y), 0, height),
+            y1 = std::clamp(static_cast<int>(bottom.px.y), y0, height);
   double full = 0;
   for (int y = y0; y < y1; ++y) {
     for (int x = x0; x < x1; ++x) full += frame.counts(x, y) >= frame.white ? 1 : 0;
