@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "calibration/camera/bundle.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -139,6 +140,12 @@ double step_of(const std::string& parameter) {
   if (parameter.starts_with("camera_from_rig_rotation")) return kTurnStep;
   if (parameter.starts_with("camera_from_rig_translation_mm")) return kShiftStep_mm;
   return parameter[0] == 'k' || parameter[0] == 'p' ? 1e-4 : 1e-2;
+}
+
+double rms_of(const std::vector<PixelPoint>& residuals) {
+  double sum = 0;
+  for (const PixelPoint& r : residuals) sum += r.x * r.x + r.y * r.y;
+  return std::sqrt(sum / std::max<double>(1, static_cast<double>(residuals.size())));
 }
 
 }  // namespace weft::calibration

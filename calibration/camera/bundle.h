@@ -38,6 +38,8 @@ Pose pose_by_opencv(const BoardView& view, const CameraModel& camera);
 /// Seen less predicted, by corner.
 std::vector<PixelPoint> residuals_of(const BoardView& view, const CameraModel& camera,
                                      const Pose& camera_from_board, double board_z_mm);
+/// Root of their mean square length; 0 of none.
+double rms_of(const std::vector<PixelPoint>& residuals);
 
 /// A focal length, principal point or distortion term by its name; null for any other.
 double* number_of(CameraModel& camera, const std::string& parameter);

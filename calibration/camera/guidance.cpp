@@ -209,12 +209,6 @@ double likeness(const Pose& a, const Pose& b) {
   return std::max(0.0, 1 - std::max(turned_deg / 10, moved / 0.1));
 }
 
-double rms_of(const std::vector<PixelPoint>& residuals) {
-  double sum = 0;
-  for (const PixelPoint& r : residuals) sum += r.x * r.x + r.y * r.y;
-  return std::sqrt(sum / std::max<double>(1, static_cast<double>(residuals.size())));
-}
-
 /// The camera as far as it is known, above the board on the table or where `start` has it.
 CameraModel standing_over_the_table(const Bundle& bundle, const CameraModel& start,
                                     std::optional<std::size_t> table, double thickness_mm) {

@@ -152,12 +152,6 @@ std::optional<Terms> choose_terms(const std::vector<const BoardView*>& views, co
   return chosen;
 }
 
-double rms_of(const std::vector<PixelPoint>& residuals) {
-  double sum = 0;
-  for (const PixelPoint& r : residuals) sum += r.x * r.x + r.y * r.y;
-  return std::sqrt(sum / static_cast<double>(std::max<std::size_t>(residuals.size(), 1)));
-}
-
 // Noise of a corner along x or y, as the residuals of a fit with k1 and k2 show it.
 double sigma_of(const std::vector<const BoardView*>& views, const Bundle& bundle) {
   double squares = 0, freedom = -6;

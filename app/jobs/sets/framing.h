@@ -34,7 +34,7 @@ struct FramedShape {
 struct KnownFrame {
   CameraModel camera;
   double width_mm = 0, height_mm = 0;  ///< of the table in sight, along the frame's middle lines
-  FrameGrid light;  ///< mean over LEDs of what reaches the level table, of the brightest cell's; 0 to 1
+  FrameGrid light;  ///< what level white cloth reads over all LEDs, of the brightest cell's; 0 to 1
   /// Predicted error of a normal 20 degrees steep, degrees; where calibrate lights has told.
   FrameGrid normal_deg;
   std::vector<Fiducial> fiducials;

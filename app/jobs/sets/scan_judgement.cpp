@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -11,7 +10,7 @@
 
 #include "app/jobs/calibrate/chart_pictures.h"
 #include "calibration/color/chart.h"
-#include "calibration/lights/sheet.h"
+#include "calibration/lights/paper_evenness.h"
 #include "capture/raw/decode.h"
 #include "capture/scan/histogram.h"
 #include "core/calibration.h"
@@ -24,76 +23,11 @@ using calibration::ChartSide;
 /// A lamp whose light is subtracted still flickers, and takes a share of the counts.
 constexpr double kMostRoom = 0.05;
 constexpr int kEachOf = 3;
-constexpr int kSquaresAcross = 60;
-constexpr double kUneven = 0.03;  // of a square's reading, beside a smooth surface
-constexpr std::size_t kFewestSquares = 100;
-constexpr Eigen::Index kFewestUneven = 3;  // squares
 
 const Shot* first_of(const Session& session, ShotRole role) {
   const auto found = std::ranges::find_if(
       session.shots, [role](const Shot& shot) { return shot.role == role && !shot.superseded_by; });
   return found == session.shots.end() ? nullptr : &*found;
-}
-
-/// A square of a photograph that shows nothing but paper, u and v in [-1, 1] over the frame.
-struct PaperSquare {
-  double x_px = 0, y_px = 0, u = 0, v = 0;
-  double log_reading = 0;
-};
-
-/// Mean of the green photosites of a square over black; 0 where it is not above black.
-double green_mean(const RawFrame& frame, int x0, int y0, int side) {
-  double sum = 0;
-  int count = 0;
-  for (int y = y0; y < y0 + side; ++y) {
-    for (int x = x0; x < x0 + side; ++x) {
-      if (frame.cfa.channel_at(x, y) != 1) continue;
-      sum +=
-          frame.counts(x, y) -
-          static_cast<double>(frame.black[static_cast<std::size_t>(y & 1)][static_cast<std::size_t>(x & 1)]);
-      ++count;
-    }
-  }
-  return sum > 0 ? sum / count : 0;
-}
-
-std::vector<PaperSquare> paper_squares(const RawFrame& frame, const CameraModel& camera,
-                                       const TaggedSheet& sheet, const calibration::SheetPose& pose) {
-  const Size size = frame.counts.size();
-  const int side = std::max(size.width / kSquaresAcross & ~1, 8);
-  std::vector<PaperSquare> squares;
-  for (int y = 0; y + side <= size.height; y += side) {
-    for (int x = 0; x + side <= size.width; x += side) {
-      const double cx = x + 0.5 * (side - 1), cy = y + 0.5 * (side - 1);
-      if (!calibration::shows_paper(camera, sheet.sheet, pose.rig_from_sheet, cx, cy, side)) continue;
-      const double mean = green_mean(frame, x, y, side);
-      if (mean > 0)
-        squares.push_back({cx, cy, 2 * cx / size.width - 1, 2 * cy / size.height - 1, std::log(mean)});
-    }
-  }
-  return squares;
-}
-
-/// What is left of each square's logarithm beside a smooth surface of third order, fitted to those that are
-/// near it.
-Eigen::VectorXd beside_smooth(const std::vector<PaperSquare>& squares) {
-  constexpr int kTerms = 10, kRounds = 3;
-  const auto count = static_cast<Eigen::Index>(squares.size());
-  Eigen::MatrixXd terms(count, kTerms);
-  Eigen::VectorXd values(count), weights = Eigen::VectorXd::Ones(count),
-                                 beside = Eigen::VectorXd::Zero(count);
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const auto& [x, y, u, v, value] = squares[static_cast<std::size_t>(i)];
-    terms.row(i) << 1, u, v, u * u, u * v, v * v, u * u * u, u * u * v, u * v * v, v * v * v;
-    values(i) = value;
-  }
-  for (int round = 0; round < kRounds; ++round) {
-    const Eigen::VectorXd surface =
-        (weights.asDiagonal() * terms).householderQr().solve(weights.asDiagonal() * values);
-    beside = values - terms * surface;
-    for (Eigen::Index i = 0; i < count; ++i) weights(i) = std::abs(beside(i)) < kUneven ? 1 : 0.01;
-  }
-  return beside;
 }
 
 /// The sum of every third LED's photograph, linear.
@@ -143,20 +77,14 @@ std::string unevenness_of(const Session& session, const CameraModel& camera, con
     if (shot.role != ShotRole::kLit || shot.superseded_by || lit++ % kEachOf != 0) continue;
     const Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
     if (!frame) return frame.error().message();
-    const std::vector<PaperSquare> squares = paper_squares(*frame, camera, sheet, pose);
-    if (squares.size() < kFewestSquares) continue;
-    const Eigen::VectorXd beside = beside_smooth(squares);
-    const auto uneven = (beside.array().abs() > kUneven).count();
-    if (uneven < kFewestUneven) continue;
-    Eigen::Index worst = 0;
-    beside.cwiseAbs().maxCoeff(&worst);
-    const PaperSquare& there = squares[static_cast<std::size_t>(worst)];
+    const auto uneven = calibration::find_unevenness(*frame, camera, sheet.sheet, pose.rig_from_sheet);
+    if (!uneven) continue;
     return fmt::format(
         "the paper is not smooth: under LED {} it is {:.0f} percent {} around ({:.0f}, {:.0f}) than it "
-        "should be; "
-        "a fold, a stain or a shadow",
-        shot.led, 100 * std::abs(std::expm1(beside(worst))), beside(worst) > 0 ? "brighter" : "darker",
-        there.x_px, there.y_px);
+        "should "
+        "be; a fold, a stain or a shadow",
+        shot.led, 100 * std::abs(uneven->departure), uneven->departure > 0 ? "brighter" : "darker",
+        uneven->at.x, uneven->at.y);
   }
   return "";
 }

@@ -16,9 +16,7 @@ namespace weft::app {
 /// Why the room is too bright, from the dark photograph; empty: it is dark, or nobody photographed it so.
 std::string lamp_in(const Session& session);
 
-/// Why a sheet's paper is not smooth, by two of its lit photographs: a fold is brighter under one LED and
-/// darker under another, a stain darker under all; empty: it is smooth. Light itself changes slowly over the
-/// paper.
+/// Why a sheet's paper is not smooth, by every third LED's photograph; empty: it is.
 std::string unevenness_of(const Session& session, const CameraModel& camera, const TaggedSheet& sheet,
                           const calibration::SheetPose& pose);
 

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <numbers>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "app/jobs/calibrate/sheet_files.h"
@@ -275,6 +276,12 @@ constexpr std::array kMoved = {
     WantedSheet{"tilted", 20, 0, "tilt the sheet by 20 degrees: raise its left edge"},
     WantedSheet{"turned", 20, 90, "tilt the sheet by 20 degrees: raise the edge towards you"}};
 
+std::span<const WantedSheet> wanted_by(SetPart part) {
+  if (part == SetPart::kSheet) return kSheets;
+  if (part == SetPart::kCheck) return kChecks;
+  return kMoved;
+}
+
 /// Where a sheet lies that the first lit frame of a session shows.
 Result<calibration::SheetPose> sheet_in(const fs::path& folder, const TaggedSheet& sheet,
                                         const CameraModel& camera) {
@@ -408,14 +415,9 @@ Result<SetStanding> SetGuide::look_at_sheets(const PhotographSet& set) {
              (set.part == SetPart::kSheet ? lies_as(wanted, p) : p.name.starts_with(wanted.name));
     });
   };
-  const auto next_of = [&](const auto& wanted) {
-    for (const WantedSheet& each : wanted) {
-      if (!standing.next && !has(each)) standing.next = step_to(each, unfinished_or_free(set, each.name));
-    }
-  };
-  if (set.part == SetPart::kSheet) next_of(kSheets);
-  if (set.part == SetPart::kCheck) next_of(kChecks);
-  if (set.part == SetPart::kMoved) next_of(kMoved);
+  for (const WantedSheet& each : wanted_by(set.part)) {
+    if (!standing.next && !has(each)) standing.next = step_to(each, unfinished_or_free(set, each.name));
+  }
   standing.is_done = !standing.next;
   add_left_out(set, standing);
   return standing;

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "calibration/camera/finder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "calibration/camera/picture.h"
+
+namespace weft::calibration {
+
+std::optional<Image<std::uint8_t>> finder_picture(const std::string& jpeg) {
+  if (jpeg.empty()) return std::nullopt;
+  const cv::Mat bytes(1, static_cast<int>(jpeg.size()), CV_8UC1,
+                      const_cast<char*>(jpeg.data()));  // NOLINT: OpenCV only reads it
+  const cv::Mat small = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+  if (small.empty()) return std::nullopt;
+  Image<std::uint8_t> picture({2 * small.cols, 2 * small.rows});
+  cv::Mat large = mat_of(picture.plane());
+  cv::resize(small, large, large.size(), 0, 0, cv::INTER_CUBIC);
+  return picture;
+}
+
+std::optional<TagOffsets> offsets_of(std::span<const TagSighting> tags, Size size, const CameraModel& camera,
+                                     std::span<const Fiducial> fiducials) {
+  TagOffsets offsets;
+  double squares = 0;
+  for (const TagSighting& tag : tags) {
+    const auto fiducial = std::ranges::find_if(fiducials, [&](const Fiducial& each) {
+      return each.id == tag.id && each.dictionary == tag.dictionary;
+    });
+    if (fiducial == fiducials.end()) continue;
+    ++offsets.tags;
+    for (std::size_t i = 0; i < tag.corners_px.size(); ++i) {
+      const PixelPoint share = share_of(tag.corners_px[i], size);
+      const Vec3 belongs = fiducial->corners_mm[i];
+      const Vec3 seen = point_on_plane(camera, share.x * camera.size.width - 0.5,
+                                       share.y * camera.size.height - 0.5, belongs.z);
+      squares += dot(seen - belongs, seen - belongs);
+    }
+  }
+  if (offsets.tags == 0) return std::nullopt;
+  offsets.rms_mm = std::sqrt(squares / (4 * offsets.tags));
+  return offsets;
+}
+
+std::vector<PixelPoint> outline_of(std::span<const BoardCorner> corners, Size size) {
+  std::vector<cv::Point2f> points, hull;
+  for (const BoardCorner& corner : corners)
+    points.emplace_back(static_cast<float>(corner.px.x), static_cast<float>(corner.px.y));
+  cv::convexHull(points, hull, /*clockwise=*/false);  // OpenCV says so of a y that rises
+  std::vector<PixelPoint> outline;
+  for (const cv::Point2f& p : hull) outline.push_back(share_of({p.x, p.y}, size));
+  return outline;
+}
+
+}  // namespace weft::calibration
