@@ -100,14 +100,12 @@ class Meter {
   Result<MeteredShot> try_led(int led) {
     Brightness seen;
     for (int i = 0; i < kMostTries; ++i) {
-      Result<Brightness> shot = shoot_(led, exposure_us_);
-      if (!shot) return shot.error();
-      seen = *shot;
-      const bool is_full = seen.clipped > kMostClippedByMeter || seen.brightest > kReadableTo;
-      if (!is_full && seen.bright >= kReadableFrom) return MeteredShot{led, exposure_us_, seen};
-      const double step =
-          is_full ? kStepDown : std::min(kMostStepUp, 0.5 * kMeteredTo / std::max(seen.brightest, 1e-4));
-      const double next_us = settable(std::min(step * exposure_us_, longest_us_));
+      const Result<Brightness> brightness = shoot_(led, exposure_us_);
+      if (!brightness) return brightness.error();
+      seen = *brightness;
+      const MeteredShot shot = {led, exposure_us_, seen};
+      if (shot.is_readable()) return shot;
+      const double next_us = settable(std::min(shot.next_us(), longest_us_));
       if (next_us == exposure_us_) break;
       exposure_us_ = next_us;
     }
@@ -139,6 +137,21 @@ class Meter {
 };
 
 }  // namespace
+
+bool MeteredShot::is_full() const {
+  return seen.clipped > kMostClippedByMeter || seen.brightest > kReadableTo;
+}
+
+bool MeteredShot::is_readable() const {
+  return !is_full() && seen.bright >= kReadableFrom;
+}
+
+double MeteredShot::next_us() const {
+  if (is_readable()) return longest_us();
+  const double step =
+      is_full() ? kStepDown : std::min(kMostStepUp, 0.5 * kMeteredTo / std::max(seen.brightest, 1e-4));
+  return step * exposure_us;
+}
 
 double MeteredShot::longest_us() const {
   return exposure_us * std::min(kMeteredTo / seen.bright, kMeteredBelow / std::max(seen.brightest, 1e-9));

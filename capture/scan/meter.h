@@ -20,14 +20,19 @@ inline constexpr double kMeteredTo = 0.8;
 /// All but one in 100 000 stay below this one.
 inline constexpr double kMeteredBelow = 0.95;
 
-/// A test shot that was neither full nor dark.
+/// A test shot, and how bright it is.
 struct MeteredShot {
   int led = 0;
   double exposure_us = 0;
   Brightness seen;
 
+  bool is_full() const;
+  /// Neither full nor too dark: longest_us() holds.
+  bool is_readable() const;
   /// The longest exposure at which the cloth under this LED stays below both limits.
   double longest_us() const;
+  /// What to try next: longest_us(), or a shorter or longer one where this shot cannot be read.
+  double next_us() const;
 };
 
 struct Metering {

@@ -36,14 +36,6 @@ bool may_pass(const Error& error) {
   return error.kind == ErrorKind::kTryAgain || error.kind == ErrorKind::kProtocol;
 }
 
-/// As the meter of a scan takes it; of one that is full a quarter of its exposure, of a dark one nothing.
-double suggested_us(const TestShot& shot, const capture::Brightness& seen) {
-  constexpr double kMostFull = 1e-3, kLeastBright = 0.002, kStepDown = 0.25;
-  if (shot.led == 0 || seen.bright < kLeastBright) return 0;
-  if (seen.clipped > kMostFull) return kStepDown * shot.exposure_us;
-  return capture::MeteredShot{shot.led, shot.exposure_us, seen}.longest_us();
-}
-
 /// Where the rig's calibration knows it.
 std::optional<capture::PhotositeNoise> noise_of(const capture::Rig& rig) {
   const fs::path folder = capture::calibration_now(rig);
@@ -339,7 +331,10 @@ void Attendance::look_at(TestShot& shot) {
   const Result<RawFrame> frame = capture::decode_raw(shot.frame->file);
   if (!frame) return;
   shot.size = frame->counts.size();
-  shot.suggested_us = suggested_us(shot, capture::brightness_of(*frame));
+  if (shot.led > 0) {
+    shot.suggested_us =
+        capture::MeteredShot{shot.led, shot.exposure_us, capture::brightness_of(*frame)}.next_us();
+  }
   if (shot.led != series_led_ || shot.exposure_us != series_us_) series_ = {};
   series_led_ = shot.led;
   series_us_ = shot.exposure_us;
@@ -474,7 +469,7 @@ Json document_of(const TestShot& shot, FramePictures& pictures) {
                                           : "taking"},
                    {"width", shot.size.width},
                    {"height", shot.size.height},
-                   {"suggested_us", shot.suggested_us > 0 ? Json(shot.suggested_us) : Json()},
+                   {"suggested_us", shot.suggested_us ? Json(*shot.suggested_us) : Json()},
                    {"clipped_rgb", Json()},
                    {"histogram", Json()},
                    {"focus", shot.focus ? to_json(*shot.focus) : Json()},

@@ -28,9 +28,9 @@ struct TestShot {
   int id = 0;
   int led = 0;  ///< 0: none was lit
   double exposure_us = 0;
-  std::optional<FrameFile> frame;  ///< once it is taken
-  Size size = {};                  ///< of that
-  double suggested_us = 0;         ///< exposure that a scan would be given by it; 0: nobody can tell
+  std::optional<FrameFile> frame;      ///< once it is taken
+  Size size = {};                      ///< of that
+  std::optional<double> suggested_us;  ///< what the meter of a scan would try next; none without a LED
   std::optional<capture::FocusStanding> focus;  ///< among those of its LED and exposure, one after another
   std::optional<Error> error;                   ///< why it is not
 };
