@@ -5,7 +5,6 @@
 #include <array>
 #include <chrono>
 #include <cmath>
-#include <cstdint>
 #include <utility>
 #include <variant>
 
@@ -21,6 +20,7 @@
 #include "core/iso_time.h"
 #include "core/lights.h"
 #include "core/solve.h"
+#include "library/session_files.h"
 #include "report/preview.h"
 
 namespace weft::app {
@@ -115,16 +115,7 @@ Result<Calibrated> calibration_of(const Viewed& viewed) {
                "its calibration has no camera", "calibrate the camera with weft calibrate camera"};
 }
 
-std::int64_t bytes_in(const fs::path& folder) {
-  std::int64_t sum = 0;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    if (entry.is_regular_file(ignored)) sum += static_cast<std::int64_t>(entry.file_size(ignored));
-  }
-  return sum;
-}
-
-/// Maps carry no dates: it was made when its folder was.
+/// Maps carry no dates: when their document was written.
 std::string created(const fs::path& folder) {
   std::error_code ignored;
   const auto written = fs::last_write_time(folder / kSolveProduct.document, ignored);
@@ -150,7 +141,7 @@ Json summary_of(const SolveFacts& solve, const fs::path& folder) {
   for (const Verdict& verdict : solve.warnings) warnings.push_back(verdict.name);
   return {{"id", solve.id},
           {"created", created(folder)},
-          {"bytes", bytes_in(folder)},
+          {"bytes", library::bytes_below(folder)},
           {"method", solve.method},
           {"width", solve.size.width},
           {"height", solve.size.height},
