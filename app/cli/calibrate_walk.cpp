@@ -41,70 +41,46 @@ struct WalkArguments {
   bool trap = false, once = false, enough = false, yes = false;
 };
 
+using Job = Result<CalibrateOutcome> (*)(const fs::path& set, const fs::path& from, const fs::path& output,
+                                         const JobContext& context);
+
 /// Photographs, and what is made of them.
 struct Stage {
   const char* part;
   const char* result;  ///< what its folder ends with; null: photographs for the stage after it
   fs::path description;
-  /// Of the set in a folder, by a calibration, into another folder.
-  Result<CalibrateOutcome> (*job)(const fs::path& set, const fs::path& from, const fs::path& output,
-                                  const JobContext& context);
+  Job job;  ///< of the set in a folder, by a calibration, into another folder
 };
 
-template <typename JobOptions>
-JobOptions options_of(const fs::path& set, const fs::path& from, const fs::path& output) {
+/// A job whose options name a set, a calibration and an output.
+template <auto kInput, auto kJob, typename JobOptions>
+Result<CalibrateOutcome> of_set(const fs::path& set, const fs::path& from, const fs::path& output,
+                                const JobContext& context) {
   JobOptions options;
+  options.*kInput = set;
+  options.from = from;
+  options.output = output;
+  return kJob(options, context);
+}
+
+constexpr Job camera = of_set<&CalibrateCameraOptions::input, calibrate_camera, CalibrateCameraOptions>,
+              lights = of_set<&CalibrateLightsOptions::input, calibrate_lights, CalibrateLightsOptions>,
+              color = of_set<&CalibrateColorOptions::input, calibrate_color, CalibrateColorOptions>,
+              proof = of_set<&CalibrateCheckOptions::input, calibrate_check, CalibrateCheckOptions>,
+              moved = of_set<&CheckRigOptions::session, calibrate_check_rig, CheckRigOptions>,
+              update = of_set<&CalibrateUpdateOptions::session, calibrate_update, CalibrateUpdateOptions>;
+
+/// With the black trap of the same walk, where there is one.
+Result<CalibrateOutcome> response(const fs::path& set, const fs::path& from, const fs::path& output,
+                                  const JobContext& context) {
+  CalibrateResponseOptions options;
   options.input = set;
   options.from = from;
   options.output = output;
-  return options;
-}
-
-Result<CalibrateOutcome> camera(const fs::path& set, const fs::path& from, const fs::path& output,
-                                const JobContext& context) {
-  return calibrate_camera(options_of<CalibrateCameraOptions>(set, from, output), context);
-}
-
-Result<CalibrateOutcome> response(const fs::path& set, const fs::path& from, const fs::path& output,
-                                  const JobContext& context) {
-  auto options = options_of<CalibrateResponseOptions>(set, from, output);
   const std::string name = set.filename().string();
   const fs::path trap = set.parent_path() / (name.substr(0, name.rfind('-')) + "-trap");
   if (is_there(trap)) options.trap = trap;
   return calibrate_response(options, context);
-}
-
-Result<CalibrateOutcome> lights(const fs::path& set, const fs::path& from, const fs::path& output,
-                                const JobContext& context) {
-  return calibrate_lights(options_of<CalibrateLightsOptions>(set, from, output), context);
-}
-
-Result<CalibrateOutcome> color(const fs::path& set, const fs::path& from, const fs::path& output,
-                               const JobContext& context) {
-  return calibrate_color(options_of<CalibrateColorOptions>(set, from, output), context);
-}
-
-Result<CalibrateOutcome> proof(const fs::path& set, const fs::path& from, const fs::path& output,
-                               const JobContext& context) {
-  return calibrate_check(options_of<CalibrateCheckOptions>(set, from, output), context);
-}
-
-Result<CalibrateOutcome> moved(const fs::path& set, const fs::path& from, const fs::path& output,
-                               const JobContext& context) {
-  CheckRigOptions options;
-  options.session = set;
-  options.from = from;
-  options.output = output;
-  return calibrate_check_rig(options, context);
-}
-
-Result<CalibrateOutcome> update(const fs::path& set, const fs::path& from, const fs::path& output,
-                                const JobContext& context) {
-  CalibrateUpdateOptions options;
-  options.session = set;
-  options.from = from;
-  options.output = output;
-  return calibrate_update(options, context);
 }
 
 constexpr const char *kCheck = "check", *kMoved = "moved";

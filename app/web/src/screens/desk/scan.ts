@@ -69,22 +69,15 @@ export function followScanned(): () => void {
   };
 }
 
-/** The newest solve of a session; null: none yet. */
-export async function newestSolve(session: string): Promise<string | null> {
-  const {current_solve} = await sessionSummary(session);
+/** The current solve of a session; null: none yet. */
+export async function currentSolve(session: string): Promise<string | null> {
+  const {current_solve} = await answer(api.GET('/api/v1/sessions/{name}', {params: {path: {name: session}}}));
   return current_solve || null;
 }
 
-async function sessionSummary(session: string): Promise<Schemas['Summary']> {
-  const {sessions} = await answer(api.GET('/api/v1/sessions', {params: {query: {query: session}}}));
-  const found = sessions.find(({name}) => name === session);
-  if (!found) throw new Error(`the library does not have ${session} yet`);
-  return found;
-}
-
-/** Calls `changed` with the newest solve of a session, now and when one is done; returns what ends that. */
+/** Calls `changed` with the current solve of a session, now and when one is done; returns what ends that. */
 export function followSolve(session: string, changed: (solve: string | null) => void): () => void {
-  const askNow = () => newestSolve(session).then(changed, () => changed(null));
+  const askNow = () => currentSolve(session).then(changed, () => changed(null));
   void askNow();
   return onEvent('job', (job) => {
     if (job.of === session && job.kind === 'solve' && job.state === 'done') void askNow();
