@@ -76,9 +76,8 @@ Run add_check(Options& options) {
   const Option input = options.add("input", &a->input, "Session of a sheet, or a folder of sessions");
   options
       .add("--session", session.get(),
-           "Any scan that shows tags, white patches or the sheet; or a folder of scans of the sheet in "
-           "several "
-           "poses (weft capture moved)")
+           "Any scan that shows tags, white patches or the sheet; or a folder of scans of the sheet "
+           "in several poses (weft capture moved)")
       .excludes(input);
   add_evidence(options, a->from, a->sheet,
                "sheet.toml of the sheet in the pictures; default that beside them, with --session no sheet",
@@ -105,9 +104,8 @@ Run add_update(Options& options) {
   const auto a = std::make_shared<CalibrateUpdateOptions>();
   options
       .add("session", &a->session,
-           "A scan after the move that shows tags, white patches or the sheet; or a folder of scans of the "
-           "sheet in "
-           "several poses (weft capture moved)")
+           "A scan after the move that shows tags, white patches or the sheet; or a folder of scans "
+           "of the sheet in several poses (weft capture moved)")
       .required();
   add_evidence(options, a->from, a->sheet, "sheet.toml of the sheet in the pictures; default no sheet",
                a->paper_delta);
@@ -115,10 +113,13 @@ Run add_update(Options& options) {
   return run_step(options, [a](const JobContext& context) { return calibrate_update(*a, context); });
 }
 
-/// Has the daemon of the rig solve those again that were taken after a move.
-Result<void> solve_again(const std::vector<AffectedSession>& affected,
+/// Has the daemon of the rig solve those again that were taken after a move. `folder`: where the rig file
+/// lies, else it is looked for as always.
+Result<void> solve_again(const std::vector<AffectedSession>& affected, const std::filesystem::path& folder,
                          const std::filesystem::path& calibration) {
-  const Result<capture::Rig> rig = capture::read_rig(find_rig({}));
+  const std::filesystem::path file = folder / "rig.toml";
+  const Result<capture::Rig> rig =
+      capture::read_rig(find_rig(is_there(file) ? file : std::filesystem::path()));
   if (!rig) return rig.error();
   const Result<std::optional<std::string>> owner = address_of_owner(*rig);
   if (!owner) return owner.error();
@@ -128,19 +129,19 @@ Result<void> solve_again(const std::vector<AffectedSession>& affected,
   }
   const Result<RigClient> daemon = connect_to_owner(*rig, **owner);
   if (!daemon) return daemon.error();
-  const std::string folder =
+  const std::string below =
       absolute_folder(calibration).lexically_relative(absolute_folder(rig->file.parent_path())).string();
   int queued = 0;
   for (const AffectedSession& each : affected) {
     if (!each.after_move) continue;
     const Result<Json> job =
         daemon->post("/api/v1/jobs",
-                     {{"kind", "solve"}, {"session", each.folder.stem().string()}, {"calibration", folder}});
+                     {{"kind", "solve"}, {"session", each.folder.stem().string()}, {"calibration", below}});
     if (!job) return job.error();
     ++queued;
   }
   note(fmt::format("{} of {} sessions are solved again by {}; the others were perhaps taken before the move",
-                   queued, affected.size(), folder));
+                   queued, affected.size(), below));
   return {};
 }
 
@@ -160,7 +161,7 @@ Run add_history(Options& options) {
     Result<CalibrationHistory> history = calibrate_history(*a, context);
     if (!history) return std::move(history).error();
     if (!calibration->empty()) {
-      if (Result<void> queued = solve_again(history->affected, *calibration); !queued)
+      if (Result<void> queued = solve_again(history->affected, a->rig, *calibration); !queued)
         return std::move(queued).error();
     }
     return CalibrateOutcome{a->output, {}, std::move(history->report), std::move(history->warnings)};

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -46,8 +47,8 @@ using Job = Result<CalibrateOutcome> (*)(const fs::path& set, const fs::path& fr
 
 /// Photographs, and what is made of them.
 struct Stage {
-  const char* part;
-  const char* result;  ///< what its folder ends with; null: photographs for the stage after it
+  std::string_view part;
+  std::string_view result;  ///< what its folder ends with; empty: photographs for the stage after it
   fs::path description;
   Job job;  ///< of the set in a folder, by a calibration, into another folder
 };
@@ -83,11 +84,11 @@ Result<CalibrateOutcome> response(const fs::path& set, const fs::path& from, con
   return calibrate_response(options, context);
 }
 
-constexpr const char *kCheck = "check", *kMoved = "moved";
+constexpr std::string_view kCheck = "check", kMoved = "moved";
 
 std::vector<Stage> stages_of_all(const WalkArguments& a) {
   std::vector<Stage> stages = {{"board", "camera", a.board, camera}};
-  if (a.trap) stages.push_back({"trap", nullptr, "", nullptr});
+  if (a.trap) stages.push_back({"trap", "", "", nullptr});
   stages.push_back({"response", "response", "", response});
   stages.push_back({"sheet", "lights", a.sheet, lights});
   if (!a.chart.empty()) stages.push_back({"chart", "color", a.chart, color});
@@ -123,7 +124,7 @@ class Walk {
     if (Result<void> ok = check_described(stages); !ok) return std::move(ok).error();
     fs::path calibration = rig_.scan.calibration;
     for (const Stage& stage : stages) {
-      if (stage.result == nullptr) {
+      if (stage.result.empty()) {
         const Result<bool> is_complete = photograph(stage, calibration);
         if (!is_complete) return is_complete.error();
         if (!*is_complete) return kDone;
@@ -134,8 +135,8 @@ class Walk {
         const Result<std::optional<CalibrateOutcome>> done = take(stage, calibration, result);
         if (!done) return done.error();
         if (!*done) return kDone;  // a person stopped here
-        if (stage.result == kCheck && !(*done)->report.verdicts.empty()) return kBadDataError;
       }
+      if (stage.result == kCheck && !has_passed(result)) return failed(result);
       if (stage.result == kMoved && has_passed(result)) return kDone;
       if (stage.result != kMoved && stage.result != kCheck) calibration = result;
     }
@@ -143,7 +144,12 @@ class Walk {
   }
 
  private:
-  fs::path result_of(const std::string& name, const char* part) const {
+  Error failed(const fs::path& check) const {
+    return {ErrorKind::kBadData, "the calibration did not pass its check", check.string(),
+            "its report says where it fails", "mend that, then begin again under another --name"};
+  }
+
+  fs::path result_of(const std::string& name, std::string_view part) const {
     return folder_ / "calibrations" / fmt::format("{}-{}", name, part);
   }
   fs::path set_of(const Stage& stage) const {
@@ -169,7 +175,7 @@ class Walk {
   /// Whether every board and sheet is described that is not photographed yet.
   Result<void> check_described(const std::vector<Stage>& stages) const {
     for (const Stage& stage : stages) {
-      const std::string part = stage.part;
+      const std::string part(stage.part);
       const bool needs_none = part == "trap" || part == "response" || part == "chart";
       if (needs_none || is_there(set_of(stage)) || !stage.description.empty()) continue;
       if (!newest_description(folder_ / "sets", *set_part_of(part)).empty()) continue;
@@ -183,7 +189,7 @@ class Walk {
 
   /// Whether all photographs of a set are there.
   Result<bool> photograph(const Stage& stage, const fs::path& from) {
-    if (!common_.json) print(fmt::format("-- {} --", stage.result != nullptr ? stage.result : stage.part));
+    if (!common_.json) print(fmt::format("-- {} --", stage.result.empty() ? stage.part : stage.result));
     if (!devices_) {
       auto opened = OpenedDevices::open(rig_);
       if (!opened) return opened.error();
@@ -192,7 +198,7 @@ class Walk {
     SetCapture capture(devices_->client(), common_, [&] { tell_so_far(stage, from); });
     const fs::path description = is_there(set_of(stage)) ? fs::path() : stage.description;
     const std::string name = set_of(stage).filename().string();
-    if (Result<void> begun = capture.begin({stage.part, name, description, from}); !begun)
+    if (Result<void> begun = capture.begin({std::string(stage.part), name, description, from}); !begun)
       return begun.error();
     if (!a_.once && !a_.enough) return capture.converse(stop_on_signal());
     if (std::exchange(is_enough_, false)) return true;
@@ -205,7 +211,7 @@ class Walk {
 
   /// What the sheets that there are say of the LEDs. One that contradicts the others is told at once.
   void tell_so_far(const Stage& stage, const fs::path& from) const {
-    if (stage.part != std::string("sheet") || common_.json) return;
+    if (stage.part != "sheet" || common_.json) return;
     const Result<CalibrateOutcome> outcome =
         lights(set_of(stage), from, {}, {common_.threads, stop_on_signal()});
     if (outcome) {

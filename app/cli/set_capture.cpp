@@ -73,6 +73,10 @@ Json taken_by(const Json& set, const std::string& step) {
 
 Result<void> SetCapture::took(Result<Json> document) {
   if (!document) return std::move(document).error();
+  if (document->is_null()) {
+    return Error{ErrorKind::kTryAgain, "the set is worked on no more", "calibrations/work",
+                 "the daemon began anew", "give the same command again: the set is as it was"};
+  }
   set_ = std::move(*document);
   return {};
 }
@@ -124,9 +128,8 @@ Result<void> SetCapture::wait(const std::stop_token& stop) {
 
 Result<bool> SetCapture::converse(const std::stop_token& stop) {
   note(
-      "Enter: take it; u: leave the last one out; x NAME: leave one out; b NAME: take it back; e: enough, go "
-      "on "
-      "with what there is; q: stop here, the same command goes on later");
+      "Enter: take it; u: leave the last one out; x NAME: leave one out; b NAME: take it back; e: enough, "
+      "go on with what there is; q: stop here, the same command goes on later");
   while (!is_complete()) {
     print_progress();
     const std::optional<std::string> line = typed_line(stop);

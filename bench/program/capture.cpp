@@ -28,8 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct CaptureArguments {
-  std::string part =
-      "scans";  ///< board, camera, live, scans: of a running rig; the others: of what they start
+  std::string part = "scans";  ///< board, camera, live and scans are of a running rig
   fs::path rig;
   int runs = 0;  ///< commands, shots, scans or runs; 0: as many as docs/reliability.md
   fs::path scene = "testdata/scenes/satin.toml";
@@ -114,10 +113,8 @@ app::Run add_capture(app::Options& options) {
   options
       .add("--part", &a->part,
            "board, camera, live, scans: of the rig of --rig; faults: the fault matrix, on virtual rigs that "
-           "it "
-           "starts; evidence: what light tells of LEDs; focus: how well a photograph tells blur; minutes: "
-           "what "
-           "each further minute of calibrating takes away")
+           "it starts; evidence: what light tells of LEDs; focus: how well a photograph tells blur; "
+           "minutes: what each further minute of calibrating takes away")
       .one_of({"board", "camera", "live", "scans", "faults", "evidence", "focus", "minutes"})
       .shows_default();
   options.add("--rig", &a->rig, "Rig file; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");

@@ -167,9 +167,8 @@ Result<void> look_at(const fs::path& file, const BoardFolderOptions& options, Bo
     photograph.left_out = fmt::format("{}: {}", name_of(sighting.fault), sighting.why);
   } else if (const double full = picture->raw ? full_share(*picture->raw, sighting) : 0; full > kMostFull) {
     photograph.left_out = fmt::format(
-        "too bright: {:.0f} percent of the board are as bright as the camera can count, and white that is "
-        "full "
-        "grows into black",
+        "too bright: {:.0f} percent of the board are as bright as the camera can count, and white "
+        "that is full grows into black",
         100 * full);
   }
   if (!photograph.of_table) return {};

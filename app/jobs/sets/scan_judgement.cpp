@@ -80,9 +80,8 @@ std::string unevenness_of(const Session& session, const CameraModel& camera, con
     const auto uneven = calibration::find_unevenness(*frame, camera, sheet.sheet, pose.rig_from_sheet);
     if (!uneven) continue;
     return fmt::format(
-        "the paper is not smooth: under LED {} it is {:.0f} percent {} around ({:.0f}, {:.0f}) than it "
-        "should "
-        "be; a fold, a stain or a shadow",
+        "the paper is not smooth: under LED {} it is {:.0f} percent {} around ({:.0f}, {:.0f}) than "
+        "it should be; a fold, a stain or a shadow",
         shot.led, 100 * std::abs(uneven->departure), uneven->departure > 0 ? "brighter" : "darker",
         uneven->at.x, uneven->at.y);
   }

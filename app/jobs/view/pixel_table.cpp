@@ -56,7 +56,8 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
                                                      const SolveFacts& solve, const JobContext& context) {
   SessionOptions options;
   options.folder = session;
-  const Json shots = solve.input.value("shots", Json::array());
+  const Json input = solve.input.is_object() ? solve.input : Json::object();
+  const Json shots = input.value("shots", Json::array());
   for (const Json& shot : shots) {
     const int led = shot.value("led", 0);
     if (led > 0 && std::ranges::find(options.leds, led) == options.leds.end()) options.leds.push_back(led);
@@ -66,7 +67,7 @@ Result<std::unique_ptr<PixelTable>> PixelTable::read(const std::filesystem::path
                  "it was not made from a session", "ask a solve of a session"};
   Result<SessionPlan> plan = plan_session(options);
   if (!plan) return std::move(plan).error();
-  if (plan->description.value("calibration", "") != solve.input.value("calibration", ""))
+  if (plan->description.value("calibration", "") != input.value("calibration", ""))
     return changed_since(session, "it was solved with another calibration than the session has");
   if (plan->description.value("shots", Json()) != shots)
     return changed_since(session, "its shots are others");

@@ -68,7 +68,6 @@ Result<JobStatus> job_from_json(const Json& document, const std::string& where) 
   job.spec.of = fields.text("of");
   job.spec.by = fields.text("by");
   job.spec.request_id = fields.text_or("request_id", "");
-  job.spec.wants = document.value("wants", Json::object());
   job.state = fields.one_of<JobState>("state", kStates);
   job.asked = fields.text("asked");
   job.began = fields.text("began");
@@ -85,6 +84,7 @@ Result<JobStatus> job_from_json(const Json& document, const std::string& where) 
     if (!needs) return std::move(needs).error();
     job.spec.needs = std::move(*needs);
   }
+  job.spec.wants = document.value("wants", Json::object());
   if (const Json code = document.value("exit_code", Json()); code.is_number_integer())
     job.exit_code = code.get<int>();
   job.error = document.value("error", Json());

@@ -228,7 +228,7 @@ export interface paths {
                         name?: string;
                         /** @description Text of board.toml, sheet.toml or chart.toml (docs/calibration.md); needed once */
                         description?: string;
-                        /** @description Folder of the calibration that was known before; absent: the rig's */
+                        /** @description Folder of the calibration that was known before, below that of the rig file or an absolute one of its machine; absent: the rig's */
                         from?: string;
                     };
                 };
@@ -922,7 +922,7 @@ export interface paths {
                             /** @description Of the table in sight */
                             width_mm: number;
                             height_mm: number;
-                            /** @description Mean over LEDs of what reaches the table, of the brightest cell's; null: lights are not known */
+                            /** @description What level white cloth reads over all LEDs, of the brightest cell's; null: lights are not known */
                             light: components["schemas"]["FrameGrid"] | null;
                             /** @description Predicted error of normals 20 degrees steep; null where calibrate lights has not told */
                             normal_deg: components["schemas"]["FrameGrid"] | null;
@@ -3819,7 +3819,7 @@ export interface components {
             /** @description Of the photograph; 0: it is not taken yet */
             width: number;
             height: number;
-            /** @description Exposure that a scan would be given by it; null: nobody can tell */
+            /** @description What the meter of a scan would try next; null: no LED was lit, or the photograph cannot be read */
             suggested_us: number | null;
         };
         AttendedDevices: components["schemas"]["Devices"] & {

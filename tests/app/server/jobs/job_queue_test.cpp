@@ -196,6 +196,7 @@ TEST_F(Jobs, AreNotStoppedByFilesThatAreNone) {
   queue_.reset();
   std::ofstream(folder() / "000001.json") << "{";
   std::ofstream(folder() / "000002.json") << R"({"schema":"weft.job/1","id":"other"})";
+  std::ofstream(folder() / "000003.json") << "1";
   std::ofstream(folder() / "notes.txt") << "x";
   open();
   EXPECT_TRUE(queue_->list().empty());
