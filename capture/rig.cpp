@@ -144,7 +144,7 @@ bool is_origin(std::string_view origin) {
 Result<void> read_daemon(const toml::table& table, Rig& rig) {
   TomlKeys keys(table, place(rig.file, "daemon"), kPage);
   keys.know({"host", "port", "token", "look_token", "names", "origins", "archives", "preview", "screen",
-             "page_dark_ms", "state"});
+             "page_dark_ms", "state", "virtual_control"});
   rig.daemon.host = keys.text_or("host", rig.daemon.host);
   rig.daemon.port = keys.integer_or("port", rig.daemon.port, 0, 65535);
   rig.daemon.token = beside(rig.file, keys.text_or("token", ""));
@@ -167,6 +167,7 @@ Result<void> read_daemon(const toml::table& table, Rig& rig) {
   for (const std::string& origin : rig.daemon.origins) {
     if (!is_origin(origin)) keys.reject("origins", "each is as in [\"https://rig.local\"], without a path");
   }
+  rig.daemon.virtual_control = beside(rig.file, keys.text_or("virtual_control", ""));
   rig.daemon.state = beside(rig.file, keys.text_or("state", rig.name + ".state"));
   return keys.status();
 }

@@ -17,6 +17,7 @@ enum StatusBit : std::uint16_t {
   kNoSolution = 1 << 5,      ///< fewer than three readings, or light directions of rank below three
   kSpecular = 1 << 6,        ///< a reading over three times the Lambert prediction
   kInvalidReading = 1 << 7,
+  kGlossy = 1 << 8,  ///< solved with the lobe that its material shares
 };
 
 struct StatusName {
@@ -24,19 +25,20 @@ struct StatusName {
   const char* name;
 };
 
-inline constexpr std::array<StatusName, 8> kStatusNames = {{{kSaturated, "SATURATED"},
+inline constexpr std::array<StatusName, 9> kStatusNames = {{{kSaturated, "SATURATED"},
                                                             {kShadowed, "SHADOWED"},
                                                             {kZeroDof, "ZERO_DOF"},
                                                             {kDark, "DARK"},
                                                             {kIllConditioned, "ILL_CONDITIONED"},
                                                             {kNoSolution, "NO_SOLUTION"},
                                                             {kSpecular, "SPECULAR"},
-                                                            {kInvalidReading, "INVALID_READING"}}};
+                                                            {kInvalidReading, "INVALID_READING"},
+                                                            {kGlossy, "GLOSSY"}}};
 
 /// Light matrices with this condition number or more are flagged.
 inline constexpr double kIllConditionedFrom = 1e6;
 
 /// Raised whenever the bytes of an output may change.
-inline constexpr int kSolverVersion = 6;
+inline constexpr int kSolverVersion = 7;
 
 }  // namespace weft

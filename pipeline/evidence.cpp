@@ -13,20 +13,6 @@
 namespace weft::pipeline {
 namespace {
 
-// An odd step meets all colours of the filter cell.
-int step_for(const std::vector<Rect>& tiles, std::size_t most_pixels) {
-  const auto taken = [&](int step) {
-    std::int64_t pixels = 0;
-    for (const Rect& t : tiles) {
-      pixels += std::int64_t{(t.width() + step - 1) / step} * ((t.height() + step - 1) / step);
-    }
-    return pixels;
-  };
-  int step = 1;
-  while (step < solver::kSampleTile && taken(step) > static_cast<std::int64_t>(most_pixels)) step += 2;
-  return step;
-}
-
 // One photosite, or the weighted sum of three channels over their strength.
 solver::EvidenceRow row_at(const solver::TileInput& input, std::size_t k, int x, int y) {
   const int column = x - input.tile.x0, line = y - input.tile.y0;
@@ -70,7 +56,7 @@ solver::Evidence read_evidence(const Photographs& photographs) {
   all.noise = photographs.noise();
   const std::vector<Rect> tiles = solver::sample_tiles(photographs.size);
   // A mask may leave little of the frame.
-  const int step = step_for(tiles, 8 * most);
+  const int step = solver::sample_step(tiles, 8 * most);
   const Planes planes = photographs.planes();
   TileReader reader(photographs, {.width = solver::kSampleTile, .height = solver::kSampleTile});
   for (const Rect& tile : tiles) {

@@ -11,9 +11,11 @@
 #include <utility>
 
 #include "core/parallel.h"
+#include "pipeline/gloss.h"
 #include "pipeline/lateral.h"
 #include "pipeline/left_out.h"
 #include "pipeline/tile_reader.h"
+#include "solver/reflectance/glossy_method.h"
 
 namespace weft::pipeline {
 namespace {
@@ -109,10 +111,22 @@ Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::M
     by_block = solver::blended_method(*standard, *asked, *choice);
     bands.robust = &robust.emplace(std::move(*choice));
   }
-  const solver::Method& chosen = by_block ? *by_block : *asked;
-  if (Result<void> ok = solve_tiles(photographs, chosen, tile, context, sink, bands, facts); !ok)
+  const solver::Method* chosen = by_block ? by_block.get() : asked.get();
+  std::unique_ptr<solver::Method> glossy, glossy_by_block;
+  if (method.level == solver::Level::kRobust) {
+    facts.lobe = measure_gloss(photographs, *chosen, context.threads);
+    if (facts.lobe->is_measured()) {
+      glossy = solver::glossy_method(*chosen, facts.lobe->lobe, sight_of(photographs));
+      Result<solver::BlockChoice> choice = choose_by_block(photographs, *chosen, *glossy, context);
+      if (!choice) return std::move(choice).error();
+      facts.glossy_share = choice->share();
+      glossy_by_block = solver::blended_method(*chosen, *glossy, *choice);
+      chosen = glossy_by_block.get();
+    }
+  }
+  if (Result<void> ok = solve_tiles(photographs, *chosen, tile, context, sink, bands, facts); !ok)
     return std::move(ok).error();
-  if (Result<void> ok = check(photographs, chosen, context, facts); !ok) return std::move(ok).error();
+  if (Result<void> ok = check(photographs, *chosen, context, facts); !ok) return std::move(ok).error();
   return facts;
 }
 

@@ -106,12 +106,11 @@ class PatchJudge {
     variant_.method->solve(others, output_);
     for (int x = 0; x < tile.width(); ++x) {
       if (output_.status(x, 0) & kNoSolution) continue;
-      const Vec3 n = {output_.normal[0](x, 0), output_.normal[1](x, 0), output_.normal[2](x, 0)};
-      const double albedo = output_.albedo[static_cast<std::size_t>(planes_.speaker())](x, 0);
       for (std::size_t k = turn; k < lights_; k += turns) {
         const bool hidden = std::isinf(used(k, x)) && used(k, x) < 0;
-        const double lit = hidden ? 0 : std::max(0.0, dot(n, light(k, x).direction));
-        predicted_[static_cast<std::size_t>(x) * lights_ + k] = static_cast<float>(albedo * lit);
+        const double sent =
+            hidden ? 0 : variant_.method->reflected(others, output_, x, 0, light(k, x).direction);
+        predicted_[static_cast<std::size_t>(x) * lights_ + k] = static_cast<float>(sent);
       }
     }
   }

@@ -51,6 +51,11 @@ const MethodName* find_method(std::string_view name) {
   return found == names.end() ? nullptr : &*found;
 }
 
+double Method::reflected(const TileInput& input, const TileOutput& output, int x, int y, Vec3 light) const {
+  const Vec3 n = {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
+  return output.albedo[input.planes == 1 ? 0 : 1](x, y) * std::max(0.0, dot(n, light));
+}
+
 SolveTally& SolveTally::operator+=(const SolveTally& other) {
   by_kernel += other.by_kernel;
   by_normal_equations += other.by_normal_equations;

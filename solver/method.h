@@ -15,6 +15,7 @@
 #include "core/raw_frame.h"
 #include "core/result.h"
 #include "core/solve_record.h"
+#include "core/vec.h"
 
 namespace weft::solver {
 
@@ -71,6 +72,9 @@ class Method {
   virtual void solve(const TileInput& input, const TileOutput& output) const = 0;
   /// Whether it expects RGB (planes = 3) where the photographs are mosaics, as the paper it follows did.
   virtual bool wants_rgb() const { return false; }
+  /// What a pixel of its output sends on of a light of strength 1 from `light`: by Lambert's law, where it
+  /// knows no other. Column and row of the tile; of RGB green speaks.
+  virtual double reflected(const TileInput& input, const TileOutput& output, int x, int y, Vec3 light) const;
 };
 
 /// "The paper's": four systems a pixel, one for each channel and one for luminance, each by Eigen's two-sided

@@ -38,4 +38,17 @@ std::vector<Rect> sample_tiles(Size size) {
   return tiles;
 }
 
+int sample_step(const std::vector<Rect>& tiles, std::size_t most_pixels) {
+  const auto taken = [&](int step) {
+    std::int64_t pixels = 0;
+    for (const Rect& t : tiles) {
+      pixels += std::int64_t{(t.width() + step - 1) / step} * ((t.height() + step - 1) / step);
+    }
+    return pixels;
+  };
+  int step = 1;
+  while (step < kSampleTile && taken(step) > static_cast<std::int64_t>(most_pixels)) step += 2;
+  return step;
+}
+
 }  // namespace weft::solver

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "core/image.h"
@@ -14,5 +15,9 @@ inline constexpr int kSampleTile = 128;
 /// the colour filter, lie inside the frame and never overlap. A frame too small for sixteen has fewer and
 /// smaller ones.
 std::vector<Rect> sample_tiles(Size size);
+
+/// Columns and rows from one pixel to the next, so that at most so many pixels of the tiles are taken, or as
+/// few as a step of a tile leaves. It is odd, and so meets all colours of the filter cell.
+int sample_step(const std::vector<Rect>& tiles, std::size_t most_pixels);
 
 }  // namespace weft::solver

@@ -41,4 +41,8 @@ class ControlSocket {
 Result<std::string> send_command(const std::filesystem::path& socket, const std::string& line,
                                  double deadline_s = 600);
 
+/// As send_command(); kUsage where the rig refuses the line.
+Result<std::string> tell_rig(const std::filesystem::path& socket, const std::string& line,
+                             double deadline_s = 600);
+
 }  // namespace weft::virtual_rig

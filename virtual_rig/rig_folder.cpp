@@ -98,6 +98,7 @@ sessions = "scans"
 
 [daemon]
 port = 0
+virtual_control = "control"
 )",
       frames.leds(), quoted(files.board_port), quoted(is_d80(frames) ? kProfile : "nikon-d5100"),
       quoted(files.camera_port), quoted(files.camera_serial), leds, files.below ? "\n[below]\n" : "",

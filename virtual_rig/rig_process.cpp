@@ -61,11 +61,7 @@ Result<std::unique_ptr<RigProcess>> RigProcess::start(const RigProcessOptions& o
 }
 
 Result<std::string> RigProcess::say(const std::string& line) const {
-  Result<std::string> answer = send_command(options_.folder / "control", line);
-  if (answer && answer->starts_with("error"))
-    return Error{ErrorKind::kUsage, "the virtual rig refuses a command", line, *answer,
-                 "use one that it has"};
-  return answer;
+  return tell_rig(options_.folder / "control", line);
 }
 
 Result<std::unique_ptr<ChildProcess>> RigProcess::run(const std::vector<std::string>& command,

@@ -68,6 +68,13 @@ std::vector<std::string> words_of(const std::string& line) {
   return words;
 }
 
+Json json_of(const std::vector<CommandWords>& commands) {
+  Json all = Json::array();
+  for (const auto& [line, does, example] : commands)
+    all.push_back({{"line", line}, {"does", does}, {"example", example}});
+  return all;
+}
+
 std::optional<int> shot_of(const std::string& word) {
   int shot = 0;
   const auto [end, wrong] = std::from_chars(word.data(), word.data() + word.size(), shot);
@@ -163,6 +170,7 @@ class RunningRig : public VirtualRig {
     if (words.empty()) return refusal(line, "the line is empty", "say status");
     const std::string& kind = words[0];
     if (kind == "status" && words.size() == 1) return status().dump();
+    if (kind == "commands" && words.size() == 1) return json_of(virtual_rig_commands()).dump();
     if (kind == "end" && words.size() == 1) return end();
     const auto done = [&]() -> Result<void> {
       if (kind == "focus" && words.size() == 2) return change_focus(line, words[1]);
@@ -174,7 +182,7 @@ class RunningRig : public VirtualRig {
       if (kind == "camera" && (words.size() == 2 || words.size() == 3)) return inject_camera(line, words);
       return refusal(line,
                      "a line is board NAME, camera NAME [SHOT], disk full, disk room, focus PIXELS, knock "
-                     "..., light ..., table ..., status or end",
+                     "..., light ..., table ..., status, commands or end",
                      "see weft-virtual-rig --help");
     }();
     if (!done) return done.error();
@@ -435,20 +443,24 @@ Result<std::unique_ptr<VirtualRig>> VirtualRig::start(const VirtualRigOptions& o
   return std::unique_ptr<VirtualRig>(std::move(rig));
 }
 
-std::vector<std::string> virtual_rig_commands() {
-  std::vector<std::string> lines = {
-      "status               shots, pins that are on, faults, as JSON", "end                  ends the rig",
-      "disk full            no file of a host of this rig takes any more", "disk room            ends that",
-      "focus PIXELS         the focus ring is turned: the picture is blurred by so many raw pixels across"};
-  for (const BoardCommand& one : kBoardCommands)
-    lines.push_back(fmt::format("board {:<14} {}", one.name, one.does));
-  for (std::string& line : table_words()) lines.push_back(std::move(line));
-  for (std::string& line : knock_words()) lines.push_back(std::move(line));
-  for (std::string& line : light_fault_words()) lines.push_back(std::move(line));
-  for (const auto& [name, does] : camera_faults()) {
-    lines.push_back(fmt::format("camera {:<13} {}", name + " [SHOT]", does));
+std::vector<CommandWords> virtual_rig_commands() {
+  std::vector<CommandWords> all = {
+      {"status", "shots, pins that are on, faults, as JSON", "status"},
+      {"commands", "these lines, as JSON", "commands"},
+      {"end", "ends the rig", "end"},
+      {"disk full", "no file of a host of this rig takes any more", "disk full"},
+      {"disk room", "ends that", "disk room"},
+      {"focus PIXELS", "the focus ring is turned: the picture is blurred by so many raw pixels across",
+       "focus 3"}};
+  for (const BoardCommand& one : kBoardCommands) {
+    const std::string line = fmt::format("board {}", one.name);
+    all.push_back({line, one.does, line});
   }
-  return lines;
+  for (const auto& words : {table_words(), knock_words(), light_fault_words()})
+    all.insert(all.end(), words.begin(), words.end());
+  for (const auto& [name, does] : camera_faults())
+    all.push_back({fmt::format("camera {} [SHOT]", name), does, fmt::format("camera {}", name)});
+  return all;
 }
 
 }  // namespace weft::virtual_rig

@@ -10,6 +10,7 @@
 #include "core/json_document.h"
 #include "core/result.h"
 #include "simulator/scene/scene.h"
+#include "virtual_rig/commands/command_words.h"
 #include "virtual_rig/light/light_frames.h"
 
 namespace weft::virtual_rig {
@@ -62,14 +63,14 @@ class VirtualRig {
   virtual const LightFrames& frames() const = 0;                    ///< until the focus is changed
   virtual const std::vector<std::string>& environment() const = 0;  ///< "NAME=value"
   /// What the control socket does with a line: "camera NAME [SHOT]", "board NAME", "light ...", "disk full",
-  /// "disk room", "focus PIXELS", "knock ...", "table ...", "status", "end". The answer is "ok", the status
-  /// as JSON, or an error.
+  /// "disk room", "focus PIXELS", "knock ...", "table ...", "status", "commands", "end". The answer is "ok",
+  /// JSON, or an error.
   virtual Result<std::string> command(const std::string& line) = 0;
   /// Readable once somebody has said "end".
   virtual int end_descriptor() const = 0;
 };
 
-/// Every command with a sentence, a line each.
-std::vector<std::string> virtual_rig_commands();
+/// Every command.
+std::vector<CommandWords> virtual_rig_commands();
 
 }  // namespace weft::virtual_rig

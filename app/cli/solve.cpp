@@ -240,6 +240,9 @@ void add_maps(Options& options, const Level& level, SolveArguments& a) {
   options.add_flag("--check", &a.check,
                    "Print how well each light that is left out is predicted from the others");
   options.add_flag("!--no-deblur", &a.options.deblur, "Leave the blur of the lens as it is");
+  options.add_flag("--condition", &a.options.condition,
+                   "Also write condition.exr: the logarithm of the condition number of the lights that each "
+                   "pixel was solved from");
   options.add_flag("--strict", &a.strict, "Exit with 2 where pixels have no solution");
 }
 

@@ -25,5 +25,6 @@ Verb doctor_verb();
 Verb copy_verb();
 Verb library_verb();
 Verb demo_verb();
+Verb torture_verb();
 
 }  // namespace weft::app

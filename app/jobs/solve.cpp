@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/jobs/condition_map.h"
 #include "app/jobs/facts_json.h"
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/map_files.h"
@@ -36,7 +37,7 @@ class StatusTally {
   void add(View<const std::uint16_t> status) {
     for (int y = 0; y < status.height(); ++y) {
       const std::uint16_t* row = status.row(y);
-      for (int x = 0; x < status.width(); ++x) ++seen_[row[x] & 0xff];
+      for (int x = 0; x < status.width(); ++x) ++seen_[row[x] & 0x1ff];
     }
   }
   StatusCounts counts() const {
@@ -50,7 +51,7 @@ class StatusTally {
   }
 
  private:
-  std::array<std::int64_t, 256> seen_ = {};
+  std::array<std::int64_t, 512> seen_ = {};
 };
 
 // All that the bytes of the maps depend on.
@@ -62,6 +63,7 @@ Json inputs_of(const Json& input, const SolveOptions& options) {
                  {"compression", name_of(options.compression)},
                  {"solver_version", kSolverVersion}};
   if (!options.deblur) inputs["deblur"] = false;
+  if (options.condition) inputs["condition"] = true;
   return inputs;
 }
 
@@ -251,6 +253,12 @@ class Run {
     summary_.shadow_reach_is_capped = frame->reference && frame->reference->shadow_reach_is_capped;
     if (frame->left_out) facts_.check = facts_of(*frame->left_out, summary_.numbers);
     seconds_.report = watch_.lap();
+    if (options_.condition) {
+      const Result<void> written = write_condition_map(
+          photographs_, facts_.method, partial_.path() / "condition.exr", options_.compression, context_);
+      if (!written) return written;
+      seconds_.solve += watch_.lap();
+    }
     photographs_ = {};  // their memory is needed for nothing more
 
     if (Result<void> ok = files->finish(); !ok) return ok;

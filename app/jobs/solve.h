@@ -25,6 +25,7 @@ struct SolveOptions {
   TileOptions tile = pipeline::kSolveTile;
   bool previews = true;
   bool deblur = true;  ///< undoes the spread of the lens where the calibration knows it
+  bool condition = false;  ///< also writes condition.exr (app/jobs/condition_map.h)
 };
 
 struct SolveSeconds {

@@ -99,6 +99,11 @@ class Blended : public Method {
     }
   }
   bool wants_rgb() const override { return base_.wants_rgb(); }
+  double reflected(const TileInput& input, const TileOutput& output, int x, int y,
+                   Vec3 light) const override {
+    const bool is_better = choice_.weight_at(input.tile.x0 + x, input.tile.y0 + y) >= 0.5F;
+    return (is_better ? better_ : base_).reflected(input, output, x, y, light);
+  }
 
  private:
   static int next(int at, int end) { return std::min((at / kHalf + 1) * kHalf, end); }

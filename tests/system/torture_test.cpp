@@ -77,6 +77,30 @@ TEST(Torture, HasTheStatusMapThatItsSceneDescribesByEveryMethod) {
   }
 }
 
+TEST(Torture, IsMadeByOneVerbWithTheConditionOfTheLightsThatEachPixelKept) {
+  const Workspace work;
+  const Outcome run = run_weft({"torture", "-o", (work / "torture.weft").string(), "--json", "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  const std::string id = Json::parse(run.output)["id"];
+  const fs::path maps = work / "torture.weft" / "solve" / id;
+  const Image<float> decades = map(maps / "condition.exr"), status = map(maps / "status.png");
+  ASSERT_EQ(decades.size(), kTortureSize);
+  EXPECT_NEAR(decades(0, 0), std::log10(3), 0.05);
+  EXPECT_NEAR(decades(kLineColumn - 1, 0), std::log10(1200), 0.05);
+  for (int y = 0; y < kTortureSize.height; ++y) {
+    for (int x = 0; x < kTortureSize.width; ++x) {
+      const int flags = static_cast<int>(std::lround(65535.0 * status(x, y)));
+      if ((flags & kNoSolution) == 0) {
+        ASSERT_EQ(decades(x, y) >= std::log10(kIllConditionedFrom), (flags & kIllConditioned) != 0) << x << y;
+      } else if ((flags & kDark) == 0) {
+        ASSERT_EQ(decades(x, y), 16) << x << y << ": fewer than three lights are left";
+      }
+    }
+  }
+  const Outcome again = run_weft({"torture", "-o", (work / "torture.weft").string(), "--json", "-q"});
+  EXPECT_EQ(again.output, run.output) << "what is there is not made again";
+}
+
 TEST(Torture, IsExplainedPassByPass) {
   const Workspace work;
   put_bytes(work / "scene.toml", simulator::to_toml(scene_named("torture", {64, 48})));

@@ -35,6 +35,7 @@ struct Arguments {
 struct Command {
   const char* name;
   const char* arguments;
+  const char* example;  // of arguments
   const char* does;
   std::size_t count;
   std::function<bool(const Arguments&)> fits;
@@ -43,25 +44,25 @@ struct Command {
 
 const std::vector<Command>& commands() {
   static const std::vector<Command> kCommands = {
-      {"normal", "", "no fault of light", 0, [](const Arguments&) { return true; },
+      {"normal", "", "", "no fault of light", 0, [](const Arguments&) { return true; },
        [](LightFaults& f, const Arguments&) { f = {}; }},
-      {"dead", "LED", "the LED never shines", 1, [](const Arguments& a) { return a.is_led(0); },
+      {"dead", "LED", "3", "the LED never shines", 1, [](const Arguments& a) { return a.is_led(0); },
        [](LightFaults& f, const Arguments& a) { f.dead.insert(a.whole(0)); }},
-      {"stuck", "LED", "the LED always shines", 1, [](const Arguments& a) { return a.is_led(0); },
+      {"stuck", "LED", "3", "the LED always shines", 1, [](const Arguments& a) { return a.is_led(0); },
        [](LightFaults& f, const Arguments& a) { f.stuck.insert(a.whole(0)); }},
-      {"swap", "LED LED", "the wires of two LEDs change places", 2,
+      {"swap", "LED LED", "3 4", "the wires of two LEDs change places", 2,
        [](const Arguments& a) { return a.is_led(0) && a.is_led(1); },
        [](LightFaults& f, const Arguments& a) { f.swapped.emplace_back(a.whole(0), a.whole(1)); }},
-      {"dim", "LED SHARE", "the LED gives this share of its light, 0 to 100", 2,
+      {"dim", "LED SHARE", "3 0.5", "the LED gives this share of its light, 0 to 100", 2,
        [](const Arguments& a) { return a.is_led(0) && a.is_light(1); },
        [](LightFaults& f, const Arguments& a) { f.dimmed[a.whole(0)] = a.values[1]; }},
-      {"flicker", "SIGMA", "each LED's light varies by this from shot to shot, relative, 0 to 1", 1,
+      {"flicker", "SIGMA", "0.01", "each LED's light varies by this from shot to shot, relative, 0 to 1", 1,
        [](const Arguments& a) { return a.values[0] >= 0 && a.values[0] <= 1; },
        [](LightFaults& f, const Arguments& a) { f.flicker = a.values[0]; }},
-      {"ambient", "SHARE", "light of the room, of the brightest LED's at the table's centre, 0 to 100", 1,
+      {"ambient", "SHARE", "0.1", "light of the room, of the brightest LED's at the table's centre, 0 to 100", 1,
        [](const Arguments& a) { return a.is_light(0); },
        [](LightFaults& f, const Arguments& a) { f.ambient = a.values[0]; }},
-      {"move", "X Y", "the camera was knocked: the picture lies X pixels right and Y down, even, to 1000", 2,
+      {"move", "X Y", "6 -4", "the camera was knocked: the picture lies X pixels right and Y down, even, to 1000", 2,
        [](const Arguments& a) { return a.is_step(0) && a.is_step(1); },
        [](LightFaults& f, const Arguments& a) {
          f.move_x = a.whole(0);
@@ -78,8 +79,8 @@ std::optional<double> number_of(std::string_view text) {
   return value;
 }
 
-std::string usage_of(const Command& command) {
-  return *command.arguments == '\0' ? command.name : fmt::format("{} {}", command.name, command.arguments);
+std::string said(const Command& command, const char* arguments) {
+  return *arguments == '\0' ? command.name : fmt::format("{} {}", command.name, arguments);
 }
 
 Error refusal(const std::vector<std::string>& words, const std::string& why, const std::string& remedy) {
@@ -89,10 +90,11 @@ Error refusal(const std::vector<std::string>& words, const std::string& why, con
 
 }  // namespace
 
-std::vector<std::string> light_fault_words() {
-  std::vector<std::string> lines;
-  for (const Command& c : commands()) lines.push_back(fmt::format("light {:<14} {}", usage_of(c), c.does));
-  return lines;
+std::vector<CommandWords> light_fault_words() {
+  std::vector<CommandWords> all;
+  for (const Command& c : commands())
+    all.push_back({"light " + said(c, c.arguments), c.does, "light " + said(c, c.example)});
+  return all;
 }
 
 Result<void> change_faults(LightFaults& faults, const std::vector<std::string>& words, int leds) {
@@ -106,7 +108,7 @@ Result<void> change_faults(LightFaults& faults, const std::vector<std::string>& 
     }
     if (words.size() != command.count + 1 || arguments.count() != command.count || !command.fits(arguments)) {
       return refusal(words, command.does,
-                     fmt::format("say light {}; LEDs are 1 to {}", usage_of(command), leds));
+                     fmt::format("say light {}; LEDs are 1 to {}", said(command, command.arguments), leds));
     }
     command.change(faults, arguments);
     return {};

@@ -9,6 +9,7 @@
 
 #include "core/json_document.h"
 #include "core/result.h"
+#include "virtual_rig/commands/command_words.h"
 
 namespace weft::virtual_rig {
 
@@ -26,8 +27,8 @@ struct LightFaults {
   bool operator==(const LightFaults&) const = default;
 };
 
-/// One sentence a line of what change_faults() takes.
-std::vector<std::string> light_fault_words();
+/// What change_faults() takes.
+std::vector<CommandWords> light_fault_words();
 
 /// Changes `faults` as a command says, "dead 3", "ambient 0.1", "normal" (no fault). kUsage with what is
 /// allowed where it says anything else.

@@ -89,7 +89,8 @@ void define(CLI::App& app, Arguments& a) {
   app.add_option("--ready", a.ready)->group("");  // run_in_background()
   app.add_option("--inject", a.inject, "send one command to the rig that lives in --folder, and end");
   std::string footer = "Commands for --inject, or a line each on the socket FOLDER/control:\n";
-  for (const std::string& line : virtual_rig::virtual_rig_commands()) footer += "  " + line + '\n';
+  for (const auto& [line, does, example] : virtual_rig::virtual_rig_commands())
+    footer += fmt::format("  {:<20} {}\n", line, does);
   app.footer(footer +
              "\nA fault of the camera befalls the SHOT that is given, counted from 1, the next one.\n"
              "Exit codes: that of COMMAND; 0 done, 64 usage, 65 bad scene, 66 no scene, 69 no rig in the\n"

@@ -8,6 +8,7 @@
 #include "core/result.h"
 #include "core/vec.h"
 #include "simulator/scene/scene.h"
+#include "virtual_rig/commands/command_words.h"
 
 namespace weft::virtual_rig {
 
@@ -26,7 +27,7 @@ Result<void> knock(Knocks& knocks, const std::vector<std::string>& words, int le
 /// The scene as it is after them. Errors: as rig_of().
 Result<simulator::Scene> knocked(simulator::Scene scene, const Knocks& knocks);
 
-/// One sentence a line of what knock() takes.
-std::vector<std::string> knock_words();
+/// What knock() takes.
+std::vector<CommandWords> knock_words();
 
 }  // namespace weft::virtual_rig

@@ -190,15 +190,19 @@ Result<Scene> Table::with(const std::vector<std::string>& words) const {
   return bare_.with(thing->laid(bare_, *said));
 }
 
-std::vector<std::string> table_words() {
-  std::vector<std::string> lines = {
-      "table cloth [SCENE]  the cloth of the rig's scene, or of another scene file, lies on the table"};
-  for (const Thing& each : things())
-    lines.push_back(fmt::format("table {:<14} on it lies {}", each.name, each.does));
-  lines.emplace_back(
-      "                     board, sheet, scale, chart and ruler lie as tilt=, azimuth= (of the tilt),\n"
-      "                       turn= (degrees), x=, y= (of the centre) and height= (above the table, mm) say");
-  return lines;
+std::vector<CommandWords> table_words() {
+  std::vector<CommandWords> all = {
+      {"table cloth [SCENE]", "the cloth of the rig's scene, or of another scene file, lies on the table",
+       "table cloth"}};
+  for (const Thing& each : things()) {
+    const std::string line = fmt::format("table {}", each.name);
+    all.push_back({line, "on it lies " + each.does, line});
+  }
+  all.push_back({"table THING ...",
+                 "board, sheet, scale, chart and ruler lie as tilt=, azimuth= (of the tilt), turn= (degrees), "
+                 "x=, y= (of the centre) and height= (above the table, mm) say",
+                 "table board tilt=30 azimuth=90"});
+  return all;
 }
 
 }  // namespace weft::virtual_rig

@@ -7,6 +7,7 @@
 #include "core/result.h"
 #include "simulator/bare_rig.h"
 #include "simulator/scene/scene.h"
+#include "virtual_rig/commands/command_words.h"
 
 namespace weft::virtual_rig {
 
@@ -30,7 +31,7 @@ class Table {
   simulator::BareRig bare_;
 };
 
-/// One sentence a line of what Table::with() takes.
-std::vector<std::string> table_words();
+/// What Table::with() takes.
+std::vector<CommandWords> table_words();
 
 }  // namespace weft::virtual_rig

@@ -26,7 +26,7 @@ const char* name_of(LayerKind kind);  ///< "normal"
 struct Layer {
   std::string name;  ///< "sigma_noise"
   LayerKind kind = LayerKind::kScalar;
-  std::string unit;                   ///< "deg", "mm", "share"; empty: none
+  std::string unit;                   ///< "deg", "mm", "share", "decades"; empty: none
   std::string file;                   ///< in the folder
   std::vector<std::string> channels;  ///< of the file
   bool is_deviation = false;          ///< averages as the root of the mean of squares

@@ -171,4 +171,21 @@ Image<float> turned_deg(const Image<float>& normal, const Image<float>& other) {
   return degrees;
 }
 
+Image<float> off_percent(const Image<float>& albedo, const Image<float>& other) {
+  Image<float> percent(albedo.size());
+  for (int y = 0; y < albedo.height(); ++y) {
+    for (int x = 0; x < albedo.width(); ++x) {
+      float sum = 0;
+      int channels = 0;
+      for (int p = 0; p < albedo.planes(); ++p) {
+        if (!(other(x, y, p) > 0)) continue;
+        sum += std::abs(albedo(x, y, p) - other(x, y, p)) / other(x, y, p);
+        ++channels;
+      }
+      percent(x, y) = channels == 0 ? 0 : 100 * sum / static_cast<float>(channels);
+    }
+  }
+  return percent;
+}
+
 }  // namespace weft::app

@@ -32,5 +32,8 @@ Result<std::string> relit_tile(const Image<float>& normal, const Image<float>& a
                                PictureFormat format);
 /// Degrees between two maps of normals.
 Image<float> turned_deg(const Image<float>& normal, const Image<float>& other);
+/// By how many percent of the other's an albedo is off, either way: the mean of the channels that are above 0
+/// in the other, 0 where none is.
+Image<float> off_percent(const Image<float>& albedo, const Image<float>& other);
 
 }  // namespace weft::app

@@ -54,6 +54,7 @@ struct Resource {
 Resource server_resource(const RigParts& parts);
 Resource login_resource(const RigParts& parts);
 Resource rig_resource(const RigParts& parts);
+Resource virtual_rig_resource(const RigParts& parts);
 Resource control_resource(const RigParts& parts);
 Resource devices_resource(const RigParts& parts);
 Resource calibrations_resource(const RigParts& parts);

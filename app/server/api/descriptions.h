@@ -18,5 +18,6 @@ const char* scan_description();
 const char* server_description();
 const char* sessions_description();
 const char* solves_description();
+const char* virtual_rig_description();
 
 }  // namespace weft::app

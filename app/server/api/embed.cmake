@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DINPUT=scan.openapi.json -DFUNCTION=scan_description -DOUTPUT=scan_description.cpp -P embed.cmake
+# cmake -DINPUT=scan.openapi.json -DFUNCTION=scan_description -DHEADER=app/server/api/descriptions.h
+#   -DOUTPUT=scan_description.cpp -P embed.cmake
 file(READ ${INPUT} text)
 file(WRITE ${OUTPUT} "// SPDX-License-Identifier: Apache-2.0
-#include \"app/server/api/descriptions.h\"
+#include \"${HEADER}\"
 
 namespace weft::app {
 

@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestWord = 100;
 constexpr std::size_t kLongestFolder = 200;
+constexpr const char* kTorture = "torture";  // the session that its job makes
 
 Error unfit(const std::string& field, const std::string& rule) {
   return {ErrorKind::kUsage, "job cannot be read", field, rule, "see POST jobs in openapi.json"};
@@ -79,6 +80,7 @@ const std::vector<JobKind>& job_kinds() {
        {kSession, word("solve", "--solve"), number("mm_per_pixel", "--mm-per-pixel", 1e-4, 100),
         number("turn_deg", "--turn", -360, 360)}},
       {"copy", {"copy"}, {kSession}},
+      {"torture", {"torture"}, {}},
       {"check",
        {"calibrate", "check"},
        {{"session", "--session", Holds::kSession},
@@ -244,6 +246,11 @@ Result<JobSpec> read_job_body(const Json& body, const JobPlaces& places) {
     return unfit("session", "either it or moved must be named");
   if (*name == "copy" && !places.copy.empty())
     spec.arguments.insert(spec.arguments.end(), {"--to", places.copy.string()});
+  if (*name == "torture") {
+    spec.of = kTorture;
+    spec.arguments.insert(spec.arguments.end(),
+                          {"--output", (places.sessions / fmt::format("{}.weft", kTorture)).string()});
+  }
   if (kind->names_rig && !body.contains("from"))
     spec.arguments.insert(spec.arguments.end(), {"--rig", places.rig});
   return spec;

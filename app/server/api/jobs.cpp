@@ -22,7 +22,8 @@ JobPlaces places_of(const RigParts& parts) {
     if (!found) return found.error();
     return found->folder;
   };
-  return {session, parts.rig.file.parent_path(), parts.rig.name, parts.rig.scan.copy};
+  return {session, parts.rig.file.parent_path(), parts.rig.name, parts.rig.scan.sessions,
+          parts.rig.scan.copy};
 }
 
 Result<Reply> add_job(const RigParts& parts, const Call& call) {

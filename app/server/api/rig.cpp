@@ -24,6 +24,7 @@ Result<Reply> whole_status(const RigParts& parts) {
     if (each.name != session) resumable.push_back(each.name);
   }
   status["resumable"] = std::move(resumable);
+  status["virtual"] = !parts.rig.daemon.virtual_control.empty();
   status["lock"] = {{"pid", getpid()}, {"folder", parts.state.string()}};
   return json_reply(status);
 }

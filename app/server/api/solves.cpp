@@ -30,7 +30,15 @@ namespace fs = std::filesystem;
 
 constexpr const char* kTruth = "truth";  // stands for a solve where the session is simulated
 constexpr const char* kRelit = "relit";
-constexpr const char* kDifference = "difference";
+
+/// A layer that two solves have together.
+struct Difference {
+  const char* name;
+  const char* of;  // the layer of each
+  Image<float> (*between)(const Image<float>& one, const Image<float>& other);
+};
+constexpr std::array<Difference, 2> kDifferences = {
+    {{"difference", "normal", turned_deg}, {"albedo_difference", "albedo", off_percent}}};
 
 /// The maps that a call asks about.
 struct Viewed {
@@ -259,8 +267,8 @@ Result<std::string> relit(const RigParts& parts, const Viewed& viewed, const Ask
   return relit_tile(*n, *rho, asked.look, asked.name.picture());
 }
 
-Result<std::string> difference(const RigParts& parts, const Viewed& viewed, const Asked& asked,
-                               const Call& call) {
+Result<std::string> difference(const Difference& wanted, const RigParts& parts, const Viewed& viewed,
+                               const Asked& asked, const Call& call) {
   const auto with = call.query.find("with");
   if (with == call.query.end()) return no_such_tile("with", "must name another solve");
   const std::size_t slash = with->second.find('/');
@@ -271,14 +279,14 @@ Result<std::string> difference(const RigParts& parts, const Viewed& viewed, cons
   if (!other) return other.error();
   if (!(other->layers.size == viewed.layers.size))
     return no_such_tile(with->second.substr(0, 40), "these maps have another size");
-  const Result<std::shared_ptr<Pyramid>> a = pyramid_of(parts, viewed, "normal");
+  const Result<std::shared_ptr<Pyramid>> a = pyramid_of(parts, viewed, wanted.of);
   if (!a) return a.error();
-  const Result<std::shared_ptr<Pyramid>> b = pyramid_of(parts, *other, "normal");
+  const Result<std::shared_ptr<Pyramid>> b = pyramid_of(parts, *other, wanted.of);
   if (!b) return b.error();
   const Result<Image<float>> n = asked.read(**a), m = asked.read(**b);
   if (!n) return n.error();
   if (!m) return m.error();
-  return asked.encode(LayerKind::kScalar, turned_deg(*n, *m));
+  return asked.encode(LayerKind::kScalar, wanted.between(*n, *m));
 }
 
 Result<std::string> tile_bytes(const RigParts& parts, const Viewed& viewed, const Call& call) {
@@ -298,7 +306,8 @@ Result<std::string> tile_bytes(const RigParts& parts, const Viewed& viewed, cons
   if (!look) return look.error();
   asked.look = *look;
   if (layer == kRelit) return relit(parts, viewed, asked);
-  if (layer == kDifference) return difference(parts, viewed, asked, call);
+  const auto wanted = std::ranges::find(kDifferences, layer, &Difference::name);
+  if (wanted != kDifferences.end()) return difference(*wanted, parts, viewed, asked, call);
   const Result<std::shared_ptr<Pyramid>> pyramid = pyramid_of(parts, viewed, layer);
   if (!pyramid) return pyramid.error();
   const Result<Image<float>> planes = asked.read(**pyramid);

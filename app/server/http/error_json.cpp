@@ -12,7 +12,7 @@ namespace weft::app {
 namespace {
 
 /// What is said, and the word for it. Clients rely on the words.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 49> kCodes = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 50> kCodes = {{
     {"the token is missing or wrong", "not_logged_in"},
     {"the token is wrong", "wrong_token"},
     {"this token may only look", "may_only_look"},
@@ -30,6 +30,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 49> kCodes =
     {"too many pictures are being made", "too_busy"},
     {"the rig is busy", "rig_busy"},
     {"this server has no rig", "no_rig"},
+    {"this rig is real", "rig_is_real"},
     {"somebody else holds the controls", "controls_held"},
     {"the devices are closed", "devices_closed"},
     {"a scan has the devices", "rig_busy"},

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <thread>
 
@@ -76,6 +77,25 @@ TEST_F(ServedMaps, FindNoDifferenceBetweenASolveAndItself) {
   EXPECT_EQ(same["normal"]["max_deg"], 0);
   const Json truth = get(fmt::format("compare?a=asked/{}&b=asked/truth", solve_.id)).json();
   EXPECT_GT(truth["normal"]["median_deg"].get<double>(), 0.05);
+}
+
+TEST_F(ServedMaps, DifferInAlbedoPixelByPixelAsTheComparisonSays) {
+  const Answer same = get(solve() + "/tiles/albedo_difference/0/0_0.raw?with=" + solve_.id);
+  ASSERT_EQ(same.status, 200) << same.body;
+  EXPECT_EQ(std::ranges::count(same.body, '\0'), static_cast<std::ptrdiff_t>(same.body.size()));
+  const Answer tile = get(solve() + "/tiles/albedo_difference/0/0_0.raw?with=truth");
+  ASSERT_EQ(tile.status, 200) << tile.body;
+  double sum = 0;
+  for (std::size_t at = 0; at < tile.body.size(); at += 2) {
+    const auto low = static_cast<unsigned char>(tile.body[at]),
+               high = static_cast<unsigned char>(tile.body[at + 1]);
+    const int bits = low | high << 8, exponent = bits >> 10 & 31;
+    sum += std::ldexp(exponent == 0 ? bits & 1023 : (bits & 1023) + 1024, std::max(exponent, 1) - 25);
+  }
+  const Json truth = get(fmt::format("compare?a=asked/{}&b=asked/truth", solve_.id)).json();
+  const double percent = 100 * truth["albedo"]["mean_rel"].get<double>();
+  EXPECT_GT(percent, 0.01);
+  EXPECT_NEAR(sum / static_cast<double>(kFrame.pixels()), percent, 1e-2 * percent);
 }
 
 TEST_F(ServedMaps, TellAPixelsReadingsOnceTheyAreRead) {

@@ -233,6 +233,14 @@ test('a solve does not differ from itself, and does from another', async () => {
   assert.ok(colours(under(await seen(other), view, box)).size > 50);
   const {normal} = await archive.ask(`compare?a=twill/${standard}&b=twill/${fast}`);
   await other.getByRole('row', {name: /Normals, mean/}).getByText(`${Number(normal.mean_deg.toPrecision(2))}`).waitFor();
+  await other.keyboard.press('a');
+  await other.getByRole('figure').getByText('Albedo difference, %').waitFor();
+  await ready(other);
+  assert.ok(colours(under(await seen(other), view, box)).size > 50);
+  await itself.keyboard.press('a');
+  await itself.waitForURL(/layer=albedo_difference/);
+  await ready(itself);
+  assert.equal(colours(under(await seen(itself), view, box)).size, 1);
   await visitor.leave();
 });
 
@@ -316,6 +324,26 @@ test('the ruler says the daemon\'s millimetres, and they are those of the scene'
   await visitor.leave();
 });
 
+test('ruler and rectangle are laid by keys alone', async () => {
+  const visitor = await visit(browser, archive);
+  const page = await look(visitor, {view: inMiddle});
+  await page.keyboard.press('r');
+  await page.locator('canvas:focus').waitFor();
+  assert.deepEqual(await violations(page), []);
+  for (const key of ['ArrowUp', 'Enter', 'Shift+ArrowRight', 'Shift+ArrowRight', 'ArrowDown', 'ArrowLeft', 'Enter', 'ArrowDown']) await page.keyboard.press(key);
+  await page.waitForURL(/line=700%2C449%2C739%2C450/);
+  await page.locator('p.measured').waitFor();
+  await page.getByRole('status').getByText('mark at 739, 451').waitFor();
+  await page.keyboard.press('s');
+  for (const key of ['Enter', 'Shift+ArrowDown', 'ArrowRight', 'Enter']) await page.keyboard.press(key);
+  await page.waitForURL(/box=700%2C450%2C2%2C21/);
+  await page.locator('.region').getByText('2 × 21 pixels').waitFor();
+  await page.keyboard.press('s');
+  await page.keyboard.press('ArrowRight');
+  await page.waitForURL(({searchParams}) => Number(searchParams.get('view')?.split(',')[0]) > 750);
+  await visitor.leave();
+});
+
 test('a rectangle has the figures that the daemon has', async () => {
   const visitor = await visit(browser, archive);
   const page = await look(visitor, {layer: 'albedo', view: inMiddle});
@@ -393,6 +421,8 @@ test('without WebGL the daemon shades, and it looks alike', async () => {
     await page.getByRole('button', {name: 'Sigma', pressed: true}).waitFor();
     await ready(page);
     assert.ok(colours(await seen(page)).size > 20);
+    const differing = await look(other, {layer: 'albedo_difference', with: `twill/${fast}`, range: '0,1'});
+    assert.ok(colours(await seen(differing)).size > 20);
     await other.leave();
   } finally {
     await plain.close();
@@ -427,7 +457,7 @@ test('each panel passes axe, and the canvas says what it shows and its keys', as
   await page.keyboard.press('3');
   await page.getByRole('application', {name: /Relit/}).waitFor();
   const label = await page.getByRole('application').getAttribute('aria-label');
-  assert.match(label, /^Relit from the upper left, 45 degrees high, twill\. Keys: 1 to 7/);
+  assert.match(label, /^Relit from the upper left, 45 degrees high, twill\. Keys: 1 to 8/);
   await picture(page, 'viewer');
   await visitor.leave();
 });

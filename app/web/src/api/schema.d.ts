@@ -3356,7 +3356,7 @@ export interface paths {
                     light?: string;
                     /** @description Of status: SATURATED ... as in formats.md; any bit unless given */
                     bit?: string;
-                    /** @description Of difference: the other solve's id, or truth */
+                    /** @description Of difference and albedo_difference: the other solve's id, or truth */
                     with?: string;
                 };
                 header?: never;
@@ -3365,7 +3365,7 @@ export interface paths {
                     name: string;
                     /** @description Id of the solve; truth for that of a simulated session */
                     solve: string;
-                    /** @description Name of a layer; relit, the cloth under a lamp; difference, degrees between these normals and those of another solve */
+                    /** @description Name of a layer; relit, the cloth under a lamp; difference, degrees between these normals and those of another solve; albedo_difference, percent of the albedo of another solve */
                     layer: string;
                     /** @description 0 is the map, each next one has half its sides */
                     level: number;
@@ -3708,6 +3708,119 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/rig/virtual": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Of a rig that is not there: how it is, and what it can be told */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path?: never;
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As weft-virtual-rig says it */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["VirtualRig"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                /** @description This rig is real */
+                404: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description Its program has ended */
+                503: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        /** Break it, or lay something on its table */
+        post: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path?: never;
+                cookie?: never;
+            };
+            requestBody: {
+                content: {
+                    "application/json": {
+                        /** @description "board unplug", "light dead 3"; names no path */
+                        line: string;
+                    };
+                };
+            };
+            responses: {
+                /** @description It is done */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": {
+                            /** @description "ok", or what was asked for */
+                            said: string;
+                        };
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                /** @description This rig is real */
+                404: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                409: components["responses"]["Busy"];
+                413: components["responses"]["TooLong"];
+                415: components["responses"]["NotJson"];
+                421: components["responses"]["ForeignHost"];
+                /** @description Its program has ended */
+                503: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
 }
 export type webhooks = Record<string, never>;
 export interface components {
@@ -3722,7 +3835,7 @@ export interface components {
              * @description What this server decided, by a word that stays; absent where another part of weft failed
              * @enum {string}
              */
-            code?: "beyond_file" | "bug" | "changed_meanwhile" | "controls_held" | "devices_closed" | "disk_silent" | "foreign_host" | "foreign_page" | "job_ended" | "job_not_ended" | "job_not_waiting" | "may_only_look" | "no_fabric" | "no_millimetres" | "no_origin" | "no_rig" | "no_scan" | "no_set" | "no_such_call" | "no_such_frame" | "no_such_job" | "no_such_session" | "no_such_set" | "no_such_shot" | "no_such_solve" | "no_such_tile" | "not_json" | "not_logged_in" | "nothing_to_undo" | "readings_gone" | "rig_busy" | "rig_moved" | "scan_ending" | "session_busy" | "session_exists" | "set_complete" | "shot_on_its_way" | "too_busy" | "too_many_streams" | "unreadable" | "wrong_method" | "wrong_token";
+            code?: "beyond_file" | "bug" | "changed_meanwhile" | "controls_held" | "devices_closed" | "disk_silent" | "foreign_host" | "foreign_page" | "job_ended" | "job_not_ended" | "job_not_waiting" | "may_only_look" | "no_fabric" | "no_millimetres" | "no_origin" | "no_rig" | "no_scan" | "no_set" | "no_such_call" | "no_such_frame" | "no_such_job" | "no_such_session" | "no_such_set" | "no_such_shot" | "no_such_solve" | "no_such_tile" | "not_json" | "not_logged_in" | "nothing_to_undo" | "readings_gone" | "rig_busy" | "rig_is_real" | "rig_moved" | "scan_ending" | "session_busy" | "session_exists" | "set_complete" | "shot_on_its_way" | "too_busy" | "too_many_streams" | "unreadable" | "wrong_method" | "wrong_token";
             /** @description What happened */
             what: string;
             /** @description File, field or device */
@@ -3938,10 +4051,10 @@ export interface components {
         };
         JobRequest: {
             /**
-             * @description price: seconds and degrees of every level (weft solve --explain); check: weft calibrate check
+             * @description price: seconds and degrees of every level (weft solve --explain); torture: the session torture, of pixels that are hard to solve, and its solve with the layer condition (weft torture); check: weft calibrate check
              * @enum {string}
              */
-            kind: "solve" | "price" | "rectify" | "copy" | "check" | "calibrate_camera" | "calibrate_response" | "calibrate_color" | "calibrate_lights" | "calibrate_grey" | "calibrate_patches" | "calibrate_update";
+            kind: "solve" | "price" | "rectify" | "copy" | "torture" | "check" | "calibrate_camera" | "calibrate_response" | "calibrate_color" | "calibrate_lights" | "calibrate_grey" | "calibrate_patches" | "calibrate_update";
             /** @description Name, without .weft; of all but check by input and calibrate_camera, _response, _color, _lights */
             session?: string;
             /** @description Folder below that of the rig file; of calibrate_camera, _response, _color, _lights, and of check */
@@ -4159,6 +4272,8 @@ export interface components {
         Rig: components["schemas"]["Status"] & {
             /** @description Unfinished sessions of this rig */
             resumable: string[];
+            /** @description weft-virtual-rig plays it: see rig/virtual */
+            virtual: boolean;
             lock: {
                 pid: number;
                 folder: string;
@@ -4462,6 +4577,17 @@ export interface components {
             gates?: Record<string, unknown> | null;
             reference: Record<string, unknown> | null;
             solved_by: Record<string, unknown> | null;
+        };
+        VirtualRig: {
+            /** @description Shots, pins that are on, faults: as the rig says them */
+            status: Record<string, unknown>;
+            lines: {
+                /** @description "light dead LED": capitals, brackets and dots stand for what is to be said */
+                line: string;
+                does: string;
+                /** @description As it may be said */
+                example: string;
+            }[];
         };
     };
     responses: {

@@ -11,6 +11,7 @@ import {Mark} from '../ui/mark';
 import {Share} from '../ui/share';
 import {durationOf} from '../ui/words';
 import {KeyList} from './key_list';
+import {VirtualRig} from './virtual_rig';
 import {stateInWords, verdictOf} from './words';
 
 const tabs = [
@@ -100,6 +101,7 @@ export function Frame({children}: {children: ComponentChildren}) {
       </header>
       <Warnings />
       <main class={connection.value.state === 'silent' ? 'stale' : ''}>{children}</main>
+      {rig.value?.virtual && <VirtualRig />}
       {showsKeys && <KeyList onClose={() => showKeys(false)} />}
     </>
   );

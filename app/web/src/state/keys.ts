@@ -62,7 +62,7 @@ const pressing = 'button, a[href], summary, input';
 function belongsToElement(event: KeyboardEvent, name: string): boolean {
   const target = event.target as Element;
   if (target.matches(typing)) return true;
-  const isSlider = target.matches('input[type=range]') && name.startsWith('Arrow');
+  const isSlider = target.matches('input[type=range]') && name.includes('Arrow');
   return isSlider || (target.matches(pressing) && (name === 'Space' || name === 'Enter'));
 }
 
@@ -79,7 +79,7 @@ function press(event: KeyboardEvent): void {
   const key = [...registry.value.values()].flat().find((those) => those.key === name);
   if (!key) return;
   event.preventDefault();
-  if (!event.repeat || name.startsWith('Arrow')) key.run();
+  if (!event.repeat || name.includes('Arrow')) key.run();
 }
 
 /** Begins to listen. */

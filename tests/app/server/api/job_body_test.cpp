@@ -28,7 +28,7 @@ class JobBody : public testing::Test {
       if (name == "satin") return fs::path("/scans/satin.weft");
       return Error{ErrorKind::kNoInput, "there is no such session", name, "", ""};
     };
-    return read_job_body(Json::parse(body), {session, folder_, "north", "/copies"});
+    return read_job_body(Json::parse(body), {session, folder_, "north", "/scans", "/copies"});
   }
   std::vector<std::string> arguments(const std::string& body) const {
     const Result<JobSpec> spec = read(body);
@@ -55,6 +55,7 @@ TEST_F(JobBody, BecomesAVerbWithItsArguments) {
             (Words{"solve", "--explain", "--crops", "{files}", "/scans/satin.weft"}));
   EXPECT_EQ(arguments(R"({"kind": "copy", "session": "satin"})"),
             (Words{"copy", "/scans/satin.weft", "--to", "/copies"}));
+  EXPECT_EQ(arguments(R"({"kind": "torture"})"), (Words{"torture", "--output", "/scans/torture.weft"}));
   EXPECT_EQ(
       arguments(R"({"kind": "check", "session": "satin", "from": "calibrations/may"})"),
       (Words{"calibrate", "check", "--session", "/scans/satin.weft", "--from", path("calibrations/may")}));

@@ -16,6 +16,7 @@
 #include "tests/app/server/api/json_schema.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
+#include "virtual_rig/control_socket.h"
 
 namespace weft::app {
 namespace {
@@ -352,6 +353,38 @@ TEST_F(OpenApi, NamesTheCodeOfEveryErrorThatTheServerDecides) {
   EXPECT_EQ(code("POST", scan + "/cancel", "{}"), "controls_held");
   gate_.open();
   wait_for_state(port_, "idle");
+}
+
+TEST_F(OpenApi, DescribesWhatARigThatIsNotThereCanBeTold) {
+  const std::string here = "/api/v1/rig/virtual";
+  const auto asked = [&](const char* body) { return conforming("POST", here, here, body); };
+  EXPECT_EQ(conforming("GET", "/api/v1/rig", "/api/v1/rig").json()["virtual"], false);
+  EXPECT_EQ(conforming("GET", here, here).json()["error"]["code"], "rig_is_real");
+  EXPECT_EQ(asked(R"({"line": "board unplug"})").status, 404);
+
+  server_.reset();
+  scripted_.rig.daemon.virtual_control = scripted_.rig.file.parent_path() / "control";
+  server_ = scripted_.started();
+  port_ = server_->port();
+  EXPECT_EQ(conforming("GET", "/api/v1/rig", "/api/v1/rig").json()["virtual"], true);
+  EXPECT_EQ(conforming("GET", here, here).status, 503) << "nobody plays it";
+  const auto rig = virtual_rig::ControlSocket::listen(
+      scripted_.rig.daemon.virtual_control, [](const std::string& line) -> std::string {
+        if (line == "status") return R"({"shots": 3})";
+        if (line == "commands") return R"([{"line": "board NAME", "does": "it", "example": "board unplug"}])";
+        return line == "board unplug" ? "ok" : "error: no such command";
+      });
+  ASSERT_TRUE(rig) << rig.error().message();
+  const Json told = conforming("GET", here, here).json();
+  EXPECT_EQ(told["status"]["shots"], 3);
+  EXPECT_EQ(told["lines"][0]["example"], "board unplug");
+  EXPECT_EQ(asked(R"({"line": "board unplug"})").json()["said"], "ok");
+  for (const char* wrong : {"{}", R"({"line": 1})", R"({"line": ""})", R"({"line": "board x"})",
+                            R"({"line": "table cloth /etc/passwd"})", R"({"line": "board unplug\nend"})"}) {
+    EXPECT_EQ(asked(wrong).status, 400) << wrong;
+  }
+  ASSERT_EQ(ask(port_, "POST", "/api/v1/control", R"({"name": "Ann"})").status, 200);
+  EXPECT_EQ(asked(R"({"line": "board unplug"})").status, 409);
 }
 
 TEST_F(OpenApi, DescribesHowEachCallIsGuarded) {

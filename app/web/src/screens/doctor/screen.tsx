@@ -8,6 +8,7 @@ import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import {Mark} from '../../ui/mark';
+import {TortureScene} from '../jobs/torture';
 import {findingsOfPage, type Finding} from './page_findings';
 
 type Doctor = Schemas['Doctor'];
@@ -87,6 +88,12 @@ export default function DoctorScreen() {
       {examined?.doctor.leaves_alone && <p><Mark verdict="busy">Board and camera are in use and were not looked at.</Mark></p>}
       {examined && <Findings title={examined.doctor.rig} findings={examined.doctor.findings} />}
       {examined && <Findings title="This page" findings={examined.page} />}
+      {examined && (
+        <section class="panel">
+          <h2>Solver</h2>
+          <div class="row"><TortureScene /></div>
+        </section>
+      )}
       {version.value && <Versions said={version.value} />}
     </div>
   );

@@ -16,6 +16,7 @@ const titles: Record<string, string> = {
   price: 'Price of each level',
   rectify: 'Rectified maps',
   copy: 'Second copy',
+  torture: 'Torture scene',
   check: 'Check of the calibration',
   calibrate_camera: 'Lens and pose',
   calibrate_response: 'Sensor',

@@ -8,6 +8,7 @@ import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
 import {counted} from '../../ui/say';
 import {VirtualList} from '../../ui/virtual_list';
+import {TortureScene} from '../jobs/torture';
 import {BatchBar} from './batch_bar';
 import {addressOf, filtersIn, isNarrowed, type Filters} from './filters';
 import {FilterBar} from './filter_bar';
@@ -83,7 +84,8 @@ function Nothing({isNarrowed: isSearch}: {isNarrowed: boolean}) {
   if (isSearch) return <Empty says="No session is like that. Take a word or a filter away." />;
   return (
     <Empty says="No cloth was scanned yet.">
-      <a href="/desk">Scan one at the desk</a>
+      <p><a href="/desk">Scan one at the desk</a></p>
+      <TortureScene />
     </Empty>
   );
 }

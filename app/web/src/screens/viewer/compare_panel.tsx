@@ -6,6 +6,7 @@ import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {degrees} from '../../ui/say';
 import {percentOf} from '../../ui/words';
+import {DIFFERENCES} from './layers';
 import {isSameSize, solveInWords} from './maps';
 import {solveNameOf, textOf} from './sight';
 import type {Viewer} from './viewer';
@@ -76,9 +77,9 @@ export function toggleDivider(viewer: Viewer): void {
   viewer.see({divider: viewer.sight.value.divider === null ? 0.5 : null}, 'step');
 }
 
-export function toggleDifference(viewer: Viewer): void {
+export function toggleDifference(viewer: Viewer, name: string): void {
   if (!viewer.other.value || obstacle(viewer)) return;
-  viewer.seeLayer(viewer.sight.value.layer === 'difference' ? 'relit' : 'difference');
+  viewer.seeLayer(viewer.sight.value.layer === name ? 'relit' : name);
 }
 
 function Ways({viewer}: {viewer: Viewer}) {
@@ -88,7 +89,9 @@ function Ways({viewer}: {viewer: Viewer}) {
     <>
       <div class="row">
         <Button keyHint="b" isPressed={divider !== null} isDisabled={why !== ''} onClick={() => toggleDivider(viewer)}>Divider</Button>
-        <Button keyHint="d" isPressed={layer === 'difference'} isDisabled={why !== ''} onClick={() => toggleDifference(viewer)}>Difference</Button>
+        {DIFFERENCES.map(({name, says, key}) => (
+          <Button key={name} keyHint={key} isPressed={layer === name} isDisabled={why !== ''} onClick={() => toggleDifference(viewer, name)}>{says}</Button>
+        ))}
       </div>
       {why && <p class="dim">{why}</p>}
       {divider !== null && (

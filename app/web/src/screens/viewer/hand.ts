@@ -31,6 +31,14 @@ export function boxBetween(a: Point, b: Point, map: Size): Box {
   };
 }
 
+/** Lays the ruler or the rectangle, whichever is chosen, from one point of the map to another. */
+export function measure(viewer: Viewer, from: Point, to: Point): void {
+  const map = viewer.maps.value?.solve;
+  if (!map) return;
+  if (viewer.tool.value === 'ruler') viewer.see({line: [centre(from, map), centre(to, map)]});
+  else viewer.see({box: boxBetween(from, to, map)});
+}
+
 /** Where a place is on the largest disc of the canvas. */
 export function onDisc(at: Point, canvas: Size): Point {
   const radius = Math.min(canvas.width, canvas.height) / 2;
@@ -98,10 +106,7 @@ export class Hand {
   }
 
   private drag(before: Point, at: Point): void {
-    const map = this.viewer.maps.value?.solve;
-    if (!map || !this.begin) return;
-    const from = this.onMap(this.begin);
-    const to = this.onMap(at);
+    if (!this.begin) return;
     switch (this.viewer.tool.value) {
       case 'move':
         if (!this.isClick) this.viewer.move((view) => panned(view, {x: at.x - before.x, y: at.y - before.y}));
@@ -109,12 +114,8 @@ export class Hand {
       case 'light':
         this.shine(at);
         break;
-      case 'ruler':
-        this.viewer.see({line: [centre(from, map), centre(to, map)]});
-        break;
-      case 'region':
-        this.viewer.see({box: boxBetween(from, to, map)});
-        break;
+      default:
+        measure(this.viewer, this.onMap(this.begin), this.onMap(at));
     }
   }
 

@@ -21,8 +21,13 @@ export const LAYERS: readonly LayerChoice[] = [
   {name: 'residual', says: 'Residual', key: '5'},
   {name: 'status', says: 'Status', key: '6'},
   {name: 'height', says: 'Height', key: '7'},
+  {name: 'condition', says: 'Condition', key: '8'},
 ];
-export const DIFFERENCE: LayerChoice = {name: 'difference', says: 'Difference', key: 'd'};
+/** Of two solves together. */
+export const DIFFERENCES: readonly LayerChoice[] = [
+  {name: 'difference', says: 'Difference', key: 'd'},
+  {name: 'albedo_difference', says: 'Albedo difference', key: 'a'},
+];
 
 /** Parts of sigma, which the daemon has as layers of their own. */
 export const SIGMA_PARTS: readonly {name: string; says: string}[] = [
@@ -43,7 +48,9 @@ const explanations: Record<string, string> = {
   residual: 'What the readings miss of the model, as a share of the albedo.',
   status: 'What was left out in a pixel, and what is to be known of it.',
   height: 'Height of the cloth.',
+  condition: 'What the lights that a pixel was solved from make of errors, in decades: 3 is a thousandfold at most. At 16 they do not span three directions.',
   difference: 'Angle between the normals of the two.',
+  albedo_difference: 'By how much the albedo is off, in percent of the other: mean of red, green and blue.',
 };
 
 export function explanationOf(layer: string): string {
@@ -53,7 +60,11 @@ export function explanationOf(layer: string): string {
 export function saysOf(layer: string): string {
   const part = SIGMA_PARTS.find(({name}) => name === layer && name !== 'sigma');
   if (part) return `Sigma: ${part.says}`;
-  return [...LAYERS, DIFFERENCE].find(({name}) => name === layer)?.says ?? layer;
+  return [...LAYERS, ...DIFFERENCES].find(({name}) => name === layer)?.says ?? layer;
+}
+
+export function isDifference(layer: string): boolean {
+  return DIFFERENCES.some(({name}) => name === layer);
 }
 
 export function modeOf(layer: string): Mode {
@@ -74,12 +85,13 @@ export function hasExposure(layer: string): boolean {
 export function isThere(solve: ViewedSolve, layer: string): boolean {
   const has = (name: string) => solve.layers.some((each) => each.name === name);
   if (layer === 'relit') return has('albedo') && has('normal');
-  if (layer === 'difference') return has('normal');
+  if (isDifference(layer)) return has('normal') && has('albedo');
   return has(layer);
 }
 
 /** "deg", "mm", "share" in the words of a scale. */
 export function unitOf(solve: ViewedSolve, layer: string): string {
+  if (layer === 'albedo_difference') return '%';
   const unit = layer === 'difference' ? 'deg' : (solve.layers.find(({name}) => name === layer)?.unit ?? '');
   if (unit === 'deg') return '°';
   return unit === 'share' ? 'of the albedo' : unit;

@@ -21,8 +21,8 @@ export function LayerPanel({viewer}: {viewer: Viewer}) {
     <section>
       <h2>Layer</h2>
       <div class="layers" role="group" aria-label="Layers">
-        {LAYERS.map(({name, says, key}) => (
-          <Button key={name} keyHint={key} isPressed={family === name} isDisabled={!isThere(maps.solve, name)}
+        {LAYERS.filter(({name}) => isThere(maps.solve, name)).map(({name, says, key}) => (
+          <Button key={name} keyHint={key} isPressed={family === name}
             onClick={() => viewer.seeLayer(name)}>
             {says}
           </Button>

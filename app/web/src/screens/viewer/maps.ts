@@ -2,7 +2,7 @@
 // The maps of a solve as the daemon tells of them, and a side of the picture made of them.
 import {answer, api} from '../../api/client';
 import type {Side} from '../../gl/scene';
-import {isThere, modeOf, type ViewedSolve} from './layers';
+import {isDifference, isThere, modeOf, type ViewedSolve} from './layers';
 import {type SolveName, textOf} from './sight';
 
 export interface Maps {
@@ -39,7 +39,7 @@ export function sideOf(maps: Maps, layer: string, bits: readonly string[], other
     pyramid: {size: {width: solve.width, height: solve.height}, side: solve.tile, levels: solve.levels},
     mode: modeOf(layer),
     scalar: layer,
-    other: layer === 'difference' && other ? textOf(other) : null,
+    other: isDifference(layer) && other ? textOf(other) : null,
     gain: solve.display_gain,
     bits: isThere(solve, 'status') ? bits : [],
   };

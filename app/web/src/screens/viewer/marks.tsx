@@ -34,6 +34,10 @@ function HeldPixel({at, side}: {at: Point; side: number}) {
   );
 }
 
+function Pencil({at}: {at: Point}) {
+  return <path class="pencil" d={`M${at.x - 14} ${at.y}h10M${at.x + 4} ${at.y}h10M${at.x} ${at.y - 14}v10M${at.x} ${at.y + 4}v10`} />;
+}
+
 /** Where the light comes from. Small, since it moves while the picture below it is drawn anew. */
 export function LampMark({viewer, density}: {viewer: Viewer; density: number}) {
   if (viewer.tool.value !== 'light') return null;
@@ -49,14 +53,16 @@ export function Marks({viewer}: {viewer: Viewer}) {
   const view = viewer.view.value;
   const canvas = viewer.canvas.value;
   const {line, box, pixel, divider} = viewer.sight.value;
+  const mark = viewer.pencil.at.value;
   const isDivided = divider !== null && (viewer.scene.value?.sides.length ?? 0) > 1;
-  if (!view || !(line || box || pixel || isDivided)) return null;
+  if (!view || !(line || box || pixel || mark || isDivided)) return null;
   const corner = box && toCanvas(box, view, canvas);
   return (
     <svg class="marks" viewBox={`0 0 ${canvas.width} ${canvas.height}`} aria-hidden="true">
       {box && corner && <rect class="box" x={corner.x} y={corner.y} width={box.width * view.zoom} height={box.height * view.zoom} />}
       {line && <Ruler ends={[centreOf(line[0], view, canvas), centreOf(line[1], view, canvas)]} />}
       {pixel && <HeldPixel at={centreOf(pixel, view, canvas)} side={view.zoom} />}
+      {mark && <Pencil at={toCanvas(mark, view, canvas)} />}
       {isDivided && <line class="divider" x1={divider * canvas.width} y1={0} x2={divider * canvas.width} y2={canvas.height} />}
     </svg>
   );

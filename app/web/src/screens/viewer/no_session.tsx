@@ -3,6 +3,7 @@ import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/client';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
+import {TortureScene} from '../jobs/torture';
 import {addressOfViewer} from './sight';
 
 type Summary = Schemas['Summary'];
@@ -26,6 +27,7 @@ export function NoSession() {
       {sessions?.length === 0 && (
         <Empty says="No session is solved yet.">
           <p>Scan a cloth at the <a href="/desk">desk</a>, or queue a solve of a session under <a href="/jobs">jobs</a>.</p>
+          <TortureScene />
         </Empty>
       )}
       <ul class="choose-session">

@@ -16,7 +16,7 @@ import type {Viewer} from './viewer';
 
 const cursors = {move: 'grab', light: 'crosshair', ruler: 'crosshair', region: 'crosshair'};
 
-const keysInWords = 'Keys: 1 to 7 layers, D difference, B divider, L light, R ruler, S rectangle, plus, minus and 0 zoom, arrows move.';
+const keysInWords = 'Keys: 1 to 8 layers, D difference, B divider, L light, R ruler, S rectangle, plus, minus and 0 zoom, arrows move; with ruler or rectangle they lead its end, Shift farther, Enter sets it.';
 
 /** For who cannot see the canvas: which layer it shows, and which keys it has. */
 export function labelOf(viewer: Viewer): string {

@@ -10,6 +10,7 @@ import type {Viewer} from './viewer';
 /** Layers whose figures belong to what is seen. */
 function layersOf(layer: string): string[] {
   if (layer === 'relit') return ['normal', 'albedo'];
+  if (layer === 'albedo_difference') return ['albedo'];
   return layer === 'difference' ? ['normal'] : [layer];
 }
 

@@ -107,7 +107,7 @@ function MeasureHint({viewer}: {viewer: Viewer}) {
   if (line || box) return null;
   return (
     <section>
-      <p class="dim">Take the ruler and drag from one end to the other. Take the rectangle and drag over a part of the cloth.</p>
+      <p class="dim">Take the ruler and drag from one end to the other. Take the rectangle and drag over a part of the cloth. By keys: arrows lead the mark, Shift farther, Enter sets an end.</p>
     </section>
   );
 }

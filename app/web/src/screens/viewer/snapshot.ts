@@ -2,7 +2,7 @@
 // The picture as a file, with its scale bar and a line that says what it is.
 import {scaleBar, zoomInWords} from './bars';
 import type {PictureCanvas} from './canvas';
-import {hasScale, saysOf, unitOf} from './layers';
+import {hasScale, isDifference, saysOf, unitOf} from './layers';
 import {lightInWords} from './light';
 import type {Viewer} from './viewer';
 
@@ -15,7 +15,7 @@ export function captionOf(viewer: Viewer): string {
   const [least, most] = viewer.range.value;
   const how = layer === 'relit' ? ` ${lightInWords(light)}` : '';
   const scale = maps && hasScale(layer) ? ` ${least} to ${most} ${unitOf(maps.solve, layer)}` : '';
-  const beside = other && (divider !== null || layer === 'difference') ? ` against ${other.session}/${other.solve}` : '';
+  const beside = other && (divider !== null || isDifference(layer)) ? ` against ${other.session}/${other.solve}` : '';
   return `${session}/${solve}${beside}: ${saysOf(layer)}${how}${scale}`;
 }
 

@@ -7,7 +7,7 @@ import {Complaint} from '../../ui/complaint';
 import {Copy} from '../../ui/copy';
 import type {PictureCanvas} from './canvas';
 import {toggleDifference, toggleDivider} from './compare_panel';
-import {LAYERS} from './layers';
+import {DIFFERENCES, LAYERS} from './layers';
 import {nudged} from './light';
 import {toggleLight} from './light_panel';
 import {addressOfViewer} from './sight';
@@ -17,6 +17,15 @@ import type {Tool, Viewer} from './viewer';
 /** How far an arrow goes: a share of the canvas, or of the disc of lights. */
 const ARROW_SHARE = 1 / 8;
 const ARROW_LIGHT = 0.08;
+/** Steps of the end of a ruler with Shift. */
+const FAST = 20;
+
+const arrows = [
+  {key: 'ArrowLeft', does: 'to the left', by: {x: -1, y: 0}},
+  {key: 'ArrowRight', does: 'to the right', by: {x: 1, y: 0}},
+  {key: 'ArrowUp', does: 'up', by: {x: 0, y: -1}},
+  {key: 'ArrowDown', does: 'down', by: {x: 0, y: 1}},
+];
 
 function zoomBy(viewer: Viewer, direction: 1 | -1): void {
   viewer.move((view, canvas) => {
@@ -29,15 +38,25 @@ function zoomTo(viewer: Viewer, zoom: number): void {
   viewer.move((view) => ({...view, zoom}));
 }
 
-/** Takes a tool that measures, or puts it away. */
+function isMeasuring(viewer: Viewer): boolean {
+  return viewer.tool.value === 'ruler' || viewer.tool.value === 'region';
+}
+
+/** Takes a tool that measures, for the hand and for keys, or puts it away. */
 function toggleTool(viewer: Viewer, tool: Tool): void {
   const isOn = viewer.tool.value === tool;
+  viewer.pencil.putAway();
+  if (!isOn) document.querySelector<HTMLElement>('.picture canvas')?.focus();
   viewer.tool.value = isOn ? 'move' : tool;
   if (!isOn) viewer.see({panel: 'measure'});
 }
 
-/** Arrows move the view, or the light while it is held. */
-function arrow(viewer: Viewer, by: Point): void {
+/** Arrows move the view, or the light while it is held, or an end of what is measured. */
+function arrow(viewer: Viewer, by: Point, times: number): void {
+  if (isMeasuring(viewer)) {
+    viewer.pencil.lead({x: times * by.x, y: times * by.y});
+    return;
+  }
   if (viewer.tool.value === 'light') {
     viewer.shine(nudged(viewer.sight.value.light, {x: by.x * ARROW_LIGHT, y: by.y * ARROW_LIGHT}));
     return;
@@ -57,7 +76,7 @@ interface Neighbours {
 export function useViewerKeys(viewer: Viewer, {previous, next}: Neighbours): void {
   useKeys('viewer', [
     ...LAYERS.map(({name, says, key}) => ({key, does: says, run: () => viewer.seeLayer(name)})),
-    {key: 'd', does: 'difference to the other', run: () => toggleDifference(viewer)},
+    ...DIFFERENCES.map(({name, says, key}) => ({key, does: `${says} to the other`, run: () => toggleDifference(viewer, name)})),
     {key: 'b', does: 'divider', run: () => toggleDivider(viewer)},
     {key: 'l', does: 'light by drag', run: () => toggleLight(viewer)},
     {key: 'r', does: 'ruler', run: () => toggleTool(viewer, 'ruler')},
@@ -66,10 +85,11 @@ export function useViewerKeys(viewer: Viewer, {previous, next}: Neighbours): voi
     {key: '+', does: 'nearer', run: () => zoomBy(viewer, 1)},
     {key: '-', does: 'farther', run: () => zoomBy(viewer, -1)},
     {key: '0', does: 'all of it', run: () => viewer.see({view: null})},
-    {key: 'ArrowLeft', does: 'to the left', run: () => arrow(viewer, {x: -1, y: 0})},
-    {key: 'ArrowRight', does: 'to the right', run: () => arrow(viewer, {x: 1, y: 0})},
-    {key: 'ArrowUp', does: 'up', run: () => arrow(viewer, {x: 0, y: -1})},
-    {key: 'ArrowDown', does: 'down', run: () => arrow(viewer, {x: 0, y: 1})},
+    ...arrows.flatMap(({key, does, by}) => [
+      {key, does, run: () => arrow(viewer, by, 1)},
+      {key: `Shift+${key}`, does: `${does}, ruler and rectangle farther`, run: () => arrow(viewer, by, FAST)},
+    ]),
+    {key: 'Enter', does: 'sets an end of ruler or rectangle', run: () => isMeasuring(viewer) && viewer.pencil.set()},
     {key: '[', does: 'previous session', run: previous},
     {key: ']', does: 'next session', run: next},
   ]);

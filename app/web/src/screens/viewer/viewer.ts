@@ -5,9 +5,10 @@ import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/cl
 import type {Scene, Side, Vector} from '../../gl/scene';
 import {type Box, type Point, type Size, type View, clamp, fitted, held} from '../../gl/view';
 import {amend, place} from '../../state/address';
-import {bitColour, bitsOf, fullScale, hasScale, isThere} from './layers';
+import {bitColour, bitsOf, fullScale, hasScale, isDifference, isThere} from './layers';
 import {Latest} from './latest';
 import {isSameSize, loadMaps, type Maps, sideOf} from './maps';
+import {Pencil} from './pencil';
 import {channelsOf, type PixelFacts, type RegionFacts, sharesOf} from './probe';
 import {asWritten, queryOf, type Sight, sightOf, type SolveName} from './sight';
 
@@ -30,6 +31,7 @@ export class Viewer {
   readonly canvas = signal<Size>({width: 0, height: 0});
   readonly tool = signal<Tool>('move');
   readonly isLightMoving = signal(false);
+  readonly pencil = new Pencil(this);
   /** The daemon's figures of the whole map, once they were needed. */
   readonly whole = signal<RegionFacts | null>(null);
   readonly comparison = signal<Schemas['Comparison'] | null>(null);
@@ -221,17 +223,17 @@ export class Viewer {
     if (!maps) return [];
     const {layer, divider} = this.sight.value;
     const other = this.other.value;
-    if (layer === 'difference' && (!other || !isSameSize(maps, other))) return [];
+    if (isDifference(layer) && (!other || !isSameSize(maps, other))) return [];
     const first = sideOf(maps, layer, this.bits.value, this.sight.value.other);
     if (!first) return [];
-    const isDivided = divider !== null && layer !== 'difference' && other && isSameSize(maps, other);
+    const isDivided = divider !== null && !isDifference(layer) && other && isSameSize(maps, other);
     const second = isDivided ? sideOf(other, layer, this.bits.value, null) : null;
     return second ? [first, second] : [first];
   }
 
   private readonly needsWhole = computed(() => {
     const {layer} = this.sight.value;
-    return this.maps.value !== null && (layer === 'status' || (hasScale(layer) && layer !== 'difference'));
+    return this.maps.value !== null && (layer === 'status' || (hasScale(layer) && !isDifference(layer)));
   });
 
   /** The picture will change once the daemon's figures are there. */
@@ -252,7 +254,10 @@ export class Viewer {
 
   private ownRange(): [number, number] {
     const {layer} = this.sight.value;
-    if (layer === 'difference') return [0, fullScale(this.comparison.value?.normal.p95_deg ?? 3)];
+    const compared = this.comparison.value;
+    if (layer === 'difference') return [0, fullScale(compared?.normal.p95_deg ?? 3)];
+    if (layer === 'albedo_difference') return [0, fullScale(200 * (compared?.albedo.mean_rel ?? 0.01))];
+    if (layer === 'condition') return [0, 8];
     const facts = this.whole.value && Object.values(channelsOf(this.whole.value, layer))[0];
     if (!facts) return [0, 1];
     return layer === 'height' ? [facts.p5, Math.max(facts.p95, facts.p5 + 1e-6)] : [0, fullScale(facts.p95)];

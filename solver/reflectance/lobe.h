@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string_view>
+
+#include "core/vec.h"
+
+// How a cloth reflects a small light, as photographs show it. The simulator has models of its own
+// (simulator/reflectance), so that neither is tested against itself.
+
+namespace weft::solver {
+
+enum class LobeFamily {
+  kLambert,         ///< no lobe
+  kGgx,             ///< Walter et al. 2007
+  kAnisotropicGgx,  ///< Heitz 2014: `alpha` across the yarn, `along` times as much along it
+  kBeckmann,        ///< Walter et al. 2007, eq. 25
+  kCloth,           ///< Ashikhmin and Premoze 2007, normed as seed 000 eq. 22 and 23
+};
+const char* name_of(LobeFamily family);
+std::optional<LobeFamily> lobe_family(std::string_view name);
+
+/// What the pixels of one material share. A reading over its strength is
+///
+///   x = (n . l) (rho (1 - F) (1 - bend (1 - n . l)) + pi F D V),  F = f0 + (1 - f0) (1 - l . h)^5
+///
+/// with the half-vector h, and 0 where the light is below the surface. rho and n are each pixel's own.
+struct Lobe {
+  LobeFamily family = LobeFamily::kLambert;
+  double alpha = 1;  ///< roughness, 0.02 to 1; of a pixel: what lies below it is in it
+  double f0 = 0;     ///< 0 to 0.6, of all colours alike
+  double along = 1;  ///< alpha along the yarn over that across it, 0.05 to 20
+  double axis = 0;   ///< azimuth of the warp, radians from the x axis of the rig; weft lies across it
+  double bend = 0;   ///< how much the diffuse part falls short of Lambert's law at grazing light
+
+  bool shines() const { return family != LobeFamily::kLambert && f0 > 0; }
+  friend bool operator==(const Lobe&, const Lobe&) = default;
+};
+
+/// One light over one pixel, with what no normal changes.
+struct LitFrom {
+  Vec3 light, view;
+  Vec3 half;
+  double light_half = 0;  ///< l . h
+
+  LitFrom() = default;
+  LitFrom(Vec3 to_light, Vec3 to_camera);
+};
+
+/// pi F D V of a normal. `yarn`: azimuth of the pixel's yarn from `axis`, radians.
+double specular(const Lobe& lobe, Vec3 normal, const LitFrom& from, double yarn);
+
+/// x and its derivative by b = rho n.
+struct ModelledReading {
+  double x = 0;
+  Vec3 by_b;
+};
+double modelled(const Lobe& lobe, Vec3 b, const LitFrom& from, double yarn);
+ModelledReading modelled_with_derivative(const Lobe& lobe, Vec3 b, const LitFrom& from, double yarn);
+
+}  // namespace weft::solver

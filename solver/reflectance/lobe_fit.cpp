@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/reflectance/lobe_fit.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "core/parallel.h"
+
+namespace weft::solver {
+namespace {
+
+using Shared = Eigen::Matrix<double, kLobeParameters, 1>;
+using SharedMatrix = Eigen::Matrix<double, kLobeParameters, kLobeParameters>;
+
+// Pixels whose sums are made by one thread, in their order.
+constexpr std::size_t kChunk = 64;
+constexpr int kMostTries = 7;
+constexpr int kStepsARound = 2;
+constexpr double kSettled = 1e-6;  // of the cost: a round that wins less is the last
+
+Shared values_of(const Lobe& lobe) {
+  return {std::log(lobe.alpha), lobe.f0, std::log(lobe.along), lobe.axis, lobe.bend};
+}
+
+// Within the ranges of Lobe.
+Lobe lobe_of(LobeFamily family, const Shared& v) {
+  return {family,
+          std::exp(std::clamp(v[0], std::log(0.02), 0.0)),
+          std::clamp(v[1], 0.0, 0.6),
+          std::exp(std::clamp(v[2], std::log(0.05), std::log(20.0))),
+          v[3],
+          std::clamp(v[4], -0.5, 1.0)};
+}
+
+double step_of(std::size_t parameter) {
+  return parameter == static_cast<std::size_t>(LobeParameter::kF0) ? 1e-4 : 1e-3;
+}
+
+// The largest change of a round.
+constexpr std::array<double, kLobeParameters> kMostChange = {0.5, 0.1, 0.5, 0.35, 0.5};
+
+// What one chunk of pixels says of the shared values.
+struct Reduced {
+  SharedMatrix matrix = SharedMatrix::Zero();
+  Shared gradient = Shared::Zero();
+};
+
+// Adds a pixel: M = S^T W S - (S^T W J)(J^T W J)^-1 (J^T W S), and likewise the gradient.
+void add_pixel(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted,
+               std::size_t pixel, Reduced& sums) {
+  const Vec3 b = fit.b[pixel];
+  const double yarn = fit.yarn[pixel];
+  const Shared here = values_of(fit.lobe);
+  std::array<Lobe, kLobeParameters> moved;
+  for (std::size_t p = 0; p < kLobeParameters; ++p) {
+    if (!fitted[p]) continue;
+    Shared there = here;
+    there[static_cast<Eigen::Index>(p)] += step_of(p);
+    moved[p] = lobe_of(fit.lobe.family, there);
+  }
+  const PixelSystem system = system_of(fit.lobe, samples.of(pixel), b, yarn);
+  std::array<Vec3, kLobeParameters> mixed = {};
+  for (const LobeReading& r : samples.of(pixel)) {
+    if (r.weight == 0) continue;
+    const ModelledReading m = modelled_with_derivative(fit.lobe, b, r.from, yarn);
+    const double residual = r.x - m.x;
+    const double w = r.weight * huber_weight(residual * std::sqrt(r.weight));
+    Shared s = Shared::Zero();
+    for (std::size_t p = 0; p < kLobeParameters; ++p) {
+      if (!fitted[p]) continue;
+      const double slope = (modelled(moved[p], b, r.from, yarn) - m.x) / step_of(p);
+      s[static_cast<Eigen::Index>(p)] = slope;
+      mixed[p] = mixed[p] + (w * slope) * m.by_b;
+    }
+    sums.matrix += w * s * s.transpose();
+    sums.gradient += w * residual * s;
+  }
+  for (std::size_t p = 0; p < kLobeParameters; ++p) {
+    if (!fitted[p]) continue;
+    const Vec3 solved = system.solved(mixed[p]);
+    sums.gradient[static_cast<Eigen::Index>(p)] -= dot(solved, system.gradient);
+    for (std::size_t q = 0; q < kLobeParameters; ++q) {
+      if (fitted[q])
+        sums.matrix(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q)) -= dot(solved, mixed[q]);
+    }
+  }
+}
+
+class SharedFit {
+ public:
+  SharedFit(const LobeSamples& samples, const LobeFitOptions& options)
+      : samples_(samples), options_(options) {}
+
+  LobeFit run(LobeFit fit) {
+    fit = settled(std::move(fit), options_.first_steps);
+    double damping = 1e-3;
+    for (int round = 0; round < options_.rounds; ++round) {
+      const Reduced sums = reduced(fit);
+      const std::optional<LobeFit> better = step(fit, sums, damping);
+      if (!better) break;
+      const bool is_last = fit.total() - better->total() < kSettled * fit.total();
+      fit = *better;
+      damping = std::max(damping / 6, 1e-7);
+      if (is_last) break;
+    }
+    const auto freedom = static_cast<double>(samples_.used()) - 3 * static_cast<double>(samples_.pixels());
+    fit.chi2 = freedom > 0 ? 2 * fit.total() / freedom : 0;
+    write_covariance(fit);
+    return fit;
+  }
+
+ private:
+  bool is_fitted(Eigen::Index p) const { return options_.fitted[static_cast<std::size_t>(p)]; }
+
+  // Every pixel solved for the lobe of the fit, from where it is.
+  LobeFit settled(LobeFit fit, int steps) const {
+    fit.cost.resize(samples_.pixels());
+    for_chunks([&](std::size_t pixel) {
+      const PixelFit solved =
+          fit_pixel(fit.lobe, samples_.of(pixel), fit.b[pixel], fit.yarn[pixel], steps);
+      fit.b[pixel] = solved.b;
+      fit.cost[pixel] = solved.cost;
+    });
+    return fit;
+  }
+
+  void for_chunks(const std::function<void(std::size_t)>& of_pixel) const {
+    const std::size_t pixels = samples_.pixels();
+    parallel_for((pixels + kChunk - 1) / kChunk, options_.threads, [&](std::size_t chunk, int) {
+      for (std::size_t i = chunk * kChunk; i < std::min(pixels, (chunk + 1) * kChunk); ++i) of_pixel(i);
+    });
+  }
+
+  Reduced reduced(const LobeFit& fit) const {
+    std::vector<Reduced> parts((samples_.pixels() + kChunk - 1) / kChunk);
+    for_chunks([&](std::size_t i) { add_pixel(samples_, fit, options_.fitted, i, parts[i / kChunk]); });
+    Reduced all;
+    for (const Reduced& part : parts) {
+      all.matrix += part.matrix;
+      all.gradient += part.gradient;
+    }
+    return all;
+  }
+
+  // The next values, damped until the cost falls; none where it never does.
+  std::optional<LobeFit> step(const LobeFit& fit, const Reduced& sums, double& damping) const {
+    for (int tries = 0; tries < kMostTries; ++tries, damping *= 8) {
+      SharedMatrix damped = sums.matrix;
+      Shared gradient = sums.gradient;
+      for (Eigen::Index p = 0; p < static_cast<Eigen::Index>(kLobeParameters); ++p) {
+        damped(p, p) = is_fitted(p) ? damped(p, p) * (1 + damping) + 1e-12 : 1;
+        if (!is_fitted(p)) gradient[p] = 0;
+      }
+      Shared change = damped.ldlt().solve(gradient);
+      for (Eigen::Index p = 0; p < change.size(); ++p) {
+        const double most = kMostChange[static_cast<std::size_t>(p)];
+        change[p] = std::isfinite(change[p]) ? std::clamp(change[p], -most, most) : 0;
+      }
+      LobeFit next = fit;
+      next.lobe = lobe_of(fit.lobe.family, values_of(fit.lobe) + change);
+      next = settled(std::move(next), kStepsARound);
+      if (next.total() < fit.total()) return next;
+    }
+    return {};
+  }
+
+  void write_covariance(LobeFit& fit) const {
+    std::vector<Eigen::Index> free;
+    for (Eigen::Index p = 0; p < static_cast<Eigen::Index>(kLobeParameters); ++p) {
+      if (is_fitted(p)) free.push_back(p);
+    }
+    for (auto& row : fit.covariance) row.fill(0);
+    if (free.empty()) return;
+    const SharedMatrix matrix = reduced(fit).matrix;
+    const auto n = static_cast<Eigen::Index>(free.size());
+    Eigen::MatrixXd part(n, n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j)
+        part(i, j) = matrix(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(j)]);
+    }
+    const Eigen::MatrixXd inverse =
+        std::max(fit.chi2, 1.0) * part.completeOrthogonalDecomposition().pseudoInverse();
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index j = 0; j < n; ++j) {
+        fit.covariance[static_cast<std::size_t>(free[static_cast<std::size_t>(i)])]
+                      [static_cast<std::size_t>(free[static_cast<std::size_t>(j)])] = inverse(i, j);
+      }
+    }
+  }
+
+  const LobeSamples& samples_;
+  const LobeFitOptions& options_;
+};
+
+}  // namespace
+
+LobeSamples LobeSamples::first(std::size_t count) const {
+  const auto end = readings.begin() + static_cast<std::ptrdiff_t>(std::min(count, pixels()) * lights);
+  return {lights, {readings.begin(), end}};
+}
+
+std::size_t LobeSamples::used() const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(readings, [](const LobeReading& r) { return r.weight > 0; }));
+}
+
+LobeParameters parameters_of(LobeFamily family) {
+  LobeParameters fitted = {};
+  const bool has_lobe = family != LobeFamily::kLambert, has_yarn = family == LobeFamily::kAnisotropicGgx;
+  fitted[static_cast<std::size_t>(LobeParameter::kLogAlpha)] = has_lobe;
+  fitted[static_cast<std::size_t>(LobeParameter::kF0)] = has_lobe;
+  fitted[static_cast<std::size_t>(LobeParameter::kLogAlong)] = has_yarn;
+  fitted[static_cast<std::size_t>(LobeParameter::kAxis)] = has_yarn;
+  return fitted;
+}
+
+double LobeFit::total() const {
+  return std::accumulate(cost.begin(), cost.end(), 0.0);
+}
+
+LobeFit fit_lobe(const LobeSamples& samples, LobeFit start, const LobeFitOptions& options) {
+  return SharedFit(samples, options).run(std::move(start));
+}
+
+}  // namespace weft::solver

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/vec.h"
+#include "solver/reflectance/lobe.h"
+#include "solver/reflectance/pixel_fit.h"
+
+// One lobe fitted to many pixels of one material, the normal and the albedo of each free: variable
+// projection (Golub and Pereyra 1973).
+
+namespace weft::solver {
+
+/// Pixels of one material, each with all lights.
+struct LobeSamples {
+  std::size_t lights = 0;
+  std::vector<LobeReading> readings;  ///< [pixel * lights + light]
+
+  std::size_t pixels() const { return lights == 0 ? 0 : readings.size() / lights; }
+  std::span<const LobeReading> of(std::size_t pixel) const {
+    return {readings.data() + pixel * lights, lights};
+  }
+  LobeSamples first(std::size_t count) const;
+  std::size_t used() const;  ///< readings with a weight
+};
+
+/// What all pixels share, in the order of a covariance.
+enum class LobeParameter { kLogAlpha, kF0, kLogAlong, kAxis, kBend };
+inline constexpr std::size_t kLobeParameters = 5;
+using LobeParameters = std::array<bool, kLobeParameters>;  ///< which are fitted
+
+/// Those of a family: alpha and f0 where it has a lobe, `along` and `axis` where it has a yarn.
+LobeParameters parameters_of(LobeFamily family);
+
+struct LobeFit {
+  Lobe lobe;
+  std::vector<Vec3> b;       ///< by pixel
+  std::vector<double> yarn;  ///< by pixel: 0 or pi / 2, from the axis
+  std::vector<double> cost;  ///< by pixel
+  double chi2 = 0;           ///< twice the cost over the degrees of freedom that pixels leave
+  /// Of the fitted parameters, in their order; of a chi2 over 1 as large as the residuals say.
+  std::array<std::array<double, kLobeParameters>, kLobeParameters> covariance = {};
+
+  double total() const;
+};
+
+struct LobeFitOptions {
+  LobeParameters fitted = {};
+  int rounds = 10;      ///< of the shared parameters; 0: pixels alone
+  int first_steps = 5;  ///< of each pixel, before the first round
+  int threads = 0;      ///< the result does not depend on them
+};
+
+/// From `start`, whose b and yarn are one a pixel. Each pixel's b by Gauss-Newton for given shared values,
+/// these by Levenberg and Marquardt on what the pixels leave of the normal equations. Parameters stay within
+/// Lobe's ranges. The cost never rises.
+LobeFit fit_lobe(const LobeSamples& samples, LobeFit start, const LobeFitOptions& options);
+
+}  // namespace weft::solver

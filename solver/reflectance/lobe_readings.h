@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "core/vec.h"
+#include "solver/method.h"
+#include "solver/reflectance/pixel_fit.h"
+
+namespace weft::solver {
+
+/// Unit vectors from the cloth to the camera.
+class Sight {
+ public:
+  /// The centre of the camera in the rig frame, mm; none: it looks straight down from far away.
+  explicit Sight(std::optional<Vec3> camera_mm, double cloth_height_mm)
+      : camera_mm_(camera_mm), height_mm_(cloth_height_mm) {}
+  Vec3 from(double x_mm, double y_mm) const {
+    return camera_mm_ ? normalized(*camera_mm_ - Vec3{x_mm, y_mm, height_mm_}) : Vec3{0, 0, 1};
+  }
+  bool is_far() const { return !camera_mm_.has_value(); }
+
+ private:
+  std::optional<Vec3> camera_mm_;
+  double height_mm_;
+};
+
+/// The readings of one pixel of a tile after another, in double, with the weights that a lobe is fitted by. A
+/// reading that is saturated or missing, that the LED does not reach, or that is in the dark beside the
+/// bright ones (kShadowShare) has none. Of RGB the weighted sum of the channels, each over its strength.
+class LobeReader {
+ public:
+  LobeReader(const TileInput& input, Sight sight);
+  /// Column and row of the tile. `readings` has as many as there are lights.
+  void read(int x, int y, std::span<LobeReading> readings);
+
+ private:
+  void read_row(int y);
+
+  const TileInput& input_;
+  Sight sight_;
+  int row_ = -1;  ///< that `points_` is of
+  LightField::Row points_;
+  std::vector<double> bright_;
+};
+
+}  // namespace weft::solver

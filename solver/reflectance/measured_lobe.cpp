@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/reflectance/measured_lobe.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/statistics.h"
+
+namespace weft::solver {
+namespace {
+
+constexpr std::array<const char*, 7> kRefusals = {
+    "measured", "too-few-pixels", "lambert-fits", "nothing-fits", "strength", "too-broad", "bent-diffuse"};
+// Pixels of the sample that decide among starts.
+constexpr std::size_t kTrialPixels = 1000;
+constexpr std::array<double, 4> kStartAlphas = {0.08, 0.2, 0.45, 0.8};
+constexpr double kStartF0 = 0.03, kStartAlong = 0.3;
+constexpr int kTrialRounds = 15, kRounds = 15;
+constexpr int kMostRestarts = 4, kYarnRounds = 4;
+constexpr double kMovedShare = 0.002;  // pixels that still find another valley
+constexpr double kMovedCost = 0.5;     // what a pixel must win to count as moved
+constexpr double kUndecided = 0.05;    // of the cost
+constexpr int kStartSteps = 5;
+
+LobeParameters with_bend(LobeParameters fitted) {
+  fitted[static_cast<std::size_t>(LobeParameter::kBend)] = true;
+  return fitted;
+}
+
+LobeFit unfitted(const Lobe& lobe, const std::vector<Vec3>& b) {
+  return {lobe, b, std::vector<double>(b.size(), 0.0), {}, 0, {}};
+}
+
+// One family over the pixels of one material.
+class Trial {
+ public:
+  Trial(const LobeSamples& samples, const std::vector<Vec3>& start, int threads)
+      : samples_(samples), few_(samples.first(kTrialPixels)), start_(start), threads_(threads) {}
+
+  LobeFit lambert() const { return fit_lobe(samples_, unfitted({}, start_), {.threads = threads_}); }
+
+  LobeFit isotropic(LobeFamily family, bool bends) const {
+    LobeParameters fitted = parameters_of(family);
+    if (bends) fitted = with_bend(fitted);
+    const std::vector<Vec3> few = of_few(start_);
+    std::optional<LobeFit> best;
+    for (const double alpha : kStartAlphas) {
+      LobeFit fit = fit_lobe(few_, unfitted({.family = family, .alpha = alpha, .f0 = kStartF0}, few),
+                             options(fitted, kTrialRounds));
+      if (!best || fit.total() < best->total()) best = std::move(fit);
+    }
+    return restarted(fit_lobe(samples_, unfitted(best->lobe, start_), options(fitted, kRounds)), fitted);
+  }
+
+  // From an isotropic fit: its alpha is between the two.
+  LobeFit anisotropic(const LobeFit& round) const {
+    const LobeParameters fitted = parameters_of(LobeFamily::kAnisotropicGgx);
+    const double across = std::clamp(1.3 * std::max(round.lobe.alpha, 0.1), 0.02, 1.0);
+    std::optional<LobeFit> best;
+    for (const double axis : {0.0, kPi / 4}) {
+      LobeFit fit = unfitted({.family = LobeFamily::kAnisotropicGgx,
+                              .alpha = across,
+                              .f0 = std::max(round.lobe.f0, 0.01),
+                              .along = kStartAlong,
+                              .axis = axis},
+                             of_few(round.b));
+      fit = with_yarns(few_, std::move(fit), fitted);
+      if (!best || fit.total() < best->total()) best = std::move(fit);
+    }
+    LobeFit fit = with_yarns(samples_, unfitted(best->lobe, round.b), fitted);
+    return canonical(restarted(std::move(fit), fitted));
+  }
+
+ private:
+  std::vector<Vec3> of_few(const std::vector<Vec3>& b) const {
+    return {b.begin(), b.begin() + static_cast<std::ptrdiff_t>(few_.pixels())};
+  }
+  LobeFitOptions options(LobeParameters fitted, int rounds) const {
+    return {.fitted = fitted, .rounds = rounds, .threads = threads_};
+  }
+
+  // Each pixel's yarn is the one of the two that costs it less.
+  LobeFit with_yarns(const LobeSamples& samples, LobeFit fit, LobeParameters fitted) const {
+    for (int round = 0; round < kYarnRounds; ++round) {
+      fit = better_yarns(samples, std::move(fit));
+      fit = fit_lobe(samples, std::move(fit), options(fitted, kRounds));
+    }
+    return fit;
+  }
+  LobeFit better_yarns(const LobeSamples& samples, LobeFit fit) const {
+    parallel_for(samples.pixels(), threads_, [&](std::size_t i, int) {
+      const PixelFit warp = fit_pixel(fit.lobe, samples.of(i), fit.b[i], 0, kStartSteps);
+      const PixelFit weft = fit_pixel(fit.lobe, samples.of(i), fit.b[i], kPi / 2, kStartSteps);
+      const bool is_weft = weft.cost < warp.cost;
+      fit.b[i] = is_weft ? weft.b : warp.b;
+      fit.yarn[i] = is_weft ? kPi / 2 : 0;
+    });
+    return fit;
+  }
+
+  // Every pixel from other normals too, the shared values anew, until hardly one finds a better valley.
+  LobeFit restarted(LobeFit fit, LobeParameters fitted) const {
+    for (int round = 0; round < kMostRestarts; ++round) {
+      const std::vector<double> before = fit.cost;
+      std::vector<double> albedos;
+      for (const Vec3& b : fit.b) albedos.push_back(length(b));
+      const double median_albedo = median(albedos);
+      const bool has_yarn = fit.lobe.family == LobeFamily::kAnisotropicGgx;
+      parallel_for(samples_.pixels(), threads_, [&](std::size_t i, int) {
+        for (const Vec3& start : other_starts(samples_.of(i), length(fit.b[i]), median_albedo)) {
+          for (const double yarn : {0.0, kPi / 2}) {
+            if (yarn > 0 && !has_yarn) continue;
+            const PixelFit other = fit_pixel(fit.lobe, samples_.of(i), start, yarn, kStartSteps);
+            if (!(other.cost < fit.cost[i])) continue;
+            fit.b[i] = other.b;
+            fit.yarn[i] = yarn;
+            fit.cost[i] = other.cost;
+          }
+        }
+      });
+      std::size_t moved = 0;
+      for (std::size_t i = 0; i < before.size(); ++i) {
+        if (fit.cost[i] < before[i] - kMovedCost) ++moved;
+      }
+      fit = fit_lobe(samples_, std::move(fit), options(fitted, kRounds));
+      if (static_cast<double>(moved) < kMovedShare * static_cast<double>(before.size())) break;
+    }
+    return fit;
+  }
+
+  // The same lobe, rougher across than along and its axis within 90 degrees around x.
+  static LobeFit canonical(LobeFit fit) {
+    Lobe& lobe = fit.lobe;
+    if (lobe.along > 1) {
+      lobe.alpha *= lobe.along;
+      lobe.along = 1 / lobe.along;
+      for (double& yarn : fit.yarn) yarn = kPi / 2 - yarn;
+    }
+    const double turned = std::remainder(lobe.axis, kPi);
+    lobe.axis = std::remainder(turned, kPi / 2);
+    if (std::abs(turned - lobe.axis) > kPi / 4) {
+      for (double& yarn : fit.yarn) yarn = kPi / 2 - yarn;
+    }
+    return fit;
+  }
+
+  const LobeSamples& samples_;
+  LobeSamples few_;
+  const std::vector<Vec3>& start_;
+  int threads_;
+};
+
+bool agrees(const Lobe& a, const Lobe& b) {
+  return std::abs(a.alpha - b.alpha) <= kAlphaAgrees && std::abs(a.f0 - b.f0) <= kF0Agrees * a.f0;
+}
+
+LobeRefusal refusal_of(const LobeFit& fit, double lambert_chi2, const LobeFit& bent) {
+  if (fit.chi2 > kLobeFitsTo && fit.chi2 > kLeastWon * lambert_chi2) return LobeRefusal::kNothingFits;
+  if (!(fit.lobe.f0 > kLeastF0 && fit.lobe.f0 < kMostF0)) return LobeRefusal::kStrength;
+  if (!(fit.lobe.alpha < kMostAlpha)) return LobeRefusal::kTooBroad;
+  if (fit.lobe.family != LobeFamily::kAnisotropicGgx && !agrees(fit.lobe, bent.lobe))
+    return LobeRefusal::kBentDiffuse;
+  return LobeRefusal::kNone;
+}
+
+void write_sigmas(const LobeFit& bent, MeasuredLobe& measured) {
+  const auto& c = measured.fit.covariance;
+  const auto formal = [&](LobeParameter p) {
+    const auto i = static_cast<std::size_t>(p);
+    return std::sqrt(std::max(c[i][i], 0.0));
+  };
+  const Lobe& lobe = measured.lobe;
+  const bool has_yarn = lobe.family == LobeFamily::kAnisotropicGgx;
+  const double alpha_turns = has_yarn ? 0 : std::abs(std::log(lobe.alpha / bent.lobe.alpha)) / 2;
+  const double f0_turns = has_yarn ? 0 : std::abs(lobe.f0 - bent.lobe.f0) / 2;
+  measured.sigma_alpha = std::max(formal(LobeParameter::kLogAlpha), alpha_turns);
+  measured.sigma_f0 = std::max(formal(LobeParameter::kF0), f0_turns);
+  measured.sigma_along = formal(LobeParameter::kLogAlong);
+  measured.sigma_axis = formal(LobeParameter::kAxis);
+  const double product = formal(LobeParameter::kLogAlpha) * formal(LobeParameter::kF0);
+  measured.correlation = product > 0 ? std::clamp(c[0][1] / product, -1.0, 1.0) : 0;
+}
+
+std::array<double, 2> half_angles(const LobeSamples& samples, const LobeFit& fit) {
+  std::vector<double> angles;
+  for (std::size_t i = 0; i < samples.pixels(); ++i) {
+    for (const LobeReading& r : samples.of(i)) {
+      if (r.weight > 0) angles.push_back(angle_deg(fit.b[i], r.from.half));
+    }
+  }
+  if (angles.empty()) return {};
+  return {quantile(angles, 0.02), quantile(angles, 0.98)};
+}
+
+}  // namespace
+
+const char* name_of(LobeRefusal refusal) {
+  return kRefusals[static_cast<std::size_t>(refusal)];
+}
+
+std::array<Vec3, 6> other_starts(std::span<const LobeReading> readings, double albedo,
+                                 double median_albedo) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const LobeReading& r : readings) {
+    if (r.weight > 0 && r.x > 0) least = std::min(least, r.x / std::max(r.from.light.z, 0.1));
+  }
+  if (!std::isfinite(least)) least = median_albedo;
+  std::array<Vec3, 6> starts = {Vec3{0, 0, least}, Vec3{0, 0, median_albedo}};
+  constexpr double kTilt = 0.35;
+  const double length = std::min(albedo, median_albedo);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const double azimuth = static_cast<double>(i) * kPi / 2;
+    starts[2 + i] = length * Vec3{std::sin(kTilt) * std::cos(azimuth), std::sin(kTilt) * std::sin(azimuth),
+                                  std::cos(kTilt)};
+  }
+  return starts;
+}
+
+MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads) {
+  MeasuredLobe measured;
+  if (samples.pixels() < kLeastLobePixels) return measured;
+  const Trial trial(samples, start, threads);
+  const double lambert_chi2 = trial.lambert().chi2;
+  measured.candidates.push_back({{}, lambert_chi2});
+  measured.refusal = LobeRefusal::kLambertFits;
+  if (!(lambert_chi2 > kLambertFitsTo)) return measured;
+
+  const LobeFit round = trial.isotropic(LobeFamily::kGgx, false);
+  const LobeFit bent = trial.isotropic(LobeFamily::kGgx, true);
+  struct Other {
+    LobeFit fit;
+    double wins;
+  };
+  const std::vector<Other> others = {{trial.isotropic(LobeFamily::kBeckmann, false), kOtherWins},
+                                     {trial.anisotropic(round), kYarnWins}};
+  measured.candidates.push_back({round.lobe, round.chi2});
+  measured.candidates.push_back({bent.lobe, bent.chi2});
+  const LobeFit* best = &round;
+  for (const Other& other : others) {
+    measured.candidates.push_back({other.fit.lobe, other.fit.chi2});
+    if (other.fit.total() < (1 - other.wins) * round.total() && other.fit.total() < best->total())
+      best = &other.fit;
+  }
+  measured.refusal = refusal_of(*best, lambert_chi2, bent);
+  if (!measured.is_measured()) return measured;
+  const auto passes_too = [&](const LobeFit& fit) {
+    return &fit != best && fit.total() < (1 + kUndecided) * best->total() &&
+           refusal_of(fit, lambert_chi2, bent) == LobeRefusal::kNone;
+  };
+  measured.is_family_undecided =
+      passes_too(round) ||
+      std::ranges::any_of(others, [&](const Other& other) { return passes_too(other.fit); });
+  measured.fit = *best;
+  measured.lobe = best->lobe;
+  write_sigmas(bent, measured);
+  measured.half_deg = half_angles(samples, measured.fit);
+  return measured;
+}
+
+}  // namespace weft::solver

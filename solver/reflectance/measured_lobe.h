@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "solver/reflectance/lobe_fit.h"
+
+namespace weft::solver {
+
+/// Why a lobe is not called measured.
+enum class LobeRefusal {
+  kNone,
+  kTooFewPixels,   ///< fewer than kLeastLobePixels with three readings more than they have unknowns
+  kLambertFits,    ///< nothing is left to explain by a lobe
+  kNothingFits,    ///< no family explains the readings
+  kStrength,       ///< f0 is none that a cloth has
+  kTooBroad,       ///< as broad as shading itself
+  kBentDiffuse,    ///< a diffuse part that departs from Lambert's law explains them as well
+};
+const char* name_of(LobeRefusal refusal);
+
+/// One family as it was fitted.
+struct LobeCandidate {
+  Lobe lobe;  ///< with its bend, where that was fitted
+  double chi2 = 0;
+};
+
+struct MeasuredLobe {
+  LobeRefusal refusal = LobeRefusal::kTooFewPixels;
+  Lobe lobe;           ///< Lambert's where it is refused
+  LobeFit fit;         ///< of `lobe`; empty where it is refused
+  double sigma_alpha = 0, sigma_f0 = 0, sigma_along = 0, sigma_axis = 0;  ///< alpha: relative; axis: radians
+  double correlation = 0;           ///< of log alpha and f0
+  bool is_family_undecided = false;  ///< another passes too and costs at most 5 percent more
+  std::vector<LobeCandidate> candidates;
+  std::array<double, 2> half_deg = {};  ///< angles of normals to half-vectors: 2nd and 98th percentile
+
+  bool is_measured() const { return refusal == LobeRefusal::kNone; }
+};
+
+inline constexpr std::size_t kLeastLobePixels = 300;
+/// A Lambert fit up to this chi2 leaves nothing for a lobe.
+inline constexpr double kLambertFitsTo = 1.5;
+/// A lobe's chi2 is at most this, or at most kLeastWon of Lambert's.
+inline constexpr double kLobeFitsTo = 1.5, kLeastWon = 0.15;
+inline constexpr double kLeastF0 = 0.015, kMostF0 = 0.15, kMostAlpha = 0.85;
+/// With and without a bend of the diffuse part, alpha and f0 agree to this (f0: share of itself).
+inline constexpr double kAlphaAgrees = 0.05, kF0Agrees = 0.25;
+/// What another family must cost less to be preferred to GGX: it has more to turn, or is rarer.
+inline constexpr double kOtherWins = 0.10, kYarnWins = 0.15;
+
+/// The lobe that the pixels share, if they tell one. `start`: b by pixel, as a solve by Lambert's law left
+/// it. All families are fitted in turn, each from several roughnesses, each pixel from several normals:
+/// of dark cloth a pixel has two valleys, dark and mirroring or bright and tilted. Where Lambert's law fits
+/// no other is tried.
+MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads);
+
+/// Where else a pixel may begin: level with its darkest reading and with the median albedo, and tilted by 20
+/// degrees to four sides.
+std::array<Vec3, 6> other_starts(std::span<const LobeReading> readings, double albedo,
+                                 double median_albedo);
+
+}  // namespace weft::solver
