@@ -34,7 +34,7 @@ struct Found {
 namespace {
 
 // Raised whenever the tables change.
-constexpr int kVersion = 2;
+constexpr int kVersion = 3;
 constexpr std::size_t kMostRanked = 20'000;
 constexpr int kMostLimit = 1000;
 constexpr std::size_t kBatch = 500;  // of sessions that are written together, so that others write between
@@ -48,7 +48,8 @@ CREATE TABLE session(
   fabric TEXT, rig TEXT, calibration TEXT, state TEXT, error TEXT,
   revision INTEGER, id TEXT, tags TEXT, composition TEXT, construction TEXT, side TEXT, notes TEXT,
   weight_g_m2 REAL, thickness_mm REAL,
-  shots INTEGER, solves INTEGER, current_solve TEXT, taken TEXT, all_bytes INTEGER, warnings TEXT);
+  shots INTEGER, solves INTEGER, current_solve TEXT, taken TEXT, all_bytes INTEGER, warnings TEXT,
+  lit_shot INTEGER, lit_sha256 TEXT);
 CREATE INDEX session_unfinished ON session(rig, taken DESC, key DESC) WHERE state NOT IN ('complete', 'unreadable');
 CREATE INDEX session_taken ON session(taken DESC, key DESC);
 CREATE INDEX session_name ON session(name);
@@ -78,19 +79,19 @@ END;
 constexpr const char* kPut = R"(
 INSERT INTO session(folder, name, bytes, written, solved, fabric, rig, calibration, state, error, revision,
   id, tags, composition, construction, side, notes, weight_g_m2, thickness_mm, shots, solves,
-  current_solve, taken, all_bytes, warnings)
+  current_solve, taken, all_bytes, warnings, lit_shot, lit_sha256)
 VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19, ?20, ?21, ?22, ?23,
-  ?24, ?25)
+  ?24, ?25, ?26, ?27)
 ON CONFLICT(folder) DO UPDATE SET
   bytes = ?3, written = ?4, solved = ?5, fabric = ?6, rig = ?7, calibration = ?8, state = ?9, error = ?10,
   revision = ?11, id = ?12, tags = ?13, composition = ?14, construction = ?15, side = ?16, notes = ?17,
   weight_g_m2 = ?18, thickness_mm = ?19, shots = ?20, solves = ?21, current_solve = ?22, taken = ?23,
-  all_bytes = ?24, warnings = ?25)";
+  all_bytes = ?24, warnings = ?25, lit_shot = ?26, lit_sha256 = ?27)";
 
 constexpr const char* kGet =
     "SELECT key, folder, name, fabric, rig, calibration, state, error, revision, id, tags, composition, "
     "construction, side, notes, weight_g_m2, thickness_mm, shots, solves, current_solve, taken, written, "
-    "all_bytes, warnings FROM session WHERE key = ?";
+    "all_bytes, warnings, lit_shot, lit_sha256 FROM session WHERE key = ?";
 
 std::int64_t nanoseconds(fs::file_time_type time) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -170,6 +171,13 @@ Entry read_entry(const Found& found) {
   entry.calibration = session->calibration_id;
   entry.state = session->state;
   entry.shots = static_cast<int>(session->shots.size());
+  const auto lit = std::ranges::find_if(session->shots, [](const Shot& shot) {
+    return shot.role == ShotRole::kLit && !shot.superseded_by && !shot.sha256.empty();
+  });
+  if (lit != session->shots.end()) {
+    entry.lit_shot = lit->index;
+    entry.lit_sha256 = lit->sha256;
+  }
   if (!session->shots.empty() && !session->shots.front().time.empty())
     entry.taken = session->shots.front().time;
   if (found.solved != 0) {
@@ -193,6 +201,7 @@ Result<void> put_one(Statement& put, Statement& tag, const Found& found, const E
   put.bind(joined(m.tags)).bind(m.composition).bind(m.construction).bind(m.side).bind(m.notes);
   put.bind(m.weight_g_m2).bind(m.thickness_mm).bind(std::int64_t{e.shots}).bind(std::int64_t{e.solves});
   put.bind(e.current_solve).bind(e.taken).bind(static_cast<std::int64_t>(e.bytes)).bind(joined(e.warnings));
+  put.bind(std::int64_t{e.lit_shot}).bind(e.lit_sha256);
   if (Result<void> ok = put.run(); !ok) return ok;
   for (const std::string& each : m.tags) {
     if (Result<void> ok = tag.bind(each).bind(folder).run(); !ok) return ok;
@@ -421,10 +430,13 @@ Result<std::vector<std::int64_t>> Catalogue::keys_of(const Query& query) {
   if (!match) return match.error();
   std::string sql = "SELECT s.key FROM session s";
   std::vector<std::string> values;
-  const auto with = [&](const char* condition, const std::string& value) {
-    if (value.empty()) return;
+  const auto only = [&](const char* condition) {
     sql += sql.find(" WHERE ") == std::string::npos ? " WHERE " : " AND ";
     sql += condition;
+  };
+  const auto with = [&](const char* condition, const std::string& value) {
+    if (value.empty()) return;
+    only(condition);
     values.push_back(value);
   };
   if (!match->empty()) {
@@ -434,10 +446,8 @@ Result<std::vector<std::int64_t>> Catalogue::keys_of(const Query& query) {
         kMostRanked);
     values.push_back(*match);
   }
-  if (query.unfinished) {
-    sql += match->empty() ? " WHERE " : " AND ";
-    sql += "s.state NOT IN ('complete', 'unreadable')";
-  }
+  if (query.unfinished) only("s.state NOT IN ('complete', 'unreadable')");
+  if (query.warned) only("s.warnings <> ''");
   with("s.id = ?", query.id);
   with("s.key IN (SELECT key FROM tag WHERE tag = ?)", query.tag);
   with("s.state = ?", query.state);
@@ -495,6 +505,8 @@ Result<Entry> Catalogue::entry(std::int64_t key) {
   e.written = iso_time(static_cast<double>(get->integer(21)) * 1e-9);
   e.bytes = static_cast<std::uint64_t>(get->integer(22));
   e.warnings = parted(get->text(23));
+  e.lit_shot = static_cast<int>(get->integer(24));
+  e.lit_sha256 = get->text(25);
   return e;
 }
 

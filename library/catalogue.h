@@ -28,6 +28,8 @@ struct Entry {
   std::optional<Error> error;  ///< why it, or its metadata, cannot be read
   Metadata metadata;
   int shots = 0, solves = 0;
+  int lit_shot = 0;                   ///< index of the first lit one that is used
+  std::string lit_sha256;             ///< and its digest; empty where there is none
   std::string current_solve;          ///< id (library/current.h); empty where there is no solve
   std::string taken;                  ///< ISO 8601, of the first shot, else when session.json was written
   std::string written;                ///< ISO 8601, when session.json was
@@ -47,6 +49,7 @@ struct Query {
   std::string id = {}, tag = {}, state = {}, fabric = {}, rig = {}, calibration = {};  ///< exactly
   std::string from = {}, before = {};      ///< ISO 8601, or its beginning: 2026-11
   bool unfinished = false;                 ///< only those that a scan could go on with
+  bool warned = false;                     ///< only those whose shots have warnings
   std::filesystem::path in = {};           ///< the folder that they lie in, themselves and not below
   int limit = 100;                         ///< entries a page, 1 to 1000
   std::optional<std::int64_t> after = {};  ///< the key that ended the page before

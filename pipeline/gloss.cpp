@@ -15,47 +15,31 @@
 namespace weft::pipeline {
 namespace {
 
+// Fewer readings say little of a lobe once normal and albedo are taken from them.
+constexpr int kLeastReadings = 6;
+// A prime: pixel i times it meets every pixel once.
+constexpr std::size_t kFarApart = 2654435761U;
+
 // Pixels of sample tiles and where a solve left them.
 struct GlossSamples {
-  solver::LobeSamples samples;
+  std::vector<solver::LobeReading> readings;  // [pixel * lights + light]
   std::vector<Vec3> start;
 };
 
-GlossSamples samples_of_tile(const solver::TileInput& input, const SampleMaps& maps, int step,
-                             solver::Sight sight) {
-  GlossSamples all;
-  all.samples.lights = input.field->count();
+void add_tile(const solver::TileInput& input, const SampleMaps& maps, int step, solver::Sight sight,
+              GlossSamples& samples) {
   solver::LobeReader reader(input, sight);
-  std::vector<solver::LobeReading> readings(all.samples.lights);
+  std::vector<solver::LobeReading> readings(input.field->count());
   for (int y = 0; y < input.tile.height(); y += step) {
     for (int x = 0; x < input.tile.width(); x += step) {
       if (maps.status(x, y) & (kNoSolution | kDark)) continue;
       reader.read(x, y, readings);
-      const auto used =
-          std::ranges::count_if(readings, [](const solver::LobeReading& r) { return r.weight > 0; });
-      if (used < 6) continue;
-      all.samples.readings.insert(all.samples.readings.end(), readings.begin(), readings.end());
-      const double albedo = maps.albedo(x, y);
-      all.start.push_back(albedo * Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)});
+      if (solver::used_of(readings) < kLeastReadings) continue;
+      samples.readings.insert(samples.readings.end(), readings.begin(), readings.end());
+      samples.start.push_back(static_cast<double>(maps.albedo(x, y)) *
+                              Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)});
     }
   }
-  return all;
-}
-
-// At most so many, evenly from all over.
-GlossSamples thinned(const GlossSamples& all, std::size_t most) {
-  const std::size_t pixels = all.samples.pixels();
-  if (pixels <= most) return all;
-  GlossSamples few;
-  few.samples.lights = all.samples.lights;
-  for (std::size_t i = 0; i < most; ++i) {
-    // Neighbours in this order are far apart in the frame, so that the first of them stand for all.
-    const std::size_t pixel = (i * 2654435761U) % pixels;
-    const auto readings = all.samples.of(pixel);
-    few.samples.readings.insert(few.samples.readings.end(), readings.begin(), readings.end());
-    few.start.push_back(all.start[pixel]);
-  }
-  return few;
 }
 
 }  // namespace
@@ -85,17 +69,23 @@ solver::MeasuredLobe measure_gloss(const Photographs& photographs, const solver:
   }
   parallel_for(tiles.size(), threads, [&](std::size_t i, int worker) {
     const solver::TileInput input = readers[static_cast<std::size_t>(worker)].read(tiles[i]);
-    parts[i] = samples_of_tile(input, solve_sample(input, base), step, sight);
+    add_tile(input, solve_sample(input, base), step, sight, parts[i]);
   });
   GlossSamples all;
-  all.samples.lights = photographs.count();
   for (const GlossSamples& part : parts) {
-    all.samples.readings.insert(all.samples.readings.end(), part.samples.readings.begin(),
-                                part.samples.readings.end());
+    all.readings.insert(all.readings.end(), part.readings.begin(), part.readings.end());
     all.start.insert(all.start.end(), part.start.begin(), part.start.end());
   }
-  const GlossSamples few = thinned(all, kGlossPixels);
-  return solver::measure_lobe(few.samples, few.start, threads);
+  // Pixels that follow each other are far apart in the frame, so that the first of them stand for all.
+  solver::LobeSamples samples(photographs.count());
+  std::vector<Vec3> start;
+  const std::size_t pixels = all.start.size();
+  for (std::size_t i = 0; i < std::min(pixels, kGlossPixels); ++i) {
+    const std::size_t pixel = i * kFarApart % pixels;
+    samples.add({all.readings.data() + pixel * photographs.count(), photographs.count()});
+    start.push_back(all.start[pixel]);
+  }
+  return solver::measure_lobe(samples, start, threads);
 }
 
 }  // namespace weft::pipeline

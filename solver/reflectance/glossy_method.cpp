@@ -2,20 +2,54 @@
 #include "solver/reflectance/glossy_method.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "solver/in_double/pixelwise.h"
+#include "solver/reflectance/lobe_block.h"
 #include "solver/reflectance/measured_lobe.h"
 
 namespace weft::solver {
 namespace {
 
 constexpr int kSteps = 8;
+// One reading more than a normal and an albedo have unknowns.
+constexpr int kLeastReadings = 4;
 
+// A pixel of a tile that is being solved.
 struct Pixel {
-  PixelFit fit;
-  double yarn = 0;
+  int x = 0, y = 0;
+  int used = 0;       // readings with a weight
+  double albedo = 0;  // as the base left it
+};
+
+// Pixels of a tile, wherever they lie, side by side for the vector kernel.
+struct Group {
+  explicit Group(std::size_t lights) : block(lights), readings(lights * LobeBlock::kPixels) {}
+
+  std::span<const LobeReading> of(std::size_t i) const {
+    const std::size_t lights = block.lights().size();
+    return {readings.data() + i * lights, lights};
+  }
+  void add(const Pixel& pixel, std::span<const LobeReading> of_pixel, Vec3 b) {
+    std::ranges::copy(of_pixel, readings.begin() + static_cast<std::ptrdiff_t>(pixels.size() * of_pixel.size()));
+    block.put(pixels.size(), of_pixel);
+    start.push_back(b);
+    pixels.push_back(pixel);
+  }
+  bool is_full() const { return pixels.size() == LobeBlock::kPixels; }
+  void clear() {
+    pixels.clear();
+    start.clear();
+  }
+
+  LobeBlock block;  // solved from the last start
+  LobeBlock best{0};
+  std::vector<LobeReading> readings;
+  std::vector<Pixel> pixels;
+  std::vector<Vec3> start;
 };
 
 class Glossy : public Method {
@@ -24,16 +58,37 @@ class Glossy : public Method {
 
   void solve(const TileInput& input, const TileOutput& output) const override {
     base_.solve(input, output);
-    std::vector<LobeReading> readings(input.field->count());
     LobeReader reader(input, sight_);
+    std::vector<LobeReading> readings(input.field->count());
+    Group from_base(input.field->count()), from_others(input.field->count());
+    const auto finish_others = [&] {
+      try_other_starts(from_others);
+      write(input, output, from_others);
+      from_others.clear();
+    };
+    const auto finish = [&] {
+      solve_from_base(from_base);
+      write(input, output, from_base);
+      for (std::size_t i = 0; i < from_base.pixels.size(); ++i) {
+        if (is_explained(from_base, i)) continue;
+        from_others.add(from_base.pixels[i], from_base.of(i), from_base.best.b(i));
+        if (from_others.is_full()) finish_others();
+      }
+      from_base.clear();
+    };
     for (int y = 0; y < input.tile.height(); ++y) {
       for (int x = 0; x < input.tile.width(); ++x) {
         if (output.status(x, y) & (kNoSolution | kDark)) continue;
         reader.read(x, y, readings);
-        if (std::ranges::count_if(readings, [](const LobeReading& r) { return r.weight > 0; }) < 4) continue;
-        write(input, readings, solve_pixel(input, output, readings, x, y), output, x, y);
+        const int used = used_of(readings);
+        if (used < kLeastReadings) continue;
+        const double albedo = albedo_of(input, output, x, y);
+        from_base.add({x, y, used, albedo}, readings, albedo * normal_of(output, x, y));
+        if (from_base.is_full()) finish();
       }
     }
+    finish();
+    finish_others();
   }
 
   bool wants_rgb() const override { return base_.wants_rgb(); }
@@ -43,61 +98,118 @@ class Glossy : public Method {
     if ((output.status(x, y) & kGlossy) == 0) return base_.reflected(input, output, x, y, light);
     std::vector<LobeReading> readings(input.field->count());
     LobeReader(input, sight_).read(x, y, readings);
-    const Vec3 view = readings.front().from.view;
     const Vec3 b = albedo_of(input, output, x, y) * normal_of(output, x, y);
-    return modelled(lobe_, b, LitFrom(light, view), yarn_of(b, readings).yarn);
+    return modelled(lobe_, b, LitFrom(light, readings.front().from.view), yarn_of(b, readings));
   }
 
  private:
   static Vec3 normal_of(const TileOutput& output, int x, int y) {
     return {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
   }
+  // Of RGB that of the weighted sum.
   static double albedo_of(const TileInput& input, const TileOutput& output, int x, int y) {
+    if (input.planes == 1) return output.albedo[0](x, y);
     double albedo = 0;
-    for (std::size_t p = 0; p < static_cast<std::size_t>(input.planes); ++p)
-      albedo += (input.planes == 1 ? 1 : input.plane_weights[p]) * output.albedo[p](x, y);
+    for (std::size_t p = 0; p < 3; ++p) albedo += input.plane_weights[p] * output.albedo[p](x, y);
     return albedo;
   }
   bool has_yarn() const { return lobe_.family == LobeFamily::kAnisotropicGgx; }
 
-  Pixel yarn_of(Vec3 b, std::span<const LobeReading> readings) const {
-    Pixel best = {{b, cost_of(lobe_, readings, b, 0)}, 0};
-    if (!has_yarn()) return best;
-    const double weft = cost_of(lobe_, readings, b, kPi / 2);
-    return weft < best.fit.cost ? Pixel{{b, weft}, kPi / 2} : best;
+  double yarn_of(Vec3 b, std::span<const LobeReading> readings) const {
+    if (!has_yarn()) return 0;
+    return cost_of(lobe_, readings, b, kPi / 2) < cost_of(lobe_, readings, b, 0) ? kPi / 2 : 0;
   }
 
-  void try_from(Vec3 start, std::span<const LobeReading> readings, Pixel& best) const {
+  static bool is_explained(const Group& group, std::size_t i) {
+    return 2 * group.best.cost[i] < kTryOthersFrom * std::max(1, group.pixels[i].used - 3);
+  }
+
+  // The starts of all pixels, with both yarns; what costs less than the best so far takes its place.
+  void try_starts(Group& group, std::span<const Vec3> starts, bool is_first) const {
     for (const double yarn : {0.0, kPi / 2}) {
       if (yarn > 0 && !has_yarn()) continue;
-      const PixelFit fit = fit_pixel(lobe_, readings, start, yarn, kSteps);
-      if (fit.cost < best.fit.cost) best = {fit, yarn};
+      for (std::size_t i = 0; i < group.pixels.size(); ++i) group.block.start(i, starts[i], yarn);
+      fit_block(lobe_, group.block, kSteps);
+      if (is_first && yarn == 0) {
+        group.best = group.block;
+        continue;
+      }
+      for (std::size_t i = 0; i < group.pixels.size(); ++i) {
+        if (group.block.cost[i] < group.best.cost[i]) group.best.take(i, group.block);
+      }
     }
   }
 
-  Pixel solve_pixel(const TileInput& input, const TileOutput& output, std::span<const LobeReading> readings,
-                    int x, int y) const {
-    const double albedo = albedo_of(input, output, x, y);
-    const Vec3 b = albedo * normal_of(output, x, y);
-    Pixel best = {{b, std::numeric_limits<double>::infinity()}, 0};
-    try_from(b, readings, best);
-    const auto used = std::ranges::count_if(readings, [](const LobeReading& r) { return r.weight > 0; });
-    if (2 * best.fit.cost < kTryOthersFrom * static_cast<double>(used - 3)) return best;
-    for (const Vec3& start : other_starts(readings, albedo, albedo)) try_from(start, readings, best);
-    return best;
+  void solve_from_base(Group& group) const { try_starts(group, group.start, true); }
+
+  void try_other_starts(Group& group) const {
+    try_starts(group, group.start, true);
+    std::vector<Vec3> starts(group.pixels.size());
+    for (std::size_t s = 0; s < kOtherStarts; ++s) {
+      for (std::size_t i = 0; i < starts.size(); ++i) {
+        const double albedo = group.pixels[i].albedo;
+        starts[i] = other_starts(group.of(i), albedo, albedo)[s];
+      }
+      try_starts(group, starts, false);
+    }
   }
 
-  void write(const TileInput& input, std::span<const LobeReading> readings, const Pixel& pixel,
-             const TileOutput& output, int x, int y) const {
-    const double rho = length(pixel.fit.b);
-    const Vec3 n = (1 / rho) * pixel.fit.b;
+  void write(const TileInput& input, const TileOutput& output, const Group& group) const {
+    for (std::size_t i = 0; i < group.pixels.size(); ++i) {
+      const Vec3 b = group.best.b(i);
+      const double rho = length(b);
+      if (!(rho > 0) || !std::isfinite(group.best.cost[i])) continue;
+      write_pixel(input, output, group, i, b);
+    }
+  }
+
+  void write_pixel(const TileInput& input, const TileOutput& output, const Group& group, std::size_t i,
+                   Vec3 b) const {
+    const int x = group.pixels[i].x, y = group.pixels[i].y;
+    const double rho = length(b);
+    const Vec3 n = (1 / rho) * b;
+    PixelSystem system;
+    for (std::size_t e = 0; e < 6; ++e) system.a[e] = group.best.normal_matrix[e][i];
+    // Columns of the covariance of b.
+    const std::array<Vec3, 3> c = {system.solved({1, 0, 0}), system.solved({0, 1, 0}),
+                                   system.solved({0, 0, 1})};
+    const double along = n.x * dot(c[0], n) + n.y * dot(c[1], n) + n.z * dot(c[2], n);
+    const double across = std::max(0.0, c[0].x + c[1].y + c[2].z - along);
     output.normal[0](x, y) = static_cast<float>(n.x);
     output.normal[1](x, y) = static_cast<float>(n.y);
     output.normal[2](x, y) = static_cast<float>(n.z);
-    output.albedo[0](x, y) = finite(rho);
+    const double sigma = degrees(std::sqrt(across)) / rho;
+    output.sigma_normal_deg(x, y) = static_cast<float>(std::min(sigma, double{kUnknownAngleDeg}));
+    output.residual(x, y) = finite(group.best.residual[i] / rho);
     output.status(x, y) = static_cast<std::uint16_t>(output.status(x, y) | kGlossy);
-    (void)input;
-    (void)readings;
+    for (std::size_t p = 0; p < static_cast<std::size_t>(input.planes); ++p) {
+      const double share = input.planes == 1 ? 1 : plane_share(input, group, i, b, x, y, p);
+      output.albedo[p](x, y) = finite(rho * share);
+      output.sigma_albedo[p](x, y) = finite(std::sqrt(std::max(along, 0.0)) * share);
+    }
+  }
+
+  // Albedo of one plane of RGB over that of the weighted sum: what its readings leave once the lobe, which
+  // has the colour of the light, is taken off.
+  double plane_share(const TileInput& input, const Group& group, std::size_t i, Vec3 b, int x, int y,
+                     std::size_t plane) const {
+    const double yarn = std::atan2(group.best.yarn_y[i], group.best.yarn_x[i]);
+    Lobe matt = lobe_;
+    double of_plane = 0, of_all = 0;
+    const auto readings = group.of(i);
+    for (std::size_t k = 0; k < readings.size(); ++k) {
+      const LobeReading& r = readings[k];
+      if (r.weight == 0) continue;
+      const double strength =
+          input.field->at(k, static_cast<int>(plane), input.tile.x0 + x, input.tile.y0 + y).strength;
+      const double reading = input.readings[3 * k + plane](x, y) / strength;
+      const Vec3 n = normalized(b);
+      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(matt, n, r.from, yarn);
+      const double diffuse = modelled(lobe_, b, r.from, yarn) - shine;
+      of_plane += r.weight * diffuse * (reading - shine);
+      of_all += r.weight * diffuse * diffuse;
+    }
+    return of_all > 0 ? std::max(0.0, of_plane / of_all) : 1;
   }
 
   const Method& base_;

@@ -35,7 +35,7 @@ struct Lobe {
   double axis = 0;   ///< azimuth of the warp, radians from the x axis of the rig; weft lies across it
   double bend = 0;   ///< how much the diffuse part falls short of Lambert's law at grazing light
 
-  bool shines() const { return family != LobeFamily::kLambert && f0 > 0; }
+  bool shines() const { return family != LobeFamily::kLambert; }
   friend bool operator==(const Lobe&, const Lobe&) = default;
 };
 

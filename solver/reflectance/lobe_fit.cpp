@@ -120,12 +120,7 @@ class SharedFit {
   // Every pixel solved for the lobe of the fit, from where it is.
   LobeFit settled(LobeFit fit, int steps) const {
     fit.cost.resize(samples_.pixels());
-    for_chunks([&](std::size_t pixel) {
-      const PixelFit solved =
-          fit_pixel(fit.lobe, samples_.of(pixel), fit.b[pixel], fit.yarn[pixel], steps);
-      fit.b[pixel] = solved.b;
-      fit.cost[pixel] = solved.cost;
-    });
+    samples_.fit_pixels(fit.lobe, fit.yarn, steps, options_.threads, fit.b, fit.cost);
     return fit;
   }
 
@@ -199,14 +194,36 @@ class SharedFit {
 
 }  // namespace
 
+void LobeSamples::add(std::span<const LobeReading> pixel) {
+  const std::size_t lane = pixels() % LobeBlock::kPixels;
+  if (lane == 0) blocks_.emplace_back(lights_);
+  blocks_.back().put(lane, pixel);
+  readings_.insert(readings_.end(), pixel.begin(), pixel.end());
+}
+
 LobeSamples LobeSamples::first(std::size_t count) const {
-  const auto end = readings.begin() + static_cast<std::ptrdiff_t>(std::min(count, pixels()) * lights);
-  return {lights, {readings.begin(), end}};
+  LobeSamples few(lights_);
+  for (std::size_t i = 0; i < std::min(count, pixels()); ++i) few.add(of(i));
+  return few;
 }
 
 std::size_t LobeSamples::used() const {
   return static_cast<std::size_t>(
-      std::ranges::count_if(readings, [](const LobeReading& r) { return r.weight > 0; }));
+      std::ranges::count_if(readings_, [](const LobeReading& r) { return r.weight > 0; }));
+}
+
+void LobeSamples::fit_pixels(const Lobe& lobe, std::span<const double> yarn, int steps, int threads,
+                             std::span<Vec3> b, std::span<double> cost) const {
+  parallel_for(blocks_.size(), threads, [&](std::size_t i, int) {
+    LobeBlock block = blocks_[i];
+    const std::size_t first = i * LobeBlock::kPixels, end = std::min(pixels(), first + LobeBlock::kPixels);
+    for (std::size_t pixel = first; pixel < end; ++pixel) block.start(pixel - first, b[pixel], yarn[pixel]);
+    fit_block(lobe, block, steps);
+    for (std::size_t pixel = first; pixel < end; ++pixel) {
+      b[pixel] = block.b(pixel - first);
+      cost[pixel] = block.cost[pixel - first];
+    }
+  });
 }
 
 LobeParameters parameters_of(LobeFamily family) {

@@ -8,6 +8,7 @@
 
 #include "core/vec.h"
 #include "solver/reflectance/lobe.h"
+#include "solver/reflectance/lobe_block.h"
 #include "solver/reflectance/pixel_fit.h"
 
 // One lobe fitted to many pixels of one material, the normal and the albedo of each free: variable
@@ -16,16 +17,26 @@
 namespace weft::solver {
 
 /// Pixels of one material, each with all lights.
-struct LobeSamples {
-  std::size_t lights = 0;
-  std::vector<LobeReading> readings;  ///< [pixel * lights + light]
+class LobeSamples {
+ public:
+  explicit LobeSamples(std::size_t lights) : lights_(lights) {}
+  void add(std::span<const LobeReading> pixel);
 
-  std::size_t pixels() const { return lights == 0 ? 0 : readings.size() / lights; }
+  std::size_t pixels() const { return readings_.size() / lights_; }
   std::span<const LobeReading> of(std::size_t pixel) const {
-    return {readings.data() + pixel * lights, lights};
+    return {readings_.data() + pixel * lights_, lights_};
   }
   LobeSamples first(std::size_t count) const;
   std::size_t used() const;  ///< readings with a weight
+
+  /// Every pixel's b and cost for a lobe, from where they are (fit_block). `yarn` is by pixel.
+  void fit_pixels(const Lobe& lobe, std::span<const double> yarn, int steps, int threads, std::span<Vec3> b,
+                  std::span<double> cost) const;
+
+ private:
+  std::size_t lights_;
+  std::vector<LobeReading> readings_;  // [pixel * lights + light]
+  std::vector<LobeBlock> blocks_;      // the same for the vector kernel
 };
 
 /// What all pixels share, in the order of a covariance.

@@ -92,14 +92,25 @@ class Trial {
     return fit;
   }
   LobeFit better_yarns(const LobeSamples& samples, LobeFit fit) const {
-    parallel_for(samples.pixels(), threads_, [&](std::size_t i, int) {
-      const PixelFit warp = fit_pixel(fit.lobe, samples.of(i), fit.b[i], 0, kStartSteps);
-      const PixelFit weft = fit_pixel(fit.lobe, samples.of(i), fit.b[i], kPi / 2, kStartSteps);
-      const bool is_weft = weft.cost < warp.cost;
-      fit.b[i] = is_weft ? weft.b : warp.b;
-      fit.yarn[i] = is_weft ? kPi / 2 : 0;
-    });
+    LobeFit weft = fit;
+    weft.yarn.assign(weft.yarn.size(), kPi / 2);
+    fit.yarn.assign(fit.yarn.size(), 0);
+    for (LobeFit* each : {&fit, &weft}) {
+      each->cost.resize(samples.pixels());
+      samples.fit_pixels(each->lobe, each->yarn, kStartSteps, threads_, each->b, each->cost);
+    }
+    keep_cheaper(weft, fit);
     return fit;
+  }
+
+  // Of each pixel the solution that costs less.
+  static void keep_cheaper(const LobeFit& other, LobeFit& fit) {
+    for (std::size_t i = 0; i < fit.b.size(); ++i) {
+      if (!(other.cost[i] < fit.cost[i])) continue;
+      fit.b[i] = other.b[i];
+      fit.yarn[i] = other.yarn[i];
+      fit.cost[i] = other.cost[i];
+    }
   }
 
   // Every pixel from other normals too, the shared values anew, until hardly one finds a better valley.
@@ -109,19 +120,18 @@ class Trial {
       std::vector<double> albedos;
       for (const Vec3& b : fit.b) albedos.push_back(length(b));
       const double median_albedo = median(albedos);
-      const bool has_yarn = fit.lobe.family == LobeFamily::kAnisotropicGgx;
-      parallel_for(samples_.pixels(), threads_, [&](std::size_t i, int) {
-        for (const Vec3& start : other_starts(samples_.of(i), length(fit.b[i]), median_albedo)) {
-          for (const double yarn : {0.0, kPi / 2}) {
-            if (yarn > 0 && !has_yarn) continue;
-            const PixelFit other = fit_pixel(fit.lobe, samples_.of(i), start, yarn, kStartSteps);
-            if (!(other.cost < fit.cost[i])) continue;
-            fit.b[i] = other.b;
-            fit.yarn[i] = yarn;
-            fit.cost[i] = other.cost;
+      LobeFit other = fit;
+      for (std::size_t start = 0; start < kOtherStarts; ++start) {
+        for (const double yarn : {0.0, kPi / 2}) {
+          if (yarn > 0 && fit.lobe.family != LobeFamily::kAnisotropicGgx) continue;
+          for (std::size_t i = 0; i < other.b.size(); ++i) {
+            other.b[i] = other_starts(samples_.of(i), albedos[i], median_albedo)[start];
+            other.yarn[i] = yarn;
           }
+          samples_.fit_pixels(fit.lobe, other.yarn, kStartSteps, threads_, other.b, other.cost);
+          keep_cheaper(other, fit);
         }
-      });
+      }
       std::size_t moved = 0;
       for (std::size_t i = 0; i < before.size(); ++i) {
         if (fit.cost[i] < before[i] - kMovedCost) ++moved;
@@ -202,14 +212,14 @@ const char* name_of(LobeRefusal refusal) {
   return kRefusals[static_cast<std::size_t>(refusal)];
 }
 
-std::array<Vec3, 6> other_starts(std::span<const LobeReading> readings, double albedo,
+std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> readings, double albedo,
                                  double median_albedo) {
   double least = std::numeric_limits<double>::infinity();
   for (const LobeReading& r : readings) {
     if (r.weight > 0 && r.x > 0) least = std::min(least, r.x / std::max(r.from.light.z, 0.1));
   }
   if (!std::isfinite(least)) least = median_albedo;
-  std::array<Vec3, 6> starts = {Vec3{0, 0, least}, Vec3{0, 0, median_albedo}};
+  std::array<Vec3, kOtherStarts> starts = {Vec3{0, 0, least}, Vec3{0, 0, median_albedo}};
   constexpr double kTilt = 0.35;
   const double length = std::min(albedo, median_albedo);
   for (std::size_t i = 0; i < 4; ++i) {

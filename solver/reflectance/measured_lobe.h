@@ -60,7 +60,8 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
 
 /// Where else a pixel may begin: level with its darkest reading and with the median albedo, and tilted by 20
 /// degrees to four sides.
-std::array<Vec3, 6> other_starts(std::span<const LobeReading> readings, double albedo,
+inline constexpr std::size_t kOtherStarts = 6;
+std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> readings, double albedo,
                                  double median_albedo);
 
 }  // namespace weft::solver

@@ -16,6 +16,9 @@ struct LobeReading {
   double weight = 0;
 };
 
+/// How many have a weight.
+int used_of(std::span<const LobeReading> readings);
+
 /// What no noise model knows, as a share of a reading, which counts as kLeastModelled at least. Without it
 /// a lobe would follow the best-lit pixels alone.
 inline constexpr double kLobeModelShare = 0.01;

@@ -89,6 +89,23 @@ TEST_F(CaptureAtTheRig, SaysOfEachBoardWhetherItIsOfUseAndWhyNot) {
   EXPECT_THAT(of(photograph(), "board06")["why"].get<std::string>(), HasSubstr("mirrored"));
 }
 
+TEST_F(CaptureAtTheRig, IsNotDoneHoweverManyBoardsLieFlat) {
+  begin("board", "board.toml");
+  Json set;
+  for (const char* board : {"board", "board x=-35 y=21", "board x=35 y=21 turn=90", "board x=35 y=-21",
+                            "board x=-35 y=-21", "board turn=45", "board turn=180"}) {
+    lay(board);
+    set = photograph();
+    EXPECT_TRUE(set["photographs"].back()["used"]) << set["photographs"].back();
+  }
+  EXPECT_EQ(set["photographs"].size(), 7U);
+  EXPECT_FALSE(set["done"]);
+  EXPECT_GT(set["figures"]["predicted"]["focal_percent"].get<double>(),
+            10 * set["figures"]["asked"]["focal_percent"].get<double>())
+      << set["figures"]["predicted"];
+  EXPECT_THAT(set["next"]["says"].get<std::string>(), HasSubstr("tilt"));
+}
+
 TEST_F(CaptureAtTheRig, GoesOnAfterTheDaemonWasKilled) {
   begin("board", "board.toml");
   lay("board");

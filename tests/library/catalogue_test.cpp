@@ -33,6 +33,13 @@ std::vector<std::string> found(Catalogue& catalogue, const Query& query) {
   return names;
 }
 
+Json shot(int index, const char* role, const Json& fields) {
+  Json shot = {{"index", index},   {"led", index}, {"role", role},  {"file", "raw/0.dng"},
+               {"exposure_us", 1}, {"iso", 100},   {"f_number", 8}, {"time", ""}};
+  shot.update(fields);
+  return shot;
+}
+
 Json taken(const std::string& time) {
   return {{{"index", 0},
            {"led", 1},
@@ -45,6 +52,41 @@ Json taken(const std::string& time) {
 }
 
 using Names = std::vector<std::string>;
+
+TEST(Catalogue, KnowsTheFirstLitShotThatIsUsedAndWhatWasWarnedOf) {
+  const Shelf shelf;
+  const Json dark = shot(0, "dark", {{"led", 0}, {"sha256", "d"}});
+  const Json again = shot(1, "lit", {{"sha256", "e"}, {"superseded_by", 2}});
+  const Json lit_shot = shot(2, "lit", {{"led", 1}, {"sha256", "f"}, {"warnings", Json::array({"dim"})}});
+  shelf.put("a", {{"shots", Json::array({dark, again, lit_shot})}});
+  shelf.put("b", {{"shots", Json::array({dark})}});
+  Catalogue catalogue = opened(shelf);
+  refreshed(catalogue, {shelf.path()});
+  const Result<Entry> lit = catalogue.find_one("a"), dark = catalogue.find_one("b");
+  ASSERT_TRUE(lit) << lit.error().message();
+  EXPECT_EQ(lit->lit_shot, 2);
+  EXPECT_EQ(lit->lit_sha256, "f");
+  ASSERT_TRUE(dark) << dark.error().message();
+  EXPECT_EQ(dark->lit_sha256, "");
+  EXPECT_EQ(found(catalogue, {.warned = true}), Names{"a"});
+  EXPECT_EQ(found(catalogue, {.state = "complete", .warned = true}), Names{"a"});
+}
+
+TEST(Catalogue, OpensOldSessionsAndSaysOfNewerOnesWhichVersionTheyNeed) {
+  const Shelf shelf;
+  shelf.put("old", {{"schema", "weft.session/1"}});
+  shelf.put("later", {{"schema", "weft.session/1.9"}, {"of a later weft", 1}});
+  shelf.put("newer", {{"schema", "weft.session/2"}});
+  Catalogue catalogue = opened(shelf);
+  refreshed(catalogue, {shelf.path()});
+  EXPECT_EQ(found(catalogue, {.state = "complete"}).size(), 2U);
+  const Result<Entry> newer = catalogue.find_one("newer");
+  ASSERT_TRUE(newer) << newer.error().message();
+  EXPECT_EQ(newer->state, "unreadable");
+  ASSERT_TRUE(newer->error);
+  EXPECT_EQ(newer->error->what, "document is newer than this program");
+  EXPECT_EQ(newer->error->remedy, "use a version of weft that reads weft.session/2");
+}
 
 TEST(Catalogue, FindsSessionsByWhatIsSaidOfThem) {
   const Shelf shelf;
@@ -72,6 +114,8 @@ TEST(Catalogue, FindsSessionsByWhatIsSaidOfThem) {
   EXPECT_EQ(found(catalogue, {.rig = "bench-2"}), Names{"c"});
   EXPECT_EQ(found(catalogue, {.from = "2026-11-02", .before = "2026-11-03"}), Names{"b"});
   EXPECT_EQ(found(catalogue, {.words = "twill", .tag = "red"}), Names{"b"});
+
+  EXPECT_EQ(found(catalogue, {.words = "twill", .warned = true}), Names{});
 
   const Result<Entry> solved = catalogue.find_one("c");
   ASSERT_TRUE(solved) << solved.error().message();

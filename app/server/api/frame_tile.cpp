@@ -17,9 +17,10 @@ Result<Reply> tile_of_frame(const RigParts& parts, const FrameFile& frame, const
   if (!look) return look.error();
   const Result<std::shared_ptr<Pyramid>> pyramid = parts.views.frame(frame.file, frame.sha256);
   if (!pyramid) return pyramid.error();
-  const std::optional<Rect> part = (*pyramid)->tile(level_of(level), name->column, name->row);
+  const int number = level_of(level, (*pyramid)->levels());
+  const std::optional<Rect> part = (*pyramid)->tile(number, name->column, name->row);
   if (!part) return no_such_tile(tile, "it is beyond the frame");
-  const Result<Image<float>> planes = (*pyramid)->read(level_of(level), *part);
+  const Result<Image<float>> planes = (*pyramid)->read(number, *part);
   if (!planes) return planes.error();
   Result<std::string> bytes = name->form == TileName::Form::kRaw
                                   ? raw_tile(LayerKind::kColor, *planes)

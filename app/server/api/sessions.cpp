@@ -68,6 +68,11 @@ Result<library::Query> query_of(const Call& call) {
       *text->second = value;
       continue;
     }
+    if (key == "warned") {
+      if (value != "true" && value != "false") return no_query(key, "must be true or false");
+      query.warned = value == "true";
+      continue;
+    }
     if (key != "limit" && key != "after") return no_query(key.substr(0, 40), "there is no such filter");
     const Result<std::int64_t> number = count_in(key, value);
     if (!number) return number.error();
@@ -77,6 +82,15 @@ Result<library::Query> query_of(const Call& call) {
   // Nothing in a time follows this sign: all that begins with what is said is within.
   if (!query.before.empty()) query.before += '~';
   return query;
+}
+
+/// The cloth relit by its current solve, else the first lit photograph: a path that names its bytes.
+Json thumbnail_of(const library::Entry& entry) {
+  const std::string path = "/api/v1/sessions/" + entry.name;
+  if (!entry.current_solve.empty())
+    return fmt::format("{}/solves/{}/tiles/relit/top/0_0.jpg", path, entry.current_solve);
+  if (entry.lit_sha256.empty()) return nullptr;
+  return fmt::format("{}/frames/{}/thumbnail?sha256={}", path, entry.lit_shot, entry.lit_sha256);
 }
 
 Result<Reply> find_sessions(const RigParts& parts, const Call& call) {
@@ -89,6 +103,7 @@ Result<Reply> find_sessions(const RigParts& parts, const Call& call) {
     Json session = library::json_of(entry);
     session["resumable"] = is_resumable(parts.rig, entry.rig, entry.state);
     session["frames"] = entry.shots;
+    session["thumbnail"] = thumbnail_of(entry);
     sessions.push_back(std::move(session));
   }
   return json_reply({{"sessions", std::move(sessions)},

@@ -239,15 +239,16 @@ Result<int> bit_of(const Call& call) {
 /// A call for one tile, read.
 struct Asked {
   TileName name;
-  int level = 0;
+  std::string level;
   Look look;
   int bit = -1;
 
   Result<Image<float>> read(Pyramid& pyramid) const {
-    const std::optional<Rect> part = pyramid.tile(level, name.column, name.row);
+    const int number = level_of(level, pyramid.levels());
+    const std::optional<Rect> part = pyramid.tile(number, name.column, name.row);
     if (!part)
       return no_such_tile(fmt::format("{}/{}_{}", level, name.column, name.row), "it is beyond the map");
-    return pyramid.read(level, *part, bit);
+    return pyramid.read(number, *part, bit);
   }
   Result<std::string> encode(LayerKind kind, const Image<float>& planes) const {
     if (name.form == TileName::Form::kRaw) return raw_tile(kind, planes);
@@ -292,7 +293,7 @@ Result<std::string> difference(const Difference& wanted, const RigParts& parts, 
 Result<std::string> tile_bytes(const RigParts& parts, const Viewed& viewed, const Call& call) {
   const std::string& layer = call.segments.at(2);
   Asked asked;
-  asked.level = level_of(call.segments.at(3));
+  asked.level = call.segments.at(3);
   const Result<TileName> name = tile_name_of(call.segments.at(4));
   if (!name) return name.error();
   asked.name = *name;

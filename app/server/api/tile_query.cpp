@@ -78,7 +78,8 @@ Result<TileName> tile_name_of(const std::string& segment) {
   return none;
 }
 
-int level_of(const std::string& segment) {
+int level_of(const std::string& segment, int levels) {
+  if (segment == "top") return levels - 1;
   return number_in<int>(segment).value_or(-1);
 }
 

@@ -22,8 +22,8 @@ struct TileName {
 /// kNoInput for what names no tile.
 Result<TileName> tile_name_of(const std::string& segment);
 
-/// A level, from 0; -1 for what is none.
-int level_of(const std::string& segment);
+/// A level of so many, from 0 to `top`; -1 for what is none.
+int level_of(const std::string& segment, int levels);
 
 /// A finite number of the query, within limits; `otherwise` where it is not there. kUsage.
 Result<double> number_of(const Call& call, const char* key, double least, double most, double otherwise);

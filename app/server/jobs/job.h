@@ -37,9 +37,9 @@ struct JobStatus {
   std::optional<int> place;  ///< among those that wait, from 1
   std::string phase;         ///< of a running one, as its verb calls it; and how much of it is done
   double share = 0;
-  std::optional<double> left_s;  ///< by how long the last job like it took; of the phase where there was none
+  std::optional<double> left_s;  ///< by the price of its session, else by how long the last job like it took
   std::string asked, began, ended;  ///< ISO 8601; empty: not yet
-  double seconds = 0;               ///< that it ran
+  double seconds = 0;               ///< that it ran, without those that it was held for
   std::optional<int> exit_code;
   std::vector<std::string> notes;  ///< what it said to people
   Json error;                      ///< as core/error_json.h has it; null where there was none

@@ -23,6 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* kJobSchema = "weft.job";
 constexpr auto kLook = std::chrono::milliseconds(100);
 constexpr double kPatience_s = 10;                   // for a cancelled job to put away what it has begun
+constexpr double kCountdown_s = 1;                   // what is left is told this often, whatever a job says
 constexpr int kWarningsCode = 2, kBadDataCode = 65;  // of verbs
 constexpr std::size_t kMostNotes = 50, kLongestNote = 1000;
 
@@ -282,9 +283,10 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   running_ = id;
   if (is_held_) child_->signal(SIGSTOP);
 
-  const auto began = std::chrono::steady_clock::now();
-  const auto usual_end = began + std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                                     std::chrono::duration<double>(usual_seconds(job.spec).value_or(0)));
+  const std::optional<double> expected_s = expected_seconds(job.spec);
+  auto looked = std::chrono::steady_clock::now();
+  bool was_held = is_held_;
+  job.seconds = 0;
   std::size_t read = 0;
   std::optional<std::chrono::steady_clock::time_point> told;  // to end
   while (child_->runs()) {
@@ -296,11 +298,14 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
     if (told && std::chrono::steady_clock::now() - *told > std::chrono::duration<double>(kPatience_s))
       child_->signal(SIGKILL);
     woken_.wait_for(lock, kLook);
-    follow(id, read, usual_end);
+    const auto now = std::chrono::steady_clock::now();
+    if (!was_held) job.seconds += std::chrono::duration<double>(now - looked).count();
+    looked = now;
+    was_held = is_held_;
+    follow(id, read, expected_s);
   }
-  follow(id, read, began);
+  follow(id, read, {});
   job.exit_code = child_->wait(0);
-  job.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
   child_.reset();
   running_.clear();
   job.is_held = false;
@@ -327,8 +332,10 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   forget_old();
 }
 
-// Of the newest that is done and differs in nothing but what it worked on.
-std::optional<double> JobQueue::usual_seconds(const JobSpec& spec) const {
+// By the newest price of its session, else by the newest job that is done and differs in nothing but what it
+// worked on.
+std::optional<double> JobQueue::expected_seconds(const JobSpec& spec) const {
+  if (const std::optional<double> priced = priced_seconds(spec)) return priced;
   const auto same = [](const std::string& a, const std::string& b) {
     return a == b || (a.starts_with('/') && b.starts_with('/'));
   };
@@ -342,18 +349,34 @@ std::optional<double> JobQueue::usual_seconds(const JobSpec& spec) const {
   return std::nullopt;
 }
 
-// Reads what the verb has said since.
-void JobQueue::follow(const std::string& id, std::size_t& read,
-                      std::chrono::steady_clock::time_point usual_end) {
+std::optional<double> JobQueue::priced_seconds(const JobSpec& spec) const {
+  const Json quality = spec.wants.is_object() ? spec.wants.value("quality", Json()) : Json();
+  if (spec.kind != "solve" || !quality.is_string()) return std::nullopt;
+  for (auto it = jobs_.rbegin(); it != jobs_.rend(); ++it) {
+    const JobStatus& job = it->second;
+    if (job.spec.kind != "price" || job.spec.of != spec.of || !job.result.is_object()) continue;
+    for (const Json& level : job.result.value("levels", Json::array())) {
+      if (!level.is_object() || level.value("quality", Json()) != quality) continue;
+      const Json seconds = level.value("seconds", Json());
+      const Json total = seconds.is_object() ? seconds.value("total", Json()) : Json();
+      if (total.is_number()) return total.get<double>();
+    }
+  }
+  return std::nullopt;
+}
+
+// Reads what the verb has said since, and counts down what is left.
+void JobQueue::follow(const std::string& id, std::size_t& read, std::optional<double> expected_s) {
+  JobStatus& job = jobs_[id];
   const std::string said = bytes_from(file_of(id, ".log"), read);
   const std::size_t whole = said.rfind('\n') + 1;
-  if (whole == 0) return;
   read += whole;
-  JobStatus& job = jobs_[id];
   std::istringstream lines(said.substr(0, whole));
   for (std::string line; std::getline(lines, line);) hear(job, line);
-  const std::chrono::duration<double> left = usual_end - std::chrono::steady_clock::now();
-  if (left.count() > 0) job.left_s = left.count();
+  const double left_s = expected_s.value_or(0) - job.seconds;
+  const bool is_told = whole > 0 || (job.left_s && *job.left_s - left_s >= kCountdown_s);
+  if (!is_told) return;
+  job.left_s = left_s > 0 ? std::optional(left_s) : std::nullopt;
   options_.changed(job);
 }
 
@@ -364,15 +387,11 @@ void JobQueue::hear(JobStatus& job, const std::string& line) {
     const Json value = event.is_object() ? event.value(key, Json()) : Json();
     return value.is_string() ? value.get<std::string>() : std::string();
   };
-  const auto number = [&](const char* key) {
-    const Json value = event.value(key, Json());
-    return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
-  };
   const std::string kind = text("event");
   if (kind == "progress") {
     job.phase = text("phase");
-    job.share = number("share").value_or(0);
-    job.left_s = number("left_s");
+    const Json share = event.value("share", Json());
+    job.share = share.is_number() ? share.get<double>() : 0;
   } else if (kind == "error") {
     event.erase("event");
     job.error = std::move(event);

@@ -71,8 +71,9 @@ class JobQueue {
   std::string missing(const std::string& id) const;
   void fail(JobStatus& job, const Error& error);
   void run(const std::string& id, const std::stop_token& stop);
-  std::optional<double> usual_seconds(const JobSpec& spec) const;
-  void follow(const std::string& id, std::size_t& read, std::chrono::steady_clock::time_point usual_end);
+  std::optional<double> expected_seconds(const JobSpec& spec) const;
+  std::optional<double> priced_seconds(const JobSpec& spec) const;
+  void follow(const std::string& id, std::size_t& read, std::optional<double> expected_s);
   void hear(JobStatus& job, const std::string& line);
   void forget_old();
   void remove_files(const std::string& id) const;

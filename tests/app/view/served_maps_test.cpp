@@ -79,6 +79,19 @@ TEST_F(ServedMaps, FindNoDifferenceBetweenASolveAndItself) {
   EXPECT_GT(truth["normal"]["median_deg"].get<double>(), 0.05);
 }
 
+TEST_F(ServedMaps, HaveAThumbnailOfTheClothRelitThatIsKeptForEver) {
+  const Json listed = get("sessions").json();
+  ASSERT_EQ(listed["total"], 1) << listed.dump();
+  const std::string path = listed["sessions"][0]["thumbnail"];
+  EXPECT_EQ(path, "/api/v1/" + solve() + "/tiles/relit/top/0_0.jpg");
+  const Answer picture = ask(server_->port(), "GET", path);
+  ASSERT_EQ(picture.status, 200) << picture.body;
+  EXPECT_THAT(picture.head, HasSubstr("image/jpeg"));
+  EXPECT_THAT(picture.head, HasSubstr("immutable"));
+  EXPECT_EQ(get("sessions?warned=true").json()["total"], 0);
+  EXPECT_EQ(get("sessions?warned=perhaps").status, 400);
+}
+
 TEST_F(ServedMaps, DifferInAlbedoPixelByPixelAsTheComparisonSays) {
   const Answer same = get(solve() + "/tiles/albedo_difference/0/0_0.raw?with=" + solve_.id);
   ASSERT_EQ(same.status, 200) << same.body;

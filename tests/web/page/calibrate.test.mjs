@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The wizard: a board seen and not seen, and a rig that was knocked brought back, with nothing but the page.
 import assert from 'node:assert/strict';
+import {execFile} from 'node:child_process';
 import fs from 'node:fs';
 import path from 'node:path';
 import {after, before, test} from 'node:test';
+import {promisify} from 'node:util';
 import {launch, picture, violations, visit} from './support/browser.mjs';
-import {startRig} from './support/rig.mjs';
+import {startRig, weft} from './support/rig.mjs';
 
+const run = promisify(execFile);
 const isSoak = process.env.WEFT_SOAK !== undefined;
 const photograph_ms = 60_000;
 const calculation_ms = 120_000;
@@ -51,6 +54,17 @@ async function calculate(page, button) {
   await page.getByRole('button', {name: button}).click();
   await page.locator('.result').waitFor({timeout: calculation_ms});
   return page.locator('.result').innerText();
+}
+
+/** The calibration that the page had made last is that which `weft calibrate` makes of the same photographs. */
+async function assertMadeAsByCommand(rig, verb) {
+  const {jobs: [{wants: {output, input, moved, from}}]} = await rig.ask('jobs?limit=1');
+  const byCommand = path.join(rig.folder, 'state', path.basename(output));
+  await run(weft, ['calibrate', verb, input ?? moved, '--from', from, '-o', byCommand, '--quiet'], {cwd: rig.folder, env: rig.environment});
+  const read = (folder) => fs.readdirSync(folder).sort().map((name) => [name, fs.readFileSync(path.join(folder, name), 'latin1')]);
+  const made = read(path.join(rig.folder, output));
+  assert.ok(made.length > 2, `${made.length} files`);
+  assert.deepEqual(made, read(byCommand));
 }
 
 test('photographs of a board are answered, counted and left out, and the set outlives a reload', async () => {
@@ -141,6 +155,7 @@ test('a rig that was knocked is brought back: seen, fitted, proven, accepted', a
 
     await page.getByRole('button', {name: 'Go on: fitted again'}).click();
     await calculate(page, 'Calculate: fitted again');
+    await assertMadeAsByCommand(rig, 'update');
     await page.getByRole('button', {name: 'Go on: proof'}).click();
     await begin(page);
     await lay(rig, page, 'sheet turn=90');
@@ -190,22 +205,26 @@ test('a bare rig is calibrated with nothing but the page', {skip: !isSoak && 'it
     await begin(page, described(rig, 'board'));
     for (const board of boards) await lay(rig, page, board);
     await calculate(page, /^(Calculate|Enough)/);
+    await assertMadeAsByCommand(rig, 'camera');
 
     await goOn(page, 'sensor');
     await begin(page);
     await lay(rig, page, 'sheet');
     await lay(rig, page, 'empty');
     await calculate(page, 'Calculate: sensor');
+    await assertMadeAsByCommand(rig, 'response');
 
     await goOn(page, 'lights');
     await begin(page, described(rig, 'sheet'));
     for (const sheet of sheets) await lay(rig, page, sheet);
     await calculate(page, 'Calculate: lights');
+    await assertMadeAsByCommand(rig, 'lights');
 
     await goOn(page, 'colour');
     await begin(page, described(rig, 'chart'));
     await lay(rig, page, 'chart');
     await calculate(page, 'Calculate: colour');
+    await assertMadeAsByCommand(rig, 'color');
 
     await goOn(page, 'proof');
     await begin(page);

@@ -99,3 +99,25 @@ test('the queue is the same in another browser: put first, cancelled, done again
   await picture(theirs, 'jobs');
   await Promise.all([ann.leave(), bob.leave()]);
 });
+
+test('a scan that begins during a solve loses no photograph, and the solve stands still meanwhile', async () => {
+  const before = await rig.ask(`sessions/${session}`);
+  const {id} = await rig.ask('jobs', {kind: 'solve', session, method: 'lts'});
+  await until(async () => (await rig.ask(`jobs/${id}`)).phase === 'solve');
+  const {session: beside} = await rig.ask('scan', {fabric: 'beside a solve', cloth_height_mm: 0.8});
+  const seen = [];
+  await until(async () => {
+    const {session: scanned, phase, frames} = await rig.ask('rig');
+    if (scanned !== beside) return false;
+    if (frames > 0 && phase !== 'complete') seen.push(await rig.ask(`jobs/${id}`));
+    return phase === 'complete';
+  });
+  assert.ok(seen.length > 2, `looked ${seen.length} times`);
+  assert.deepEqual(new Set(seen.map(({held, phase, share, seconds}) => `${held} ${phase} ${share} ${seconds}`)).size, 1, 'it stood still');
+  assert.equal(seen[0].held, true);
+  const {leds} = await rig.ask('rig');
+  assert.deepEqual(leds.map(({state, takes}) => [state, takes]), leds.map(() => ['kept', 1]));
+  const {frames} = await rig.ask(`sessions/${beside}`);
+  assert.deepEqual(frames.map(({led, role}) => [led, role]), before.frames.map(({led, role}) => [led, role]));
+  await until(async () => (await rig.ask(`jobs/${id}`)).state === 'done');
+});

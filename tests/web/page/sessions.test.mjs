@@ -9,6 +9,8 @@ import {until} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
 const many = 1000;
+/** Scanned, torn, of a newer weft. */
+const others = 3;
 const mostRows = 60;
 let browser, rig, scanned;
 before(async () => {
@@ -16,7 +18,7 @@ before(async () => {
   await rig.inject('table cloth');
   scanned = await rig.scan('madder twill');
   writeSessions(path.join(rig.folder, 'scans'));
-  await until(async () => (await rig.ask('sessions?limit=1')).total === many + 2);
+  await until(async () => (await rig.ask('sessions?limit=1')).total === others + many);
 });
 after(() => takeDown(browser, rig));
 
@@ -25,13 +27,16 @@ function writeSession(folder, name, text) {
   fs.writeFileSync(path.join(folder, `${name}.weft`, 'session.json'), text);
 }
 
-/** Folders without photographs, and one whose document is torn. */
+/** Folders without photographs, the last of the first format, one of a format to come, one whose document is torn. */
 function writeSessions(folder) {
   for (let index = 0; index < many; index++) {
     const name = `s${String(index).padStart(4, '0')}`;
     const document = {schema: 'weft.session/1.1', fabric: `cloth ${index}`, cloth_height_mm: 0.5, rig: 'another', calibration: '', state: 'complete', metadata: {tags: ['made']}, shots: []};
     writeSession(folder, name, JSON.stringify(document));
   }
+  const old = {schema: 'weft.session/1', fabric: 'of the first format', cloth_height_mm: 0.5, rig: 'another', calibration: '', state: 'complete', shots: []};
+  writeSession(folder, 's0999', JSON.stringify(old));
+  writeSession(folder, 'newer', JSON.stringify({...old, schema: 'weft.session/2'}));
   writeSession(folder, 'torn', '{"schema": "weft.session/1.1", ');
 }
 
@@ -48,7 +53,7 @@ function rowOf(page, name) {
 test('of a thousand sessions at most sixty rows exist, however one scrolls', async () => {
   const visitor = await visit(browser, rig);
   const page = await enter(visitor);
-  await page.getByText(`${many + 2} sessions`).waitFor();
+  await page.getByText(`${many + others} sessions`).waitFor();
   await page.locator('.session').nth(8).waitFor();
   await picture(page, 'sessions');
 
@@ -60,7 +65,7 @@ test('of a thousand sessions at most sixty rows exist, however one scrolls', asy
     const rows = await page.locator('.virtual li').count();
     assert.ok(rows <= mostRows, `${rows} rows at ${share}`);
   }
-  const last = page.locator(`.virtual li[aria-posinset="${many + 2}"] .what a`);
+  const last = page.locator(`.virtual li[aria-posinset="${many + others}"] .what a`);
   await last.waitFor();
   await visitor.leave();
 });
@@ -108,7 +113,36 @@ test('a session that cannot be read is shown with its error and breaks nothing',
   const row = rowOf(page, 'torn');
   await row.waitFor();
   assert.match(await row.locator('.error').innerText(), /JSON|parse|read/i);
-  assert.equal(await page.locator('.session').count(), 1);
+  assert.equal(await page.locator('.session').count(), 2);
+  await visitor.leave();
+});
+
+test('a session of the first format opens, and one of a newer weft says which version it needs', async () => {
+  const visitor = await visit(browser, rig);
+  visitor.mayFail(/sessions\/newer/);
+  const page = await enter(visitor, 'sessions?words=newer');
+  const sentence = 'use a version of weft that reads weft.session/2';
+  await rowOf(page, 'newer').getByText(sentence).waitFor();
+  await page.getByRole('link', {name: 'newer'}).click();
+  await page.getByRole('alert').getByText(sentence).waitFor();
+  await page.goto(`${rig.address}/sessions/s0999`);
+  await page.getByRole('heading', {name: 'of the first format'}).waitFor();
+  await visitor.leave();
+});
+
+test('a scan is shown relit in the library, and left out where only warnings are asked for', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'sessions?words=madder');
+  await until(async () => (await rig.ask('sessions?query=madder')).sessions[0].current_solve !== '');
+  await page.reload();
+  const relit = rowOf(page, scanned).locator('img[src*="tiles/relit/top"]');
+  await relit.waitFor();
+  await page.waitForFunction((image) => image.complete && image.naturalWidth > 100, await relit.elementHandle());
+  const warned = (await rig.ask('sessions?warned=true')).total;
+  assert.ok(warned < many);
+  await page.getByRole('button', {name: 'Clear'}).click();
+  await page.getByLabel('With warnings').check();
+  await page.getByText(warned === 1 ? '1 session' : `${warned} sessions`, {exact: true}).waitFor();
   await visitor.leave();
 });
 

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The daemon's calls, typed by its own description, and the one kind of error that they have.
-import createClient from 'openapi-fetch';
-import type {components, paths} from './schema';
+import type {components} from './schema';
+
+export {api} from './calls';
 
 export type Schemas = components['schemas'];
-
-/** The same origin, always: this page asks nothing of anybody else. */
-export const api = createClient<paths>();
 
 /** What the daemon said is wrong, in its own words. */
 export class ApiError extends Error {

@@ -1102,8 +1102,8 @@ export interface paths {
                     name: string;
                     /** @description Frame, in the order of capture */
                     index: number;
-                    /** @description 0 is the frame, each next one has half its sides */
-                    level: number;
+                    /** @description 0 is the frame, each next one has half its sides; top is the last, which fits one tile */
+                    level: string;
                     /** @description COLUMN_ROW.raw (three half floats), .png or .jpg */
                     tile: string;
                 };
@@ -3005,6 +3005,8 @@ export interface paths {
                     calibration?: string;
                     /** @description Taken at or after this ISO time, or its beginning */
                     from?: string;
+                    /** @description Only those whose shots have warnings */
+                    warned?: boolean;
                     /** @description Taken at or before this ISO time, or within what begins so: 2026-11 is all of November */
                     to?: string;
                     /** @description Sessions a page, at most 1000; 100 if absent */
@@ -3367,8 +3369,8 @@ export interface paths {
                     solve: string;
                     /** @description Name of a layer; relit, the cloth under a lamp; difference, degrees between these normals and those of another solve; albedo_difference, percent of the albedo of another solve */
                     layer: string;
-                    /** @description 0 is the map, each next one has half its sides */
-                    level: number;
+                    /** @description 0 is the map, each next one has half its sides; top is the last, which fits one tile */
+                    level: string;
                     /** @description COLUMN_ROW.raw, .png or .jpg; normals have no .jpg */
                     tile: string;
                 };
@@ -4122,7 +4124,7 @@ export interface components {
             phase: string;
             /** @description Of the phase, 0 to 1 */
             share: number;
-            /** @description Until its end, by how long the last job took that differs in nothing but what it worked on; where there was none, until the end of the phase */
+            /** @description Until its end: of a solve by the newest price of its session, else by how long the last job took that differs in nothing but what it worked on; null where neither is known, and where it takes longer */
             left_s: number | null;
             /** @description ISO 8601 */
             asked: string;
@@ -4421,6 +4423,8 @@ export interface components {
             bytes: number;
             /** @description Of its shots */
             warnings: string[];
+            /** @description Path of a picture, kept for ever: the cloth relit by its current solve, else the first lit photograph; null where there is neither */
+            thumbnail: string | null;
             /** @description Why it, or what is said of it, cannot be read; as Error */
             error: Record<string, unknown> | null;
             /** @description This rig could finish it */

@@ -14,6 +14,7 @@ const screens: Record<string, Load> = {
   calibrate: () => import('../screens/calibrate/screen'),
   jobs: () => import('../screens/jobs/screen'),
   doctor: () => import('../screens/doctor/screen'),
+  tour: () => import('../screens/tour/screen'),
 };
 
 function NoSuchScreen() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a rig that is not there can be told, in its own words: what breaks, and what lies on its table.
 import './virtual_panel.css';
+import {Fragment} from 'preact';
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {answer, api, type Schemas} from '../api/client';
 import {useAction} from '../ui/action';
@@ -20,29 +21,9 @@ function kindsOf(lines: readonly Line[]): Map<string, Line[]> {
   return kinds;
 }
 
-interface KindProps {
-  kind: string;
-  lines: readonly Line[];
-  isBusy: boolean;
-  onTell: (line: string) => void;
-}
-
-function Kind({kind, lines, isBusy, onTell}: KindProps) {
-  return (
-    <details name="virtual-kind">
-      <summary>{kind}</summary>
-      {lines.map(({example, does}) => (
-        <div key={example} class="row">
-          <Button isDisabled={isBusy} onClick={() => onTell(example)}>{example}</Button>
-          <span class="dim">{does}</span>
-        </div>
-      ))}
-    </details>
-  );
-}
-
 export function VirtualPanel() {
   const [lines, setLines] = useState<readonly Line[]>([]);
+  const [kind, setKind] = useState('table');
   const [line, setLine] = useState('');
   const [said, setSaid] = useState('');
   const chosen = useRef('');
@@ -58,15 +39,26 @@ export function VirtualPanel() {
     setLine(what);
     void telling.run();
   };
+  const kinds = kindsOf(lines);
   return (
     <aside class="virtual-panel" aria-label="Virtual rig">
       <div class="row">
         <h2>This rig is virtual</h2>
+        {[...kinds.keys()].map((name) => (
+          <Button key={name} isPressed={name === kind} onClick={() => setKind(name)}>{name}</Button>
+        ))}
         <Field label="Tell it" value={line} onInput={setLine} onEnter={() => tell(line)} />
         <span role="status">{telling.complaint ? '' : said}</span>
       </div>
       <Complaint error={look.complaint ?? telling.complaint} />
-      {[...kindsOf(lines)].map(([kind, those]) => <Kind key={kind} kind={kind} lines={those} isBusy={telling.isBusy} onTell={tell} />)}
+      <div class="lines">
+        {kinds.get(kind)?.map(({example, does}) => (
+          <Fragment key={example}>
+            <Button isDisabled={telling.isBusy} onClick={() => tell(example)}>{example}</Button>
+            <span class="dim">{does}</span>
+          </Fragment>
+        ))}
+      </div>
     </aside>
   );
 }

@@ -66,12 +66,64 @@ class Jobs : public testing::Test {
 TEST_F(Jobs, TakeAsLongAsTheLastOneLikeThem) {
   const std::string script = std::string(kBegin) + " sleep 0.6";
   const std::string first = add(script);
-  EXPECT_EQ(running(first).left_s, 3) << "as its phase says: nothing is known of such jobs";
+  EXPECT_EQ(running(first).left_s, std::nullopt) << "nothing is known of such jobs, and a phase is not all";
   EXPECT_EQ(ended(first).state, JobState::kDone);
   const std::string second = add(script);
-  EXPECT_LT(running(second).left_s.value_or(9), 0.8);
+  const double left_s = running(second).left_s.value_or(9);
+  EXPECT_GT(left_s, 0.3);
+  EXPECT_LT(left_s, 0.8);
   EXPECT_EQ(ended(second).state, JobState::kDone);
-  EXPECT_EQ(running(add(script + "; true")).left_s, 3) << "another job";
+  EXPECT_EQ(running(add(script + "; true")).left_s, std::nullopt) << "another job";
+}
+
+TEST_F(Jobs, TakeAsLongAsTheirSessionWasPriced) {
+  const auto price = [&](const char* of, const char* seconds) {
+    const std::string levels = std::string(R"({"levels": [{"quality": "fast", "seconds": {"total": 2}},)") +
+                               R"({"quality": "robust", "seconds": {"total": )" + seconds + "}}]}";
+    return queue_->add({"price", of, {"-c", "echo '" + levels + "'"}, "", ""})->id;
+  };
+  ended(price("satin", "40"));
+  ended(price("linen", "7"));
+  const std::vector<std::string> robust = {"-c", std::string(kBegin) + " sleep 5"};
+  const auto left_s = [&](const char* of, const Json& wants) {
+    const std::string id = queue_->add({"solve", of, robust, "", "", {}, wants})->id;
+    const std::optional<double> left = running(id).left_s;
+    EXPECT_TRUE(queue_->cancel(id));
+    ended(id);
+    return left.value_or(0);
+  };
+  EXPECT_NEAR(left_s("satin", {{"quality", "robust"}}), 39.5, 0.5);
+  EXPECT_NEAR(left_s("linen", {{"quality", "robust"}}), 6.5, 0.5);
+  EXPECT_EQ(left_s("satin", {{"quality", "reference"}}), 0) << "its price has no such level";
+  EXPECT_EQ(left_s("satin", {{"method", "lts"}}), 0);
+}
+
+TEST_F(Jobs, CountDownWithoutAWordAndNotWhileTheyAreHeld) {
+  ended(queue_
+            ->add({"price",
+                   "satin",
+                   {"-c", R"(echo '{"levels": [{"quality": "fast", "seconds": {"total": 60}}]}')"},
+                   "",
+                   ""})
+            ->id);
+  const std::string id = queue_
+                             ->add({"solve",
+                                    "satin",
+                                    {"-c", std::string(kBegin) + " sleep 60"},
+                                    "",
+                                    "",
+                                    {},
+                                    {{"quality", "fast"}}})
+                             ->id;
+  running(id);
+  when(id, [](const JobStatus& job) { return job.left_s && *job.left_s < 59; });
+  queue_->hold(true);
+  const double seconds = when(id, [](const JobStatus& job) { return job.is_held; }).seconds;
+  std::this_thread::sleep_for(std::chrono::milliseconds(700));
+  queue_->hold(false);
+  EXPECT_LT(queue_->find(id)->seconds, seconds + 0.4) << "of 0.7 that it was held for";
+  ASSERT_TRUE(queue_->cancel(id));
+  ended(id);
 }
 
 TEST_F(Jobs, SayWhatIsGoneThatTheyWorkOn) {

@@ -144,6 +144,9 @@ export async function startRig({scene = 'rig.toml', megapixels = 0.25, options =
   if (without) leaveOut(folder, without);
   if (names.length) configure(folder, [`names = ${JSON.stringify(names)}`]);
   if (token) rig.token = makeToken(folder);
-  await rig.serve();
+  await rig.serve().catch(async (error) => {
+    await rig.stop();
+    throw error;
+  });
   return rig;
 }

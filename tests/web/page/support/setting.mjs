@@ -5,8 +5,8 @@ import {startRig} from './rig.mjs';
 
 /** `options` as of startRig, `flags` as of launch. */
 export async function setUp(options, ...flags) {
-  const [browser, rig] = await Promise.all([launch(...flags), startRig(options)]);
-  return {browser, rig};
+  const rig = await startRig(options);
+  return {rig, browser: await launch(...flags)};
 }
 
 export async function takeDown(browser, rig) {

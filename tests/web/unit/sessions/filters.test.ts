@@ -11,7 +11,7 @@ describe('filters of the library', () => {
   });
 
   test('ask the daemon only what it knows', () => {
-    expect(questionOf({...noFilters, words: '  twill ', state: 'complete', warned: true})).toEqual({query: 'twill', state: 'complete'});
+    expect(questionOf({...noFilters, words: '  twill ', state: 'complete', warned: true})).toEqual({query: 'twill', state: 'complete', warned: 'true'});
   });
 
   test('leave everything where nothing is asked', () => {

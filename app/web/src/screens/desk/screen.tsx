@@ -5,6 +5,7 @@ import {computed, useSignalEffect} from '@preact/signals';
 import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
+import {LazyScreen} from '../../frame/lazy_screen';
 import {isDark} from '../../state/dark';
 import {rig} from '../../state/rig';
 import {Empty} from '../../ui/empty';
@@ -63,18 +64,8 @@ function FirstSteps({parts}: Pick<Calibrated, 'parts'>) {
       </ol>
       <p><a href="/doctor">What is wrong with the rig, if anything</a></p>
       <p><a href="/calibrate">How well it is calibrated</a></p>
+      <p><a href="/tour">What a solved cloth looks like</a></p>
     </Empty>
-  );
-}
-
-function NoRig() {
-  return (
-    <section class="page">
-      <h1>Desk</h1>
-      <Empty says="This server has no rig: it shows archives.">
-        <a href="/sessions">Look at their sessions</a>
-      </Empty>
-    </section>
   );
 }
 
@@ -108,7 +99,7 @@ export default function DeskScreen() {
   useEffect(followScanned, []);
   useEffect(() => onEvent('shot', takeShot), []);
   useFocusAfterScan();
-  if (rig.value && rig.value.devices.board.leds === 0) return <NoRig />;
+  if (rig.value && rig.value.devices.board.leds === 0) return <LazyScreen name="tour" />;
   return (
     <div class="desk">
       <section class="stage" aria-labelledby="desk-title">

@@ -35,9 +35,9 @@ export function addressOf(filters: Filters): Record<string, string | null> {
   return changes;
 }
 
-/** What the daemon is asked; it has no filter by warnings, so `warned` is not in it. */
+/** What the daemon is asked. */
 export function questionOf(filters: Filters): Record<string, string> {
-  const question: Record<string, string> = {};
+  const question: Record<string, string> = filters.warned ? {warned: 'true'} : {};
   for (const key of texts) {
     const value = filters[key].trim();
     if (value) question[key === 'words' ? 'query' : key] = value;
@@ -46,5 +46,5 @@ export function questionOf(filters: Filters): Record<string, string> {
 }
 
 export function isNarrowed(filters: Filters): boolean {
-  return filters.warned || Object.keys(questionOf(filters)).length > 0;
+  return Object.keys(questionOf(filters)).length > 0;
 }

@@ -28,8 +28,7 @@ export function Library() {
   const [end, setEnd] = useState(0);
   const {sessions, total} = shelf.value;
   const isKnown = shelf.value.search > 0;
-  const shown = filters.warned ? sessions.filter((session) => session.warnings.length > 0) : sessions;
-  const names = shown.map((session) => session.name);
+  const names = sessions.map((session) => session.name);
 
   const again = () => {
     void look(filters);
@@ -41,8 +40,8 @@ export function Library() {
     return () => removeEventListener('focus', again);
   }, [asked]);
   useEffect(() => {
-    if (filters.warned || end + rowsAhead > sessions.length) void askMore();
-  }, [end, filters.warned, shelf.value]);
+    if (end + rowsAhead > sessions.length) void askMore();
+  }, [end, shelf.value]);
   useKeys('sessions', [
     {key: 'Escape', does: 'choose none', run: () => select(nothing)},
     {key: 'Ctrl+a', does: 'choose all', run: () => select(all(names))},
@@ -52,21 +51,20 @@ export function Library() {
 
   const choose = (name: string, withRange: boolean) =>
     select(withRange ? extended(selection, name, names) : toggled(selection, name));
-  const count = filters.warned ? shown.length : total;
-  const chosen = shown.filter((session) => selection.names.has(session.name));
+  const chosen = sessions.filter((session) => selection.names.has(session.name));
   return (
     <div class="library">
       <div class="row head">
         <h1>Library</h1>
-        <span class="dim" role="status">{isKnown && counted(count, 'session')}</span>
+        <span class="dim" role="status">{isKnown && counted(total, 'session')}</span>
         <LastWord onStep={again} />
       </div>
       <FilterBar filters={filters} onChange={(changed: Filters) => amend(addressOf(changed))} />
       <Complaint error={complaint.value} />
-      {isKnown && count === 0 && <Nothing isNarrowed={isNarrowed(filters)} />}
-      <VirtualList label="Sessions" count={count} row_px={row_px} keyOf={(index) => names[index] ?? index}
+      {isKnown && total === 0 && <Nothing isNarrowed={isNarrowed(filters)} />}
+      <VirtualList label="Sessions" count={total} row_px={row_px} keyOf={(index) => names[index] ?? index}
         onRange={(range) => setEnd(range.end)} render={(index) => {
-          const session = shown[index];
+          const session = sessions[index];
           if (!session) return <div class="session dim">...</div>;
           return (
             <SessionRow session={session} isChosen={selection.names.has(session.name)}

@@ -28,7 +28,7 @@ export function SessionRow({session, isChosen, onChoose}: SessionRowProps) {
       </div>
       <div class="tags">{tags.map((tag) => <span key={tag} class="tag">{tag}</span>)}</div>
       {session.error ? (
-        <span class="error">{textIn(session.error, 'what')}: {textIn(session.error, 'why')}</span>
+        <span class="error">{['what', 'why', 'remedy'].map((part) => textIn(session.error, part)).filter(Boolean).join('. ')}</span>
       ) : (
         <>
           <span class="state">

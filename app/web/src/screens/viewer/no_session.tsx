@@ -31,11 +31,10 @@ export function NoSession() {
         </Empty>
       )}
       <ul class="choose-session">
-        {sessions?.map(({name, fabric, current_solve}) => (
+        {sessions?.map(({name, fabric, current_solve, thumbnail}) => (
           <li key={name}>
             <a href={addressOfViewer({session: name, solve: current_solve})}>
-              <img alt="" width={192} height={128} loading="lazy"
-                src={`/api/v1/sessions/${encodeURIComponent(name)}/solves/${current_solve}/tiles/relit/0/0_0.jpg`} />
+              <img alt="" width={192} height={128} loading="lazy" src={thumbnail ?? ''} />
               <span>{fabric || name}</span>
               <span class="dim">{name}</span>
             </a>
