@@ -161,6 +161,16 @@ std::optional<double> Response::exposure_ratio(double exposure_us, double to_exp
   return {};
 }
 
+std::vector<double> Response::exposures_beside(double exposure_us) const {
+  std::vector<double> times_us;
+  for (const ExposureRatio& e : exposure_ratios) {
+    if (same_setting(e.exposure_us, exposure_us)) times_us.push_back(e.to_exposure_us);
+    if (same_setting(e.to_exposure_us, exposure_us)) times_us.push_back(e.exposure_us);
+  }
+  std::ranges::sort(times_us);
+  return times_us;
+}
+
 Result<Calibration> read_calibration(const fs::path& folder) {
   const fs::path file = folder / "calibration.json";
   const Result<Json> document = read_json(file, kCalibrationSchema, 1);

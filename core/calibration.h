@@ -52,6 +52,8 @@ struct Response {
 
   /// The measured ratio between two exposure times (by same_setting()), whichever way it was measured.
   std::optional<double> exposure_ratio(double exposure_us, double to_exposure_us) const;
+  /// Exposure times whose ratio to this one was measured, rising.
+  std::vector<double> exposures_beside(double exposure_us) const;
   friend bool operator==(const Response&, const Response&) = default;
 };
 

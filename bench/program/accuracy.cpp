@@ -13,6 +13,7 @@
 #include "bench/accuracy/bound.h"
 #include "bench/accuracy/chain.h"
 #include "bench/accuracy/coverage.h"
+#include "bench/accuracy/gloss.h"
 #include "bench/accuracy/page.h"
 #include "bench/program/rows.h"
 #include "bench/program/verbs.h"
@@ -29,6 +30,7 @@ struct AccuracyArguments {
   bool specular = false;
   bool sigma = false;
   bool chain = false;
+  bool gloss = false;
   std::vector<std::string> parts;
   std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
 };
@@ -41,6 +43,7 @@ Result<Rows> measure(const AccuracyArguments& a, int threads) {
   if (a.leds) return accuracy_by_leds(options);
   if (a.specular) return specular_warnings(options);
   if (a.sigma) return coverage_table(options);
+  if (a.gloss) return gloss_table({.cloth = options.scene, .seed = options.seed, .threads = threads});
   if (a.chain)
     return chain_table(
         {.name = options.scene, .levels = options.methods, .seed = options.seed, .threads = threads});
@@ -75,6 +78,8 @@ app::Run add_accuracy(app::Options& options) {
                        "Instead: who says SPECULAR on 30 dark satins and 90 other cloths"),
       options.add_flag("--sigma", &a->sigma,
                        "Instead: whether errors on cloth are as large as sigma says, at every level"),
+      options.add_flag("--gloss", &a->gloss,
+                       "Instead: the lobe of glossy cloths, found and solved with; --scene is a cloth of it"),
       options.add_flag("--chain", &a->chain,
                        "Instead: whole sessions by the product's own steps, from captures to maps"),
       options.add("--docs", &a->docs,

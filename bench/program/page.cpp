@@ -24,6 +24,7 @@ constexpr double kPatience_s = 1800;
 
 struct PageArguments {
   std::vector<int> megapixels = {16, 100};
+  int minutes = 0;  ///< of panning
 };
 
 /// A browser looks at a solve of each size, and at the desk of a virtual rig.
@@ -44,10 +45,13 @@ Result<Rows> measure(const PageArguments& a, bool quiet) {
   }
   line.update("browser", 0);
   const fs::path said = scratch.path() / "rows.json";
-  const auto browser =
-      ChildProcess::start(command, {"WEFT_PROGRAMS=" + program_beside("weft").parent_path().string()}, said);
+  const auto browser = ChildProcess::start(command,
+                                           {"WEFT_PROGRAMS=" + program_beside("weft").parent_path().string(),
+                                            "WEFT_MINUTES=" + std::to_string(a.minutes)},
+                                           said);
   if (!browser) return browser.error();
-  const std::optional<int> code = (*browser)->wait(kPatience_s);
+  const std::optional<int> code =
+      (*browser)->wait(kPatience_s + 60.0 * a.minutes * static_cast<double>(a.megapixels.size()));
   const Json rows = Json::parse((*browser)->said(), nullptr, false);
   if (code == 0 && rows.is_array()) return Rows(rows.begin(), rows.end());
   return Error{ErrorKind::kTryAgain, "the browser ended otherwise than it should", kScript,
@@ -59,6 +63,9 @@ app::Run add_page(app::Options& options) {
   options.add("--megapixels", &a->megapixels, "Sizes of the maps that are looked at")
       .by_commas()
       .in_range(1, 200)
+      .shows_default();
+  options.add("--minutes", &a->minutes, "Also pan over each of them for so long: memory by the minute")
+      .in_range(0, 600)
       .shows_default();
   return [a](const app::CommonArguments& common) { return print_rows(measure(*a, common.quiet), common); };
 }

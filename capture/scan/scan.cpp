@@ -2,6 +2,7 @@
 #include "capture/scan/scan.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -321,13 +322,17 @@ class Scan {
       if (!settable) return settable.error();
       if (*settable != exposure_.exposure_us) bracket_us = *settable;
     }
-    if (bracket_us && !(calibration_ && calibration_->response &&
-                        calibration_->response->exposure_ratio(*bracket_us, exposure_.exposure_us))) {
-      return Error{ErrorKind::kUsage, "the shot cannot be taken again at another exposure",
-                   request_.session.string(),
-                   fmt::format("nobody measured the ratio of {:.6g} us to the session's {:.6g} us",
-                               *bracket_us, exposure_.exposure_us),
-                   "leave the exposure as it was, or measure the ratio: weft calibrate response"};
+    const Response response = calibration_ && calibration_->response ? *calibration_->response : Response();
+    if (bracket_us && !response.exposure_ratio(*bracket_us, exposure_.exposure_us)) {
+      const std::vector<double> measured_us = response.exposures_beside(exposure_.exposure_us);
+      return Error{
+          ErrorKind::kUsage, "the shot cannot be taken again at another exposure", request_.session.string(),
+          fmt::format("nobody measured the ratio of {:.6g} us to the session's {:.6g} us", *bracket_us,
+                      exposure_.exposure_us),
+          measured_us.empty()
+              ? "scan the cloth again at another exposure: weft calibrate response measures the "
+                "ratios of its own exposures only, and the session's is none of them"
+              : fmt::format("take it at one that was measured: {:.6g} us", fmt::join(measured_us, ", "))};
     }
     Result<PlannedShot> again = shot_again(journal_->session(), *request_.again, exposure_, bracket_us);
     if (!again) return again.error();

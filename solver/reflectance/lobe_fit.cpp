@@ -63,13 +63,14 @@ void add_pixel(const LobeSamples& samples, const LobeFit& fit, const LobeParamet
     there[static_cast<Eigen::Index>(p)] += step_of(p);
     moved[p] = lobe_of(fit.lobe.family, there);
   }
-  const PixelSystem system = system_of(fit.lobe, samples.of(pixel), b, yarn);
+  PixelSystem system;
   std::array<Vec3, kLobeParameters> mixed = {};
   for (const LobeReading& r : samples.of(pixel)) {
     if (r.weight == 0) continue;
     const ModelledReading m = modelled_with_derivative(fit.lobe, b, r.from, yarn);
     const double residual = r.x - m.x;
     const double w = r.weight * huber_weight(residual * std::sqrt(r.weight));
+    system.add(m.by_b, w, residual);
     Shared s = Shared::Zero();
     for (std::size_t p = 0; p < kLobeParameters; ++p) {
       if (!fitted[p]) continue;
@@ -80,6 +81,7 @@ void add_pixel(const LobeSamples& samples, const LobeFit& fit, const LobeParamet
     sums.matrix += w * s * s.transpose();
     sums.gradient += w * residual * s;
   }
+  system.regularise();
   for (std::size_t p = 0; p < kLobeParameters; ++p) {
     if (!fitted[p]) continue;
     const Vec3 solved = system.solved(mixed[p]);

@@ -19,85 +19,80 @@ constexpr std::array<const char*, 7> kRefusals = {
 constexpr std::size_t kTrialPixels = 1000;
 constexpr std::array<double, 4> kStartAlphas = {0.08, 0.2, 0.45, 0.8};
 constexpr double kStartF0 = 0.03, kStartAlong = 0.3;
-constexpr int kTrialRounds = 15, kRounds = 15;
+constexpr int kRounds = 15;
 constexpr int kMostRestarts = 4, kYarnRounds = 4;
 constexpr double kMovedShare = 0.002;  // pixels that still find another valley
 constexpr double kMovedCost = 0.5;     // what a pixel must win to count as moved
 constexpr double kUndecided = 0.05;    // of the cost
 constexpr int kStartSteps = 5;
 
-LobeParameters with_bend(LobeParameters fitted) {
-  fitted[static_cast<std::size_t>(LobeParameter::kBend)] = true;
-  return fitted;
-}
-
 LobeFit unfitted(const Lobe& lobe, const std::vector<Vec3>& b) {
   return {lobe, b, std::vector<double>(b.size(), 0.0), {}, 0, {}};
 }
 
-// One family over the pixels of one material.
+// The families in turn over some pixels of one material.
 class Trial {
  public:
-  Trial(const LobeSamples& samples, const std::vector<Vec3>& start, int threads)
-      : samples_(samples), few_(samples.first(kTrialPixels)), start_(start), threads_(threads) {}
+  Trial(const LobeSamples& samples, std::vector<Vec3> start, int threads)
+      : samples_(samples), start_(std::move(start)), threads_(threads) {}
 
   LobeFit lambert() const { return fit_lobe(samples_, unfitted({}, start_), {.threads = threads_}); }
 
   LobeFit isotropic(LobeFamily family, bool bends) const {
     LobeParameters fitted = parameters_of(family);
-    if (bends) fitted = with_bend(fitted);
-    const std::vector<Vec3> few = of_few(start_);
+    if (bends) fitted[static_cast<std::size_t>(LobeParameter::kBend)] = true;
     std::optional<LobeFit> best;
     for (const double alpha : kStartAlphas) {
-      LobeFit fit = fit_lobe(few_, unfitted({.family = family, .alpha = alpha, .f0 = kStartF0}, few),
-                             options(fitted, kTrialRounds));
+      LobeFit fit = fit_lobe(samples_, unfitted({.family = family, .alpha = alpha, .f0 = kStartF0}, start_),
+                             options(fitted));
       if (!best || fit.total() < best->total()) best = std::move(fit);
     }
-    return restarted(fit_lobe(samples_, unfitted(best->lobe, start_), options(fitted, kRounds)), fitted);
+    return restarted(std::move(*best), fitted);
   }
 
   // From an isotropic fit: its alpha is between the two.
   LobeFit anisotropic(const LobeFit& round) const {
-    const LobeParameters fitted = parameters_of(LobeFamily::kAnisotropicGgx);
-    const double across = std::clamp(1.3 * std::max(round.lobe.alpha, 0.1), 0.02, 1.0);
     std::optional<LobeFit> best;
     for (const double axis : {0.0, kPi / 4}) {
-      LobeFit fit = unfitted({.family = LobeFamily::kAnisotropicGgx,
-                              .alpha = across,
-                              .f0 = std::max(round.lobe.f0, 0.01),
-                              .along = kStartAlong,
-                              .axis = axis},
-                             of_few(round.b));
-      fit = with_yarns(few_, std::move(fit), fitted);
+      LobeFit fit = with_yarns(unfitted({.family = LobeFamily::kAnisotropicGgx,
+                                         .alpha = std::clamp(1.3 * std::max(round.lobe.alpha, 0.1), 0.02, 1.0),
+                                         .f0 = std::max(round.lobe.f0, 0.01),
+                                         .along = kStartAlong,
+                                         .axis = axis},
+                                        round.b));
       if (!best || fit.total() < best->total()) best = std::move(fit);
     }
-    LobeFit fit = with_yarns(samples_, unfitted(best->lobe, round.b), fitted);
-    return canonical(restarted(std::move(fit), fitted));
+    return restarted(std::move(*best), parameters_of(LobeFamily::kAnisotropicGgx));
+  }
+
+  // A lobe that was found on other pixels of the material, from where they begin.
+  LobeFit refined(const Lobe& lobe) const {
+    const LobeParameters fitted = parameters_of(lobe.family);
+    LobeFit fit = unfitted(lobe, start_);
+    if (lobe.family == LobeFamily::kAnisotropicGgx) fit = better_yarns(std::move(fit));
+    return canonical(restarted(fit_lobe(samples_, std::move(fit), options(fitted)), fitted));
   }
 
  private:
-  std::vector<Vec3> of_few(const std::vector<Vec3>& b) const {
-    return {b.begin(), b.begin() + static_cast<std::ptrdiff_t>(few_.pixels())};
-  }
-  LobeFitOptions options(LobeParameters fitted, int rounds) const {
-    return {.fitted = fitted, .rounds = rounds, .threads = threads_};
+  LobeFitOptions options(LobeParameters fitted) const {
+    return {.fitted = fitted, .rounds = kRounds, .threads = threads_};
   }
 
   // Each pixel's yarn is the one of the two that costs it less.
-  LobeFit with_yarns(const LobeSamples& samples, LobeFit fit, LobeParameters fitted) const {
+  LobeFit with_yarns(LobeFit fit) const {
     for (int round = 0; round < kYarnRounds; ++round) {
-      fit = better_yarns(samples, std::move(fit));
-      fit = fit_lobe(samples, std::move(fit), options(fitted, kRounds));
+      fit = better_yarns(std::move(fit));
+      fit = fit_lobe(samples_, std::move(fit), options(parameters_of(LobeFamily::kAnisotropicGgx)));
     }
     return fit;
   }
-  LobeFit better_yarns(const LobeSamples& samples, LobeFit fit) const {
+  LobeFit better_yarns(LobeFit fit) const {
     LobeFit weft = fit;
     weft.yarn.assign(weft.yarn.size(), kPi / 2);
     fit.yarn.assign(fit.yarn.size(), 0);
     for (LobeFit* each : {&fit, &weft}) {
-      each->cost.resize(samples.pixels());
-      samples.fit_pixels(each->lobe, each->yarn, kStartSteps, threads_, each->b, each->cost);
+      each->cost.resize(samples_.pixels());
+      samples_.fit_pixels(each->lobe, each->yarn, kStartSteps, threads_, each->b, each->cost);
     }
     keep_cheaper(weft, fit);
     return fit;
@@ -136,7 +131,7 @@ class Trial {
       for (std::size_t i = 0; i < before.size(); ++i) {
         if (fit.cost[i] < before[i] - kMovedCost) ++moved;
       }
-      fit = fit_lobe(samples_, std::move(fit), options(fitted, kRounds));
+      fit = fit_lobe(samples_, std::move(fit), options(fitted));
       if (static_cast<double>(moved) < kMovedShare * static_cast<double>(before.size())) break;
     }
     return fit;
@@ -159,8 +154,7 @@ class Trial {
   }
 
   const LobeSamples& samples_;
-  LobeSamples few_;
-  const std::vector<Vec3>& start_;
+  std::vector<Vec3> start_;
   int threads_;
 };
 
@@ -233,7 +227,8 @@ std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> reading
 MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads) {
   MeasuredLobe measured;
   if (samples.pixels() < kLeastLobePixels) return measured;
-  const Trial trial(samples, start, threads);
+  const LobeSamples few = samples.first(kTrialPixels);
+  const Trial trial(few, {start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels())}, threads);
   const double lambert_chi2 = trial.lambert().chi2;
   measured.candidates.push_back({{}, lambert_chi2});
   measured.refusal = LobeRefusal::kLambertFits;
@@ -264,8 +259,8 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   measured.is_family_undecided =
       passes_too(round) ||
       std::ranges::any_of(others, [&](const Other& other) { return passes_too(other.fit); });
-  measured.fit = *best;
-  measured.lobe = best->lobe;
+  measured.fit = Trial(samples, start, threads).refined(best->lobe);
+  measured.lobe = measured.fit.lobe;
   write_sigmas(bent, measured);
   measured.half_deg = half_angles(samples, measured.fit);
   return measured;

@@ -34,23 +34,31 @@ double cost_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, 
   return cost;
 }
 
+void PixelSystem::add(Vec3 j, double weight, double residual) {
+  const Vec3 wj = weight * j;
+  a[0] += wj.x * j.x;
+  a[1] += wj.x * j.y;
+  a[2] += wj.x * j.z;
+  a[3] += wj.y * j.y;
+  a[4] += wj.y * j.z;
+  a[5] += wj.z * j.z;
+  gradient = gradient + residual * wj;
+}
+
+void PixelSystem::regularise() {
+  const double little = 1e-9 * (a[0] + a[3] + a[5]) + 1e-30;
+  for (const std::size_t diagonal : {0U, 3U, 5U}) a[diagonal] += little;
+}
+
 PixelSystem system_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, double yarn) {
   PixelSystem system;
   for (const LobeReading& r : readings) {
     if (r.weight == 0) continue;
     const ModelledReading m = modelled_with_derivative(lobe, b, r.from, yarn);
-    const double w = r.weight * huber_weight((r.x - m.x) * std::sqrt(r.weight));
-    const Vec3 j = m.by_b, wj = w * j;
-    system.a[0] += wj.x * j.x;
-    system.a[1] += wj.x * j.y;
-    system.a[2] += wj.x * j.z;
-    system.a[3] += wj.y * j.y;
-    system.a[4] += wj.y * j.z;
-    system.a[5] += wj.z * j.z;
-    system.gradient = system.gradient + (r.x - m.x) * wj;
+    const double residual = r.x - m.x;
+    system.add(m.by_b, r.weight * huber_weight(residual * std::sqrt(r.weight)), residual);
   }
-  const double little = 1e-9 * (system.a[0] + system.a[3] + system.a[5]) + 1e-30;
-  for (const std::size_t diagonal : {0U, 3U, 5U}) system.a[diagonal] += little;
+  system.regularise();
   return system;
 }
 

@@ -40,11 +40,14 @@ double cost_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, 
 PixelFit fit_pixel(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 start, double yarn,
                    int steps);
 
-/// The normal equations of a pixel: xx, xy, xz, yy, yz, zz of J^T W J, a billionth of its trace added.
+/// The normal equations of a pixel.
 struct PixelSystem {
-  std::array<double, 6> a = {};
-  Vec3 gradient;  ///< J^T W (x - model)
+  std::array<double, 6> a = {};  ///< xx, xy, xz, yy, yz, zz of J^T W J
+  Vec3 gradient;                 ///< J^T W (x - model)
 
+  void add(Vec3 derivative, double weight, double residual);
+  /// A billionth of the trace more on the diagonal, so that every pixel has a solution.
+  void regularise();
   Vec3 solved(Vec3 right) const;
 };
 PixelSystem system_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, double yarn);

@@ -144,6 +144,9 @@ TEST(Calibration, ReturnsRatiosPatchesCovarianceAndHotPicture) {
   EXPECT_EQ(response.exposure_ratio(16000, 4000), 1 / 0.2512);
   EXPECT_EQ(response.exposure_ratio(64001, 16000), 4.03);
   EXPECT_FALSE(response.exposure_ratio(4000, 64000)) << "was not measured";
+  EXPECT_EQ(response.exposures_beside(16001), (std::vector<double>{4000, 64000}));
+  EXPECT_EQ(response.exposures_beside(64000), (std::vector<double>{16000}));
+  EXPECT_EQ(response.exposures_beside(8000), (std::vector<double>{}));
 }
 
 TEST(Calibration, ReturnsColorFiducialsBlackAndTheCameraCovariance) {

@@ -62,12 +62,12 @@ TEST(Catalogue, KnowsTheFirstLitShotThatIsUsedAndWhatWasWarnedOf) {
   shelf.put("b", {{"shots", Json::array({dark})}});
   Catalogue catalogue = opened(shelf);
   refreshed(catalogue, {shelf.path()});
-  const Result<Entry> lit = catalogue.find_one("a"), dark = catalogue.find_one("b");
+  const Result<Entry> lit = catalogue.find_one("a"), unlit = catalogue.find_one("b");
   ASSERT_TRUE(lit) << lit.error().message();
   EXPECT_EQ(lit->lit_shot, 2);
   EXPECT_EQ(lit->lit_sha256, "f");
-  ASSERT_TRUE(dark) << dark.error().message();
-  EXPECT_EQ(dark->lit_sha256, "");
+  ASSERT_TRUE(unlit) << unlit.error().message();
+  EXPECT_EQ(unlit->lit_sha256, "");
   EXPECT_EQ(found(catalogue, {.warned = true}), Names{"a"});
   EXPECT_EQ(found(catalogue, {.state = "complete", .warned = true}), Names{"a"});
 }

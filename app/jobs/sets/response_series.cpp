@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
@@ -78,6 +79,20 @@ Result<SetStanding> look_at_series(const PhotographSet& set) {
   set.part == SetPart::kResponse ? look(kResponseFolders) : look(kTrapFolders);
   standing.is_done = !standing.next;
   return standing;
+}
+
+std::vector<std::string> complete_series(const fs::path& sets) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(sets, ignored)) {
+    const Result<PhotographSet> set = read_set(entry.path());
+    const bool is_series = set && (set->part == SetPart::kResponse || set->part == SetPart::kTrap);
+    if (!is_series) continue;
+    const Result<SetStanding> standing = look_at_series(*set);
+    if (standing && standing->is_done) names.push_back(entry.path().filename().string());
+  }
+  std::ranges::sort(names);
+  return names;
 }
 
 std::vector<capture::SeriesShot> series_of(const SetStep& step, int leds,

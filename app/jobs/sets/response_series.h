@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 #include <vector>
@@ -16,6 +17,9 @@ namespace weft::app {
 
 /// Steps of the parts response (lit, then dark) and trap.
 Result<SetStanding> look_at_series(const PhotographSet& set);
+
+/// Names of the sets in a folder that are of these parts and have all their photographs, sorted.
+std::vector<std::string> complete_series(const std::filesystem::path& sets);
 
 /// What a step of these parts photographs. `share_of_us` gives a time that the camera has.
 std::vector<capture::SeriesShot> series_of(const SetStep& step, int leds,

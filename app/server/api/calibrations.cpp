@@ -9,6 +9,7 @@
 
 #include "app/jobs/calibrate/accept.h"
 #include "app/jobs/calibrate/history.h"
+#include "app/jobs/sets/response_series.h"
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
 #include "app/server/api/job_body.h"
@@ -81,7 +82,8 @@ Result<Reply> list_of_calibrations(const RigParts& parts, const Call&) {
   const std::filesystem::path current = capture::calibration_now(parts.rig);
   Json calibrations = Json::array();
   for (const ListedCalibration& one : *all) calibrations.push_back(json_of(one, root, current));
-  return json_reply({{"calibrations", std::move(calibrations)}});
+  return json_reply(
+      {{"calibrations", std::move(calibrations)}, {"complete_series", complete_series(root / "sets")}});
 }
 
 Result<Reply> history_of_rig(const RigParts& parts, const Call&) {

@@ -167,6 +167,13 @@ Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig, 
   return choice;
 }
 
+std::vector<double> other_exposures_us(const Session& session) {
+  const auto lit = session.lit();
+  const Result<Calibration> calibration = read_calibration(session.calibration_folder());
+  if (lit.empty() || !calibration || !calibration->response) return {};
+  return calibration->response->exposures_beside(lit.front()->exposure_us);
+}
+
 Result<capture::ScanRequest> request_again(const Session& session, const capture::Rig& rig, const Shot& shot,
                                            double exposure_us) {
   if (session.rig != rig.name) {

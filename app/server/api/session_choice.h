@@ -41,6 +41,10 @@ library::Query unfinished_of(const capture::Rig& rig);
 Result<SessionChoice> choose_session(const Json& body, const capture::Rig& rig, LibraryService& library,
                                      std::chrono::system_clock::time_point now);
 
+/// Exposures beside its own at which a lit shot of a session may be taken once more: those whose ratio to it
+/// was measured by its calibration, rising.
+std::vector<double> other_exposures_us(const Session& session);
+
 /// The scan that takes a shot of a finished session once more (capture::ScanRequest::again), with an exposure
 /// of its own above 0. kCannotCreate where the session is not this rig's.
 Result<capture::ScanRequest> request_again(const Session& session, const capture::Rig& rig, const Shot& shot,

@@ -145,6 +145,7 @@ Result<Reply> one_session(const RigParts& parts, const Call& call) {
                      {"resumable", is_resumable(parts.rig, session->rig, session->state)},
                      {"cloth_height_mm", session->cloth_height_mm},
                      {"calibration", session->calibration_id},
+                     {"other_exposures_us", other_exposures_us(*session)},
                      {"frames", std::move(frames)},
                      {"histograms_complete", whole},
                      {"clipping_by_led", std::move(by_led)},

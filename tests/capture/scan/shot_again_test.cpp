@@ -75,6 +75,7 @@ TEST(ShotAgain, TakesAnotherExposureOnlyByARatioThatWasMeasured) {
   const Result<ScanOutcome> outcome = bench.again(3);
   ASSERT_FALSE(outcome);
   EXPECT_THAT(outcome.error().message(), HasSubstr("nobody measured the ratio"));
+  EXPECT_THAT(outcome.error().message(), HasSubstr("scan the cloth again at another exposure"));
   EXPECT_EQ(bench.objection(), "");
 }
 

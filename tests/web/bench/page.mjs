@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long a person waits for the page in a window of 1280 x 720, drawn by software: `weft bench page` runs
 // this on folders of sessions and reads its rows. Milliseconds by the clock on the wall: nothing else should run.
+import fs from 'node:fs';
 import path from 'node:path';
 import {Archive} from '../page/support/archive.mjs';
 import {launch, visit} from '../page/support/browser.mjs';
 import {startRig} from '../page/support/rig.mjs';
 
+const minutes = Number(process.env.WEFT_MINUTES ?? 0);  // of panning
 const solve = {session: 'wide', id: '0123456789abcdef'};
 const places = [[0.2, 0.2], [0.8, 0.3], [0.3, 0.8], [0.7, 0.7], [0.5, 0.2]];
 const window = {width: 1280, height: 720};
@@ -74,6 +76,48 @@ async function newPlaces(page, size) {
   return median(times);
 }
 
+/** A hand that pans over the whole map at 1:1, back and forth in both ways, for a minute. */
+async function panAMinute(page, size) {
+  const box = await page.locator('canvas').boundingBox();
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await page.mouse.down();
+  await page.locator('canvas').evaluate((canvas, {width, height}) => new Promise((done) => {
+    const bounds = canvas.getBoundingClientRect();
+    const began = performance.now();
+    const move = (now) => {
+      const seconds = (now - began) / 1000;
+      if (seconds > 60) return done();
+      const clientX = bounds.x + bounds.width / 2 - (width / 2) * Math.sin((2 * Math.PI * seconds) / 60);
+      const clientY = bounds.y + bounds.height / 2 - (height / 2) * Math.sin((2 * Math.PI * seconds) / 20);
+      canvas.dispatchEvent(new PointerEvent('pointermove', {pointerId: 1, clientX, clientY, bubbles: true}));
+      requestAnimationFrame(move);
+    };
+    requestAnimationFrame(move);
+  }), size);
+  await page.mouse.up();
+}
+
+/** Megabytes of the page's heap and of the process that draws. */
+async function memoryOf(browser, page) {
+  const asks = await browser.newBrowserCDPSession();
+  const {processInfo} = await asks.send('SystemInfo.getProcessInfo');
+  await asks.detach();
+  const gpu = processInfo.find(({type}) => type === 'GPU');
+  const [, kilobytes] = fs.readFileSync(`/proc/${gpu.id}/status`, 'utf8').match(/VmRSS:\s+(\d+)/);
+  const heap = await page.evaluate(() => performance.memory.usedJSHeapSize);
+  return heap / 1e6 + (1024 * Number(kilobytes)) / 1e6;
+}
+
+async function panningRows(browser, page, size, megapixels) {
+  const rows = [];
+  await jump(page, `view=${size.width / 2},${size.height / 2},1`);
+  for (let minute = 1; minute <= minutes; minute++) {
+    await panAMinute(page, size);
+    rows.push(row(`heap and drawing after ${minute} min of panning, MB`, megapixels, await memoryOf(browser, page), 700));
+  }
+  return rows;
+}
+
 async function viewerRows(browser, folder) {
   const archive = new Archive(path.resolve(folder));
   await archive.serve();
@@ -86,6 +130,7 @@ async function viewerRows(browser, folder) {
     row('first view, ms', megapixels, ms, megapixels > 50 ? 3000 : 2000),
     row('light under a hand, frames a second', megapixels, await dragLight(page), 25, true),
     row('a new place at 1:1, ms', megapixels, await newPlaces(page, size), 300),
+    ...await panningRows(browser, page, size, megapixels),
   ];
   await visitor.leave();
   await archive.stop();

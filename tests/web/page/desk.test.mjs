@@ -129,6 +129,27 @@ test('what is over says so on its number, and the answer to one click is there i
   await page.getByRole('list', {name: 'LEDs'}).getByText(/clipped/).nth(9).waitFor();
   await result.getByRole('button', {name: 'Shoot LED 7 again'}).click();
   await page.getByText('nobody measured the ratio').first().waitFor({timeout: scanTakes_ms});
+  await page.getByText('scan the cloth again at another exposure').first().waitFor();
+  await visitor.leave();
+});
+
+test('one click takes the LED that is over again, alone, at an exposure whose ratio was measured', async () => {
+  rig.measureRatio(66_667, 16_667, 4);
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await page.getByLabel('Fabric').fill('white');
+  await page.getByLabel('Exposure').fill('66.6667');
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Space');
+  const result = page.getByRole('region', {name: 'Last scan'});
+  const again = result.getByRole('button', {name: 'Shoot LED 7 again'});
+  await again.and(page.getByText('Again at 17 ms')).click({timeout: scanTakes_ms});
+  const bracket = result.getByRole('listitem').filter({hasText: 'LED 7 bracket'});
+  await bracket.getByText(/good|near/).waitFor({timeout: scanTakes_ms});
+  await picture(page, 'desk-over');
+  const {sessions: [white]} = await rig.ask('sessions?query=white');
+  const {frames} = await rig.ask(`sessions/${white.name}`);
+  assert.deepEqual(frames.filter(({role}) => role === 'bracket').map(({led, exposure_us}) => [led, exposure_us]), [[7, 16667]]);
   await visitor.leave();
 });
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The first minutes: a server without a rig, and a rig that nobody has calibrated.
 import {after, before, test} from 'node:test';
+import {Archive} from './support/archive.mjs';
 import {launch, picture, violations, visit} from './support/browser.mjs';
 import {serveArchive, startRig} from './support/rig.mjs';
 import assert from 'node:assert/strict';
@@ -21,6 +22,57 @@ test('a server without a rig says so, and leads to its sessions', async () => {
   await page.getByRole('heading', {name: 'Library'}).waitFor();
   await visitor.leave();
   await archive.stop();
+});
+
+const weave = `
+fabric = "plain weave"
+[camera]
+width = 300
+height = 200
+[geometry]
+kind = "plain"
+[material]
+albedo = 0.3
+[effects]
+near_light = true
+relief = true
+`;
+
+test('without a rig a tour leads through a solved cloth to a rig of one\'s own', async (t) => {
+  const archive = new Archive();
+  t.after(() => archive.stop());
+  await archive.add('weave', weave, 'fast');
+  await archive.serve();
+  const visitor = await visit(browser, archive);
+  const page = await visitor.open(archive.address);
+  const follow = async (step) => {
+    await page.getByRole('link', {name: step, exact: true}).click();
+    await page.waitForURL(/viewer|sessions|doctor/);
+  };
+  await page.getByRole('link', {name: 'Move the light'}).waitFor();
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'tour');
+  await page.keyboard.press('?');
+  await page.getByRole('dialog').getByText('full screen').waitFor();
+  assert.equal(await page.getByText('break this virtual rig').count(), 0, 'there is no rig to break');
+  await page.keyboard.press('Escape');
+
+  await follow('Move the light');
+  await page.locator('canvas[data-ready=true]').waitFor();
+  await page.goBack();
+  await follow('Compare it with the truth');
+  await page.locator('.marks .divider').waitFor({state: 'attached'});
+  await page.goBack();
+  await follow('Ask a pixel');
+  await page.getByRole('rowheader', {name: '1', exact: true}).waitFor();
+  await page.goBack();
+  await follow('Find it again');
+  await page.getByText('plain weave').first().waitFor();
+  await page.goBack();
+  await page.getByRole('button', {name: 'Copy'}).waitFor();
+  await follow('doctor');
+  await page.getByText('This page').waitFor();
+  await visitor.leave();
 });
 
 test('a rig without a calibration leads there first', async () => {

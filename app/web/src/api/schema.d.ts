@@ -25,6 +25,8 @@ export interface paths {
                     };
                     content: {
                         "application/json": {
+                            /** @description Names of the sets of parts response and trap that have all their photographs */
+                            complete_series: string[];
                             calibrations: components["schemas"]["ListedCalibration"][];
                         };
                     };
@@ -4440,6 +4442,8 @@ export interface components {
             after: number | null;
         };
         Session: {
+            /** @description At which a lit shot may be taken again beside its own: those whose ratio to it the session's calibration has */
+            other_exposures_us: number[];
             name: string;
             folder: string;
             /** @description What people said of the cloth: id, tags, composition, ... and revision, as Summary has it; null: it cannot be read */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A virtual rig and the daemon that serves it: the real programs.
 import {execFile, spawn} from 'node:child_process';
+import {createHash} from 'node:crypto';
 import fs from 'node:fs';
 import os from 'node:os';
 import path from 'node:path';
@@ -93,6 +94,18 @@ export class Rig {
   async exposures() {
     const diary = await fs.promises.readFile(path.join(this.folder, 'exposures.jsonl'), 'utf8');
     return diary.trim().split('\n').map((line) => JSON.parse(line));
+  }
+
+  /** As if weft calibrate response had measured how much light one exposure gathers over another. */
+  measureRatio(exposure_us, to_exposure_us, ratio) {
+    const folder = path.join(this.folder, 'calibration');
+    const [file, list] = ['response.json', 'calibration.json'].map((name) => path.join(folder, name));
+    const response = {...JSON.parse(fs.readFileSync(file, 'utf8')), exposure_ratios: [{exposure_us, to_exposure_us, ratio}]};
+    fs.writeFileSync(file, JSON.stringify(response));
+    const digest = createHash('sha256').update(fs.readFileSync(file)).digest('hex');
+    const calibration = JSON.parse(fs.readFileSync(list, 'utf8'));
+    calibration.parts['response.json'] = digest;
+    fs.writeFileSync(list, JSON.stringify(calibration));
   }
 
   async stop() {

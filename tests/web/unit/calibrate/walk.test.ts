@@ -30,7 +30,7 @@ function sheets(...photographs: [name: string, used: boolean][]): PhotographSet 
 }
 
 const rigs = listed('calibration', {is_rigs: true});
-const bare: Known = {calibrations: [rigs], checks: [], jobs: []};
+const bare: Known = {calibrations: [rigs], checks: [], jobs: [], series: []};
 
 function stage(walk: Walk, result: string): Stage {
   const found = stagesOf(walk.kind).find((each) => each.result === result);
@@ -47,7 +47,7 @@ describe('a walk', () => {
   });
 
   test('begins with nothing at a rig that has nothing', () => {
-    const nothing: Known = {calibrations: [], checks: [], jobs: []};
+    const nothing: Known = {calibrations: [], checks: [], jobs: [], series: []};
     expect(fromOf(all, stage(all, 'camera'), nothing)).toBeNull();
     expect(requestOf(all, stage(all, 'camera'), nothing)).not.toHaveProperty('from');
   });
@@ -65,6 +65,19 @@ describe('a walk', () => {
     const known = {...bare, calibrations: made, checks: [check('calibrations/first-check', true)]};
     expect(currentStage(all, known)).toBeNull();
     expect(madeBy(all, known)).toBe('calibrations/first-lights');
+  });
+
+  test('comes by the black trap only where a person chose it, and then the sensor is measured by both', () => {
+    const known = {...bare, calibrations: [rigs, listed('calibrations/first-camera')]};
+    expect(currentStage(all, known)?.part).toBe('response');
+    expect(standingOf(all, stage(all, 'trap'), known)).toBe('open');
+    expect(requestOf(all, stage(all, 'response'), known)).not.toHaveProperty('trap');
+    const trapped = {...known, series: ['first-trap']};
+    expect(standingOf(all, stage(all, 'trap'), trapped)).toBe('done');
+    expect(currentStage(all, trapped)?.part).toBe('response');
+    expect(requestOf(all, stage(all, 'response'), trapped)).toMatchObject({
+      kind: 'calibrate_response', input: 'sets/first-response', trap: 'sets/first-trap', from: 'calibrations/first-camera',
+    });
   });
 
   test('takes no result of another walk for its own', () => {

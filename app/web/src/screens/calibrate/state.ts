@@ -12,6 +12,7 @@ import type {PhotographSet} from './photograph_set';
 import type {Known, Listed, Part} from './walk';
 
 export const calibrations = signal<readonly Listed[]>([]);
+const series = signal<readonly string[]>([]);
 export const history = signal<History>(noHistory);
 /** The set that is worked on; null: none, or not known yet. */
 export const work = signal<PhotographSet | null>(null);
@@ -25,15 +26,17 @@ export const known = computed<Known>(() => ({
   calibrations: calibrations.value,
   checks: history.value.checks,
   jobs: jobs.value,
+  series: series.value,
 }));
 
 export async function askCalibrations(): Promise<void> {
   try {
-    const listed = (await answer(api.GET('/api/v1/calibrations'))).calibrations;
+    const {calibrations: listed, complete_series} = await answer(api.GET('/api/v1/calibrations'));
     const isDated = listed.some((each) => Boolean(each.measured));
     const measured = isDated ? historyOf(await answer(api.GET('/api/v1/calibrations/history'))) : noHistory;
     batch(() => {
       calibrations.value = listed;
+      series.value = complete_series;
       history.value = measured;
       complaint.value = null;
     });
@@ -63,7 +66,7 @@ export function useCalibrations(): void {
     };
     askAll();
     const ends = [
-      onEvent('calibration', () => void askWork()),
+      onEvent('calibration', (set) => void (askWork(), set?.done && askCalibrations())),
       onEvent('gap', askAll),
       onEvent('job', (job) => void (isOfCalibration(job.kind) && hasEnded(job) && askCalibrations())),
     ];

@@ -8,7 +8,7 @@ import type {PhotographSet} from './photograph_set';
 export type Listed = Schemas['ListedCalibration'];
 export type Job = Schemas['Job'];
 export type JobRequest = Schemas['JobRequest'];
-export type Part = 'board' | 'response' | 'sheet' | 'chart' | 'check' | 'moved';
+export type Part = 'board' | 'response' | 'trap' | 'sheet' | 'chart' | 'check' | 'moved';
 export type WalkKind = 'all' | 'refresh';
 
 export interface Stage {
@@ -18,10 +18,13 @@ export interface Stage {
   part: Part;
   title: string;
   about: string;
+  /** It reads the photographs. */
   job: JobRequest['kind'];
   /** The thing that must be described before it can be found in a photograph. */
   thing: 'board' | 'sheet' | 'chart' | null;
   isOptional?: true;
+  /** Its photographs are read by the stage after it; a walk comes by it only where a person chooses it. */
+  isAside?: true;
   /** The stage before it has taken its photographs. */
   isPhotographed?: true;
 }
@@ -44,6 +47,16 @@ const stages: Record<WalkKind, Stage[]> = {
       about: 'A printed board in several poses.',
       job: 'calibrate_camera',
       thing: 'board',
+    },
+    {
+      result: 'trap',
+      part: 'trap',
+      title: 'Veil of the lens',
+      about: 'A black trap in white paper; for dark cloth.',
+      job: 'calibrate_response',
+      thing: null,
+      isOptional: true,
+      isAside: true,
     },
     {
       result: 'response',
@@ -104,6 +117,8 @@ export interface Known {
   calibrations: readonly Listed[];
   checks: readonly CheckResult[];
   jobs: readonly Job[];
+  /** Names of the sets that are photographed as a series, and are whole. */
+  series: readonly string[];
 }
 
 export interface CheckResult {
@@ -135,6 +150,7 @@ export function jobOf(walk: Walk, stage: Stage, known: Known): Job | null {
 }
 
 export function standingOf(walk: Walk, stage: Stage, known: Known): Standing {
+  if (stage.isAside) return known.series.includes(setOf(walk, stage)) ? 'done' : 'open';
   const folder = folderOf(walk, stage);
   const check = known.checks.find((each) => each.folder === folder);
   if (check) return check.passed ? 'done' : 'found';
@@ -162,7 +178,8 @@ export function hasResult(standing: Standing): boolean {
 export function currentStage(walk: Walk, known: Known): Stage | null {
   const all = stages[walk.kind];
   const last = all.filter((stage) => hasResult(standingOf(walk, stage, known))).at(-1);
-  return all[last === undefined ? 0 : all.indexOf(last) + 1] ?? null;
+  const after = all.slice(last === undefined ? 0 : all.indexOf(last) + 1);
+  return after.find((stage) => !stage.isAside) ?? null;
 }
 
 /** That nothing moved: a knock did no harm. */
@@ -194,6 +211,7 @@ function inputsOf(walk: Walk, stage: Stage, known: Known): JobRequest {
   return {
     kind: stage.job,
     ...(stage.part === 'moved' ? {moved: set} : {input: set}),
+    ...(stage.result === 'response' && known.series.includes(`${walk.name}-trap`) ? {trap: `sets/${walk.name}-trap`} : {}),
     ...(from === null ? {} : {from}),
   };
 }

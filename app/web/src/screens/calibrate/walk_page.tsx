@@ -72,12 +72,13 @@ function StagePanel({walk, stage}: {walk: Walk; stage: Stage}) {
   const isBegun = set?.photographs.some((photograph) => photograph.used) ?? false;
   const trial = set && trialOf(walk, stage, set, known.value);
   const soFar = trial && <SoFar key={trial.request_id} trial={trial} />;
-  const calculation = <Calculation walk={walk} stage={stage} isEnough={stage.isPhotographed ?? set?.done ?? false} />;
+  const calculation = !stage.isAside && <Calculation walk={walk} stage={stage} isEnough={stage.isPhotographed ?? set?.done ?? false} />;
   return (
     <>
       {isToPhotograph && set === null && <Begin walk={walk} stage={stage} />}
       {isToPhotograph && set !== null && <SetPanel set={set} soFar={soFar}>{isBegun && calculation}</SetPanel>}
       {!isToPhotograph && calculation}
+      {isOver && stage.isAside && <p role="status">Its photographs are there. The sensor is measured by them, too.</p>}
       {isOver && <Next walk={walk} />}
     </>
   );

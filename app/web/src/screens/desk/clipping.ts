@@ -41,7 +41,10 @@ export function exposedOf({red, green, blue}: Histogram): Exposed {
   return {verdict: 'fine', word: 'good', clipped, headroom_stops};
 }
 
-/** What to expose with so that nothing is over: what a bracket does, whose ratio is measured if any is. */
-export function lessThan(exposure_us: number): number {
-  return exposure_us / 4;
+/** What to expose with so that nothing is over: two stops less, or as near to it as a ratio was measured. */
+export function lessThan(exposure_us: number, measured_us: readonly number[]): number {
+  const wanted_us = exposure_us / 4;
+  const stopsOff = (time_us: number) => Math.abs(Math.log2(time_us / wanted_us));
+  const [nearest] = measured_us.filter((time_us) => time_us < exposure_us).sort((a, b) => stopsOff(a) - stopsOff(b));
+  return nearest ?? wanted_us;
 }

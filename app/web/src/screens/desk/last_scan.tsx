@@ -18,15 +18,15 @@ function titleOf({role, led}: Frame): string {
 }
 
 interface AgainProps {
-  session: string;
+  session: Session;
   frame: Frame;
   exposed: Exposed | null;
 }
 
 /** One photograph once more, by less light where it is over. */
 function Again({session, frame, exposed}: AgainProps) {
-  const exposure_us = exposed?.word === 'over' ? lessThan(frame.exposure_us) : 0;
-  const again = useAction(() => shootAgain(session, frame.index, exposure_us));
+  const exposure_us = exposed?.word === 'over' ? lessThan(frame.exposure_us, session.other_exposures_us) : 0;
+  const again = useAction(() => shootAgain(session.name, frame.index, exposure_us));
   const how = exposure_us > 0 ? `Again at ${(exposure_us / 1000).toFixed(0)} ms` : 'Again';
   return (
     <>
@@ -44,7 +44,7 @@ function roomInWords({clipped, headroom_stops}: Exposed): string {
   return `${headroom_stops.toFixed(1)} stops of room`;
 }
 
-function FrameCard({session, frame}: {session: string; frame: Frame}) {
+function FrameCard({session, frame}: {session: Session; frame: Frame}) {
   const exposed = frame.role !== 'dark' && frame.histogram ? exposedOf(frame.histogram) : null;
   const canRepeat = frame.role === 'lit' || frame.role === 'dark';
   return (
@@ -104,7 +104,7 @@ export function LastScan({session}: {session: Session}) {
       <Warnings all={session.warnings} />
       <div class="results">
         <Preview session={session.name} />
-        <ul class="frames">{current.map((frame) => <FrameCard key={frame.index} session={session.name} frame={frame} />)}</ul>
+        <ul class="frames">{current.map((frame) => <FrameCard key={frame.index} session={session} frame={frame} />)}</ul>
       </div>
       <Price session={session.name} />
     </section>

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "bench/base/report.h"
+#include "core/result.h"
+
+namespace weft::bench {
+
+struct GlossOptions {
+  std::string cloth;  ///< this one alone, such as "satin"; empty: all
+  std::uint32_t seed = 1;
+  int threads = 0;
+};
+
+/// Cloths of each weave whose lobe the solver has a family for, and cloths whose truth is another model, held
+/// out. A row each:
+/// robust_deg: mean angle to the true normal by the readings that Lambert's law explains best
+/// (solver::robust_method). lobe_deg, lobe_p95_deg: by the level robust, with the lobe it found.
+/// kept: share of the blocks that are solved with it. albedo_rel: mean of |A - B| / B with it.
+/// alpha, along, f0: what was found, beside what is true where that has such numbers. said: measured, or why
+/// not. fit_s, ns_per_pixel: seconds of finding it and of solving again, a thread.
+/// kUsage where no cloth has the given name.
+Result<Rows> gloss_table(const GlossOptions& options);
+
+}  // namespace weft::bench

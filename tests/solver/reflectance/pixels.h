@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "bench/oracles/rig.h"
+#include "core/vec.h"
+#include "solver/reflectance/lobe_fit.h"
+
+// Pixels of a cloth in closed form, under four lights at 35 degrees from the zenith and six at 62.
+
+namespace weft::solver {
+
+using test::Random;
+using test::random_normal;
+
+inline std::vector<Vec3> ten_directions() {
+  std::vector<Vec3> lights;
+  for (int k = 0; k < 10; ++k) {
+    const double zenith = radians(k < 4 ? 35 : 62);
+    const double azimuth = radians(k < 4 ? 90.0 * k : 60.0 * (k - 4) + 15);
+    lights.push_back({std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth),
+                      std::cos(zenith)});
+  }
+  return lights;
+}
+
+/// What the readings of a pixel are: by its normal, albedo, yarn and one light from straight above.
+using PixelModel = std::function<double(Vec3 normal, double albedo, double yarn, const LitFrom& from)>;
+
+inline PixelModel model_of(const Lobe& lobe) {
+  return [lobe](Vec3 n, double albedo, double yarn, const LitFrom& from) {
+    return modelled(lobe, albedo * n, from, yarn);
+  };
+}
+
+struct ClothOfPixels {
+  double tilt_deg = 25;  ///< most of the normals
+  double albedo = 0.4;
+  double noise = 0.003;      ///< of a reading, a share of it
+  bool has_both_yarns = false;  ///< every third pixel is weft
+};
+
+struct PixelTruth {
+  LobeSamples samples{10};
+  std::vector<Vec3> b;      ///< true
+  std::vector<Vec3> start;  ///< what least squares by Lambert's law makes of the readings
+  std::vector<double> yarn;
+};
+
+inline std::vector<LobeReading> readings_of(const PixelModel& model, Vec3 n, double albedo, double yarn,
+                                            double noise, Random& random) {
+  std::vector<LobeReading> readings;
+  for (const Vec3& l : ten_directions()) {
+    const LitFrom from(l, {0, 0, 1});
+    const double x = model(n, albedo, yarn, from) * (1 + noise * random.normal());
+    const double sigma2 = std::pow(noise * x, 2) + std::pow(kLobeModelShare * std::max(x, kLeastModelled), 2);
+    readings.push_back({from, x, x > 0 ? 1 / sigma2 : 0});
+  }
+  return readings;
+}
+
+inline Vec3 lambert_fit(const std::vector<LobeReading>& readings) {
+  PixelSystem system;
+  for (const LobeReading& r : readings) system.add(r.from.light, 1, r.x);
+  system.regularise();
+  return system.solved(system.gradient);
+}
+
+inline PixelTruth pixels_of(const PixelModel& model, std::size_t count, const ClothOfPixels& cloth,
+                            std::uint64_t seed) {
+  PixelTruth truth;
+  Random random(seed);
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3 n = random_normal(random, cloth.tilt_deg);
+    const double albedo = cloth.albedo * (0.9 + 0.2 * random.uniform());
+    const double yarn = cloth.has_both_yarns && i % 3 == 0 ? kPi / 2 : 0;
+    const auto readings = readings_of(model, n, albedo, yarn, cloth.noise, random);
+    truth.samples.add(readings);
+    truth.b.push_back(albedo * n);
+    truth.yarn.push_back(yarn);
+    truth.start.push_back(lambert_fit(readings));
+  }
+  return truth;
+}
+
+inline double mean_angle_deg(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += angle_deg(a[i], b[i]);
+  return sum / static_cast<double>(a.size());
+}
+
+}  // namespace weft::solver
