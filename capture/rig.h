@@ -68,7 +68,7 @@ struct Rig {
     bool preview = true;                          ///< each finished scan is solved once quickly, as a job
     bool is_screen_seen = true;                   ///< by the cloth: pages are black while it is photographed
     int page_dark_ms = 500;                       ///< that they have to become so; 0 to 5000
-    /// Of a rig that is not there: the socket by which weft-virtual-rig is told what to do. Empty: a real one.
+    /// Socket by which weft-virtual-rig, which plays this rig, is told what to do. Empty: a real rig.
     std::filesystem::path virtual_control;
     std::filesystem::path state;  ///< folder for its lock, address and log; empty: beside the rig file
   } daemon;

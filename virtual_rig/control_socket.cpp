@@ -186,7 +186,8 @@ Result<std::string> send_command(const fs::path& socket, const std::string& line
 Result<std::string> tell_rig(const fs::path& socket, const std::string& line, double deadline_s) {
   Result<std::string> answer = send_command(socket, line, deadline_s);
   if (answer && answer->starts_with("error")) {
-    return Error{ErrorKind::kUsage, "the virtual rig refuses a command", line, *answer, "use one that it has"};
+    return Error{ErrorKind::kUsage, "the virtual rig refuses a command", line, *answer,
+                 "use one that it has"};
   }
   return answer;
 }

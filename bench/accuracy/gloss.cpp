@@ -67,7 +67,6 @@ std::vector<GlossyCloth> cloths() {
          s.lights.flicker = 0.003;
        }},
       {"satin, blurred", satin, 0.4, of_satin, [](Scene& s) { s.effects.defocus = true; }},
-      {"satin, light runs through", satin, 0.4, of_satin, [](Scene& s) { s.effects.translucency = true; }},
       {"blinn-phong 0.35", BlinnPhong{.gloss = 0.35, .f0 = grey(0.04)}, 0.4, {}},
       {"satin, lambert beneath",
        AnisotropicGgx{.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05), .beneath = Beneath::kLambert},
@@ -144,7 +143,7 @@ Result<Rows> gloss_table(const GlossOptions& options) {
   Rows rows;
   for (const GlossyCloth& cloth : cloths()) {
     if (!options.cloth.empty() && options.cloth != cloth.name) continue;
-    for (const AccuracyScene& scene : accuracy_scenes(SceneSet::kHeldOut, options.seed, false)) {
+    for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, false)) {
       if (scene.material != "satin") continue;
       Result<Json> row = row_of(scene_of(scene, cloth), cloth, threads);
       if (!row) return std::move(row).error();

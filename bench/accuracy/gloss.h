@@ -4,19 +4,21 @@
 #include <cstdint>
 #include <string>
 
+#include "bench/accuracy/scenes.h"
 #include "bench/base/report.h"
 #include "core/result.h"
 
 namespace weft::bench {
 
 struct GlossOptions {
+  SceneSet set = SceneSet::kHeldOut;
   std::string cloth;  ///< this one alone, such as "satin"; empty: all
   std::uint32_t seed = 1;
   int threads = 0;
 };
 
-/// Cloths of each weave whose lobe the solver has a family for, and cloths whose truth is another model, held
-/// out. A row each:
+/// Cloths of each weave whose lobe the solver has a family for, and cloths whose truth is another
+/// model. A row each:
 /// robust_deg: mean angle to the true normal by the readings that Lambert's law explains best
 /// (solver::robust_method). lobe_deg, lobe_p95_deg: by the level robust, with the lobe it found.
 /// kept: share of the blocks that are solved with it. albedo_rel: mean of |A - B| / B with it.

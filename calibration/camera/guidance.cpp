@@ -230,6 +230,23 @@ void compare_views(std::span<const BoardView> views, const Bundle& bundle, Board
   }
 }
 
+/// Of all corners in each part of the frame.
+std::vector<PixelPoint> mean_residuals(std::span<const BoardView> views, const Bundle& bundle,
+                                       const std::vector<int>& corners, const GuidanceOptions& options) {
+  if (views.size() < kToFit) return {};
+  std::vector<PixelPoint> means(corners.size());
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const auto residuals = residuals_of(views[i], bundle.camera, bundle.camera_from_board[i], 0);
+    for (std::size_t k = 0; k < residuals.size(); ++k) {
+      const std::size_t part =
+          part_of_frame(views[i].corners[k].px, bundle.camera.size, options.columns, options.rows);
+      means[part].x += residuals[k].x / corners[part];
+      means[part].y += residuals[k].y / corners[part];
+    }
+  }
+  return means;
+}
+
 /// What the residuals show; few of them are of the camera's errors too.
 double corner_sigma(const std::vector<double>& residuals_px, const GuidanceOptions& options) {
   if (residuals_px.size() < kToFit) return options.corner_sigma_px;
@@ -313,6 +330,7 @@ BoardGuidance guide_board(const Board& board, double thickness_mm, const CameraM
   compare_views(views, bundle, guidance);
   guidance.corners = corner_counts(views, guidance.camera.size, options.columns, options.rows);
   guidance.parts_seen = parts_with(guidance.corners);
+  guidance.mean_residual_px = mean_residuals(views, bundle, guidance.corners, options);
 
   const double sigma_px = corner_sigma(guidance.residuals_px, options);
   const Pose camera_from_rig = pose_of_camera(guidance.camera);

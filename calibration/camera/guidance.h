@@ -59,6 +59,9 @@ struct BoardGuidance {
   std::optional<BoardPose> next;
   LensForecast then;                 ///< with that one
   std::vector<double> residuals_px;  ///< rms of each view by this camera
+  /// By part of the frame: where its corners were seen less where this camera has them, mean of all views; 0
+  /// where there is none. Empty of fewer views than fit a camera.
+  std::vector<PixelPoint> mean_residual_px;
   std::vector<double> alike;         ///< of each view with the one before it most like it: 1 is the same pose
 };
 

@@ -342,14 +342,16 @@ ParameterCovariance lens_bound(const CameraModel& camera, std::span<const Pose> 
   return covariance_of(all, distortion, bundle, table, corner_sigma_px);
 }
 
+std::size_t part_of_frame(const PixelPoint& px, Size size, int columns, int rows) {
+  const int i = std::clamp(static_cast<int>((px.x + 0.5) * columns / size.width), 0, columns - 1);
+  const int j = std::clamp(static_cast<int>((px.y + 0.5) * rows / size.height), 0, rows - 1);
+  return static_cast<std::size_t>(j * columns + i);
+}
+
 std::vector<int> corner_counts(std::span<const BoardView> views, Size size, int columns, int rows) {
   std::vector<int> counts(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
   for (const BoardView& view : views) {
-    for (const BoardCorner& corner : view.corners) {
-      const int i = std::clamp(static_cast<int>((corner.px.x + 0.5) * columns / size.width), 0, columns - 1);
-      const int j = std::clamp(static_cast<int>((corner.px.y + 0.5) * rows / size.height), 0, rows - 1);
-      ++counts[static_cast<std::size_t>(j * columns + i)];
-    }
+    for (const BoardCorner& corner : view.corners) ++counts[part_of_frame(corner.px, size, columns, rows)];
   }
   return counts;
 }

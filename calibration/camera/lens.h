@@ -85,7 +85,9 @@ ParameterCovariance lens_bound(const CameraModel& camera, std::span<const Pose> 
                                std::span<const BoardView> views, std::size_t table,
                                const std::vector<std::string>& distortion, double corner_sigma_px);
 
-/// How many corners lie in each of columns x rows parts of the frame, row by row.
+/// In which of columns x rows parts of the frame a point lies, counted row by row.
+std::size_t part_of_frame(const PixelPoint& px, Size size, int columns, int rows);
+/// How many corners lie in each of these parts.
 std::vector<int> corner_counts(std::span<const BoardView> views, Size size, int columns, int rows);
 
 }  // namespace weft::calibration

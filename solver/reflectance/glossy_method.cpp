@@ -148,7 +148,7 @@ class Glossy : public Method {
     for (std::size_t s = 0; s < kOtherStarts; ++s) {
       for (std::size_t i = 0; i < starts.size(); ++i) {
         const double albedo = group.pixels[i].albedo;
-        starts[i] = other_starts(group.of(i), albedo, albedo)[s];
+        starts[i] = other_starts(group.of(i), albedo)[s];
       }
       try_starts(group, starts, false);
     }

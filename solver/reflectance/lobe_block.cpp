@@ -161,7 +161,6 @@ class LanesFit {
       sums.used = hn::Add(sums.used, hn::IfThenElseZero(is_used, one));
       const V size = hn::Mul(hn::Abs(residual), hn::Sqrt(w));
       w = hn::IfThenElse(hn::Lt(size, huber), w, hn::Div(hn::Mul(w, huber), hn::Max(size, huber)));
-      w = hn::IfThenZeroElse(hn::Gt(size, number(d_, 4 * kHuberSigmas)), w);
       const Vector3 wj = scaled(j, w);
       add_outer(sums.matrix, wj, j);
       add_scaled(sums.gradient, residual, wj);

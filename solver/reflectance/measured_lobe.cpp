@@ -26,6 +26,11 @@ constexpr double kMovedCost = 0.5;     // what a pixel must win to count as move
 constexpr double kUndecided = 0.05;    // of the cost
 constexpr int kStartSteps = 5;
 
+LobeParameters with_bend(LobeParameters fitted) {
+  fitted[static_cast<std::size_t>(LobeParameter::kBend)] = true;
+  return fitted;
+}
+
 LobeFit unfitted(const Lobe& lobe, const std::vector<Vec3>& b) {
   return {lobe, b, std::vector<double>(b.size(), 0.0), {}, 0, {}};
 }
@@ -38,9 +43,8 @@ class Trial {
 
   LobeFit lambert() const { return fit_lobe(samples_, unfitted({}, start_), {.threads = threads_}); }
 
-  LobeFit isotropic(LobeFamily family, bool bends) const {
-    LobeParameters fitted = parameters_of(family);
-    if (bends) fitted[static_cast<std::size_t>(LobeParameter::kBend)] = true;
+  LobeFit isotropic(LobeFamily family) const {
+    const LobeParameters fitted = parameters_of(family);
     std::optional<LobeFit> best;
     for (const double alpha : kStartAlphas) {
       LobeFit fit = fit_lobe(samples_, unfitted({.family = family, .alpha = alpha, .f0 = kStartF0}, start_),
@@ -65,9 +69,16 @@ class Trial {
     return restarted(std::move(*best), parameters_of(LobeFamily::kAnisotropicGgx));
   }
 
+  // The same family with a diffuse part that may bend.
+  LobeFit bent(const LobeFit& straight) const {
+    const LobeParameters fitted = with_bend(parameters_of(straight.lobe.family));
+    return restarted(fit_lobe(samples_, straight, options(fitted)), fitted);
+  }
+
   // A lobe that was found on other pixels of the material, from where they begin.
   LobeFit refined(const Lobe& lobe) const {
-    const LobeParameters fitted = parameters_of(lobe.family);
+    LobeParameters fitted = parameters_of(lobe.family);
+    if (lobe.bend != 0) fitted = with_bend(fitted);
     LobeFit fit = unfitted(lobe, start_);
     if (lobe.family == LobeFamily::kAnisotropicGgx) fit = better_yarns(std::move(fit));
     return canonical(restarted(fit_lobe(samples_, std::move(fit), options(fitted)), fitted));
@@ -120,7 +131,7 @@ class Trial {
         for (const double yarn : {0.0, kPi / 2}) {
           if (yarn > 0 && fit.lobe.family != LobeFamily::kAnisotropicGgx) continue;
           for (std::size_t i = 0; i < other.b.size(); ++i) {
-            other.b[i] = other_starts(samples_.of(i), albedos[i], median_albedo)[start];
+            other.b[i] = other_starts(samples_.of(i), median_albedo)[start];
             other.yarn[i] = yarn;
           }
           samples_.fit_pixels(fit.lobe, other.yarn, kStartSteps, threads_, other.b, other.cost);
@@ -162,28 +173,26 @@ bool agrees(const Lobe& a, const Lobe& b) {
   return std::abs(a.alpha - b.alpha) <= kAlphaAgrees && std::abs(a.f0 - b.f0) <= kF0Agrees * a.f0;
 }
 
-LobeRefusal refusal_of(const LobeFit& fit, double lambert_chi2, const LobeFit& bent) {
+LobeRefusal refusal_of(const LobeFit& fit, double lambert_chi2) {
   if (fit.chi2 > kLobeFitsTo && fit.chi2 > kLeastWon * lambert_chi2) return LobeRefusal::kNothingFits;
   if (!(fit.lobe.f0 > kLeastF0 && fit.lobe.f0 < kMostF0)) return LobeRefusal::kStrength;
   if (!(fit.lobe.alpha < kMostAlpha)) return LobeRefusal::kTooBroad;
-  if (fit.lobe.family != LobeFamily::kAnisotropicGgx && !agrees(fit.lobe, bent.lobe))
-    return LobeRefusal::kBentDiffuse;
   return LobeRefusal::kNone;
 }
 
-void write_sigmas(const LobeFit& bent, MeasuredLobe& measured) {
+// `rival`: the same family with or without the bend, whichever was not taken.
+void write_sigmas(const Lobe& rival, MeasuredLobe& measured) {
   const auto& c = measured.fit.covariance;
   const auto formal = [&](LobeParameter p) {
     const auto i = static_cast<std::size_t>(p);
     return std::sqrt(std::max(c[i][i], 0.0));
   };
   const Lobe& lobe = measured.lobe;
-  const bool has_yarn = lobe.family == LobeFamily::kAnisotropicGgx;
-  const double alpha_turns = has_yarn ? 0 : std::abs(std::log(lobe.alpha / bent.lobe.alpha)) / 2;
-  const double f0_turns = has_yarn ? 0 : std::abs(lobe.f0 - bent.lobe.f0) / 2;
-  measured.sigma_alpha = std::max(formal(LobeParameter::kLogAlpha), alpha_turns);
-  measured.sigma_f0 = std::max(formal(LobeParameter::kF0), f0_turns);
-  measured.sigma_along = formal(LobeParameter::kLogAlong);
+  measured.sigma_alpha =
+      std::max(formal(LobeParameter::kLogAlpha), std::abs(std::log(lobe.alpha / rival.alpha)) / 2);
+  measured.sigma_f0 = std::max(formal(LobeParameter::kF0), std::abs(lobe.f0 - rival.f0) / 2);
+  measured.sigma_along =
+      std::max(formal(LobeParameter::kLogAlong), std::abs(std::log(lobe.along / rival.along)) / 2);
   measured.sigma_axis = formal(LobeParameter::kAxis);
   const double product = formal(LobeParameter::kLogAlpha) * formal(LobeParameter::kF0);
   measured.correlation = product > 0 ? std::clamp(c[0][1] / product, -1.0, 1.0) : 0;
@@ -206,20 +215,26 @@ const char* name_of(LobeRefusal refusal) {
   return kRefusals[static_cast<std::size_t>(refusal)];
 }
 
-std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> readings, double albedo,
-                                 double median_albedo) {
+std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> readings, double median_albedo) {
   double least = std::numeric_limits<double>::infinity();
+  std::array<const LobeReading*, 3> brightest = {};
   for (const LobeReading& r : readings) {
-    if (r.weight > 0 && r.x > 0) least = std::min(least, r.x / std::max(r.from.light.z, 0.1));
+    if (!(r.weight > 0 && r.x > 0)) continue;
+    least = std::min(least, r.x / std::max(r.from.light.z, 0.1));
+    const LobeReading* next = &r;
+    for (const LobeReading*& kept : brightest) {
+      if (next != nullptr && (kept == nullptr || next->x > kept->x)) std::swap(kept, next);
+    }
   }
   if (!std::isfinite(least)) least = median_albedo;
+  const double albedo = std::min(least, median_albedo);
   std::array<Vec3, kOtherStarts> starts = {Vec3{0, 0, least}, Vec3{0, 0, median_albedo}};
-  constexpr double kTilt = 0.35;
-  const double length = std::min(albedo, median_albedo);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double azimuth = static_cast<double>(i) * kPi / 2;
-    starts[2 + i] = length * Vec3{std::sin(kTilt) * std::cos(azimuth), std::sin(kTilt) * std::sin(azimuth),
-                                  std::cos(kTilt)};
+  starts[2] = starts[3] = starts[4] = starts[0];
+  // The more of the brightest lights, the more they have in common with the pixel's own mirror.
+  Vec3 mirror = {0, 0, 0};
+  for (std::size_t i = 0; i < brightest.size() && brightest[i] != nullptr; ++i) {
+    mirror = mirror + (brightest[i]->x - least * brightest[i]->from.light.z) * brightest[i]->from.half;
+    if (length(mirror) > 0) starts[2 + i] = albedo * normalized(mirror);
   }
   return starts;
 }
@@ -234,34 +249,35 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   measured.refusal = LobeRefusal::kLambertFits;
   if (!(lambert_chi2 > kLambertFitsTo)) return measured;
 
-  const LobeFit round = trial.isotropic(LobeFamily::kGgx, false);
-  const LobeFit bent = trial.isotropic(LobeFamily::kGgx, true);
-  struct Other {
+  struct Family {
     LobeFit fit;
-    double wins;
+    double wins;  // share of GGX's cost that it must save
   };
-  const std::vector<Other> others = {{trial.isotropic(LobeFamily::kBeckmann, false), kOtherWins},
-                                     {trial.anisotropic(round), kYarnWins}};
-  measured.candidates.push_back({round.lobe, round.chi2});
-  measured.candidates.push_back({bent.lobe, bent.chi2});
-  const LobeFit* best = &round;
-  for (const Other& other : others) {
-    measured.candidates.push_back({other.fit.lobe, other.fit.chi2});
-    if (other.fit.total() < (1 - other.wins) * round.total() && other.fit.total() < best->total())
-      best = &other.fit;
+  const LobeFit ggx = trial.isotropic(LobeFamily::kGgx);
+  const std::vector<Family> families = {{ggx, 0},
+                                        {trial.isotropic(LobeFamily::kBeckmann), kOtherWins},
+                                        {trial.anisotropic(ggx), kYarnWins}};
+  const LobeFit* straight = &families.front().fit;
+  for (const Family& family : families) {
+    measured.candidates.push_back({family.fit.lobe, family.fit.chi2});
+    if (family.fit.total() < (1 - family.wins) * ggx.total() && family.fit.total() < straight->total())
+      straight = &family.fit;
   }
-  measured.refusal = refusal_of(*best, lambert_chi2, bent);
+  const LobeFit bent = trial.bent(*straight);
+  measured.candidates.push_back({bent.lobe, bent.chi2});
+  const bool bends = bent.total() < (1 - kBendWins) * straight->total();
+  const LobeFit& best = bends ? bent : *straight;
+  measured.refusal = refusal_of(best, lambert_chi2);
+  if (measured.is_measured() && !bends && !agrees(best.lobe, bent.lobe))
+    measured.refusal = LobeRefusal::kBentDiffuse;
   if (!measured.is_measured()) return measured;
-  const auto passes_too = [&](const LobeFit& fit) {
-    return &fit != best && fit.total() < (1 + kUndecided) * best->total() &&
-           refusal_of(fit, lambert_chi2, bent) == LobeRefusal::kNone;
-  };
-  measured.is_family_undecided =
-      passes_too(round) ||
-      std::ranges::any_of(others, [&](const Other& other) { return passes_too(other.fit); });
-  measured.fit = Trial(samples, start, threads).refined(best->lobe);
+  measured.is_family_undecided = std::ranges::any_of(families, [&](const Family& family) {
+    return &family.fit != straight && family.fit.total() < (1 + kUndecided) * straight->total() &&
+           refusal_of(family.fit, lambert_chi2) == LobeRefusal::kNone;
+  });
+  measured.fit = Trial(samples, start, threads).refined(best.lobe);
   measured.lobe = measured.fit.lobe;
-  write_sigmas(bent, measured);
+  write_sigmas(bends ? straight->lobe : bent.lobe, measured);
   measured.half_deg = half_angles(samples, measured.fit);
   return measured;
 }

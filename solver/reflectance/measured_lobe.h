@@ -50,7 +50,7 @@ inline constexpr double kLeastF0 = 0.015, kMostF0 = 0.15, kMostAlpha = 0.85;
 /// With and without a bend of the diffuse part, alpha and f0 agree to this (f0: share of itself).
 inline constexpr double kAlphaAgrees = 0.05, kF0Agrees = 0.25;
 /// What another family must cost less to be preferred to GGX: it has more to turn, or is rarer.
-inline constexpr double kOtherWins = 0.10, kYarnWins = 0.15;
+inline constexpr double kOtherWins = 0.10, kYarnWins = 0.15, kBendWins = 0.10;
 
 /// The lobe that the pixels share, if they tell one. `start`: b by pixel, as a solve by Lambert's law left
 /// it. All families are fitted in turn, each from several roughnesses, each pixel from several normals:
@@ -58,10 +58,9 @@ inline constexpr double kOtherWins = 0.10, kYarnWins = 0.15;
 /// no other is tried.
 MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads);
 
-/// Where else a pixel may begin: level with its darkest reading and with the median albedo, and tilted by 20
-/// degrees to four sides.
-inline constexpr std::size_t kOtherStarts = 6;
-std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> readings, double albedo,
-                                 double median_albedo);
+/// Where else a pixel may begin: level with its darkest reading and with the median albedo, and facing where
+/// its brightest, its two and its three brightest lights are mirrored.
+inline constexpr std::size_t kOtherStarts = 5;
+std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> readings, double median_albedo);
 
 }  // namespace weft::solver

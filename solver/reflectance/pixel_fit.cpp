@@ -20,8 +20,7 @@ int used_of(std::span<const LobeReading> readings) {
 
 double huber_weight(double residual_sigmas) {
   const double size = std::abs(residual_sigmas);
-  if (size < kHuberSigmas) return 1;
-  return size > 4 * kHuberSigmas ? 0 : kHuberSigmas / size;
+  return size < kHuberSigmas ? 1 : kHuberSigmas / size;
 }
 
 double cost_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, double yarn) {

@@ -23,8 +23,7 @@ int used_of(std::span<const LobeReading> readings);
 /// a lobe would follow the best-lit pixels alone.
 inline constexpr double kLobeModelShare = 0.01;
 inline constexpr double kLeastModelled = 0.02;
-/// A residual counts as a square up to so many sigma, beyond as its size (Huber 1964), and turns no pixel
-/// from four times as many.
+/// A residual counts as a square up to so many sigma, beyond as its size (Huber 1964).
 inline constexpr double kHuberSigmas = 3;
 
 /// Normal and albedo of one pixel as one vector, b = rho n, for a lobe that is known.
@@ -52,7 +51,7 @@ struct PixelSystem {
 };
 PixelSystem system_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, double yarn);
 
-/// Huber's weight over that of a square: 1 up to kHuberSigmas, 0 from four times that.
+/// Huber's weight over that of a square: 1 up to kHuberSigmas, then falling.
 double huber_weight(double residual_sigmas);
 
 }  // namespace weft::solver

@@ -185,6 +185,13 @@ TEST_F(CaptureAtTheRig, SaysOfAChartHowItLies) {
   set = photograph();
   EXPECT_TRUE(of(set, "chart_2")["used"]) << set;
   EXPECT_THAT(of(set, "chart_2")["facts"].value("note", ""), HasSubstr("upside down")) << set;
+  const Json outline = of(set, "chart_2")["facts"]["outline"];
+  ASSERT_EQ(outline.size(), 4U) << set;
+  double x = 0, y = 0;
+  for (const Json& corner : outline) x += corner[0].get<double>() / 4, y += corner[1].get<double>() / 4;
+  EXPECT_NEAR(x, 0.5, 0.05) << outline << " is not about the middle, where the chart lies";
+  EXPECT_NEAR(y, 0.5, 0.05) << outline;
+  EXPECT_GT(std::abs(outline[0][0].get<double>() - outline[2][0].get<double>()), 0.2) << outline;
   EXPECT_TRUE(set["done"]) << set;
   EXPECT_EQ(set["photographs"].size(), 2u) << "what was of no use is kept, left out";
 }

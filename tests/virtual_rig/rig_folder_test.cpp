@@ -37,8 +37,9 @@ TEST(RigFolder, TellsAHostWhereItsDevicesAre) {
   ASSERT_TRUE(written) << written.error().message();
 
   const std::string toml = read_text(folder / "rig.toml").value();
-  for (const char* line : {"leds = 3", "port = \"/dev/../a \\\"b\\\"\"", "port = \"ptpip:127.0.0.1:7:7\"",
-                           "serial = \"6000042\"", "cloth_height_mm = 1.5", "virtual_control = \"control\""}) {
+  for (const char* line :
+       {"leds = 3", "port = \"/dev/../a \\\"b\\\"\"", "port = \"ptpip:127.0.0.1:7:7\"",
+        "serial = \"6000042\"", "cloth_height_mm = 1.5", "virtual_control = \"control\""}) {
     EXPECT_THAT(toml, HasSubstr(line));
   }
   EXPECT_EQ(read_text(folder / "environment").value(), "A=1\nB=2\n");

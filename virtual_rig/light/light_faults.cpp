@@ -59,10 +59,11 @@ const std::vector<Command>& commands() {
       {"flicker", "SIGMA", "0.01", "each LED's light varies by this from shot to shot, relative, 0 to 1", 1,
        [](const Arguments& a) { return a.values[0] >= 0 && a.values[0] <= 1; },
        [](LightFaults& f, const Arguments& a) { f.flicker = a.values[0]; }},
-      {"ambient", "SHARE", "0.1", "light of the room, of the brightest LED's at the table's centre, 0 to 100", 1,
-       [](const Arguments& a) { return a.is_light(0); },
+      {"ambient", "SHARE", "0.1", "light of the room, of the brightest LED's at the table's centre, 0 to 100",
+       1, [](const Arguments& a) { return a.is_light(0); },
        [](LightFaults& f, const Arguments& a) { f.ambient = a.values[0]; }},
-      {"move", "X Y", "6 -4", "the camera was knocked: the picture lies X pixels right and Y down, even, to 1000", 2,
+      {"move", "X Y", "6 -4",
+       "the camera was knocked: the picture lies X pixels right and Y down, even, to 1000", 2,
        [](const Arguments& a) { return a.is_step(0) && a.is_step(1); },
        [](LightFaults& f, const Arguments& a) {
          f.move_x = a.whole(0);

@@ -93,12 +93,13 @@ Result<simulator::Scene> knocked(simulator::Scene scene, const Knocks& knocks) {
 }
 
 std::vector<CommandWords> knock_words() {
-  return {{"knock camera ...",
-           "the camera looks x=, y= (mm) beside where it looked, turned and tilted by turn=, tilt= (degrees), "
-           "azimuth= (of the tilt)",
-           "knock camera x=3 turn=0.4"},
-          {"knock led LED ...", "the LED is x=, y=, z= (mm) from where it was", "knock led 3 x=6 z=-4"},
-          {"knock nothing", "everything is where it was", "knock nothing"}};
+  return {
+      {"knock camera ...",
+       "the camera looks x=, y= (mm) beside where it looked, turned and tilted by turn=, tilt= (degrees), "
+       "azimuth= (of the tilt)",
+       "knock camera x=3 turn=0.4"},
+      {"knock led LED ...", "the LED is x=, y=, z= (mm) from where it was", "knock led 3 x=6 z=-4"},
+      {"knock nothing", "everything is where it was", "knock nothing"}};
 }
 
 }  // namespace weft::virtual_rig

@@ -198,10 +198,11 @@ std::vector<CommandWords> table_words() {
     const std::string line = fmt::format("table {}", each.name);
     all.push_back({line, "on it lies " + each.does, line});
   }
-  all.push_back({"table THING ...",
-                 "board, sheet, scale, chart and ruler lie as tilt=, azimuth= (of the tilt), turn= (degrees), "
-                 "x=, y= (of the centre) and height= (above the table, mm) say",
-                 "table board tilt=30 azimuth=90"});
+  all.push_back(
+      {"table THING ...",
+       "board, sheet, scale, chart and ruler lie as tilt=, azimuth= (of the tilt), turn= (degrees), "
+       "x=, y= (of the centre) and height= (above the table, mm) say",
+       "table board tilt=30 azimuth=90"});
   return all;
 }
 

@@ -94,17 +94,21 @@ ChartLook look_at_chart_scan(const Session& session, const std::filesystem::path
   if (!picture) return {picture.error().message(), ""};
   const auto corners = calibration::find_chart(*picture);
   if (!corners) return {"no chart was found in the picture: " + corners.error().why, ""};
+  const Size size = picture->size();
+  std::vector<std::array<double, 2>> outline;
+  for (const auto& [x, y] : *corners) outline.push_back({(x + 0.5) / size.width, (y + 0.5) / size.height});
   const auto patches = calibration::read_patches(*picture, *corners);
-  if (!patches) return {patches.error().message(), ""};
+  if (!patches) return {patches.error().message(), "", outline};
   const Result<ChartColors> colors = read_chart_colors(set);
-  if (!colors) return {colors.error().message(), ""};
+  if (!colors) return {colors.error().message(), "", outline};
   const ChartSide side = calibration::side_of(*patches, colors->reference);
-  if (side == ChartSide::kMirrored) return {"the chart is mirrored: its columns or rows run backwards", ""};
+  if (side == ChartSide::kMirrored)
+    return {"the chart is mirrored: its columns or rows run backwards", "", outline};
   if (side == ChartSide::kNoChart)
-    return {"this is not the chart: its patches do not have the colours that they should", ""};
+    return {"this is not the chart: its patches do not have the colours that they should", "", outline};
   const bool runs_left = (*corners)[1][0] < (*corners)[0][0];
   const bool is_turned = runs_left != (side == ChartSide::kUpsideDown);
-  return {"", is_turned ? "it lies upside down, and is read so" : ""};
+  return {"", is_turned ? "it lies upside down, and is read so" : "", outline};
 }
 
 }  // namespace weft::app

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "app/jobs/calibrate/sheet_files.h"
 #include "calibration/camera/markers.h"
@@ -24,6 +26,8 @@ std::string unevenness_of(const Session& session, const CameraModel& camera, con
 struct ChartLook {
   std::string why_not;  ///< it cannot be read; empty: it can
   std::string note;     ///< it lies upside down, which does no harm
+  /// Outer corners of its outer patches, in shares of the picture; empty: no chart was found.
+  std::vector<std::array<double, 2>> outline = {};
 };
 
 /// By the sum of a few lit photographs, for even light. `set`: the folder that chart.toml may lie in; `from`:

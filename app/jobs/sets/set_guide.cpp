@@ -161,13 +161,17 @@ void tell(const BoardGuidance& guidance, const calibration::GuidanceOptions& ask
     facts["rms_px"] = guidance.residuals_px[i];
     if (guidance.alike[i] > kTooAlike) facts["note"] = "it is much like one before and adds little";
   }
+  Json arrows = Json::array();
+  for (const calibration::PixelPoint& p : guidance.mean_residual_px)
+    arrows.push_back({std::round(1000 * p.x) / 1000, std::round(1000 * p.y) / 1000});
   judge_residuals(viewed, guidance, standing);
   standing.figures = {
       {"coverage",
        {{"columns", asked.columns},
         {"rows", asked.rows},
         {"corners", guidance.corners},
-        {"seen", guidance.parts_seen}}},
+        {"seen", guidance.parts_seen},
+        {"residual_px", std::move(arrows)}}},
       {"predicted", json_of(guidance.now)},
       {"asked", {{"focal_percent", asked.asked_focal_percent}, {"place_mm", asked.asked_place_mm}}}};
   if (guidance.next) standing.figures["then"] = json_of(guidance.then);
@@ -338,6 +342,7 @@ SetPhotograph judged_chart(const Session& session, const PhotographSet& set) {
   if (photograph.why.empty()) photograph.why = look.why_not;
   photograph.is_used = photograph.why.empty();
   if (!look.note.empty()) photograph.facts["note"] = look.note;
+  if (!look.outline.empty()) photograph.facts["outline"] = look.outline;
   return photograph;
 }
 

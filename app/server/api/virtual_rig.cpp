@@ -67,8 +67,8 @@ Result<Reply> obey(const RigParts& parts, const Call& call) {
 }  // namespace
 
 Resource virtual_rig_resource(const RigParts& parts) {
-  return {{{"GET", "/api/v1/rig/virtual", [&parts](const Call& call) { return how_it_is(parts, call); }, false,
-            Pool::kDevices},
+  return {{{"GET", "/api/v1/rig/virtual", [&parts](const Call& call) { return how_it_is(parts, call); },
+            false, Pool::kDevices},
            {"POST", "/api/v1/rig/virtual", [&parts](const Call& call) { return obey(parts, call); }, false,
             Pool::kDevices}},
           virtual_rig_description()};

@@ -99,6 +99,30 @@ TEST(GuideBoard, TellsAsMuchByFivePhotographsAsFifteenTakenAnyhow) {
   }
 }
 
+TEST(GuideBoard, TellsWhereInTheFrameCornersMiss) {
+  Operator person;
+  EXPECT_TRUE(person.asks().mean_residual_px.empty()) << "one view fits no camera";
+  for (int i = 0; i < 6; ++i) person.photograph(anyhow(person).rig_from_board);
+  const auto largest_px = [&](const BoardGuidance& guidance, bool at_the_left) {
+    double most = 0;
+    for (std::size_t part = 0; part < guidance.corners.size(); ++part) {
+      const bool is_left = part % 8 < 2;
+      if (is_left == at_the_left && guidance.corners[part] > 10)
+        most = std::max(most, guidance.mean_residual_px[part].y);
+    }
+    return most;
+  };
+  const BoardGuidance straight = person.asks();
+  EXPECT_LT(largest_px(straight, true), 0.1);
+  for (BoardView& view : person.views) {
+    for (calibration::BoardCorner& corner : view.corners)
+      if (corner.px.x < person.rig.camera.size.width / 4.0) corner.px.y += 1;
+  }
+  const BoardGuidance bent = person.asks();
+  EXPECT_GT(largest_px(bent, true), 0.4) << "what was seen lies below what is predicted";
+  EXPECT_LT(largest_px(bent, false), 0.4);
+}
+
 TEST(GuideBoard, IsNeverDoneByFlatBoards) {
   Operator person;
   for (int i = 0; i < 12; ++i) {

@@ -229,6 +229,8 @@ test('a bare rig is calibrated with nothing but the page', {skip: !isSoak && 'it
     const page = await visitor.open(`${rig.address}/calibrate/all/first`);
     await begin(page, described(rig, 'board'));
     for (const board of boards) await lay(rig, page, board);
+    await page.getByText(/Arrows: seen less predicted/).waitFor();
+    await picture(page, 'calibrate_arrows');
     await calculate(page, /^(Calculate|Enough)/);
     await assertMadeAsByCommand(rig, 'camera');
 
@@ -249,6 +251,9 @@ test('a bare rig is calibrated with nothing but the page', {skip: !isSoak && 'it
     await goOn(page, 'colour');
     await begin(page, described(rig, 'chart'));
     await lay(rig, page, 'chart');
+    await page.getByText('The line is where the last photograph has the chart.').waitFor();
+    await page.locator('.aim .found').waitFor({state: 'attached'});
+    await picture(page, 'calibrate_chart');
     await calculate(page, 'Calculate: colour');
     await assertMadeAsByCommand(rig, 'color');
 

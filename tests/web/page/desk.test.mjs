@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
+import {until} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
 const scanTakes_ms = 60_000;
@@ -149,7 +150,7 @@ test('one click takes the LED that is over again, alone, at an exposure whose ra
   await picture(page, 'desk-over');
   const {sessions: [white]} = await rig.ask('sessions?query=white');
   const {frames} = await rig.ask(`sessions/${white.name}`);
-  assert.deepEqual(frames.filter(({role}) => role === 'bracket').map(({led, exposure_us}) => [led, exposure_us]), [[7, 16667]]);
+  assert.deepEqual(frames.filter(({role}) => role === 'bracket').map(({led, exposure_us}) => [led, Math.round(exposure_us)]), [[7, 16667]]);
   await visitor.leave();
 });
 
@@ -267,16 +268,54 @@ test('a test shot tells exposure and focus, and a turned ring is seen', async ()
   await visitor.leave();
 });
 
-test('a board whose cable is pulled is told of in words, and the scan goes on once it is back', async () => {
+test('a cable pulled at LED 7 is told of with its cause, and once it is back only what is missing is photographed', async () => {
   const visitor = await visit(browser, rig);
   const page = await atTheDesk(visitor);
   await page.keyboard.type('cable');
   await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
-  await rig.inject('board unplug');
   await page.keyboard.press('Enter');
   await page.keyboard.press('Space');
-  await page.getByRole('complementary', {name: 'Scan'}).getByText(/board/).waitFor();
+  await until(async () => (await rig.ask('rig')).led === 7);
+  await rig.inject('board unplug');
+  await page.getByRole('complementary', {name: 'Scan'}).getByText(/the LED board is not there|the LED board is gone/).waitFor();
+  const {session} = await rig.ask('rig');
+  const kept = async () => (await rig.ask(`sessions/${session}`)).frames.filter(({led, role}) => role === 'lit' && led < 7).map(({led, sha256}) => [led, sha256]);
+  const before = await kept();
+  assert.deepEqual(before.map(([led]) => led), [1, 2, 3, 4, 5, 6]);
   await rig.inject('board replug');
   await page.getByRole('region', {name: 'Last scan'}).getByText('cable', {exact: true}).waitFor({timeout: scanTakes_ms});
+  assert.deepEqual(await kept(), before, 'the first six are those of before');
+  const {leds} = await rig.ask('rig');
+  assert.deepEqual(leds.filter(({led, takes}) => led > 0 && led < 7 && takes > 1), []);
+  await visitor.leave();
+});
+
+test('a dead LED, two swapped ones and a lamp are named in words, and the scan goes on once that is mended', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  const panel = page.getByRole('complementary', {name: 'Virtual rig'});
+  const tell = async (line) => {
+    await panel.getByLabel('Tell it').fill(line);
+    await page.keyboard.press('Enter');
+    await panel.getByText(`${line}: done`).waitFor();
+  };
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('V');
+  for (const [line, says] of [
+    ['light dead 3', 'LED 3 is dark'],
+    ['light swap 4 5', /^LED 5 lights where LED 4 should and the other way round/],
+    ['light ambient 0.3', /there is a lamp on in the room/],
+  ]) {
+    await tell(line);
+    await page.getByLabel('Fabric').fill(line);
+    await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+    await page.keyboard.press('Enter');
+    await page.keyboard.press('Space');
+    await page.getByRole('complementary', {name: 'Scan'}).getByText(says).first().waitFor({timeout: scanTakes_ms});
+    await tell('light normal');
+  }
+  await page.locator('#scan').focus();
+  await page.keyboard.press('Space');
+  await page.getByRole('region', {name: 'Last scan'}).getByText('light ambient 0.3', {exact: true}).waitFor({timeout: scanTakes_ms});
   await visitor.leave();
 });

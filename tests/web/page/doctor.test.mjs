@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The doctor: what is wrong, in words, with what mends it.
 import assert from 'node:assert/strict';
+import {spawn} from 'node:child_process';
+import fs from 'node:fs';
+import path from 'node:path';
 import {after, before, test} from 'node:test';
 import {picture, violations, visit} from './support/browser.mjs';
+import {startRig, until} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
 let browser, rig;
@@ -75,5 +79,49 @@ test('the panel of a virtual rig pulls the board out and puts it in again', asyn
   await page.keyboard.press('Escape');
   await page.keyboard.press('V');
   await panel.waitFor({state: 'detached'});
+  await visitor.leave();
+});
+
+/** A process of the name that the desktop's program for cameras has. */
+function desktopsProgram(folder) {
+  const program = path.join(folder, 'gvfs-gphoto2-volume-monitor');
+  fs.copyFileSync('/bin/sleep', program);
+  return spawn(program, ['600'], {stdio: 'ignore'});
+}
+
+const rules = ['/etc', '/run', '/usr/local/lib', '/usr/lib', '/lib'].find((folder) => fs.existsSync(`${folder}/udev/rules.d/70-weft.rules`));
+const skip = rules && `the udev rules in ${rules} keep such programs off`;
+
+test('a camera that another program holds is told of at the desk and by the doctor, with what mends it', {skip}, async (t) => {
+  const held = await startRig({options: ['--usb', '--away', '1']});
+  t.after(() => held.stop());
+  const thief = desktopsProgram(held.folder);
+  t.after(() => thief.kill());
+  await held.inject('camera usb_claimed');
+  const visitor = await visit(browser, held);
+  visitor.mayFail(/status of 503/);
+  await visitor.context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  const page = await visitor.open(`${held.address}/desk`);
+  await page.getByRole('button', {name: 'Live view'}).click();
+  const complaint = page.getByRole('alert').filter({hasText: 'another program holds the camera'});
+  await complaint.getByRole('button', {name: 'Copy'}).click();
+  await complaint.getByRole('button', {name: 'Copied'}).waitFor();
+  assert.match(await page.evaluate(() => navigator.clipboard.readText()), /gio mount -s gphoto2/);
+
+  await page.getByRole('link', {name: 'Doctor', exact: true}).click();
+  const camera = page.getByRole('listitem').filter({hasText: 'claims every camera'});
+  await camera.getByText('systemctl --user mask --now gvfs-gphoto2-volume-monitor').waitFor();
+  await camera.getByRole('button', {name: 'Copy'}).click();
+  assert.match(await page.evaluate(() => navigator.clipboard.readText()), /^systemctl --user mask/);
+  const gone = new Promise((resolve) => thief.once('exit', resolve));
+  thief.kill();
+  await gone;
+  await page.getByRole('button', {name: 'Examine again'}).click();
+  await camera.waitFor({state: 'detached'});
+
+  await until(async () => (await held.ask('rig/devices', {open: true})).open);
+  await page.getByRole('link', {name: 'Desk', exact: true}).click();
+  await page.getByRole('button', {name: 'Live view'}).click();
+  await page.getByRole('img', {name: 'Live view'}).waitFor();
   await visitor.leave();
 });

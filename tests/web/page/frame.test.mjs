@@ -103,6 +103,19 @@ test('when the daemon is stopped the page greys, and is back by itself once it a
   await visitor.leave();
 });
 
+test('who keeps the rig to himself is named, and one press gives it back to all', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor, 'doctor');
+  await rig.ask('control', {name: 'Ann at a terminal'});
+  await page.getByText('Ann at a terminal has the controls').waitFor();
+  assert.equal((await rig.ask('rig/devices', {open: true})).error.code, 'controls_held');
+  await page.getByRole('button', {name: 'Take the controls'}).click();
+  await page.getByText('has the controls').waitFor({state: 'detached'});
+  assert.equal((await rig.ask('rig/devices', {open: true})).open, true);
+  await rig.ask('rig/devices', {open: false});
+  await visitor.leave();
+});
+
 test('the keys are listed by ?, and none of them fires in a text field', async () => {
   const visitor = await visit(browser, rig);
   const page = await enter(visitor);

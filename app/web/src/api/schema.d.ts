@@ -3869,10 +3869,10 @@ export interface components {
                 left_out: boolean;
                 /** @description It is not used; else empty */
                 why: string;
-                /** @description Of a board: corners, edge_px, rms_px; of a sheet: tags, tilt_deg, azimuth_deg, residual_px */
+                /** @description Of a board: corners, edge_px, rms_px; of a sheet: tags, tilt_deg, azimuth_deg, residual_px; of a chart: outline, the outer corners of its outer patches in shares of the picture */
                 facts: Record<string, unknown>;
             }[];
-            /** @description Of a board: coverage {columns, rows, corners, seen}, predicted and asked {focal_percent, place_mm}, and then: what is predicted with the next photograph */
+            /** @description Of a board: coverage {columns, rows, corners, seen, residual_px: by part where its corners were seen less where they are predicted, mean of all photographs, empty of fewer than three}, predicted and asked {focal_percent, place_mm}, and then: what is predicted with the next photograph */
             figures: Record<string, unknown>;
             /** @description What a person does, and what is photographed then */
             next: {

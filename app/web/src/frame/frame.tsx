@@ -10,6 +10,7 @@ import {Button} from '../ui/button';
 import {Mark} from '../ui/mark';
 import {Share} from '../ui/share';
 import {durationOf} from '../ui/words';
+import {Controls} from './controls';
 import {KeyList} from './key_list';
 import {VirtualRig} from './virtual_rig';
 import {stateInWords, verdictOf} from './words';
@@ -41,7 +42,7 @@ function RigState() {
     <div class="rig" role="status">
       <span class="name">{status.rig}</span>
       <Mark verdict={verdictOf(status)}>{stateInWords(status)}</Mark>
-      {status.controls && <span class="dim">{status.controls} has the controls</span>}
+      {status.controls && <Controls holder={status.controls} />}
       {isScanning && <Share label="Scan" share={status.frames / status.frames_planned} left_s={status.left_s} />}
     </div>
   );

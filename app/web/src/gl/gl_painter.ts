@@ -36,18 +36,8 @@ export class GlPainter extends Painter {
     );
   }
 
-  paint(scene: Scene, canvas: Size): void {
-    const sheets = scene.sides.map((side) => sheetsOf(side, scene.bits.names));
-    this.want(sheets.flat(), scene, canvas);
-    if (this.surface.resize(canvas)) this.drawn.clear();
-    scene.sides.forEach((side, index) => {
-      this.drawValues(index, sheets[index] ?? [], scene, canvas);
-      if (side.bits.length) this.drawFlags(index, sheets[index] ?? [], scene, canvas);
-      this.shade(index, side, scene, canvas);
-    });
-  }
-
-  private want(sheets: readonly Sheet[], scene: Scene, canvas: Size): void {
+  want(scene: Scene, canvas: Size): void {
+    const sheets = scene.sides.flatMap((side) => sheetsOf(side, scene.bits.names));
     this.kinds.clear();
     for (const sheet of sheets) {
       const overview = {level: sheet.pyramid.levels - 1, column: 0, row: 0};
@@ -55,6 +45,16 @@ export class GlPainter extends Painter {
       for (const tile of [overview, ...tiles]) this.kinds.set(addressOf(sheet, tile), {sheet, tile});
     }
     this.store.want(addressesOf(sheets, scene, canvas));
+  }
+
+  paint(scene: Scene, canvas: Size): void {
+    const sheets = scene.sides.map((side) => sheetsOf(side, scene.bits.names));
+    if (this.surface.resize(canvas)) this.drawn.clear();
+    scene.sides.forEach((side, index) => {
+      this.drawValues(index, sheets[index] ?? [], scene, canvas);
+      if (side.bits.length) this.drawFlags(index, sheets[index] ?? [], scene, canvas);
+      this.shade(index, side, scene, canvas);
+    });
   }
 
   private async load(address: string, signal: AbortSignal): Promise<TileTexture> {

@@ -7,7 +7,10 @@ import type {Size} from './view';
 export abstract class Painter {
   protected abstract readonly store: TileStore<unknown>;
 
-  /** Draws what is there of a scene, and asks for what is missing. */
+  /** Asks for what is missing of a scene. */
+  abstract want(scene: Scene, canvas: Size): void;
+
+  /** Draws what is there of a scene that was wanted. */
   abstract paint(scene: Scene, canvas: Size): void;
 
   /** All of the last scene is there. */

@@ -62,9 +62,13 @@ export class PlainPainter extends Painter {
     );
   }
 
-  paint(scene: Scene, canvas: Size): void {
+  want(scene: Scene, canvas: Size): void {
     const pictures = scene.sides.map((side) => pictureOf(side, scene.look));
     this.store.want(pictures.flatMap(({sheet, form}) => addressesOf([sheet], scene, canvas, form)));
+  }
+
+  paint(scene: Scene, canvas: Size): void {
+    const pictures = scene.sides.map((side) => pictureOf(side, scene.look));
     const element = this.context.canvas;
     if (element.width !== canvas.width || element.height !== canvas.height) {
       element.width = canvas.width;

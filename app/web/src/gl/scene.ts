@@ -107,17 +107,22 @@ export function wantedOf(pyramid: Pyramid, view: View, canvas: Size, offsets: Po
   };
 }
 
-/** What is drawn of a sheet: the wanted tiles alone once all are there, until then coarser ones below them. */
+/** The tile of the next level that has this one in it. */
+function above({level, column, row}: Tile): Tile {
+  return {level: level + 1, column: column >> 1, row: row >> 1};
+}
+
+/** What is drawn of a sheet: the wanted tiles that are there, and below each gap the finest coarser one. */
 export function drawnOf(pyramid: Pyramid, scene: Scene, canvas: Size, is_there: (tile: Tile) => boolean): Tile[] {
-  const offsets = repeats(pyramid.size, scene.repeat);
-  const level = levelFor(pyramid, scene.view.zoom);
-  const wanted = tilesInView(pyramid, level, scene.view, canvas, offsets);
-  if (wanted.every(is_there)) return wanted;
-  const tiles: Tile[] = [];
-  for (let each = pyramid.levels - 1; each >= level; --each) {
-    tiles.push(...tilesInView(pyramid, each, scene.view, canvas, offsets).filter(is_there));
+  const {view, repeat} = scene;
+  const wanted = tilesInView(pyramid, levelFor(pyramid, view.zoom), view, canvas, repeats(pyramid.size, repeat));
+  const below = new Map<string, Tile>();
+  for (const gap of wanted.filter((tile) => !is_there(tile))) {
+    let tile = above(gap);
+    while (tile.level < pyramid.levels && !is_there(tile)) tile = above(tile);
+    if (tile.level < pyramid.levels) below.set(`${tile.level}/${tile.column}_${tile.row}`, tile);
   }
-  return tiles;
+  return [...[...below.values()].sort((a, b) => b.level - a.level), ...wanted.filter(is_there)];
 }
 
 /** Addresses of all that a scene needs, in the order in which they are wanted. */

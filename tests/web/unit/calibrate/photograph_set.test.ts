@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {describe, expect, test} from 'vitest';
 import {
-  coverageOf, factsOf, figuresOf, isMet, lastUsed, outlineWanted, residualOf, shareOf, takenBy, type PhotographSet,
+  arrowScale, coverageOf, factsOf, figuresOf, isMet, lastUsed, outlineWanted, residualOf, shareOf, takenBy, type PhotographSet,
 } from '../../../../app/web/src/screens/calibrate/photograph_set';
 
 /** As the daemon sent it, at 0.25 megapixel after two photographs. */
@@ -29,7 +29,13 @@ describe('a set of photographs', () => {
     expect(place && [isMet(place), shareOf(place)]).toEqual([true, 1]);
   });
 
-  test('says where corners were seen', () => expect(coverageOf(set)).toEqual({columns: 3, rows: 2, corners: [0, 4, 0, 2, 9, 0], seen: 3}));
+  test('says where corners were seen', () => expect(coverageOf(set)).toEqual({columns: 3, rows: 2, corners: [0, 4, 0, 2, 9, 0], seen: 3, residuals: []}));
+
+  test('draws residuals so that the longest is half as wide as a part', () => {
+    expect(arrowScale([[0.03, 0.04], [0, 0]])).toBeCloseTo(0.1);
+    expect(arrowScale([[0, -0.051]])).toBeCloseTo(0.2);
+    expect(arrowScale([[2, 0]])).toBeCloseTo(5);
+  });
 
   test('answers each photograph', () => {
     expect(set.photographs.map(factsOf)).toEqual([['45 corners'], ['1 corner', 'much like one before'], ['4 corners']]);

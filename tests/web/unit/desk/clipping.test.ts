@@ -35,6 +35,8 @@ test('a tenth of full is too dark', () => {
   expect(exposedOf(histogram(5)).word).toBe('dark');
 });
 
-test('what is over is shot again by less', () => {
-  expect(lessThan(400_000)).toBe(100_000);
+test('what is over is shot again by two stops less, or by what was measured nearest to that', () => {
+  expect(lessThan(400_000, [])).toBe(100_000);
+  expect(lessThan(400_000, [12_500, 80_000, 200_000, 800_000])).toBe(80_000);
+  expect(lessThan(400_000, [800_000])).toBe(100_000);
 });

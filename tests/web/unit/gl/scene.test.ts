@@ -36,10 +36,11 @@ test('the whole map comes first, then all layers from the middle outwards', () =
   expect(new Set(addresses).size).toBe(addresses.length);
 });
 
-test('coarser tiles are drawn below until all of the right level are there, and then no more', () => {
+test('below each tile that is missing the finest coarser one is drawn, and once all are there no more', () => {
   const part = drawnOf(pyramid, sceneOf(1), canvas, ({level, column}) => level === 2 || column === 1);
   expect(part.map(({level}) => level)).toEqual([...part.map(({level}) => level)].sort((a, b) => b - a));
   expect(part[0]!.level).toBe(2);
+  expect(part.filter(({level}) => level === 1).map(({column}) => column)).toEqual([1]);
   const all = drawnOf(pyramid, sceneOf(1), canvas, () => true);
   expect(new Set(all.map(({level}) => level))).toEqual(new Set([0]));
 });

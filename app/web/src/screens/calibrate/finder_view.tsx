@@ -12,9 +12,11 @@ import {pointsIn, type Point} from './photograph_set';
 interface FinderViewProps {
   /** The pose that is wanted, in shares of the picture. */
   wanted: readonly Point[] | null;
+  /** What the last photograph was found to show. */
+  found: readonly Point[] | null;
 }
 
-export function FinderView({wanted}: FinderViewProps) {
+export function FinderView({wanted, found}: FinderViewProps) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const open = useAction(async () => {
     await openDevices();
@@ -30,7 +32,7 @@ export function FinderView({wanted}: FinderViewProps) {
     <figure class="aim">
       <div class="sight">
         <canvas ref={canvas} width={640} height={424} role="img" aria-label={wordsOf(seen)} />
-        <Outlines wanted={wanted} seen={seen} />
+        <Outlines wanted={wanted} found={found} seen={seen} />
         {!looks.value && (
           <div class="closed">
             <Button isDisabled={open.isBusy || !rig.value?.can.includes('devices')} onClick={() => void open.run()}>
@@ -39,7 +41,7 @@ export function FinderView({wanted}: FinderViewProps) {
           </div>
         )}
       </div>
-      <figcaption class="dim">{wordsOf(seen)} For framing only: the camera chooses its exposure.</figcaption>
+      <figcaption class="dim">{wordsOf(seen)} {found && 'The line is where the last photograph has the chart. '}For framing only: the camera chooses its exposure.</figcaption>
       <Complaint error={open.complaint ?? trouble.value} />
     </figure>
   );
@@ -51,11 +53,12 @@ function wordsOf(seen: Framing | null): string {
   return seen.tags.length > 0 ? `${board} ${seen.tags.length} tags.` : board;
 }
 
-function Outlines({wanted, seen}: {wanted: readonly Point[] | null; seen: Framing | null}) {
+function Outlines({wanted, found, seen}: FinderViewProps & {seen: Framing | null}) {
   return (
     <svg class="outlines" viewBox="0 0 1 1" preserveAspectRatio="none" aria-hidden="true">
       {seen?.tags.map((tag, index) => <polygon key={index} class="tag-seen" points={said(pointsIn(tag.corners))} />)}
       {seen?.board && <polygon class="seen" points={said(pointsIn(seen.board.corners))} />}
+      {found && <polygon class="found" points={said(found)} />}
       {wanted && <polygon class="wanted" points={said(wanted)} />}
     </svg>
   );

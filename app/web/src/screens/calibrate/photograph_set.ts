@@ -13,6 +13,8 @@ export interface Coverage {
   /** Corners seen in each part of the picture, row by row. */
   corners: number[];
   seen: number;
+  /** Where its corners were seen less where they are predicted, pixels, row by row; empty: not known yet. */
+  residuals: Point[];
 }
 
 /** One figure of how well something is known. */
@@ -37,7 +39,14 @@ export function coverageOf(set: PhotographSet): Coverage | null {
   const rows = numberIn(coverage, 'rows');
   if (columns === null || rows === null) return null;
   const corners = listIn(coverage, 'corners').filter((each) => typeof each === 'number');
-  return {columns, rows, corners, seen: numberIn(coverage, 'seen') ?? 0};
+  return {columns, rows, corners, seen: numberIn(coverage, 'seen') ?? 0, residuals: pointsIn(fieldsOf(coverage)['residual_px'])};
+}
+
+/** How many pixels an arrow as long as a part of the picture is wide stands for: the longest has half of it. */
+export function arrowScale(residuals: readonly Point[]): number {
+  const longest = Math.max(...residuals.map(([x, y]) => Math.hypot(x, y)));
+  const decade = 10 ** Math.floor(Math.log10(2 * longest));
+  return decade * ([1, 2, 5].find((step) => step * decade >= 2 * longest) ?? 10);
 }
 
 export function figuresOf(set: PhotographSet): Figure[] {
@@ -104,6 +113,12 @@ export type Point = readonly [number, number];
 /** The outline of the pose that is wanted, in shares of the picture; null: there is none, or its place is not said. */
 export function outlineWanted(set: PhotographSet): Point[] | null {
   const outline = pointsIn(fieldsOf(set.next?.pose)['outline']);
+  return outline.length > 2 ? outline : null;
+}
+
+/** Where the newest photograph has the thing that was looked for; null: it is not said. */
+export function outlineFound(set: PhotographSet): Point[] | null {
+  const outline = pointsIn(fieldsOf(set.photographs.filter((each) => !each.left_out).at(-1)?.facts)['outline']);
   return outline.length > 2 ? outline : null;
 }
 

@@ -13,7 +13,7 @@ import {CoverageMap} from './coverage';
 import {Figures} from './figures';
 import {FinderView} from './finder_view';
 import {Answer, Photographs} from './photographs';
-import {coverageOf, figuresOf, lastUsed, outlineWanted, takenBy, type PhotographSet} from './photograph_set';
+import {coverageOf, figuresOf, lastUsed, outlineFound, outlineWanted, takenBy, type PhotographSet} from './photograph_set';
 import {leaveOut, photograph} from './state';
 
 interface Choice {
@@ -62,7 +62,7 @@ export function SetPanel({set, soFar, children}: SetPanelProps) {
     <div class="set">
       <div class="doing">
         <p class="says" role="status">{set.next?.says ?? 'All photographs that are needed are there.'}</p>
-        <FinderView wanted={outlineWanted(set)} />
+        <FinderView wanted={outlineWanted(set)} found={outlineFound(set)} />
         <div class="row">
           <Button kind="main" isDisabled={!canTake} onClick={take} keyHint="Space">Take it</Button>
           <Button kind="quiet" isDisabled={set.busy || set.photographs.length === 0} onClick={undo} keyHint="Ctrl+z">Undo</Button>

@@ -7,6 +7,8 @@ import type {Painter} from '../../gl/painter';
 import {PlainPainter} from '../../gl/plain_painter';
 import type {Viewer} from './viewer';
 
+const ARRIVALS_MS = 100;
+
 export type Means = 'webgl' | 'pictures' | 'lost' | 'none';
 
 export class PictureCanvas {
@@ -14,6 +16,8 @@ export class PictureCanvas {
   readonly failure = signal<ApiError | null>(null);
   private painter: Painter | null = null;
   private frame = 0;
+  /** Until what has arrived is drawn; 0: nothing waits. */
+  private pause = 0;
   /** Nothing but tiles is awaited. */
   private isFinal = false;
   private readonly ends: (() => void)[] = [];
@@ -35,6 +39,7 @@ export class PictureCanvas {
   close(): void {
     this.ends.forEach((end) => end());
     cancelAnimationFrame(this.frame);
+    clearTimeout(this.pause);
     this.painter?.close();
   }
 
@@ -50,15 +55,15 @@ export class PictureCanvas {
   }
 
   private begin(): void {
-    const schedule = () => this.schedule();
-    this.painter = GlPainter.on(this.element, schedule);
+    const arrived = () => this.takeArrival();
+    this.painter = GlPainter.on(this.element, arrived);
     this.means.value = this.painter ? 'webgl' : 'none';
     const context = this.painter ? null : this.element.getContext('2d');
     if (context) {
-      this.painter = new PlainPainter(context, schedule);
+      this.painter = new PlainPainter(context, arrived);
       this.means.value = 'pictures';
     }
-    this.schedule();
+    this.wantNow();
   }
 
   private lose(event: Event): void {
@@ -80,7 +85,26 @@ export class PictureCanvas {
     const size = this.viewer.canvas.value;
     this.isFinal = !this.viewer.isComing.value;
     this.element.dataset.ready = 'false';
-    if (scene && size.width > 0) this.schedule();
+    if (scene && size.width > 0) this.wantNow();
+  }
+
+  /** What is missing is asked for before the browser has a frame to draw it in. */
+  private wantNow(): void {
+    const scene = this.viewer.scene.peek();
+    if (scene) this.painter?.want(scene, this.viewer.canvas.peek());
+    this.schedule();
+  }
+
+  /** Drawing by software takes a core from tiles on their way: until the last one a few pictures a second will do. */
+  private takeArrival(): void {
+    if (this.painter?.isComplete) {
+      this.schedule();
+    } else if (this.pause === 0) {
+      this.pause = window.setTimeout(() => {
+        this.pause = 0;
+        this.schedule();
+      }, ARRIVALS_MS);
+    }
   }
 
   private schedule(): void {

@@ -48,7 +48,7 @@ const explanations: Record<string, string> = {
   residual: 'What the readings miss of the model, as a share of the albedo.',
   status: 'What was left out in a pixel, and what is to be known of it.',
   height: 'Height of the cloth.',
-  condition: 'What the lights that a pixel was solved from make of errors, in decades: 3 is a thousandfold at most. At 16 they do not span three directions.',
+  condition: 'How much larger the lights that a pixel was solved from may make errors, in decades: at 3 a thousand times. At 16 they do not span three directions.',
   difference: 'Angle between the normals of the two.',
   albedo_difference: 'By how much the albedo is off, in percent of the other: mean of red, green and blue.',
 };
