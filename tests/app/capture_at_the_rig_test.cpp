@@ -175,6 +175,19 @@ TEST_F(CaptureAtTheRig, RefusesWhatItCannotWorkOn) {
   EXPECT_THAT(refusal({{"part", "board"}, {"name", "chart"}}), HasSubstr("it is a set of part chart"));
 }
 
+TEST_F(CaptureAtTheRig, ListsASeriesOnceAllItsPhotographsAreThere) {
+  const auto complete = [&] {
+    return answer(served_.client().get("/api/v1/calibrations"))["complete_series"];
+  };
+  begin("trap", nullptr);
+  EXPECT_EQ(complete(), Json::array());
+  lay("trap");
+  EXPECT_TRUE(photograph()["done"]);
+  EXPECT_EQ(complete(), Json::array({"trap"}));
+  begin("board", "board.toml");
+  EXPECT_EQ(complete(), Json::array({"trap"})) << "a set of boards is told by its figures";
+}
+
 TEST_F(CaptureAtTheRig, SaysOfAChartHowItLies) {
   begin("chart", "chart.toml");
   lay("empty");

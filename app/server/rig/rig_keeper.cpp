@@ -204,12 +204,14 @@ void RigKeeper::log_once(const char* event, const std::string& why) {
   if (std::exchange(logged_, why) != why) log_.add(event, why);
 }
 
-// Where the shot that lights a LED for the first time stands; null for all others.
+// Where the shot that lights a LED for the first time stands, or lights it again at another exposure; null
+// for all others.
 LedStatus* RigKeeper::lit_shot_of(int led, ShotRole role, Polariser polariser) {
   if (!request_) return nullptr;
   const auto& states = request_->polariser.states;
   const bool is_other_state = !states.empty() && polariser != states.front();
-  if (role != ShotRole::kLit || is_other_state) return nullptr;
+  const bool is_its_shot = role == ShotRole::kLit || (request_->again && role == ShotRole::kBracket);
+  if (!is_its_shot || is_other_state) return nullptr;
   const auto found = std::ranges::find(status_.leds, led, &LedStatus::led);
   return found != status_.leds.end() ? &*found : nullptr;
 }

@@ -56,14 +56,14 @@ async function calculate(page, button) {
   return page.locator('.result').innerText();
 }
 
-/** The calibration that the page had made last is that which `weft calibrate` makes of the same photographs. */
+/** The calibration that the page had made last is, but for the time of its making, that which `weft calibrate` makes. */
 async function assertMadeAsByCommand(rig, verb) {
   const {jobs: [{wants: {output, input, from, trap}}]} = await rig.ask('jobs?limit=1');
   const byCommand = path.join(rig.folder, 'state', path.basename(output));
   await run(weft, ['calibrate', verb, input, '--from', from, ...(trap ? ['--trap', trap] : []), '-o', byCommand, '--quiet'], {cwd: rig.folder, env: rig.environment});
   const read = (folder) => fs.readdirSync(folder, {recursive: true}).sort()
     .filter((name) => fs.statSync(path.join(folder, name)).isFile())
-    .map((name) => [name, fs.readFileSync(path.join(folder, name), 'latin1')]);
+    .map((name) => [name, fs.readFileSync(path.join(folder, name), 'latin1').replace(/^ *"measured": "[^"]*",$/m, '')]);
   const made = read(path.join(rig.folder, output));
   assert.ok(made.length > 2, `${made.length} files`);
   assert.deepEqual(made, read(byCommand));

@@ -147,6 +147,7 @@ test('one click takes the LED that is over again, alone, at an exposure whose ra
   await again.and(page.getByText('Again at 17 ms')).click({timeout: scanTakes_ms});
   const bracket = result.getByRole('listitem').filter({hasText: 'LED 7 bracket'});
   await bracket.getByText(/good|near/).waitFor({timeout: scanTakes_ms});
+  await page.getByRole('list', {name: 'LEDs'}).getByRole('button', {name: /^7 .*kept/}).waitFor();
   await picture(page, 'desk-over');
   const {sessions: [white]} = await rig.ask('sessions?query=white');
   const {frames} = await rig.ask(`sessions/${white.name}`);

@@ -36,7 +36,7 @@ function Arrows({coverage: {columns, corners, residuals}}: {coverage: Coverage})
         const middle = {x: ((index % columns) + 0.5) * aspect, y: Math.floor(index / columns) + 0.5};
         return corners[index] && (
           <g key={index}>
-            <circle cx={middle.x} cy={middle.y} r={0.06} />
+            <circle cx={middle.x} cy={middle.y} r={0.05} />
             <line x1={middle.x} y1={middle.y} x2={middle.x + (x / scale) * aspect} y2={middle.y + (y / scale) * aspect} />
           </g>
         );

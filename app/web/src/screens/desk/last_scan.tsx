@@ -14,7 +14,7 @@ import {followSolve, relitPicture, shootAgain, type Frame, type Session} from '.
 
 function titleOf({role, led}: Frame): string {
   const lit = `LED ${led}`;
-  return {lit, dark: 'dark', repeat: `${lit} again`, bracket: `${lit} bracket`, below: 'from below'}[role];
+  return {lit, dark: 'dark', repeat: led === 0 ? 'dark at the end' : `${lit} again`, bracket: `${lit} bracket`, below: 'from below'}[role];
 }
 
 interface AgainProps {
@@ -45,11 +45,11 @@ function roomInWords({clipped, headroom_stops}: Exposed): string {
 }
 
 function FrameCard({session, frame}: {session: Session; frame: Frame}) {
-  const exposed = frame.role !== 'dark' && frame.histogram ? exposedOf(frame.histogram) : null;
+  const exposed = (frame.led > 0 || frame.role === 'below') && frame.histogram ? exposedOf(frame.histogram) : null;
   const canRepeat = frame.role === 'lit' || frame.role === 'dark';
   return (
     <li class="frame-card">
-      <img src={frame.thumbnail} alt={titleOf(frame)} loading="lazy" />
+      <img src={frame.thumbnail} alt={`Photograph: ${titleOf(frame)}`} loading="lazy" />
       <div class="row">
         <strong>{titleOf(frame)}</strong>
         {exposed && <Mark verdict={exposed.verdict}>{exposed.word}</Mark>}

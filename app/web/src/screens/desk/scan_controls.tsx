@@ -93,7 +93,7 @@ export function ScanControls() {
   const isDone = showsScanned.value && scanned.value !== null;
   return (
     <div class="scan-controls">
-      {(isAtWork || status.state === 'failed') && <Running onCancel={() => askToCancel(true)} />}
+      {(isAtWork || status.error) && <Running onCancel={() => askToCancel(true)} />}
       {!isAtWork && isDone && <Button id={nextButton} kind="main" keyHint="n" onClick={nextCloth}>Next cloth</Button>}
       {!isAtWork && !isDone && <Button id={scanButton} kind="main" keyHint="Space" isDisabled={!isReady} onClick={start}>Scan</Button>}
       <Complaint error={scan.complaint} />

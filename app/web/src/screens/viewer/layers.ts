@@ -106,7 +106,7 @@ export function fullScale(value: number): number {
   return scales.find((scale) => scale >= value) ?? 180;
 }
 
-/** The eight bits, in colours that can be told apart without red and green. */
+/** The bits, in colours that can be told apart without red and green. */
 const colours: Record<string, Rgb> = {
   SATURATED: [1, 0.85, 0.1],
   SHADOWED: [0.25, 0.5, 1],
@@ -116,6 +116,7 @@ const colours: Record<string, Rgb> = {
   NO_SOLUTION: [1, 0.1, 0.55],
   SPECULAR: [0.3, 0.9, 1],
   INVALID_READING: [1, 1, 1],
+  GLOSSY: [0.2, 0.7, 0.45],
 };
 
 const meanings: Record<string, string> = {
@@ -127,6 +128,7 @@ const meanings: Record<string, string> = {
   NO_SOLUTION: 'too few readings: the normal is a guess',
   SPECULAR: 'a reading far above what matt cloth sends',
   INVALID_READING: 'a reading is missing or not to be believed',
+  GLOSSY: 'solved with the lobe of its cloth',
 };
 
 export function bitColour(bit: string): Rgb {
