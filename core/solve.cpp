@@ -117,7 +117,8 @@ Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string
                                    {&facts.sharpening, "sharpening"},
                                    {&facts.lateral_color, "lateral_color"},
                                    {&facts.gates, "gates"},
-                                   {&facts.reference, "reference"}}) {
+                                   {&facts.reference, "reference"},
+                                   {&facts.reflectance, "reflectance"}}) {
     if (fields.has(name)) *part = document[name];
   }
   return facts;
@@ -148,6 +149,7 @@ Json json_of(const SolveFacts& facts) {
                {"pictures", facts.pictures},
                {"gates", facts.gates},
                {"reference", facts.reference},
+               {"reflectance", facts.reflectance},
                {"error", facts.error ? json_of(*facts.error) : Json()}};
   for (auto field = json.begin(); field != json.end();) {
     field = field->is_null() ? json.erase(field) : std::next(field);

@@ -73,6 +73,7 @@ struct SolveFacts {
   Json sharpening;                           ///< where the spread of the lens is known
   Json lateral_color;                        ///< where it was taken out
   Json gates, reference;                     ///< of the level `reference`
+  Json reflectance;                          ///< of the levels `robust` and `reference`
 };
 
 /// Reads solve.json, `where` being its name for messages. Documents of early versions have no color, warnings

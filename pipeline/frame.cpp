@@ -11,11 +11,9 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "pipeline/gloss.h"
 #include "pipeline/lateral.h"
 #include "pipeline/left_out.h"
 #include "pipeline/tile_reader.h"
-#include "solver/reflectance/glossy_method.h"
 
 namespace weft::pipeline {
 namespace {
@@ -96,6 +94,7 @@ Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::M
     facts.waited_seconds = solved->waited_seconds;
     facts.tally = solved->tally;
     facts.robust_share = solved->robust_share;
+    facts.gloss = solved->gloss;
     facts.left_out = std::move(solved->left_out);
     facts.reference = std::move(*solved);
     return facts;
@@ -105,24 +104,20 @@ Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::M
   std::unique_ptr<solver::Method> by_block;
   std::optional<solver::BlockChoice> robust;
   if (method.level == solver::Level::kRobust) {
-    Result<solver::BlockChoice> choice = choose_by_block(photographs, *standard, *asked, context);
+    Result<solver::BlockChoice> choice =
+        choose_by_block(photographs, {.method = standard.get()}, {.method = asked.get()}, context);
     if (!choice) return std::move(choice).error();
     facts.robust_share = choice->share();
     by_block = solver::blended_method(*standard, *asked, *choice);
     bands.robust = &robust.emplace(std::move(*choice));
   }
   const solver::Method* chosen = by_block ? by_block.get() : asked.get();
-  std::unique_ptr<solver::Method> glossy, glossy_by_block;
+  std::optional<Gloss> gloss;
   if (method.level == solver::Level::kRobust) {
-    facts.lobe = measure_gloss(photographs, *chosen, context.threads);
-    if (facts.lobe->is_measured()) {
-      glossy = solver::glossy_method(*chosen, facts.lobe->lobe, sight_of(photographs));
-      Result<solver::BlockChoice> choice = choose_by_block(photographs, *chosen, *glossy, context);
-      if (!choice) return std::move(choice).error();
-      facts.glossy_share = choice->share();
-      glossy_by_block = solver::blended_method(*chosen, *glossy, *choice);
-      chosen = glossy_by_block.get();
-    }
+    Result<Gloss> found = Gloss::find(photographs, *chosen, nullptr, context);
+    if (!found) return std::move(found).error();
+    facts.gloss = found->facts;
+    chosen = &gloss.emplace(std::move(*found)).over(*chosen);
   }
   if (Result<void> ok = solve_tiles(photographs, *chosen, tile, context, sink, bands, facts); !ok)
     return std::move(ok).error();

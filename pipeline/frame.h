@@ -9,11 +9,11 @@
 #include "core/tiles.h"
 #include "pipeline/bands.h"
 #include "pipeline/deblur.h"
+#include "pipeline/gloss.h"
 #include "pipeline/photographs.h"
 #include "pipeline/reference.h"
 #include "solver/left_out/left_out.h"
 #include "solver/method.h"
-#include "solver/reflectance/measured_lobe.h"
 
 namespace weft::pipeline {
 
@@ -25,10 +25,7 @@ struct FrameFacts {
   /// Of `robust` and `reference`: the share of blocks on which `robust` predicts left-out light better than
   /// `standard`, which solves the others.
   std::optional<double> robust_share = {};
-  /// Of `robust` and `reference`: the lobe that the cloth shares, and the share of blocks on which it
-  /// predicts left-out light better; the others are solved by Lambert's law.
-  std::optional<solver::MeasuredLobe> lobe = {};
-  double glossy_share = 0;
+  std::optional<GlossFacts> gloss = {};  ///< of `robust` and `reference`
   /// On patches that chose nothing.
   std::optional<solver::LeftOut> left_out = {};
   std::optional<DeblurFacts> deblur = {};  ///< where the spread of the lens is known

@@ -8,8 +8,11 @@
 
 #include "core/parallel.h"
 #include "core/solve_record.h"
+#include "pipeline/left_out.h"
+#include "pipeline/light_correction.h"
 #include "pipeline/samples.h"
 #include "pipeline/tile_reader.h"
+#include "solver/reflectance/glossy_method.h"
 #include "solver/sample_tiles.h"
 
 namespace weft::pipeline {
@@ -26,21 +29,60 @@ struct GlossSamples {
   std::vector<Vec3> start;
 };
 
-void add_tile(const solver::TileInput& input, const SampleMaps& maps, int step, solver::Sight sight,
-              GlossSamples& samples) {
-  solver::LobeReader reader(input, sight);
-  std::vector<solver::LobeReading> readings(input.field->count());
-  for (int y = 0; y < input.tile.height(); y += step) {
-    for (int x = 0; x < input.tile.width(); x += step) {
-      if (maps.status(x, y) & (kNoSolution | kDark)) continue;
-      reader.read(x, y, readings);
-      if (solver::used_of(readings) < kLeastReadings) continue;
-      samples.readings.insert(samples.readings.end(), readings.begin(), readings.end());
-      samples.start.push_back(static_cast<double>(maps.albedo(x, y)) *
-                              Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)});
+// Takes pixels of one sample tile after another; one a worker.
+class Sampler {
+ public:
+  Sampler(const Photographs& photographs, const solver::Method& base, const LightCorrection* correction,
+          int step)
+      : reader_(photographs, {.width = solver::kSampleTile, .height = solver::kSampleTile}),
+        base_(base),
+        correction_(correction),
+        step_(step),
+        sight_(sight_of(photographs)) {}
+
+  void take(Rect tile, GlossSamples& samples) {
+    solver::TileInput input = reader_.read(tile);
+    if (correction_ != nullptr) correct(input);
+    const SampleMaps maps = solve_sample(input, base_);
+    solver::LobeReader reader(input, sight_);
+    std::vector<solver::LobeReading> readings(input.field->count());
+    for (int y = 0; y < tile.height(); y += step_) {
+      for (int x = 0; x < tile.width(); x += step_) {
+        if (maps.status(x, y) & (kNoSolution | kDark)) continue;
+        reader.read(x, y, readings);
+        if (solver::used_of(readings) < kLeastReadings) continue;
+        samples.readings.insert(samples.readings.end(), readings.begin(), readings.end());
+        samples.start.push_back(static_cast<double>(maps.albedo(x, y)) *
+                                Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)});
+      }
     }
   }
-}
+
+ private:
+  // Light from the cloth itself is taken off, and shadows are marked.
+  void correct(solver::TileInput& input) {
+    const Size size = {input.tile.width(), input.tile.height()};
+    corrected_ = Image<float>(size, static_cast<int>(input.readings.size()));
+    std::vector<View<float>> planes;
+    views_.clear();
+    for (std::size_t i = 0; i < input.readings.size(); ++i) {
+      planes.push_back(corrected_.plane(static_cast<int>(i)));
+      for (int y = 0; y < size.height; ++y)
+        std::copy_n(input.readings[i].row(y), size.width, planes.back().row(y));
+      views_.emplace_back(planes.back());
+    }
+    correction_->apply(input.tile, planes);
+    input.readings = views_;
+  }
+
+  TileReader reader_;
+  const solver::Method& base_;
+  const LightCorrection* correction_;
+  int step_;
+  solver::Sight sight_;
+  Image<float> corrected_;
+  std::vector<View<const float>> views_;
+};
 
 }  // namespace
 
@@ -57,20 +99,25 @@ solver::Sight sight_of(const Photographs& photographs) {
   return solver::Sight(centre, photographs.field->cloth_height_mm());
 }
 
-solver::MeasuredLobe measure_gloss(const Photographs& photographs, const solver::Method& base, int threads) {
+Result<solver::MeasuredLobe> measure_gloss(const Photographs& photographs, const solver::Method& base,
+                                           LightCorrection* correction, int threads) {
   const std::vector<Rect> tiles = solver::sample_tiles(photographs.size);
   const int step = solver::sample_step(tiles, 4 * kGlossPixels);
-  const solver::Sight sight = sight_of(photographs);
+  std::vector<Sampler> samplers;
+  for (int i = 0; i < resolved_threads(threads); ++i)
+    samplers.emplace_back(photographs, base, correction, step);
   std::vector<GlossSamples> parts(tiles.size());
-  std::vector<TileReader> readers;
-  for (int i = 0; i < resolved_threads(threads); ++i) {
-    readers.emplace_back(photographs,
-                         TileOptions{.width = solver::kSampleTile, .height = solver::kSampleTile});
+  // A correction is traced for one row of tiles after another.
+  for (std::size_t begin = 0, end = 0; begin < tiles.size(); begin = end) {
+    while (end < tiles.size() && tiles[end].y0 == tiles[begin].y0) ++end;
+    if (correction != nullptr) {
+      const Rect rows = {0, tiles[begin].y0, photographs.size.width, tiles[begin].y1};
+      if (Result<void> ok = correction->prepare(rows); !ok) return std::move(ok).error();
+    }
+    parallel_for(end - begin, threads, [&](std::size_t i, int worker) {
+      samplers[static_cast<std::size_t>(worker)].take(tiles[begin + i], parts[begin + i]);
+    });
   }
-  parallel_for(tiles.size(), threads, [&](std::size_t i, int worker) {
-    const solver::TileInput input = readers[static_cast<std::size_t>(worker)].read(tiles[i]);
-    add_tile(input, solve_sample(input, base), step, sight, parts[i]);
-  });
   GlossSamples all;
   for (const GlossSamples& part : parts) {
     all.readings.insert(all.readings.end(), part.readings.begin(), part.readings.end());
@@ -86,6 +133,30 @@ solver::MeasuredLobe measure_gloss(const Photographs& photographs, const solver:
     start.push_back(all.start[pixel]);
   }
   return solver::measure_lobe(samples, start, threads);
+}
+
+Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& base,
+                          LightCorrection* correction, const JobContext& context) {
+  Gloss gloss(sight_of(photographs));
+  Result<solver::MeasuredLobe> lobe = measure_gloss(photographs, base, correction, context.threads);
+  if (!lobe) return std::move(lobe).error();
+  gloss.facts.lobe = std::move(*lobe);
+  if (!gloss.facts.lobe.is_measured()) return gloss;
+  const auto glossy = solver::glossy_method(base, gloss.facts.lobe.lobe, gloss.sight_);
+  Result<solver::BlockChoice> choice =
+      choose_by_block(photographs, {.method = &base, .correction = correction},
+                      {.method = glossy.get(), .correction = correction}, context);
+  if (!choice) return std::move(choice).error();
+  gloss.facts.share = choice->share();
+  if (gloss.facts.share > 0) gloss.choice_ = std::move(*choice);
+  return gloss;
+}
+
+const solver::Method& Gloss::over(const solver::Method& base) {
+  if (!choice_) return base;
+  methods_.push_back(solver::glossy_method(base, facts.lobe.lobe, sight_));
+  methods_.push_back(solver::blended_method(base, *methods_.back(), *choice_));
+  return *methods_.back();
 }
 
 }  // namespace weft::pipeline

@@ -204,6 +204,13 @@ Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const S
   return left_out;
 }
 
+std::vector<solver::Patch> of_few_rows(std::span<const solver::Patch> patches, Size size) {
+  std::vector<solver::Patch> few;
+  for (const std::vector<solver::Patch>& row : patches_of_few_rows(patches, size))
+    few.insert(few.end(), row.begin(), row.end());
+  return few;
+}
+
 std::vector<std::vector<solver::Patch>> patches_of_few_rows(std::span<const solver::Patch> patches,
                                                             Size size) {
   const solver::BlockGrid grid = solver::blocks_of(size);
@@ -219,11 +226,12 @@ std::vector<std::vector<solver::Patch>> patches_of_few_rows(std::span<const solv
   return rows;
 }
 
-Result<solver::BlockChoice> choose_by_block(const Photographs& photographs, const solver::Method& base,
-                                            const solver::Method& better, const JobContext& context) {
-  const std::vector<solver::Patch> patches = solver::patches_of(photographs.size, solver::PatchUse::kChoose);
-  const auto judged = [&](const solver::Method& method) {
-    return leave_out_lights(photographs, {.method = &method}, patches, context);
+Result<solver::BlockChoice> choose_by_block(const Photographs& photographs, const SolveVariant& base,
+                                            const SolveVariant& better, const JobContext& context) {
+  std::vector<solver::Patch> patches = solver::patches_of(photographs.size, solver::PatchUse::kChoose);
+  if (base.correction != nullptr) patches = of_few_rows(patches, photographs.size);
+  const auto judged = [&](const SolveVariant& variant) {
+    return leave_out_lights(photographs, variant, patches, context);
   };
   const Result<solver::LeftOut> of_base = judged(base);
   if (!of_base) return of_base.error();

@@ -32,9 +32,13 @@ Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const S
 std::vector<std::vector<solver::Patch>> patches_of_few_rows(std::span<const solver::Patch> patches,
                                                             Size size);
 
+/// The same in one list.
+std::vector<solver::Patch> of_few_rows(std::span<const solver::Patch> patches, Size size);
+
 /// Where `better` predicts left-out light better than `base` by more than its own sigma, on patches that
-/// choose. A frame with too few of them is all `better`: nothing speaks against it.
-Result<solver::BlockChoice> choose_by_block(const Photographs& photographs, const solver::Method& base,
-                                            const solver::Method& better, const JobContext& context);
+/// choose; where readings are corrected, on few rows of blocks, and the others follow the frame. A frame with
+/// too few of them is all `better`: nothing speaks against it.
+Result<solver::BlockChoice> choose_by_block(const Photographs& photographs, const SolveVariant& base,
+                                            const SolveVariant& better, const JobContext& context);
 
 }  // namespace weft::pipeline

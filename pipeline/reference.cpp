@@ -113,11 +113,14 @@ class Round {
 
   Result<solver::LeftOut> leave_out_lights_of(std::span<const solver::Patch> patches,
                                               const solver::Method& method) const {
-    std::vector<solver::Patch> few;
-    for (const std::vector<solver::Patch>& row : patches_of_few_rows(patches, photographs_.size))
-      few.insert(few.end(), row.begin(), row.end());
     LightCorrection correction = correct(facts.stages);
-    return leave_out_lights(photographs_, {.method = &method, .correction = &correction}, few, context_);
+    return leave_out_lights(photographs_, {.method = &method, .correction = &correction},
+                            of_few_rows(patches, photographs_.size), context_);
+  }
+
+  Result<Gloss> find_gloss(const solver::Method& base) const {
+    LightCorrection correction = correct(facts.stages);
+    return Gloss::find(photographs_, base, &correction, context_);
   }
 
   ReferenceRound facts;
@@ -154,14 +157,14 @@ class Reference {
 
   // By which method each block is solved.
   Result<void> choose_methods() {
-    Result<solver::BlockChoice> choice =
-        choose_by_block(photographs_, *quickly_.standard, *quickly_.robust, context_);
+    Result<solver::BlockChoice> choice = choose_by_block(photographs_, {.method = quickly_.standard.get()},
+                                                         {.method = quickly_.robust.get()}, context_);
     if (!choice) return std::move(choice).error();
     facts.robust_share = choice->share();
     quick_ = quickly_.by_block(*choice);
     exact_ = exactly_.by_block(*choice);
     robust_ = std::move(*choice);
-    return {};
+    return find_gloss(nullptr);
   }
 
   Result<void> find_candidates() {
@@ -178,7 +181,9 @@ class Reference {
   // `last_`, if there is one.
   Result<void> approach() {
     FrameKeeper first(photographs_, nullptr);
-    if (const auto solved = solve_bands(photographs_, *quick_, tile_, context_, std::ref(first)); !solved) {
+    if (const auto solved =
+            solve_bands(photographs_, gloss_->over(*quick_), tile_, context_, std::ref(first));
+        !solved) {
       return solved.error();
     }
     SolvedFrame frame = std::move(first.frame);
@@ -193,7 +198,7 @@ class Reference {
         return {};
       }
       FrameKeeper next(photographs_, &round->solved);
-      const Result<double> solved = round->solve(*quick_, tile_, std::ref(next), {});
+      const Result<double> solved = round->solve(gloss_->over(*quick_), tile_, std::ref(next), {});
       if (!solved) return solved.error();
       ReferenceRound& now = round->facts;
       now.turned_deg = next.mean_turn_deg();
@@ -211,8 +216,13 @@ class Reference {
     const BandOptions bands = {.tally = &facts.tally,
                                .model = solver::ModelTraits{.bounces_are_out = facts.stages.interreflection},
                                .robust = &*robust_};
-    const Result<double> waited = last_ ? last_->solve(*exact_, tile_, sink, bands)
-                                        : solve_bands(photographs_, *exact_, tile_, context_, sink, bands);
+    if (last_) {
+      if (Result<void> ok = find_gloss(last_.get()); !ok) return ok;
+    }
+    exact_chosen_ = &gloss_->over(*exact_);
+    const Result<double> waited =
+        last_ ? last_->solve(*exact_chosen_, tile_, sink, bands)
+              : solve_bands(photographs_, *exact_chosen_, tile_, context_, sink, bands);
     if (!waited) return waited.error();
     facts.waited_seconds = *waited;
     if (Result<void> ok = check(); !ok) return ok;
@@ -226,6 +236,16 @@ class Reference {
   ReferenceFacts facts;
 
  private:
+  // Of the readings that a round corrects, or of all as they are.
+  Result<void> find_gloss(const Round* round) {
+    Result<Gloss> gloss =
+        round != nullptr ? round->find_gloss(*quick_) : Gloss::find(photographs_, *quick_, nullptr, context_);
+    if (!gloss) return std::move(gloss).error();
+    facts.gloss = gloss->facts;
+    gloss_ = std::move(*gloss);
+    return {};
+  }
+
   // Leaves in facts.stages what earns its place by the relief of the first round, and of each where the scale
   // of the albedo has to be found: the better the relief, the better it is known.
   Result<void> choose(Round& round) {
@@ -247,8 +267,8 @@ class Reference {
     const std::vector<solver::Patch> patches =
         solver::patches_of(photographs_.size, solver::PatchUse::kReport);
     Result<solver::LeftOut> left_out =
-        last_ ? last_->leave_out_lights_of(patches, *exact_)
-              : leave_out_lights(photographs_, {.method = exact_.get()}, patches, context_);
+        last_ ? last_->leave_out_lights_of(patches, *exact_chosen_)
+              : leave_out_lights(photographs_, {.method = exact_chosen_}, patches, context_);
     if (!left_out) return std::move(left_out).error();
     facts.left_out = std::move(*left_out);
     return {};
@@ -261,7 +281,9 @@ class Reference {
   TwoMethods quickly_ = {solver::standard_method(), solver::robust_method()};
   TwoMethods exactly_ = {solver::exact_standard_method(), solver::exact_method()};
   std::unique_ptr<solver::Method> quick_, exact_;
-  std::optional<solver::BlockChoice> robust_;  ///< where the better of the two solves
+  std::optional<Gloss> gloss_;
+  const solver::Method* exact_chosen_ = nullptr;  ///< `exact_`, with the lobe where there is one
+  std::optional<solver::BlockChoice> robust_;     ///< where the better of the two solves
   std::unique_ptr<Round> last_;
 };
 

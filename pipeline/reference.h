@@ -8,6 +8,7 @@
 #include "core/result.h"
 #include "core/tiles.h"
 #include "pipeline/bands.h"
+#include "pipeline/gloss.h"
 #include "pipeline/light_choice.h"
 #include "pipeline/light_correction.h"
 #include "pipeline/photographs.h"
@@ -42,6 +43,7 @@ struct ReferenceFacts {
   std::vector<ReferenceRound> rounds;
   bool shadow_reach_is_capped = false;
   double robust_share = 1;    ///< of the frame; the rest is solved as the standard level does
+  GlossFacts gloss;           ///< of the readings that the last solve used
   solver::LeftOut left_out;   ///< of the readings that the last solve used, on patches that chose nothing
   solver::SolveTally tally;   ///< of the last solve
   double waited_seconds = 0;  ///< for the sink
@@ -55,6 +57,9 @@ struct ReferenceFacts {
 /// blocks where `robust` predicts left-out light no better are solved as `standard` does. The last solve is
 /// in double, with the factorisation that each pixel's conditioning asks for. Without an effect it is the
 /// only one.
+///
+/// The lobe of a glossy cloth (pipeline/gloss.h) is found before the first round, so that relief and bounces
+/// follow normals that highlights did not turn, and again for the last solve once bounces are out.
 ///
 /// Relief and its light are taken in pixels and by the axes of the picture (picture_axes.h), so neither the
 /// scale nor the camera's roll matters; it must look nearly straight down.

@@ -17,6 +17,7 @@
 #include "app/cli/verbs.h"
 #include "app/jobs/last_check.h"
 #include "app/jobs/left_out_report.h"
+#include "app/jobs/reflectance.h"
 #include "capture/rig.h"
 #include "core/files.h"
 #include "core/session.h"
@@ -67,6 +68,7 @@ void print_words(const SolveReport& report) {
   print(fmt::format("  {} of {} pixels solved from {} lights; albedo is {}", facts.pixels,
                     facts.size.pixels(), facts.lights, name_of(facts.albedo_scale)));
   print("  pixels by status:" + status_words(facts.status));
+  if (facts.reflectance.contains("family")) print("  gloss: " + reflectance_words(facts.reflectance));
   const SolveSeconds& s = report.seconds;
   print(fmt::format(
       "  {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, report {:.2f}, sync {:.2f}; "

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "app/jobs/left_out_report.h"
+#include "app/jobs/reflectance.h"
 #include "core/text.h"
 #include "report/figures.h"
 #include "report/html.h"
@@ -267,6 +268,8 @@ std::string report_page(const Json& report, const std::vector<PagePicture>& pict
   page += two(report::html_section("Residual by light", residual_chart(report)),
               report::html_section("Pixels by state", status_chart(report)));
   page += two(report::html_section("Where the error comes from", budget(report)), sigma_map(report));
+  if (const auto found = report.find("reflectance"); found != report.end())
+    page += reflectance_section(*found);
   page += light_table(report);
   page += left_out_section(report, light_noun(report));
   page += two(gates(report) + time(report), conditions(report));

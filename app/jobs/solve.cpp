@@ -14,6 +14,7 @@
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/map_files.h"
 #include "app/jobs/pictures.h"
+#include "app/jobs/reflectance.h"
 #include "app/jobs/report.h"
 #include "core/files.h"
 #include "core/product.h"
@@ -243,6 +244,10 @@ class Run {
     if (frame->robust_share) facts_.solved_by["robust_share"] = *frame->robust_share;
     if (frame->deblur) facts_.sharpening = json_of(*frame->deblur);
     if (frame->lateral_corner_px) facts_.lateral_color = {{"corner_px", *frame->lateral_corner_px}};
+    if (frame->gloss) {
+      reflectance_ = reflectance_document(*frame->gloss, facts_.albedo_scale);
+      facts_.reflectance = reflectance_summary(reflectance_);
+    }
     if (frame->reference) {
       facts_.gates = json_of(frame->reference->gates);
       facts_.reference = json_of(*frame->reference);
@@ -299,7 +304,11 @@ class Run {
                                   tells_highlights ? facts_.check : std::nullopt, method_.level);
     const fs::path document = partial_.path() / kSolveProduct.document;
     if (Result<void> ok = write_json(document, json_of(facts_)); !ok) return ok;
-    const Json page = report_document(input_.title, facts_, summary_, *maps_, seconds_json(seconds_));
+    Json page = report_document(input_.title, facts_, summary_, *maps_, seconds_json(seconds_));
+    if (!reflectance_.is_null()) {
+      if (Result<void> ok = write_json(partial_.path() / "reflectance.json", reflectance_); !ok) return ok;
+      page["reflectance"] = reflectance_;
+    }
     if (Result<void> ok = write_report(partial_.path(), page); !ok) return ok;
     seconds_.report += watch_.lap();
     return {};
@@ -323,6 +332,7 @@ class Run {
   std::vector<int> picked_;  // numbers of the photographs of a list, by light
   pipeline::SessionShifts shifts_;
   std::vector<std::string> warnings_;
+  Json reflectance_;  // reflectance.json, where a lobe was looked for
   SolveFacts facts_;
   SolveSeconds seconds_;
   std::optional<Pictures> pictures_;

@@ -24,7 +24,7 @@ struct SolveOptions {
   Compression compression = Compression::kNone;  ///< of EXR files
   TileOptions tile = pipeline::kSolveTile;
   bool previews = true;
-  bool deblur = true;  ///< undoes the spread of the lens where the calibration knows it
+  bool deblur = true;      ///< undoes the spread of the lens where the calibration knows it
   bool condition = false;  ///< also writes condition.exr (app/jobs/condition_map.h)
 };
 

@@ -42,7 +42,9 @@ Rgb grey(double value) {
 }
 
 std::vector<GlossyCloth> cloths() {
-  const auto ggx = [](double alpha) { return Ggx{.alpha = alpha, .f0 = grey(0.04), .beneath = Beneath::kBalanced}; };
+  const auto ggx = [](double alpha) {
+    return Ggx{.alpha = alpha, .f0 = grey(0.04), .beneath = Beneath::kBalanced};
+  };
   const AnisotropicGgx satin = {.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05)};
   const AnisotropicGgx dark_satin = {.alpha = 0.35, .anisotropy = 0.6, .f0 = grey(0.05)};
   const TrueLobe of_satin = {0.45, 0.1575, 0.05}, of_dark_satin = {0.35, 0.14, 0.05};
@@ -57,10 +59,7 @@ std::vector<GlossyCloth> cloths() {
        {0.3, kNone, 0.04}},
       {"satin", satin, 0.4, of_satin},
       {"dark satin", dark_satin, 0.06, of_dark_satin},
-      {"satin, wide LEDs, drift",
-       satin,
-       0.4,
-       of_satin,
+      {"satin, wide LEDs, drift", satin, 0.4, of_satin,
        [](Scene& s) {
          s.effects.finite_led = s.effects.led_drift = s.effects.stray = true;
          s.lights.drift = 0.005;
@@ -69,12 +68,10 @@ std::vector<GlossyCloth> cloths() {
       {"satin, blurred", satin, 0.4, of_satin, [](Scene& s) { s.effects.defocus = true; }},
       {"blinn-phong 0.35", BlinnPhong{.gloss = 0.35, .f0 = grey(0.04)}, 0.4, {}},
       {"satin, lambert beneath",
-       AnisotropicGgx{.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05), .beneath = Beneath::kLambert},
-       0.4,
+       AnisotropicGgx{.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05), .beneath = Beneath::kLambert}, 0.4,
        of_satin},
       {"satin, coupled beneath",
-       AnisotropicGgx{.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05), .beneath = Beneath::kCoupled},
-       0.4,
+       AnisotropicGgx{.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05), .beneath = Beneath::kCoupled}, 0.4,
        of_satin},
       {"lambert", Lambert{}, 0.5, {}},
       {"oren-nayar 0.3", OrenNayar{.sigma = 0.3}, 0.4, {}},
@@ -111,19 +108,26 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
   const Contender robust = {"robust alone", as_product(solver::robust_method())};
   const Contender level = {"robust", by_level(solver::method_of(solver::Level::kRobust))};
   const Result<Json> before = score(robust, bounded, threads), after = score(level, bounded, threads);
+  const Contender reference = {"reference", by_level(solver::method_of(solver::Level::kReference))};
+  const Result<Json> corrected = score(reference, bounded, threads);
+  if (!corrected) return corrected.error();
   if (!before) return before.error();
   if (!after) return after.error();
 
   const pipeline::Photographs& photographs = bounded.patches.front().photographs;
   const auto base = solver::robust_method();
-  solver::MeasuredLobe found;
-  const double fit_s = seconds_of([&] { found = pipeline::measure_gloss(photographs, *base, 1); });
+  Result<solver::MeasuredLobe> measured = Error{};
+  const double fit_s =
+      seconds_of([&] { measured = pipeline::measure_gloss(photographs, *base, nullptr, 1); });
+  if (!measured) return std::move(measured).error();
+  const solver::MeasuredLobe& found = *measured;
   const solver::Lobe& lobe = found.lobe;
   const bool has_yarn = lobe.family == solver::LobeFamily::kAnisotropicGgx;
   return Json{{"cloth", scene.name},
               {"robust_deg", number(*before, "mean_deg")},
               {"lobe_deg", number(*after, "mean_deg")},
               {"lobe_p95_deg", number(*after, "p95_deg")},
+              {"reference_deg", number(*corrected, "mean_deg")},
               {"albedo_rel", number(*after, "albedo_mean_rel")},
               {"said", name_of(found.refusal)},
               {"family", found.is_measured() ? name_of(lobe.family) : ""},

@@ -21,9 +21,9 @@ struct GlossOptions {
 /// model. A row each:
 /// robust_deg: mean angle to the true normal by the readings that Lambert's law explains best
 /// (solver::robust_method). lobe_deg, lobe_p95_deg: by the level robust, with the lobe it found.
-/// kept: share of the blocks that are solved with it. albedo_rel: mean of |A - B| / B with it.
+/// reference_deg: by the level reference. albedo_rel: mean of |A - B| / B of the level robust.
 /// alpha, along, f0: what was found, beside what is true where that has such numbers. said: measured, or why
-/// not. fit_s, ns_per_pixel: seconds of finding it and of solving again, a thread.
+/// not. fit_s: seconds of finding it on one thread.
 /// kUsage where no cloth has the given name.
 Result<Rows> gloss_table(const GlossOptions& options);
 

@@ -43,7 +43,7 @@ Result<Rows> measure(const AccuracyArguments& a, int threads) {
   if (a.leds) return accuracy_by_leds(options);
   if (a.specular) return specular_warnings(options);
   if (a.sigma) return coverage_table(options);
-  if (a.gloss) 
+  if (a.gloss)
     return gloss_table(
         {.set = options.set, .cloth = options.scene, .seed = options.seed, .threads = threads});
   if (a.chain)

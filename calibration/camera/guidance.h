@@ -62,7 +62,7 @@ struct BoardGuidance {
   /// By part of the frame: where its corners were seen less where this camera has them, mean of all views; 0
   /// where there is none. Empty of fewer views than fit a camera.
   std::vector<PixelPoint> mean_residual_px;
-  std::vector<double> alike;         ///< of each view with the one before it most like it: 1 is the same pose
+  std::vector<double> alike;  ///< of each view with the one before it most like it: 1 is the same pose
 };
 
 /// Of the poses in which the whole board is in the frame (5 x 5 places; level and tilted by 15 degrees, 30

@@ -34,7 +34,8 @@ struct Group {
     return {readings.data() + i * lights, lights};
   }
   void add(const Pixel& pixel, std::span<const LobeReading> of_pixel, Vec3 b) {
-    std::ranges::copy(of_pixel, readings.begin() + static_cast<std::ptrdiff_t>(pixels.size() * of_pixel.size()));
+    std::ranges::copy(of_pixel,
+                      readings.begin() + static_cast<std::ptrdiff_t>(pixels.size() * of_pixel.size()));
     block.put(pixels.size(), of_pixel);
     start.push_back(b);
     pixels.push_back(pixel);
@@ -181,7 +182,8 @@ class Glossy : public Method {
     const double sigma = degrees(std::sqrt(across)) / rho;
     output.sigma_normal_deg(x, y) = static_cast<float>(std::min(sigma, double{kUnknownAngleDeg}));
     output.residual(x, y) = finite(group.best.residual[i] / rho);
-    output.status(x, y) = static_cast<std::uint16_t>(output.status(x, y) | kGlossy);
+    // What the lobe explains is no misfit any more.
+    output.status(x, y) = static_cast<std::uint16_t>((output.status(x, y) & ~kSpecular) | kGlossy);
     for (std::size_t p = 0; p < static_cast<std::size_t>(input.planes); ++p) {
       const double share = input.planes == 1 ? 1 : plane_share(input, group, i, b, x, y, p);
       output.albedo[p](x, y) = finite(rho * share);
@@ -194,7 +196,6 @@ class Glossy : public Method {
   double plane_share(const TileInput& input, const Group& group, std::size_t i, Vec3 b, int x, int y,
                      std::size_t plane) const {
     const double yarn = std::atan2(group.best.yarn_y[i], group.best.yarn_x[i]);
-    Lobe matt = lobe_;
     double of_plane = 0, of_all = 0;
     const auto readings = group.of(i);
     for (std::size_t k = 0; k < readings.size(); ++k) {
@@ -204,7 +205,7 @@ class Glossy : public Method {
           input.field->at(k, static_cast<int>(plane), input.tile.x0 + x, input.tile.y0 + y).strength;
       const double reading = input.readings[3 * k + plane](x, y) / strength;
       const Vec3 n = normalized(b);
-      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(matt, n, r.from, yarn);
+      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(lobe_, n, r.from, yarn);
       const double diffuse = modelled(lobe_, b, r.from, yarn) - shine;
       of_plane += r.weight * diffuse * (reading - shine);
       of_all += r.weight * diffuse * diffuse;

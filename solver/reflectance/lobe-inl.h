@@ -104,8 +104,8 @@ class LobeLanes {
       const V c2 = square_of(hn::Max(half, number(d_, 1e-6)));
       const V falls = hn::Exp(d_, hn::Neg(hn::Mul(hn::Div(hn::Sub(one, c2), c2), inverse_alpha2_)));
       const V facets = hn::Div(hn::Mul(falls, inverse_alpha2_), square_of(c2));
-      reflected = hn::Mul(hn::Mul(number(d_, 0.25), facets),
-                          hn::Mul(f.view_term, hn::Div(unshadowed(lit), lit)));
+      reflected =
+          hn::Mul(hn::Mul(number(d_, 0.25), facets), hn::Mul(f.view_term, hn::Div(unshadowed(lit), lit)));
     } else {
       const V s2 = hn::Max(hn::Sub(one, h2), number(d_, 1e-12));
       const V falls = hn::Exp(d_, hn::Neg(hn::Mul(hn::Div(h2, s2), inverse_alpha2_)));

@@ -26,9 +26,7 @@ struct Cosines {
 
 double ggx(double alpha, const Cosines& c) {
   const double a2 = square(alpha), spread = (1 - square(c.half)) / a2 + square(c.half);
-  const auto smith = [a2](double cosine) {
-    return 1 / (cosine + std::sqrt(a2 + (1 - a2) * square(cosine)));
-  };
+  const auto smith = [a2](double cosine) { return 1 / (cosine + std::sqrt(a2 + (1 - a2) * square(cosine))); };
   return smith(c.light) * smith(c.view) / (kPi * a2 * square(spread));
 }
 
@@ -89,7 +87,10 @@ std::optional<LobeFamily> lobe_family(std::string_view name) {
 }
 
 LitFrom::LitFrom(Vec3 to_light, Vec3 to_camera)
-    : light(to_light), view(to_camera), half(normalized(to_light + to_camera)), light_half(dot(light, half)) {}
+    : light(to_light),
+      view(to_camera),
+      half(normalized(to_light + to_camera)),
+      light_half(dot(light, half)) {}
 
 double specular(const Lobe& lobe, Vec3 n, const LitFrom& from, double yarn) {
   const Cosines c = {std::max(dot(n, from.light), kLeastCosine), std::max(dot(n, from.view), kLeastCosine),
@@ -106,6 +107,38 @@ double specular(const Lobe& lobe, Vec3 n, const LitFrom& from, double yarn) {
       return f * beckmann(lobe.alpha, c);
     case LobeFamily::kCloth:
       return f * cloth(lobe.alpha, c);
+  }
+  return 0;
+}
+
+double equal_angle(const Lobe& lobe, Vec3 n, Vec3 half, double yarn) {
+  const double cosine = std::clamp(dot(n, half), -1.0, 1.0);
+  if (lobe.family != LobeFamily::kAnisotropicGgx || !(cosine > 0)) return std::acos(cosine);
+  const double azimuth = lobe.axis + yarn, x = std::cos(azimuth), y = std::sin(azimuth);
+  const Vec3 t = normalized({x * n.z, y * n.z, -(x * n.x + y * n.y)});
+  return std::atan2(std::hypot(dot(half, t) / lobe.along, dot(half, cross(n, t))), cosine);
+}
+
+double relative_facets(const Lobe& lobe, Vec3 n, Vec3 half, double yarn) {
+  const double angle = equal_angle(lobe, n, half, yarn), c2 = square(std::cos(angle)),
+               a2 = square(lobe.alpha);
+  if (!(std::cos(angle) > 0)) return 0;
+  switch (lobe.family) {
+    case LobeFamily::kLambert:
+      return 0;
+    case LobeFamily::kGgx:
+      return 1 / square((1 - c2) / a2 + c2);
+    case LobeFamily::kAnisotropicGgx: {
+      // Its spread is counted from the true cosine, not from that of the equal angle.
+      const double true2 = square(dot(n, half));
+      return 1 / square(true2 * ((1 - c2) / (c2 * a2) + 1));
+    }
+    case LobeFamily::kBeckmann:
+      return std::exp(-(1 - c2) / (c2 * a2)) / square(c2);
+    case LobeFamily::kCloth: {
+      const double s2 = std::max(1 - c2, 1e-12);
+      return 1 + 4 * std::exp(-c2 / (s2 * a2)) / square(s2);
+    }
   }
   return 0;
 }
@@ -130,8 +163,7 @@ ModelledReading modelled_with_derivative(const Lobe& lobe, Vec3 b, const LitFrom
   ModelledReading reading;
   reading.x = cosine * rho * beneath * straight;
   // b . l is linear in b; only the bend follows the turn of the normal.
-  reading.by_b = beneath * (straight * from.light +
-                            (lobe.bend * cosine) * (from.light - cosine * n));
+  reading.by_b = beneath * (straight * from.light + (lobe.bend * cosine) * (from.light - cosine * n));
   if (!lobe.shines()) return reading;
   const auto shine = [&](Vec3 normal) {
     return std::max(dot(normal, from.light), 0.0) * specular(lobe, normal, from, yarn);

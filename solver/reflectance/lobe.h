@@ -52,6 +52,13 @@ struct LitFrom {
 /// pi F D V of a normal. `yarn`: azimuth of the pixel's yarn from `axis`, radians.
 double specular(const Lobe& lobe, Vec3 normal, const LitFrom& from, double yarn);
 
+/// The density of facets along the half-vector over that along the normal: 1 where the mirror is, for which
+/// the lobe has its peak. `yarn` as above.
+double relative_facets(const Lobe& lobe, Vec3 normal, Vec3 half, double yarn);
+/// The angle of normal and half-vector at which a lobe as rough along the yarn as across it would have this
+/// density, radians: what draws lobes of two roughnesses as one curve.
+double equal_angle(const Lobe& lobe, Vec3 normal, Vec3 half, double yarn);
+
 /// x and its derivative by b = rho n.
 struct ModelledReading {
   double x = 0;

@@ -147,8 +147,8 @@ class LanesFit {
       const LitLanes from = lit_by(light);
       const Diffuse part = diffuse(n, from);
       const V shine = lobe_.shine(here, from);
-      const V residual = hn::Sub(hn::LoadU(d_, light.reading.data() + at_),
-                                 hn::MulAdd(rho, part.share(), shine));
+      const V residual =
+          hn::Sub(hn::LoadU(d_, light.reading.data() + at_), hn::MulAdd(rho, part.share(), shine));
       const V bent = hn::Mul(hn::Mul(bend_, part.cosine), part.beneath);
       Vector3 j = scaled(from.light, hn::MulAdd(part.beneath, part.straight, bent));
       j = moved(j, hn::Neg(hn::Mul(bent, part.cosine)), n);

@@ -46,8 +46,8 @@ class LobeBlock {
   std::vector<Light> lights_;
 };
 
-/// fit_pixel for a whole block, in float32 vectors: from `solved` on, which it leaves solved, with its cost and
-/// normal matrix. No pixel's result depends on the others.
+/// fit_pixel for a whole block, in float32 vectors: from `solved` on, which it leaves solved, with its cost
+/// and normal matrix. No pixel's result depends on the others.
 void fit_block(const Lobe& lobe, LobeBlock& block, int steps);
 
 }  // namespace weft::solver

@@ -31,8 +31,8 @@ void LobeReader::read(int x, int y, std::span<LobeReading> readings) {
   read_row(y);
   const int px = input_.tile.x0 + x, py = input_.tile.y0 + y;
   const int column = px - input_.tile.x0 / LightField::kCell * LightField::kCell;
-  const Vec3 view = sight_.is_far() ? Vec3{0, 0, 1}
-                                    : sight_.from(along(points_.x_mm, column), along(points_.y_mm, column));
+  const Vec3 view =
+      sight_.is_far() ? Vec3{0, 0, 1} : sight_.from(along(points_.x_mm, column), along(points_.y_mm, column));
   const auto planes = static_cast<std::size_t>(input_.planes);
   bright_.clear();
   for (std::size_t k = 0; k < readings.size(); ++k) {

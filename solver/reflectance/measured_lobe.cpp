@@ -18,9 +18,10 @@ constexpr std::array<const char*, 7> kRefusals = {
 // Pixels of the sample that decide among starts.
 constexpr std::size_t kTrialPixels = 1000;
 constexpr std::array<double, 4> kStartAlphas = {0.08, 0.2, 0.45, 0.8};
+constexpr std::array<double, 2> kStartAcross = {0.2, 0.5};
 constexpr double kStartF0 = 0.03, kStartAlong = 0.3;
 constexpr int kRounds = 15;
-constexpr int kMostRestarts = 4, kYarnRounds = 4;
+constexpr int kMostRestarts = 4, kYarnRounds = 3;
 constexpr double kMovedShare = 0.002;  // pixels that still find another valley
 constexpr double kMovedCost = 0.5;     // what a pixel must win to count as moved
 constexpr double kUndecided = 0.05;    // of the cost
@@ -54,17 +55,18 @@ class Trial {
     return restarted(std::move(*best), fitted);
   }
 
-  // From an isotropic fit: its alpha is between the two.
-  LobeFit anisotropic(const LobeFit& round) const {
+  LobeFit anisotropic() const {
     std::optional<LobeFit> best;
-    for (const double axis : {0.0, kPi / 4}) {
-      LobeFit fit = with_yarns(unfitted({.family = LobeFamily::kAnisotropicGgx,
-                                         .alpha = std::clamp(1.3 * std::max(round.lobe.alpha, 0.1), 0.02, 1.0),
-                                         .f0 = std::max(round.lobe.f0, 0.01),
-                                         .along = kStartAlong,
-                                         .axis = axis},
-                                        round.b));
-      if (!best || fit.total() < best->total()) best = std::move(fit);
+    for (const double alpha : kStartAcross) {
+      for (const double axis : {0.0, kPi / 4}) {
+        LobeFit fit = with_yarns(unfitted({.family = LobeFamily::kAnisotropicGgx,
+                                           .alpha = alpha,
+                                           .f0 = kStartF0,
+                                           .along = kStartAlong,
+                                           .axis = axis},
+                                          start_));
+        if (!best || fit.total() < best->total()) best = std::move(fit);
+      }
     }
     return restarted(std::move(*best), parameters_of(LobeFamily::kAnisotropicGgx));
   }
@@ -198,6 +200,29 @@ void write_sigmas(const Lobe& rival, MeasuredLobe& measured) {
   measured.correlation = product > 0 ? std::clamp(c[0][1] / product, -1.0, 1.0) : 0;
 }
 
+// Every so many-th reading that the lobe explains most of.
+std::vector<LobePoint> points_of(const LobeSamples& samples, const LobeFit& fit) {
+  std::vector<LobePoint> points;
+  for (std::size_t i = 0; i < samples.pixels(); ++i) {
+    const Vec3 n = normalized(fit.b[i]);
+    for (const LobeReading& r : samples.of(i)) {
+      const double cosine = dot(n, r.from.light);
+      if (r.weight == 0 || !(cosine > 0.1)) continue;
+      const double shine = cosine * specular(fit.lobe, n, r.from, fit.yarn[i]);
+      const double diffuse = modelled(fit.lobe, fit.b[i], r.from, fit.yarn[i]) - shine;
+      // Where the lobe is weaker than what no model knows, the reading says nothing of it.
+      if (!(shine > kLobeModelShare * std::max(r.x, kLeastModelled))) continue;
+      const double facets = relative_facets(fit.lobe, n, r.from.half, fit.yarn[i]);
+      points.push_back({degrees(equal_angle(fit.lobe, n, r.from.half, fit.yarn[i])),
+                        facets * (r.x - diffuse) / shine, facets});
+    }
+  }
+  std::vector<LobePoint> few;
+  const std::size_t count = std::min(points.size(), kMostLobePoints);
+  for (std::size_t i = 0; i < count; ++i) few.push_back(points[i * points.size() / count]);
+  return few;
+}
+
 std::array<double, 2> half_angles(const LobeSamples& samples, const LobeFit& fit) {
   std::vector<double> angles;
   for (std::size_t i = 0; i < samples.pixels(); ++i) {
@@ -254,9 +279,8 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
     double wins;  // share of GGX's cost that it must save
   };
   const LobeFit ggx = trial.isotropic(LobeFamily::kGgx);
-  const std::vector<Family> families = {{ggx, 0},
-                                        {trial.isotropic(LobeFamily::kBeckmann), kOtherWins},
-                                        {trial.anisotropic(ggx), kYarnWins}};
+  const std::vector<Family> families = {
+      {ggx, 0}, {trial.isotropic(LobeFamily::kBeckmann), kOtherWins}, {trial.anisotropic(), kYarnWins}};
   const LobeFit* straight = &families.front().fit;
   for (const Family& family : families) {
     measured.candidates.push_back({family.fit.lobe, family.fit.chi2});
@@ -279,6 +303,12 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   measured.lobe = measured.fit.lobe;
   write_sigmas(bends ? straight->lobe : bent.lobe, measured);
   measured.half_deg = half_angles(samples, measured.fit);
+  measured.points = points_of(samples, measured.fit);
+  std::vector<double> albedos;
+  for (const Vec3& b : measured.fit.b) albedos.push_back(length(b));
+  measured.median_albedo = median(albedos);
+  const auto wefts = std::ranges::count_if(measured.fit.yarn, [](double yarn) { return yarn > 0; });
+  measured.weft_share = static_cast<double>(wefts) / static_cast<double>(measured.fit.yarn.size());
   return measured;
 }
 

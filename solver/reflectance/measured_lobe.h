@@ -13,12 +13,12 @@ namespace weft::solver {
 /// Why a lobe is not called measured.
 enum class LobeRefusal {
   kNone,
-  kTooFewPixels,   ///< fewer than kLeastLobePixels with three readings more than they have unknowns
-  kLambertFits,    ///< nothing is left to explain by a lobe
-  kNothingFits,    ///< no family explains the readings
-  kStrength,       ///< f0 is none that a cloth has
-  kTooBroad,       ///< as broad as shading itself
-  kBentDiffuse,    ///< a diffuse part that departs from Lambert's law explains them as well
+  kTooFewPixels,  ///< fewer than kLeastLobePixels with three readings more than they have unknowns
+  kLambertFits,   ///< nothing is left to explain by a lobe
+  kNothingFits,   ///< no family explains the readings
+  kStrength,      ///< f0 is none that a cloth has
+  kTooBroad,      ///< as broad as shading itself
+  kBentDiffuse,   ///< a diffuse part that departs from Lambert's law explains them as well
 };
 const char* name_of(LobeRefusal refusal);
 
@@ -28,20 +28,31 @@ struct LobeCandidate {
   double chi2 = 0;
 };
 
+/// One reading against the lobe: its diffuse part, Fresnel's share and shadowing are taken off.
+struct LobePoint {
+  double half_deg = 0;  ///< equal_angle()
+  double reading = 0;   ///< over the lobe's peak
+  double lobe = 0;      ///< relative_facets()
+};
+
 struct MeasuredLobe {
   LobeRefusal refusal = LobeRefusal::kTooFewPixels;
-  Lobe lobe;           ///< Lambert's where it is refused
-  LobeFit fit;         ///< of `lobe`; empty where it is refused
+  Lobe lobe;    ///< Lambert's where it is refused
+  LobeFit fit;  ///< of `lobe`; empty where it is refused
   double sigma_alpha = 0, sigma_f0 = 0, sigma_along = 0, sigma_axis = 0;  ///< alpha: relative; axis: radians
-  double correlation = 0;           ///< of log alpha and f0
+  double correlation = 0;                                                 ///< of log alpha and f0
   bool is_family_undecided = false;  ///< another passes too and costs at most 5 percent more
   std::vector<LobeCandidate> candidates;
+  std::vector<LobePoint> points;        ///< at most kMostLobePoints, where they tell more than noise
+  double weft_share = 0;                ///< pixels whose yarn lies across the axis
+  double median_albedo = 0;             ///< of the pixels, as `lobe` leaves it
   std::array<double, 2> half_deg = {};  ///< angles of normals to half-vectors: 2nd and 98th percentile
 
   bool is_measured() const { return refusal == LobeRefusal::kNone; }
 };
 
 inline constexpr std::size_t kLeastLobePixels = 300;
+inline constexpr std::size_t kMostLobePoints = 400;
 /// A Lambert fit up to this chi2 leaves nothing for a lobe.
 inline constexpr double kLambertFitsTo = 1.5;
 /// A lobe's chi2 is at most this, or at most kLeastWon of Lambert's.

@@ -14,8 +14,7 @@ constexpr double kLeastFall = 1e-9;  // of the cost: a step that wins less is th
 }  // namespace
 
 int used_of(std::span<const LobeReading> readings) {
-  return static_cast<int>(
-      std::ranges::count_if(readings, [](const LobeReading& r) { return r.weight > 0; }));
+  return static_cast<int>(std::ranges::count_if(readings, [](const LobeReading& r) { return r.weight > 0; }));
 }
 
 double huber_weight(double residual_sigmas) {

@@ -242,7 +242,8 @@ const std::vector<Verb>& verbs() {
         "=auto", "Columns", "Rows", "x right, y up, z to the camera", "unit x y z"}},
       {{"compare"}, {"degrees", "relative", "=normal"}},
       {{"bench", "solve"}, {"millions of pixels", "=4"}},
-      {{"demo"}, {"millions of pixels", "=demo"}}};
+      {{"demo"}, {"millions of pixels", "=demo"}},
+      {{"torture"}, {"=torture.weft", "may be there already"}}};
   return all;
 }
 

@@ -114,7 +114,8 @@ TEST_F(RealPhotographs, OfMattObjectsLeaveRobustNoBlockThatStandardPredictsBette
     const Result<pipeline::Photographs> photographs = app::load_photos(*plan, {});
     ASSERT_TRUE(photographs) << photographs.error().message();
     const auto standard = solver::standard_method(), robust = solver::robust_method();
-    Result<solver::BlockChoice> choice = pipeline::choose_by_block(*photographs, *standard, *robust, {});
+    Result<solver::BlockChoice> choice =
+        pipeline::choose_by_block(*photographs, {.method = standard.get()}, {.method = robust.get()}, {});
     ASSERT_TRUE(choice) << choice.error().message();
     const auto chosen = solver::blended_method(*standard, *robust, *choice);
     const auto median = [&](const solver::Method& method) {

@@ -14,6 +14,7 @@
 #include "core/files.h"
 #include "core/json_document.h"
 #include "core/parallel.h"
+#include "core/solve_record.h"
 
 namespace weft::app {
 namespace {
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFirstKept = 2;  // level; those below are cut
-constexpr int kFlagBits = 8;
+constexpr int kFlagBits = static_cast<int>(kStatusNames.size());
 constexpr int kRowsAtOnce = 256;  // of the map, while levels are made
 constexpr int kMakers = 2;        // threads: a scan may run beside
 
@@ -63,7 +64,8 @@ Image<float> shares_of(const Image<float>& bits) {
     for (int x = 0; x < bits.width(); ++x) {
       const auto status = static_cast<unsigned>(bits(x, y));
       for (int bit = 0; bit < kFlagBits; ++bit) shares(x, y, bit) = static_cast<float>((status >> bit) & 1U);
-      shares(x, y, kFlagBits) = status != 0 ? 1.0F : 0.0F;
+      // That a lobe was used speaks for a pixel, not against it.
+      shares(x, y, kFlagBits) = (status & ~unsigned{kGlossy}) != 0 ? 1.0F : 0.0F;
     }
   }
   return shares;
@@ -165,7 +167,8 @@ Result<Image<float>> Pyramid::read(int level, Rect part, int bit) {
 }
 
 fs::path Pyramid::file_of(int level) const {
-  return kept_ / fmt::format("{}-{}.exr", layer_.name, level);
+  const std::string bits = layer_.kind == LayerKind::kFlags ? fmt::format("-{}bits", kFlagBits) : "";
+  return kept_ / fmt::format("{}{}-{}.exr", layer_.name, bits, level);
 }
 
 std::vector<std::string> Pyramid::channels_of(int level) const {

@@ -105,14 +105,12 @@ TEST(Lobe, KernelFitsAPixelAsDoubleDoes) {
 }
 
 TEST(Lobe, FitsNoNumberThatIsNone) {
-  const std::array<Lobe, 5> extremes = {Lobe{.family = LobeFamily::kGgx, .alpha = 0.02, .f0 = 0.6},
-                                        Lobe{.family = LobeFamily::kGgx, .alpha = 1, .f0 = 0},
-                                        Lobe{.family = LobeFamily::kAnisotropicGgx,
-                                             .alpha = 0.02,
-                                             .f0 = 0.6,
-                                             .along = 20},
-                                        Lobe{.family = LobeFamily::kBeckmann, .alpha = 0.02, .f0 = 0.1},
-                                        Lobe{.family = LobeFamily::kCloth, .alpha = 1, .f0 = 0.6}};
+  const std::array<Lobe, 5> extremes = {
+      Lobe{.family = LobeFamily::kGgx, .alpha = 0.02, .f0 = 0.6},
+      Lobe{.family = LobeFamily::kGgx, .alpha = 1, .f0 = 0},
+      Lobe{.family = LobeFamily::kAnisotropicGgx, .alpha = 0.02, .f0 = 0.6, .along = 20},
+      Lobe{.family = LobeFamily::kBeckmann, .alpha = 0.02, .f0 = 0.1},
+      Lobe{.family = LobeFamily::kCloth, .alpha = 1, .f0 = 0.6}};
   Random random(4);
   for (const Lobe& lobe : extremes) {
     LobeBlock block(10);

@@ -22,8 +22,8 @@ inline std::vector<Vec3> ten_directions() {
   for (int k = 0; k < 10; ++k) {
     const double zenith = radians(k < 4 ? 35 : 62);
     const double azimuth = radians(k < 4 ? 90.0 * k : 60.0 * (k - 4) + 15);
-    lights.push_back({std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth),
-                      std::cos(zenith)});
+    lights.push_back(
+        {std::sin(zenith) * std::cos(azimuth), std::sin(zenith) * std::sin(azimuth), std::cos(zenith)});
   }
   return lights;
 }
@@ -40,7 +40,7 @@ inline PixelModel model_of(const Lobe& lobe) {
 struct ClothOfPixels {
   double tilt_deg = 25;  ///< most of the normals
   double albedo = 0.4;
-  double noise = 0.003;      ///< of a reading, a share of it
+  double noise = 0.003;         ///< of a reading, a share of it
   bool has_both_yarns = false;  ///< every third pixel is weft
 };
 

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/reflectance.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "core/text.h"
+#include "core/vec.h"
+#include "report/html.h"
+#include "report/plot_svg.h"
+
+namespace weft::app {
+namespace {
+
+using solver::LobeRefusal;
+using solver::MeasuredLobe;
+
+// Why a lobe is not observable, and what would make it so.
+const std::map<LobeRefusal, std::pair<const char*, const char*>> kReasons = {
+    {LobeRefusal::kTooFewPixels,
+     {"too few pixels have six readings", "scan more of the cloth, or with more light"}},
+    {LobeRefusal::kLambertFits,
+     {"the readings follow Lambert's law: the cloth is matt, or its lobe is too weak or too broad for ten "
+      "LEDs",
+      "a pair of scans with parallel and crossed polarisers shows sheen and broad lobes"}},
+    {LobeRefusal::kNothingFits,
+     {"no lobe explains the readings: light between yarns, blur or several materials",
+      "solve with --quality reference, or scan with a sharper lens"}},
+    {LobeRefusal::kStrength,
+     {"the strength that fits best is none that a cloth has",
+      "a pair of scans with parallel and crossed polarisers shows the lobe alone"}},
+    {LobeRefusal::kTooBroad,
+     {"the lobe is as broad as shading",
+      "a pair of scans with parallel and crossed polarisers shows the lobe alone"}},
+    {LobeRefusal::kBentDiffuse,
+     {"a diffuse part that departs from Lambert's law explains the readings as well",
+      "a pair of scans with parallel and crossed polarisers, or a LED at 8 degrees from the camera"}}};
+
+// What a refused cloth is given in exports, marked as typed: f0 of cellulose, roughness of matt cloth.
+constexpr double kTypedF0 = 0.04, kTypedAlpha = 1;
+
+void add_lobe(const solver::Lobe& lobe, Json& into) {
+  into["family"] = name_of(lobe.family);
+  if (!lobe.shines()) return;
+  into["alpha"] = lobe.alpha;
+  if (lobe.family == solver::LobeFamily::kAnisotropicGgx) {
+    into["alpha_along"] = lobe.alpha * lobe.along;
+    into["axis_deg"] = degrees(lobe.axis);
+  }
+  into["f0"] = lobe.f0;
+  if (lobe.bend != 0) into["bend"] = lobe.bend;
+}
+
+Json candidates_of(const MeasuredLobe& lobe) {
+  Json candidates = Json::array();
+  for (const solver::LobeCandidate& each : lobe.candidates) {
+    Json candidate = {{"chi2", each.chi2}};
+    add_lobe(each.lobe, candidate);
+    candidates.push_back(std::move(candidate));
+  }
+  return candidates;
+}
+
+Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
+  Json cluster = {{"observable", true}};
+  add_lobe(lobe.lobe, cluster);
+  const bool has_yarn = lobe.lobe.family == solver::LobeFamily::kAnisotropicGgx;
+  Json sigma = {{"alpha", lobe.lobe.alpha * lobe.sigma_alpha}, {"f0", lobe.sigma_f0}};
+  if (has_yarn) {
+    sigma["alpha_along"] = lobe.lobe.alpha * lobe.lobe.along * std::hypot(lobe.sigma_alpha, lobe.sigma_along);
+    sigma["axis_deg"] = degrees(lobe.sigma_axis);
+    cluster["weft_share"] = lobe.weft_share;
+  }
+  if (scale == AlbedoScale::kRelative) {
+    cluster["f0_over_albedo"] = lobe.lobe.f0 / lobe.median_albedo;
+    cluster.erase("f0");
+    sigma["f0_over_albedo"] = lobe.sigma_f0 / lobe.median_albedo;
+    sigma.erase("f0");
+  }
+  cluster["sigma"] = std::move(sigma);
+  cluster["correlation"] = lobe.correlation;
+  cluster["family_undecided"] = lobe.is_family_undecided;
+  cluster["half_deg"] = lobe.half_deg;
+  cluster["pixels"] = lobe.fit.b.size();
+  cluster["chi2"] = lobe.fit.chi2;
+  Json points = Json::array();
+  for (const solver::LobePoint& point : lobe.points)
+    points.push_back({point.half_deg, point.reading, point.lobe});
+  cluster["points"] = std::move(points);
+  return cluster;
+}
+
+}  // namespace
+
+Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) {
+  const MeasuredLobe& lobe = facts.lobe;
+  Json cluster;
+  if (lobe.is_measured()) {
+    cluster = measured_cluster(lobe, scale);
+  } else {
+    const auto& [why, remedy] = kReasons.at(lobe.refusal);
+    cluster = {{"observable", false},
+               {"why", why},
+               {"remedy", remedy},
+               {"typed", {{"alpha", kTypedAlpha}, {"f0", kTypedF0}}}};
+  }
+  cluster["said"] = name_of(lobe.refusal);
+  cluster["candidates"] = candidates_of(lobe);
+  return {{"schema", "weft.reflectance/1"},
+          {"albedo_scale", name_of(scale)},
+          {"share", facts.share},
+          {"clusters", Json::array({std::move(cluster)})}};
+}
+
+Json reflectance_summary(const Json& document) {
+  const Json& cluster = document["clusters"][0];
+  Json summary = {{"said", cluster["said"]}, {"share", document["share"]}};
+  for (const char* key : {"family", "alpha", "alpha_along", "f0", "f0_over_albedo"}) {
+    if (cluster.contains(key)) summary[key] = cluster[key];
+  }
+  return summary;
+}
+
+std::string reflectance_words(const Json& summary) {
+  if (!summary.contains("family")) return "";
+  std::string words = fmt::format("{}, roughness {:.3f}", summary["family"].get<std::string>(),
+                                  summary["alpha"].get<double>());
+  if (summary.contains("alpha_along"))
+    words += fmt::format(" across the yarn and {:.3f} along it", summary["alpha_along"].get<double>());
+  if (summary.contains("f0")) words += fmt::format(", f0 {:.3f}", summary["f0"].get<double>());
+  return words +
+         fmt::format("; solved with it: {:.0f} percent of the frame", 100 * summary["share"].get<double>());
+}
+
+std::string reflectance_section(const Json& document) {
+  const Json& cluster = document["clusters"][0];
+  if (!cluster["observable"].get<bool>()) {
+    return report::html_section("Gloss", fmt::format("<p>Not observable: {}. To do: {}.</p>\n",
+                                                     escape_markup(cluster["why"].get<std::string>()),
+                                                     escape_markup(cluster["remedy"].get<std::string>())));
+  }
+  report::PlotSeries readings = {.name = "readings"},
+                     lobe = {.name = "lobe", .joined = true, .marked = false};
+  for (const Json& point : cluster["points"]) {
+    readings.points.push_back({point[0].get<double>(), point[1].get<double>()});
+    lobe.points.push_back({point[0].get<double>(), point[2].get<double>()});
+  }
+  std::ranges::sort(lobe.points, {}, &report::PlotPoint::x);
+  const report::Plot plot = {.x_label = "normal to half-vector, degrees",
+                             .y_label = "over the lobe's peak",
+                             .series = {std::move(readings), std::move(lobe)}};
+  return report::html_section(
+      "Gloss", fmt::format("<p>{}.</p>\n{}", escape_markup(reflectance_words(reflectance_summary(document))),
+                           report::plot_svg(plot)));
+}
+
+}  // namespace weft::app

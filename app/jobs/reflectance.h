@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "core/albedo_scale.h"
+#include "core/json_document.h"
+#include "pipeline/gloss.h"
+
+// What a solve found of a cloth's reflectance, for reflectance.json, solve.json and people.
+
+namespace weft::app {
+
+/// reflectance.json, schema weft.reflectance/1 (docs/formats.md). Where the scale of the albedo is relative
+/// so is f0, and what is said is f0 over the albedo.
+Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale);
+
+/// What solve.json says of it: `said`, `share`, and of a measured lobe `family`, `alpha`, `alpha_along`,
+/// `f0` or `f0_over_albedo`.
+Json reflectance_summary(const Json& document);
+
+/// The same as a sentence. `summary` is of reflectance_summary().
+std::string reflectance_words(const Json& summary);
+
+/// The section of a report: the lobe drawn over the readings, and its numbers.
+std::string reflectance_section(const Json& document);
+
+}  // namespace weft::app
