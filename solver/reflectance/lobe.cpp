@@ -119,20 +119,15 @@ double equal_angle(const Lobe& lobe, Vec3 n, Vec3 half, double yarn) {
   return std::atan2(std::hypot(dot(half, t) / lobe.along, dot(half, cross(n, t))), cosine);
 }
 
-double relative_facets(const Lobe& lobe, Vec3 n, Vec3 half, double yarn) {
-  const double angle = equal_angle(lobe, n, half, yarn), c2 = square(std::cos(angle)),
-               a2 = square(lobe.alpha);
-  if (!(std::cos(angle) > 0)) return 0;
+double relative_facets(const Lobe& lobe, double equal_angle) {
+  const double cosine = std::cos(equal_angle), c2 = square(cosine), a2 = square(lobe.alpha);
+  if (!(cosine > 0)) return 0;
   switch (lobe.family) {
     case LobeFamily::kLambert:
       return 0;
     case LobeFamily::kGgx:
+    case LobeFamily::kAnisotropicGgx:
       return 1 / square((1 - c2) / a2 + c2);
-    case LobeFamily::kAnisotropicGgx: {
-      // Its spread is counted from the true cosine, not from that of the equal angle.
-      const double true2 = square(dot(n, half));
-      return 1 / square(true2 * ((1 - c2) / (c2 * a2) + 1));
-    }
     case LobeFamily::kBeckmann:
       return std::exp(-(1 - c2) / (c2 * a2)) / square(c2);
     case LobeFamily::kCloth: {

@@ -52,12 +52,11 @@ struct LitFrom {
 /// pi F D V of a normal. `yarn`: azimuth of the pixel's yarn from `axis`, radians.
 double specular(const Lobe& lobe, Vec3 normal, const LitFrom& from, double yarn);
 
-/// The density of facets along the half-vector over that along the normal: 1 where the mirror is, for which
-/// the lobe has its peak. `yarn` as above.
-double relative_facets(const Lobe& lobe, Vec3 normal, Vec3 half, double yarn);
-/// The angle of normal and half-vector at which a lobe as rough along the yarn as across it would have this
-/// density, radians: what draws lobes of two roughnesses as one curve.
+/// The angle of normal and half-vector at which a lobe as rough along the yarn as across it would be as
+/// dense, radians: what draws lobes of two roughnesses as one curve. `yarn` as above.
 double equal_angle(const Lobe& lobe, Vec3 normal, Vec3 half, double yarn);
+/// The density of facets at such an angle over that at 0, where the lobe has its peak.
+double relative_facets(const Lobe& lobe, double equal_angle);
 
 /// x and its derivative by b = rho n.
 struct ModelledReading {

@@ -212,9 +212,9 @@ std::vector<LobePoint> points_of(const LobeSamples& samples, const LobeFit& fit)
       const double diffuse = modelled(fit.lobe, fit.b[i], r.from, fit.yarn[i]) - shine;
       // Where the lobe is weaker than what no model knows, the reading says nothing of it.
       if (!(shine > kLobeModelShare * std::max(r.x, kLeastModelled))) continue;
-      const double facets = relative_facets(fit.lobe, n, r.from.half, fit.yarn[i]);
-      points.push_back({degrees(equal_angle(fit.lobe, n, r.from.half, fit.yarn[i])),
-                        facets * (r.x - diffuse) / shine, facets});
+      const double angle = equal_angle(fit.lobe, n, r.from.half, fit.yarn[i]);
+      const double facets = relative_facets(fit.lobe, angle);
+      points.push_back({degrees(angle), facets * (r.x - diffuse) / shine, facets});
     }
   }
   std::vector<LobePoint> few;

@@ -74,6 +74,7 @@ constexpr char kSolveReport[] = "weft.solve-report";
 constexpr char kCalibrationReport[] = "weft.calibration-report";
 constexpr char kCalibrationCheck[] = "weft.calibration-check";
 constexpr char kSet[] = "weft.set";
+constexpr char kReflectance[] = "weft.reflectance";
 
 struct Format {
   std::string name;
@@ -91,7 +92,8 @@ const std::vector<Format> kFormats = {{"weft.session", session_again},
                                       {kSolveReport, document_again<kSolveReport>},
                                       {kCalibrationReport, document_again<kCalibrationReport>},
                                       {kCalibrationCheck, document_again<kCalibrationCheck>},
-                                      {kSet, document_again<kSet>}};
+                                      {kSet, document_again<kSet>},
+                                      {kReflectance, document_again<kReflectance>}};
 
 struct Stored {
   fs::path file;

@@ -109,7 +109,7 @@ TEST_F(AskedSolve, CountsEveryPixelOfARectangleOnce) {
   EXPECT_EQ(counted, 5000);
   EXPECT_LE(green["p5"], green["p50"]);
   EXPECT_LE(green["p50"], green["p95"]);
-  EXPECT_EQ((*facts)["status"].size(), 8U);
+  EXPECT_EQ((*facts)["status"].size(), kStatusNames.size());
 }
 
 }  // namespace
