@@ -99,8 +99,10 @@ class Glossy : public Method {
     if ((output.status(x, y) & kGlossy) == 0) return base_.reflected(input, output, x, y, light);
     std::vector<LobeReading> readings(input.field->count());
     LobeReader(input, sight_).read(x, y, readings);
-    const Vec3 b = albedo_of(input, output, x, y) * normal_of(output, x, y);
-    return modelled(lobe_, b, LitFrom(light, readings.front().from.view), yarn_of(b, readings));
+    const Vec3 n = normal_of(output, x, y);
+    const double yarn = yarn_of(albedo_of(input, output, x, y) * n, readings);
+    const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
+    return modelled(lobe_, spoken * n, LitFrom(light, readings.front().from.view), yarn);
   }
 
  private:

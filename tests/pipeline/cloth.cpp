@@ -22,8 +22,9 @@ Photographs unlit(Size size, const DistantLights& lights) {
 
 double reading_of(const Cloth& cloth, const DistantLight& light, int c, int x, int y) {
   const auto channel = static_cast<std::size_t>(c);
-  return cloth.albedo[channel] * light.irradiance_rgb[channel] *
-         std::max(0.0, dot(cloth.normal(x, y), light.direction));
+  return light.irradiance_rgb[channel] * solver::modelled(cloth.lobe,
+                                                          cloth.albedo[channel] * cloth.normal(x, y),
+                                                          solver::LitFrom(light.direction, {0, 0, 1}), 0);
 }
 
 }  // namespace

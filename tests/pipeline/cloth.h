@@ -9,14 +9,16 @@
 #include "core/vec.h"
 #include "pipeline/bands.h"
 #include "pipeline/photographs.h"
+#include "solver/reflectance/lobe.h"
 
-// Matt cloths in closed form, photographed without noise.
+// Cloths in closed form, photographed without noise.
 
 namespace weft::pipeline {
 
 struct Cloth {
   std::function<Vec3(int x, int y)> normal = [](int, int) { return Vec3{0, 0, 1}; };
   std::array<double, 3> albedo = {0.5, 0.5, 0.5};
+  solver::Lobe lobe = {};  ///< seen from straight above; Lambert's: matt
 };
 
 /// Ten distant lights: four at 35 degrees from the zenith and six at 62. Each is as bright as `rgb`.

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/gloss.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/solve_record.h"
+#include "pipeline/frame.h"
+#include "tests/pipeline/cloth.h"
+
+namespace weft::pipeline {
+namespace {
+
+constexpr Size kSize = {256, 192};
+const solver::Lobe kSilk = {.family = solver::LobeFamily::kGgx, .alpha = 0.25, .f0 = 0.05};
+
+// Waves to both sides, 20 degrees at their steepest.
+Vec3 dented(int x, int y) {
+  return normalized({0.26 * std::sin(2 * kPi * x / 37), 0.26 * std::sin(2 * kPi * y / 23), 1});
+}
+
+double mean_error_deg(const WholeMaps& maps) {
+  double sum = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) sum += angle_deg(maps.normal_at(x, y), dented(x, y));
+  }
+  return sum / static_cast<double>(kSize.pixels());
+}
+
+double glossy_share(const WholeMaps& maps) {
+  double glossy = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) glossy += (maps.status(x, y) & kGlossy) != 0 ? 1 : 0;
+  }
+  return glossy / static_cast<double>(kSize.pixels());
+}
+
+FrameFacts solve(const Photographs& photographs, const char* level, WholeMaps& maps) {
+  auto facts =
+      solve_frame(photographs, *solver::find_method(level), kSolveTile, {.threads = 2}, std::ref(maps));
+  EXPECT_TRUE(facts) << facts.error().message();
+  return facts ? std::move(*facts) : FrameFacts{};
+}
+
+TEST(Gloss, OfDarkClothIsFoundAndItsNormalsAreRight) {
+  const Photographs photographs =
+      mosaics(kSize, {.normal = dented, .albedo = {0.1, 0.08, 0.06}, .lobe = kSilk});
+  WholeMaps by_standard(kSize), by_robust(kSize);
+  solve(photographs, "standard", by_standard);
+  const FrameFacts facts = solve(photographs, "robust", by_robust);
+  ASSERT_TRUE(facts.gloss && facts.gloss->lobe.is_measured());
+  EXPECT_NEAR(facts.gloss->lobe.lobe.alpha, 0.25, 0.01);
+  EXPECT_NEAR(facts.gloss->lobe.lobe.f0, 0.05, 0.0025);
+  EXPECT_EQ(facts.gloss->share, 1);
+  EXPECT_GT(glossy_share(by_robust), 0.99);
+  EXPECT_LT(mean_error_deg(by_robust), 0.3) << "by standard " << mean_error_deg(by_standard);
+  EXPECT_GT(mean_error_deg(by_standard), 1.5);
+}
+
+TEST(Gloss, OfDevelopedPhotographsLeavesEachChannelItsAlbedo) {
+  const Cloth cloth = {.normal = dented, .albedo = {0.3, 0.15, 0.05}, .lobe = kSilk};
+  WholeMaps maps(kSize);
+  const FrameFacts facts = solve(developed(kSize, cloth), "robust", maps);
+  ASSERT_TRUE(facts.gloss && facts.gloss->lobe.is_measured());
+  ASSERT_EQ(facts.gloss->share, 1);
+  for (int c = 0; c < 3; ++c) {
+    const double albedo = cloth.albedo[static_cast<std::size_t>(c)];
+    EXPECT_NEAR(maps.albedo(100, 80, c), albedo, 0.02 * albedo) << "channel " << c;
+  }
+}
+
+TEST(Gloss, OfMattClothChangesNothing) {
+  const Photographs photographs = mosaics(kSize, {.normal = dented});
+  WholeMaps maps(kSize);
+  const FrameFacts facts = solve(photographs, "robust", maps);
+  ASSERT_TRUE(facts.gloss);
+  EXPECT_EQ(facts.gloss->lobe.refusal, solver::LobeRefusal::kLambertFits);
+  EXPECT_EQ(facts.gloss->share, 0);
+  EXPECT_EQ(glossy_share(maps), 0);
+}
+
+}  // namespace
+}  // namespace weft::pipeline
