@@ -2,6 +2,7 @@
 #include "solver/reflectance/lobe.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
@@ -77,13 +78,6 @@ std::array<Vec3, 2> tangents(Vec3 n) {
 
 const char* name_of(LobeFamily family) {
   return kFamilyNames[static_cast<std::size_t>(family)];
-}
-
-std::optional<LobeFamily> lobe_family(std::string_view name) {
-  for (std::size_t i = 0; i < kFamilyNames.size(); ++i) {
-    if (name == kFamilyNames[i]) return static_cast<LobeFamily>(i);
-  }
-  return {};
 }
 
 LitFrom::LitFrom(Vec3 to_light, Vec3 to_camera)

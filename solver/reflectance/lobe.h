@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
-#include <optional>
-#include <string_view>
-
 #include "core/vec.h"
 
 // How a cloth reflects a small light, as photographs show it. The simulator has models of its own
@@ -20,7 +16,6 @@ enum class LobeFamily {
   kCloth,           ///< Ashikhmin and Premoze 2007, normed as seed 000 eq. 22 and 23
 };
 const char* name_of(LobeFamily family);
-std::optional<LobeFamily> lobe_family(std::string_view name);
 
 /// What the pixels of one material share. A reading over its strength is
 ///

@@ -299,7 +299,11 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
     return &family.fit != straight && family.fit.total() < (1 + kUndecided) * straight->total() &&
            refusal_of(family.fit, lambert_chi2) == LobeRefusal::kNone;
   });
-  measured.fit = Trial(samples, start, threads).refined(best.lobe);
+  LobeFit refined = Trial(samples, start, threads).refined(best.lobe);
+  // What the trial pixels told may not hold for all.
+  measured.refusal = refusal_of(refined, lambert_chi2);
+  if (!measured.is_measured()) return measured;
+  measured.fit = std::move(refined);
   measured.lobe = measured.fit.lobe;
   write_sigmas(bends ? straight->lobe : bent.lobe, measured);
   measured.half_deg = half_angles(samples, measured.fit);

@@ -48,6 +48,19 @@ void PixelSystem::regularise() {
   for (const std::size_t diagonal : {0U, 3U, 5U}) a[diagonal] += little;
 }
 
+Vec3 PixelSystem::solved(Vec3 right) const {
+  // Cholesky's factor, row by row.
+  const double l00 = std::sqrt(a[0]), l10 = a[1] / l00, l20 = a[2] / l00;
+  const double l11 = std::sqrt(std::max(a[3] - l10 * l10, 1e-30)), l21 = (a[4] - l20 * l10) / l11;
+  const double l22 = std::sqrt(std::max(a[5] - l20 * l20 - l21 * l21, 1e-30));
+  const double y0 = right.x / l00, y1 = (right.y - l10 * y0) / l11;
+  const double z = (right.z - l20 * y0 - l21 * y1) / (l22 * l22);
+  const double y = (y1 - l21 * z) / l11;
+  return {(y0 - l10 * y - l20 * z) / l00, y, z};
+}
+
+namespace {
+
 PixelSystem system_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, double yarn) {
   PixelSystem system;
   for (const LobeReading& r : readings) {
@@ -60,16 +73,7 @@ PixelSystem system_of(const Lobe& lobe, std::span<const LobeReading> readings, V
   return system;
 }
 
-Vec3 PixelSystem::solved(Vec3 right) const {
-  // Cholesky's factor, row by row.
-  const double l00 = std::sqrt(a[0]), l10 = a[1] / l00, l20 = a[2] / l00;
-  const double l11 = std::sqrt(std::max(a[3] - l10 * l10, 1e-30)), l21 = (a[4] - l20 * l10) / l11;
-  const double l22 = std::sqrt(std::max(a[5] - l20 * l20 - l21 * l21, 1e-30));
-  const double y0 = right.x / l00, y1 = (right.y - l10 * y0) / l11;
-  const double z = (right.z - l20 * y0 - l21 * y1) / (l22 * l22);
-  const double y = (y1 - l21 * z) / l11;
-  return {(y0 - l10 * y - l20 * z) / l00, y, z};
-}
+}  // namespace
 
 PixelFit fit_pixel(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 start, double yarn,
                    int steps) {

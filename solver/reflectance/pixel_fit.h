@@ -49,7 +49,6 @@ struct PixelSystem {
   void regularise();
   Vec3 solved(Vec3 right) const;
 };
-PixelSystem system_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, double yarn);
 
 /// Huber's weight over that of a square: 1 up to kHuberSigmas, then falling.
 double huber_weight(double residual_sigmas);
