@@ -25,7 +25,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Result<Json> body = app::parse_body(text);
   if (!body) return 0;
   const auto session = [](const std::string&) -> Result<std::filesystem::path> { return {rig + "/s.weft"}; };
-  const Result<app::JobSpec> spec = app::read_job_body(*body, {session, folder.path(), "north", ""});
+  const app::JobPlaces places{
+      .session = session, .folder = folder.path(), .rig = "north", .sessions = {}, .copy = {}};
+  const Result<app::JobSpec> spec = app::read_job_body(*body, places);
   if (!spec) return 0;
   // No argument leads out of the rig's folder.
   for (const std::string& argument : spec->arguments) {
