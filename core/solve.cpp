@@ -63,7 +63,7 @@ std::int64_t StatusCounts::with(StatusBit bit) const {
 Json json_of(const StatusCounts& counts) {
   Json json = Json::object();
   for (std::size_t i = 0; i < kStatusNames.size(); ++i) {
-    const bool is_said = kStatusNames[i].bit != kGlossy || counts.pixels[i] > 0;
+    const bool is_said = (kStatusNames[i].bit & kHowSolved) == 0 || counts.pixels[i] > 0;
     if (is_said) json[kStatusNames[i].name] = counts.pixels[i];
   }
   return json;

@@ -38,7 +38,7 @@ struct StatusCounts {
   std::int64_t with(StatusBit bit) const;
   friend bool operator==(const StatusCounts&, const StatusCounts&) = default;
 };
-/// {"SATURATED": 0, "SHADOWED": 21550, ...}; GLOSSY only where a pixel has it.
+/// {"SATURATED": 0, "SHADOWED": 21550, ...}; of kHowSolved only where a pixel has it.
 Json json_of(const StatusCounts& counts);
 
 /// Angles between the normals and those of a truth.

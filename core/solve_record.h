@@ -17,28 +17,32 @@ enum StatusBit : std::uint16_t {
   kNoSolution = 1 << 5,      ///< fewer than three readings, or light directions of rank below three
   kSpecular = 1 << 6,        ///< a reading over three times the Lambert prediction
   kInvalidReading = 1 << 7,
-  kGlossy = 1 << 8,  ///< solved with the lobe that its material shares
+  kGlossy = 1 << 8,      ///< solved with the lobe that its material shares
+  kYarnAcross = 1 << 9,  ///< such a pixel, whose yarn lies across the lobe's axis
 };
+/// These say how a pixel was solved and speak against nothing.
+inline constexpr unsigned kHowSolved = kGlossy | kYarnAcross;
 
 struct StatusName {
   StatusBit bit;
   const char* name;
 };
 
-inline constexpr std::array<StatusName, 9> kStatusNames = {{{kSaturated, "SATURATED"},
-                                                            {kShadowed, "SHADOWED"},
-                                                            {kZeroDof, "ZERO_DOF"},
-                                                            {kDark, "DARK"},
-                                                            {kIllConditioned, "ILL_CONDITIONED"},
-                                                            {kNoSolution, "NO_SOLUTION"},
-                                                            {kSpecular, "SPECULAR"},
-                                                            {kInvalidReading, "INVALID_READING"},
-                                                            {kGlossy, "GLOSSY"}}};
+inline constexpr std::array<StatusName, 10> kStatusNames = {{{kSaturated, "SATURATED"},
+                                                             {kShadowed, "SHADOWED"},
+                                                             {kZeroDof, "ZERO_DOF"},
+                                                             {kDark, "DARK"},
+                                                             {kIllConditioned, "ILL_CONDITIONED"},
+                                                             {kNoSolution, "NO_SOLUTION"},
+                                                             {kSpecular, "SPECULAR"},
+                                                             {kInvalidReading, "INVALID_READING"},
+                                                             {kGlossy, "GLOSSY"},
+                                                             {kYarnAcross, "YARN_ACROSS"}}};
 
 /// Light matrices with this condition number or more are flagged.
 inline constexpr double kIllConditionedFrom = 1e6;
 
 /// Raised whenever the bytes of an output may change.
-inline constexpr int kSolverVersion = 7;
+inline constexpr int kSolverVersion = 8;
 
 }  // namespace weft

@@ -115,6 +115,14 @@ Colour status_colour(std::size_t status) {
   return kNothingToSay;
 }
 
+// By azimuth, degrees: opposite directions have one colour, those at right angles the opposite one.
+Colour direction_colour(double azimuth_deg) {
+  const auto channel = [&](double at) {
+    return static_cast<float>(0.55 + 0.35 * std::cos(2 * radians(azimuth_deg) - radians(at)));
+  };
+  return {channel(20), channel(140), channel(260)};
+}
+
 std::string_view status_name(StatusBit bit) {
   for (const StatusName& each : kStatusNames) {
     if (each.bit == bit) return each.name;
@@ -216,6 +224,43 @@ Picture heat_picture(View<const float> values, double full_scale, std::string_vi
     return std::isfinite(t) ? heat_colour(t) : kMissing;
   });
   return stacked(map, scale_bar(map.width(), full_scale, unit, text_scale_for(map.width())));
+}
+
+Picture yarn_picture(const Image<float>& shares, std::optional<double> axis_deg) {
+  const Colour along = direction_colour(axis_deg.value_or(0)),
+               across = direction_colour(axis_deg.value_or(0) + 90);
+  const auto linear = [](Colour c) {
+    return Vec3{linear_from_srgb(c.r), linear_from_srgb(c.g), linear_from_srgb(c.b)};
+  };
+  const Picture map = picture_of(shares.size(), [&](int x, int y) {
+    const double glossy = shares(x, y, 0), weft = shares(x, y, 1);
+    const Vec3 mixed =
+        (1 - glossy) * linear(kNothingToSay) + (glossy - weft) * linear(along) + weft * linear(across);
+    return Colour{encoded(mixed.x), encoded(mixed.y), encoded(mixed.z)};
+  });
+  struct Entry {
+    Colour colour;
+    std::string says;
+  };
+  std::vector<Entry> entries;
+  if (axis_deg) {
+    entries = {{along, fmt::format("yarn at {:.0f}°", *axis_deg)},
+               {across, fmt::format("yarn at {:.0f}°", *axis_deg + 90)}};
+  } else {
+    entries = {{along, "lobe"}};
+  }
+  entries.push_back({kNothingToSay, "no lobe"});
+  const int scale = text_scale_for(map.width()), line = kGlyphHeight * scale, gap = line / 2 + 1;
+  int width = 0;
+  for (const Entry& each : entries) width += text_width(each.says, scale) + 2 * line + gap;
+  Picture legend = blank_picture({std::max(map.width(), width), 2 * gap + line});
+  int x = 0;
+  for (const Entry& each : entries) {
+    fill(legend, {x, gap, x + line, gap + line}, each.colour);
+    draw_text(legend, x + line + gap, gap, each.says, kInk, scale);
+    x += text_width(each.says, scale) + 2 * line + gap;
+  }
+  return stacked(map, legend);
 }
 
 StatusPreview::StatusPreview(Size size, int longest_side)

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -48,6 +49,11 @@ double round_full_scale(View<const float> values);
 /// Values from 0 to `full_scale` by `heat_colour`, above that its last colour, over a scale bar with `unit`.
 /// The picture is higher than the map by the bar, and not narrower than the bar's numbers.
 Picture heat_picture(View<const float> values, double full_scale, std::string_view unit = "°");
+
+/// Which pixels were solved with a lobe and where their yarns lie, by colour, over a legend. `shares`: of
+/// glossy pixels, and of those across the axis. `axis_deg`: azimuth of the warp; none where the lobe has no
+/// direction.
+Picture yarn_picture(const Image<float>& shares, std::optional<double> axis_deg);
 
 /// Counts what a status map says and shows it: each pixel in the colour of its gravest bit, averaged in
 /// linear light over squares as in Downsampler, over a legend with the share of pixels that have each bit.

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "app/jobs/gloss_maps.h"
 #include "core/text.h"
 #include "core/vec.h"
 #include "report/html.h"
@@ -39,9 +40,6 @@ const std::map<LobeRefusal, std::pair<const char*, const char*>> kReasons = {
     {LobeRefusal::kBentDiffuse,
      {"a diffuse part that departs from Lambert's law explains the readings as well",
       "a pair of scans with parallel and crossed polarisers, or a LED at 8 degrees from the camera"}}};
-
-// What a refused cloth is given in exports, marked as typed: f0 of cellulose, roughness of matt cloth.
-constexpr double kTypedF0 = 0.04, kTypedAlpha = 1;
 
 void add_lobe(const solver::Lobe& lobe, Json& into) {
   into["family"] = name_of(lobe.family);

@@ -461,12 +461,13 @@ Json report_document(const std::string& title, const SolveFacts& solve, const Ph
 }
 
 Result<void> write_report(const fs::path& folder, const Json& report) {
-  constexpr std::array<std::pair<const char*, const char*>, 5> kPreviews = {
+  constexpr std::array<std::pair<const char*, const char*>, 6> kPreviews = {
       {{"albedo.png", "albedo"},
        {"normal.png", "normal"},
        {"relit.png", "relit from the upper left"},
        {"error.png", "error against the truth"},
-       {"status_preview.png", "status"}}};
+       {"status_preview.png", "status"},
+       {"reflectance.png", "lobe and yarns"}}};
   std::vector<PagePicture> pictures;
   for (const auto& [name, label] : kPreviews) {
     if (!is_there(folder / name)) continue;

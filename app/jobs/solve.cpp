@@ -11,6 +11,7 @@
 
 #include "app/jobs/condition_map.h"
 #include "app/jobs/facts_json.h"
+#include "app/jobs/gloss_maps.h"
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/map_files.h"
 #include "app/jobs/pictures.h"
@@ -38,7 +39,7 @@ class StatusTally {
   void add(View<const std::uint16_t> status) {
     for (int y = 0; y < status.height(); ++y) {
       const std::uint16_t* row = status.row(y);
-      for (int x = 0; x < status.width(); ++x) ++seen_[row[x] & 0x1ff];
+      for (int x = 0; x < status.width(); ++x) ++seen_[row[x] % seen_.size()];
     }
   }
   StatusCounts counts() const {
@@ -52,7 +53,7 @@ class StatusTally {
   }
 
  private:
-  std::array<std::int64_t, 512> seen_ = {};
+  std::array<std::int64_t, std::size_t{1} << kStatusNames.size()> seen_ = {};
 };
 
 // All that the bytes of the maps depend on.
@@ -267,6 +268,11 @@ class Run {
     photographs_ = {};  // their memory is needed for nothing more
 
     if (Result<void> ok = files->finish(); !ok) return ok;
+    if (frame->gloss) {
+      const Result<void> written = write_gloss_maps(partial_.path(), *frame->gloss, facts_.albedo_scale,
+                                                    options_.compression, options_.previews);
+      if (!written) return written;
+    }
     seconds_.write = frame->waited_seconds + watch_.lap();
     return {};
   }
@@ -286,6 +292,7 @@ class Run {
                          error ? &*error : nullptr);
     if (!names) return std::move(names).error();
     facts_.pictures = std::move(*names);
+    if (is_there(partial_.path() / "reflectance.png")) facts_.pictures.emplace_back("reflectance.png");
     return {};
   }
 

@@ -99,10 +99,10 @@ class Glossy : public Method {
     if ((output.status(x, y) & kGlossy) == 0) return base_.reflected(input, output, x, y, light);
     std::vector<LobeReading> readings(input.field->count());
     LobeReader(input, sight_).read(x, y, readings);
-    const Vec3 n = normal_of(output, x, y);
-    const double yarn = yarn_of(albedo_of(input, output, x, y) * n, readings);
+    const double yarn = (output.status(x, y) & kYarnAcross) != 0 ? kPi / 2 : 0;
     const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
-    return modelled(lobe_, spoken * n, LitFrom(light, readings.front().from.view), yarn);
+    return modelled(lobe_, spoken * normal_of(output, x, y), LitFrom(light, readings.front().from.view),
+                    yarn);
   }
 
  private:
@@ -117,11 +117,6 @@ class Glossy : public Method {
     return albedo;
   }
   bool has_yarn() const { return lobe_.family == LobeFamily::kAnisotropicGgx; }
-
-  double yarn_of(Vec3 b, std::span<const LobeReading> readings) const {
-    if (!has_yarn()) return 0;
-    return cost_of(lobe_, readings, b, kPi / 2) < cost_of(lobe_, readings, b, 0) ? kPi / 2 : 0;
-  }
 
   static bool is_explained(const Group& group, std::size_t i) {
     return 2 * group.best.cost[i] < kTryOthersFrom * std::max(1, group.pixels[i].used - 3);
@@ -185,7 +180,8 @@ class Glossy : public Method {
     output.sigma_normal_deg(x, y) = static_cast<float>(std::min(sigma, double{kUnknownAngleDeg}));
     output.residual(x, y) = finite(group.best.residual[i] / rho);
     // What the lobe explains is no misfit any more.
-    output.status(x, y) = static_cast<std::uint16_t>((output.status(x, y) & ~kSpecular) | kGlossy);
+    const unsigned solved = group.best.yarn_y[i] > 0.5F ? kGlossy | kYarnAcross : kGlossy;
+    output.status(x, y) = static_cast<std::uint16_t>((output.status(x, y) & ~unsigned{kSpecular}) | solved);
     for (std::size_t p = 0; p < static_cast<std::size_t>(input.planes); ++p) {
       const double share = input.planes == 1 ? 1 : plane_share(input, group, i, b, x, y, p);
       output.albedo[p](x, y) = finite(rho * share);

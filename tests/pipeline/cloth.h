@@ -19,6 +19,7 @@ struct Cloth {
   std::function<Vec3(int x, int y)> normal = [](int, int) { return Vec3{0, 0, 1}; };
   std::array<double, 3> albedo = {0.5, 0.5, 0.5};
   solver::Lobe lobe = {};  ///< seen from straight above; Lambert's: matt
+  std::function<double(int x, int y)> yarn = [](int, int) { return 0.0; };  ///< from the lobe's axis, radians
 };
 
 /// Ten distant lights: four at 35 degrees from the zenith and six at 62. Each is as bright as `rgb`.

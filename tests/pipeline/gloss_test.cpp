@@ -71,6 +71,33 @@ TEST(Gloss, OfDevelopedPhotographsLeavesEachChannelItsAlbedo) {
   }
 }
 
+TEST(Gloss, OfCrossedYarnsSaysOfEachPixelWhichItIs) {
+  const auto is_weft = [](int x, int y) { return (x / 8 + y / 8) % 2 == 1; };
+  const Cloth cloth = {.normal = dented,
+                       .albedo = {0.1, 0.08, 0.06},
+                       .lobe = {.family = solver::LobeFamily::kAnisotropicGgx,
+                                .alpha = 0.4,
+                                .f0 = 0.05,
+                                .along = 0.35,
+                                .axis = radians(20)},
+                       .yarn = [&](int x, int y) { return is_weft(x, y) ? kPi / 2 : 0; }};
+  WholeMaps maps(kSize);
+  const FrameFacts facts = solve(mosaics(kSize, cloth), "robust", maps);
+  ASSERT_TRUE(facts.gloss && facts.gloss->lobe.is_measured());
+  // Which of the two is called warp is open: the axis says.
+  const double axis = degrees(facts.gloss->lobe.lobe.axis);
+  const bool is_turned = std::abs(std::remainder(axis - 110, 180)) < 45;
+  EXPECT_NEAR(std::remainder(axis - (is_turned ? 110 : 20), 180), 0, 1) << axis;
+  std::int64_t right = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const bool is_across = (maps.status(x, y) & kYarnAcross) != 0;
+      right += (is_across != is_turned) == is_weft(x, y) ? 1 : 0;
+    }
+  }
+  EXPECT_GT(static_cast<double>(right) / static_cast<double>(kSize.pixels()), 0.98);
+}
+
 TEST(Gloss, OfMattClothChangesNothing) {
   const Photographs photographs = mosaics(kSize, {.normal = dented});
   WholeMaps maps(kSize);

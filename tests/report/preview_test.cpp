@@ -219,5 +219,16 @@ TEST(StatusPreview, IsTheSameForAnyBands) {
   }
 }
 
+TEST(YarnPicture, HasAColourForEachDirectionAndGreyWhereNoLobeHolds) {
+  Image<float> shares({3, 1}, 2);
+  shares(1, 0, 0) = shares(2, 0, 0) = shares(2, 0, 1) = 1;  // no lobe, along the axis, across
+  const Picture turned_0 = yarn_picture(shares, 0), turned_90 = yarn_picture(shares, 90);
+  EXPECT_EQ(colour_at(turned_0, 0, 0), colour_at(turned_90, 0, 0));
+  EXPECT_NEAR(colour_at(turned_0, 1, 0).r, colour_at(turned_90, 2, 0).r, 1e-5);
+  EXPECT_NEAR(colour_at(turned_0, 2, 0).g, colour_at(turned_90, 1, 0).g, 1e-5);
+  EXPECT_GT(std::abs(colour_at(turned_0, 1, 0).r - colour_at(turned_0, 2, 0).r), 0.3);
+  EXPECT_GT(turned_0.height(), shares.height()) << "there is a legend";
+}
+
 }  // namespace
 }  // namespace weft::report

@@ -19,6 +19,7 @@ const std::vector<Layer>& known_layers() {
       {"sigma_model", LayerKind::kScalar, "deg", "sigma.exr", {"normal_deg.model"}, true},
       {"sigma_calibration", LayerKind::kScalar, "deg", "sigma.exr", {"normal_deg.calibration"}, true},
       {"residual", LayerKind::kScalar, "share", "residual.exr", {"residual"}, true},
+      {"roughness", LayerKind::kScalar, "", "roughness.exr", {"roughness"}},
       {"condition", LayerKind::kScalar, "decades", "condition.exr", {"condition"}},
       {"status", LayerKind::kFlags, "share", "status.png", {"Y"}}};
   return layers;

@@ -64,8 +64,7 @@ Image<float> shares_of(const Image<float>& bits) {
     for (int x = 0; x < bits.width(); ++x) {
       const auto status = static_cast<unsigned>(bits(x, y));
       for (int bit = 0; bit < kFlagBits; ++bit) shares(x, y, bit) = static_cast<float>((status >> bit) & 1U);
-      // That a lobe was used speaks for a pixel, not against it.
-      shares(x, y, kFlagBits) = (status & ~unsigned{kGlossy}) != 0 ? 1.0F : 0.0F;
+      shares(x, y, kFlagBits) = (status & ~kHowSolved) != 0 ? 1.0F : 0.0F;
     }
   }
   return shares;

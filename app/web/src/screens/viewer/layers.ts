@@ -22,6 +22,7 @@ export const LAYERS: readonly LayerChoice[] = [
   {name: 'status', says: 'Status', key: '6'},
   {name: 'height', says: 'Height', key: '7'},
   {name: 'condition', says: 'Condition', key: '8'},
+  {name: 'roughness', says: 'Roughness', key: '9'},
 ];
 /** Of two solves together. */
 export const DIFFERENCES: readonly LayerChoice[] = [
@@ -49,6 +50,7 @@ const explanations: Record<string, string> = {
   status: 'What was left out in a pixel, and what is to be known of it.',
   height: 'Height of the cloth.',
   condition: 'How much larger the lights that a pixel was solved from may make errors, in decades: at 3 a thousand times. At 16 they do not span three directions.',
+  roughness: 'Root of alpha, as games have it. 1 where no lobe was measured.',
   difference: 'Angle between the normals of the two.',
   albedo_difference: 'By how much the albedo is off, in percent of the other: mean of red, green and blue.',
 };
@@ -117,6 +119,7 @@ const colours: Record<string, Rgb> = {
   SPECULAR: [0.3, 0.9, 1],
   INVALID_READING: [1, 1, 1],
   GLOSSY: [0.2, 0.7, 0.45],
+  YARN_ACROSS: [0.9, 0.6, 0.8],
 };
 
 const meanings: Record<string, string> = {
@@ -129,6 +132,7 @@ const meanings: Record<string, string> = {
   SPECULAR: 'a reading far above what matt cloth sends',
   INVALID_READING: 'a reading is missing or not to be believed',
   GLOSSY: 'solved with the lobe of its cloth',
+  YARN_ACROSS: 'its yarn lies across the lobe',
 };
 
 export function bitColour(bit: string): Rgb {

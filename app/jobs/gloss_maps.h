@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "core/albedo_scale.h"
+#include "core/compression.h"
+#include "core/result.h"
+#include "pipeline/gloss.h"
+
+namespace weft::app {
+
+/// What artists are given where no lobe was measured, and it is called typed: f0 of cellulose, roughness of
+/// matt cloth.
+inline constexpr double kTypedF0 = 0.04, kTypedAlpha = 1;
+
+/// Writes what a measured lobe says by pixel, beside the status.png of `folder`, which tells where it holds:
+///   roughness.exr    roughness (the root of alpha; of two, of their geometric mean), alpha (across the
+///   yarn),
+///                    alpha_along, yarn_deg (azimuth from the x axis of the rig, 0 where there is none)
+///   specular.exr     f0, of an absolute albedo alone: that of a relative one has its unknown scale
+///   reflectance.png  where the lobe holds and how yarns lie; only if `previews`
+/// Pixels without GLOSSY have typed values. Nothing is written where no lobe was measured or none is used.
+/// Errors: of files; kTryAgain where memory is short.
+Result<void> write_gloss_maps(const std::filesystem::path& folder, const pipeline::GlossFacts& facts,
+                              AlbedoScale scale, Compression compression, bool previews);
+
+}  // namespace weft::app

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/gloss_maps.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "core/files.h"
+#include "core/image_io/image_io.h"
+#include "core/solve_record.h"
+#include "core/vec.h"
+#include "core/temporary_folder.h"
+
+namespace weft::app {
+namespace {
+
+// A pixel without a lobe, one with its yarn along the axis and one with it across.
+constexpr std::array<std::uint16_t, 3> kThree = {kShadowed, kGlossy, kGlossy | kYarnAcross | kSaturated};
+
+pipeline::GlossFacts satin() {
+  pipeline::GlossFacts facts;
+  facts.lobe.refusal = solver::LobeRefusal::kNone;
+  facts.lobe.lobe = {.family = solver::LobeFamily::kAnisotropicGgx,
+                     .alpha = 0.4,
+                     .f0 = 0.05,
+                     .along = 0.25,
+                     .axis = radians(120)};
+  facts.share = 1;
+  return facts;
+}
+
+class GlossMaps : public ::testing::Test {
+ protected:
+  GlossMaps() {
+    Image<std::uint16_t> status({3, 1});
+    for (int x = 0; x < 3; ++x) status(x, 0) = kThree[static_cast<std::size_t>(x)];
+    Result<ImageWriter> writer =
+        ImageWriter::open(folder_.path() / "status.png", {3, 1}, {"Y"}, {.type = SampleType::kUint16});
+    EXPECT_TRUE(writer && writer->write_rows(View<const std::uint16_t>(status.plane())) && writer->finish());
+  }
+
+  bool has(const char* file) const { return is_there(folder_.path() / file); }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(GlossMaps, HaveTheLobeWhereItWasUsedAndTypedValuesElsewhere) {
+  const Result<void> written =
+      write_gloss_maps(folder_.path(), satin(), AlbedoScale::kAbsolute, Compression::kNone, true);
+  ASSERT_TRUE(written) << written.error().message();
+  const Result<LoadedImage> roughness = read_image(folder_.path() / "roughness.exr");
+  ASSERT_TRUE(roughness) << roughness.error().message();
+  const Result<LoadedImage> specular = read_image(folder_.path() / "specular.exr");
+  ASSERT_TRUE(specular) << specular.error().message();
+  struct Pixel {
+    double roughness, alpha, along, yarn_deg, f0;
+  };
+  constexpr std::array<Pixel, 3> kExpected = {
+      {{1, 1, 1, 0, kTypedF0}, {0.447214, 0.4, 0.1, 120, 0.05}, {0.447214, 0.4, 0.1, 30, 0.05}}};
+  constexpr double kHalfFloat = 1.0 / 2048;
+  for (int x = 0; x < 3; ++x) {
+    const Pixel& pixel = kExpected[static_cast<std::size_t>(x)];
+    EXPECT_NEAR(roughness->channel("roughness")(x, 0), pixel.roughness, kHalfFloat) << x;
+    EXPECT_NEAR(roughness->channel("alpha")(x, 0), pixel.alpha, kHalfFloat) << x;
+    EXPECT_NEAR(roughness->channel("alpha_along")(x, 0), pixel.along, kHalfFloat) << x;
+    EXPECT_NEAR(roughness->channel("yarn_deg")(x, 0), pixel.yarn_deg, 180 * kHalfFloat) << x;
+    EXPECT_NEAR(specular->channel("f0")(x, 0), pixel.f0, 0.05 * kHalfFloat) << x;
+  }
+  EXPECT_TRUE(has("reflectance.png"));
+}
+
+TEST_F(GlossMaps, OfARelativeAlbedoSayNothingOfF0) {
+  ASSERT_TRUE(write_gloss_maps(folder_.path(), satin(), AlbedoScale::kRelative, Compression::kNone, false));
+  EXPECT_TRUE(has("roughness.exr"));
+  EXPECT_FALSE(has("specular.exr"));
+  EXPECT_FALSE(has("reflectance.png"));
+}
+
+TEST_F(GlossMaps, AreNotWrittenWhereNoLobeWasMeasuredOrUsed) {
+  pipeline::GlossFacts refused, unused = satin();
+  unused.share = 0;
+  for (const pipeline::GlossFacts& facts : {refused, unused}) {
+    ASSERT_TRUE(write_gloss_maps(folder_.path(), facts, AlbedoScale::kAbsolute, Compression::kNone, true));
+    EXPECT_FALSE(has("roughness.exr") || has("specular.exr") || has("reflectance.png"));
+  }
+}
+
+}  // namespace
+}  // namespace weft::app
