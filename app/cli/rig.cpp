@@ -15,6 +15,7 @@
 #include "app/cli/opened_devices.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
+#include "app/cli/rig_plan.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/server/api/scan_body.h"
@@ -290,6 +291,8 @@ Verb rig_verb() {
           {"status", "What board and camera say of themselves", add_rig_status},
           {"lights", "Light the LEDs one after another", add_rig_lights},
           {"shot", "Take one photograph that is not kept: what is clipped, and a picture", add_rig_shot},
+          {"plan", "What the LEDs tell of a cloth, and what one more, one moved or polarisers would",
+           add_rig_plan},
           {"framing", "What is in sight, how it is lit, and whether the table's tags are where they belong",
            add_rig_framing},
           {"test", "Photograph the table under each LED: is each where it should be?", add_rig_test}}};

@@ -243,6 +243,7 @@ const std::vector<Verb>& verbs() {
       {{"compare"}, {"degrees", "relative", "=normal"}},
       {{"bench", "solve"}, {"millions of pixels", "=4"}},
       {{"demo"}, {"millions of pixels", "=demo"}},
+      {{"rig", "plan"}, {"seconds a shot", "=satin", "degrees; default 20", "default 0.04", "$WEFT_RIG"}},
       {{"torture"}, {"=torture.weft", "may be there already"}}};
   return all;
 }

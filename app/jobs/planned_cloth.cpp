@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/planned_cloth.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "core/json_document.h"
+#include "core/vec.h"
+
+namespace weft::app {
+namespace {
+
+using solver::Lobe;
+using solver::LobeFamily;
+
+constexpr double kPlanRelief_deg = 20;
+// Every fifth float of a satin of five harnesses is weft.
+constexpr double kSatinWeft = 0.2;
+constexpr double kUnknownAlbedo = 0.3;
+
+Lobe satin_lobe(double alpha, double along) {
+  return {.family = LobeFamily::kAnisotropicGgx, .alpha = alpha, .f0 = 0.05, .along = along};
+}
+
+Lobe pile_lobe(double alpha, double f0) {
+  return {.family = LobeFamily::kCloth, .alpha = alpha, .f0 = f0};
+}
+
+NamedCloth cloth_by(std::string name, const Lobe& lobe, double albedo, double weft_share) {
+  return {std::move(name),
+          {.lobe = lobe, .albedo = albedo, .relief_deg = kPlanRelief_deg, .weft_share = weft_share}};
+}
+
+Error not_a_lobe(const std::filesystem::path& file, std::string why) {
+  return {ErrorKind::kBadData, "no lobe to plan for", file.string(), std::move(why),
+          "name a cloth with --cloth, or its roughness with --roughness and --f0"};
+}
+
+std::optional<LobeFamily> family_called(const std::string& name) {
+  for (const LobeFamily family :
+       {LobeFamily::kGgx, LobeFamily::kAnisotropicGgx, LobeFamily::kBeckmann, LobeFamily::kCloth}) {
+    if (name == name_of(family)) return family;
+  }
+  return {};
+}
+
+Result<Lobe> lobe_of(const Json& cluster, const std::filesystem::path& file, double albedo) {
+  JsonFields fields(cluster, file.string() + ": clusters");
+  const std::string name = fields.text("family");
+  const std::optional<LobeFamily> family = family_called(name);
+  Lobe lobe;
+  lobe.alpha = fields.number("alpha");
+  lobe.f0 = fields.has("f0") ? fields.number("f0") : albedo * fields.number("f0_over_albedo");
+  const double along = fields.optional_number("alpha_along").value_or(lobe.alpha);
+  lobe.axis = radians(fields.optional_number("axis_deg").value_or(0));
+  lobe.bend = fields.optional_number("bend").value_or(0);
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  if (!family) return not_a_lobe(file, "a lobe of the family \"" + name + "\" is not planned for");
+  if (!(lobe.alpha >= 0.02 && lobe.alpha <= 1 && along >= 0.001 && along <= 20 && lobe.f0 >= 0 &&
+        lobe.f0 <= 0.6))
+    return not_a_lobe(file, "its roughness or f0 is none that a cloth has");
+  lobe.family = *family;
+  lobe.along = along / lobe.alpha;
+  return lobe;
+}
+
+}  // namespace
+
+const std::vector<NamedCloth>& planned_cloths() {
+  static const std::vector<NamedCloth> cloths = {
+      cloth_by("cotton", {}, 0.57, 0), cloth_by("wool", pile_lobe(0.7, 0.046), 0.24, 0),
+      cloth_by("velvet", pile_lobe(0.3, 0.05), 0.012, 0),
+      cloth_by("satin", satin_lobe(0.45, 0.35), 0.4, kSatinWeft),
+      cloth_by("dark-satin", satin_lobe(0.35, 0.4), 0.06, kSatinWeft)};
+  return cloths;
+}
+
+Result<NamedCloth> cloth_of_reflectance(const std::filesystem::path& file, std::optional<double> albedo) {
+  Result<Json> document = read_json(file, "weft.reflectance", 1);
+  if (!document) return std::move(document).error();
+  JsonFields fields(*document, file.string());
+  const Json clusters = fields.list("clusters");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  const auto cluster = std::ranges::find_if(clusters, [](const Json& each) {
+    const auto seen = each.is_object() ? each.find("observable") : each.end();
+    return seen != each.end() && seen->is_boolean() && seen->get<bool>();
+  });
+  if (cluster == clusters.end()) return not_a_lobe(file, "the solve called nothing observable");
+  const double of_pixels = albedo.value_or(kUnknownAlbedo);
+  const Result<Lobe> lobe = lobe_of(*cluster, file, of_pixels);
+  if (!lobe) return lobe.error();
+  const auto share = cluster->find("weft_share");
+  const double weft = share != cluster->end() && share->is_number() ? share->get<double>() : 0;
+  return cloth_by(name_of(lobe->family), *lobe, of_pixels, weft);
+}
+
+}  // namespace weft::app
