@@ -104,6 +104,7 @@ TEST(CalibrateColor, FitsAPhotographUnderALampToOneSide) {
   EXPECT_LT(outcome->report.numbers["mean_held_out"].get<double>(), 0.5);
   EXPECT_GT(outcome->report.numbers["mean_before"].get<double>(), 4);
   EXPECT_NEAR(outcome->report.numbers["slope_of_light"].get<double>(), 0.08, 0.04);
+  EXPECT_EQ(outcome->report.numbers["sources"], Json::array({"chart.tif"})) << "not where it lay";
   const auto read = read_calibration(work / "new");
   ASSERT_TRUE(read) << read.error().message();
   for (const auto& row : read->color->rec709_from_camera) EXPECT_NEAR(row[0] + row[1] + row[2], 1, 1e-12);

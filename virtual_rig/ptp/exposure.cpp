@@ -183,6 +183,7 @@ void PtpBody::befall(PtpFault fault) {
       properties_.turn(kImageQuality, 4);
       properties_.turn_dial(true);
       cable_in_ = port_open_ = true;
+      claimed_until_ = {};
       set_power(true);
       break;
     case PtpFault::kExposureChanged:

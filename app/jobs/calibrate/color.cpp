@@ -10,6 +10,7 @@
 #include "app/jobs/calibrate/chart_pictures.h"
 #include "app/jobs/calibrate/color_report.h"
 #include "core/color_transform.h"
+#include "core/files.h"
 #include "core/suits.h"
 
 namespace weft::app {
@@ -343,7 +344,7 @@ Result<ReadCharts> read_charts(const CalibrateColorOptions& options, const Calib
     if (!chart) return std::move(chart).error();
     if (!picture->is_albedo) read.camera = picture->camera;
     color.slope_of_light = std::max(color.slope_of_light, chart->slope_of_light);
-    color.sources.push_back(file.string());
+    color.sources.push_back(absolute_folder(file).filename().string());
     (picture->is_albedo ? read.albedos : read.photographs).push_back(*chart);
     context.progress("read", static_cast<double>(color.sources.size()) / static_cast<double>(files->size()));
   }

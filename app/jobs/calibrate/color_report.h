@@ -13,9 +13,9 @@ namespace weft::app {
 
 /// What a colour calibration found.
 struct ColorMeasurement {
-  std::string reference;  ///< which values the chart was held against
-  std::vector<std::string> sources;
-  std::vector<int> patches;                       ///< those fitted, from 0
+  std::string reference;             ///< which values the chart was held against
+  std::vector<std::string> sources;  ///< names of the pictures: a calibration is the same wherever they lie
+  std::vector<int> patches;          ///< those fitted, from 0
   std::vector<calibration::ChartSample> samples;  ///< of the patches, without shading and scale
   calibration::ColorFit fit;
   std::vector<double> by_curve, curve_left_out;  ///< CIEDE2000 of each, where a curve was fitted

@@ -410,8 +410,9 @@ Result<CalibrationHistory> calibrate_history(const CalibrateHistoryOptions& opti
   report.title = fmt::format("History of {}", records.calibrations.back().calibration.subject.rig);
   report.sections.push_back(calibrations_section(records.calibrations, report.numbers));
   if (!records.checks.empty()) report.sections.push_back(checks_section(records.checks, report.numbers));
-  report.summary =
-      fmt::format("{} calibrations and {} checks", records.calibrations.size(), records.checks.size());
+  const std::size_t calibrations = records.calibrations.size(), checks = records.checks.size();
+  report.summary = fmt::format("{} calibration{} and {} check{}", calibrations, calibrations == 1 ? "" : "s",
+                               checks, checks == 1 ? "" : "s");
   if (!options.sessions.empty()) {
     if (Result<void> ok = find_affected(options.sessions, records, history); !ok)
       return std::move(ok).error();

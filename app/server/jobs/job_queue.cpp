@@ -54,6 +54,27 @@ Json printed(const fs::path& file) {
   return document.is_discarded() ? Json() : document;
 }
 
+/// What became of a job by how its process ended. What was finished before it could be stopped is done.
+void judge(JobStatus& job, Json result, bool is_cancelled, bool is_stopped) {
+  // A check that found something has an answer.
+  const bool is_answered = job.exit_code == kBadDataCode && job.error.is_null() && result.is_object();
+  if (job.exit_code == 0 || job.exit_code == kWarningsCode || is_answered) {
+    job.state = JobState::kDone;
+    job.result = std::move(result);
+  } else if (is_cancelled) {
+    job.state = JobState::kCancelled;
+  } else if (is_stopped) {
+    job.state = JobState::kQueued;
+  } else {
+    job.state = JobState::kFailed;
+    job.result = std::move(result);
+    if (!job.error.is_null()) return;
+    job.error = weft::json_of(Error{ErrorKind::kInternal, "job ended without a word", job.spec.kind,
+                                    fmt::format("exit code {}", job.exit_code.value_or(-1)),
+                                    "its memory limit may have ended it: try a cheaper level"});
+  }
+}
+
 }  // namespace
 
 Result<std::unique_ptr<JobQueue>> JobQueue::open(JobQueueOptions options) {
@@ -310,22 +331,7 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   running_.clear();
   job.is_held = false;
   job.left_s.reset();
-  if (std::exchange(is_cancelled_, false)) {
-    job.state = JobState::kCancelled;
-  } else if (stop.stop_requested()) {
-    job.state = JobState::kQueued;
-  } else {
-    job.result = printed(output);
-    // A check that found something has an answer.
-    const bool is_answered = job.exit_code == kBadDataCode && job.error.is_null() && job.result.is_object();
-    const bool is_done = job.exit_code == 0 || job.exit_code == kWarningsCode || is_answered;
-    job.state = is_done ? JobState::kDone : JobState::kFailed;
-    if (job.state == JobState::kFailed && job.error.is_null()) {
-      job.error = weft::json_of(Error{ErrorKind::kInternal, "job ended without a word", job.spec.kind,
-                                      fmt::format("exit code {}", job.exit_code.value_or(-1)),
-                                      "its memory limit may have ended it: try a cheaper level"});
-    }
-  }
+  judge(job, printed(output), std::exchange(is_cancelled_, false), stop.stop_requested());
   if (job.state != JobState::kQueued) job.ended = iso_time_now();
   (void)write(job);
   options_.changed(job);

@@ -56,7 +56,7 @@ TEST(CalibrationsOfARig, ScansAtOnceWithTheCalibrationThatWasAccepted) {
                           {"numbers", {{"cost_mean_deg", 0.5}, {"cost_worst_deg", 1}}}}));
   EXPECT_EQ(ask(port, "POST", "/api/v1/scan", R"({"fabric": "satin"})").json()["error"]["code"], "rig_moved");
   const Json history = ask(port, "GET", "/api/v1/calibrations/history").json();
-  EXPECT_EQ(history["summary"], "1 calibrations and 1 checks") << history;
+  EXPECT_EQ(history["summary"], "1 calibration and 1 check") << history;
 }
 
 TEST(CalibrationsOfARig, AcceptsNoCalibrationThatCannotBeTheRigs) {

@@ -135,6 +135,17 @@ TEST_F(UsbCamera, IsRefusedWhileAnotherProgramHasIt) {
   EXPECT_EQ(client.init_within(5), GP_OK);
 }
 
+TEST_F(UsbCamera, IsLetGoOfByAnotherProgramWhenAllIsWell) {
+  VirtualCameraOptions options = on_usb();
+  options.away_s = 3600;
+  Studio studio(options);
+  studio.inject("usb_claimed");
+  GphotoClient client(only_address());
+  ASSERT_EQ(client.init(), GP_ERROR_IO_USB_CLAIM);
+  studio.inject("well");
+  EXPECT_EQ(client.init(), GP_OK);
+}
+
 TEST_F(UsbCamera, IsGoneWhenItsCableIsPulled) {
   Studio studio(on_usb());
   studio.inject("usb_unplug", 2);

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
-import {until} from './support/rig.mjs';
+import {startRig, until} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
 const scanTakes_ms = 60_000;
@@ -13,8 +13,8 @@ before(async () => {
 });
 after(() => takeDown(browser, rig));
 
-async function atTheDesk(visitor) {
-  const page = await visitor.open(`${rig.address}/desk`);
+async function atTheDesk(visitor, {address} = rig) {
+  const page = await visitor.open(`${address}/desk`);
   await page.locator('#fabric:focus').waitFor();
   return page;
 }
@@ -168,6 +168,22 @@ test('levels are priced, and one of them is queued', async () => {
   await visitor.leave();
 });
 
+test("the day's scans stand in the library, relit", async () => {
+  await until(async () => (await rig.ask('jobs?limit=100')).jobs.every(({state}) => !['queued', 'running'].includes(state)));
+  const complete = (await rig.ask('sessions')).sessions.filter(({state}) => state === 'complete');
+  const visitor = await visit(browser, rig);
+  const page = await visitor.open(`${rig.address}/sessions`);
+  const [{name}] = complete;
+  const newest = page.locator('.session').filter({hasText: name});
+  await newest.getByText('1 solve').waitFor();
+  await page.waitForFunction((count) => {
+    const pictures = [...document.querySelectorAll('.session img')];
+    return pictures.length === count && pictures.every((one) => one.naturalWidth > 0);
+  }, complete.length);
+  await picture(page, 'library');
+  await visitor.leave();
+});
+
 test('from before the first exposure to the close of the last every tab is black and still', async () => {
   const visitor = await visit(browser, rig);
   const page = await atTheDesk(visitor);
@@ -220,9 +236,11 @@ test('a key at the dark page shows how things are for two seconds, and Escape an
   await visitor.leave();
 });
 
-test('live view asks for one picture at a time, and for none while its tab is hidden', async () => {
-  const visitor = await visit(browser, rig);
-  const page = await atTheDesk(visitor);
+test('live view asks for one picture at a time, and for none while its tab is hidden', async (t) => {
+  const fine = await startRig({megapixels: 1});  // of fewer the tags are too coarse for a finder
+  t.after(() => fine.stop());
+  const visitor = await visit(browser, fine);
+  const page = await atTheDesk(visitor, fine);
   const asked = [];
   let atOnce = 0;
   let most = 0;
@@ -235,9 +253,10 @@ test('live view asks for one picture at a time, and for none while its tab is hi
   await page.keyboard.press('e');
   await page.getByRole('button', {name: 'Edges'}).and(page.locator('[aria-pressed=true]')).waitFor();
   await page.waitForFunction(() => document.querySelectorAll('.led.lit').length === 1);
+  await page.getByText(/4 of 4 tags in sight, 0\.\d mm from where they belong/).waitFor();
+  await picture(page, 'desk-live');
   assert.equal(most, 1);
   assert.deepEqual(await violations(page), []);
-  await picture(page, 'desk-live');
   await page.evaluate(() => {
     Object.defineProperty(document, 'hidden', {configurable: true, value: true});
     document.dispatchEvent(new Event('visibilitychange'));

@@ -100,6 +100,41 @@ test('the queue is the same in another browser: put first, cancelled, done again
   await Promise.all([ann.leave(), bob.leave()]);
 });
 
+/** How far a job is, as the page shows it. */
+async function shareShown(visitor, id) {
+  const page = await visitor.open(`${rig.address}/jobs`);
+  return Number(await page.getByRole('progressbar', {name: `Job ${id}`, exact: true}).getAttribute('value'));
+}
+
+test('another browser shows the share that the closed one showed, and a job that is cancelled while it runs leaves nothing', async () => {
+  const folder = path.join(rig.folder, 'scans', `${session}.weft`);
+  const entries = () => fs.readdirSync(folder, {recursive: true}).sort();
+  const before = entries();
+  const {id} = await rig.ask('jobs', {kind: 'solve', session, method: 'lts'});
+  const job = () => rig.ask(`jobs/${id}`);
+  await until(async () => { const {phase, share} = await job(); return phase === 'solve' && share > 0; });
+  await rig.inject('board unplug');
+  await rig.ask('scan', {fabric: 'holds the job', cloth_height_mm: 0.8});
+  await until(async () => (await job()).held);
+  const first = await visit(browser, rig);
+  const share = await shareShown(first, id);
+  await first.leave();
+  const second = await visit(browser, rig);
+  assert.equal(await shareShown(second, id), share);
+  assert.equal((await job()).share, share);
+  assert.ok(share > 0 && share < 1, `${share}`);
+
+  const [page] = second.context.pages();
+  await page.getByRole('button', {name: `Cancel ${id}`}).click();
+  await page.getByRole('button', {name: `Do ${id} again`}).waitFor();
+  assert.equal((await job()).state, 'cancelled');
+  assert.deepEqual(entries(), before, 'what a job leaves behind');
+  await second.leave();
+  await rig.ask('scan/cancel', {});
+  await rig.inject('board replug');
+  await until(async () => (await rig.ask('rig')).can.includes('scan'));
+});
+
 test('a scan that begins during a solve loses no photograph, and the solve stands still meanwhile', async () => {
   const before = await rig.ask(`sessions/${session}`);
   const {id} = await rig.ask('jobs', {kind: 'solve', session, method: 'lts'});

@@ -11,7 +11,7 @@ export function stateInWords(status: Status): string {
     case 'idle':
       return 'ready';
     case 'attended':
-      return 'ready, devices open';
+      return status.error ? 'stopped by a fault, devices open' : 'ready, devices open';
     case 'connecting':
       return 'looking for its devices';
     case 'paused':
@@ -38,7 +38,7 @@ export function stateInWords(status: Status): string {
 }
 
 export function verdictOf(status: Status): Verdict {
-  if (status.state === 'failed') return 'fault';
+  if (status.error) return 'fault';
   if (status.state === 'paused' || status.phase === 'recovering') return 'warning';
   return status.state === 'idle' || status.state === 'attended' ? 'fine' : 'busy';
 }

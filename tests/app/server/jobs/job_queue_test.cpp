@@ -213,6 +213,24 @@ TEST_F(Jobs, AreCancelledWhereverTheyAre) {
   EXPECT_EQ(queue_->retry("../../etc/passwd").error().kind, ErrorKind::kNoInput);
 }
 
+TEST_F(Jobs, ThatFinishBeforeTheyCouldBeStoppedAreDone) {
+  const std::string id =
+      add(std::string("trap 'echo {\\\"a\\\": 1}; exit 0' TERM; ") + kBegin + "while :; do sleep 0.05; done");
+  running(id);
+  ASSERT_TRUE(queue_->cancel(id));
+  EXPECT_EQ(ended(id).state, JobState::kDone);
+  EXPECT_EQ(queue_->find(id)->result["a"], 1);
+}
+
+TEST_F(Jobs, AreCancelledWhileTheyAreHeld) {
+  const std::string id = add(std::string("trap 'exit 130' TERM; ") + kBegin + "while :; do sleep 0.05; done");
+  running(id);
+  queue_->hold(true);
+  ASSERT_TRUE(queue_->cancel(id));
+  EXPECT_EQ(ended(id).state, JobState::kCancelled);
+  EXPECT_EQ(queue_->find(id)->exit_code, 130);
+}
+
 TEST_F(Jobs, StandStillWhileTheyAreHeld) {
   const std::string ticks = file("ticks").string();
   const std::string id = add(std::string(kBegin) + "while :; do echo . >> " + ticks + "; sleep 0.02; done");

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 import {describe, expect, test} from 'vitest';
-import {historyOf, noHistory, seriesOfCamera, seriesOfFluxes, seriesOfPlaces, type Series} from '../../../../app/web/src/screens/calibrate/history';
+import {historyOf, noHistory, seriesOfCamera, seriesOfFluxes, seriesOfPlaces, sideBySide, type Series} from '../../../../app/web/src/screens/calibrate/history';
 
 const document = {
-  title: 'History of north', summary: '2 calibrations and 1 checks', warnings: ['one says no time'],
+  title: 'History of north', summary: '2 calibrations and 1 check', warnings: ['one says no time'],
   numbers: {
     calibrations: [
       {measured: '2026-11-20T10:00:00Z', folder: 'calibrations/first-lights', id: 'a', leds: [{led: 1, position_mm: [100, 0, 600], flux_rgb: [1, 2, 1]}], camera_height_mm: 612.5, camera_tilt_deg: 0.4},
@@ -32,4 +32,9 @@ describe('the history of a rig', () => {
   });
 
   test('is empty where nothing was measured', () => expect(historyOf({summary: '', numbers: null})).toEqual(noHistory));
+});
+
+test('names of lines that end together stand side by side', () => {
+  const at = (text: string, y: number) => ({text, x: 5, y});
+  expect(sideBySide([at('1', 40), at('2', 12), at('3', 45), at('4', 22)])).toEqual([at('2', 12), at('4', 22), at('1 3', 40)]);
 });

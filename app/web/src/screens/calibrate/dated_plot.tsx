@@ -2,7 +2,7 @@
 import {Axes} from '../../ui/axes';
 import {linearScale} from '../../ui/plot_scale';
 import {digits} from '../../ui/say';
-import type {Dated, Series} from './history';
+import {sideBySide, type Dated, type Label, type Series} from './history';
 import type {CheckResult} from './walk';
 
 interface DatedPlotProps {
@@ -49,6 +49,9 @@ export function DatedPlot({title, unit, leastSpan, series, checks}: DatedPlotPro
               <Line key={each.name} series={each} unit={unit} x={(point) => placeX(since(point.time_ms))}
                 y={(point) => placeY(point.value)} />
             ))}
+            {namesOf(series, (point) => placeX(since(point.time_ms)), (point) => placeY(point.value)).map(({text, x, y}) => (
+              <text key={text} class="series" x={x + 6} y={y + 4}>{text}</text>
+            ))}
             {dated.map((check) => (
               <text key={check.folder} class={check.passed ? 'check' : 'check failed'} x={placeX(since(check.time_ms))}
                 y={checks_px} text-anchor="middle">
@@ -63,15 +66,21 @@ export function DatedPlot({title, unit, leastSpan, series, checks}: DatedPlotPro
   );
 }
 
+type Place = (point: Dated) => number;
+
+/** Each at the end of its line. */
+function namesOf(series: readonly Series[], x: Place, y: Place): Label[] {
+  return sideBySide(series.flatMap(({name, points}) => points.slice(-1).map((last) => ({text: name.replace('LED ', ''), x: x(last), y: y(last)}))));
+}
+
 interface LineProps {
   series: Series;
   unit: string;
-  x: (point: Dated) => number;
-  y: (point: Dated) => number;
+  x: Place;
+  y: Place;
 }
 
 function Line({series: {name, points}, unit, x, y}: LineProps) {
-  const last = points.at(-1);
   return (
     <g>
       <polyline class="line" points={points.map((point) => `${x(point)},${y(point)}`).join(' ')} />
@@ -80,7 +89,6 @@ function Line({series: {name, points}, unit, x, y}: LineProps) {
           <title>{`${name} ${digits(point.value, 4)} ${unit}`}</title>
         </circle>
       ))}
-      {last && name && <text class="series" x={x(last) + 6} y={y(last) + 4}>{name.replace('LED ', '')}</text>}
     </g>
   );
 }

@@ -126,3 +126,22 @@ function pointsOf(calibrations: readonly DatedCalibration[], valueOf: (each: Dat
     return value === null || Number.isNaN(time_ms) ? [] : [{time_ms, value}];
   });
 }
+
+export interface Label {
+  text: string;
+  x: number;
+  y: number;
+}
+
+const line_px = 10;
+
+/** Labels that would lie over each other stand side by side, where the highest of them is. */
+export function sideBySide(labels: readonly Label[]): Label[] {
+  const lines: Label[] = [];
+  for (const label of [...labels].sort((a, b) => a.y - b.y)) {
+    const above = lines.at(-1);
+    if (above && label.y - above.y < line_px) above.text += ` ${label.text}`;
+    else lines.push({...label});
+  }
+  return lines;
+}

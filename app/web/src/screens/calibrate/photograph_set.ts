@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A set of photographs as people read it: each one answered, what the frame was covered by, what is known by now.
 import type {Schemas} from '../../api/client';
-import {counted, digits} from '../../ui/say';
+import {counted} from '../../ui/say';
 import {fieldsOf, isFields, listIn, numberIn, textIn} from '../../ui/fields';
 
 export type PhotographSet = Schemas['PhotographSet'];
@@ -78,7 +78,7 @@ export function factsOf(photograph: Photograph): string[] {
   return [
     ...number('corners', (n) => counted(n, 'corner')),
     ...number('tags', (n) => counted(n, 'tag')),
-    ...number('tilt_deg', (n) => `tilted by ${digits(n)}°`),
+    ...number('tilt_deg', (n) => (n < 0.5 ? 'flat' : `tilted by ${Math.round(n)}°`)),
     ...number('photographs', (n) => counted(n, 'photograph')),
     ...[textIn(facts, 'note')].filter((note) => note !== ''),
   ];

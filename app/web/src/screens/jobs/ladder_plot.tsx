@@ -36,12 +36,19 @@ export function LadderPlot({levels, worthwhile, onChoose}: LadderPlotProps) {
     <figure class="ladder">
       <Axes title="Accuracy against time" x={x} y={y} height={360}>
         {(placeX, placeY) => {
-          const lanes = lanesOf(levels, (level) => placeX(level.seconds), nameWidth_px);
+          const xOf = (level: Level) => placeX(level.seconds);
+          const yOf = (level: Level) => placeY(level.predicted_deg);
+          const lanes = lanesOf(levels, xOf, nameWidth_px);
+          const namesFrom = (level: Level) => {
+            const lane = lanes.get(level) ?? 0;
+            const beside = levels.filter((other) => Math.abs(xOf(other) - xOf(level)) < nameWidth_px);
+            return lane === 0 ? yOf(level) : Math.min(...beside.map(yOf)) - lane_px * lane;
+          };
           return <>
             <polyline class="line" points={pointsOf(worthwhile, placeX, placeY)} />
             {levels.map((level) => (
-              <LevelPoint key={level.quality} level={level} x={placeX(level.seconds)} placeY={placeY}
-                lane={lanes.get(level) ?? 0} isWorthwhile={worthwhile.includes(level)} onChoose={onChoose} />
+              <LevelPoint key={level.quality} level={level} x={xOf(level)} placeY={placeY}
+                nameFrom={namesFrom(level)} isWorthwhile={worthwhile.includes(level)} onChoose={onChoose} />
             ))}
           </>;
         }}
@@ -63,13 +70,13 @@ interface LevelPointProps {
   level: Level;
   x: number;
   placeY: (value: number) => number;
-  /** How far its name is lifted over those beside it. */
-  lane: number;
+  /** Its name stands above this: at its point, or lifted over those beside it. */
+  nameFrom: number;
   isWorthwhile: boolean;
   onChoose: (quality: Quality) => void;
 }
 
-function LevelPoint({level, x, placeY, lane, isWorthwhile, onChoose}: LevelPointProps) {
+function LevelPoint({level, x, placeY, nameFrom, isWorthwhile, onChoose}: LevelPointProps) {
   const y = placeY(level.predicted_deg);
   const choose = () => onChoose(level.quality);
   const press = (event: KeyboardEvent) => {
@@ -85,8 +92,8 @@ function LevelPoint({level, x, placeY, lane, isWorthwhile, onChoose}: LevelPoint
       ))}
       <circle class="target" cx={x} cy={y} r={20} />
       <circle class={isWorthwhile ? 'dot' : 'dot idle'} cx={x} cy={y} r={6} />
-      {lane > 0 && <line class="leader" x1={x} x2={x} y1={y - 8} y2={y - 11 - lane_px * lane} />}
-      <text class="name" x={x} y={y - 13 - lane_px * lane} text-anchor="middle">{level.quality}</text>
+      {nameFrom < y && <line class="leader" x1={x} x2={x} y1={y - 8} y2={nameFrom - 11} />}
+      <text class="name" x={x} y={nameFrom - 13} text-anchor="middle">{level.quality}</text>
     </g>
   );
 }

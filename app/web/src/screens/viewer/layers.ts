@@ -120,6 +120,7 @@ const colours: Record<string, Rgb> = {
   INVALID_READING: [1, 1, 1],
   GLOSSY: [0.2, 0.7, 0.45],
   YARN_ACROSS: [0.9, 0.6, 0.8],
+  SECOND_LOBE: [0.55, 0.65, 0.1],
 };
 
 const meanings: Record<string, string> = {
@@ -133,6 +134,7 @@ const meanings: Record<string, string> = {
   INVALID_READING: 'a reading is missing or not to be believed',
   GLOSSY: 'solved with the lobe of its cloth',
   YARN_ACROSS: 'its yarn lies across the lobe',
+  SECOND_LOBE: 'of the second of two materials',
 };
 
 export function bitColour(bit: string): Rgb {

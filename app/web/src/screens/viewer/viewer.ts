@@ -95,13 +95,13 @@ export class Viewer {
 
   readonly range = computed<[number, number]>(() => this.sight.value.range ?? this.ownRange());
 
-  /** The bits over the picture; of the layer of status those that occur but GLOSSY and YARN_ACROSS, which are no faults, unless others are chosen. */
+  /** The bits over the picture; of the layer of status those that occur but those of lobes, which are no faults, unless others are chosen. */
   readonly bits = computed<readonly string[]>(() => {
     const {bits, layer} = this.sight.value;
     const maps = this.maps.value;
     if (bits || layer !== 'status' || !maps) return bits ?? [];
     const shares = this.whole.value && sharesOf(this.whole.value);
-    return shares ? bitsOf(maps.solve).filter((bit) => !/GLOSSY|YARN/.test(bit) && (shares[bit] ?? 0) > 0) : [];
+    return shares ? bitsOf(maps.solve).filter((bit) => !/GLOSSY|YARN|LOBE/.test(bit) && (shares[bit] ?? 0) > 0) : [];
   });
 
   readonly scene = computed<Scene | null>(() => {
