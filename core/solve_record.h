@@ -17,18 +17,19 @@ enum StatusBit : std::uint16_t {
   kNoSolution = 1 << 5,      ///< fewer than three readings, or light directions of rank below three
   kSpecular = 1 << 6,        ///< a reading over three times the Lambert prediction
   kInvalidReading = 1 << 7,
-  kGlossy = 1 << 8,      ///< solved with the lobe that its material shares
-  kYarnAcross = 1 << 9,  ///< such a pixel, whose yarn lies across the lobe's axis
+  kGlossy = 1 << 8,       ///< solved with the lobe that its material shares
+  kYarnAcross = 1 << 9,   ///< such a pixel, whose yarn lies across the lobe's axis
+  kSecondLobe = 1 << 10,  ///< such a pixel, of the second of two materials
 };
 /// These say how a pixel was solved and speak against nothing.
-inline constexpr unsigned kHowSolved = kGlossy | kYarnAcross;
+inline constexpr unsigned kHowSolved = kGlossy | kYarnAcross | kSecondLobe;
 
 struct StatusName {
   StatusBit bit;
   const char* name;
 };
 
-inline constexpr std::array<StatusName, 10> kStatusNames = {{{kSaturated, "SATURATED"},
+inline constexpr std::array<StatusName, 11> kStatusNames = {{{kSaturated, "SATURATED"},
                                                              {kShadowed, "SHADOWED"},
                                                              {kZeroDof, "ZERO_DOF"},
                                                              {kDark, "DARK"},
@@ -37,7 +38,8 @@ inline constexpr std::array<StatusName, 10> kStatusNames = {{{kSaturated, "SATUR
                                                              {kSpecular, "SPECULAR"},
                                                              {kInvalidReading, "INVALID_READING"},
                                                              {kGlossy, "GLOSSY"},
-                                                             {kYarnAcross, "YARN_ACROSS"}}};
+                                                             {kYarnAcross, "YARN_ACROSS"},
+                                                             {kSecondLobe, "SECOND_LOBE"}}};
 
 /// Light matrices with this condition number or more are flagged.
 inline constexpr double kIllConditionedFrom = 1e6;

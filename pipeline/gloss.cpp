@@ -14,12 +14,11 @@
 #include "pipeline/tile_reader.h"
 #include "solver/reflectance/glossy_method.h"
 #include "solver/sample_tiles.h"
+#include "solver/uncertainty/calibration_sigma.h"
 
 namespace weft::pipeline {
 namespace {
 
-// Fewer readings say little of a lobe once normal and albedo are taken from them.
-constexpr int kLeastReadings = 6;
 // A prime: pixel i times it meets every pixel once.
 constexpr std::size_t kFarApart = 2654435761U;
 
@@ -50,7 +49,7 @@ class Sampler {
       for (int x = 0; x < tile.width(); x += step_) {
         if (maps.status(x, y) & (kNoSolution | kDark)) continue;
         reader.read(x, y, readings);
-        if (solver::used_of(readings) < kLeastReadings) continue;
+        if (solver::used_of(readings) < solver::kLeastLobeReadings) continue;
         samples.readings.insert(samples.readings.end(), readings.begin(), readings.end());
         samples.start.push_back(static_cast<double>(maps.albedo(x, y)) *
                                 Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)});
@@ -84,6 +83,27 @@ class Sampler {
   std::vector<View<const float>> views_;
 };
 
+// What the calibration does not know of the lights, as the centre of the frame sees them.
+Result<void> add_calibration(const Photographs& photographs, std::vector<solver::MeasuredLobe>& lobes) {
+  if (!photographs.light_covariance) return {};
+  const Result<solver::CalibrationSigmas> sigmas =
+      solver::CalibrationSigmas::make(*photographs.field, photographs.size, photographs.leds,
+                                      *photographs.light_covariance, photographs.noise());
+  if (!sigmas) return sigmas.error();
+  const std::vector<double> covariance =
+      sigmas->light_errors_at(photographs.size.width / 2, photographs.size.height / 2);
+  for (solver::MeasuredLobe& lobe : lobes) {
+    if (lobe.is_measured()) solver::add_light_errors(covariance, lobe);
+  }
+  return {};
+}
+
+std::vector<solver::Lobe> lobes_of(const GlossFacts& facts) {
+  std::vector<solver::Lobe> lobes;
+  for (const solver::MeasuredLobe& measured : facts.lobes) lobes.push_back(measured.lobe);
+  return lobes;
+}
+
 }  // namespace
 
 solver::Sight sight_of(const Photographs& photographs) {
@@ -99,8 +119,9 @@ solver::Sight sight_of(const Photographs& photographs) {
   return solver::Sight(centre, photographs.field->cloth_height_mm());
 }
 
-Result<solver::MeasuredLobe> measure_gloss(const Photographs& photographs, const solver::Method& base,
-                                           LightCorrection* correction, int threads) {
+Result<std::vector<solver::MeasuredLobe>> measure_gloss(const Photographs& photographs,
+                                                        const solver::Method& base,
+                                                        LightCorrection* correction, int threads) {
   const std::vector<Rect> tiles = solver::sample_tiles(photographs.size);
   const int step = solver::sample_step(tiles, 4 * kGlossPixels);
   std::vector<Sampler> samplers;
@@ -132,17 +153,20 @@ Result<solver::MeasuredLobe> measure_gloss(const Photographs& photographs, const
     samples.add({all.readings.data() + pixel * photographs.count(), photographs.count()});
     start.push_back(all.start[pixel]);
   }
-  return solver::measure_lobe(samples, start, threads);
+  std::vector<solver::MeasuredLobe> lobes = solver::measure_materials(samples, start, threads);
+  if (Result<void> ok = add_calibration(photographs, lobes); !ok) return std::move(ok).error();
+  return lobes;
 }
 
 Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& base,
                           LightCorrection* correction, const JobContext& context) {
   Gloss gloss(sight_of(photographs));
-  Result<solver::MeasuredLobe> lobe = measure_gloss(photographs, base, correction, context.threads);
-  if (!lobe) return std::move(lobe).error();
-  gloss.facts.lobe = std::move(*lobe);
-  if (!gloss.facts.lobe.is_measured()) return gloss;
-  const auto glossy = solver::glossy_method(base, gloss.facts.lobe.lobe, gloss.sight_);
+  Result<std::vector<solver::MeasuredLobe>> lobes =
+      measure_gloss(photographs, base, correction, context.threads);
+  if (!lobes) return std::move(lobes).error();
+  gloss.facts.lobes = std::move(*lobes);
+  if (!gloss.facts.is_measured()) return gloss;
+  const auto glossy = solver::glossy_method(base, lobes_of(gloss.facts), gloss.sight_);
   Result<solver::BlockChoice> choice =
       choose_by_block(photographs, {.method = &base, .correction = correction},
                       {.method = glossy.get(), .correction = correction}, context);
@@ -154,7 +178,7 @@ Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& 
 
 const solver::Method& Gloss::over(const solver::Method& base) {
   if (!choice_) return base;
-  methods_.push_back(solver::glossy_method(base, facts.lobe.lobe, sight_));
+  methods_.push_back(solver::glossy_method(base, lobes_of(facts), sight_));
   methods_.push_back(solver::blended_method(base, *methods_.back(), *choice_));
   return *methods_.back();
 }

@@ -11,7 +11,7 @@
 #include "solver/left_out/block_choice.h"
 #include "solver/method.h"
 #include "solver/reflectance/lobe_readings.h"
-#include "solver/reflectance/measured_lobe.h"
+#include "solver/reflectance/materials.h"
 
 namespace weft::pipeline {
 
@@ -24,29 +24,32 @@ solver::Sight sight_of(const Photographs& photographs);
 /// drown.
 inline constexpr std::size_t kGlossPixels = 4000;
 
-/// The lobe that the pixels of the sample tiles (solver/sample_tiles.h) share, from where `base` solves them.
-/// They depend on the photographs alone, and on the correction that their readings go through, if there is
-/// one. Errors: of the correction.
-Result<solver::MeasuredLobe> measure_gloss(const Photographs& photographs, const solver::Method& base,
-                                           LightCorrection* correction, int threads);
+/// The lobes that the pixels of the sample tiles (solver/sample_tiles.h) share, one a material
+/// (solver/reflectance/materials.h), from where `base` solves them. They depend on the photographs alone, and
+/// on the correction that their readings go through, if there is one. Errors: of the correction.
+Result<std::vector<solver::MeasuredLobe>> measure_gloss(const Photographs& photographs,
+                                                        const solver::Method& base,
+                                                        LightCorrection* correction, int threads);
 
-/// What solving with a lobe came to.
+/// What solving with lobes came to.
 struct GlossFacts {
-  solver::MeasuredLobe lobe;
-  double share = 0;  ///< of the blocks of the frame that are solved with it
+  std::vector<solver::MeasuredLobe> lobes;  ///< one or two; of a refused one Lambert's law holds
+  double share = 0;                         ///< of the blocks of the frame that are solved with them
+
+  bool is_measured() const { return lobes.front().is_measured(); }
 };
 
-/// The lobe of a frame, if it shows one, and the blocks on which it predicts left-out light better than
+/// The lobes of a frame, if it shows any, and the blocks on which it predicts left-out light better than
 /// Lambert's law. The photographs must outlive it.
 class Gloss {
  public:
-  /// A lobe that is measured nowhere changes nothing.
+  /// Where none is measured nothing changes.
   static Result<Gloss> find(const Photographs& photographs, const solver::Method& base,
                             LightCorrection* correction, const JobContext& context);
 
   GlossFacts facts;
 
-  /// Solves with the lobe where it earns its place, elsewhere as `base`, which must outlive this, does.
+  /// Solves with the lobes where they earn their place, elsewhere as `base`, which must outlive this, does.
   const solver::Method& over(const solver::Method& base);
 
  private:

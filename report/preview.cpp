@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/solve_record.h"
@@ -226,39 +227,52 @@ Picture heat_picture(View<const float> values, double full_scale, std::string_vi
   return stacked(map, scale_bar(map.width(), full_scale, unit, text_scale_for(map.width())));
 }
 
-Picture yarn_picture(const Image<float>& shares, std::optional<double> axis_deg) {
-  const Colour along = direction_colour(axis_deg.value_or(0)),
-               across = direction_colour(axis_deg.value_or(0) + 90);
-  const auto linear = [](Colour c) {
-    return Vec3{linear_from_srgb(c.r), linear_from_srgb(c.g), linear_from_srgb(c.b)};
-  };
-  const Picture map = picture_of(shares.size(), [&](int x, int y) {
-    const double glossy = shares(x, y, 0), weft = shares(x, y, 1);
-    const Vec3 mixed =
-        (1 - glossy) * linear(kNothingToSay) + (glossy - weft) * linear(along) + weft * linear(across);
-    return Colour{encoded(mixed.x), encoded(mixed.y), encoded(mixed.z)};
-  });
+Picture lobe_picture(const Image<float>& shares, std::span<const LobeKey> keys) {
   struct Entry {
     Colour colour;
     std::string says;
   };
   std::vector<Entry> entries;
-  if (axis_deg) {
-    entries = {{along, fmt::format("yarn at {:.0f}°", *axis_deg)},
-               {across, fmt::format("yarn at {:.0f}°", *axis_deg + 90)}};
-  } else {
-    entries = {{along, "lobe"}};
+  for (const LobeKey& key : keys) {
+    const Colour c = direction_colour(key.azimuth_deg.value_or(0));
+    const float paler = key.is_second ? 0.5F : 0;
+    entries.push_back(
+        {{c.r + paler * (1 - c.r), c.g + paler * (1 - c.g), c.b + paler * (1 - c.b)}, key.says});
   }
   entries.push_back({kNothingToSay, "no lobe"});
+  const auto linear = [](Colour c) {
+    return Vec3{linear_from_srgb(c.r), linear_from_srgb(c.g), linear_from_srgb(c.b)};
+  };
+  const Picture map = picture_of(shares.size(), [&](int x, int y) {
+    double left = 1;
+    Vec3 mixed = {0, 0, 0};
+    for (std::size_t k = 0; k < keys.size(); ++k) {
+      const double share = shares(x, y, static_cast<int>(k));
+      left -= share;
+      mixed = mixed + share * linear(entries[k].colour);
+    }
+    mixed = mixed + left * linear(kNothingToSay);
+    return Colour{encoded(mixed.x), encoded(mixed.y), encoded(mixed.z)};
+  });
   const int scale = text_scale_for(map.width()), line = kGlyphHeight * scale, gap = line / 2 + 1;
-  int width = 0;
-  for (const Entry& each : entries) width += text_width(each.says, scale) + 2 * line + gap;
-  Picture legend = blank_picture({std::max(map.width(), width), 2 * gap + line});
-  int x = 0;
+  const auto width_of = [&](const Entry& entry) { return text_width(entry.says, scale) + 2 * line + gap; };
+  // As many in a row as the map is wide.
+  std::vector<std::pair<int, int>> places;
+  int x = 0, rows = 1, widest = map.width();
   for (const Entry& each : entries) {
-    fill(legend, {x, gap, x + line, gap + line}, each.colour);
-    draw_text(legend, x + line + gap, gap, each.says, kInk, scale);
-    x += text_width(each.says, scale) + 2 * line + gap;
+    if (x > 0 && x + width_of(each) > map.width()) {
+      x = 0;
+      ++rows;
+    }
+    places.emplace_back(x, gap + (rows - 1) * (line + gap));
+    x += width_of(each);
+    widest = std::max(widest, x);
+  }
+  Picture legend = blank_picture({widest, gap + rows * (line + gap)});
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const auto [left, top] = places[i];
+    fill(legend, {left, top, left + line, top + line}, entries[i].colour);
+    draw_text(legend, left + line + gap, top, entries[i].says, kInk, scale);
   }
   return stacked(map, legend);
 }

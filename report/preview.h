@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "core/image.h"
@@ -50,10 +51,15 @@ double round_full_scale(View<const float> values);
 /// The picture is higher than the map by the bar, and not narrower than the bar's numbers.
 Picture heat_picture(View<const float> values, double full_scale, std::string_view unit = "°");
 
-/// Which pixels were solved with a lobe and where their yarns lie, by colour, over a legend. `shares`: of
-/// glossy pixels, and of those across the axis. `axis_deg`: azimuth of the warp; none where the lobe has no
-/// direction.
-Picture yarn_picture(const Image<float>& shares, std::optional<double> axis_deg);
+/// A kind of pixel on a picture of lobes.
+struct LobeKey {
+  std::string says;
+  std::optional<double> azimuth_deg = {};  ///< of its yarn; none where its lobe has no direction
+  bool is_second = false;                  ///< of the second material: paler
+};
+/// Which pixels were solved with a lobe and where their yarns lie, by colour, over a legend. Plane k of
+/// `shares` is of pixels of key k; what is left has no lobe.
+Picture lobe_picture(const Image<float>& shares, std::span<const LobeKey> keys);
 
 /// Counts what a status map says and shows it: each pixel in the colour of its gravest bit, averaged in
 /// linear light over squares as in Downsampler, over a legend with the share of pixels that have each bit.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/jobs/facts_json.h"
+#include "app/jobs/reflectance.h"
 #include "core/files.h"
 #include "pipeline/cut.h"
 #include "pipeline/shifts.h"
@@ -105,6 +106,20 @@ std::string words_of(const Json& stages, const Json& gates) {
   return words;
 }
 
+// What looking for the cloth's lobe came to in the cut.
+std::string gloss_words(const Json& reflectance) {
+  if (reflectance.is_null()) return "";
+  const std::string words = reflectance_words(reflectance);
+  return words.empty()
+             ? fmt::format("gloss of the middle: no lobe ({})", reflectance.at("said").get<std::string>())
+             : "gloss of the middle: " + words;
+}
+
+void add_note(const std::string& words, LevelPrice& level) {
+  if (words.empty()) return;
+  level.note += (level.note.empty() ? "" : "; ") + words;
+}
+
 // The cheapest of the levels that are better than all others by less than they are worth.
 std::size_t best_of(const Ladder& ladder, const std::vector<std::size_t>& from_cheapest) {
   std::size_t best = from_cheapest.front();
@@ -143,6 +158,7 @@ Result<Ladder> price(const Photographs& photographs, double read, double prepare
   context.progress("explain", 0);
   Ladder ladder;
   std::string stages;
+  std::vector<std::string> gloss;
   const auto levels = std::ranges::count_if(
       solver::method_names(), [](const solver::MethodName& name) { return name.level.has_value(); });
   for (const solver::MethodName& level : solver::method_names()) {
@@ -154,6 +170,7 @@ Result<Ladder> price(const Photographs& photographs, double read, double prepare
     seconds.read = read;
     seconds.prepare = is_half ? 0 : prepare;
     ladder.levels.push_back({*level.level, cut->expected, seconds, ""});
+    gloss.push_back(gloss_words(cut->facts.reflectance));
     if (level.level == solver::Level::kReference) {
       ladder.gates = cut->facts.gates;
       stages = words_of(cut->facts.reference.at("stages"), ladder.gates);
@@ -162,8 +179,8 @@ Result<Ladder> price(const Photographs& photographs, double read, double prepare
     context.progress("explain", static_cast<double>(ladder.levels.size()) / static_cast<double>(levels));
   }
   add_notes(ladder);
-  std::string& note = ladder.levels.back().note;
-  note += (note.empty() ? "" : "; ") + stages;
+  add_note(stages, ladder.levels.back());
+  for (std::size_t i = 0; i < gloss.size(); ++i) add_note(gloss[i], ladder.levels[i]);
   return ladder;
 }
 

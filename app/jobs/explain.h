@@ -39,7 +39,7 @@ struct LevelPrice {
   solver::Level level = solver::Level::kStandard;
   ExpectedError error;
   LevelSeconds seconds;
-  std::string note;  ///< what there is to say of it: nothing to gain, gates; or empty
+  std::string note;  ///< what there is to say of it: nothing to gain, gates, the cloth's lobe; or empty
 
   std::string name() const { return solver::method_of(level).name; }
 };

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/gloss_maps.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -34,33 +37,63 @@ double of_half_turn(double deg) {
   return deg - 180 * std::floor(deg / 180);
 }
 
-// What pixels can have: no lobe, one with its yarn along the axis, one with it across.
-std::array<Values, 3> values_of(const solver::Lobe& lobe) {
-  const bool has_yarn = lobe.family == solver::LobeFamily::kAnisotropicGgx;
-  const double along = has_yarn ? lobe.alpha * lobe.along : lobe.alpha;
-  const double axis = has_yarn ? degrees(lobe.axis) : 0, across = has_yarn ? axis + 90 : 0;
-  return {values_of(kTypedAlpha, kTypedAlpha, 0, kTypedF0),
-          values_of(lobe.alpha, along, of_half_turn(axis), lobe.f0),
-          values_of(lobe.alpha, along, of_half_turn(across), lobe.f0)};
+bool has_yarn(const solver::Lobe& lobe) {
+  return lobe.family == solver::LobeFamily::kAnisotropicGgx;
 }
+
+// What a pixel can have: no lobe (kind 0), or one of two with its yarn along the axis or across.
+constexpr std::size_t kKinds = 5;
 
 std::size_t kind_of(unsigned status) {
   if ((status & kGlossy) == 0) return 0;
-  return (status & kYarnAcross) == 0 ? 1 : 2;
+  return ((status & kSecondLobe) != 0 ? 3U : 1U) + ((status & kYarnAcross) != 0 ? 1U : 0U);
 }
 
-Result<void> write_picture(const fs::path& file, const report::Downsampler& shares,
-                           const solver::Lobe& lobe) {
-  std::optional<double> axis_deg;
-  if (lobe.family == solver::LobeFamily::kAnisotropicGgx) axis_deg = of_half_turn(degrees(lobe.axis));
-  return write_png(file, report::yarn_picture(shares.averages(), axis_deg));
+std::array<Values, kKinds> values_of(const pipeline::GlossFacts& facts) {
+  std::array<Values, kKinds> values;
+  values.fill(values_of(kTypedAlpha, kTypedAlpha, 0, kTypedF0));
+  for (std::size_t l = 0; l < facts.lobes.size(); ++l) {
+    const solver::Lobe& lobe = facts.lobes[l].lobe;
+    if (!lobe.shines()) continue;
+    for (std::size_t across = 0; across < 2; ++across) {
+      const double yarn = has_yarn(lobe) ? degrees(lobe.axis) + (across > 0 ? 90 : 0) : 0;
+      values[1 + 2 * l + across] = values_of(
+          lobe.alpha, has_yarn(lobe) ? lobe.alpha * lobe.along : lobe.alpha, of_half_turn(yarn), lobe.f0);
+    }
+  }
+  return values;
+}
+
+// Each kind with a lobe as the picture has it.
+struct PictureKinds {
+  std::vector<report::LobeKey> keys;
+  std::vector<std::size_t> kinds;  // by key
+};
+
+PictureKinds picture_kinds(const pipeline::GlossFacts& facts) {
+  PictureKinds all;
+  for (std::size_t l = 0; l < facts.lobes.size(); ++l) {
+    const solver::Lobe& lobe = facts.lobes[l].lobe;
+    if (!lobe.shines()) continue;
+    const std::string which = facts.lobes.size() < 2 ? "" : l == 0 ? "first " : "second ";
+    for (std::size_t across = 0; across < (has_yarn(lobe) ? 2U : 1U); ++across) {
+      report::LobeKey key = {.says = which + "lobe", .is_second = l > 0};
+      if (has_yarn(lobe)) {
+        key.azimuth_deg = of_half_turn(degrees(lobe.axis) + (across > 0 ? 90 : 0));
+        key.says = fmt::format("{}yarn at {:.0f}°", which, *key.azimuth_deg);
+      }
+      all.keys.push_back(std::move(key));
+      all.kinds.push_back(1 + 2 * l + across);
+    }
+  }
+  return all;
 }
 
 }  // namespace
 
 Result<void> write_gloss_maps(const fs::path& folder, const pipeline::GlossFacts& facts, AlbedoScale scale,
                               Compression compression, bool previews) {
-  if (!facts.lobe.is_measured() || facts.share == 0) return {};
+  if (!facts.is_measured() || facts.share == 0) return {};
   const Result<LoadedImage> status = read_image(folder / "status.png");
   if (!status) return status.error();
   const Size size = status->info.size;
@@ -74,32 +107,36 @@ Result<void> write_gloss_maps(const fs::path& folder, const pipeline::GlossFacts
     if (!opened) return std::move(opened).error();
     specular.emplace(std::move(*opened));
   }
-  const std::array<Values, 3> values = values_of(facts.lobe.lobe);
-  report::Downsampler shares(size, 2);
-  Image<float> row({size.width, 1}, static_cast<int>(kValues)), share({size.width, 1}, 2);
+  const std::array<Values, kKinds> values = values_of(facts);
+  const PictureKinds pictured = picture_kinds(facts);
+  const int keys = static_cast<int>(pictured.keys.size());
+  report::Downsampler shares(size, keys);
+  Image<float> row({size.width, 1}, static_cast<int>(kValues)), share({size.width, 1}, keys);
   std::vector<View<const float>> planes;
   for (std::size_t p = 0; p < kValues; ++p) planes.emplace_back(row.plane(static_cast<int>(p)));
   const std::span<const View<const float>> all = planes;
+  std::vector<View<const float>> shown;
+  for (int k = 0; k < keys; ++k) shown.emplace_back(share.plane(k));
   for (int y = 0; y < size.height; ++y) {
     const float* levels = status->planes.plane(0).row(y);
     for (int x = 0; x < size.width; ++x) {
       const std::size_t kind = kind_of(static_cast<unsigned>(std::lround(65535 * levels[x])));
       for (std::size_t p = 0; p < kValues; ++p) row(x, 0, static_cast<int>(p)) = values[kind][p];
-      share(x, 0, 0) = kind > 0 ? 1.0F : 0.0F;
-      share(x, 0, 1) = kind > 1 ? 1.0F : 0.0F;
+      for (int k = 0; k < keys; ++k)
+        share(x, 0, k) = kind == pictured.kinds[static_cast<std::size_t>(k)] ? 1.0F : 0.0F;
     }
     if (Result<void> ok = roughness->write_rows(all.first(kRoughnessChannels)); !ok) return ok;
     if (specular) {
       if (Result<void> ok = specular->write_rows(all.subspan(kRoughnessChannels)); !ok) return ok;
     }
-    shares.add_rows(std::array{View<const float>(share.plane(0)), View<const float>(share.plane(1))});
+    shares.add_rows(shown);
   }
   if (Result<void> ok = roughness->finish(); !ok) return ok;
   if (specular) {
     if (Result<void> ok = specular->finish(); !ok) return ok;
   }
   if (!previews) return {};
-  return write_picture(folder / "reflectance.png", shares, facts.lobe.lobe);
+  return write_png(folder / "reflectance.png", report::lobe_picture(shares.averages(), pictured.keys));
 }
 
 }  // namespace weft::app

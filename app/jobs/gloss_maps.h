@@ -19,7 +19,7 @@ inline constexpr double kTypedF0 = 0.04, kTypedAlpha = 1;
 ///   yarn),
 ///                    alpha_along, yarn_deg (azimuth from the x axis of the rig, 0 where there is none)
 ///   specular.exr     f0, of an absolute albedo alone: that of a relative one has its unknown scale
-///   reflectance.png  where the lobe holds and how yarns lie; only if `previews`
+///   reflectance.png  where which lobe holds and how yarns lie; only if `previews`
 /// Pixels without GLOSSY have typed values. Nothing is written where no lobe was measured or none is used.
 /// Errors: of files; kTryAgain where memory is short.
 Result<void> write_gloss_maps(const std::filesystem::path& folder, const pipeline::GlossFacts& facts,

@@ -39,7 +39,12 @@ const std::map<LobeRefusal, std::pair<const char*, const char*>> kReasons = {
       "a pair of scans with parallel and crossed polarisers shows the lobe alone"}},
     {LobeRefusal::kBentDiffuse,
      {"a diffuse part that departs from Lambert's law explains the readings as well",
-      "a pair of scans with parallel and crossed polarisers, or a LED at 8 degrees from the camera"}}};
+      "a pair of scans with parallel and crossed polarisers, or a LED at 8 degrees from the camera"}},
+    {LobeRefusal::kTooNarrow,
+     {"the lobe is narrower than what is fitted", "a LED at 8 degrees from the camera, or a softer light"}},
+    {LobeRefusal::kUncertain,
+     {"lobes of other roughness or strength explain the readings as well",
+      "a LED at 8 degrees from the camera, or a second scan of the cloth tilted by 20 degrees"}}};
 
 void add_lobe(const solver::Lobe& lobe, Json& into) {
   into["family"] = name_of(lobe.family);
@@ -92,10 +97,7 @@ Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
   return cluster;
 }
 
-}  // namespace
-
-Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) {
-  const MeasuredLobe& lobe = facts.lobe;
+Json cluster_of(const MeasuredLobe& lobe, AlbedoScale scale) {
   Json cluster;
   if (lobe.is_measured()) {
     cluster = measured_cluster(lobe, scale);
@@ -108,38 +110,25 @@ Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) 
   }
   cluster["said"] = name_of(lobe.refusal);
   cluster["candidates"] = candidates_of(lobe);
-  return {{"schema", "weft.reflectance/1"},
-          {"albedo_scale", name_of(scale)},
-          {"share", facts.share},
-          {"clusters", Json::array({std::move(cluster)})}};
+  return cluster;
 }
 
-Json reflectance_summary(const Json& document) {
-  const Json& cluster = document["clusters"][0];
-  Json summary = {{"said", cluster["said"]}, {"share", document["share"]}};
-  for (const char* key : {"family", "alpha", "alpha_along", "f0", "f0_over_albedo"}) {
-    if (cluster.contains(key)) summary[key] = cluster[key];
-  }
-  return summary;
+std::string lobe_words(const Json& cluster) {
+  if (!cluster.contains("family")) return "no lobe";
+  std::string words = fmt::format("{}, roughness {:.3f}", cluster["family"].get<std::string>(),
+                                  cluster["alpha"].get<double>());
+  if (cluster.contains("alpha_along"))
+    words += fmt::format(" across the yarn and {:.3f} along it", cluster["alpha_along"].get<double>());
+  if (cluster.contains("f0")) words += fmt::format(", f0 {:.3f}", cluster["f0"].get<double>());
+  return words;
 }
 
-std::string reflectance_words(const Json& summary) {
-  if (!summary.contains("family")) return "";
-  std::string words = fmt::format("{}, roughness {:.3f}", summary["family"].get<std::string>(),
-                                  summary["alpha"].get<double>());
-  if (summary.contains("alpha_along"))
-    words += fmt::format(" across the yarn and {:.3f} along it", summary["alpha_along"].get<double>());
-  if (summary.contains("f0")) words += fmt::format(", f0 {:.3f}", summary["f0"].get<double>());
-  return words +
-         fmt::format("; solved with it: {:.0f} percent of the frame", 100 * summary["share"].get<double>());
-}
-
-std::string reflectance_section(const Json& document) {
-  const Json& cluster = document["clusters"][0];
+// Its lobe over its readings, or why there is none.
+std::string cluster_section(const Json& cluster) {
   if (!cluster["observable"].get<bool>()) {
-    return report::html_section("Gloss", fmt::format("<p>Not observable: {}. To do: {}.</p>\n",
-                                                     escape_markup(cluster["why"].get<std::string>()),
-                                                     escape_markup(cluster["remedy"].get<std::string>())));
+    return fmt::format("<p>Not observable: {}. To do: {}.</p>\n",
+                       escape_markup(cluster["why"].get<std::string>()),
+                       escape_markup(cluster["remedy"].get<std::string>()));
   }
   report::PlotSeries readings = {.name = "readings"},
                      lobe = {.name = "lobe", .joined = true, .marked = false};
@@ -148,12 +137,51 @@ std::string reflectance_section(const Json& document) {
     lobe.points.push_back({point[0].get<double>(), point[2].get<double>()});
   }
   std::ranges::sort(lobe.points, {}, &report::PlotPoint::x);
-  const report::Plot plot = {.x_label = "normal to half-vector, degrees",
-                             .y_label = "over the lobe's peak",
-                             .series = {std::move(readings), std::move(lobe)}};
-  return report::html_section(
-      "Gloss", fmt::format("<p>{}.</p>\n{}", escape_markup(reflectance_words(reflectance_summary(document))),
-                           report::plot_svg(plot)));
+  return report::plot_svg({.x_label = "normal to half-vector, degrees",
+                           .y_label = "over the lobe's peak",
+                           .series = {std::move(readings), std::move(lobe)}});
+}
+
+}  // namespace
+
+Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) {
+  Json clusters = Json::array();
+  for (const MeasuredLobe& lobe : facts.lobes) clusters.push_back(cluster_of(lobe, scale));
+  return {{"schema", "weft.reflectance/1"},
+          {"albedo_scale", name_of(scale)},
+          {"share", facts.share},
+          {"clusters", std::move(clusters)}};
+}
+
+Json reflectance_summary(const Json& document) {
+  const auto summary_of = [](const Json& cluster) {
+    Json summary = {{"said", cluster["said"]}};
+    for (const char* key : {"family", "alpha", "alpha_along", "f0", "f0_over_albedo"}) {
+      if (cluster.contains(key)) summary[key] = cluster[key];
+    }
+    return summary;
+  };
+  const Json& clusters = document["clusters"];
+  Json summary = summary_of(clusters[0]);
+  summary["share"] = document["share"];
+  if (clusters.size() > 1) summary["second"] = summary_of(clusters[1]);
+  return summary;
+}
+
+std::string reflectance_words(const Json& summary) {
+  if (!summary.contains("family")) return "";
+  std::string words = lobe_words(summary);
+  if (summary.contains("second"))
+    words = fmt::format("two materials: {}; {}", words, lobe_words(summary["second"]));
+  return words +
+         fmt::format("; solved so: {:.0f} percent of the frame", 100 * summary["share"].get<double>());
+}
+
+std::string reflectance_section(const Json& document) {
+  const std::string words = reflectance_words(reflectance_summary(document));
+  std::string body = words.empty() ? "" : fmt::format("<p>{}.</p>\n", escape_markup(words));
+  for (const Json& cluster : document["clusters"]) body += cluster_section(cluster);
+  return report::html_section("Gloss", body);
 }
 
 }  // namespace weft::app

@@ -116,11 +116,11 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
 
   const pipeline::Photographs& photographs = bounded.patches.front().photographs;
   const auto base = solver::robust_method();
-  Result<solver::MeasuredLobe> measured = Error{};
+  Result<std::vector<solver::MeasuredLobe>> measured = Error{};
   const double fit_s =
       seconds_of([&] { measured = pipeline::measure_gloss(photographs, *base, nullptr, 1); });
   if (!measured) return std::move(measured).error();
-  const solver::MeasuredLobe& found = *measured;
+  const solver::MeasuredLobe& found = measured->front();
   const solver::Lobe& lobe = found.lobe;
   const bool has_yarn = lobe.family == solver::LobeFamily::kAnisotropicGgx;
   return Json{{"cloth", scene.name},

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "solver/in_double/pixelwise.h"
@@ -55,7 +57,8 @@ struct Group {
 
 class Glossy : public Method {
  public:
-  Glossy(const Method& base, const Lobe& lobe, Sight sight) : base_(base), lobe_(lobe), sight_(sight) {}
+  Glossy(const Method& base, std::vector<Lobe> lobes, Sight sight)
+      : base_(base), lobes_(std::move(lobes)), sight_(sight) {}
 
   void solve(const TileInput& input, const TileOutput& output) const override {
     base_.solve(input, output);
@@ -101,8 +104,8 @@ class Glossy : public Method {
     LobeReader(input, sight_).read(x, y, readings);
     const double yarn = (output.status(x, y) & kYarnAcross) != 0 ? kPi / 2 : 0;
     const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
-    return modelled(lobe_, spoken * normal_of(output, x, y), LitFrom(light, readings.front().from.view),
-                    yarn);
+    const Lobe& lobe = lobes_[(output.status(x, y) & kSecondLobe) != 0 ? 1 : 0];
+    return modelled(lobe, spoken * normal_of(output, x, y), LitFrom(light, readings.front().from.view), yarn);
   }
 
  private:
@@ -116,24 +119,26 @@ class Glossy : public Method {
     for (std::size_t p = 0; p < 3; ++p) albedo += input.plane_weights[p] * output.albedo[p](x, y);
     return albedo;
   }
-  bool has_yarn() const { return lobe_.family == LobeFamily::kAnisotropicGgx; }
-
   static bool is_explained(const Group& group, std::size_t i) {
     return 2 * group.best.cost[i] < kTryOthersFrom * std::max(1, group.pixels[i].used - 3);
   }
 
-  // The starts of all pixels, with both yarns; what costs less than the best so far takes its place.
+  // The starts of all pixels, by all lobes with both yarns; what costs less than the best so far takes its
+  // place.
   void try_starts(Group& group, std::span<const Vec3> starts, bool is_first) const {
-    for (const double yarn : {0.0, kPi / 2}) {
-      if (yarn > 0 && !has_yarn()) continue;
-      for (std::size_t i = 0; i < group.pixels.size(); ++i) group.block.start(i, starts[i], yarn);
-      fit_block(lobe_, group.block, kSteps);
-      if (is_first && yarn == 0) {
-        group.best = group.block;
-        continue;
-      }
-      for (std::size_t i = 0; i < group.pixels.size(); ++i) {
-        if (group.block.cost[i] < group.best.cost[i]) group.best.take(i, group.block);
+    for (std::size_t l = 0; l < lobes_.size(); ++l) {
+      group.block.lobe.fill(static_cast<std::uint8_t>(l));
+      for (const double yarn : {0.0, kPi / 2}) {
+        if (yarn > 0 && lobes_[l].family != LobeFamily::kAnisotropicGgx) continue;
+        for (std::size_t i = 0; i < group.pixels.size(); ++i) group.block.start(i, starts[i], yarn);
+        fit_block(lobes_[l], group.block, kSteps);
+        if (is_first && l == 0 && yarn == 0) {
+          group.best = group.block;
+          continue;
+        }
+        for (std::size_t i = 0; i < group.pixels.size(); ++i) {
+          if (group.block.cost[i] < group.best.cost[i]) group.best.take(i, group.block);
+        }
       }
     }
   }
@@ -156,7 +161,7 @@ class Glossy : public Method {
     for (std::size_t i = 0; i < group.pixels.size(); ++i) {
       const Vec3 b = group.best.b(i);
       const double rho = length(b);
-      if (!(rho > 0) || !std::isfinite(group.best.cost[i])) continue;
+      if (!(rho > 0) || !std::isfinite(group.best.cost[i]) || !lobe_of(group, i).shines()) continue;
       write_pixel(input, output, group, i, b);
     }
   }
@@ -180,7 +185,9 @@ class Glossy : public Method {
     output.sigma_normal_deg(x, y) = static_cast<float>(std::min(sigma, double{kUnknownAngleDeg}));
     output.residual(x, y) = finite(group.best.residual[i] / rho);
     // What the lobe explains is no misfit any more.
-    const unsigned solved = group.best.yarn_y[i] > 0.5F ? kGlossy | kYarnAcross : kGlossy;
+    unsigned solved = kGlossy;
+    if (group.best.yarn_y[i] > 0.5F) solved |= kYarnAcross;
+    if (group.best.lobe[i] > 0) solved |= kSecondLobe;
     output.status(x, y) = static_cast<std::uint16_t>((output.status(x, y) & ~unsigned{kSpecular}) | solved);
     for (std::size_t p = 0; p < static_cast<std::size_t>(input.planes); ++p) {
       const double share = input.planes == 1 ? 1 : plane_share(input, group, i, b, x, y, p);
@@ -193,6 +200,7 @@ class Glossy : public Method {
   // has the colour of the light, is taken off.
   double plane_share(const TileInput& input, const Group& group, std::size_t i, Vec3 b, int x, int y,
                      std::size_t plane) const {
+    const Lobe& lobe = lobe_of(group, i);
     const double yarn = std::atan2(group.best.yarn_y[i], group.best.yarn_x[i]);
     double of_plane = 0, of_all = 0;
     const auto readings = group.of(i);
@@ -203,23 +211,25 @@ class Glossy : public Method {
           input.field->at(k, static_cast<int>(plane), input.tile.x0 + x, input.tile.y0 + y).strength;
       const double reading = input.readings[3 * k + plane](x, y) / strength;
       const Vec3 n = normalized(b);
-      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(lobe_, n, r.from, yarn);
-      const double diffuse = modelled(lobe_, b, r.from, yarn) - shine;
+      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(lobe, n, r.from, yarn);
+      const double diffuse = modelled(lobe, b, r.from, yarn) - shine;
       of_plane += r.weight * diffuse * (reading - shine);
       of_all += r.weight * diffuse * diffuse;
     }
     return of_all > 0 ? std::max(0.0, of_plane / of_all) : 1;
   }
 
+  const Lobe& lobe_of(const Group& group, std::size_t i) const { return lobes_[group.best.lobe[i]]; }
+
   const Method& base_;
-  Lobe lobe_;
+  std::vector<Lobe> lobes_;
   Sight sight_;
 };
 
 }  // namespace
 
-std::unique_ptr<Method> glossy_method(const Method& base, const Lobe& lobe, Sight sight) {
-  return std::make_unique<Glossy>(base, lobe, sight);
+std::unique_ptr<Method> glossy_method(const Method& base, std::vector<Lobe> lobes, Sight sight) {
+  return std::make_unique<Glossy>(base, std::move(lobes), sight);
 }
 
 }  // namespace weft::solver

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <vector>
 
 #include "solver/method.h"
 #include "solver/reflectance/lobe.h"
@@ -9,11 +10,12 @@
 
 namespace weft::solver {
 
-/// `base`, and each pixel that it solves again with a lobe that is known: from where the base left it and,
-/// where that does not explain its readings, from other normals; the least cost is kept. Such a pixel has
-/// the bit GLOSSY, where its yarn lies across the axis YARN_ACROSS, and the bits of the base, but for
-/// SPECULAR. `base` must outlive it.
-std::unique_ptr<Method> glossy_method(const Method& base, const Lobe& lobe, Sight sight);
+/// `base`, and each pixel that it solves again with lobes that are known, whichever costs it least: from
+/// where the base left it and, where that does not explain its readings, from other normals. Such a pixel has
+/// the bit GLOSSY, by the second lobe SECOND_LOBE, where its yarn lies across the axis YARN_ACROSS, and the
+/// bits of the base, but for SPECULAR. Pixels that Lambert's law costs least, where it is among the lobes,
+/// stay as the base left them. At most two lobes. `base` must outlive it.
+std::unique_ptr<Method> glossy_method(const Method& base, std::vector<Lobe> lobes, Sight sight);
 
 /// A pixel's cost over the degrees of freedom of its readings, from which other normals are tried.
 inline constexpr double kTryOthersFrom = 2;

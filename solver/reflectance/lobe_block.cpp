@@ -261,6 +261,7 @@ void LobeBlock::take(std::size_t pixel, const LobeBlock& other) {
   copy(yarn_y, other.yarn_y);
   copy(cost, other.cost);
   copy(residual, other.residual);
+  lobe[pixel] = other.lobe[pixel];
   for (std::size_t i = 0; i < normal_matrix.size(); ++i) copy(normal_matrix[i], other.normal_matrix[i]);
 }
 

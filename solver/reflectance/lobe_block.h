@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -36,11 +37,12 @@ class LobeBlock {
   const std::vector<Light>& lights() const { return lights_; }
 
   Lanes3 view;
-  Lanes3 solved;                           ///< b
-  Lane yarn_x = {}, yarn_y = {};           ///< cosine and sine of the yarn's azimuth, from the lobe's axis
-  Lane cost = {};                          ///< as of fit_pixel
-  Lane residual = {};                      ///< rms of reading less model, over those with a weight
-  std::array<Lane, 6> normal_matrix = {};  ///< J^T W J at the solution: xx, xy, xz, yy, yz, zz
+  Lanes3 solved;                  ///< b
+  Lane yarn_x = {}, yarn_y = {};  ///< cosine and sine of the yarn's azimuth, from the lobe's axis
+  Lane cost = {};                 ///< as of fit_pixel
+  std::array<std::uint8_t, kPixels> lobe = {};  ///< by which of several; kept by take()
+  Lane residual = {};                           ///< rms of reading less model, over those with a weight
+  std::array<Lane, 6> normal_matrix = {};       ///< J^T W J at the solution: xx, xy, xz, yy, yz, zz
 
  private:
   std::vector<Light> lights_;

@@ -37,10 +37,6 @@ Lobe lobe_of(LobeFamily family, const Shared& v) {
           std::clamp(v[4], -0.5, 1.0)};
 }
 
-double step_of(std::size_t parameter) {
-  return parameter == static_cast<std::size_t>(LobeParameter::kF0) ? 1e-4 : 1e-3;
-}
-
 // The largest change of a round.
 constexpr std::array<double, kLobeParameters> kMostChange = {0.5, 0.1, 0.5, 0.35, 0.5};
 
@@ -55,13 +51,9 @@ void add_pixel(const LobeSamples& samples, const LobeFit& fit, const LobeParamet
                std::size_t pixel, Reduced& sums) {
   const Vec3 b = fit.b[pixel];
   const double yarn = fit.yarn[pixel];
-  const Shared here = values_of(fit.lobe);
-  std::array<Lobe, kLobeParameters> moved;
+  std::array<NudgedLobe, kLobeParameters> there;
   for (std::size_t p = 0; p < kLobeParameters; ++p) {
-    if (!fitted[p]) continue;
-    Shared there = here;
-    there[static_cast<Eigen::Index>(p)] += step_of(p);
-    moved[p] = lobe_of(fit.lobe.family, there);
+    if (fitted[p]) there[p] = nudged(fit.lobe, static_cast<LobeParameter>(p));
   }
   PixelSystem system;
   std::array<Vec3, kLobeParameters> mixed = {};
@@ -74,7 +66,7 @@ void add_pixel(const LobeSamples& samples, const LobeFit& fit, const LobeParamet
     Shared s = Shared::Zero();
     for (std::size_t p = 0; p < kLobeParameters; ++p) {
       if (!fitted[p]) continue;
-      const double slope = (modelled(moved[p], b, r.from, yarn) - m.x) / step_of(p);
+      const double slope = (modelled(there[p].lobe, b, r.from, yarn) - m.x) / there[p].by;
       s[static_cast<Eigen::Index>(p)] = slope;
       mixed[p] = mixed[p] + (w * slope) * m.by_b;
     }
@@ -236,6 +228,13 @@ LobeParameters parameters_of(LobeFamily family) {
   fitted[static_cast<std::size_t>(LobeParameter::kLogAlong)] = has_yarn;
   fitted[static_cast<std::size_t>(LobeParameter::kAxis)] = has_yarn;
   return fitted;
+}
+
+NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter) {
+  const double by = parameter == LobeParameter::kF0 ? 1e-4 : 1e-3;
+  Shared there = values_of(lobe);
+  there[static_cast<Eigen::Index>(parameter)] += by;
+  return {lobe_of(lobe.family, there), by};
 }
 
 double LobeFit::total() const {

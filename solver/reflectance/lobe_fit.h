@@ -47,6 +47,13 @@ using LobeParameters = std::array<bool, kLobeParameters>;  ///< which are fitted
 /// Those of a family: alpha and f0 where it has a lobe, `along` and `axis` where it has a yarn.
 LobeParameters parameters_of(LobeFamily family);
 
+/// A lobe with one of its values a little larger, and by how much: what slopes are taken from.
+struct NudgedLobe {
+  Lobe lobe;
+  double by = 0;
+};
+NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter);
+
 struct LobeFit {
   Lobe lobe;
   std::vector<Vec3> b;       ///< by pixel

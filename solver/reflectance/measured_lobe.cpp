@@ -13,8 +13,9 @@
 namespace weft::solver {
 namespace {
 
-constexpr std::array<const char*, 7> kRefusals = {
-    "measured", "too-few-pixels", "lambert-fits", "nothing-fits", "strength", "too-broad", "bent-diffuse"};
+constexpr std::array<const char*, 9> kRefusals = {"measured",     "too-few-pixels", "lambert-fits",
+                                                  "nothing-fits", "strength",       "too-broad",
+                                                  "bent-diffuse", "too-narrow",     "uncertain"};
 // Pixels of the sample that decide among starts.
 constexpr std::size_t kTrialPixels = 1000;
 constexpr std::array<double, 4> kStartAlphas = {0.08, 0.2, 0.45, 0.8};
@@ -179,25 +180,51 @@ LobeRefusal refusal_of(const LobeFit& fit, double lambert_chi2) {
   if (fit.chi2 > kLobeFitsTo && fit.chi2 > kLeastWon * lambert_chi2) return LobeRefusal::kNothingFits;
   if (!(fit.lobe.f0 > kLeastF0 && fit.lobe.f0 < kMostF0)) return LobeRefusal::kStrength;
   if (!(fit.lobe.alpha < kMostAlpha)) return LobeRefusal::kTooBroad;
+  if (!(fit.lobe.alpha * std::min(fit.lobe.along, 1.0) > kLeastAlpha)) return LobeRefusal::kTooNarrow;
   return LobeRefusal::kNone;
 }
 
-// `rival`: the same family with or without the bend, whichever was not taken.
-void write_sigmas(const Lobe& rival, MeasuredLobe& measured) {
+// Of a yarn, and not of GGX under another name.
+bool is_round(const Lobe& lobe) {
+  return lobe.family == LobeFamily::kAnisotropicGgx && lobe.along > kMostAlong && lobe.along < 1 / kMostAlong;
+}
+
+std::size_t pixels_with_enough(const LobeSamples& samples) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < samples.pixels(); ++i)
+    count += used_of(samples.of(i)) >= kLeastLobeReadings ? 1U : 0U;
+  return count;
+}
+
+// `rivals`: the same family with or without the bend, whichever was not taken, and other families that
+// explain the readings as well. Half of what they differ by is the least sigma.
+void write_sigmas(const std::vector<Lobe>& rivals, MeasuredLobe& measured) {
   const auto& c = measured.fit.covariance;
   const auto formal = [&](LobeParameter p) {
     const auto i = static_cast<std::size_t>(p);
     return std::sqrt(std::max(c[i][i], 0.0));
   };
   const Lobe& lobe = measured.lobe;
-  measured.sigma_alpha =
-      std::max(formal(LobeParameter::kLogAlpha), std::abs(std::log(lobe.alpha / rival.alpha)) / 2);
-  measured.sigma_f0 = std::max(formal(LobeParameter::kF0), std::abs(lobe.f0 - rival.f0) / 2);
-  measured.sigma_along =
-      std::max(formal(LobeParameter::kLogAlong), std::abs(std::log(lobe.along / rival.along)) / 2);
+  measured.sigma_alpha = formal(LobeParameter::kLogAlpha);
+  measured.sigma_f0 = formal(LobeParameter::kF0);
+  measured.sigma_along = formal(LobeParameter::kLogAlong);
   measured.sigma_axis = formal(LobeParameter::kAxis);
+  for (const Lobe& rival : rivals) {
+    measured.sigma_alpha = std::max(measured.sigma_alpha, std::abs(std::log(lobe.alpha / rival.alpha)) / 2);
+    measured.sigma_f0 = std::max(measured.sigma_f0, std::abs(lobe.f0 - rival.f0) / 2);
+    measured.sigma_along = std::max(measured.sigma_along, std::abs(std::log(lobe.along / rival.along)) / 2);
+  }
   const double product = formal(LobeParameter::kLogAlpha) * formal(LobeParameter::kF0);
   measured.correlation = product > 0 ? std::clamp(c[0][1] / product, -1.0, 1.0) : 0;
+}
+
+// A LED is hardly ever as bright as it was when it was calibrated.
+void add_drift(MeasuredLobe& measured) {
+  const std::size_t errors = measured.by_lights.errors();
+  std::vector<double> covariance(errors * errors, 0.0);
+  for (std::size_t i = 0; i < errors; i += LobeByLights::kErrors)
+    covariance[i * errors + i] = kLightDrift * kLightDrift;
+  add_light_errors(covariance, measured);
 }
 
 // Every so many-th reading that the lobe explains most of.
@@ -266,7 +293,7 @@ std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> reading
 
 MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads) {
   MeasuredLobe measured;
-  if (samples.pixels() < kLeastLobePixels) return measured;
+  if (pixels_with_enough(samples) < kLeastLobePixels) return measured;
   const LobeSamples few = samples.first(kTrialPixels);
   const Trial trial(few, {start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels())}, threads);
   const double lambert_chi2 = trial.lambert().chi2;
@@ -284,6 +311,7 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   const LobeFit* straight = &families.front().fit;
   for (const Family& family : families) {
     measured.candidates.push_back({family.fit.lobe, family.fit.chi2});
+    if (is_round(family.fit.lobe)) continue;
     if (family.fit.total() < (1 - family.wins) * ggx.total() && family.fit.total() < straight->total())
       straight = &family.fit;
   }
@@ -295,17 +323,32 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   if (measured.is_measured() && !bends && !agrees(best.lobe, bent.lobe))
     measured.refusal = LobeRefusal::kBentDiffuse;
   if (!measured.is_measured()) return measured;
-  measured.is_family_undecided = std::ranges::any_of(families, [&](const Family& family) {
-    return &family.fit != straight && family.fit.total() < (1 + kUndecided) * straight->total() &&
-           refusal_of(family.fit, lambert_chi2) == LobeRefusal::kNone;
-  });
+  std::vector<Lobe> rivals = {bends ? straight->lobe : bent.lobe};
+  for (const Family& family : families) {
+    if (&family.fit == straight || is_round(family.fit.lobe)) continue;
+    if (family.fit.total() < (1 + kUndecided) * straight->total() &&
+        refusal_of(family.fit, lambert_chi2) == LobeRefusal::kNone) {
+      measured.is_family_undecided = true;
+      rivals.push_back(family.fit.lobe);
+    }
+  }
   LobeFit refined = Trial(samples, start, threads).refined(best.lobe);
   // What the trial pixels told may not hold for all.
   measured.refusal = refusal_of(refined, lambert_chi2);
   if (!measured.is_measured()) return measured;
   measured.fit = std::move(refined);
   measured.lobe = measured.fit.lobe;
-  write_sigmas(bends ? straight->lobe : bent.lobe, measured);
+  write_sigmas(rivals, measured);
+  if (!(measured.sigma_alpha < kMostSigmaAlpha && measured.sigma_f0 < kMostSigmaF0 * measured.lobe.f0)) {
+    MeasuredLobe refused;
+    refused.refusal = LobeRefusal::kUncertain;
+    refused.candidates = std::move(measured.candidates);
+    return refused;
+  }
+  LobeParameters fitted = parameters_of(measured.lobe.family);
+  if (bends) fitted = with_bend(fitted);
+  measured.by_lights = LobeByLights(samples, measured.fit, fitted);
+  add_drift(measured);
   measured.half_deg = half_angles(samples, measured.fit);
   measured.points = points_of(samples, measured.fit);
   std::vector<double> albedos;
@@ -314,6 +357,16 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   const auto wefts = std::ranges::count_if(measured.fit.yarn, [](double yarn) { return yarn > 0; });
   measured.weft_share = static_cast<double>(wefts) / static_cast<double>(measured.fit.yarn.size());
   return measured;
+}
+
+void add_light_errors(std::span<const double> covariance, MeasuredLobe& measured) {
+  const auto widen = [&](double& sigma, LobeParameter parameter) {
+    sigma = std::hypot(sigma, measured.by_lights.sigma_of(parameter, covariance));
+  };
+  widen(measured.sigma_alpha, LobeParameter::kLogAlpha);
+  widen(measured.sigma_f0, LobeParameter::kF0);
+  widen(measured.sigma_along, LobeParameter::kLogAlong);
+  widen(measured.sigma_axis, LobeParameter::kAxis);
 }
 
 }  // namespace weft::solver

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "solver/reflectance/lobe_by_lights.h"
 #include "solver/reflectance/lobe_fit.h"
 
 namespace weft::solver {
@@ -13,12 +15,14 @@ namespace weft::solver {
 /// Why a lobe is not called measured.
 enum class LobeRefusal {
   kNone,
-  kTooFewPixels,  ///< fewer than kLeastLobePixels with three readings more than they have unknowns
+  kTooFewPixels,  ///< fewer than kLeastLobePixels with kLeastLobeReadings
   kLambertFits,   ///< nothing is left to explain by a lobe
   kNothingFits,   ///< no family explains the readings
   kStrength,      ///< f0 is none that a cloth has
   kTooBroad,      ///< as broad as shading itself
   kBentDiffuse,   ///< a diffuse part that departs from Lambert's law explains them as well
+  kTooNarrow,     ///< narrower than what is fitted
+  kUncertain,     ///< lobes of other roughness or strength explain the readings as well
 };
 const char* name_of(LobeRefusal refusal);
 
@@ -41,7 +45,9 @@ struct MeasuredLobe {
   LobeFit fit;  ///< of `lobe`; empty where it is refused
   double sigma_alpha = 0, sigma_f0 = 0, sigma_along = 0, sigma_axis = 0;  ///< alpha: relative; axis: radians
   double correlation = 0;                                                 ///< of log alpha and f0
-  bool is_family_undecided = false;  ///< another passes too and costs at most 5 percent more
+  LobeByLights by_lights;  ///< what errors of the lights make of `lobe`
+  /// Another family passes too and costs at most 5 percent more. Its values are in the sigmas.
+  bool is_family_undecided = false;
   std::vector<LobeCandidate> candidates;
   std::vector<LobePoint> points;        ///< at most kMostLobePoints, where they tell more than noise
   double weft_share = 0;                ///< pixels whose yarn lies across the axis
@@ -52,14 +58,22 @@ struct MeasuredLobe {
 };
 
 inline constexpr std::size_t kLeastLobePixels = 300;
+/// Fewer say little of a lobe once normal and albedo are taken from them.
+inline constexpr int kLeastLobeReadings = 6;
 inline constexpr std::size_t kMostLobePoints = 400;
 /// A Lambert fit up to this chi2 leaves nothing for a lobe.
 inline constexpr double kLambertFitsTo = 1.5;
 /// A lobe's chi2 is at most this, or at most kLeastWon of Lambert's.
 inline constexpr double kLobeFitsTo = 1.5, kLeastWon = 0.15;
-inline constexpr double kLeastF0 = 0.015, kMostF0 = 0.15, kMostAlpha = 0.85;
+inline constexpr double kLeastF0 = 0.015, kMostF0 = 0.15, kLeastAlpha = 0.025, kMostAlpha = 0.85;
+/// Sigmas of a measured lobe, as shares of alpha and f0, before those of the lights are added.
+inline constexpr double kMostSigmaAlpha = 0.2, kMostSigmaF0 = 0.25;
 /// With and without a bend of the diffuse part, alpha and f0 agree to this (f0: share of itself).
 inline constexpr double kAlphaAgrees = 0.05, kF0Agrees = 0.25;
+/// How much brighter or darker a LED may be than calibrated, a share: it counts in every sigma.
+inline constexpr double kLightDrift = 0.005;
+/// A yarn's lobe that is rounder than this is GGX.
+inline constexpr double kMostAlong = 0.9;
 /// What another family must cost less to be preferred to GGX: it has more to turn, or is rarer.
 inline constexpr double kOtherWins = 0.10, kYarnWins = 0.15, kBendWins = 0.10;
 
@@ -68,6 +82,9 @@ inline constexpr double kOtherWins = 0.10, kYarnWins = 0.15, kBendWins = 0.10;
 /// of dark cloth a pixel has two valleys, dark and mirroring or bright and tilted. Where Lambert's law fits
 /// no other is tried.
 MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads);
+
+/// Sigmas with those that errors of the lights make, whose covariance is in the order of LobeByLights.
+void add_light_errors(std::span<const double> covariance, MeasuredLobe& measured);
 
 /// Where else a pixel may begin: level with its darkest reading and with the median albedo, and facing where
 /// its brightest, its two and its three brightest lights are mirrored.

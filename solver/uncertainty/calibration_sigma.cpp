@@ -17,6 +17,8 @@ namespace {
 
 constexpr CalibrationSigma kUnknown = {180, 1};
 
+using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 Eigen::Vector3d eigen(Vec3 v) {
   return {v.x, v.y, v.z};
 }
@@ -152,13 +154,34 @@ CalibrationSigma CalibrationSigmas::at(int x, int y, int c, Vec3 normal, double 
     if (dot(v, v) == 0) continue;
     change.col(p) = -log_derivative(parameter, v, normal, x, y) / scale * (inverse * answer[parameter.light]);
   }
-  using Square = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const Eigen::Map<const Square> sigma(sigma_.data(), n, n);
   const Eigen::Matrix3d covariance = change * sigma * change.transpose();
   const double along = eigen(normal).dot(covariance * eigen(normal));
   const double across = covariance.trace() - along;
   return {std::min(degrees(std::sqrt(std::max(across, 0.0)) / rho), 180.0),
           std::sqrt(std::max(along, 0.0)) / rho};
+}
+
+std::vector<double> CalibrationSigmas::light_errors_at(int x, int y) const {
+  const auto& leds = std::get<NearLights>(field_->lights()).leds;
+  constexpr Eigen::Index kErrors = 4;
+  const auto n = static_cast<Eigen::Index>(parameters_.size()),
+             errors = kErrors * static_cast<Eigen::Index>(leds.size());
+  Square change = Square::Zero(errors, n);
+  for (Eigen::Index p = 0; p < n; ++p) {
+    const Parameter& parameter = parameters_[static_cast<std::size_t>(p)];
+    const Vec3 direction = field_->at(parameter.light, 0, x, y).direction;
+    const double distance = (leds[parameter.light].position_mm.z - field_->cloth_height_mm()) / direction.z;
+    const Eigen::Index first = kErrors * static_cast<Eigen::Index>(parameter.light);
+    // Of a surface that faces the light the cosine does not change.
+    change(first, p) = log_derivative(parameter, distance * direction, direction, x, y);
+    if (parameter.kind != Kind::kPosition) continue;
+    const Eigen::Vector3d l = eigen(direction);
+    change.block<3, 1>(first + 1, p) =
+        (Eigen::Vector3d::Unit(parameter.axis) - l[parameter.axis] * l) / distance;
+  }
+  const Square covariance = change * Eigen::Map<const Square>(sigma_.data(), n, n) * change.transpose();
+  return {covariance.data(), covariance.data() + covariance.size()};
 }
 
 }  // namespace weft::solver

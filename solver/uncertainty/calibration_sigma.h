@@ -44,6 +44,10 @@ class CalibrationSigmas {
   /// LEDs face it.
   CalibrationSigma at(int x, int y, int c, Vec3 normal, double albedo) const;
 
+  /// Covariance of what is wrong with each light as pixel (x, y) sees it: four a light, row by row, of the
+  /// logarithm of its strength and of x, y and z of its unit direction in the rig frame.
+  std::vector<double> light_errors_at(int x, int y) const;
+
  private:
   enum class Kind { kPosition, kAim, kMu, kLogFlux, kLogGain };
   struct Parameter {

@@ -22,9 +22,10 @@ Photographs unlit(Size size, const DistantLights& lights) {
 
 double reading_of(const Cloth& cloth, const DistantLight& light, int c, int x, int y) {
   const auto channel = static_cast<std::size_t>(c);
+  const solver::Lobe lobe = cloth.is_matt(x, y) ? solver::Lobe{} : cloth.lobe;
+  const solver::LitFrom from(light.direction, {0, 0, 1});
   return light.irradiance_rgb[channel] *
-         solver::modelled(cloth.lobe, cloth.albedo[channel] * cloth.normal(x, y),
-                          solver::LitFrom(light.direction, {0, 0, 1}), cloth.yarn(x, y));
+         solver::modelled(lobe, cloth.albedo[channel] * cloth.normal(x, y), from, cloth.yarn(x, y));
 }
 
 }  // namespace

@@ -50,9 +50,9 @@ TEST(Gloss, OfDarkClothIsFoundAndItsNormalsAreRight) {
   WholeMaps by_standard(kSize), by_robust(kSize);
   solve(photographs, "standard", by_standard);
   const FrameFacts facts = solve(photographs, "robust", by_robust);
-  ASSERT_TRUE(facts.gloss && facts.gloss->lobe.is_measured());
-  EXPECT_NEAR(facts.gloss->lobe.lobe.alpha, 0.25, 0.01);
-  EXPECT_NEAR(facts.gloss->lobe.lobe.f0, 0.05, 0.0025);
+  ASSERT_TRUE(facts.gloss && facts.gloss->is_measured());
+  EXPECT_NEAR(facts.gloss->lobes.front().lobe.alpha, 0.25, 0.01);
+  EXPECT_NEAR(facts.gloss->lobes.front().lobe.f0, 0.05, 0.0025);
   EXPECT_EQ(facts.gloss->share, 1);
   EXPECT_GT(glossy_share(by_robust), 0.99);
   EXPECT_LT(mean_error_deg(by_robust), 0.3) << "by standard " << mean_error_deg(by_standard);
@@ -63,7 +63,7 @@ TEST(Gloss, OfDevelopedPhotographsLeavesEachChannelItsAlbedo) {
   const Cloth cloth = {.normal = dented, .albedo = {0.3, 0.15, 0.05}, .lobe = kSilk};
   WholeMaps maps(kSize);
   const FrameFacts facts = solve(developed(kSize, cloth), "robust", maps);
-  ASSERT_TRUE(facts.gloss && facts.gloss->lobe.is_measured());
+  ASSERT_TRUE(facts.gloss && facts.gloss->is_measured());
   ASSERT_EQ(facts.gloss->share, 1);
   for (int c = 0; c < 3; ++c) {
     const double albedo = cloth.albedo[static_cast<std::size_t>(c)];
@@ -83,9 +83,9 @@ TEST(Gloss, OfCrossedYarnsSaysOfEachPixelWhichItIs) {
                        .yarn = [&](int x, int y) { return is_weft(x, y) ? kPi / 2 : 0; }};
   WholeMaps maps(kSize);
   const FrameFacts facts = solve(mosaics(kSize, cloth), "robust", maps);
-  ASSERT_TRUE(facts.gloss && facts.gloss->lobe.is_measured());
+  ASSERT_TRUE(facts.gloss && facts.gloss->is_measured());
   // Which of the two is called warp is open: the axis says.
-  const double axis = degrees(facts.gloss->lobe.lobe.axis);
+  const double axis = degrees(facts.gloss->lobes.front().lobe.axis);
   const bool is_turned = std::abs(std::remainder(axis - 110, 180)) < 45;
   EXPECT_NEAR(std::remainder(axis - (is_turned ? 110 : 20), 180), 0, 1) << axis;
   std::int64_t right = 0;
@@ -98,12 +98,32 @@ TEST(Gloss, OfCrossedYarnsSaysOfEachPixelWhichItIs) {
   EXPECT_GT(static_cast<double>(right) / static_cast<double>(kSize.pixels()), 0.98);
 }
 
+TEST(Gloss, OfAPrintOnMattClothIsUsedWhereThePrintIs) {
+  const auto is_matt = [](int x, int y) { return (x / 24 + y / 24) % 2 == 1; };
+  const Cloth cloth = {.normal = dented, .albedo = {0.1, 0.08, 0.06}, .lobe = kSilk, .is_matt = is_matt};
+  WholeMaps maps(kSize), by_standard(kSize);
+  const FrameFacts facts = solve(mosaics(kSize, cloth), "robust", maps);
+  solve(mosaics(kSize, cloth), "standard", by_standard);
+  ASSERT_TRUE(facts.gloss && facts.gloss->is_measured());
+  ASSERT_EQ(facts.gloss->lobes.size(), 2U);
+  EXPECT_NEAR(facts.gloss->lobes[0].lobe.alpha, 0.25, 0.01);
+  EXPECT_NEAR(facts.gloss->lobes[0].lobe.f0, 0.05, 0.0025);
+  EXPECT_EQ(facts.gloss->lobes[1].refusal, solver::LobeRefusal::kLambertFits);
+  std::int64_t right = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x)
+      right += ((maps.status(x, y) & kGlossy) == 0) == is_matt(x, y) ? 1 : 0;
+  }
+  EXPECT_GT(static_cast<double>(right) / static_cast<double>(kSize.pixels()), 0.97);
+  EXPECT_LT(mean_error_deg(maps), 0.3) << "by standard " << mean_error_deg(by_standard);
+}
+
 TEST(Gloss, OfMattClothChangesNothing) {
   const Photographs photographs = mosaics(kSize, {.normal = dented});
   WholeMaps maps(kSize);
   const FrameFacts facts = solve(photographs, "robust", maps);
   ASSERT_TRUE(facts.gloss);
-  EXPECT_EQ(facts.gloss->lobe.refusal, solver::LobeRefusal::kLambertFits);
+  EXPECT_EQ(facts.gloss->lobes.front().refusal, solver::LobeRefusal::kLambertFits);
   EXPECT_EQ(facts.gloss->share, 0);
   EXPECT_EQ(glossy_share(maps), 0);
 }

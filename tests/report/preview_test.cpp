@@ -219,15 +219,25 @@ TEST(StatusPreview, IsTheSameForAnyBands) {
   }
 }
 
-TEST(YarnPicture, HasAColourForEachDirectionAndGreyWhereNoLobeHolds) {
+TEST(LobePicture, HasAColourForEachDirectionAndGreyWhereNoLobeHolds) {
   Image<float> shares({3, 1}, 2);
-  shares(1, 0, 0) = shares(2, 0, 0) = shares(2, 0, 1) = 1;  // no lobe, along the axis, across
-  const Picture turned_0 = yarn_picture(shares, 0), turned_90 = yarn_picture(shares, 90);
-  EXPECT_EQ(colour_at(turned_0, 0, 0), colour_at(turned_90, 0, 0));
-  EXPECT_NEAR(colour_at(turned_0, 1, 0).r, colour_at(turned_90, 2, 0).r, 1e-5);
-  EXPECT_NEAR(colour_at(turned_0, 2, 0).g, colour_at(turned_90, 1, 0).g, 1e-5);
-  EXPECT_GT(std::abs(colour_at(turned_0, 1, 0).r - colour_at(turned_0, 2, 0).r), 0.3);
-  EXPECT_GT(turned_0.height(), shares.height()) << "there is a legend";
+  shares(1, 0, 0) = shares(2, 0, 1) = 1;
+  const std::array<LobeKey, 2> crossed = {{{"warp", 0.0}, {"weft", 90.0}}};
+  const std::array<LobeKey, 2> turned = {{{"warp", 90.0}, {"weft", 180.0}}};
+  const Picture a = lobe_picture(shares, crossed), b = lobe_picture(shares, turned);
+  EXPECT_EQ(colour_at(a, 0, 0), colour_at(b, 0, 0));
+  EXPECT_NEAR(colour_at(a, 1, 0).r, colour_at(b, 2, 0).r, 1e-5);
+  EXPECT_NEAR(colour_at(a, 2, 0).g, colour_at(b, 1, 0).g, 1e-5);
+  EXPECT_GT(std::abs(colour_at(a, 1, 0).r - colour_at(a, 2, 0).r), 0.3);
+  EXPECT_GT(a.height(), shares.height()) << "there is a legend";
+}
+
+TEST(LobePicture, IsPalerOfTheSecondMaterial) {
+  Image<float> shares({2, 1}, 2);
+  shares(0, 0, 0) = shares(1, 0, 1) = 1;
+  const std::array<LobeKey, 2> two = {{{"one"}, {.says = "other", .is_second = true}}};
+  const Picture picture = lobe_picture(shares, two);
+  EXPECT_GT(colour_at(picture, 1, 0).b, colour_at(picture, 0, 0).b + 0.1F);
 }
 
 }  // namespace

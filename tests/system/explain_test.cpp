@@ -90,6 +90,16 @@ TEST_F(Explain, SaysWhereADearerLevelHasNothingToGain) {
                              testing::HasSubstr("slope")));
 }
 
+TEST_F(Explain, SaysOfTheLevelsThatLookForALobeWhatTheyFound) {
+  const Json levels = explain().at("levels");
+  for (std::size_t i = 0; i < kLevels.size(); ++i) {
+    const bool looks = kLevels[i] == "robust" || kLevels[i] == "reference";
+    const auto says = testing::HasSubstr("gloss of the middle: no lobe (lambert-fits)");
+    EXPECT_EQ(testing::Value(levels[i].at("note").get<std::string>(), says), looks)
+        << kLevels[i] << ": " << levels[i].at("note");
+  }
+}
+
 TEST_F(Explain, RefusesWhatNoLevelCanDoAndSaysWhatOneCan) {
   expect_refusal(work_, {"solve", session_.string(), "-q", "--within", "0.000001"}, 64,
                  {"no level is that quick", "--within 1e-06", "the quickest", " s at "});

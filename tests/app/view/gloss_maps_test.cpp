@@ -9,23 +9,28 @@
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/solve_record.h"
-#include "core/vec.h"
 #include "core/temporary_folder.h"
+#include "core/vec.h"
 
 namespace weft::app {
 namespace {
 
-// A pixel without a lobe, one with its yarn along the axis and one with it across.
-constexpr std::array<std::uint16_t, 3> kThree = {kShadowed, kGlossy, kGlossy | kYarnAcross | kSaturated};
+// A pixel without a lobe, one with its yarn along the axis, one with it across, one of the other material.
+constexpr std::array<std::uint16_t, 4> kStatusOfPixels = {
+    kShadowed, kGlossy, kGlossy | kYarnAcross | kSaturated, kGlossy | kSecondLobe};
+constexpr int kCount = static_cast<int>(kStatusOfPixels.size());
 
 pipeline::GlossFacts satin() {
   pipeline::GlossFacts facts;
-  facts.lobe.refusal = solver::LobeRefusal::kNone;
-  facts.lobe.lobe = {.family = solver::LobeFamily::kAnisotropicGgx,
-                     .alpha = 0.4,
-                     .f0 = 0.05,
-                     .along = 0.25,
-                     .axis = radians(120)};
+  facts.lobes.resize(2);
+  facts.lobes[0].refusal = solver::LobeRefusal::kNone;
+  facts.lobes[0].lobe = {.family = solver::LobeFamily::kAnisotropicGgx,
+                         .alpha = 0.4,
+                         .f0 = 0.05,
+                         .along = 0.25,
+                         .axis = radians(120)};
+  facts.lobes[1].refusal = solver::LobeRefusal::kNone;
+  facts.lobes[1].lobe = {.family = solver::LobeFamily::kGgx, .alpha = 0.16, .f0 = 0.06};
   facts.share = 1;
   return facts;
 }
@@ -33,10 +38,10 @@ pipeline::GlossFacts satin() {
 class GlossMaps : public ::testing::Test {
  protected:
   GlossMaps() {
-    Image<std::uint16_t> status({3, 1});
-    for (int x = 0; x < 3; ++x) status(x, 0) = kThree[static_cast<std::size_t>(x)];
+    Image<std::uint16_t> status({kCount, 1});
+    for (int x = 0; x < kCount; ++x) status(x, 0) = kStatusOfPixels[static_cast<std::size_t>(x)];
     Result<ImageWriter> writer =
-        ImageWriter::open(folder_.path() / "status.png", {3, 1}, {"Y"}, {.type = SampleType::kUint16});
+        ImageWriter::open(folder_.path() / "status.png", {kCount, 1}, {"Y"}, {.type = SampleType::kUint16});
     EXPECT_TRUE(writer && writer->write_rows(View<const std::uint16_t>(status.plane())) && writer->finish());
   }
 
@@ -56,10 +61,12 @@ TEST_F(GlossMaps, HaveTheLobeWhereItWasUsedAndTypedValuesElsewhere) {
   struct Pixel {
     double roughness, alpha, along, yarn_deg, f0;
   };
-  constexpr std::array<Pixel, 3> kExpected = {
-      {{1, 1, 1, 0, kTypedF0}, {0.447214, 0.4, 0.1, 120, 0.05}, {0.447214, 0.4, 0.1, 30, 0.05}}};
+  constexpr std::array<Pixel, 4> kExpected = {{{1, 1, 1, 0, kTypedF0},
+                                               {0.447214, 0.4, 0.1, 120, 0.05},
+                                               {0.447214, 0.4, 0.1, 30, 0.05},
+                                               {0.4, 0.16, 0.16, 0, 0.06}}};
   constexpr double kHalfFloat = 1.0 / 2048;
-  for (int x = 0; x < 3; ++x) {
+  for (int x = 0; x < kCount; ++x) {
     const Pixel& pixel = kExpected[static_cast<std::size_t>(x)];
     EXPECT_NEAR(roughness->channel("roughness")(x, 0), pixel.roughness, kHalfFloat) << x;
     EXPECT_NEAR(roughness->channel("alpha")(x, 0), pixel.alpha, kHalfFloat) << x;
@@ -79,6 +86,7 @@ TEST_F(GlossMaps, OfARelativeAlbedoSayNothingOfF0) {
 
 TEST_F(GlossMaps, AreNotWrittenWhereNoLobeWasMeasuredOrUsed) {
   pipeline::GlossFacts refused, unused = satin();
+  refused.lobes.resize(1);
   unused.share = 0;
   for (const pipeline::GlossFacts& facts : {refused, unused}) {
     ASSERT_TRUE(write_gloss_maps(folder_.path(), facts, AlbedoScale::kAbsolute, Compression::kNone, true));

@@ -168,6 +168,47 @@ TEST(CalibrationSigma, IsWhatAThousandPerturbedRigsShow) {
   }
 }
 
+TEST(CalibrationSigma, OfALightIsWhatAPerturbedRigShows) {
+  const NearLights lights = test::ten_leds(1.3);
+  const LightField field = field_of(lights);
+  constexpr int kX = 320, kY = 40;
+  constexpr std::size_t kLed = 3, kErrors = 4, kAll = 10 * kErrors;
+  struct Parameter {
+    std::string name;
+    double change;
+    std::function<void(NearLight&, double)> apply;
+  };
+  const std::vector<Parameter> parameters = {
+      {"position_mm.x", 0.01, [](NearLight& led, double d) { led.position_mm.x += d; }},
+      {"position_mm.y", 0.01, [](NearLight& led, double d) { led.position_mm.y += d; }},
+      {"position_mm.z", 0.01, [](NearLight& led, double d) { led.position_mm.z += d; }},
+      {"mu", 1e-4, [](NearLight& led, double d) { led.mu += d; }},
+      {"log_flux", 1e-4, [](NearLight& led, double d) { led.flux_rgb[0] *= std::exp(d); }}};
+  for (const Parameter& parameter : parameters) {
+    NearLights perturbed = lights;
+    parameter.apply(perturbed.leds[kLed], parameter.change);
+    const LightField::Light was = field.at(kLed, 0, kX, kY), is = field_of(perturbed).at(kLed, 0, kX, kY);
+    const Vec3 turn = is.direction - was.direction;
+    const std::array<double, kErrors> seen = {std::log(is.strength / was.strength), turn.x, turn.y, turn.z};
+    const std::vector<double> covariance =
+        CalibrationSigmas::make(field, kFrame, numbers(10),
+                                covariance_of({{parameter.name}, {parameter.change}}), {})
+            .value()
+            .light_errors_at(kX, kY);
+    ASSERT_EQ(covariance.size(), kAll * kAll);
+    for (std::size_t i = 0; i < kErrors; ++i) {
+      for (std::size_t j = 0; j < kErrors; ++j) {
+        const double truth = seen[i] * seen[j];
+        EXPECT_NEAR(covariance[(kErrors * kLed + i) * kAll + kErrors * kLed + j], truth,
+                    0.02 * std::abs(truth) + 1e-13)
+            << parameter.name << " " << i << " " << j;
+      }
+    }
+    // Other LEDs are independent of it.
+    EXPECT_EQ(covariance[kErrors * kLed * kAll], 0) << parameter.name;
+  }
+}
+
 TEST(CalibrationSigma, OfACommonFluxErrorIsAllAlbedo) {
   const LightField field = field_of(test::ten_leds());
   ParameterCovariance common = covariance_of({{"log_flux"}, {0.02}});

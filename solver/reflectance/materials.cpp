@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/reflectance/materials.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <utility>
+
+#include "core/statistics.h"
+
+namespace weft::solver {
+namespace {
+
+// Pixels of the sample that tell whether a split is worth more.
+constexpr std::size_t kSplitPixels = 800, kLeastTrialPixels = 60;
+constexpr int kCostSteps = 6, kMostRounds = 6;
+// Of the cost of one lobe for all: a first split that saves less leads nowhere.
+constexpr double kPromising = 0.7;
+const Lobe kSharp = {.family = LobeFamily::kGgx, .alpha = 0.15, .f0 = 0.05};
+const Lobe kBroad = {.family = LobeFamily::kGgx, .alpha = 0.45, .f0 = 0.05};
+// Pixels that may still change sides once it is settled.
+constexpr double kSettledShare = 0.01;
+
+using Sides = std::vector<std::uint8_t>;  // 0 or 1, by pixel
+
+// Of the families that were tried the one that fits best; Lambert's law where it fits.
+const LobeCandidate& best_of(const MeasuredLobe& measured) {
+  if (measured.refusal == LobeRefusal::kLambertFits) return measured.candidates.front();
+  return *std::ranges::min_element(measured.candidates, {}, &LobeCandidate::chi2);
+}
+
+double chi2_of(const MeasuredLobe& measured) {
+  return measured.is_measured() ? measured.fit.chi2 : best_of(measured).chi2;
+}
+
+bool is_explained(const MeasuredLobe& measured) {
+  return measured.is_measured() ? measured.fit.chi2 <= kLobeFitsTo
+                                : measured.refusal == LobeRefusal::kLambertFits;
+}
+
+// Pixels where a lobe leaves them: of both yarns and of all starts the cheapest.
+LobeFit settled(const LobeSamples& samples, const std::vector<Vec3>& start, const Lobe& lobe, int threads) {
+  std::vector<double> albedos;
+  for (const Vec3& b : start) albedos.push_back(length(b));
+  const double median_albedo = median(albedos);
+  LobeFit best = {lobe, start, std::vector<double>(start.size(), 0.0), {}, 0, {}};
+  best.cost.assign(start.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> cost(start.size());
+  for (const double yarn : {0.0, kPi / 2}) {
+    if (yarn > 0 && lobe.family != LobeFamily::kAnisotropicGgx) continue;
+    const std::vector<double> yarns(start.size(), yarn);
+    for (std::size_t s = 0; s <= kOtherStarts; ++s) {
+      std::vector<Vec3> b = start;
+      for (std::size_t i = 0; s > 0 && i < b.size(); ++i)
+        b[i] = other_starts(samples.of(i), median_albedo)[s - 1];
+      samples.fit_pixels(lobe, yarns, kCostSteps, threads, b, cost);
+      for (std::size_t i = 0; i < b.size(); ++i) {
+        if (!(cost[i] < best.cost[i])) continue;
+        best.b[i] = b[i];
+        best.yarn[i] = yarn;
+        best.cost[i] = cost[i];
+      }
+    }
+  }
+  return best;
+}
+
+Sides above_median(const std::vector<double>& values) {
+  const double middle = median(values);
+  Sides sides;
+  for (const double value : values) sides.push_back(value > middle ? 1 : 0);
+  return sides;
+}
+
+// Pixels in two groups, each with a lobe.
+struct Split {
+  std::array<Lobe, 2> lobes;
+  Sides sides;
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+class Splitter {
+ public:
+  Splitter(const LobeSamples& samples, const std::vector<Vec3>& start, int threads)
+      : samples_(samples), start_(start), threads_(threads) {}
+
+  LobeFit fitted(const Lobe& lobe) const { return settled(samples_, start_, lobe, threads_); }
+
+  // Each pixel goes where it costs less.
+  Split assigned(const std::array<Lobe, 2>& lobes) const {
+    const std::vector<double> a = fitted(lobes[0]).cost, b = fitted(lobes[1]).cost;
+    Split split = {lobes, Sides(a.size()), 0};
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      split.sides[i] = b[i] < a[i] ? 1 : 0;
+      split.cost += std::min(a[i], b[i]);
+    }
+    return split;
+  }
+
+  // Lobes and sides in turn, from a first guess, until hardly a pixel changes its side. None where it is
+  // promising no longer.
+  std::optional<Split> grown(Split split, double cost_of_all) const {
+    for (int round = 0; round < kMostRounds; ++round) {
+      std::array<Lobe, 2> lobes;
+      for (std::uint8_t side = 0; side < 2; ++side) {
+        const Group group = of(split.sides, side);
+        if (group.start.size() < kLeastTrialPixels) return std::nullopt;
+        lobes[side] = lobe_of(group, split.lobes[side]);
+      }
+      Split next = assigned(lobes);
+      std::size_t moved = 0;
+      for (std::size_t i = 0; i < next.sides.size(); ++i) moved += next.sides[i] != split.sides[i] ? 1U : 0U;
+      split = std::move(next);
+      if (static_cast<double>(moved) < kSettledShare * static_cast<double>(split.sides.size())) break;
+    }
+    if (!(split.cost < kPromising * cost_of_all)) return std::nullopt;
+    return split;
+  }
+
+  // All that can be said of the pixels of a side.
+  MeasuredLobe measured(const Sides& sides, std::uint8_t side) const {
+    const Group group = of(sides, side);
+    return measure_lobe(group.samples, group.start, threads_);
+  }
+
+ private:
+  struct Group {
+    LobeSamples samples;
+    std::vector<Vec3> start;
+  };
+
+  Group of(const Sides& sides, std::uint8_t side) const {
+    Group group = {LobeSamples(samples_.of(0).size()), {}};
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      if (sides[i] != side) continue;
+      group.samples.add(samples_.of(i));
+      group.start.push_back(start_[i]);
+    }
+    return group;
+  }
+
+  // Lambert's where that fits, else the cheapest of those that are fitted from one that is near and from
+  // a sharp and a broad one.
+  Lobe lobe_of(const Group& group, const Lobe& near) const {
+    const LobeFit lambert = fit_lobe(group.samples, settled(group.samples, group.start, {}, threads_),
+                                     {.rounds = 0, .threads = threads_});
+    if (lambert.chi2 <= kLambertFitsTo) return {};
+    std::optional<LobeFit> best;
+    for (const Lobe& first : {near, kSharp, kBroad}) {
+      if (!first.shines()) continue;
+      LobeFit fit = fit_lobe(group.samples, settled(group.samples, group.start, first, threads_),
+                             {.fitted = parameters_of(first.family), .threads = threads_});
+      if (!best || fit.total() < best->total()) best = std::move(fit);
+    }
+    return best->lobe;
+  }
+
+  const LobeSamples& samples_;
+  const std::vector<Vec3>& start_;
+  int threads_;
+};
+
+}  // namespace
+
+bool may_be_two(const MeasuredLobe& one) {
+  if (one.refusal == LobeRefusal::kTooFewPixels || one.refusal == LobeRefusal::kLambertFits) return false;
+  return chi2_of(one) > kLobeFitsTo;
+}
+
+std::vector<MeasuredLobe> measure_materials(const LobeSamples& samples, const std::vector<Vec3>& start,
+                                            int threads) {
+  std::vector<MeasuredLobe> one = {measure_lobe(samples, start, threads)};
+  if (!may_be_two(one.front())) return one;
+  const LobeSamples few = samples.first(kSplitPixels);
+  const std::vector<Vec3> few_start(start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels()));
+  const Splitter trial(few, few_start, threads);
+  const Lobe& of_all = best_of(one.front()).lobe;
+  const double cost_of_all = trial.fitted(of_all).total();
+  std::vector<double> brightness;
+  for (const Vec3& b : few_start) brightness.push_back(length(b));
+  std::optional<Split> best;
+  const std::array<Lobe, 2> same = {of_all, of_all};
+  std::array<Split, 3> firsts = {{{same, above_median(trial.fitted({}).cost), cost_of_all},
+                                  {same, above_median(brightness), cost_of_all},
+                                  trial.assigned({kSharp, kBroad})}};
+  for (Split& first : firsts) {
+    std::optional<Split> split = trial.grown(std::move(first), cost_of_all);
+    if (split && (!best || split->cost < best->cost)) best = std::move(split);
+  }
+  if (!best) return one;
+  // What the trial pixels told must hold for all.
+  const Splitter all(samples, start, threads);
+  const Sides sides = all.assigned(best->lobes).sides;
+  std::array<MeasuredLobe, 2> two = {all.measured(sides, 0), {}};
+  if (!is_explained(two[0])) return one;
+  two[1] = all.measured(sides, 1);
+  if (!is_explained(two[1])) return one;
+  const auto of_second = static_cast<std::size_t>(std::ranges::count(sides, 1));
+  const bool second_first =
+      two[0].is_measured() == two[1].is_measured() ? 2 * of_second > sides.size() : two[1].is_measured();
+  if (second_first) std::swap(two[0], two[1]);
+  if (!two[0].is_measured()) return one;
+  return {std::move(two[0]), std::move(two[1])};
+}
+
+}  // namespace weft::solver

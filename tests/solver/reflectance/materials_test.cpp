@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "solver/reflectance/materials.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/solver/reflectance/pixels.h"
+
+namespace weft::solver {
+namespace {
+
+constexpr std::size_t kOfEach = 400;  // of each material
+const Lobe kMatt = {};
+const Lobe kLustrous = {.family = LobeFamily::kGgx, .alpha = 0.2, .f0 = 0.05};
+const Lobe kBroad = {.family = LobeFamily::kBeckmann, .alpha = 0.45, .f0 = 0.06};
+
+// Pixels of two materials, one after the other.
+PixelTruth both(const PixelModel& a, const PixelModel& b, const ClothOfPixels& cloth) {
+  const std::array<PixelTruth, 2> parts = {pixels_of(a, kOfEach, cloth, 11),
+                                           pixels_of(b, kOfEach, cloth, 12)};
+  PixelTruth mixed;
+  for (std::size_t i = 0; i < kOfEach; ++i) {
+    for (const PixelTruth& part : parts) {
+      mixed.samples.add(part.samples.of(i));
+      mixed.b.push_back(part.b[i]);
+      mixed.start.push_back(part.start[i]);
+    }
+  }
+  return mixed;
+}
+
+TEST(Materials, OfPlainClothAreOneMeasuredAsByItself) {
+  const PixelTruth cloth = pixels_of(model_of(kLustrous), kOfEach, {}, 11);
+  const std::vector<MeasuredLobe> found = measure_materials(cloth.samples, cloth.start, 0);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found.front().lobe, measure_lobe(cloth.samples, cloth.start, 0).lobe);
+}
+
+TEST(Materials, AreALobeAndLambertsLawWhereHalfOfTheClothIsMatt) {
+  const PixelTruth cloth = both(model_of(kLustrous), model_of(kMatt), {.albedo = 0.2});
+  const std::vector<MeasuredLobe> found = measure_materials(cloth.samples, cloth.start, 0);
+  ASSERT_EQ(found.size(), 2U) << "one lobe: " << name_of(found.front().refusal);
+  ASSERT_TRUE(found[0].is_measured());
+  EXPECT_NEAR(found[0].lobe.alpha, 0.2, 0.01);
+  EXPECT_NEAR(found[0].lobe.f0, 0.05, 0.0025);
+  EXPECT_EQ(found[1].refusal, LobeRefusal::kLambertFits) << name_of(found[1].refusal);
+}
+
+TEST(Materials, AreTwoLobesWhereEachHalfHasItsOwn) {
+  const PixelTruth cloth = both(model_of(kLustrous), model_of(kBroad), {.albedo = 0.1});
+  std::vector<MeasuredLobe> found = measure_materials(cloth.samples, cloth.start, 0);
+  ASSERT_EQ(found.size(), 2U) << "one lobe: " << name_of(found.front().refusal);
+  ASSERT_TRUE(found[0].is_measured() && found[1].is_measured())
+      << name_of(found[0].refusal) << " " << name_of(found[1].refusal);
+  if (found[0].lobe.alpha > found[1].lobe.alpha) std::swap(found[0], found[1]);
+  EXPECT_NEAR(found[0].lobe.alpha, 0.2, 0.01);
+  EXPECT_NEAR(found[0].lobe.f0, 0.05, 0.0025);
+  EXPECT_NEAR(found[1].lobe.alpha, 0.45, 0.05);
+  EXPECT_NEAR(found[1].lobe.f0, 0.06, 0.2 * 0.06);
+}
+
+TEST(Materials, AreNotMadeOfWhatNoLobeExplains) {
+  // Light between yarns: a share of what the darkest side of a pixel gets.
+  const PixelModel model = [](Vec3 n, double albedo, double yarn, const LitFrom& from) {
+    const double bounced = 0.5 * albedo * (1 - n.z) * std::pow(1 - dot(n, from.light), 2);
+    return modelled(kLustrous, albedo * n, from, yarn) + bounced;
+  };
+  const PixelTruth cloth = pixels_of(model, 2 * kOfEach, {.tilt_deg = 50}, 13);
+  const std::vector<MeasuredLobe> found = measure_materials(cloth.samples, cloth.start, 0);
+  ASSERT_TRUE(may_be_two(found.front()) || found.size() == 2) << "the case is too easy";
+  EXPECT_EQ(found.size(), 1U);
+}
+
+}  // namespace
+}  // namespace weft::solver
