@@ -109,7 +109,7 @@ std::string words_of(const Json& stages, const Json& gates) {
 // What looking for the cloth's lobe came to in the cut.
 std::string gloss_words(const Json& reflectance) {
   if (reflectance.is_null()) return "";
-  const std::string words = reflectance_words(reflectance);
+  const std::string words = lobes_in_words(reflectance);
   return words.empty()
              ? fmt::format("gloss of the middle: no lobe ({})", reflectance.at("said").get<std::string>())
              : "gloss of the middle: " + words;

@@ -168,13 +168,19 @@ Json reflectance_summary(const Json& document) {
   return summary;
 }
 
-std::string reflectance_words(const Json& summary) {
+std::string lobes_in_words(const Json& summary) {
   if (!summary.contains("family")) return "";
-  std::string words = lobe_words(summary);
-  if (summary.contains("second"))
-    words = fmt::format("two materials: {}; {}", words, lobe_words(summary["second"]));
-  return words +
-         fmt::format("; solved so: {:.0f} percent of the frame", 100 * summary["share"].get<double>());
+  const std::string words = lobe_words(summary);
+  return summary.contains("second")
+             ? fmt::format("two materials: {}; {}", words, lobe_words(summary["second"]))
+             : words;
+}
+
+std::string reflectance_words(const Json& summary) {
+  const std::string words = lobes_in_words(summary);
+  if (words.empty()) return "";
+  return fmt::format("{}; solved with it: {:.0f} percent of the frame", words,
+                     100 * summary["share"].get<double>());
 }
 
 std::string reflectance_section(const Json& document) {

@@ -19,7 +19,9 @@ Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale);
 /// `f0` or `f0_over_albedo`.
 Json reflectance_summary(const Json& document);
 
-/// The same as a sentence. `summary` is of reflectance_summary().
+/// The lobes of a summary in words; empty where none is measured.
+std::string lobes_in_words(const Json& summary);
+/// The same with the share of the frame that is solved with them.
 std::string reflectance_words(const Json& summary);
 
 /// The section of a report: the lobe drawn over the readings, and its numbers.

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/gloss_maps.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
+#include "app/jobs/reflectance.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/solve_record.h"
@@ -92,6 +94,26 @@ TEST_F(GlossMaps, AreNotWrittenWhereNoLobeWasMeasuredOrUsed) {
     ASSERT_TRUE(write_gloss_maps(folder_.path(), facts, AlbedoScale::kAbsolute, Compression::kNone, true));
     EXPECT_FALSE(has("roughness.exr") || has("specular.exr") || has("reflectance.png"));
   }
+}
+
+TEST(ReflectanceWords, AreOfBothMaterials) {
+  const Json document = reflectance_document(satin(), AlbedoScale::kAbsolute);
+  ASSERT_EQ(document["clusters"].size(), 2U);
+  const Json summary = reflectance_summary(document);
+  EXPECT_EQ(summary["second"]["family"], "ggx");
+  EXPECT_EQ(reflectance_words(summary),
+            "two materials: anisotropic-ggx, roughness 0.400 across the yarn and 0.100 along it, f0 0.050; "
+            "ggx, roughness 0.160, f0 0.060; solved with it: 100 percent of the frame");
+  EXPECT_THAT(reflectance_section(document), testing::HasSubstr("two materials"));
+}
+
+TEST(ReflectanceWords, AreNoneWhereNoLobeWasMeasuredAndTheSectionSaysWhy) {
+  pipeline::GlossFacts facts;
+  facts.lobes.resize(1);
+  facts.lobes[0].refusal = solver::LobeRefusal::kLambertFits;
+  const Json document = reflectance_document(facts, AlbedoScale::kRelative);
+  EXPECT_EQ(reflectance_words(reflectance_summary(document)), "");
+  EXPECT_THAT(reflectance_section(document), testing::HasSubstr("Not observable"));
 }
 
 }  // namespace

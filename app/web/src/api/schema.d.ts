@@ -4583,6 +4583,11 @@ export interface components {
             sharpening?: Record<string, unknown> | null;
             lateral_color?: Record<string, unknown> | null;
             gates?: Record<string, unknown> | null;
+            gloss?: {
+                used: boolean;
+                /** @description The lobes that were measured, or why none was */
+                says: string;
+            } | null;
             reference: Record<string, unknown> | null;
             solved_by: Record<string, unknown> | null;
         };

@@ -32,6 +32,11 @@ test('what left-out light said stands beside each stage of reference', () => {
   expect(stage({reference}, 'Light between yarns').ran).toBe(false);
 });
 
+test('of gloss the lobe is said, or why there is none', () => {
+  expect(stage({gloss: {used: true, says: 'ggx, roughness 0.250'}}, 'Gloss')).toEqual({name: 'Gloss', ran: true, says: 'ggx, roughness 0.250.'});
+  expect(stage({gloss: null}, 'Gloss')).toEqual({name: 'Gloss', ran: false, says: 'Not at this level.'});
+});
+
 test('a cloth that moved is told by LED', () => {
   const registration = [
     {led: 1, corrected: false, verdict: 'still', dx_px: 0, dy_px: 0},

@@ -152,6 +152,10 @@ function ofRobust({robust_share: share, rejected_readings: rejected = 0}: Solved
   ];
 }
 
+function ofGloss(gloss: Report['gloss']): Stage {
+  return {name: 'Gloss', ran: gloss?.used ?? false, says: gloss ? `${gloss.says}.` : 'Not at this level.'};
+}
+
 /** Every stage, in the order in which a solve comes by them. */
 export function stagesOf(report: Report): Stage[] {
   const {conditions, registration, sharpening, lateral, reference, solvedBy} = partsOf(report);
@@ -166,5 +170,6 @@ export function stagesOf(report: Report): Stage[] {
     },
     ...ofRobust(solvedBy),
     ...ofReference(reference),
+    ofGloss(report.gloss),
   ];
 }
