@@ -55,11 +55,14 @@ CameraModel overhead_camera(Size size, double distance_mm, double mm_per_pixel) 
   return camera;
 }
 
+Vec3 centre_of(const CameraModel& camera) {
+  return -1.0 * times_transposed(camera.camera_from_rig_rotation, camera.camera_from_rig_translation_mm);
+}
+
 Vec3 point_on_plane(const CameraModel& camera, double x, double y, double height_mm) {
   const Point2 p = undistort(camera, {(x - camera.cx) / camera.fx, (y - camera.cy) / camera.fy});
   const Vec3 ray = times_transposed(camera.camera_from_rig_rotation, {p.x, p.y, 1});
-  const Vec3 centre =
-      -1.0 * times_transposed(camera.camera_from_rig_rotation, camera.camera_from_rig_translation_mm);
+  const Vec3 centre = centre_of(camera);
   const double s = (height_mm - centre.z) / ray.z;
   return {centre.x + s * ray.x, centre.y + s * ray.y, height_mm};
 }

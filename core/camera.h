@@ -22,6 +22,9 @@ struct CameraModel {
 /// A camera straight above the table at `distance_mm`, seeing `mm_per_pixel` at z = 0, without distortion.
 CameraModel overhead_camera(Size size, double distance_mm, double mm_per_pixel);
 
+/// The centre of its lens in the rig frame, mm.
+Vec3 centre_of(const CameraModel& camera);
+
 /// Where the ray of pixel (x, y) meets the plane z = `height_mm` of the rig frame. Distortion is inverted by
 /// Newton's method to 1e-12 of a focal length.
 Vec3 point_on_plane(const CameraModel& camera, double x, double y, double height_mm);

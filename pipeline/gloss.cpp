@@ -108,14 +108,7 @@ std::vector<solver::Lobe> lobes_of(const GlossFacts& facts) {
 
 solver::Sight sight_of(const Photographs& photographs) {
   std::optional<Vec3> centre;
-  if (photographs.camera) {
-    const CameraModel& camera = *photographs.camera;
-    const Mat3& r = camera.camera_from_rig_rotation;
-    const Vec3& t = camera.camera_from_rig_translation_mm;
-    centre = Vec3{-(r[0][0] * t.x + r[1][0] * t.y + r[2][0] * t.z),
-                  -(r[0][1] * t.x + r[1][1] * t.y + r[2][1] * t.z),
-                  -(r[0][2] * t.x + r[1][2] * t.y + r[2][2] * t.z)};
-  }
+  if (photographs.camera) centre = centre_of(*photographs.camera);
   return solver::Sight(centre, photographs.field->cloth_height_mm());
 }
 

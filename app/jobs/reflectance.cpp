@@ -183,6 +183,12 @@ std::string reflectance_words(const Json& summary) {
                      100 * summary["share"].get<double>());
 }
 
+Json reflectance_said(const Json& document) {
+  const std::string words = reflectance_words(reflectance_summary(document));
+  const bool is_used = !words.empty() && document["share"].get<double>() > 0;
+  return {{"used", is_used}, {"says", words.empty() ? document["clusters"][0]["why"] : Json(words)}};
+}
+
 std::string reflectance_section(const Json& document) {
   const std::string words = reflectance_words(reflectance_summary(document));
   std::string body = words.empty() ? "" : fmt::format("<p>{}.</p>\n", escape_markup(words));

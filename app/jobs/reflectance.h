@@ -24,6 +24,9 @@ std::string lobes_in_words(const Json& summary);
 /// The same with the share of the frame that is solved with them.
 std::string reflectance_words(const Json& summary);
 
+/// What report.json says of it in words: `used`, and `says`, the lobes or why there is none.
+Json reflectance_said(const Json& document);
+
 /// The section of a report: the lobe drawn over the readings, and its numbers.
 std::string reflectance_section(const Json& document);
 

@@ -98,13 +98,6 @@ std::vector<Vec3> frame_places(const KnownRig& rig) {
   return places;
 }
 
-Vec3 camera_place(const CameraModel& camera) {
-  const Mat3& r = camera.camera_from_rig_rotation;
-  const Vec3 t = camera.camera_from_rig_translation_mm;
-  const auto along = [&](std::size_t i) { return -(r[0][i] * t.x + r[1][i] * t.y + r[2][i] * t.z); };
-  return {along(0), along(1), along(2)};
-}
-
 Result<void> check_places(const solver::PlannedRig& rig, const std::string& where) {
   for (const Vec3 place : rig.places_mm) {
     if (!(length(place) < 1e5)) return no_places(where, "the camera does not look at the table");
@@ -124,7 +117,7 @@ Result<solver::PlannedRig> planned_of(const KnownRig& rig) {
   planned.leds = rig.lights.leds;
   planned.camera_mm = kPlanCamera_mm;
   planned.places_mm = frame_places(rig);
-  if (rig.calibration && rig.calibration->camera) planned.camera_mm = camera_place(*rig.calibration->camera);
+  if (rig.calibration && rig.calibration->camera) planned.camera_mm = centre_of(*rig.calibration->camera);
   if (planned.leds.empty()) return no_places(rig.where, "it has no LED");
   if (Result<void> ok = check_places(planned, rig.where); !ok) return std::move(ok).error();
   if (rig.calibration && rig.calibration->response) {

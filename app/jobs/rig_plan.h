@@ -24,8 +24,8 @@ struct RigPlanOptions {
 
 /// What one set of lights tells, and what it costs beside the lights that there are.
 struct RigPlanRow {
-  std::string
-      name;  ///< for programs: as-it-is, one-more, near-camera, polarisers, polarisers-near-camera, moved
+  /// For programs: as-it-is, one-more, near-camera, polarisers, polarisers-near-camera, moved.
+  std::string name;
   std::string what;            ///< for people
   solver::PlannedSigma sigma;  ///< of a solve, which takes the rig to be as it was calibrated
   solver::PlannedSigma least;  ///< of the best estimate there is, which fits the rig's errors with the cloth

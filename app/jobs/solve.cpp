@@ -315,6 +315,7 @@ class Run {
     if (!reflectance_.is_null()) {
       if (Result<void> ok = write_json(partial_.path() / "reflectance.json", reflectance_); !ok) return ok;
       page["reflectance"] = reflectance_;
+      page["gloss"] = reflectance_said(reflectance_);
     }
     if (Result<void> ok = write_report(partial_.path(), page); !ok) return ok;
     seconds_.report += watch_.lap();

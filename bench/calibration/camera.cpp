@@ -34,10 +34,6 @@ using calibration::Pose;
 constexpr double kMostOverBound = 1.3;
 constexpr int kTimedBoards = 20, kDifferent = 5;
 
-Vec3 centre_of(const CameraModel& c) {
-  return inverse(Pose{c.camera_from_rig_rotation, c.camera_from_rig_translation_mm}).translation_mm;
-}
-
 /// A number that a camera is measured by.
 struct CameraQuantity {
   std::string name, unit;

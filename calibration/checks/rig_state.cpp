@@ -20,10 +20,6 @@ Vec3 from(std::span<const double> by, std::size_t first) {
   return {by[first], by[first + 1], by[first + 2]};
 }
 
-Vec3 centre_of(const CameraModel& camera) {
-  return inverse(Pose{camera.camera_from_rig_rotation, camera.camera_from_rig_translation_mm}).translation_mm;
-}
-
 /// Where a point is that was at `point_mm` and is fixed to the camera's body.
 Pose camera_movement(const RigState& state, Vec3 centre_mm) {
   const Mat3 turn = rotation_of(state.camera_turn);

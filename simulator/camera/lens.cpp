@@ -83,9 +83,7 @@ Lens::Lens(const CameraModel& camera)
     : camera_(camera),
       is_distorted_(camera.k1 != 0 || camera.k2 != 0 || camera.k3 != 0 || camera.p1 != 0 || camera.p2 != 0),
       ideal_radius_(std::numeric_limits<double>::infinity()) {
-  const Mat3& r = camera.camera_from_rig_rotation;
-  const Vec3 t = camera.camera_from_rig_translation_mm;
-  centre_mm_ = {-dot(column(r, 0), t), -dot(column(r, 1), t), -dot(column(r, 2), t)};
+  centre_mm_ = centre_of(camera);
 }
 
 Result<Lens> Lens::of(const CameraModel& camera) {

@@ -138,10 +138,7 @@ DistantLights distant_lights(const SceneRig& rig, double cloth_height_mm) {
 }
 
 Vec3 SceneRig::camera_centre_mm() const {
-  const Mat3& m = camera.camera_from_rig_rotation;
-  const Vec3 t = camera.camera_from_rig_translation_mm;
-  return {-(m[0][0] * t.x + m[1][0] * t.y + m[2][0] * t.z), -(m[0][1] * t.x + m[1][1] * t.y + m[2][1] * t.z),
-          -(m[0][2] * t.x + m[1][2] * t.y + m[2][2] * t.z)};
+  return centre_of(camera);
 }
 
 DefectSettings defects_of(const Scene& scene) {

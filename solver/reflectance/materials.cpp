@@ -15,7 +15,7 @@ namespace {
 
 // Pixels of the sample that tell whether a split is worth more.
 constexpr std::size_t kSplitPixels = 800, kLeastTrialPixels = 60;
-constexpr int kCostSteps = 6, kMostRounds = 6;
+constexpr int kMostRounds = 6;
 // Of the cost of one lobe for all: a first split that saves less leads nowhere.
 constexpr double kPromising = 0.7;
 const Lobe kSharp = {.family = LobeFamily::kGgx, .alpha = 0.15, .f0 = 0.05};
@@ -42,29 +42,10 @@ bool is_explained(const MeasuredLobe& measured) {
 
 // Pixels where a lobe leaves them: of both yarns and of all starts the cheapest.
 LobeFit settled(const LobeSamples& samples, const std::vector<Vec3>& start, const Lobe& lobe, int threads) {
-  std::vector<double> albedos;
-  for (const Vec3& b : start) albedos.push_back(length(b));
-  const double median_albedo = median(albedos);
-  LobeFit best = {lobe, start, std::vector<double>(start.size(), 0.0), {}, 0, {}};
-  best.cost.assign(start.size(), std::numeric_limits<double>::infinity());
-  std::vector<double> cost(start.size());
-  for (const double yarn : {0.0, kPi / 2}) {
-    if (yarn > 0 && lobe.family != LobeFamily::kAnisotropicGgx) continue;
-    const std::vector<double> yarns(start.size(), yarn);
-    for (std::size_t s = 0; s <= kOtherStarts; ++s) {
-      std::vector<Vec3> b = start;
-      for (std::size_t i = 0; s > 0 && i < b.size(); ++i)
-        b[i] = other_starts(samples.of(i), median_albedo)[s - 1];
-      samples.fit_pixels(lobe, yarns, kCostSteps, threads, b, cost);
-      for (std::size_t i = 0; i < b.size(); ++i) {
-        if (!(cost[i] < best.cost[i])) continue;
-        best.b[i] = b[i];
-        best.yarn[i] = yarn;
-        best.cost[i] = cost[i];
-      }
-    }
-  }
-  return best;
+  LobeFit fit =
+      with_better_yarns(samples, {lobe, start, std::vector<double>(start.size(), 0.0), {}, 0, {}}, threads);
+  try_other_starts(samples, threads, fit);
+  return fit;
 }
 
 Sides above_median(const std::vector<double>& values) {

@@ -37,6 +37,20 @@ LobeFit unfitted(const Lobe& lobe, const std::vector<Vec3>& b) {
   return {lobe, b, std::vector<double>(b.size(), 0.0), {}, 0, {}};
 }
 
+bool has_yarn(const Lobe& lobe) {
+  return lobe.family == LobeFamily::kAnisotropicGgx;
+}
+
+// Of each pixel the solution that costs less.
+void keep_cheaper(const LobeFit& other, LobeFit& fit) {
+  for (std::size_t i = 0; i < fit.b.size(); ++i) {
+    if (!(other.cost[i] < fit.cost[i])) continue;
+    fit.b[i] = other.b[i];
+    fit.yarn[i] = other.yarn[i];
+    fit.cost[i] = other.cost[i];
+  }
+}
+
 // The families in turn over some pixels of one material.
 class Trial {
  public:
@@ -83,7 +97,7 @@ class Trial {
     LobeParameters fitted = parameters_of(lobe.family);
     if (lobe.bend != 0) fitted = with_bend(fitted);
     LobeFit fit = unfitted(lobe, start_);
-    if (lobe.family == LobeFamily::kAnisotropicGgx) fit = better_yarns(std::move(fit));
+    if (has_yarn(lobe)) fit = with_better_yarns(samples_, std::move(fit), threads_);
     return canonical(restarted(fit_lobe(samples_, std::move(fit), options(fitted)), fitted));
   }
 
@@ -95,52 +109,16 @@ class Trial {
   // Each pixel's yarn is the one of the two that costs it less.
   LobeFit with_yarns(LobeFit fit) const {
     for (int round = 0; round < kYarnRounds; ++round) {
-      fit = better_yarns(std::move(fit));
+      fit = with_better_yarns(samples_, std::move(fit), threads_);
       fit = fit_lobe(samples_, std::move(fit), options(parameters_of(LobeFamily::kAnisotropicGgx)));
     }
     return fit;
   }
-  LobeFit better_yarns(LobeFit fit) const {
-    LobeFit weft = fit;
-    weft.yarn.assign(weft.yarn.size(), kPi / 2);
-    fit.yarn.assign(fit.yarn.size(), 0);
-    for (LobeFit* each : {&fit, &weft}) {
-      each->cost.resize(samples_.pixels());
-      samples_.fit_pixels(each->lobe, each->yarn, kStartSteps, threads_, each->b, each->cost);
-    }
-    keep_cheaper(weft, fit);
-    return fit;
-  }
-
-  // Of each pixel the solution that costs less.
-  static void keep_cheaper(const LobeFit& other, LobeFit& fit) {
-    for (std::size_t i = 0; i < fit.b.size(); ++i) {
-      if (!(other.cost[i] < fit.cost[i])) continue;
-      fit.b[i] = other.b[i];
-      fit.yarn[i] = other.yarn[i];
-      fit.cost[i] = other.cost[i];
-    }
-  }
-
   // Every pixel from other normals too, the shared values anew, until hardly one finds a better valley.
   LobeFit restarted(LobeFit fit, LobeParameters fitted) const {
     for (int round = 0; round < kMostRestarts; ++round) {
       const std::vector<double> before = fit.cost;
-      std::vector<double> albedos;
-      for (const Vec3& b : fit.b) albedos.push_back(length(b));
-      const double median_albedo = median(albedos);
-      LobeFit other = fit;
-      for (std::size_t start = 0; start < kOtherStarts; ++start) {
-        for (const double yarn : {0.0, kPi / 2}) {
-          if (yarn > 0 && fit.lobe.family != LobeFamily::kAnisotropicGgx) continue;
-          for (std::size_t i = 0; i < other.b.size(); ++i) {
-            other.b[i] = other_starts(samples_.of(i), median_albedo)[start];
-            other.yarn[i] = yarn;
-          }
-          samples_.fit_pixels(fit.lobe, other.yarn, kStartSteps, threads_, other.b, other.cost);
-          keep_cheaper(other, fit);
-        }
-      }
+      try_other_starts(samples_, threads_, fit);
       std::size_t moved = 0;
       for (std::size_t i = 0; i < before.size(); ++i) {
         if (fit.cost[i] < before[i] - kMovedCost) ++moved;
@@ -289,6 +267,36 @@ std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> reading
     if (length(mirror) > 0) starts[2 + i] = albedo * normalized(mirror);
   }
   return starts;
+}
+
+void try_other_starts(const LobeSamples& samples, int threads, LobeFit& fit) {
+  std::vector<double> albedos;
+  for (const Vec3& b : fit.b) albedos.push_back(length(b));
+  const double median_albedo = median(albedos);
+  LobeFit other = fit;
+  for (std::size_t start = 0; start < kOtherStarts; ++start) {
+    for (const double yarn : {0.0, kPi / 2}) {
+      if (yarn > 0 && !has_yarn(fit.lobe)) continue;
+      for (std::size_t i = 0; i < other.b.size(); ++i) {
+        other.b[i] = other_starts(samples.of(i), median_albedo)[start];
+        other.yarn[i] = yarn;
+      }
+      samples.fit_pixels(fit.lobe, other.yarn, kStartSteps, threads, other.b, other.cost);
+      keep_cheaper(other, fit);
+    }
+  }
+}
+
+LobeFit with_better_yarns(const LobeSamples& samples, LobeFit fit, int threads) {
+  fit.cost.resize(samples.pixels());
+  fit.yarn.assign(fit.yarn.size(), 0);
+  LobeFit weft = fit;
+  samples.fit_pixels(fit.lobe, fit.yarn, kStartSteps, threads, fit.b, fit.cost);
+  if (!has_yarn(fit.lobe)) return fit;
+  weft.yarn.assign(weft.yarn.size(), kPi / 2);
+  samples.fit_pixels(weft.lobe, weft.yarn, kStartSteps, threads, weft.b, weft.cost);
+  keep_cheaper(weft, fit);
+  return fit;
 }
 
 MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads) {

@@ -91,4 +91,10 @@ void add_light_errors(std::span<const double> covariance, MeasuredLobe& measured
 inline constexpr std::size_t kOtherStarts = 5;
 std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> readings, double median_albedo);
 
+/// Fits every pixel from its other starts too, with both yarns where the family has them; what costs less
+/// takes its place. `fit` has a cost by pixel.
+void try_other_starts(const LobeSamples& samples, int threads, LobeFit& fit);
+/// Every pixel with both yarns where the family has them, from where it is: the cheaper.
+LobeFit with_better_yarns(const LobeSamples& samples, LobeFit fit, int threads);
+
 }  // namespace weft::solver

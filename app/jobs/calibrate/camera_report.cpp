@@ -13,7 +13,6 @@ namespace {
 
 using calibration::BoardFit;
 using calibration::LensTrial;
-using calibration::Pose;
 using calibration::propagated;
 
 constexpr int kColumns = 12, kRows = 8;     // of the coverage
@@ -32,10 +31,6 @@ Json measured_json(Measured m) {
 
 std::string words(Measured m, int digits) {
   return fmt::format("{:.{}f} ± {:.{}f}", m.value, digits, m.sigma, digits);
-}
-
-Vec3 centre_of(const CameraModel& c) {
-  return inverse(Pose{c.camera_from_rig_rotation, c.camera_from_rig_translation_mm}).translation_mm;
 }
 
 // Towards the table, rig frame.

@@ -12,7 +12,6 @@
 #include "app/jobs/calibrate/accept.h"
 #include "app/jobs/calibrate/check_result.h"
 #include "app/jobs/calibrate/movement_words.h"
-#include "calibration/camera/pose.h"
 #include "core/files.h"
 #include "core/iso_time.h"
 #include "core/session.h"
@@ -145,11 +144,6 @@ const NearLights* near_lights(const Calibration& calibration) {
   return calibration.lights ? std::get_if<NearLights>(&*calibration.lights) : nullptr;
 }
 
-Vec3 camera_centre_mm(const CameraModel& camera) {
-  return inverse(calibration::Pose{camera.camera_from_rig_rotation, camera.camera_from_rig_translation_mm})
-      .translation_mm;
-}
-
 /// Angle between the line of sight and straight down.
 double camera_tilt_deg(const CameraModel& camera) {
   const auto& r = camera.camera_from_rig_rotation;
@@ -187,7 +181,7 @@ std::string plot_of_camera(const std::vector<DatedCalibration>& all) {
   std::optional<Vec3> first;
   for (const DatedCalibration& each : all) {
     if (!each.calibration.camera) continue;
-    const Vec3 centre = camera_centre_mm(*each.calibration.camera);
+    const Vec3 centre = centre_of(*each.calibration.camera);
     if (!first) first = centre;
     const Vec3 moved = centre - *first;
     const double days = (each.time_s - all.front().time_s) / kDay_s;
@@ -244,15 +238,14 @@ report::Section calibrations_section(const std::vector<DatedCalibration>& all, J
     }
     if (lights != nullptr) json["leds"] = leds_json(*lights);
     if (camera) {
-      json["camera_mm"] = json_of(camera_centre_mm(*camera));
-      json["camera_height_mm"] = camera_centre_mm(*camera).z;
+      json["camera_mm"] = json_of(centre_of(*camera));
+      json["camera_height_mm"] = centre_of(*camera).z;
       json["camera_tilt_deg"] = camera_tilt_deg(*camera);
     }
-    section.table->rows.push_back({each.calibration.subject.measured, each.name,
-                                   each.calibration.id.substr(0, 12),
-                                   lights == nullptr ? "" : std::to_string(lights->leds.size()), moved,
-                                   brightness, camera ? number(camera_centre_mm(*camera).z, 2) : "",
-                                   camera ? number(camera_tilt_deg(*camera), 3) : ""});
+    section.table->rows.push_back(
+        {each.calibration.subject.measured, each.name, each.calibration.id.substr(0, 12),
+         lights == nullptr ? "" : std::to_string(lights->leds.size()), moved, brightness,
+         camera ? number(centre_of(*camera).z, 2) : "", camera ? number(camera_tilt_deg(*camera), 3) : ""});
     if (lights != nullptr) before = lights;
     numbers["calibrations"].push_back(std::move(json));
   }

@@ -9,7 +9,6 @@
 #include <variant>
 
 #include "app/jobs/compare.h"
-#include "app/jobs/reflectance.h"
 #include "app/jobs/view/layers.h"
 #include "app/jobs/view/probes.h"
 #include "app/jobs/view/tile_picture.h"
@@ -215,13 +214,6 @@ Result<Reply> one_solve(const RigParts& parts, const Call& call) {
   return json_reply(document);
 }
 
-/// Whether a lobe is used and what was found, in words.
-Json gloss_of(const Json& reflectance) {
-  const std::string words = reflectance_words(reflectance_summary(reflectance));
-  if (!words.empty()) return {{"used", reflectance["share"] > 0}, {"says", words}};
-  return {{"used", false}, {"says", reflectance["clusters"][0]["why"]}};
-}
-
 /// What the solver said of the scan and of itself: report.json, and what `reference` did.
 Result<Reply> report_of_solve(const RigParts& parts, const Call& call) {
   const Result<Viewed> viewed = viewed_of(parts, call);
@@ -230,7 +222,6 @@ Result<Reply> report_of_solve(const RigParts& parts, const Call& call) {
   Result<Json> report = read_json(viewed->folder / "report.json", "weft.solve-report", 1);
   if (!report) return std::move(report).error();
   (*report)["reference"] = viewed->solve->reference;
-  (*report)["gloss"] = report->contains("reflectance") ? gloss_of((*report)["reflectance"]) : Json();
   (*report)["solved_by"] = viewed->solve->solved_by;
   return json_reply(*report);
 }

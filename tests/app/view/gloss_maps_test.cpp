@@ -105,6 +105,7 @@ TEST(ReflectanceWords, AreOfBothMaterials) {
             "two materials: anisotropic-ggx, roughness 0.400 across the yarn and 0.100 along it, f0 0.050; "
             "ggx, roughness 0.160, f0 0.060; solved with it: 100 percent of the frame");
   EXPECT_THAT(reflectance_section(document), testing::HasSubstr("two materials"));
+  EXPECT_EQ(reflectance_said(document), Json({{"used", true}, {"says", reflectance_words(summary)}}));
 }
 
 TEST(ReflectanceWords, AreNoneWhereNoLobeWasMeasuredAndTheSectionSaysWhy) {
@@ -114,6 +115,9 @@ TEST(ReflectanceWords, AreNoneWhereNoLobeWasMeasuredAndTheSectionSaysWhy) {
   const Json document = reflectance_document(facts, AlbedoScale::kRelative);
   EXPECT_EQ(reflectance_words(reflectance_summary(document)), "");
   EXPECT_THAT(reflectance_section(document), testing::HasSubstr("Not observable"));
+  const Json said = reflectance_said(document);
+  EXPECT_EQ(said["used"], false);
+  EXPECT_THAT(said["says"], testing::HasSubstr("Lambert"));
 }
 
 }  // namespace

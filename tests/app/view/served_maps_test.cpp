@@ -69,12 +69,6 @@ TEST_F(ServedMaps, GivesEveryLayerAsValuesAndAsAPicture) {
   EXPECT_EQ(frame.body.size(), 6 * pixels);
 }
 
-TEST_F(ServedMaps, SayThatAtStandardNoLobeWasLookedFor) {
-  const Json report = get(solve() + "/report").json();
-  ASSERT_TRUE(report.contains("gloss")) << report.dump();
-  EXPECT_TRUE(report["gloss"].is_null()) << report["gloss"].dump();
-}
-
 TEST_F(ServedMaps, FindNoDifferenceBetweenASolveAndItself) {
   const Answer tile = get(solve() + "/tiles/difference/0/0_0.raw?with=" + solve_.id);
   ASSERT_EQ(tile.status, 200) << tile.body;

@@ -22,27 +22,17 @@ struct LightError {
 inline PixelTruth pixels_off(const Lobe& lobe, std::size_t count, const ClothOfPixels& cloth,
                              const std::vector<LightError>& errors, std::uint64_t seed) {
   const std::vector<Vec3> told = ten_directions();
-  PixelTruth truth;
-  Random random(seed);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Vec3 n = random_normal(random, cloth.tilt_deg);
-    const double albedo = cloth.albedo * (0.9 + 0.2 * random.uniform());
-    const double yarn = cloth.has_both_yarns && i % 3 == 0 ? kPi / 2 : 0;
-    auto readings = readings_of(model_of({}), n, albedo, yarn, 0, random);
-    for (std::size_t k = 0; k < told.size(); ++k) {
-      const LitFrom from(normalized(told[k] + errors[k].turn), {0, 0, 1});
-      const double bare = modelled(lobe, albedo * n, from, yarn) * std::exp(errors[k].log_strength);
-      const double x = bare * (1 + cloth.noise * random.normal());
-      const double sigma2 =
-          std::pow(cloth.noise * x, 2) + std::pow(kLobeModelShare * std::max(x, kLeastModelled), 2);
-      readings[k] = {LitFrom(told[k], {0, 0, 1}), x, x > 0 ? 1 / sigma2 : 0};
-    }
-    truth.samples.add(readings);
-    truth.b.push_back(albedo * n);
-    truth.yarn.push_back(yarn);
-    truth.start.push_back(lambert_fit(readings));
-  }
-  return truth;
+  return pixels_by(
+      [&](Vec3 n, double albedo, double yarn, Random& random) {
+        std::vector<LobeReading> readings;
+        for (std::size_t k = 0; k < told.size(); ++k) {
+          const LitFrom from(normalized(told[k] + errors[k].turn), {0, 0, 1});
+          const double bare = modelled(lobe, albedo * n, from, yarn) * std::exp(errors[k].log_strength);
+          readings.push_back(reading_of(bare, LitFrom(told[k], {0, 0, 1}), cloth.noise, random));
+        }
+        return readings;
+      },
+      count, cloth, seed);
 }
 
 /// Covariance of independent errors, in the order of LobeByLights.

@@ -51,14 +51,19 @@ struct PixelTruth {
   std::vector<double> yarn;
 };
 
+/// A reading of `bare` with noise, as the light is thought to come.
+inline LobeReading reading_of(double bare, const LitFrom& from, double noise, Random& random) {
+  const double x = bare * (1 + noise * random.normal());
+  const double sigma2 = std::pow(noise * x, 2) + std::pow(kLobeModelShare * std::max(x, kLeastModelled), 2);
+  return {from, x, x > 0 ? 1 / sigma2 : 0};
+}
+
 inline std::vector<LobeReading> readings_of(const PixelModel& model, Vec3 n, double albedo, double yarn,
                                             double noise, Random& random) {
   std::vector<LobeReading> readings;
   for (const Vec3& l : ten_directions()) {
     const LitFrom from(l, {0, 0, 1});
-    const double x = model(n, albedo, yarn, from) * (1 + noise * random.normal());
-    const double sigma2 = std::pow(noise * x, 2) + std::pow(kLobeModelShare * std::max(x, kLeastModelled), 2);
-    readings.push_back({from, x, x > 0 ? 1 / sigma2 : 0});
+    readings.push_back(reading_of(model(n, albedo, yarn, from), from, noise, random));
   }
   return readings;
 }
@@ -70,21 +75,32 @@ inline Vec3 lambert_fit(const std::vector<LobeReading>& readings) {
   return system.solved(system.gradient);
 }
 
-inline PixelTruth pixels_of(const PixelModel& model, std::size_t count, const ClothOfPixels& cloth,
-                            std::uint64_t seed) {
+/// What the ten readings of a pixel are.
+using PixelReadings =
+    std::function<std::vector<LobeReading>(Vec3 normal, double albedo, double yarn, Random& random)>;
+
+inline PixelTruth pixels_by(const PixelReadings& readings_of_pixel, std::size_t count,
+                            const ClothOfPixels& cloth, std::uint64_t seed) {
   PixelTruth truth;
   Random random(seed);
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 n = random_normal(random, cloth.tilt_deg);
     const double albedo = cloth.albedo * (0.9 + 0.2 * random.uniform());
     const double yarn = cloth.has_both_yarns && i % 3 == 0 ? kPi / 2 : 0;
-    const auto readings = readings_of(model, n, albedo, yarn, cloth.noise, random);
+    const auto readings = readings_of_pixel(n, albedo, yarn, random);
     truth.samples.add(readings);
     truth.b.push_back(albedo * n);
     truth.yarn.push_back(yarn);
     truth.start.push_back(lambert_fit(readings));
   }
   return truth;
+}
+
+inline PixelTruth pixels_of(const PixelModel& model, std::size_t count, const ClothOfPixels& cloth,
+                            std::uint64_t seed) {
+  return pixels_by([&](Vec3 n, double albedo, double yarn,
+                       Random& random) { return readings_of(model, n, albedo, yarn, cloth.noise, random); },
+                   count, cloth, seed);
 }
 
 inline double mean_angle_deg(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
