@@ -468,7 +468,7 @@ Result<void> write_report(const fs::path& folder, const Json& report) {
        {"error.png", "error against the truth"},
        {"status_preview.png", "status"},
        {"reflectance.png", "lobe and yarns"}}};
-  std::vector<PagePicture> pictures;
+  std::vector<report::PagePicture> pictures;
   for (const auto& [name, label] : kPreviews) {
     if (!is_there(folder / name)) continue;
     Result<std::string> png = read_text(folder / name);

@@ -19,23 +19,6 @@
 namespace weft::app {
 namespace {
 
-// RFC 4648, section 4.
-std::string base64(std::string_view bytes) {
-  constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string out;
-  out.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t group = 0;
-    for (std::size_t j = 0; j < 3; ++j) {
-      group = group << 8 | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0U);
-    }
-    for (std::size_t j = 0; j < 4; ++j) {
-      out += i + j <= bytes.size() ? kDigits[group >> (18 - 6 * j) & 63U] : '=';
-    }
-  }
-  return out;
-}
-
 double number(const Json& object, const char* key, double otherwise = 0) {
   const auto found = object.find(key);
   return found != object.end() && found->is_number() ? found->get<double>() : otherwise;
@@ -89,17 +72,6 @@ std::string verdict(const Json& report) {
         percent_text(number(report, "residual_explained")));
   }
   return report::verdict_box(warnings, otherwise);
-}
-
-std::string picture_row(const std::vector<PagePicture>& pictures) {
-  if (pictures.empty()) return "";
-  std::string body = "<div class=\"pictures\">\n";
-  for (const PagePicture& p : pictures) {
-    body += fmt::format(
-        "<figure><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}</figcaption></figure>\n",
-        escape_markup(p.label), base64(p.png));
-  }
-  return "<section>" + body + "</div></section>\n";
 }
 
 // A horizontal bar for each light: the median size of its residual.
@@ -261,10 +233,10 @@ std::string two(const std::string& left, const std::string& right) {
 
 }  // namespace
 
-std::string report_page(const Json& report, const std::vector<PagePicture>& pictures) {
+std::string report_page(const Json& report, const std::vector<report::PagePicture>& pictures) {
   std::string page = head(report);
   page += verdict(report);
-  page += picture_row(pictures);
+  page += report::picture_row(pictures);
   page += two(report::html_section("Residual by light", residual_chart(report)),
               report::html_section("Pixels by state", status_chart(report)));
   page += two(report::html_section("Where the error comes from", budget(report)), sigma_map(report));
