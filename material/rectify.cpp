@@ -128,6 +128,14 @@ Mean mean_at(Vec3 at, Stretch stretch, MapKind kind, std::span<const View<const 
   return mean;
 }
 
+struct PixelAt {
+  int x, y;
+};
+PixelAt nearest(Vec3 at, Size size) {
+  return {static_cast<int>(std::lround(std::clamp(at.x, 0.0, size.width - 1.0))),
+          static_cast<int>(std::lround(std::clamp(at.y, 0.0, size.height - 1.0)))};
+}
+
 }  // namespace
 
 Vec3 TableGrid::point_mm(double x, double y) const {
@@ -179,6 +187,11 @@ void rectify_rows(const CameraModel& camera, const TableGrid& grid, MapKind kind
     const int y = static_cast<int>(row);
     for (int x = 0; x < out[0].width(); ++x) {
       const Vec3 at = project(camera, grid.point_mm(x, y0 + y));
+      if (kind == MapKind::kChoice) {
+        const auto [i, j] = nearest(at, status.size());
+        for (std::size_t p = 0; p < map.size(); ++p) out[p](x, y) = map[p](i, j);
+        continue;
+      }
       const Mean mean = mean_at(at, stretch_at(camera, grid, x, y0 + y), kind, map, status);
       Planes value = {};
       for (std::size_t p = 0; p < map.size(); ++p) {
@@ -203,8 +216,7 @@ void rectify_status_rows(const CameraModel& camera, const TableGrid& grid, View<
     const int y = static_cast<int>(row);
     for (int x = 0; x < out.width(); ++x) {
       const Vec3 at = project(camera, grid.point_mm(x, y0 + y));
-      const int i = static_cast<int>(std::lround(std::clamp(at.x, 0.0, status.width() - 1.0)));
-      const int j = static_cast<int>(std::lround(std::clamp(at.y, 0.0, status.height() - 1.0)));
+      const auto [i, j] = nearest(at, status.size());
       const bool solved =
           mean_at(at, stretch_at(camera, grid, x, y0 + y), MapKind::kValue, {}, status).is_solved();
       const int bits = solved ? status(i, j) & ~kNoSolution : status(i, j) | kNoSolution;

@@ -46,6 +46,7 @@ enum class MapKind {
   kValue,   ///< weighted means
   kNormal,  ///< three planes X, Y, Z in the rig frame: turned into the grid's axes and brought to unit length
   kSigma,   ///< standard deviations of pixels: root of the weighted mean square, never below 0
+  kChoice,  ///< values that have no mean, as azimuths of yarns: those of the nearest pixel
 };
 
 /// Rows `y0` <= y < `y0` + out height of a map on the grid. Each output pixel is a weighted mean of the

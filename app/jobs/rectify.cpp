@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -27,7 +28,7 @@ using material::TableGrid;
 
 constexpr ProductKind kRectified = {"weft.rectified", "rectify.json", "set of rectified maps",
                                     "rectify a solve first with weft rectify"};
-constexpr int kVersion = 1;  // raised whenever the bytes of a map may change
+constexpr int kVersion = 2;  // raised whenever the bytes of a map may change
 constexpr const char* kFilter =
     "cubic convolution, a = -1/2 (Keys 1981), stretched to the grid where it is coarser than the frame";
 
@@ -65,9 +66,24 @@ Result<void> by_bands(const Rectification& r, const Make& make) {
   return {};
 }
 
+// Azimuths from 0 to 180 against the grid's rows. 0 also says that a lobe has no direction: it stays.
+void turn_yarns(double turn_deg, View<float> yarn_deg) {
+  if (turn_deg == 0) return;
+  for (int y = 0; y < yarn_deg.height(); ++y) {
+    for (int x = 0; x < yarn_deg.width(); ++x) {
+      const double turned = static_cast<double>(yarn_deg(x, y)) - turn_deg;
+      if (yarn_deg(x, y) != 0) yarn_deg(x, y) = static_cast<float>(turned - 180 * std::floor(turned / 180));
+    }
+  }
+}
+
 Result<void> rectify_map(const Rectification& r, const std::string& name, MapKind kind, SampleType type,
                          const Result<LoadedImage>& map) {
   if (!map) return map.error();
+  const auto yarn_channel = std::ranges::find(map->info.channels, "yarn_deg");
+  const int yarn = yarn_channel == map->info.channels.end()
+                       ? -1
+                       : static_cast<int>(yarn_channel - map->info.channels.begin());
   std::vector<View<const float>> planes;
   for (int p = 0; p < map->planes.planes(); ++p) planes.push_back(map->planes.plane(p));
   Result<ImageWriter> writer =
@@ -79,6 +95,7 @@ Result<void> rectify_map(const Rectification& r, const std::string& name, MapKin
     for (int p = 0; p < band.planes(); ++p)
       out.push_back(band.plane(p).crop({0, 0, r.grid.size.width, rows}));
     rectify_rows(r.camera, r.grid, kind, planes, r.status.plane(), y, r.context.threads, out);
+    if (yarn >= 0) turn_yarns(r.grid.turn_deg, out[static_cast<std::size_t>(yarn)]);
     return writer->write_rows(std::vector<View<const float>>(out.begin(), out.end()));
   });
   if (!done) return done;
@@ -131,9 +148,10 @@ Result<Calibration> calibration_with_camera(const fs::path& folder) {
                "calibrate the camera with weft calibrate camera"};
 }
 
-// Room that the maps take at most: normal 12, sigma 32, albedo 6, status 2 bytes a pixel.
+// Room that the maps take at most: normal 12, sigma 32, albedo 6, roughness and specular 10, status 2 bytes a
+// pixel.
 std::uint64_t bytes_of_rectified(Size size) {
-  return 52 * static_cast<std::uint64_t>(size.pixels());
+  return 62 * static_cast<std::uint64_t>(size.pixels());
 }
 
 Result<void> check_options(const RectifyOptions& options) {
@@ -193,6 +211,11 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   context.progress("rectify", 0.7);
   made = rectify_map(r, "sigma.exr", MapKind::kSigma, SampleType::kHalf, maps->sigma());
   if (!made) return std::move(made).error();
+  for (const char* name : {"roughness.exr", "specular.exr"}) {
+    if (!is_there(solve->folder / name)) continue;
+    made = rectify_map(r, name, MapKind::kChoice, SampleType::kHalf, read_image(solve->folder / name));
+    if (!made) return std::move(made).error();
+  }
   Json document = document_of(product.id, *solve, *calibration, r, solved);
   if (const Result<void> ok = write_json(partial.path() / "rectify.json", document); !ok) return ok.error();
   if (const Result<void> ok = partial.publish(); !ok) return ok.error();

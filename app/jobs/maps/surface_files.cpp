@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/maps/surface_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/files.h"
+#include "core/image_io/image_io.h"
+#include "core/image_io/solve_maps.h"
+#include "core/solve_record.h"
+#include "core/vec.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using material::Surface;
+
+constexpr float kNoSigma_deg = 180;
+
+// A normal that is steeper, or turned away, counts as leaning so far.
+const float kLeastUp = static_cast<float>(std::cos(radians(89.0)));
+
+const std::vector<std::string> kNormalChannels = {"X", "Y", "Z"};
+const std::vector<std::string> kColourChannels = {"R", "G", "B"};
+const std::vector<std::string> kLobeChannels = {"roughness", "alpha", "alpha_along", "yarn_deg"};
+
+Image<float> slopes_of(const Image<float>& normal, const Image<std::uint16_t>& status) {
+  Image<float> slope(normal.size(), 2);
+  for (int y = 0; y < normal.height(); ++y) {
+    for (int x = 0; x < normal.width(); ++x) {
+      if (status(x, y) & kNoSolution) continue;
+      const float up = std::max(normal(x, y, 2), kLeastUp);
+      slope(x, y, 0) = -normal(x, y, 0) / up;
+      slope(x, y, 1) = -normal(x, y, 1) / up;
+    }
+  }
+  return slope;
+}
+
+Result<void> check_finite(const Image<float>& map, const fs::path& file) {
+  for (int p = 0; p < map.planes(); ++p) {
+    for (int y = 0; y < map.height(); ++y) {
+      const float* row = map.plane(p).row(y);
+      const float* end = row + map.width();
+      const float* bad = std::find_if(row, end, [](float v) { return !std::isfinite(v); });
+      if (bad == end) continue;
+      return Error{ErrorKind::kBadData, "map has a value that is no number", file.string(),
+                   fmt::format("at column {}, row {}", bad - row, y), "rectify the solve again"};
+    }
+  }
+  return {};
+}
+
+// Planes of a map in the order of `names`. kBadData where one is missing, or the size is another.
+Result<Image<float>> read_planes(const fs::path& file, const std::vector<std::string>& names, Size size) {
+  const Result<LoadedImage> image = read_image(file);
+  if (!image) return image.error();
+  Image<float> planes(size, static_cast<int>(names.size()));
+  for (std::size_t p = 0; p < names.size(); ++p) {
+    const View<const float> channel = image->channel(names[p]);
+    if (channel.empty() || !(image->info.size == size)) {
+      return Error{ErrorKind::kBadData, "map does not fit the others", file.string(),
+                   fmt::format("channel {} of {} x {} pixels was expected", names[p], size.width, size.height),
+                   "rectify the solve again"};
+    }
+    for (int y = 0; y < size.height; ++y)
+      std::copy_n(channel.row(y), size.width, planes.plane(static_cast<int>(p)).row(y));
+  }
+  if (Result<void> ok = check_finite(planes, file); !ok) return std::move(ok).error();
+  return planes;
+}
+
+// What roughness.exr and specular.exr say, as a surface keeps it; empty where they are not both there.
+Result<Image<float>> read_lobe(const fs::path& folder, Size size) {
+  if (!is_there(folder / "roughness.exr") || !is_there(folder / "specular.exr")) return Image<float>();
+  const Result<Image<float>> roughness = read_planes(folder / "roughness.exr", kLobeChannels, size);
+  if (!roughness) return roughness.error();
+  const Result<Image<float>> specular = read_planes(folder / "specular.exr", {"f0"}, size);
+  if (!specular) return specular.error();
+  Image<float> lobe(size, 4);
+  for (int y = 0; y < size.height; ++y) {
+    for (int p = 0; p < 3; ++p)
+      std::copy_n(roughness->plane(p + 1).row(y), size.width, lobe.plane(p).row(y));
+    std::copy_n(specular->plane().row(y), size.width, lobe.plane(3).row(y));
+  }
+  return lobe;
+}
+
+std::vector<View<const float>> views_of(const Image<float>& map) {
+  std::vector<View<const float>> views;
+  for (int p = 0; p < map.planes(); ++p) views.push_back(map.plane(p));
+  return views;
+}
+
+Image<float> normals_of(const Image<float>& slope) {
+  Image<float> normal(slope.size(), 3);
+  for (int y = 0; y < slope.height(); ++y) {
+    for (int x = 0; x < slope.width(); ++x) {
+      const Vec3 n = normalized(Vec3{-slope(x, y, 0), -slope(x, y, 1), 1});
+      normal(x, y, 0) = static_cast<float>(n.x);
+      normal(x, y, 1) = static_cast<float>(n.y);
+      normal(x, y, 2) = static_cast<float>(n.z);
+    }
+  }
+  return normal;
+}
+
+// Roughness as games have it, before the planes that a surface keeps.
+Image<float> roughness_of(const Image<float>& lobe) {
+  Image<float> out(lobe.size(), 4);
+  for (int y = 0; y < lobe.height(); ++y) {
+    for (int x = 0; x < lobe.width(); ++x) {
+      out(x, y, 0) = std::sqrt(std::sqrt(lobe(x, y, 0) * lobe(x, y, 1)));
+      for (int p = 0; p < 3; ++p) out(x, y, p + 1) = lobe(x, y, p);
+    }
+  }
+  return out;
+}
+
+Result<void> write_status(const fs::path& file, const Image<std::uint16_t>& status) {
+  Result<ImageWriter> writer = ImageWriter::open(file, status.size(), {"Y"}, {.type = SampleType::kUint16});
+  if (!writer) return std::move(writer).error();
+  if (Result<void> ok = writer->write_rows(status.plane()); !ok) return ok;
+  return writer->finish();
+}
+
+}  // namespace
+
+Result<Surface> read_surface(const fs::path& rectified, double mm_per_pixel) {
+  const Result<SolveMaps> maps = SolveMaps::open(rectified);
+  if (!maps) return maps.error();
+  Surface surface;
+  surface.mm_per_pixel = mm_per_pixel;
+  Result<Image<std::uint16_t>> status = maps->status();
+  if (!status) return std::move(status).error();
+  surface.status = std::move(*status);
+  const Size size = maps->size();
+  const Result<Image<float>> normal = read_planes(rectified / "normal.exr", kNormalChannels, size);
+  if (!normal) return normal.error();
+  surface.slope = slopes_of(*normal, surface.status);
+  Result<Image<float>> albedo = read_planes(rectified / "albedo.exr", kColourChannels, size);
+  if (!albedo) return std::move(albedo).error();
+  surface.albedo = std::move(*albedo);
+  Result<Image<float>> sigma = read_planes(rectified / "sigma.exr", {"normal_deg"}, size);
+  if (!sigma) return std::move(sigma).error();
+  surface.sigma_deg = std::move(*sigma);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      if (surface.status(x, y) & kNoSolution) surface.sigma_deg(x, y) = kNoSigma_deg;
+    }
+  }
+  Result<Image<float>> lobe = read_lobe(rectified, size);
+  if (!lobe) return std::move(lobe).error();
+  surface.lobe = std::move(*lobe);
+  return surface;
+}
+
+Result<void> write_surface(const fs::path& folder, const Surface& surface, Compression compression) {
+  const WriteOptions whole = {.type = SampleType::kFloat, .compression = compression};
+  const WriteOptions half = {.type = SampleType::kHalf, .compression = compression};
+  const auto write = [&](const char* name, const Image<float>& map, const std::vector<std::string>& channels,
+                         const WriteOptions& options) {
+    return map.empty() ? Result<void>() : write_image(folder / name, views_of(map), channels, options);
+  };
+  if (Result<void> ok = write_status(folder / "status.png", surface.status); !ok) return ok;
+  if (Result<void> ok = write("normal.exr", normals_of(surface.slope), kNormalChannels, whole); !ok) return ok;
+  if (Result<void> ok = write("albedo.exr", surface.albedo, kColourChannels, half); !ok) return ok;
+  if (Result<void> ok = write("sigma.exr", surface.sigma_deg, {"normal_deg"}, half); !ok) return ok;
+  if (Result<void> ok = write("opacity.exr", surface.opacity, {"opacity"}, half); !ok) return ok;
+  if (surface.lobe.empty()) return {};
+  if (Result<void> ok = write("roughness.exr", roughness_of(surface.lobe), kLobeChannels, half); !ok) return ok;
+  const std::array<View<const float>, 1> f0 = {surface.lobe.plane(3)};
+  return write_image(folder / "specular.exr", f0, {"f0"}, half);
+}
+
+}  // namespace weft::app

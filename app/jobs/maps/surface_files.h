@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+
+#include "core/compression.h"
+#include "core/result.h"
+#include "material/surface.h"
+
+namespace weft::app {
+
+/// The maps of a folder that weft rectify made, as a surface. Errors of read_image(); kBadData where sizes
+/// differ or a value is not finite.
+Result<material::Surface> read_surface(const std::filesystem::path& rectified, double mm_per_pixel);
+
+/// normal.exr, albedo.exr, sigma.exr (normal_deg), status.png and, where the surface has them, opacity.exr,
+/// roughness.exr and specular.exr, with channels and types as in docs/formats.md.
+Result<void> write_surface(const std::filesystem::path& folder, const material::Surface& surface,
+                           Compression compression);
+
+}  // namespace weft::app
