@@ -16,6 +16,8 @@ Verb solve_verb();
 Verb compare_verb();
 Verb calibrate_verb();
 Verb rectify_verb();
+Verb finish_verb();
+Verb maps_verb();
 Verb serve_verb();
 Verb scan_verb();
 Verb rig_verb();

@@ -66,9 +66,10 @@ Result<Image<float>> read_planes(const fs::path& file, const std::vector<std::st
   for (std::size_t p = 0; p < names.size(); ++p) {
     const View<const float> channel = image->channel(names[p]);
     if (channel.empty() || !(image->info.size == size)) {
-      return Error{ErrorKind::kBadData, "map does not fit the others", file.string(),
-                   fmt::format("channel {} of {} x {} pixels was expected", names[p], size.width, size.height),
-                   "rectify the solve again"};
+      return Error{
+          ErrorKind::kBadData, "map does not fit the others", file.string(),
+          fmt::format("channel {} of {} x {} pixels was expected", names[p], size.width, size.height),
+          "rectify the solve again"};
     }
     for (int y = 0; y < size.height; ++y)
       std::copy_n(channel.row(y), size.width, planes.plane(static_cast<int>(p)).row(y));
@@ -86,8 +87,7 @@ Result<Image<float>> read_lobe(const fs::path& folder, Size size) {
   if (!specular) return specular.error();
   Image<float> lobe(size, 4);
   for (int y = 0; y < size.height; ++y) {
-    for (int p = 0; p < 3; ++p)
-      std::copy_n(roughness->plane(p + 1).row(y), size.width, lobe.plane(p).row(y));
+    for (int p = 0; p < 3; ++p) std::copy_n(roughness->plane(p + 1).row(y), size.width, lobe.plane(p).row(y));
     std::copy_n(specular->plane().row(y), size.width, lobe.plane(3).row(y));
   }
   return lobe;
@@ -170,12 +170,14 @@ Result<void> write_surface(const fs::path& folder, const Surface& surface, Compr
     return map.empty() ? Result<void>() : write_image(folder / name, views_of(map), channels, options);
   };
   if (Result<void> ok = write_status(folder / "status.png", surface.status); !ok) return ok;
-  if (Result<void> ok = write("normal.exr", normals_of(surface.slope), kNormalChannels, whole); !ok) return ok;
+  if (Result<void> ok = write("normal.exr", normals_of(surface.slope), kNormalChannels, whole); !ok)
+    return ok;
   if (Result<void> ok = write("albedo.exr", surface.albedo, kColourChannels, half); !ok) return ok;
   if (Result<void> ok = write("sigma.exr", surface.sigma_deg, {"normal_deg"}, half); !ok) return ok;
   if (Result<void> ok = write("opacity.exr", surface.opacity, {"opacity"}, half); !ok) return ok;
   if (surface.lobe.empty()) return {};
-  if (Result<void> ok = write("roughness.exr", roughness_of(surface.lobe), kLobeChannels, half); !ok) return ok;
+  if (Result<void> ok = write("roughness.exr", roughness_of(surface.lobe), kLobeChannels, half); !ok)
+    return ok;
   const std::array<View<const float>, 1> f0 = {surface.lobe.plane(3)};
   return write_image(folder / "specular.exr", f0, {"f0"}, half);
 }

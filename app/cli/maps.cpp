@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/maps/maps.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/exit_code.h"
+#include "app/cli/options.h"
+#include "app/cli/terminal.h"
+#include "app/cli/verbs.h"
+
+namespace weft::app {
+namespace {
+
+struct MapsArguments {
+  MapsOptions maps;
+  std::vector<std::string> names;
+  std::filesystem::path recipe;
+  std::string steps;
+  bool is_strict = false;
+};
+
+std::vector<std::string> map_names() {
+  return {kMapNames.begin(), kMapNames.end()};
+}
+
+Result<Recipe> asked_recipe(const MapsArguments& a) {
+  if (!a.recipe.empty()) return read_recipe(a.recipe);
+  if (a.steps.empty()) return Recipe();
+  const Json document = Json::parse(a.steps, nullptr, false);
+  if (document.is_discarded()) {
+    return Error{ErrorKind::kUsage, "the recipe cannot be used", "--steps", "it is no JSON",
+                 R"(give {"steps": [{"do": "tile"}]})"};
+  }
+  return recipe_from_json(document, "--steps");
+}
+
+std::vector<MapName> maps_named(const std::vector<std::string>& names) {
+  std::vector<MapName> maps;
+  for (std::size_t i = 0; i < kMapNames.size(); ++i) {
+    if (names.empty() || std::ranges::find(names, kMapNames[i]) != names.end())
+      maps.push_back(static_cast<MapName>(i));
+  }
+  return maps;
+}
+
+void print_words(const MapsReport& report) {
+  const Json& d = report.document;
+  print(report.folder.string());
+  if (report.was_there) print("  is there already: same solve, same recipe, same options");
+  const double mm = d["mm_per_pixel"].get<double>();
+  print(fmt::format("  {} x {} pixels of {:.5g} mm{}", d["width"].get<int>(), d["height"].get<int>(), mm,
+                    d["is_tile"].get<bool>() ? ", a tile" : ""));
+  for (const Json& map : d["maps"]) {
+    const std::string unit = map.contains("unit") ? " " + map["unit"].get<std::string>() : "";
+    if (map.contains("constant")) {
+      print(fmt::format("  {}: {:.4g}{}, {}", map["name"].get<std::string>(), map["constant"].get<double>(),
+                        unit, map["why"].get<std::string>()));
+    } else {
+      print(fmt::format("  {}: {:.4g} to {:.4g}{}, {}", map["name"].get<std::string>(),
+                        map["least"].get<double>(), map["most"].get<double>(), unit,
+                        map["source"].get<std::string>()));
+    }
+  }
+  for (const Json& verdict : d["verdicts"]) {
+    print(fmt::format("  {}: {}; {}", verdict["name"].get<std::string>(), verdict["text"].get<std::string>(),
+                      verdict["remedy"].get<std::string>()));
+  }
+  print(fmt::format("  look at {}", (report.folder / "report.html").string()));
+}
+
+Result<int> make(const MapsArguments& arguments, const CommonArguments& common) {
+  Result<Recipe> recipe = asked_recipe(arguments);
+  if (!recipe) return std::move(recipe).error();
+  MapsOptions options = arguments.maps;
+  options.recipe = std::move(*recipe);
+  const Result<MapsReport> report = [&] {
+    ProgressLine line(common.quiet);
+    return make_maps(options, {common.threads, stop_on_signal(), line.callback()});
+  }();
+  if (!report) return report.error();
+  if (common.json) {
+    Json document = report->document;
+    document["folder"] = report->folder.string();
+    document["was_there"] = report->was_there;
+    print_json(document);
+  } else {
+    print_words(*report);
+  }
+  const bool has_verdicts = !report->document["verdicts"].empty();
+  return arguments.is_strict && has_verdicts ? kDoneWithWarnings : kDone;
+}
+
+void add_common(Options& options, MapsArguments& a) {
+  options.add("session", &a.maps.session, "Session folder, NAME.weft").required();
+  options.add("--solve", &a.maps.solve, "Id of the solve; default the session's current one");
+  options.add("--calibration", &a.maps.calibration, "Calibration folder; default the session's own");
+  options.add("-o,--output", &a.maps.output, "Folder for the maps; default SESSION/maps/ID");
+  options.add("--mm-per-pixel", &a.maps.mm_per_pixel, "Of the grid; default what the camera sees")
+      .above_zero();
+  const Option steps = options.add("--steps", &a.steps, R"(Recipe as JSON: {"steps": [{"do": "tile"}]})");
+  options
+      .add("--recipe", &a.recipe,
+           "Recipe: a TOML file, the maps.json of other maps, or flat, tile, detail (docs/finishing.md)")
+      .excludes(steps);
+  options.add_flag("--preview", &a.maps.is_preview, "On a grid four times as coarse; earlier previews go");
+  options.add_choice("--compress", &a.maps.compression, kCompressionNames, "Of EXR files: none, zip, piz");
+  options.add_flag("--strict", &a.is_strict, "Exit code 2 where something speaks against the maps");
+}
+
+Run add_maps(Options& options) {
+  const auto a = std::make_shared<MapsArguments>();
+  add_common(options, *a);
+  options.add("--maps", &a->names, "Which to derive, by commas; default all").by_commas().one_of(map_names());
+  return [a](const CommonArguments& common) {
+    a->maps.maps = maps_named(a->names);
+    return make(*a, common);
+  };
+}
+
+Run add_finish(Options& options) {
+  const auto a = std::make_shared<MapsArguments>();
+  a->recipe = "tile";
+  add_common(options, *a);
+  return [a](const CommonArguments& common) {
+    if (!a->steps.empty()) a->recipe.clear();
+    return make(*a, common);
+  };
+}
+
+}  // namespace
+
+Verb maps_verb() {
+  return {"maps", "Derive height, occlusion and other maps from a solve, finished by a recipe", add_maps};
+}
+
+Verb finish_verb() {
+  return {"finish", "Flatten, straighten, crop, tile and repair the maps of a solve", add_finish};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/maps/maps.h"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <utility>
+
+#include "app/jobs/maps/finishing.h"
+#include "app/jobs/maps/maps_page.h"
+#include "app/jobs/maps/surface_files.h"
+#include "app/jobs/pictures.h"
+#include "app/jobs/rectify.h"
+#include "core/files.h"
+#include "core/session.h"
+#include "report/downsampler.h"
+#include "report/preview.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using material::Surface;
+
+constexpr int kVersion = 1;  // raised whenever the bytes of a map may change
+
+Json names_of(const std::vector<MapName>& maps) {
+  Json names = Json::array();
+  for (const MapName map : maps) names.push_back(kMapNames[static_cast<std::size_t>(map)]);
+  return names;
+}
+
+Result<RectifyReport> rectified_maps(const MapsOptions& options, const JobContext& context) {
+  RectifyOptions rectify;
+  rectify.session = options.session;
+  rectify.solve = options.solve;
+  rectify.calibration = options.calibration;
+  rectify.mm_per_pixel = options.mm_per_pixel;
+  return rectify_session(rectify, context);
+}
+
+// Room that maps take at most, bytes a pixel.
+std::uint64_t bytes_of_maps(Size size) {
+  return 90 * static_cast<std::uint64_t>(size.pixels());
+}
+
+// A coarse surface is finished in a moment and shows what will come out.
+Recipe as_preview(Recipe recipe, double mm_per_pixel) {
+  recipe.steps.insert(recipe.steps.begin(), {"scale", {{"mm_per_pixel", kPreviewFactor * mm_per_pixel}}});
+  return recipe;
+}
+
+// Albedo, normals and relit cloth, as a person looks at them first.
+Result<void> draw_surface(const fs::path& folder, const Surface& surface) {
+  report::Downsampler slope(surface.size(), 2), albedo(surface.size(), 3);
+  slope.add_rows(std::vector<View<const float>>{surface.slope.plane(0), surface.slope.plane(1)},
+                 surface.status.plane());
+  albedo.add_rows(std::vector<View<const float>>{surface.albedo.plane(0), surface.albedo.plane(1),
+                                                 surface.albedo.plane(2)},
+                  surface.status.plane());
+  Image<float> normal(slope.averages().size(), 3);
+  for (int y = 0; y < normal.height(); ++y) {
+    for (int x = 0; x < normal.width(); ++x) {
+      normal(x, y, 0) = -slope.averages()(x, y, 0);
+      normal(x, y, 1) = -slope.averages()(x, y, 1);
+      normal(x, y, 2) = 1;
+    }
+  }
+  const Image<float>& seen = albedo.averages();
+  const double scale = report::display_scale(seen);
+  if (Result<void> ok = write_png(folder / "albedo.png", report::albedo_picture(seen, scale)); !ok) return ok;
+  if (Result<void> ok = write_png(folder / "normal.png", report::normal_picture(normal)); !ok) return ok;
+  return write_png(folder / "relit.png", report::relit_picture(seen, normal, scale));
+}
+
+Json steps_of(const Recipe& recipe, const FinishingFacts& facts) {
+  Json steps = json_of(recipe)["steps"];
+  for (std::size_t i = 0; i < facts.steps.size(); ++i) steps[i]["facts"] = facts.steps[i];
+  return steps;
+}
+
+Json document_of(const Product& product, const RectifyReport& rectified, const MapsOptions& options,
+                 const Recipe& recipe, const Surface& surface, const FinishingFacts& finished,
+                 const std::vector<MapFacts>& made) {
+  Json maps = Json::array();
+  for (const MapFacts& map : made) maps.push_back(json_of(map));
+  return {{"schema", fmt::format("{}/1", kMapsProduct.schema)},
+          {"id", product.id},
+          {"solve", rectified.document["solve"]},
+          {"rectified", rectified.document["id"]},
+          {"width", surface.size().width},
+          {"height", surface.size().height},
+          {"mm_per_pixel", surface.mm_per_pixel},
+          {"is_tile", surface.is_tile},
+          {"preview", options.is_preview},
+          {"steps", steps_of(recipe, finished)},
+          {"maps", std::move(maps)},
+          {"verdicts", json_of(finished.verdicts)}};
+}
+
+// Previews are looked at once.
+void remove_previews(const fs::path& parent, const fs::path& but_not) {
+  for (const Product& product : list_products(kMapsProduct, parent)) {
+    const Result<Json> document = read_json(product.folder / kMapsProduct.document, kMapsProduct.schema, 1);
+    std::error_code ignored;
+    if (document && document->value("preview", false) && product.folder != but_not)
+      fs::remove_all(product.folder, ignored);
+  }
+}
+
+}  // namespace
+
+Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& context) {
+  const Result<Session> session = read_session(options.session);
+  if (!session) return session.error();
+  const Result<RectifyReport> rectified = rectified_maps(options, context);
+  if (!rectified) return rectified.error();
+  const double mm_per_pixel = rectified->document["mm_per_pixel"].get<double>();
+  const Recipe recipe = options.is_preview ? as_preview(options.recipe, mm_per_pixel) : options.recipe;
+
+  const fs::path parent = session->folder / "maps";
+  const Json inputs = {{"version", kVersion},           {"rectified", rectified->document["id"]},
+                       {"recipe", json_of(recipe)},     {"maps", names_of(options.maps)},
+                       {"preview", options.is_preview}, {"compression", name_of(options.compression)}};
+  const Product product = product_of(kMapsProduct, inputs, parent, options.output);
+  Result<std::optional<Json>> found = find_finished(product);
+  if (!found) return std::move(found).error();
+  if (*found) return MapsReport{product.folder, true, std::move(**found)};
+
+  Result<Surface> surface = read_surface(rectified->folder, mm_per_pixel);
+  if (!surface) return std::move(surface).error();
+  PartialFolder partial(product.folder);
+  if (const Result<void> begun = begin(partial, bytes_of_maps(surface->size())); !begun) return begun.error();
+  const Result<FinishingFacts> finished = finish_surface(*surface, recipe, context);
+  if (!finished) return finished.error();
+  if (Result<void> ok = write_surface(partial.path(), *surface, options.compression); !ok)
+    return std::move(ok).error();
+  if (Result<void> ok = draw_surface(partial.path(), *surface); !ok) return std::move(ok).error();
+  MapMaker maker(*surface, partial.path(), options.compression, context);
+  for (std::size_t i = 0; i < options.maps.size(); ++i) {
+    context.progress("maps", static_cast<double>(i) / static_cast<double>(options.maps.size()));
+    if (Result<void> ok = maker.make(options.maps[i]); !ok) return std::move(ok).error();
+  }
+  Json document = document_of(product, *rectified, options, recipe, *surface, *finished, maker.made());
+  if (Result<void> ok = write_maps_page(partial.path(), document); !ok) return std::move(ok).error();
+  if (Result<void> ok = write_json(partial.path() / kMapsProduct.document, document); !ok)
+    return std::move(ok).error();
+  if (Result<void> ok = partial.publish(); !ok) return std::move(ok).error();
+  if (options.is_preview) remove_previews(parent, product.folder);
+  context.progress("maps", 1);
+  return MapsReport{product.folder, false, std::move(document)};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/maps/map_maker.h"
+#include "app/jobs/maps/recipe.h"
+#include "core/compression.h"
+#include "core/job.h"
+#include "core/json_document.h"
+#include "core/product.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+inline constexpr ProductKind kMapsProduct = {"weft.maps", "maps.json", "set of maps",
+                                             "make it first with weft maps"};
+
+struct MapsOptions {
+  std::filesystem::path session;
+  std::string solve;                  ///< id of the solve; empty: the session's current one
+  std::filesystem::path calibration;  ///< empty: the session's own
+  std::filesystem::path output;       ///< empty: <session>/maps/<id>
+  Recipe recipe;                      ///< no step: the maps as they were photographed
+  std::vector<MapName> maps;          ///< to derive; none: those that finishing works on alone
+  double mm_per_pixel = 0;            ///< of the grid; 0: what the camera sees
+  bool is_preview = false;            ///< on a grid kPreviewFactor times as coarse; earlier previews go
+  Compression compression = Compression::kNone;
+};
+
+inline constexpr double kPreviewFactor = 4;
+
+/// What making maps left behind.
+struct MapsReport {
+  std::filesystem::path folder;
+  bool was_there = false;  ///< a complete one of the same solve, recipe and options was found
+  Json document;           ///< maps.json
+};
+
+/// Puts the maps of a solve on a square grid of the table (rectify_session()), finishes them by the recipe,
+/// derives others, and publishes all of it whole in a folder named by its inputs, with maps.json
+/// (weft.maps/1), pictures and report.html (docs/maps.md).
+///
+/// Errors: those of rectify_session(), of finish_surface() and of each map; kInterrupted.
+Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& context);
+
+}  // namespace weft::app

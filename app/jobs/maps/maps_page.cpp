@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/maps/maps_page.h"
+
+#include <fmt/format.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/files.h"
+#include "core/text.h"
+#include "core/verdict.h"
+#include "report/html.h"
+#include "report/page.h"
+#include "report/page_picture.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string number_text(const Json& map, const char* key) {
+  return map.contains(key) ? fmt::format("{:.4g}", map[key].get<double>()) : "";
+}
+
+report::Table table_of(const Json& maps) {
+  report::Table table = {.header = {"map", "least", "mean", "most", "unit", "comes from"}};
+  for (const Json& map : maps) {
+    const bool is_one = map.contains("constant");
+    table.rows.push_back({map["name"].get<std::string>(), number_text(map, "least"),
+                          number_text(map, is_one ? "constant" : "mean"), number_text(map, "most"),
+                          map.value("unit", ""),
+                          is_one ? map["why"].get<std::string>() : map["source"].get<std::string>()});
+  }
+  return table;
+}
+
+// What a step was told and found, in one line.
+std::string told(const Json& object) {
+  std::string words;
+  for (const auto& [key, value] : object.items()) {
+    if (key == "do" || key == "facts") continue;
+    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", key,
+                         value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  return words;
+}
+
+report::Table table_of_steps(const Json& steps) {
+  report::Table table = {.header = {"step", "told", "found"}};
+  for (const Json& step : steps) {
+    table.rows.push_back(
+        {step["do"].get<std::string>(), told(step), step.contains("facts") ? told(step["facts"]) : ""});
+  }
+  return table;
+}
+
+Result<std::string> pictures_of(const fs::path& folder, const Json& maps) {
+  std::vector<std::pair<std::string, std::string>> shown = {
+      {"albedo.png", "albedo"}, {"normal.png", "normal"}, {"relit.png", "relit from the upper left"}};
+  for (const Json& map : maps) {
+    if (map.contains("picture"))
+      shown.emplace_back(map["picture"].get<std::string>(), map["name"].get<std::string>());
+  }
+  std::vector<report::PagePicture> pictures;
+  for (const auto& [file, label] : shown) {
+    Result<std::string> png = read_text(folder / file);
+    if (!png) return png;
+    pictures.push_back({label, std::move(*png)});
+  }
+  return report::picture_row(pictures);
+}
+
+}  // namespace
+
+Result<void> write_maps_page(const fs::path& folder, const Json& document) {
+  const Result<std::vector<Verdict>> verdicts = verdicts_from_json(document["verdicts"], "maps.json");
+  if (!verdicts) return verdicts.error();
+  const Result<std::string> pictures = pictures_of(folder, document["maps"]);
+  if (!pictures) return pictures.error();
+  const int width = document["width"].get<int>(), height = document["height"].get<int>();
+  const double mm = document["mm_per_pixel"].get<double>();
+  std::string body = fmt::format(
+      "<h1>Maps</h1>\n<p class=\"meta\">{} × {} pixels of {:.4g} mm: {:.4g} × {:.4g} mm{}</p>\n", width,
+      height, mm, width * mm, height * mm, document["is_tile"].get<bool>() ? ", a tile" : "");
+  body += report::verdict_box(*verdicts, "Nothing speaks against them.");
+  body += *pictures;
+  if (!document["maps"].empty())
+    body += report::html_of(report::Section{.title = "Derived maps", .table = table_of(document["maps"])});
+  if (!document["steps"].empty())
+    body +=
+        report::html_of(report::Section{.title = "Finishing", .table = table_of_steps(document["steps"])});
+  return write_file(folder / "report.html", report::html_page("Maps", body));
+}
+
+}  // namespace weft::app

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/json_document.h"
+#include "core/result.h"
+
+// A recipe: what is done to the maps of a solve, step by step, before other maps are derived from them. It
+// names no session, so that it runs again on any solve (docs/finishing.md).
+
+namespace weft::app {
+
+/// One step, with all its options.
+struct RecipeStep {
+  std::string name;
+  Json options;  ///< each key of its kind, in their order
+
+  friend bool operator==(const RecipeStep&, const RecipeStep&) = default;
+};
+
+struct Recipe {
+  std::vector<RecipeStep> steps;
+
+  friend bool operator==(const Recipe&, const Recipe&) = default;
+};
+
+/// What an option of a step holds.
+enum class StepHolds {
+  kNumber,   ///< from `least` to `most`
+  kWhole,    ///< a whole one
+  kFlag,     ///< true or false
+  kWord,     ///< one of `words`
+  kNumbers,  ///< as many as its default has, each from `least` to `most`
+  kSpots     ///< places to repair: a list of {x_mm, y_mm, radius_mm}
+};
+
+struct StepKey {
+  const char* name;
+  const char* says;  ///< for people, with its unit
+  StepHolds holds;
+  Json otherwise;
+  double least = 0, most = 0;
+  std::vector<std::string> words = {};
+};
+
+struct StepKind {
+  const char* name;
+  const char* says;
+  std::vector<StepKey> keys;
+};
+
+/// All that a recipe may say.
+const std::vector<StepKind>& step_kinds();
+
+/// {"steps": [{"do": "tile", "repeats": [4, 3]}, ...]}; any other key of the object is passed over, so that a
+/// maps.json is a recipe too. Keys that a step lacks have their default. kBadData with the step's number and
+/// the key; of an unknown name the nearest known one is named.
+Result<Recipe> recipe_from_json(const Json& document, const std::string& where);
+Json json_of(const Recipe& recipe);
+
+/// A file: TOML with a table [[step]] a step, or JSON as above. Or the name of a recipe that weft brings
+/// along (flat, tile, detail). kNoInput, kBadData.
+Result<Recipe> read_recipe(const std::filesystem::path& file);
+
+}  // namespace weft::app
