@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+
+#include "core/image.h"
+#include "simulator/geometry/settings.h"
+
+namespace weft::bench {
+
+/// A surface of the simulator sampled at the centres of pixels: what maps are measured against.
+struct SampledCloth {
+  double mm_per_pixel = 0;
+  Image<float> height_mm;
+  Image<float> normal;  ///< X right, Y up, Z to the camera
+
+  std::array<View<const float>, 3> normals() const {
+    return {normal.plane(0), normal.plane(1), normal.plane(2)};
+  }
+};
+SampledCloth sampled(const simulator::GeometrySettings& geometry, Size size, double mm_per_pixel,
+                     int threads);
+
+/// A plain weave of a family, ten pixels of 0.05 mm a yarn.
+inline constexpr double kClothPitch_mm = 0.05;
+simulator::GeometrySettings cloth_of(simulator::Family family);
+/// The same laid in waves and folds up to 1.5 mm high.
+simulator::GeometrySettings draped_cloth(simulator::Family family);
+
+}  // namespace weft::bench
