@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -14,20 +14,37 @@
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/jobs/planned_cloth.h"
 
 namespace weft::app {
 namespace {
 
 struct MapsArguments {
   MapsOptions maps;
-  std::vector<std::string> names;
   std::filesystem::path recipe;
   std::string steps;
   bool is_strict = false;
 };
 
+constexpr std::array<const char*, 4> kHeightMethods = {"tiled", "direct", "multigrid", "seed"};
+
 std::vector<std::string> map_names() {
-  return {kMapNames.begin(), kMapNames.end()};
+  std::vector<std::string> names;
+  for (const DerivedMap& map : derived_maps()) names.emplace_back(map.name);
+  return names;
+}
+
+std::vector<std::string> cloth_names() {
+  std::vector<std::string> names;
+  for (const NamedCloth& each : planned_cloths()) names.push_back(each.name);
+  return names;
+}
+
+std::string help_of_maps() {
+  std::string help = "Which to derive, by commas; default all:";
+  for (const DerivedMap& map : derived_maps())
+    help += fmt::format("{} {}, {}", &map == &derived_maps().front() ? "" : ";", map.name, map.says);
+  return help;
 }
 
 Result<Recipe> asked_recipe(const MapsArguments& a) {
@@ -39,15 +56,6 @@ Result<Recipe> asked_recipe(const MapsArguments& a) {
                  R"(give {"steps": [{"do": "tile"}]})"};
   }
   return recipe_from_json(document, "--steps");
-}
-
-std::vector<MapName> maps_named(const std::vector<std::string>& names) {
-  std::vector<MapName> maps;
-  for (std::size_t i = 0; i < kMapNames.size(); ++i) {
-    if (names.empty() || std::ranges::find(names, kMapNames[i]) != names.end())
-      maps.push_back(static_cast<MapName>(i));
-  }
-  return maps;
 }
 
 void print_words(const MapsReport& report) {
@@ -117,9 +125,22 @@ void add_common(Options& options, MapsArguments& a) {
 Run add_maps(Options& options) {
   const auto a = std::make_shared<MapsArguments>();
   add_common(options, *a);
-  options.add("--maps", &a->names, "Which to derive, by commas; default all").by_commas().one_of(map_names());
+  DeriveOptions& derive = a->maps.derive;
+  options.add("--maps", &a->maps.maps, help_of_maps()).by_commas().one_of(map_names());
+  options.add_choice("--height", &derive.height, kHeightMethods,
+                     "How slopes are integrated: tiled, direct, multigrid, seed");
+  options.add_flag("--weigh", &derive.weighs_by_sigma, "Height: each pixel by one over its variance");
+  options.add("--cavity", &derive.cavity_mm, "Radius that a cavity is seen against, mm")
+      .in_range(0.01, 1000.0)
+      .shows_default();
+  options.add("--directions", &derive.directions, "Of the occlusion's lines, 4 to 64")
+      .in_range(4, 64)
+      .shows_default();
+  options.add("--cloth", &derive.cloth, "Whose lobe is typed where the photographs tell none")
+      .one_of(cloth_names())
+      .shows_default();
   return [a](const CommonArguments& common) {
-    a->maps.maps = maps_named(a->names);
+    if (a->maps.maps.empty()) a->maps.maps = map_names();
     return make(*a, common);
   };
 }

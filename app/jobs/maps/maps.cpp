@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
@@ -24,10 +27,14 @@ using material::Surface;
 
 constexpr int kVersion = 1;  // raised whenever the bytes of a map may change
 
-Json names_of(const std::vector<MapName>& maps) {
-  Json names = Json::array();
-  for (const MapName map : maps) names.push_back(kMapNames[static_cast<std::size_t>(map)]);
-  return names;
+constexpr std::array<const char*, 4> kHeightMethodNames = {"tiled", "direct", "multigrid", "seed"};
+
+Json json_of(const DeriveOptions& options) {
+  return {{"height", kHeightMethodNames[static_cast<std::size_t>(options.height)]},
+          {"weighs_by_sigma", options.weighs_by_sigma},
+          {"cavity_mm", options.cavity_mm},
+          {"directions", options.directions},
+          {"cloth", options.cloth}};
 }
 
 Result<RectifyReport> rectified_maps(const MapsOptions& options, const JobContext& context) {
@@ -79,11 +86,25 @@ Json steps_of(const Recipe& recipe, const FinishingFacts& facts) {
   return steps;
 }
 
+// Each that was asked for, in the order of derived_maps().
+Result<void> derive(const std::vector<std::string>& asked, MapWork& work) {
+  double done = 0;
+  for (const DerivedMap& map : derived_maps()) {
+    if (std::ranges::find(asked, map.name) == asked.end()) continue;
+    if (work.context.stop.stop_requested()) return interrupted();
+    work.context.progress("maps", done++ / static_cast<double>(asked.size()));
+    if (Result<void> ok = map.make(work); !ok) return ok;
+  }
+  return {};
+}
+
 Json document_of(const Product& product, const RectifyReport& rectified, const MapsOptions& options,
-                 const Recipe& recipe, const Surface& surface, const FinishingFacts& finished,
-                 const std::vector<MapFacts>& made) {
+                 const Recipe& recipe, const FinishingFacts& finished, const MapWork& work) {
+  const Surface& surface = work.surface;
+  std::vector<Verdict> verdicts = finished.verdicts;
+  verdicts.insert(verdicts.end(), work.verdicts.begin(), work.verdicts.end());
   Json maps = Json::array();
-  for (const MapFacts& map : made) maps.push_back(json_of(map));
+  for (const MapFacts& map : work.made) maps.push_back(json_of(map));
   return {{"schema", fmt::format("{}/1", kMapsProduct.schema)},
           {"id", product.id},
           {"solve", rectified.document["solve"]},
@@ -95,7 +116,8 @@ Json document_of(const Product& product, const RectifyReport& rectified, const M
           {"preview", options.is_preview},
           {"steps", steps_of(recipe, finished)},
           {"maps", std::move(maps)},
-          {"verdicts", json_of(finished.verdicts)}};
+          {"derive", json_of(options.derive)},
+          {"verdicts", json_of(verdicts)}};
 }
 
 // Previews are looked at once.
@@ -119,9 +141,13 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
   const Recipe recipe = options.is_preview ? as_preview(options.recipe, mm_per_pixel) : options.recipe;
 
   const fs::path parent = session->folder / "maps";
-  const Json inputs = {{"version", kVersion},           {"rectified", rectified->document["id"]},
-                       {"recipe", json_of(recipe)},     {"maps", names_of(options.maps)},
-                       {"preview", options.is_preview}, {"compression", name_of(options.compression)}};
+  const Json inputs = {{"version", kVersion},
+                       {"rectified", rectified->document["id"]},
+                       {"recipe", json_of(recipe)},
+                       {"maps", options.maps},
+                       {"derive", json_of(options.derive)},
+                       {"preview", options.is_preview},
+                       {"compression", name_of(options.compression)}};
   const Product product = product_of(kMapsProduct, inputs, parent, options.output);
   Result<std::optional<Json>> found = find_finished(product);
   if (!found) return std::move(found).error();
@@ -136,12 +162,13 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
   if (Result<void> ok = write_surface(partial.path(), *surface, options.compression); !ok)
     return std::move(ok).error();
   if (Result<void> ok = draw_surface(partial.path(), *surface); !ok) return std::move(ok).error();
-  MapMaker maker(*surface, partial.path(), options.compression, context);
-  for (std::size_t i = 0; i < options.maps.size(); ++i) {
-    context.progress("maps", static_cast<double>(i) / static_cast<double>(options.maps.size()));
-    if (Result<void> ok = maker.make(options.maps[i]); !ok) return std::move(ok).error();
-  }
-  Json document = document_of(product, *rectified, options, recipe, *surface, *finished, maker.made());
+  MapWork work = {.surface = *surface,
+                  .folder = partial.path(),
+                  .compression = options.compression,
+                  .options = options.derive,
+                  .context = context};
+  if (Result<void> ok = derive(options.maps, work); !ok) return std::move(ok).error();
+  Json document = document_of(product, *rectified, options, recipe, *finished, work);
   if (Result<void> ok = write_maps_page(partial.path(), document); !ok) return std::move(ok).error();
   if (Result<void> ok = write_json(partial.path() / kMapsProduct.document, document); !ok)
     return std::move(ok).error();

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "app/jobs/maps/map_maker.h"
+#include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/recipe.h"
 #include "core/compression.h"
 #include "core/job.h"
@@ -25,9 +25,10 @@ struct MapsOptions {
   std::filesystem::path calibration;  ///< empty: the session's own
   std::filesystem::path output;       ///< empty: <session>/maps/<id>
   Recipe recipe;                      ///< no step: the maps as they were photographed
-  std::vector<MapName> maps;          ///< to derive; none: those that finishing works on alone
-  double mm_per_pixel = 0;            ///< of the grid; 0: what the camera sees
-  bool is_preview = false;            ///< on a grid kPreviewFactor times as coarse; earlier previews go
+  std::vector<std::string> maps;      ///< to derive (derived_maps()); none: those of the surface alone
+  DeriveOptions derive;
+  double mm_per_pixel = 0;  ///< of the grid; 0: what the camera sees
+  bool is_preview = false;  ///< on a grid kPreviewFactor times as coarse; earlier previews go
   Compression compression = Compression::kNone;
 };
 

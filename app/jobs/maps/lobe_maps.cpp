@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+// Roughness: what was measured, or what is typed in its place, its scales, and its coarser levels.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "app/jobs/maps/map_work.h"
+#include "app/jobs/planned_cloth.h"
+#include "core/files.h"
+#include "core/image_io/image_io.h"
+#include "material/filtering/gloss.h"
+#include "material/filtering/roughness_mips.h"
+
+namespace weft::app {
+namespace {
+
+using material::GlossScale;
+using solver::Lobe;
+
+// What an artist would type: that of a pile is matt, since its sheen is no lobe of GGX.
+Lobe typed_lobe(const std::string& cloth) {
+  const Lobe& named = std::ranges::find(planned_cloths(), cloth, &NamedCloth::name)->cloth.lobe;
+  if (named.family != solver::LobeFamily::kLambert && named.family != solver::LobeFamily::kCloth)
+    return named;
+  return {.family = solver::LobeFamily::kGgx, .alpha = 1, .f0 = 0.04};
+}
+
+double typed_alpha(const std::string& cloth) {
+  const Lobe lobe = typed_lobe(cloth);
+  return lobe.alpha * std::sqrt(lobe.along);
+}
+
+std::string typed_words(const MapWork& work) {
+  return fmt::format("typed for {}, as the photographs do not tell it", work.options.cloth);
+}
+
+// The geometric mean of both alphas.
+Image<float> mean_alphas(const Image<float>& lobe) {
+  Image<float> alpha(lobe.size());
+  for (int y = 0; y < lobe.height(); ++y) {
+    for (int x = 0; x < lobe.width(); ++x) alpha(x, y) = std::sqrt(lobe(x, y, 0) * lobe(x, y, 1));
+  }
+  return alpha;
+}
+
+Image<float> on_scale(GlossScale scale, const Image<float>& alpha) {
+  Image<float> values(alpha.size());
+  for (int y = 0; y < alpha.height(); ++y) {
+    for (int x = 0; x < alpha.width(); ++x)
+      values(x, y) = static_cast<float>(material::on_scale(scale, static_cast<double>(alpha(x, y))));
+  }
+  return values;
+}
+
+std::vector<View<const float>> views_of(const Image<float>& map) {
+  std::vector<View<const float>> views;
+  for (int p = 0; p < map.planes(); ++p) views.push_back(map.plane(p));
+  return views;
+}
+
+}  // namespace
+
+Result<void> make_roughness(MapWork& work) {
+  MapFacts roughness = {.name = "roughness", .source = MapSource::kMeasured};
+  roughness.more = {{"scale", material::name_of(GlossScale::kRoughness)}};
+  MapFacts specular = {.name = "specular", .source = MapSource::kMeasured};
+  if (work.surface.lobe.empty()) {
+    const Lobe lobe = typed_lobe(work.options.cloth);
+    roughness.source = specular.source = MapSource::kAssumed;
+    roughness.more["alpha"] = lobe.alpha;
+    roughness.more["alpha_along"] = lobe.alpha * lobe.along;
+    write_constant(work, std::move(roughness), std::sqrt(typed_alpha(work.options.cloth)), typed_words(work));
+    write_constant(work, std::move(specular), lobe.f0, typed_words(work));
+    return {};
+  }
+  // The files are those of the surface.
+  roughness.file = "roughness.exr";
+  roughness.channels = {"roughness", "alpha", "alpha_along", "yarn_deg"};
+  measure(roughness, on_scale(GlossScale::kRoughness, mean_alphas(work.surface.lobe)).plane());
+  specular.file = "specular.exr";
+  specular.channels = {"f0"};
+  measure(specular, work.surface.lobe.plane(3));
+  work.made.push_back(std::move(roughness));
+  work.made.push_back(std::move(specular));
+  return {};
+}
+
+Result<void> make_gloss(MapWork& work) {
+  MapFacts facts = {.name = "gloss"};
+  if (work.surface.lobe.empty()) {
+    const double alpha = typed_alpha(work.options.cloth);
+    facts.source = MapSource::kAssumed;
+    facts.more = {{"blinn_phong", material::on_scale(GlossScale::kBlinnPhong, alpha)}};
+    write_constant(work, std::move(facts), material::on_scale(GlossScale::kGloss, alpha), typed_words(work));
+    return {};
+  }
+  const Image<float> alpha = mean_alphas(work.surface.lobe);
+  const Image<float> gloss = on_scale(GlossScale::kGloss, alpha);
+  const Image<float> power = on_scale(GlossScale::kBlinnPhong, alpha);
+  facts.file = "gloss.exr";
+  facts.channels = {"gloss", "blinn_phong"};
+  return write_map(work, std::move(facts), {gloss.plane(), power.plane()});
+}
+
+Result<void> make_mips(MapWork& work) {
+  const Result<std::vector<material::MipLevel>> levels = material::roughness_mips(
+      work.surface, {.alpha = typed_alpha(work.options.cloth), .threads = work.context.threads});
+  if (!levels) return levels.error();
+  const std::filesystem::path folder = work.folder / "mips";
+  if (Result<void> ok = make_writable_folder(folder); !ok) return ok;
+  Json listed = Json::array();
+  for (const material::MipLevel& level : *levels) {
+    const std::string number = fmt::format("{:02}", level.level);
+    const Result<void> normal = write_image(folder / ("normal_" + number + ".exr"), views_of(level.normal),
+                                            {"X", "Y", "Z"}, {.compression = work.compression});
+    if (!normal) return normal;
+    const Result<void> lobe = write_image(folder / ("lobe_" + number + ".exr"), views_of(level.lobe),
+                                          {"alpha", "alpha_along", "yarn_deg"},
+                                          {.type = SampleType::kHalf, .compression = work.compression});
+    if (!lobe) return lobe;
+    listed.push_back({{"level", level.level},
+                      {"width", level.normal.width()},
+                      {"height", level.normal.height()},
+                      {"mean_alpha", level.mean_alpha}});
+  }
+  if (listed.empty()) return {};
+  MapFacts facts = {.name = "mips",
+                    .file = "mips/lobe_LL.exr",
+                    .channels = {"alpha", "alpha_along", "yarn_deg"},
+                    .source = work.surface.lobe.empty() ? MapSource::kAssumed : MapSource::kDerived};
+  facts.least = listed.front()["mean_alpha"].get<double>();
+  facts.most = listed.back()["mean_alpha"].get<double>();
+  facts.mean = facts.most;
+  facts.more = {{"rule", material::name_of(material::MipRule::kVmf)}, {"levels", std::move(listed)}};
+  work.made.push_back(std::move(facts));
+  return {};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/json_document.h"
+
+namespace weft::app {
+
+/// How a map came to be.
+enum class MapSource {
+  kMeasured,  ///< solved from photographs
+  kDerived,   ///< computed from measured maps
+  kAssumed    ///< typed, since the photographs do not tell it
+};
+inline constexpr std::array<const char*, 3> kMapSourceNames = {"measured", "derived", "assumed"};
+
+/// What maps.json says of a map.
+struct MapFacts {
+  std::string name = {};
+  std::string file = {};                   ///< a map that is one number has none
+  std::string unit = {};                   ///< "mm", "deg", "share"; empty: none
+  std::vector<std::string> channels = {};  ///< of the file
+  MapSource source = MapSource::kDerived;
+  double least = 0, most = 0, mean = 0;  ///< of the first channel
+  std::optional<double> constant = {};   ///< the map is this number
+  std::string why = {};                  ///< it is one number, or what it is good for
+  std::string picture = {};              ///< a file beside it; empty: none
+  Json more = Json::object();            ///< what is particular to this map
+};
+Json json_of(const MapFacts& facts);
+
+/// Fills the least, the largest and the mean value.
+void measure(MapFacts& facts, View<const float> plane);
+
+}  // namespace weft::app

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/jobs/maps/map_facts.h"
+#include "core/compression.h"
+#include "core/image.h"
+#include "core/job.h"
+#include "core/result.h"
+#include "core/verdict.h"
+#include "material/surface.h"
+#include "solver/height/height.h"
+#include "solver/reflectance/lobe.h"
+
+namespace weft::app {
+
+/// How maps are derived.
+struct DeriveOptions {
+  /// kAutomatic: tile by tile, for maps of any size; of a tile the periodic solution.
+  solver::HeightMethod height = solver::HeightMethod::kAutomatic;
+  bool weighs_by_sigma = false;  ///< height: pixels count by one over the variance of their normal
+  double cavity_mm = 2;          ///< radius that a cavity is seen against
+  int directions = 8;            ///< of the occlusion's lines: 4, 8 or 16
+  /// Where the photographs do not tell the lobe it is that of this cloth (planned_cloths()).
+  std::string cloth = "cotton";
+};
+
+/// A set of maps under way: what each is derived from, what is shared between them, and what was made.
+struct MapWork {
+  const material::Surface& surface;
+  std::filesystem::path folder;
+  Compression compression = Compression::kNone;
+  const DeriveOptions& options;
+  const JobContext& context;
+
+  Image<float> height_mm = {};  ///< once find_height() was asked
+  std::vector<MapFacts> made = {};
+  std::vector<Verdict> verdicts = {};
+};
+
+/// Writes the planes as the file that `facts` names, half floats but for millimetres, with a picture of the
+/// first one, and adds the map to what was made.
+Result<void> write_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes);
+/// A map that is one number.
+void write_constant(MapWork& work, MapFacts facts, double value, std::string why);
+
+/// Integrates the slopes, once.
+Result<void> find_height(MapWork& work);
+
+// Each makes the map of its name.
+Result<void> make_height(MapWork& work);
+Result<void> make_roughness(MapWork& work);
+Result<void> make_gloss(MapWork& work);
+Result<void> make_mips(MapWork& work);
+Result<void> make_detail(MapWork& work);
+
+/// What can be derived from a surface.
+struct DerivedMap {
+  const char* name;
+  const char* says;
+  Result<void> (*make)(MapWork& work);
+};
+const std::vector<DerivedMap>& derived_maps();
+
+}  // namespace weft::app
