@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cctype>
+#include <initializer_list>
 #include <span>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "app/jobs/planned_cloth.h"
 #include "core/files.h"
 #include "library/session_files.h"
 
@@ -21,6 +23,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kLongestWord = 100;
 constexpr std::size_t kLongestFolder = 200;
 constexpr const char* kTorture = "torture";  // the session that its job makes
+constexpr const char* kPlanPicture = "{files}/plan.svg";
 
 Error unfit(const std::string& field, const std::string& rule) {
   return {ErrorKind::kUsage, "job cannot be read", field, rule, "see POST jobs in openapi.json"};
@@ -64,6 +67,12 @@ JobField number(const char* field, const char* option, double least, double most
   return {field, option, Holds::kNumber, false, least, most};
 }
 
+std::vector<std::string_view> plan_cloths() {
+  std::vector<std::string_view> names;
+  for (const NamedCloth& each : planned_cloths()) names.emplace_back(each.name);
+  return names;
+}
+
 const std::vector<JobKind>& job_kinds() {
   static const std::vector<JobKind> kinds = {
       {"solve",
@@ -81,6 +90,12 @@ const std::vector<JobKind>& job_kinds() {
         number("turn_deg", "--turn", -360, 360)}},
       {"copy", {"copy"}, {kSession}},
       {"torture", {"torture"}, {}},
+      {"rig_plan",
+       {"rig", "plan", "--picture", kPlanPicture},
+       {word("cloth", "--cloth", plan_cloths()), number("roughness", "--roughness", 0.02, 1),
+        number("f0", "--f0", 0, 0.6), number("albedo", "--albedo", 1e-3, 1),
+        number("relief_deg", "--relief", 0, 60), word("aim", "--aim", {"all", "normal", "alpha", "f0"}),
+        number("pace", "--pace", 0.1, 600)}},
       {"check",
        {"calibrate", "check"},
        {{"session", "--session", Holds::kSession},
@@ -198,6 +213,41 @@ Result<std::string> argument_of(const Json& body, const JobField& field, const J
   return folder->string();
 }
 
+// What one field says of others.
+Result<void> check_together(const std::string& kind, const Json& body) {
+  const auto named = [&](const char* field) { return static_cast<int>(body.contains(field)); };
+  if (kind == "check" && named("session") + named("input") + named("moved") != 1)
+    return unfit("session", "either it or input or moved must be named");
+  if (kind == "calibrate_update" && named("session") + named("moved") != 1)
+    return unfit("session", "either it or moved must be named");
+  if (kind == "rig_plan" && named("cloth") + named("roughness") > 1)
+    return unfit("cloth", "either it or roughness may be named");
+  if (kind == "rig_plan" && named("f0") > named("roughness"))
+    return unfit("f0", "is that of a cloth of this roughness, which must be named");
+  return {};
+}
+
+// What the daemon knows and its client does not say.
+Result<void> add_places(JobSpec& spec, const JobPlaces& places) {
+  const auto add = [&](std::initializer_list<std::string> words) {
+    spec.arguments.insert(spec.arguments.end(), words);
+  };
+  if (spec.kind == "copy" && !places.copy.empty()) add({"--to", places.copy.string()});
+  if (spec.kind == "torture") {
+    spec.of = kTorture;
+    add({"--output", (places.sessions / fmt::format("{}.weft", kTorture)).string()});
+  }
+  if (spec.kind == "rig_plan") {
+    if (places.rig_file.empty())
+      return Error{ErrorKind::kNoInput, "there is no rig to plan for", places.rig, "",
+                   "serve one with --rig"};
+    spec.of = places.rig;
+    spec.needs.push_back(places.rig_file.string());
+    add({places.rig_file.string()});
+  }
+  return {};
+}
+
 }  // namespace
 
 Result<fs::path> folder_below(const fs::path& root, const Json& body, const char* field) {
@@ -239,18 +289,8 @@ Result<JobSpec> read_job_body(const Json& body, const JobPlaces& places) {
     if (*field.option != '\0') spec.arguments.emplace_back(field.option);
     spec.arguments.push_back(std::move(*argument));
   }
-  const auto named = [&](const char* field) { return static_cast<int>(body.contains(field)); };
-  if (*name == "check" && named("session") + named("input") + named("moved") != 1)
-    return unfit("session", "either it or input or moved must be named");
-  if (*name == "calibrate_update" && named("session") + named("moved") != 1)
-    return unfit("session", "either it or moved must be named");
-  if (*name == "copy" && !places.copy.empty())
-    spec.arguments.insert(spec.arguments.end(), {"--to", places.copy.string()});
-  if (*name == "torture") {
-    spec.of = kTorture;
-    spec.arguments.insert(spec.arguments.end(),
-                          {"--output", (places.sessions / fmt::format("{}.weft", kTorture)).string()});
-  }
+  if (Result<void> fits = check_together(*name, body); !fits) return std::move(fits).error();
+  if (Result<void> added = add_places(spec, places); !added) return std::move(added).error();
   if (kind->names_rig && !body.contains("from"))
     spec.arguments.insert(spec.arguments.end(), {"--rig", places.rig});
   return spec;

@@ -15,10 +15,11 @@ namespace weft::app {
 struct JobPlaces {
   /// The folder of a session by its name. kUsage, kNoInput.
   std::function<Result<std::filesystem::path>(const std::string& name)> session;
-  std::filesystem::path folder;    ///< that of the rig file: photographs and calibrations lie below it
-  std::string rig;                 ///< its name
-  std::filesystem::path sessions;  ///< where new ones go
-  std::filesystem::path copy;      ///< of finished sessions; empty: where each session says
+  std::filesystem::path folder;         ///< that of the rig file: photographs and calibrations lie below it
+  std::string rig;                      ///< its name
+  std::filesystem::path sessions;       ///< where new ones go
+  std::filesystem::path copy;           ///< of finished sessions; empty: where each session says
+  std::filesystem::path rig_file = {};  ///< empty: there is no rig
 };
 
 /// The folder that a field of a body names, below another one where no link leads out of it. kUsage,

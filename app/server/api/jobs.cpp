@@ -22,8 +22,8 @@ JobPlaces places_of(const RigParts& parts) {
     if (!found) return found.error();
     return found->folder;
   };
-  return {session, parts.rig.file.parent_path(), parts.rig.name, parts.rig.scan.sessions,
-          parts.rig.scan.copy};
+  const capture::Rig& rig = parts.rig;
+  return {session, rig.file.parent_path(), rig.name, rig.scan.sessions, rig.scan.copy, rig.file};
 }
 
 Result<Reply> add_job(const RigParts& parts, const Call& call) {
@@ -80,17 +80,22 @@ Result<Reply> log_of_job(const RigParts& parts, const Call& call) {
   return Reply{200, "text/plain; charset=utf-8", std::move(*log)};
 }
 
+// No picture of a job runs anything, opened by itself or not.
+constexpr const char* kPicturePolicy = "default-src 'none'; style-src 'unsafe-inline'";
+
 /// A picture that the job made.
 Result<Reply> file_of_job(const RigParts& parts, const Call& call) {
   const Result<JobStatus> job = parts.jobs.find(call.segments.at(0));
   if (!job) return job.error();
   const std::string& name = call.segments.at(1);
-  const bool is_picture = library::is_session_name(name) && name.ends_with(".png");
+  const bool is_drawing = name.ends_with(".svg");
+  const bool is_picture = library::is_session_name(name) && (is_drawing || name.ends_with(".png"));
   Result<std::shared_ptr<const FileBody>> file =
       is_picture ? open_file_body(parts.jobs.files_of(job->id) / name)
                  : Error{ErrorKind::kNoInput, "the job made no such picture", name.substr(0, 40), "", ""};
   if (!file) return std::move(file).error();
-  Reply reply = {200, "image/png"};
+  Reply reply = {200, is_drawing ? "image/svg+xml" : "image/png"};
+  reply.headers.emplace_back("Content-Security-Policy", kPicturePolicy);
   reply.file = std::move(*file);
   reply.keeping = Keeping::kForever;
   return reply;

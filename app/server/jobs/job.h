@@ -10,7 +10,8 @@
 
 namespace weft::app {
 
-/// In the arguments of a job: the folder of what it makes beside its result, which is forgotten with it.
+/// At the begin of an argument of a job: the folder of what it makes beside its result, which is forgotten
+/// with it. The folder is there where an argument names a file in it.
 inline constexpr const char* kJobFiles = "{files}";
 
 /// What a job is to do: a verb of weft with its arguments, as a process of its own.

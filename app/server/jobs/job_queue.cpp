@@ -264,6 +264,15 @@ std::string JobQueue::missing(const std::string& id) const {
   return gone == job->spec.needs.end() ? "" : *gone;
 }
 
+// The argument with the folder of the job's files, which is made for a file in it.
+std::string JobQueue::with_files(const std::string& argument, const std::string& id) const {
+  if (!argument.starts_with(kJobFiles)) return argument;
+  const std::string below = argument.substr(std::string_view(kJobFiles).size());
+  std::error_code ignored;
+  if (!below.empty()) fs::create_directories(files_of(id), ignored);
+  return files_of(id).string() + below;
+}
+
 void JobQueue::fail(JobStatus& job, const Error& error) {
   job.state = JobState::kFailed;
   job.error = weft::json_of(error);
@@ -287,8 +296,7 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
     command.insert(command.end(), {"/usr/bin/prlimit", fmt::format("--data={}", options_.memory_bytes)});
   }
   command.push_back(options_.program.string());
-  for (const std::string& argument : job.spec.arguments)
-    command.push_back(argument == kJobFiles ? files_of(id).string() : argument);
+  for (const std::string& argument : job.spec.arguments) command.push_back(with_files(argument, id));
   command.insert(command.end(), {"--json", "--json-events"});
   const fs::path output = file_of(id, ".out");
   Result<std::unique_ptr<ChildProcess>> started =

@@ -69,6 +69,7 @@ class JobQueue {
   JobStatus as_it_stands(JobStatus job) const;
   void work(const std::stop_token& stop);
   std::string missing(const std::string& id) const;
+  std::string with_files(const std::string& argument, const std::string& id) const;
   void fail(JobStatus& job, const Error& error);
   void run(const std::string& id, const std::stop_token& stop);
   std::optional<double> expected_seconds(const JobSpec& spec) const;

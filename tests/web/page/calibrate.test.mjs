@@ -252,6 +252,38 @@ test('a rig that was knocked is brought back: seen, fitted, proven, accepted', a
   }
 });
 
+test('which light to add is a table and a drawing, by cloth', async () => {
+  const rig = await startRig();
+  try {
+    const visitor = await visit(browser, rig);
+    const page = await visitor.open(`${rig.address}/calibrate`);
+    const panel = page.getByRole('region', {name: 'Which light to add'});
+    await panel.getByLabel('Cloth').selectOption('velvet');
+    await panel.getByRole('button', {name: 'Say what each light tells'}).click();
+    const table = panel.getByRole('table', {name: 'What each light tells'});
+    await table.waitFor({timeout: calculation_ms});
+    const {jobs: [{kind, wants, result}]} = await rig.ask('jobs?limit=1');
+    assert.deepEqual([kind, wants], ['rig_plan', {cloth: 'velvet', aim: 'all'}]);
+    assert.equal(await table.locator('tbody tr').count(), result.rows.length);
+    const row = table.getByRole('row', {name: 'crossed and parallel polarisers'});
+    const polarisers = result.rows.find(({name}) => name === 'polarisers');
+    assert.match(await row.innerText(), new RegExp(`${polarisers.sigma.normal_deg.toFixed(3)}°.*${polarisers.observable ? 'yes' : 'no'}.*\\+10`, 's'));
+    await panel.getByText(result.verdict).waitFor();
+    await page.waitForFunction(() => document.querySelector('.light-plan img')?.naturalWidth > 0);
+    assert.deepEqual(await violations(page), []);
+    await picture(page, 'calibrate_light_plan');
+
+    await panel.getByLabel('Cloth').selectOption('typed');
+    await panel.getByLabel('Roughness').fill('3');
+    visitor.mayFail(/status of 400/);
+    await panel.getByRole('button', {name: 'Say what each light tells'}).click();
+    await panel.getByRole('alert').filter({hasText: 'from 0.02 to 1'}).waitFor();
+    await visitor.leave();
+  } finally {
+    await rig.stop();
+  }
+});
+
 const boards = [
   'board', 'board tilt=40 azimuth=225 x=17 y=-14 height=57', 'board tilt=40 azimuth=0 x=20 y=11 height=57',
   'board tilt=40 azimuth=180 x=-20 y=11 height=57', 'board tilt=40 azimuth=45 x=-18 y=-14 height=57',

@@ -1663,7 +1663,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** A picture that the job made: of price LEVEL_relit.png and LEVEL_normal.png, the same 512 x 256 pixels by every level */
+        /** A picture that the job made: of price LEVEL_relit.png and LEVEL_normal.png, the same 512 x 256 pixels by every level; of rig_plan plan.svg, the places for one more LED */
         get: {
             parameters: {
                 query?: never;
@@ -1684,6 +1684,7 @@ export interface paths {
                     };
                     content: {
                         "image/png": string;
+                        "image/svg+xml": string;
                     };
                 };
                 400: components["responses"]["Unreadable"];
@@ -4055,10 +4056,10 @@ export interface components {
         };
         JobRequest: {
             /**
-             * @description price: seconds and degrees of every level (weft solve --explain); torture: the session torture, of pixels that are hard to solve, and its solve with the layer condition (weft torture); check: weft calibrate check
+             * @description price: seconds and degrees of every level (weft solve --explain); torture: the session torture, of pixels that are hard to solve, and its solve with the layer condition (weft torture); rig_plan: what one more LED, one moved or polarisers would tell of a cloth (weft rig plan), with the drawing files/plan.svg; check: weft calibrate check
              * @enum {string}
              */
-            kind: "solve" | "price" | "rectify" | "copy" | "torture" | "check" | "calibrate_camera" | "calibrate_response" | "calibrate_color" | "calibrate_lights" | "calibrate_grey" | "calibrate_patches" | "calibrate_update";
+            kind: "solve" | "price" | "rectify" | "copy" | "torture" | "rig_plan" | "check" | "calibrate_camera" | "calibrate_response" | "calibrate_color" | "calibrate_lights" | "calibrate_grey" | "calibrate_patches" | "calibrate_update";
             /** @description Name, without .weft; of all but check by input and calibrate_camera, _response, _color, _lights */
             session?: string;
             /** @description Folder below that of the rig file; of calibrate_camera, _response, _color, _lights, and of check */
@@ -4106,6 +4107,26 @@ export interface components {
             flatness_deg?: number;
             /** @description Of calibrate_lights */
             flicker_percent?: number;
+            /**
+             * @description Of rig_plan; default satin, where there is no roughness
+             * @enum {string}
+             */
+            cloth?: "cotton" | "wool" | "velvet" | "satin" | "dark-satin";
+            /** @description Of rig_plan, in place of a cloth: alpha of a GGX lobe */
+            roughness?: number;
+            /** @description Of rig_plan by roughness: strength of that lobe; default 0.04 */
+            f0?: number;
+            /** @description Of rig_plan: default the cloth's own, else 0.3 */
+            albedo?: number;
+            /** @description Of rig_plan: mean slope of the cloth, degrees; default 20 */
+            relief_deg?: number;
+            /**
+             * @description Of rig_plan: what the best place is best for; default all
+             * @enum {string}
+             */
+            aim?: "all" | "normal" | "alpha" | "f0";
+            /** @description Of rig_plan: seconds a shot; default 4 */
+            pace?: number;
             /** @description The same again is the same job */
             request_id?: string;
         };

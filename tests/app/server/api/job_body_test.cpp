@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/jobs/planned_cloth.h"
 #include "core/temporary_folder.h"
 
 namespace weft::app {
@@ -28,7 +29,7 @@ class JobBody : public testing::Test {
       if (name == "satin") return fs::path("/scans/satin.weft");
       return Error{ErrorKind::kNoInput, "there is no such session", name, "", ""};
     };
-    return read_job_body(Json::parse(body), {session, folder_, "north", "/scans", "/copies"});
+    return read_job_body(Json::parse(body), {session, folder_, "north", "/scans", "/copies", rig_file_});
   }
   std::vector<std::string> arguments(const std::string& body) const {
     const Result<JobSpec> spec = read(body);
@@ -38,6 +39,7 @@ class JobBody : public testing::Test {
 
   const TemporaryFolder scratch_;
   const fs::path folder_ = scratch_.path() / "rig";
+  fs::path rig_file_ = folder_ / "rig.toml";
 };
 
 using Words = std::vector<std::string>;
@@ -69,6 +71,37 @@ TEST_F(JobBody, BecomesAVerbWithItsArguments) {
   EXPECT_EQ(lights->needs, (Words{path("photographs"), path("calibrations/may")}));
   EXPECT_EQ(lights->of, "photographs");
   EXPECT_EQ(lights->request_id, "a");
+}
+
+TEST_F(JobBody, PlansLightsForTheRigOfTheDaemonAndNoOther) {
+  const Words plan = {"rig", "plan", "--picture", "{files}/plan.svg"};
+  const auto planned = [&](const char* body, Words said) {
+    Words all = plan;
+    all.insert(all.end(), said.begin(), said.end());
+    all.push_back(path("rig.toml"));
+    EXPECT_EQ(arguments(body), all) << body;
+  };
+  planned(R"({"kind": "rig_plan"})", {});
+  planned(R"({"kind": "rig_plan", "cloth": "velvet", "aim": "normal"})",
+          {"--cloth", "velvet", "--aim", "normal"});
+  planned(
+      R"({"kind": "rig_plan", "roughness": 0.25, "f0": 0.5, "albedo": 0.125, "relief_deg": 0, "pace": 3})",
+      {"--roughness", "0.25", "--f0", "0.5", "--albedo", "0.125", "--relief", "0", "--pace", "3"});
+  for (const NamedCloth& each : planned_cloths())
+    EXPECT_TRUE(read(R"({"kind": "rig_plan", "cloth": ")" + each.name + R"("})")) << each.name;
+  EXPECT_EQ(read(R"({"kind": "rig_plan"})")->of, "north");
+
+  for (const char* wrong :
+       {R"({"kind": "rig_plan", "cloth": "lace"})",
+        R"({"kind": "rig_plan", "cloth": "satin", "roughness": 0.2})", R"({"kind": "rig_plan", "f0": 0.1})",
+        R"({"kind": "rig_plan", "roughness": 2})", R"({"kind": "rig_plan", "aim": "sheen"})",
+        R"({"kind": "rig_plan", "rig": "/etc/weft/south.toml"})"}) {
+    const Result<JobSpec> spec = read(wrong);
+    ASSERT_FALSE(spec) << wrong;
+    EXPECT_EQ(spec.error().kind, ErrorKind::kUsage) << wrong;
+  }
+  rig_file_.clear();
+  EXPECT_EQ(read(R"({"kind": "rig_plan"})").error().kind, ErrorKind::kNoInput);
 }
 
 TEST_F(JobBody, LeadsNowhereElse) {

@@ -25,13 +25,17 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Result<Json> body = app::parse_body(text);
   if (!body) return 0;
   const auto session = [](const std::string&) -> Result<std::filesystem::path> { return {rig + "/s.weft"}; };
-  const app::JobPlaces places{
-      .session = session, .folder = folder.path(), .rig = "north", .sessions = {}, .copy = {}};
+  const app::JobPlaces places{.session = session,
+                              .folder = folder.path(),
+                              .rig = "north",
+                              .sessions = {},
+                              .copy = {},
+                              .rig_file = folder.path() / "rig.toml"};
   const Result<app::JobSpec> spec = app::read_job_body(*body, places);
   if (!spec) return 0;
   // No argument leads out of the rig's folder.
   for (const std::string& argument : spec->arguments) {
-    const bool is_path = argument.find('/') != std::string::npos;
+    const bool is_path = argument.find('/') != std::string::npos && !argument.starts_with(app::kJobFiles);
     if (is_path && (!argument.starts_with(rig + "/") || argument.find("..") != std::string::npos))
       std::abort();
   }

@@ -76,6 +76,19 @@ TEST_F(Jobs, TakeAsLongAsTheLastOneLikeThem) {
   EXPECT_EQ(running(add(script + "; true")).left_s, std::nullopt) << "another job";
 }
 
+TEST_F(Jobs, LeaveFilesThatAreForgottenWithThem) {
+  const std::vector<std::string> draw = {"-c", "echo drawn >\"$0\"", std::string(kJobFiles) + "/plan.svg"};
+  const Result<JobStatus> job = queue_->add({"rig_plan", "north", draw, "", ""});
+  ASSERT_TRUE(job) << job.error().message();
+  EXPECT_EQ(ended(job->id).state, JobState::kDone);
+  const fs::path drawn = queue_->files_of(job->id) / "plan.svg";
+  const Result<std::string> text = read_text(drawn);
+  ASSERT_TRUE(text) << text.error().message();
+  EXPECT_EQ(*text, "drawn\n");
+  EXPECT_TRUE(queue_->forget(job->id));
+  EXPECT_FALSE(fs::exists(drawn.parent_path()));
+}
+
 TEST_F(Jobs, TakeAsLongAsTheirSessionWasPriced) {
   const auto price = [&](const char* of, const char* seconds) {
     const std::string levels = std::string(R"({"levels": [{"quality": "fast", "seconds": {"total": 2}},)") +

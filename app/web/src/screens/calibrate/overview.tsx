@@ -13,6 +13,7 @@ import {Acceptance} from './acceptance';
 import {AffectedSessions} from './affected';
 import {DatedPlot} from './dated_plot';
 import {seriesOfCamera, seriesOfFluxes, seriesOfPlaces} from './history';
+import {LightPlanPanel} from './light_plan_panel';
 import {calibrations, complaint, findings, history, isKnown, known, work} from './state';
 import {currentStage, freeName, walkOfSet, walksIn, type CheckResult, type Listed, type WalkKind} from './walk';
 
@@ -33,6 +34,7 @@ export function Overview() {
       {rigs && history.value.affected.length > 0 && (
         <AffectedSessions sessions={history.value.affected} calibration={rigs.folder} />
       )}
+      <LightPlanPanel />
       <History />
       <AllCalibrations />
     </div>

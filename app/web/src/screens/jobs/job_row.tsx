@@ -50,6 +50,7 @@ export function JobRow({job, canGoFirst = false, onLog}: JobRowProps) {
 /** The session or folder, and where its result can be looked at. */
 function Subject({job}: {job: Job}) {
   const solve = ['solve', 'torture'].includes(job.kind) && job.state === 'done' ? textIn(job.result, 'id') : '';
+  if (job.kind === 'rig_plan') return <a href="/calibrate">{job.of}</a>;
   if (job.of.includes('/')) return <span>{job.of}</span>;
   return (
     <>

@@ -17,6 +17,7 @@ const titles: Record<string, string> = {
   rectify: 'Rectified maps',
   copy: 'Second copy',
   torture: 'Torture scene',
+  rig_plan: 'Which light to add',
   check: 'Check of the calibration',
   calibrate_camera: 'Lens and pose',
   calibrate_response: 'Sensor',
@@ -33,9 +34,9 @@ export function titleOf(kind: string): string {
 
 /** What was asked of it beside its kind: the level, a limit, another calibration. */
 export function wishOf({wants}: Job): string {
-  const {quality, method, within_s, to_deg, calibration} = wants;
+  const {quality, method, within_s, to_deg, calibration, cloth} = wants;
   return [
-    quality ?? method,
+    quality ?? method ?? cloth,
     within_s === undefined ? undefined : `within ${within_s} s`,
     to_deg === undefined ? undefined : `to ${to_deg}°`,
     calibration === undefined ? undefined : `by ${calibration}`,
