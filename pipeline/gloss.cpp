@@ -98,9 +98,10 @@ Result<void> add_calibration(const Photographs& photographs, std::vector<solver:
   return {};
 }
 
-std::vector<solver::Lobe> lobes_of(const GlossFacts& facts) {
-  std::vector<solver::Lobe> lobes;
-  for (const solver::MeasuredLobe& measured : facts.lobes) lobes.push_back(measured.lobe);
+std::vector<solver::KnownLobe> lobes_of(const GlossFacts& facts) {
+  std::vector<solver::KnownLobe> lobes;
+  for (const solver::MeasuredLobe& measured : facts.lobes)
+    lobes.push_back({measured.lobe, solver::one_sigma_off(measured.lobe, measured.covariance)});
   return lobes;
 }
 

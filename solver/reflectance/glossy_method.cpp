@@ -55,9 +55,40 @@ struct Group {
   std::vector<Vec3> start;
 };
 
+// Variances of b along its normal, which is that of the albedo, and across it.
+struct Variances {
+  double along = 0, across = 0;
+};
+struct PixelVariances {
+  Variances of_readings, of_lobe;
+};
+
+// `pulls` (pull_of) of lobes one sigma off.
+PixelVariances variances_of(const LobeBlock& block, std::size_t i, Vec3 n,
+                            std::span<const LobeBlock::Lanes3> pulls) {
+  PixelSystem system;
+  for (std::size_t e = 0; e < system.a.size(); ++e) system.a[e] = block.normal_matrix[e][i];
+  const std::array<Vec3, 3> columns = {system.solved({1, 0, 0}), system.solved({0, 1, 0}),
+                                       system.solved({0, 0, 1})};
+  PixelVariances v;
+  v.of_readings.along = n.x * dot(columns[0], n) + n.y * dot(columns[1], n) + n.z * dot(columns[2], n);
+  v.of_readings.across = columns[0].x + columns[1].y + columns[2].z - v.of_readings.along;
+  for (const LobeBlock::Lanes3& pull : pulls) {
+    const Vec3 change = system.solved({pull.x[i], pull.y[i], pull.z[i]});
+    const double along = dot(change, n);
+    v.of_lobe.along += along * along;
+    v.of_lobe.across += dot(change, change) - along * along;
+  }
+  return v;
+}
+
+double root_of_sum(double a, double b) {
+  return std::sqrt(std::max(a + b, 0.0));
+}
+
 class Glossy : public Method {
  public:
-  Glossy(const Method& base, std::vector<Lobe> lobes, Sight sight)
+  Glossy(const Method& base, std::vector<KnownLobe> lobes, Sight sight)
       : base_(base), lobes_(std::move(lobes)), sight_(sight) {}
 
   void solve(const TileInput& input, const TileOutput& output) const override {
@@ -104,7 +135,7 @@ class Glossy : public Method {
     LobeReader(input, sight_).read(x, y, readings);
     const double yarn = (output.status(x, y) & kYarnAcross) != 0 ? kPi / 2 : 0;
     const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
-    const Lobe& lobe = lobes_[(output.status(x, y) & kSecondLobe) != 0 ? 1 : 0];
+    const Lobe& lobe = lobes_[(output.status(x, y) & kSecondLobe) != 0 ? 1 : 0].lobe;
     return modelled(lobe, spoken * normal_of(output, x, y), LitFrom(light, readings.front().from.view), yarn);
   }
 
@@ -129,9 +160,9 @@ class Glossy : public Method {
     for (std::size_t l = 0; l < lobes_.size(); ++l) {
       group.block.lobe.fill(static_cast<std::uint8_t>(l));
       for (const double yarn : {0.0, kPi / 2}) {
-        if (yarn > 0 && lobes_[l].family != LobeFamily::kAnisotropicGgx) continue;
+        if (yarn > 0 && lobes_[l].lobe.family != LobeFamily::kAnisotropicGgx) continue;
         for (std::size_t i = 0; i < group.pixels.size(); ++i) group.block.start(i, starts[i], yarn);
-        fit_block(lobes_[l], group.block, kSteps);
+        fit_block(lobes_[l].lobe, group.block, kSteps);
         if (is_first && l == 0 && yarn == 0) {
           group.best = group.block;
           continue;
@@ -157,31 +188,32 @@ class Glossy : public Method {
     }
   }
 
-  void write(const TileInput& input, const TileOutput& output, const Group& group) const {
-    for (std::size_t i = 0; i < group.pixels.size(); ++i) {
-      const Vec3 b = group.best.b(i);
-      const double rho = length(b);
-      if (!(rho > 0) || !std::isfinite(group.best.cost[i]) || !lobe_of(group, i).shines()) continue;
-      write_pixel(input, output, group, i, b);
+  void write(const TileInput& input, const TileOutput& output, Group& group) const {
+    for (std::size_t l = 0; l < lobes_.size(); ++l) {
+      if (!lobes_[l].lobe.shines()) continue;
+      std::vector<LobeBlock::Lanes3> pulls;
+      for (const Lobe& off : lobes_[l].one_sigma_off)
+        pulls.push_back(pull_of(off, lobes_[l].lobe, group.best));
+      for (std::size_t i = 0; i < group.pixels.size(); ++i) {
+        if (group.best.lobe[i] != l) continue;
+        const Vec3 b = group.best.b(i);
+        if (!(length(b) > 0) || !std::isfinite(group.best.cost[i])) continue;
+        write_pixel(input, output, group, i, pulls);
+      }
     }
   }
 
   void write_pixel(const TileInput& input, const TileOutput& output, const Group& group, std::size_t i,
-                   Vec3 b) const {
+                   std::span<const LobeBlock::Lanes3> pulls) const {
     const int x = group.pixels[i].x, y = group.pixels[i].y;
+    const Vec3 b = group.best.b(i);
     const double rho = length(b);
     const Vec3 n = (1 / rho) * b;
-    PixelSystem system;
-    for (std::size_t e = 0; e < 6; ++e) system.a[e] = group.best.normal_matrix[e][i];
-    // Columns of the covariance of b.
-    const std::array<Vec3, 3> c = {system.solved({1, 0, 0}), system.solved({0, 1, 0}),
-                                   system.solved({0, 0, 1})};
-    const double along = n.x * dot(c[0], n) + n.y * dot(c[1], n) + n.z * dot(c[2], n);
-    const double across = std::max(0.0, c[0].x + c[1].y + c[2].z - along);
+    const PixelVariances v = variances_of(group.best, i, n, pulls);
     output.normal[0](x, y) = static_cast<float>(n.x);
     output.normal[1](x, y) = static_cast<float>(n.y);
     output.normal[2](x, y) = static_cast<float>(n.z);
-    const double sigma = degrees(std::sqrt(across)) / rho;
+    const double sigma = degrees(root_of_sum(v.of_readings.across, v.of_lobe.across)) / rho;
     output.sigma_normal_deg(x, y) = static_cast<float>(std::min(sigma, double{kUnknownAngleDeg}));
     output.residual(x, y) = finite(group.best.residual[i] / rho);
     // What the lobe explains is no misfit any more.
@@ -192,7 +224,9 @@ class Glossy : public Method {
     for (std::size_t p = 0; p < static_cast<std::size_t>(input.planes); ++p) {
       const double share = input.planes == 1 ? 1 : plane_share(input, group, i, b, x, y, p);
       output.albedo[p](x, y) = finite(rho * share);
-      output.sigma_albedo[p](x, y) = finite(std::sqrt(std::max(along, 0.0)) * share);
+      // A highlight has the colour of the light: what is wrong with it is as much in all channels.
+      output.sigma_albedo[p](x, y) =
+          finite(root_of_sum(v.of_readings.along * share * share, v.of_lobe.along));
     }
   }
 
@@ -219,16 +253,16 @@ class Glossy : public Method {
     return of_all > 0 ? std::max(0.0, of_plane / of_all) : 1;
   }
 
-  const Lobe& lobe_of(const Group& group, std::size_t i) const { return lobes_[group.best.lobe[i]]; }
+  const Lobe& lobe_of(const Group& group, std::size_t i) const { return lobes_[group.best.lobe[i]].lobe; }
 
   const Method& base_;
-  std::vector<Lobe> lobes_;
+  std::vector<KnownLobe> lobes_;
   Sight sight_;
 };
 
 }  // namespace
 
-std::unique_ptr<Method> glossy_method(const Method& base, std::vector<Lobe> lobes, Sight sight) {
+std::unique_ptr<Method> glossy_method(const Method& base, std::vector<KnownLobe> lobes, Sight sight) {
   return std::make_unique<Glossy>(base, std::move(lobes), sight);
 }
 

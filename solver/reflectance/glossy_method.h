@@ -10,12 +10,19 @@
 
 namespace weft::solver {
 
+/// A lobe, and what of it is open.
+struct KnownLobe {
+  Lobe lobe;
+  std::vector<Lobe> one_sigma_off = {};  ///< of solver/reflectance/lobe_fit.h; empty: nothing is open
+};
+
 /// `base`, and each pixel that it solves again with lobes that are known, whichever costs it least: from
 /// where the base left it and, where that does not explain its readings, from other normals. Such a pixel has
 /// the bit GLOSSY, by the second lobe SECOND_LOBE, where its yarn lies across the axis YARN_ACROSS, and the
 /// bits of the base, but for SPECULAR. Pixels that Lambert's law costs least, where it is among the lobes,
-/// stay as the base left them. At most two lobes. `base` must outlive it.
-std::unique_ptr<Method> glossy_method(const Method& base, std::vector<Lobe> lobes, Sight sight);
+/// stay as the base left them. Its sigmas are those of the readings and of what is open of its lobe, to first
+/// order. At most two lobes. `base` must outlive it.
+std::unique_ptr<Method> glossy_method(const Method& base, std::vector<KnownLobe> lobes, Sight sight);
 
 /// A pixel's cost over the degrees of freedom of its readings, from which other normals are tried.
 inline constexpr double kTryOthersFrom = 2;

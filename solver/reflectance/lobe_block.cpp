@@ -75,6 +75,18 @@ class LanesFit {
     for (std::size_t i = 0; i < 6; ++i) hn::StoreU(elements[i], d_, block_.normal_matrix[i].data() + at_);
   }
 
+  void write_pull(const LanesFit& other, LobeBlock::Lanes3& pull) const {
+    const Turned turned = turned_at(load(block_.solved));
+    const Facing facing = other.facing_of(turned.n);
+    Vector3 sum = zero_vector(d_);
+    for (const LobeBlock::Light& light : block_.lights()) {
+      const Linear r = linear(light, turned);
+      const V off = hn::Sub(other.modelled(facing, turned.rho, other.lit_by(light)), r.model);
+      add_scaled(sum, off, scaled(r.by_b, r.weight));
+    }
+    store(sum, pull);
+  }
+
  private:
   using Facing = typename LobeLanes<kFamily>::Facing;
   struct NormalSums {
@@ -111,14 +123,18 @@ class LanesFit {
     return {cosine, hn::Sub(one, from.fresnel), hn::NegMulAdd(bend_, hn::Sub(one, cosine), one)};
   }
 
+  HWY_INLINE Facing facing_of(Vector3 n) const { return lobe_.facing(n, view_, yarn_x_, yarn_y_); }
+  HWY_INLINE V modelled(const Facing& facing, V rho, const LitLanes& from) const {
+    return hn::MulAdd(rho, diffuse(facing.normal, from).share(), lobe_.shine(facing, from));
+  }
+
   V cost_of(Vector3 b) const {
     const V rho = hn::Max(hn::Sqrt(dot(b, b)), number(d_, 1e-12)), one = number(d_, 1);
-    const Facing facing = lobe_.facing(scaled(b, hn::Div(one, rho)), view_, yarn_x_, yarn_y_);
+    const Facing facing = facing_of(scaled(b, hn::Div(one, rho)));
     V cost = hn::Zero(d_);
     const V huber = number(d_, kHuberSigmas);
     for (const LobeBlock::Light& light : block_.lights()) {
-      const LitLanes from = lit_by(light);
-      const V model = hn::MulAdd(rho, diffuse(facing.normal, from).share(), lobe_.shine(facing, from));
+      const V model = modelled(facing, rho, lit_by(light));
       const V w = hn::LoadU(d_, light.weight.data() + at_);
       const V size = hn::Mul(hn::Abs(hn::Sub(hn::LoadU(d_, light.reading.data() + at_), model)), hn::Sqrt(w));
       const V inner = hn::Min(size, huber);
@@ -128,42 +144,68 @@ class LanesFit {
     return cost;
   }
 
+  // Pixels at b, and with normals turned to both sides, which slopes are taken from.
+  struct Turned {
+    Vector3 n, first, second;
+    V rho, by_turn;
+    Facing here, to_first, to_second;
+  };
+  HWY_INLINE Turned turned_at(Vector3 b) const {
+    const V one = number(d_, 1), zero = hn::Zero(d_);
+    Turned t;
+    t.rho = hn::Max(hn::Sqrt(dot(b, b)), number(d_, 1e-12));
+    const V inverse_rho = hn::Div(one, t.rho);
+    t.n = scaled(b, inverse_rho);
+    // The axis that is least along the normal, for two directions across it.
+    const M is_up = hn::Gt(hn::Abs(t.n.z), number(d_, 0.5));
+    const Vector3 aside = {hn::IfThenElseZero(is_up, one), zero, hn::IfThenZeroElse(is_up, one)};
+    t.first = normalised(d_, cross_of(aside, t.n));
+    t.second = cross_of(t.n, t.first);
+    const V turn = hn::Set(d_, kTurn);
+    t.here = facing_of(t.n);
+    t.to_first = facing_of(normalised(d_, moved(t.n, turn, t.first)));
+    t.to_second = facing_of(normalised(d_, moved(t.n, turn, t.second)));
+    t.by_turn = hn::Mul(inverse_rho, hn::Set(d_, 1 / kTurn));
+    return t;
+  }
+
+  // One reading there, with the derivative of its model by b.
+  struct Linear {
+    V model, residual, weight;  // Huber's weight
+    M is_used;
+    Vector3 by_b;
+  };
+  HWY_INLINE Linear linear(const LobeBlock::Light& light, const Turned& t) const {
+    const LitLanes from = lit_by(light);
+    const Diffuse part = diffuse(t.n, from);
+    const V shine = lobe_.shine(t.here, from);
+    Linear reading;
+    reading.model = hn::MulAdd(t.rho, part.share(), shine);
+    reading.residual = hn::Sub(hn::LoadU(d_, light.reading.data() + at_), reading.model);
+    const V bent = hn::Mul(hn::Mul(bend_, part.cosine), part.beneath);
+    Vector3 j = scaled(from.light, hn::MulAdd(part.beneath, part.straight, bent));
+    j = moved(j, hn::Neg(hn::Mul(bent, part.cosine)), t.n);
+    j = masked(hn::Gt(part.cosine, hn::Zero(d_)), j);
+    j = moved(j, hn::Mul(hn::Sub(lobe_.shine(t.to_first, from), shine), t.by_turn), t.first);
+    reading.by_b = moved(j, hn::Mul(hn::Sub(lobe_.shine(t.to_second, from), shine), t.by_turn), t.second);
+    const V w = hn::LoadU(d_, light.weight.data() + at_), huber = number(d_, kHuberSigmas);
+    reading.is_used = hn::Gt(w, hn::Zero(d_));
+    const V size = hn::Mul(hn::Abs(reading.residual), hn::Sqrt(w));
+    reading.weight = hn::IfThenElse(hn::Lt(size, huber), w, hn::Div(hn::Mul(w, huber), hn::Max(size, huber)));
+    return reading;
+  }
+
   NormalSums sums_of(Vector3 b) const {
     const V one = number(d_, 1), zero = hn::Zero(d_);
-    const V rho = hn::Max(hn::Sqrt(dot(b, b)), number(d_, 1e-12)), inverse_rho = hn::Div(one, rho);
-    const Vector3 n = scaled(b, inverse_rho);
-    // The axis that is least along the normal, for two directions across it.
-    const M is_up = hn::Gt(hn::Abs(n.z), number(d_, 0.5));
-    const Vector3 aside = {hn::IfThenElseZero(is_up, one), zero, hn::IfThenZeroElse(is_up, one)};
-    const Vector3 first = normalised(d_, cross_of(aside, n)), second = cross_of(n, first);
-    const V turn = hn::Set(d_, kTurn);
-    const auto faces = [&](Vector3 normal) { return lobe_.facing(normal, view_, yarn_x_, yarn_y_); };
-    const Facing here = faces(n), turned1 = faces(normalised(d_, moved(n, turn, first))),
-                 turned2 = faces(normalised(d_, moved(n, turn, second)));
-    const V by_turn = hn::Mul(inverse_rho, hn::Set(d_, 1 / kTurn));
-    const V huber = number(d_, kHuberSigmas);
+    const Turned turned = turned_at(b);
     NormalSums sums = {zero_matrix(d_), zero_vector(d_), zero, zero};
     for (const LobeBlock::Light& light : block_.lights()) {
-      const LitLanes from = lit_by(light);
-      const Diffuse part = diffuse(n, from);
-      const V shine = lobe_.shine(here, from);
-      const V residual =
-          hn::Sub(hn::LoadU(d_, light.reading.data() + at_), hn::MulAdd(rho, part.share(), shine));
-      const V bent = hn::Mul(hn::Mul(bend_, part.cosine), part.beneath);
-      Vector3 j = scaled(from.light, hn::MulAdd(part.beneath, part.straight, bent));
-      j = moved(j, hn::Neg(hn::Mul(bent, part.cosine)), n);
-      j = masked(hn::Gt(part.cosine, zero), j);
-      j = moved(j, hn::Mul(hn::Sub(lobe_.shine(turned1, from), shine), by_turn), first);
-      j = moved(j, hn::Mul(hn::Sub(lobe_.shine(turned2, from), shine), by_turn), second);
-      V w = hn::LoadU(d_, light.weight.data() + at_);
-      const M is_used = hn::Gt(w, zero);
-      sums.square = hn::Add(sums.square, hn::IfThenElseZero(is_used, square_of(residual)));
-      sums.used = hn::Add(sums.used, hn::IfThenElseZero(is_used, one));
-      const V size = hn::Mul(hn::Abs(residual), hn::Sqrt(w));
-      w = hn::IfThenElse(hn::Lt(size, huber), w, hn::Div(hn::Mul(w, huber), hn::Max(size, huber)));
-      const Vector3 wj = scaled(j, w);
-      add_outer(sums.matrix, wj, j);
-      add_scaled(sums.gradient, residual, wj);
+      const Linear r = linear(light, turned);
+      sums.square = hn::Add(sums.square, hn::IfThenElseZero(r.is_used, square_of(r.residual)));
+      sums.used = hn::Add(sums.used, hn::IfThenElseZero(r.is_used, one));
+      const Vector3 wj = scaled(r.by_b, r.weight);
+      add_outer(sums.matrix, wj, r.by_b);
+      add_scaled(sums.gradient, r.residual, wj);
     }
     const V little = hn::MulAdd(number(d_, 1e-6), trace(sums.matrix), number(d_, 1e-30));
     sums.matrix.xx = hn::Add(sums.matrix.xx, little);
@@ -191,26 +233,38 @@ class LanesFit {
   V yarn_x_, yarn_y_;
 };
 
-template <LobeFamily kFamily>
-void fit_lanes(const Lobe& lobe, LobeBlock& block, int steps) {
-  const D d;
-  for (std::size_t at = 0; at < LobeBlock::kPixels; at += hn::Lanes(d))
-    LanesFit<kFamily>(d, lobe, block, at).run(steps);
+// Calls `work` with the family as a constant.
+template <typename Work>
+void for_family(LobeFamily family, const Work& work) {
+  switch (family) {
+    case LobeFamily::kLambert:
+      return work.template operator()<LobeFamily::kLambert>();
+    case LobeFamily::kGgx:
+      return work.template operator()<LobeFamily::kGgx>();
+    case LobeFamily::kAnisotropicGgx:
+      return work.template operator()<LobeFamily::kAnisotropicGgx>();
+    case LobeFamily::kBeckmann:
+      return work.template operator()<LobeFamily::kBeckmann>();
+    case LobeFamily::kCloth:
+      return work.template operator()<LobeFamily::kCloth>();
+  }
 }
 
 void fit_block_lanes(const Lobe& lobe, LobeBlock& block, int steps) {
-  switch (lobe.family) {
-    case LobeFamily::kLambert:
-      return fit_lanes<LobeFamily::kLambert>(lobe, block, steps);
-    case LobeFamily::kGgx:
-      return fit_lanes<LobeFamily::kGgx>(lobe, block, steps);
-    case LobeFamily::kAnisotropicGgx:
-      return fit_lanes<LobeFamily::kAnisotropicGgx>(lobe, block, steps);
-    case LobeFamily::kBeckmann:
-      return fit_lanes<LobeFamily::kBeckmann>(lobe, block, steps);
-    case LobeFamily::kCloth:
-      return fit_lanes<LobeFamily::kCloth>(lobe, block, steps);
-  }
+  const D d;
+  for_family(lobe.family, [&]<LobeFamily kFamily>() {
+    for (std::size_t at = 0; at < LobeBlock::kPixels; at += hn::Lanes(d))
+      LanesFit<kFamily>(d, lobe, block, at).run(steps);
+  });
+}
+
+void pull_block_lanes(const Lobe& lobe, const Lobe& other, LobeBlock& block, LobeBlock::Lanes3& pull) {
+  const D d;
+  for_family(lobe.family, [&]<LobeFamily kFamily>() {
+    for (std::size_t at = 0; at < LobeBlock::kPixels; at += hn::Lanes(d)) {
+      LanesFit<kFamily>(d, lobe, block, at).write_pull(LanesFit<kFamily>(d, other, block, at), pull);
+    }
+  });
 }
 
 }  // namespace HWY_NAMESPACE
@@ -221,9 +275,16 @@ HWY_AFTER_NAMESPACE();
 namespace weft::solver {
 
 HWY_EXPORT(fit_block_lanes);
+HWY_EXPORT(pull_block_lanes);
 
 void fit_block(const Lobe& lobe, LobeBlock& block, int steps) {
   HWY_DYNAMIC_DISPATCH(fit_block_lanes)(lobe, block, steps);
+}
+
+LobeBlock::Lanes3 pull_of(const Lobe& other, const Lobe& lobe, LobeBlock& block) {
+  LobeBlock::Lanes3 pull;
+  HWY_DYNAMIC_DISPATCH(pull_block_lanes)(lobe, other, block, pull);
+  return pull;
 }
 
 void LobeBlock::put(std::size_t pixel, std::span<const LobeReading> readings) {

@@ -52,4 +52,8 @@ class LobeBlock {
 /// and normal matrix. No pixel's result depends on the others.
 void fit_block(const Lobe& lobe, LobeBlock& block, int steps);
 
+/// J^T W (x of `other` - x of `lobe`) of every pixel as it stands, for two lobes of one family. A cloth that
+/// reflects by `other` and is solved by `lobe` has its b moved by (J^T W J)^-1 times it, to first order.
+LobeBlock::Lanes3 pull_of(const Lobe& other, const Lobe& lobe, LobeBlock& block);
+
 }  // namespace weft::solver

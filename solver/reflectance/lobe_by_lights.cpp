@@ -104,14 +104,20 @@ LobeByLights::LobeByLights(const LobeSamples& samples, const LobeFit& fit, const
   }
 }
 
-double LobeByLights::sigma_of(LobeParameter parameter, std::span<const double> covariance) const {
-  const std::span<const double> change = change_of(parameter);
-  double variance = 0;
-  for (std::size_t i = 0; i < change.size(); ++i) {
-    for (std::size_t j = 0; j < change.size(); ++j)
-      variance += change[i] * covariance[i * change.size() + j] * change[j];
+LobeCovariance LobeByLights::covariance_of(std::span<const double> errors) const {
+  const auto n = static_cast<Eigen::Index>(this->errors());
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> of_errors(
+      errors.data(), n, n);
+  Eigen::MatrixXd change(static_cast<Eigen::Index>(kLobeParameters), n);
+  for (std::size_t p = 0; p < kLobeParameters; ++p)
+    change.row(static_cast<Eigen::Index>(p)) = Eigen::Map<const Eigen::RowVectorXd>(change_[p].data(), n);
+  const ValuesMatrix values = change * of_errors * change.transpose();
+  LobeCovariance covariance;
+  for (std::size_t p = 0; p < kLobeParameters; ++p) {
+    for (std::size_t q = 0; q < kLobeParameters; ++q)
+      covariance[p][q] = values(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q));
   }
-  return std::sqrt(std::max(variance, 0.0));
+  return covariance;
 }
 
 }  // namespace weft::solver

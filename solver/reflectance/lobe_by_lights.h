@@ -28,8 +28,8 @@ class LobeByLights {
   std::span<const double> change_of(LobeParameter parameter) const {
     return change_[static_cast<std::size_t>(parameter)];
   }
-  /// For a covariance of all errors, row by row.
-  double sigma_of(LobeParameter parameter, std::span<const double> covariance) const;
+  /// Of the shared values, for a covariance of all errors, row by row.
+  LobeCovariance covariance_of(std::span<const double> errors) const;
 
  private:
   std::array<std::vector<double>, kLobeParameters> change_;

@@ -22,6 +22,8 @@ constexpr std::size_t kChunk = 64;
 constexpr int kMostTries = 7;
 constexpr int kStepsARound = 2;
 constexpr double kSettled = 1e-6;  // of the cost: a round that wins less is the last
+// Of a principal axis: what is less is an error of rounding.
+constexpr double kLeastVariance = 1e-14;
 
 Shared values_of(const Lobe& lobe) {
   return {std::log(lobe.alpha), lobe.f0, std::log(lobe.along), lobe.axis, lobe.bend};
@@ -235,6 +237,23 @@ NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter) {
   Shared there = values_of(lobe);
   there[static_cast<Eigen::Index>(parameter)] += by;
   return {lobe_of(lobe.family, there), by};
+}
+
+std::vector<Lobe> one_sigma_off(const Lobe& lobe, const LobeCovariance& covariance) {
+  SharedMatrix matrix;
+  for (std::size_t p = 0; p < kLobeParameters; ++p) {
+    for (std::size_t q = 0; q < kLobeParameters; ++q)
+      matrix(static_cast<Eigen::Index>(p), static_cast<Eigen::Index>(q)) = covariance[p][q];
+  }
+  const Eigen::SelfAdjointEigenSolver<SharedMatrix> principal(matrix);
+  std::vector<Lobe> off;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    const double variance = principal.eigenvalues()[i];
+    if (!(variance > kLeastVariance)) continue;
+    off.push_back(
+        lobe_of(lobe.family, values_of(lobe) + std::sqrt(variance) * principal.eigenvectors().col(i)));
+  }
+  return off;
 }
 
 double LobeFit::total() const {

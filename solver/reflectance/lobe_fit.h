@@ -43,6 +43,7 @@ class LobeSamples {
 enum class LobeParameter { kLogAlpha, kF0, kLogAlong, kAxis, kBend };
 inline constexpr std::size_t kLobeParameters = 5;
 using LobeParameters = std::array<bool, kLobeParameters>;  ///< which are fitted
+using LobeCovariance = std::array<std::array<double, kLobeParameters>, kLobeParameters>;
 
 /// Those of a family: alpha and f0 where it has a lobe, `along` and `axis` where it has a yarn.
 LobeParameters parameters_of(LobeFamily family);
@@ -54,6 +55,10 @@ struct NudgedLobe {
 };
 NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter);
 
+/// Lobes one sigma away, one along each principal axis of a covariance: any quantity's variance is to first
+/// order the sum of the squares of what it changes by to each. None along an axis where nothing is open.
+std::vector<Lobe> one_sigma_off(const Lobe& lobe, const LobeCovariance& covariance);
+
 struct LobeFit {
   Lobe lobe;
   std::vector<Vec3> b;       ///< by pixel
@@ -61,7 +66,7 @@ struct LobeFit {
   std::vector<double> cost;  ///< by pixel
   double chi2 = 0;           ///< twice the cost over the degrees of freedom that pixels leave
   /// Of the fitted parameters, in their order; of a chi2 over 1 as large as the residuals say.
-  std::array<std::array<double, kLobeParameters>, kLobeParameters> covariance = {};
+  LobeCovariance covariance = {};
 
   double total() const;
 };

@@ -174,26 +174,42 @@ std::size_t pixels_with_enough(const LobeSamples& samples) {
   return count;
 }
 
+double sigma_of(const LobeCovariance& covariance, LobeParameter parameter) {
+  const auto i = static_cast<std::size_t>(parameter);
+  return std::sqrt(std::max(covariance[i][i], 0.0));
+}
+
+void set_covariance(const LobeCovariance& covariance, MeasuredLobe& measured) {
+  measured.covariance = covariance;
+  measured.sigma_alpha = sigma_of(covariance, LobeParameter::kLogAlpha);
+  measured.sigma_f0 = sigma_of(covariance, LobeParameter::kF0);
+  measured.sigma_along = sigma_of(covariance, LobeParameter::kLogAlong);
+  measured.sigma_axis = sigma_of(covariance, LobeParameter::kAxis);
+}
+
 // `rivals`: the same family with or without the bend, whichever was not taken, and other families that
-// explain the readings as well. Half of what they differ by is the least sigma.
+// explain the readings as well. Half of what they differ by is the least sigma; correlations are the fit's.
 void write_sigmas(const std::vector<Lobe>& rivals, MeasuredLobe& measured) {
-  const auto& c = measured.fit.covariance;
-  const auto formal = [&](LobeParameter p) {
-    const auto i = static_cast<std::size_t>(p);
-    return std::sqrt(std::max(c[i][i], 0.0));
-  };
+  LobeCovariance covariance = measured.fit.covariance;
   const Lobe& lobe = measured.lobe;
-  measured.sigma_alpha = formal(LobeParameter::kLogAlpha);
-  measured.sigma_f0 = formal(LobeParameter::kF0);
-  measured.sigma_along = formal(LobeParameter::kLogAlong);
-  measured.sigma_axis = formal(LobeParameter::kAxis);
+  const auto widen = [&](LobeParameter parameter, double least) {
+    const double formal = sigma_of(covariance, parameter);
+    if (!(least > formal)) return;
+    const auto i = static_cast<std::size_t>(parameter);
+    for (std::size_t q = 0; q < kLobeParameters; ++q) {
+      covariance[i][q] *= formal > 0 ? least / formal : 0;
+      covariance[q][i] = covariance[i][q];
+    }
+    covariance[i][i] = least * least;
+  };
   for (const Lobe& rival : rivals) {
-    measured.sigma_alpha = std::max(measured.sigma_alpha, std::abs(std::log(lobe.alpha / rival.alpha)) / 2);
-    measured.sigma_f0 = std::max(measured.sigma_f0, std::abs(lobe.f0 - rival.f0) / 2);
-    measured.sigma_along = std::max(measured.sigma_along, std::abs(std::log(lobe.along / rival.along)) / 2);
+    widen(LobeParameter::kLogAlpha, std::abs(std::log(lobe.alpha / rival.alpha)) / 2);
+    widen(LobeParameter::kF0, std::abs(lobe.f0 - rival.f0) / 2);
+    widen(LobeParameter::kLogAlong, std::abs(std::log(lobe.along / rival.along)) / 2);
   }
-  const double product = formal(LobeParameter::kLogAlpha) * formal(LobeParameter::kF0);
-  measured.correlation = product > 0 ? std::clamp(c[0][1] / product, -1.0, 1.0) : 0;
+  set_covariance(covariance, measured);
+  const double product = measured.sigma_alpha * measured.sigma_f0;
+  measured.correlation = product > 0 ? std::clamp(covariance[0][1] / product, -1.0, 1.0) : 0;
 }
 
 // A LED is hardly ever as bright as it was when it was calibrated.
@@ -368,13 +384,11 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
 }
 
 void add_light_errors(std::span<const double> covariance, MeasuredLobe& measured) {
-  const auto widen = [&](double& sigma, LobeParameter parameter) {
-    sigma = std::hypot(sigma, measured.by_lights.sigma_of(parameter, covariance));
-  };
-  widen(measured.sigma_alpha, LobeParameter::kLogAlpha);
-  widen(measured.sigma_f0, LobeParameter::kF0);
-  widen(measured.sigma_along, LobeParameter::kLogAlong);
-  widen(measured.sigma_axis, LobeParameter::kAxis);
+  LobeCovariance all = measured.by_lights.covariance_of(covariance);
+  for (std::size_t p = 0; p < kLobeParameters; ++p) {
+    for (std::size_t q = 0; q < kLobeParameters; ++q) all[p][q] += measured.covariance[p][q];
+  }
+  set_covariance(all, measured);
 }
 
 }  // namespace weft::solver

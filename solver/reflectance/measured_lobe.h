@@ -44,7 +44,9 @@ struct MeasuredLobe {
   Lobe lobe;    ///< Lambert's where it is refused
   LobeFit fit;  ///< of `lobe`; empty where it is refused
   double sigma_alpha = 0, sigma_f0 = 0, sigma_along = 0, sigma_axis = 0;  ///< alpha: relative; axis: radians
-  double correlation = 0;                                                 ///< of log alpha and f0
+  /// Of all of the parameters: the sigmas are the roots of its diagonal.
+  LobeCovariance covariance = {};
+  double correlation = 0;  ///< of log alpha and f0
   LobeByLights by_lights;  ///< what errors of the lights make of `lobe`
   /// Another family passes too and costs at most 5 percent more. Its values are in the sigmas.
   bool is_family_undecided = false;
