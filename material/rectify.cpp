@@ -10,6 +10,7 @@
 
 #include "core/parallel.h"
 #include "core/solve_record.h"
+#include "material/cubic.h"
 
 namespace weft::material {
 namespace {
@@ -19,13 +20,6 @@ using Planes = std::array<double, kMostPlanes>;
 constexpr int kMostSide = 32768;
 constexpr int kMostStretch = 64;
 constexpr double kRounding_px = 1e-6;
-
-// Keys 1981, eq. 15.
-double cubic(double t) {
-  t = std::abs(t);
-  if (t < 1) return (1.5 * t - 2.5) * t * t + 1;
-  return t < 2 ? ((-0.5 * t + 2.5) * t - 4) * t + 2 : 0;
-}
 
 bool in_frame(const CameraModel& camera, Vec3 point_mm) {
   const Vec3 p = project(camera, point_mm);
@@ -72,7 +66,8 @@ struct Taps {
               to = static_cast<int>(std::floor(at + 2 * stretch));
     first = std::max(from, 0);
     count = std::max(0, std::min(to, size - 1) - first + 1);
-    for (int i = 0; i < count; ++i) weight[static_cast<std::size_t>(i)] = cubic((first + i - at) / stretch);
+    for (int i = 0; i < count; ++i)
+      weight[static_cast<std::size_t>(i)] = cubic_weight((first + i - at) / stretch);
   }
 };
 

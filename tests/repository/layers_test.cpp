@@ -80,7 +80,7 @@ const std::vector<Door> kDoors = {
     {"hwy/", {"core/", "solver/kernels/", "solver/reflectance/", "tests/"}},
     {"embree3/", {"simulator/transport/", "solver/transport/", "bench/"}},
     {"spdlog/", {"app/server/"}},
-    {"kissfft/", {"solver/height/", "bench/"}},
+    {"kissfft/", {"core/", "bench/"}},
     {"sqlite3", {"library/"}},
 };
 

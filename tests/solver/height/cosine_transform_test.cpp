@@ -62,19 +62,5 @@ TEST(CosineTransform, InverseGivesTheRowsBackForEveryLength) {
   }
 }
 
-TEST(FourierTransform, OfAPrimeLengthKeepsThirteenDigits) {
-  // One wave of a whole frame's prime length: all in one coefficient.
-  constexpr std::size_t kLength = 12289, kWave = 1234;
-  std::vector<FourierTransform::Complex> wave(kLength), spectrum(kLength);
-  for (std::size_t n = 0; n < kLength; ++n) {
-    wave[n] = std::polar(1.0, 2 * kPi * static_cast<double>(kWave * n % kLength) / double{kLength});
-  }
-  FourierTransform(kLength).forward(wave.data(), spectrum.data());
-  for (std::size_t k = 0; k < kLength; ++k) {
-    const double want = k == kWave ? double{kLength} : 0;
-    ASSERT_LT(std::abs(spectrum[k] - want), 1e-13 * kLength * 10) << "coefficient " << k;
-  }
-}
-
 }  // namespace
 }  // namespace weft::solver

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "material/lattice/search.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "core/statistics.h"
+#include "core/vec.h"
+
+namespace weft::material {
+namespace {
+
+constexpr double kNearest_px = 3, kLeastArea_px = 9;
+
+int remainder_of(int i, int n) {
+  return (i % n + n) % n;
+}
+
+// How high the multiples of two peaks stand against the strongest peaks, the least over the slopes.
+std::optional<double> score_of(const Cell& cell, const Correlations& correlations) {
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t channel = 0; channel < 2; ++channel) {
+    if (!correlations.slope_repeats(static_cast<int>(channel))) continue;
+    const Correlation& correlation = correlations.of[channel];
+    double sum = 0;
+    int points = 0;
+    for (int j = 0; j <= 2; ++j) {
+      for (int i = j == 0 ? 1 : -2; i <= 2; ++i) {
+        const Vec2 lag = cell.at(i, j);
+        if (length(lag) > 0.9 * correlation.reach()) continue;
+        sum += *correlation.at(lag);
+        ++points;
+      }
+    }
+    if (points < 4) return std::nullopt;
+    least = std::min(least, sum / points / correlations.level[channel]);
+  }
+  return least;
+}
+
+struct Row {
+  double i, j;
+  Vec2 lag;
+  double weight;
+};
+
+// Peaks of the correlation near the multiples of a cell, up to `reach` of them.
+std::vector<Row> peaks_at_multiples(const Cell& cell, const Correlation& mean, int reach, double least) {
+  const double radius = std::min(0.22 * std::min(length(cell.a), length(cell.b)), 6.0);
+  std::vector<Row> rows;
+  for (int j = 0; j <= reach; ++j) {
+    for (int i = j == 0 ? 1 : -reach; i <= reach; ++i) {
+      if (length(cell.at(i, j)) > 0.8 * mean.reach()) continue;
+      const auto peak = mean.peak_near(cell.at(i, j), radius);
+      if (peak && peak->value > least)
+        rows.push_back({static_cast<double>(i), static_cast<double>(j), peak->lag, peak->value});
+    }
+  }
+  return rows;
+}
+
+// Weighted least squares of lag = i a + j b.
+std::optional<Cell> fitted(const std::vector<Row>& rows, const std::vector<double>& weights) {
+  double ii = 0, ij = 0, jj = 0;
+  Vec2 i_lag, j_lag;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const Row& row = rows[k];
+    ii += weights[k] * row.i * row.i;
+    ij += weights[k] * row.i * row.j;
+    jj += weights[k] * row.j * row.j;
+    i_lag = i_lag + weights[k] * row.i * row.lag;
+    j_lag = j_lag + weights[k] * row.j * row.lag;
+  }
+  const double determinant = ii * jj - ij * ij;
+  if (!(determinant > 1e-9 * ii * jj)) return std::nullopt;
+  return Cell{(1 / determinant) * (jj * i_lag - ij * j_lag), (1 / determinant) * (ii * j_lag - ij * i_lag)};
+}
+
+// Iteratively reweighted by Cauchy's function, its scale 1.5 medians of the distances.
+void fit_robustly(const std::vector<Row>& rows, RefinedCell& refined) {
+  std::vector<double> weights(rows.size()), distances(rows.size());
+  for (std::size_t k = 0; k < rows.size(); ++k) weights[k] = rows[k].weight;
+  for (int round = 0; round < 4; ++round) {
+    const auto cell = fitted(rows, weights);
+    if (!cell) return;
+    double squares = 0;
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      distances[k] = length(rows[k].lag - cell->at(rows[k].i, rows[k].j));
+      squares += distances[k] * distances[k];
+    }
+    const double scale = std::max(0.02, 1.5 * median(distances));
+    for (std::size_t k = 0; k < rows.size(); ++k)
+      weights[k] = rows[k].weight / (1 + distances[k] * distances[k] / (scale * scale));
+    refined = {*cell, std::sqrt(squares / static_cast<double>(rows.size())), static_cast<int>(rows.size())};
+  }
+}
+
+// Correlations at multiples of a cell that lie on neither of its sides: along a yarn its own thickness and
+// tone repeat everywhere.
+struct Multiple {
+  int i, j;
+  double distance, value;
+};
+
+std::vector<Multiple> multiples_off_sides(const Cell& cell, std::span<const Correlation* const> slopes) {
+  constexpr int kReach = 12;
+  const double radius = std::min(0.2 * std::min(length(cell.a), length(cell.b)), 5.0);
+  std::vector<Multiple> out;
+  for (int j = 1; j <= kReach; ++j) {
+    for (int i = -kReach; i <= kReach; ++i) {
+      const Vec2 lag = cell.at(i, j);
+      if (i == 0 || length(lag) > 0.7 * slopes[0]->reach()) continue;
+      double sum = 0;
+      for (const Correlation* each : slopes) {
+        const auto peak = each->peak_near(lag, radius);
+        sum += peak ? peak->value : each->at(lag).value_or(0);
+      }
+      out.push_back({i, j, length(lag), sum / static_cast<double>(slopes.size())});
+    }
+  }
+  return out;
+}
+
+// Takes out of the values what a parabola of the distance explains.
+void take_out_distance(std::vector<Multiple>& multiples) {
+  std::array<double, 5> powers = {};
+  std::array<double, 3> right = {};
+  const double scale = std::ranges::max_element(multiples, {}, &Multiple::distance)->distance;
+  for (const Multiple& m : multiples) {
+    const double d = m.distance / scale;
+    for (std::size_t k = 0; k < 5; ++k) powers[k] += std::pow(d, static_cast<double>(k));
+    for (std::size_t k = 0; k < 3; ++k) right[k] += std::pow(d, static_cast<double>(k)) * m.value;
+  }
+  const Mat3 m = {{{powers[0], powers[1], powers[2]},
+                   {powers[1], powers[2], powers[3]},
+                   {powers[2], powers[3], powers[4]}}};
+  const Vec3 x = {m[0][0], m[1][0], m[2][0]}, y = {m[0][1], m[1][1], m[2][1]},
+             z = {m[0][2], m[1][2], m[2][2]}, b = {right[0], right[1], right[2]};
+  const double determinant = dot(x, cross(y, z));
+  if (!(std::abs(determinant) > 1e-12)) return;
+  const double c0 = dot(b, cross(y, z)) / determinant, c1 = dot(x, cross(b, z)) / determinant,
+               c2 = dot(x, cross(y, b)) / determinant;
+  for (Multiple& each : multiples) {
+    const double d = each.distance / scale;
+    each.value -= c0 + c1 * d + c2 * d * d;
+  }
+}
+
+// Welch 1947: of the values on a sublattice against all others.
+double welch_t(const std::vector<Multiple>& multiples, const Sublattice& sublattice) {
+  struct Group {
+    double n = 0, sum = 0, squares = 0;
+    double mean() const { return sum / n; }
+    double error() const { return (squares / n - mean() * mean()) / n; }
+  };
+  Group on, off;
+  for (const Multiple& m : multiples) {
+    Group& group = sublattice.has(m.i, m.j) ? on : off;
+    group.n += 1;
+    group.sum += m.value;
+    group.squares += m.value * m.value;
+  }
+  if (on.n < 6 || off.n < 6) return 0;
+  return (on.mean() - off.mean()) / std::sqrt(std::max(on.error() + off.error(), 1e-12));
+}
+
+}  // namespace
+
+Cell reduced(Cell cell) {
+  Vec2 a = cell.a, b = cell.b;
+  for (int i = 0; i < 100; ++i) {
+    if (dot(a, a) > dot(b, b)) std::swap(a, b);
+    const double times = std::round(dot(a, b) / dot(a, a));
+    if (times == 0) break;
+    b = b - times * a;
+  }
+  const auto slant = [](Vec2 v) { return std::abs(v.x) / length(v); };
+  if (slant(b) > slant(a)) std::swap(a, b);
+  if (a.x < 0) a = -1 * a;
+  if (cross(a, b) < 0) b = -1 * b;
+  return {a, b};
+}
+
+bool Sublattice::has(int i, int j) const {
+  return remainder_of(j, down) == 0 && remainder_of(i - shift * (j / down), across) == 0;
+}
+
+Cell Sublattice::of(const Cell& cell) const {
+  return {cell.at(across, 0), cell.at(shift, down)};
+}
+
+std::optional<Cell> first_cell(const Correlations& correlations, const Correlation& mean) {
+  constexpr std::size_t kMostPeaks = 90;
+  constexpr double kOfBest = 0.94, kOfSmallest = 1.15;
+  auto peaks = mean.peaks(0.05, kNearest_px, 0.68 * mean.reach());
+  if (peaks.size() < 2) return std::nullopt;
+  double top = 0;
+  const std::size_t strong = std::min<std::size_t>(6, peaks.size());
+  for (std::size_t i = 0; i < strong; ++i) top += peaks[i].value / static_cast<double>(strong);
+  std::erase_if(peaks, [&](const auto& peak) { return peak.value < 0.35 * top; });
+  std::ranges::stable_sort(peaks, {}, [](const auto& peak) { return length(peak.lag); });
+  if (peaks.size() > kMostPeaks) peaks.resize(kMostPeaks);
+
+  struct Candidate {
+    Cell cell;
+    double score, area;
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t u = 0; u < peaks.size(); ++u) {
+    for (std::size_t v = u + 1; v < peaks.size(); ++v) {
+      const Cell cell = {peaks[u].lag, peaks[v].lag};
+      const double area = std::abs(cell.area());
+      if (area < 0.3 * length(cell.a) * length(cell.b) || area < kLeastArea_px) continue;
+      if (const auto score = score_of(cell, correlations)) candidates.push_back({cell, *score, area});
+    }
+  }
+  if (candidates.empty()) return std::nullopt;
+  const double best = std::ranges::max_element(candidates, {}, &Candidate::score)->score;
+  if (!(best > 0.3)) return std::nullopt;
+  std::erase_if(candidates, [&](const Candidate& each) { return each.score < kOfBest * best; });
+  const double smallest = std::ranges::min_element(candidates, {}, &Candidate::area)->area;
+  std::erase_if(candidates, [&](const Candidate& each) { return each.area > kOfSmallest * smallest; });
+  return reduced(std::ranges::max_element(candidates, {}, &Candidate::score)->cell);
+}
+
+RefinedCell refined(const Cell& cell, const Correlation& mean) {
+  const auto peaks = mean.peaks(0, kNearest_px, 0.68 * mean.reach());
+  const double least = peaks.empty() ? 0 : 0.3 * peaks.front().value;
+  RefinedCell out = {cell, 0, 0};
+  for (int reach = 1; reach <= 32; reach *= 2) {
+    const auto rows = peaks_at_multiples(out.cell, mean, reach, least);
+    if (rows.size() < 3) break;
+    fit_robustly(rows, out);
+  }
+  return out;
+}
+
+SublatticeTest test_sublattices(const Cell& cell, std::span<const Correlation* const> slopes) {
+  constexpr int kMostIndex = 8;
+  auto multiples = multiples_off_sides(cell, slopes);
+  SublatticeTest test;
+  if (multiples.size() < 12) return test;
+  take_out_distance(multiples);
+  for (int index = 2; index <= kMostIndex; ++index) {
+    for (int across = 1; across <= index; ++across) {
+      if (index % across != 0) continue;
+      for (int shift = 0; shift < across; ++shift) {
+        const Sublattice sublattice = {across, shift, index / across};
+        if (const double t = welch_t(multiples, sublattice); t > test.t) test = {sublattice, t};
+      }
+    }
+  }
+  return test;
+}
+
+}  // namespace weft::material
