@@ -127,6 +127,8 @@ Run add_maps(Options& options) {
   add_common(options, *a);
   DeriveOptions& derive = a->maps.derive;
   options.add("--maps", &a->maps.maps, help_of_maps()).by_commas().one_of(map_names());
+  options.add("--bare", &a->maps.bare,
+              "Session of the table without cloth, photographed by the light below at the same exposure");
   options.add_choice("--height", &derive.height, kHeightMethods,
                      "How slopes are integrated: tiled, direct, multigrid, seed");
   options.add_flag("--weigh", &derive.weighs_by_sigma, "Height: each pixel by one over its variance");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a cloth is as a layer over another material.
+// What a cloth is as a layer over another material, and where it has holes.
 #include <cmath>
 #include <utility>
 
@@ -51,6 +51,25 @@ Result<void> make_detail(MapWork& work) {
       .name = "detail_height", .file = "detail_height.exr", .unit = "mm", .channels = {"height"}};
   height.more = {{"mean_taken_out", layer->facts.height_mm}};
   return write_map(work, std::move(height), {layer->height_mm.plane()});
+}
+
+Result<void> make_opacity(MapWork& work) {
+  MapFacts facts = {.name = "opacity", .unit = "share", .channels = {"opacity"}};
+  if (work.surface.opacity.empty()) {
+    write_constant(work, std::move(facts), 1, "no light came from below, and the solver saw no hole");
+    return {};
+  }
+  const material::OpacityFacts& found = *work.opacity;
+  facts.file = "opacity.exr";
+  facts.source =
+      found.way == material::OpacityFacts::Way::kMarkedHoles ? MapSource::kDerived : MapSource::kMeasured;
+  facts.more = {{"way", material::name_of(found.way)},
+                {"open", found.open},
+                {"through_yarns", found.through_yarns},
+                {"is_coverage", found.is_coverage()},
+                {"clipped", found.clipped},
+                {"unreadable", found.unreadable}};
+  return draw_map(work, std::move(facts), work.surface.opacity.plane());
 }
 
 }  // namespace weft::app

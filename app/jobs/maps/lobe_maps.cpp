@@ -80,13 +80,11 @@ Result<void> make_roughness(MapWork& work) {
   // The files are those of the surface.
   roughness.file = "roughness.exr";
   roughness.channels = {"roughness", "alpha", "alpha_along", "yarn_deg"};
-  measure(roughness, on_scale(GlossScale::kRoughness, mean_alphas(work.surface.lobe)).plane());
+  const Image<float> shown = on_scale(GlossScale::kRoughness, mean_alphas(work.surface.lobe));
+  if (Result<void> ok = draw_map(work, std::move(roughness), shown.plane()); !ok) return ok;
   specular.file = "specular.exr";
   specular.channels = {"f0"};
-  measure(specular, work.surface.lobe.plane(3));
-  work.made.push_back(std::move(roughness));
-  work.made.push_back(std::move(specular));
-  return {};
+  return draw_map(work, std::move(specular), work.surface.lobe.plane(3));
 }
 
 Result<void> make_gloss(MapWork& work) {

@@ -29,12 +29,16 @@ Result<void> draw(MapFacts& facts, const std::filesystem::path& folder, View<con
 }  // namespace
 
 Result<void> write_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes) {
-  measure(facts, planes.front());
   const WriteOptions options = {.type = facts.unit == "mm" ? SampleType::kFloat : SampleType::kHalf,
                                 .compression = work.compression};
   if (Result<void> ok = write_image(work.folder / facts.file, planes, facts.channels, options); !ok)
     return ok;
-  if (Result<void> ok = draw(facts, work.folder, planes.front()); !ok) return ok;
+  return draw_map(work, std::move(facts), planes.front());
+}
+
+Result<void> draw_map(MapWork& work, MapFacts facts, View<const float> plane) {
+  measure(facts, plane);
+  if (Result<void> ok = draw(facts, work.folder, plane); !ok) return ok;
   work.made.push_back(std::move(facts));
   return {};
 }
@@ -51,7 +55,9 @@ const std::vector<DerivedMap>& derived_maps() {
       {"roughness", "alpha and f0 of the lobe, measured or that of --cloth", make_roughness},
       {"gloss", "the lobe on the scales of other engines", make_gloss},
       {"mips", "normals and roughness of coarser levels, as bright as the finest", make_mips},
-      {"detail", "a layer for other materials: slopes of mean 0, albedo over its mean", make_detail}};
+      {"detail", "a layer for other materials: slopes of mean 0, albedo over its mean", make_detail},
+      {"opacity", "0 a hole, 1 cloth: by the light below and --bare, else the holes that the solver saw",
+       make_opacity}};
   return maps;
 }
 

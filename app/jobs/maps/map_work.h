@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "core/job.h"
 #include "core/result.h"
 #include "core/verdict.h"
+#include "material/opacity/opacity.h"
 #include "material/surface.h"
 #include "solver/height/height.h"
 #include "solver/reflectance/lobe.h"
@@ -36,7 +38,8 @@ struct MapWork {
   const DeriveOptions& options;
   const JobContext& context;
 
-  Image<float> height_mm = {};  ///< once find_height() was asked
+  std::optional<material::OpacityFacts> opacity = {};  ///< of surface.opacity
+  Image<float> height_mm = {};                         ///< once find_height() was asked
   std::vector<MapFacts> made = {};
   std::vector<Verdict> verdicts = {};
 };
@@ -44,6 +47,8 @@ struct MapWork {
 /// Writes the planes as the file that `facts` names, half floats but for millimetres, with a picture of the
 /// first one, and adds the map to what was made.
 Result<void> write_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes);
+/// A map that is a file of the surface already: its range and its picture.
+Result<void> draw_map(MapWork& work, MapFacts facts, View<const float> plane);
 /// A map that is one number.
 void write_constant(MapWork& work, MapFacts facts, double value, std::string why);
 
@@ -56,6 +61,7 @@ Result<void> make_roughness(MapWork& work);
 Result<void> make_gloss(MapWork& work);
 Result<void> make_mips(MapWork& work);
 Result<void> make_detail(MapWork& work);
+Result<void> make_opacity(MapWork& work);
 
 /// What can be derived from a surface.
 struct DerivedMap {

@@ -7,15 +7,21 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "app/jobs/maps/finishing.h"
+#include "app/jobs/maps/light_below.h"
 #include "app/jobs/maps/maps_page.h"
 #include "app/jobs/maps/surface_files.h"
 #include "app/jobs/pictures.h"
 #include "app/jobs/rectify.h"
+#include "core/calibration.h"
 #include "core/files.h"
 #include "core/session.h"
+#include "material/opacity/fill.h"
+#include "material/opacity/opacity.h"
 #include "report/downsampler.h"
 #include "report/preview.h"
 
@@ -46,9 +52,45 @@ Result<RectifyReport> rectified_maps(const MapsOptions& options, const JobContex
   return rectify_session(rectify, context);
 }
 
+// What a session holds, as its session.json tells by the digests of its frames; empty where none is named.
+Result<std::string> digest_of(const fs::path& session) {
+  return session.empty() ? Result<std::string>(std::string()) : sha256_of_file(session / "session.json");
+}
+
 // Room that maps take at most, bytes a pixel.
 std::uint64_t bytes_of_maps(Size size) {
   return 90 * static_cast<std::uint64_t>(size.pixels());
+}
+
+// Where the cloth has holes, by the light below where the bare table is known, else by what the solver saw.
+Result<std::optional<material::OpacityFacts>> find_opacity(const MapsOptions& options, const Session& session,
+                                                           const RectifyReport& rectified, Surface& surface,
+                                                           const JobContext& context) {
+  if (options.bare.empty()) {
+    material::Opacity marked = material::opacity_from_status(surface.status.plane());
+    if (marked.facts.holes == 0) return std::optional<material::OpacityFacts>();
+    surface.opacity = std::move(marked.map);
+    return std::optional(marked.facts);
+  }
+  const Result<Calibration> calibration =
+      read_calibration(options.calibration.empty() ? session.calibration_folder() : options.calibration);
+  if (!calibration) return calibration.error();
+  const Result<ThroughCloth> through =
+      light_through_cloth(session, options.bare, *calibration, rectified.document, context.threads);
+  if (!through) return through.error();
+  Result<material::Opacity> opacity = material::opacity_from_transmission(
+      {through->share.plane(), through->saturated.plane()}, context.threads);
+  if (!opacity) return std::move(opacity).error();
+  surface.opacity = std::move(opacity->map);
+  return std::optional(opacity->facts);
+}
+
+// What a photograph by the light below would tell, and does not.
+std::vector<Verdict> missing_bare(const MapsOptions& options, const Session& session) {
+  if (!options.bare.empty() || !has_light_below(session)) return {};
+  return {{"OPACITY_UNKNOWN",
+           "the light below photographed the cloth, but nobody knows how bright the bare table is",
+           "scan the table without cloth by the same exposure and name that session with --bare"}};
 }
 
 // A coarse surface is finished in a moment and shows what will come out.
@@ -140,12 +182,15 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
   const double mm_per_pixel = rectified->document["mm_per_pixel"].get<double>();
   const Recipe recipe = options.is_preview ? as_preview(options.recipe, mm_per_pixel) : options.recipe;
 
+  Result<std::string> bare = digest_of(options.bare);
+  if (!bare) return std::move(bare).error();
   const fs::path parent = session->folder / "maps";
   const Json inputs = {{"version", kVersion},
                        {"rectified", rectified->document["id"]},
                        {"recipe", json_of(recipe)},
                        {"maps", options.maps},
                        {"derive", json_of(options.derive)},
+                       {"bare", *bare},
                        {"preview", options.is_preview},
                        {"compression", name_of(options.compression)}};
   const Product product = product_of(kMapsProduct, inputs, parent, options.output);
@@ -157,8 +202,12 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
   if (!surface) return std::move(surface).error();
   PartialFolder partial(product.folder);
   if (const Result<void> begun = begin(partial, bytes_of_maps(surface->size())); !begun) return begun.error();
+  const Result<std::optional<material::OpacityFacts>> opacity =
+      find_opacity(options, *session, *rectified, *surface, context);
+  if (!opacity) return opacity.error();
   const Result<FinishingFacts> finished = finish_surface(*surface, recipe, context);
   if (!finished) return finished.error();
+  material::fill_holes(*surface, {.threads = context.threads});
   if (Result<void> ok = write_surface(partial.path(), *surface, options.compression); !ok)
     return std::move(ok).error();
   if (Result<void> ok = draw_surface(partial.path(), *surface); !ok) return std::move(ok).error();
@@ -166,7 +215,9 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
                   .folder = partial.path(),
                   .compression = options.compression,
                   .options = options.derive,
-                  .context = context};
+                  .context = context,
+                  .opacity = *opacity,
+                  .verdicts = missing_bare(options, *session)};
   if (Result<void> ok = derive(options.maps, work); !ok) return std::move(ok).error();
   Json document = document_of(product, *rectified, options, recipe, *finished, work);
   if (Result<void> ok = write_maps_page(partial.path(), document); !ok) return std::move(ok).error();

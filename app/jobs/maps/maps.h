@@ -27,8 +27,9 @@ struct MapsOptions {
   Recipe recipe;                      ///< no step: the maps as they were photographed
   std::vector<std::string> maps;      ///< to derive (derived_maps()); none: those of the surface alone
   DeriveOptions derive;
-  double mm_per_pixel = 0;  ///< of the grid; 0: what the camera sees
-  bool is_preview = false;  ///< on a grid kPreviewFactor times as coarse; earlier previews go
+  std::filesystem::path bare;  ///< session of the bare table by the light below; empty: there is none
+  double mm_per_pixel = 0;     ///< of the grid; 0: what the camera sees
+  bool is_preview = false;     ///< on a grid kPreviewFactor times as coarse; earlier previews go
   Compression compression = Compression::kNone;
 };
 
