@@ -98,7 +98,7 @@ Result<Rows> maps_height(const MapsBenchOptions& options) {
                 {"height", size.height},
                 {"rms_error_px", difference(reference, cloth.height_mm, kClothPitch_mm).rms},
                 {"us_per_pixel", whole_seconds / pixels * 1e6}}};
-  for (const TilesOf& way : {TilesOf{512, 128}, {512, 64}, {256, 64}, {1024, 128}}) {
+  for (const TilesOf& way : {TilesOf{512, 128}, {512, 64}, {1024, 128}}) {
     std::optional<Result<solver::TiledHeight>> tiled;
     const double seconds = processor_seconds([&] {
       tiled = solver::tiled_height(solver::rows_of(cloth.normals(), {}), {plain, way.tile_px, way.halo_px});

@@ -3,11 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace weft::solver {
 namespace {
 
-constexpr int kMargin = 2;
+constexpr int kMargin = 3;
+/// How the way from slopes to this surface blurs, as variance in cells squared: the cubic B-spline 1/3, the
+/// mean over a cell 1/12, and steps that are the mean of two cells' slopes 1/6.
+constexpr float kBlur = 7.0f / 12;
 
 /// The four coefficients that a pixel draws on, and what each counts for its value and for its derivative a
 /// pixel.
@@ -27,7 +31,7 @@ Knot knot_at(int pixel) {
           {g(-s * s / 2), g(1.5 * t * t - 2 * t), g(2 * s - 1.5 * s * s), g(t * t / 2)}};
 }
 
-// Two values beyond each end of a line of `count`, in a straight line with the last two.
+// kMargin values beyond each end of a line of `count`, in a straight line with the last two.
 template <typename At>
 void continue_line(int count, const At& at) {
   const int first = kMargin, last = kMargin + count - 1;
@@ -43,17 +47,36 @@ void continue_line(int count, const At& at) {
 }  // namespace
 
 Size CellSpline::cells_of(Size size) {
-  return {(size.width + kCell - 1) / kCell, (size.height + kCell - 1) / kCell};
+  return {std::max(size.width / kCell, 1), std::max(size.height / kCell, 1)};
 }
 
 CellSpline::CellSpline(View<const float> cells)
     : coefficients_({cells.width() + 2 * kMargin, cells.height() + 2 * kMargin}) {
+  extend(cells);
+  sharpen();
+}
+
+void CellSpline::extend(View<const float> cells) {
   for (int y = 0; y < cells.height(); ++y) {
     std::copy_n(cells.row(y), cells.width(), &coefficients_(kMargin, y + kMargin));
     continue_line(cells.width(), [&](int x) -> float& { return coefficients_(x, y + kMargin); });
   }
   for (int x = 0; x < coefficients_.width(); ++x) {
     continue_line(cells.height(), [&](int y) -> float& { return coefficients_(x, y); });
+  }
+}
+
+void CellSpline::sharpen() {
+  const Image<float> blurred = std::exchange(coefficients_, Image<float>(coefficients_.size()));
+  const int right = blurred.width() - 1, bottom = blurred.height() - 1;
+  for (int y = 0; y <= bottom; ++y) {
+    for (int x = 0; x <= right; ++x) {
+      const float here = blurred(x, y);
+      const bool inside_x = x > 0 && x<right, inside_y = y> 0 && y < bottom;
+      const float bend_x = inside_x ? blurred(x - 1, y) - 2 * here + blurred(x + 1, y) : 0;
+      const float bend_y = inside_y ? blurred(x, y - 1) - 2 * here + blurred(x, y + 1) : 0;
+      coefficients_(x, y) = here - kBlur * (bend_x + bend_y) / 2;
+    }
   }
 }
 

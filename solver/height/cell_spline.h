@@ -13,7 +13,7 @@ namespace weft::solver {
 class CellSpline {
  public:
   static constexpr int kCell = 8;
-  /// Cells, as many as it takes to cover a frame of `size`.
+  /// The whole cells of a frame, at least one. What is left at its right and lower border is beyond them.
   static Size cells_of(Size size);
 
   CellSpline() = default;
@@ -26,7 +26,10 @@ class CellSpline {
   void read(int y, int width, Row& row) const;
 
  private:
-  Image<float> coefficients_;  ///< two more on each side than cells
+  void extend(View<const float> cells);
+  void sharpen();
+
+  Image<float> coefficients_;  ///< three more on each side than cells
 };
 
 }  // namespace weft::solver

@@ -53,7 +53,7 @@ struct RawBand {
   }
 };
 
-/// Mean slopes of cells as normals (-right, down, 1), and the mean weight of their pixels.
+/// Mean slopes of cells as normals (-right, down, 1), and the weight of all their pixels.
 struct Cells {
   Image<float> normal, weight;
   std::int64_t pixels = 0, clamped = 0;
@@ -61,59 +61,71 @@ struct Cells {
   explicit Cells(Size size) : normal(size, 3), weight(size) {}
 };
 
-/// Counts of one row of cells.
-struct CellRowCount {
+/// Of one row of pixels: sums over cells, and counts.
+struct CellSums {
+  std::vector<double> weight, right, down;
   std::int64_t pixels = 0, clamped = 0;
 };
 
-CellRowCount average_row(const Slopes& slopes, int y0, int y1, int cell_y, Cells& cells) {
-  const int width = slopes.size().width;
-  const auto count = static_cast<std::size_t>(cells.weight.width());
-  std::vector<double> weight(count), right(count), down(count);
-  CellRowCount counted;
-  SlopeRow row;
-  for (int y = y0; y < y1; ++y) {
-    slopes.read(y, row);
-    counted.clamped += row.clamped;
-    for (std::size_t x = 0; x < static_cast<std::size_t>(width); ++x) {
-      const std::size_t cell = x / kCell;
-      const double w = static_cast<double>(row.weight[x]);
-      counted.pixels += w > 0;
-      weight[cell] += w;
-      right[cell] += w * static_cast<double>(row.right[x]);
-      down[cell] += w * static_cast<double>(row.down[x]);
-    }
+void add_row(const SlopeRow& row, CellSums& sums) {
+  for (std::size_t x = 0; x < row.weight.size(); ++x) {
+    const std::size_t cell = x / kCell;
+    const double w = static_cast<double>(row.weight[x]);
+    sums.pixels += w > 0;
+    if (cell >= sums.weight.size()) continue;
+    sums.weight[cell] += w;
+    sums.right[cell] += w * static_cast<double>(row.right[x]);
+    sums.down[cell] += w * static_cast<double>(row.down[x]);
   }
-  for (std::size_t cell = 0; cell < count; ++cell) {
-    const int x = static_cast<int>(cell), columns = std::min(width - x * kCell, kCell);
-    const double sum = weight[cell];
-    cells.normal(x, cell_y, 0) = static_cast<float>(sum > 0 ? -right[cell] / sum : 0);
-    cells.normal(x, cell_y, 1) = static_cast<float>(sum > 0 ? down[cell] / sum : 0);
+  sums.clamped += row.clamped;
+}
+
+void write_row(const CellSums& sums, int cell_y, Cells& cells) {
+  for (std::size_t cell = 0; cell < sums.weight.size(); ++cell) {
+    const int x = static_cast<int>(cell);
+    const double sum = sums.weight[cell];
+    cells.normal(x, cell_y, 0) = static_cast<float>(sum > 0 ? -sums.right[cell] / sum : 0);
+    cells.normal(x, cell_y, 1) = static_cast<float>(sum > 0 ? sums.down[cell] / sum : 0);
     cells.normal(x, cell_y, 2) = 1;
-    cells.weight(x, cell_y) = static_cast<float>(sum / (columns * (y1 - y0)));
+    cells.weight(x, cell_y) = static_cast<float>(sum);
   }
-  return counted;
 }
 
 Result<Cells> cells_of(const NormalRows& rows, double steepest, int threads) {
-  constexpr int kBandCells = 64;
+  constexpr int kBandRows = 64 * kCell;
   Cells cells(CellSpline::cells_of(rows.size));
-  RawBand band({rows.size.width, std::min(rows.size.height, kBandCells * kCell)});
-  for (int y0 = 0; y0 < rows.size.height; y0 += kBandCells * kCell) {
-    const int count = std::min(kBandCells * kCell, rows.size.height - y0);
+  RawBand band({rows.size.width, std::min(rows.size.height, kBandRows)});
+  for (int y0 = 0; y0 < rows.size.height; y0 += kBandRows) {
+    const int count = std::min(kBandRows, rows.size.height - y0);
     if (Result<void> done = band.read(rows, y0, count); !done) return std::move(done).error();
     const Slopes slopes = band.slopes(steepest);
-    std::vector<CellRowCount> counted(static_cast<std::size_t>((count + kCell - 1) / kCell));
-    parallel_for(counted.size(), threads, [&](std::size_t i, int) {
-      const int y = static_cast<int>(i) * kCell;
-      counted[i] = average_row(slopes, y, std::min(y + kCell, count), y0 / kCell + y / kCell, cells);
+    std::vector<CellSums> sums(static_cast<std::size_t>((count + kCell - 1) / kCell));
+    parallel_for(sums.size(), threads, [&](std::size_t i, int) {
+      const auto cell_count = static_cast<std::size_t>(cells.weight.width());
+      for (auto* values : {&sums[i].weight, &sums[i].right, &sums[i].down}) values->resize(cell_count);
+      SlopeRow row;
+      const int first = static_cast<int>(i) * kCell, cell_y = y0 / kCell + static_cast<int>(i);
+      for (int y = first; y < std::min(first + kCell, count); ++y) {
+        slopes.read(y, row);
+        add_row(row, sums[i]);
+      }
+      if (cell_y < cells.weight.height()) write_row(sums[i], cell_y, cells);
     });
-    for (const CellRowCount& row : counted) {
+    for (const CellSums& row : sums) {
       cells.pixels += row.pixels;
       cells.clamped += row.clamped;
     }
   }
   return cells;
+}
+
+bool counts_anywhere(View<const std::uint8_t> weight) {
+  for (int y = 0; y < weight.height(); ++y) {
+    if (std::any_of(weight.row(y), weight.row(y) + weight.width(), [](std::uint8_t w) { return w > 0; })) {
+      return true;
+    }
+  }
+  return false;
 }
 
 // Weights in 255ths of the largest.
@@ -163,6 +175,7 @@ Result<CellSpline> slow_part(const Cells& cells, HeightOptions options) {
   options.mm_per_pixel = kCell;  // heights in pixels of the frame
   options.steepest_deg = 89.99;  // pixels were held already
   Image<std::uint8_t> weight = eight_bits(cells.weight);
+  if (cells.pixels > 0 && !counts_anywhere(weight.plane())) return CellSpline(cells.weight.plane());
   Result<Height> height = height_from_normals(
       {cells.normal.plane(0), cells.normal.plane(1), cells.normal.plane(2)}, weight.plane(), options);
   if (!height) return std::move(height).error();
@@ -267,13 +280,34 @@ class RestBand {
   std::vector<float> ones_;
 };
 
-bool counts_anywhere(View<const std::uint8_t> weight) {
-  for (int y = 0; y < weight.height(); ++y) {
-    if (std::any_of(weight.row(y), weight.row(y) + weight.width(), [](std::uint8_t w) { return w > 0; })) {
-      return true;
-    }
+std::vector<double> hann_window(int length) {
+  std::vector<double> window(static_cast<std::size_t>(length));
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double s = std::sin(kPi * (static_cast<double>(i) + 0.5) / length);
+    window[i] = s * s;
   }
-  return false;
+  return window;
+}
+
+// Mean 0 under a Hann window. Without it the part of a repeat that a tile cuts off would lift or lower the
+// tile, and so would what makes up at the frame's border for neighbours that the slow part lacks.
+void level(View<float> height, View<const std::uint8_t> weight) {
+  const std::vector<double> across = hann_window(height.width()), down = hann_window(height.height());
+  double sum = 0, total = 0;
+  for (int y = 0; y < height.height(); ++y) {
+    double of_row = 0, weight_of_row = 0;
+    for (int x = 0; x < height.width(); ++x) {
+      const double w = weight(x, y) > 0 ? across[static_cast<std::size_t>(x)] : 0;
+      of_row += w * static_cast<double>(height(x, y));
+      weight_of_row += w;
+    }
+    sum += down[static_cast<std::size_t>(y)] * of_row;
+    total += down[static_cast<std::size_t>(y)] * weight_of_row;
+  }
+  const auto mean = static_cast<float>(sum / total);
+  for (int y = 0; y < height.height(); ++y) {
+    std::for_each(height.row(y), height.row(y) + height.width(), [mean](float& h) { h -= mean; });
+  }
 }
 
 /// Solves rows of tiles and adds them up in a fixed order.
@@ -300,6 +334,7 @@ class TileSolver {
                                                   band.weights(across_[i], down), options_.height);
       if (height) {
         solved_[i] = std::move(height).value();
+        level(solved_[i]->height_mm.plane(), band.weights(across_[i], down));
       } else {
         failures[i] = std::move(height).error();
       }
