@@ -67,6 +67,18 @@ Result<Shot> read_shot(const Json& json, const std::string& where) {
   return shot;
 }
 
+Result<Films> read_films(const Json& films, const std::string& where) {
+  JsonFields fields(films, where);
+  Films read;
+  read.leak = fields.optional_number("leak").value_or(read.leak);
+  read.scattered = fields.optional_number("scattered").value_or(read.scattered);
+  if (!(read.leak >= 0 && read.leak <= 0.5)) fields.reject("leak", "must be from 0 to 0.5");
+  if (!(read.scattered > 0 && read.scattered <= 1))
+    fields.reject("scattered", "must be above 0 and at most 1");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  return read;
+}
+
 Result<void> check_shots(const Session& session, const std::string& where) {
   const auto refuse = [&](std::string why, std::string remedy) {
     return Error{ErrorKind::kBadData, "session cannot be used", where, std::move(why), std::move(remedy)};
@@ -171,7 +183,11 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   session.calibration_id = fields.text("calibration");
   session.state = fields.text("state");
   const Json& shots = fields.list("shots");
+  const Json films = fields.has("films") ? fields.object("films") : Json::object();
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  Result<Films> read = read_films(films, file.string() + ": films");
+  if (!read) return std::move(read).error();
+  session.films = *read;
   for (std::size_t i = 0; i < shots.size(); ++i) {
     Result<Shot> shot = read_shot(shots[i], fmt::format("{}: shot {}", file.string(), i));
     if (!shot) return std::move(shot).error();
@@ -193,6 +209,10 @@ Result<void> write_session(const Session& session) {
   Json shots = Json::array();
   for (const Shot& shot : session.shots) shots.push_back(to_json(shot));
   document["shots"] = std::move(shots);
+  if (session.films != Films()) {
+    document["schema"] = std::string(kSessionSchema) + "/1.3";
+    document["films"] = {{"leak", session.films.leak}, {"scattered", session.films.scattered}};
+  }
   return write_json(session.folder / "session.json", document);
 }
 

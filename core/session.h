@@ -27,6 +27,16 @@ enum class Polariser { kNone, kParallel, kCrossed };
 const char* name_of(Polariser polariser);  ///< "crossed"
 std::optional<Polariser> polariser_of(std::string_view name);
 
+/// How the films before LEDs and lens let light through, of shots that were taken through some.
+struct Films {
+  double leak = 0.01;  ///< of light that keeps its polarisation, through crossed ones over parallel ones
+  /// Scattered light that passes them, in either state, over what the calibration's lights say: 1 where the
+  /// rig was calibrated through them, a quarter or less where it was calibrated without.
+  double scattered = 1;
+
+  friend bool operator==(const Films&, const Films&) = default;
+};
+
 /// One exposure of a session.
 struct Shot {
   int index = 0;  ///< order of capture, from 0
@@ -52,6 +62,7 @@ struct Session {
   std::string calibration_id;
   std::string state = "complete";  ///< "capturing" until the last frame has landed
   std::vector<Shot> shots;
+  Films films;
   Json document;  ///< as read, so that fields of newer minor versions survive a rewrite
 
   std::filesystem::path path_of(const Shot& shot) const { return folder / shot.file; }

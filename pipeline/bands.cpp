@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/parallel.h"
+#include "pipeline/corrected_tile.h"
 #include "pipeline/light_correction.h"
 #include "pipeline/model_sigma.h"
 #include "pipeline/tile_reader.h"
@@ -105,30 +106,6 @@ class Photosites {
   Image<float> planes_;
 };
 
-// A copy of a tile's readings, corrected; one a worker.
-class CorrectedTile {
- public:
-  const std::vector<View<const float>>& apply(const LightCorrection& correction, Rect tile,
-                                              std::span<const View<const float>> readings) {
-    const Size size = {tile.width(), tile.height()};
-    if (readings_.width() < size.width || readings_.height() < size.height) {
-      readings_ = Image<float>(size, static_cast<int>(readings.size()));
-    }
-    std::vector<View<float>> views;
-    for (std::size_t i = 0; i < readings.size(); ++i) {
-      views.push_back(readings_.plane(static_cast<int>(i)).crop({0, 0, size.width, size.height}));
-      for (int y = 0; y < size.height; ++y) std::copy_n(readings[i].row(y), size.width, views[i].row(y));
-    }
-    correction.apply(tile, views);
-    views_.assign(views.begin(), views.end());
-    return views_;
-  }
-
- private:
-  Image<float> readings_;
-  std::vector<View<const float>> views_;
-};
-
 std::array<View<const float>, 3> constant(const std::array<View<float>, 3>& views) {
   return {views[0], views[1], views[2]};
 }
@@ -160,7 +137,7 @@ class BandSolver {
     const Result<void> solved = for_each_tile(band, tile_, stop_, [&](Rect tile, int worker) {
       const auto w = static_cast<std::size_t>(worker);
       solver::TileInput input = readers_[w].read(tile);
-      if (correction_ != nullptr) input.readings = corrected_[w].apply(*correction_, tile, input.readings);
+      if (correction_ != nullptr) corrected_[w].apply(*correction_, input);
       solver::TileOutput output = output_of({tile.x0, tile.y0 - band.y0, tile.x1, tile.y1 - band.y0}, maps);
       output.tally = &tallies_[w];
       method_.solve(input, output);

@@ -59,7 +59,10 @@ Result<Photographs> cut(const Photographs& whole, Rect area) {
     part.camera->cx -= area.x0;
     part.camera->cy -= area.y0;
   }
-  part.frames = std::visit([&](const auto& frames) { return cut_frames(frames, area); }, whole.frames);
+  const auto cut_kind = [&](const auto& frames) { return cut_frames(frames, area); };
+  part.frames = std::visit(cut_kind, whole.frames);
+  part.lobe_share = whole.lobe_share;
+  if (whole.parallel) part.parallel = std::visit(cut_kind, *whole.parallel);
 
   Lights lights = whole.field->lights();
   if (auto* near = std::get_if<NearLights>(&lights)) {

@@ -184,6 +184,7 @@ Result<Photographs> half_size(const Photographs& photographs, int threads) {
       halve_rows(planes, readings.subspan(k * count, count), y, rgb[k]);
   });
   half.frames = Developed{std::move(rgb)};
+  half.lobe_share = photographs.lobe_share;
   half.plane_weights = photographs.plane_weights;
   return half;
 }

@@ -8,6 +8,7 @@
 
 #include "core/parallel.h"
 #include "core/solve_record.h"
+#include "pipeline/corrected_tile.h"
 #include "pipeline/left_out.h"
 #include "pipeline/light_correction.h"
 #include "pipeline/samples.h"
@@ -24,8 +25,13 @@ constexpr std::size_t kFarApart = 2654435761U;
 
 // Pixels of sample tiles and where a solve left them.
 struct GlossSamples {
-  std::vector<solver::LobeReading> readings;  // [pixel * lights + light]
+  std::vector<solver::LobeReading> readings;  // as many of each pixel
   std::vector<Vec3> start;
+
+  std::span<const solver::LobeReading> of(std::size_t pixel) const {
+    const std::size_t each = readings.size() / start.size();
+    return {readings.data() + pixel * each, each};
+  }
 };
 
 // Takes pixels of one sample tile after another; one a worker.
@@ -41,10 +47,11 @@ class Sampler {
 
   void take(Rect tile, GlossSamples& samples) {
     solver::TileInput input = reader_.read(tile);
-    if (correction_ != nullptr) correct(input);
+    // Light from the cloth itself is taken off, and shadows are marked.
+    if (correction_ != nullptr) corrected_.apply(*correction_, input);
     const SampleMaps maps = solve_sample(input, base_);
     solver::LobeReader reader(input, sight_);
-    std::vector<solver::LobeReading> readings(input.field->count());
+    std::vector<solver::LobeReading> readings(reader.count());
     for (int y = 0; y < tile.height(); y += step_) {
       for (int x = 0; x < tile.width(); x += step_) {
         if (maps.status(x, y) & (kNoSolution | kDark)) continue;
@@ -58,29 +65,12 @@ class Sampler {
   }
 
  private:
-  // Light from the cloth itself is taken off, and shadows are marked.
-  void correct(solver::TileInput& input) {
-    const Size size = {input.tile.width(), input.tile.height()};
-    corrected_ = Image<float>(size, static_cast<int>(input.readings.size()));
-    std::vector<View<float>> planes;
-    views_.clear();
-    for (std::size_t i = 0; i < input.readings.size(); ++i) {
-      planes.push_back(corrected_.plane(static_cast<int>(i)));
-      for (int y = 0; y < size.height; ++y)
-        std::copy_n(input.readings[i].row(y), size.width, planes.back().row(y));
-      views_.emplace_back(planes.back());
-    }
-    correction_->apply(input.tile, planes);
-    input.readings = views_;
-  }
-
   TileReader reader_;
   const solver::Method& base_;
   const LightCorrection* correction_;
   int step_;
   solver::Sight sight_;
-  Image<float> corrected_;
-  std::vector<View<const float>> views_;
+  CorrectedTile corrected_;
 };
 
 // What the calibration does not know of the lights, as the centre of the frame sees them.
@@ -139,12 +129,12 @@ Result<std::vector<solver::MeasuredLobe>> measure_gloss(const Photographs& photo
     all.start.insert(all.start.end(), part.start.begin(), part.start.end());
   }
   // Pixels that follow each other are far apart in the frame, so that the first of them stand for all.
-  solver::LobeSamples samples(photographs.count());
+  solver::LobeSamples samples(photographs.count(), photographs.parallel ? 2 : 1);
   std::vector<Vec3> start;
   const std::size_t pixels = all.start.size();
   for (std::size_t i = 0; i < std::min(pixels, kGlossPixels); ++i) {
     const std::size_t pixel = i * kFarApart % pixels;
-    samples.add({all.readings.data() + pixel * photographs.count(), photographs.count()});
+    samples.add(all.of(pixel));
     start.push_back(all.start[pixel]);
   }
   std::vector<solver::MeasuredLobe> lobes = solver::measure_materials(samples, start, threads);
@@ -161,9 +151,10 @@ Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& 
   gloss.facts.lobes = std::move(*lobes);
   if (!gloss.facts.is_measured()) return gloss;
   const auto glossy = solver::glossy_method(base, lobes_of(gloss.facts), gloss.sight_);
-  Result<solver::BlockChoice> choice =
-      choose_by_block(photographs, {.method = &base, .correction = correction},
-                      {.method = glossy.get(), .correction = correction}, context);
+  const auto variant = [&](const solver::Method& method) {
+    return SolveVariant{.method = &method, .correction = correction, .judged_by_parallel = true};
+  };
+  Result<solver::BlockChoice> choice = choose_by_block(photographs, variant(base), variant(*glossy), context);
   if (!choice) return std::move(choice).error();
   gloss.facts.share = choice->share();
   if (gloss.facts.share > 0) gloss.choice_ = std::move(*choice);

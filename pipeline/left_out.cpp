@@ -33,8 +33,14 @@ class PatchJudge {
         reader_(photographs, {.width = kRowGroup, .height = 1},
                 variant.method->wants_rgb() ? ReadAs::kRgb : ReadAs::kTaken),
         lights_(photographs.count()),
-        planes_(reader_.planes()) {
-    const int count = static_cast<int>(lights_) * planes_.count;
+        planes_(reader_.planes()),
+        of_state_(lights_ * static_cast<std::size_t>(planes_.count)),
+        lobe_share_(photographs.lobe_share) {
+    if (photographs.parallel && variant.judged_by_parallel) {
+      judged_ = static_cast<int>(of_state_);
+      lobe_share_ = solver::kParallelLobeShare;
+    }
+    const int count = static_cast<int>(of_state_) * (photographs.parallel ? 2 : 1);
     taken_ = Image<float>({kRowGroup, 1}, count);
     used_ = Image<float>({kRowGroup, 1}, count);
     left_ = Image<float>({kRowGroup, 1}, count);
@@ -70,20 +76,22 @@ class PatchJudge {
 
   // Reads the patch: `taken_` as predictions are held against it, `used_` as it is solved.
   solver::TileInput prepare(Rect tile) {
-    solver::TileInput input = reader_.read(tile);
+    const solver::TileInput input = reader_.read(tile);
     std::vector<View<float>> taken, used;
-    for (std::size_t i = 0; i < input.readings.size(); ++i) {
-      const double gain =
-          variant_.gains.empty() ? 1 : variant_.gains[i / static_cast<std::size_t>(planes_.count)];
-      taken.push_back(row_of(taken_, i, tile));
-      used.push_back(row_of(used_, i, tile));
-      for (int x = 0; x < tile.width(); ++x) {
-        taken[i](x, 0) = static_cast<float>(input.readings[i](x, 0) / gain);
+    for (const auto& state : {input.readings, input.parallel}) {
+      for (std::size_t i = 0; i < state.size(); ++i) {
+        const double gain =
+            variant_.gains.empty() ? 1 : variant_.gains[i / static_cast<std::size_t>(planes_.count)];
+        taken.push_back(row_of(taken_, taken.size(), tile));
+        used.push_back(row_of(used_, used.size(), tile));
+        for (int x = 0; x < tile.width(); ++x) taken.back()(x, 0) = static_cast<float>(state[i](x, 0) / gain);
       }
     }
-    if (variant_.correction != nullptr) variant_.correction->subtract_bounces(tile, taken);
+    for (std::size_t first = 0; variant_.correction != nullptr && first < taken.size(); first += of_state_)
+      variant_.correction->subtract_bounces(tile, std::span(taken).subspan(first, of_state_));
     for (std::size_t i = 0; i < taken.size(); ++i) std::copy_n(taken[i].row(0), tile.width(), used[i].row(0));
-    if (variant_.correction != nullptr) variant_.correction->mark_shadows(tile, used);
+    for (std::size_t first = 0; variant_.correction != nullptr && first < taken.size(); first += of_state_)
+      variant_.correction->mark_shadows(tile, std::span(used).subspan(first, of_state_));
     return input;
   }
 
@@ -92,9 +100,9 @@ class PatchJudge {
     const Rect tile = input.tile;
     const auto planes = static_cast<std::size_t>(planes_.count);
     views_.clear();
-    for (std::size_t i = 0; i < lights_ * planes; ++i) {
+    for (std::size_t i = 0; i < input.readings.size() + input.parallel.size(); ++i) {
       const View<float> left = row_of(left_, i, tile);
-      if (i / planes % turns == turn) {
+      if (i / planes % lights_ % turns == turn) {
         std::fill_n(left.row(0), tile.width(), kNaN);
       } else {
         std::copy_n(row_of(used_, i, tile).row(0), tile.width(), left.row(0));
@@ -102,14 +110,16 @@ class PatchJudge {
       views_.emplace_back(left);
     }
     solver::TileInput others = input;
-    others.readings = views_;
+    others.readings = std::span(views_).first(of_state_);
+    others.parallel = std::span(views_).subspan(of_state_);
     variant_.method->solve(others, output_);
     for (int x = 0; x < tile.width(); ++x) {
       if (output_.status(x, 0) & kNoSolution) continue;
       for (std::size_t k = turn; k < lights_; k += turns) {
         const bool hidden = std::isinf(used(k, x)) && used(k, x) < 0;
         const double sent =
-            hidden ? 0 : variant_.method->reflected(others, output_, x, 0, light(k, x).direction);
+            hidden ? 0
+                   : variant_.method->reflected(others, output_, x, 0, light(k, x).direction, lobe_share_);
         predicted_[static_cast<std::size_t>(x) * lights_ + k] = static_cast<float>(sent);
       }
     }
@@ -148,14 +158,17 @@ class PatchJudge {
   const LightField::Light& light(std::size_t k, int x) const {
     return light_[static_cast<std::size_t>(x) * lights_ + k];
   }
-  int plane(std::size_t k) const { return static_cast<int>(k) * planes_.count + planes_.speaker(); }
+  int plane(std::size_t k) const { return judged_ + static_cast<int>(k) * planes_.count + planes_.speaker(); }
   float used(std::size_t k, int x) const { return used_(x, 0, plane(k)); }
 
   SolveVariant variant_;
   TileReader reader_;
   std::size_t lights_;
   Planes planes_;
-  Image<float> taken_, used_, left_;  // [k * planes + p], one row
+  std::size_t of_state_;              // planes of one state of the films
+  double lobe_share_;                 // of the readings that are predicted
+  int judged_ = 0;                    // their first plane
+  Image<float> taken_, used_, left_;  // [state][k * planes + p], one row
   Image<float> maps_{{kRowGroup, 1}, 11};
   Image<std::uint16_t> status_{{kRowGroup, 1}};
   solver::TileOutput output_;  // of one row, views of the two

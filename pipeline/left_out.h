@@ -19,6 +19,8 @@ struct SolveVariant {
   const solver::Method* method = nullptr;
   LightCorrection* correction = nullptr;  ///< readings go through it, if there is one
   std::span<const double> gains = {};  ///< by light, its light over that of its calibration; empty: all are 1
+  /// Of crossed and parallel photographs the parallel ones are predicted, which show lobes; else `frames`.
+  bool judged_by_parallel = false;
 };
 
 /// Leaves out each light of the photographs in turn, solves the patches with the others and predicts its

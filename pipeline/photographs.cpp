@@ -112,6 +112,7 @@ Result<void> leave_out(std::span<const std::size_t> lights, Photographs& photogr
   photographs.field = std::move(*field);
   for (const std::size_t k : std::views::reverse(lights)) {
     std::visit([&](auto& frames) { frames.erase(k); }, photographs.frames);
+    if (photographs.parallel) std::visit([&](auto& frames) { frames.erase(k); }, *photographs.parallel);
     if (k < photographs.leds.size())
       photographs.leds.erase(photographs.leds.begin() + static_cast<std::ptrdiff_t>(k));
   }

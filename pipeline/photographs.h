@@ -95,6 +95,9 @@ std::vector<View<const float>> readings_of(const Frames& frames, std::size_t k, 
 struct Photographs {
   Size size;
   Frames frames;
+  double lobe_share = 1;  ///< as of solver::TileInput
+  /// As many once more, of the same lights through parallel films, where `frames` are of crossed ones.
+  std::optional<Frames> parallel;
   std::vector<int> leds;                                ///< number of each light in its rig, if it has one
   std::optional<LightField> field;                      ///< always there once the photographs are whole
   std::optional<CameraModel> camera;                    ///< where the lights are near

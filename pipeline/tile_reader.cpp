@@ -20,44 +20,54 @@ TileReader::TileReader(const Photographs& photographs, const TileOptions& tile, 
   const Size size = {
       std::min((std::max(tile.width, 1) + kRowGroup - 1) / kRowGroup * kRowGroup, photographs.size.width),
       std::min(std::max(tile.height, 1), photographs.size.height)};
-  readings_ = Image<float>(size, static_cast<int>(photographs.count()) * planes_.count);
+  const int states = photographs.parallel ? 2 : 1;
+  readings_ = Image<float>(size, states * static_cast<int>(photographs.count()) * planes_.count);
   if (planes_.count != taken_.count)
     mosaic_ = Image<float>({size.width + 2 * kDemosaicReach, size.height + 2 * kDemosaicReach});
 }
 
 solver::TileInput TileReader::read(Rect tile) {
   views_.clear();
-  std::vector<View<float>> out(static_cast<std::size_t>(planes_.count));
-  for (std::size_t k = 0; k < photographs_->count(); ++k) {
-    for (int p = 0; p < planes_.count && !readings_.empty(); ++p) {
-      out[static_cast<std::size_t>(p)] =
-          readings_.plane(static_cast<int>(k) * planes_.count + p).crop({0, 0, tile.width(), tile.height()});
-    }
-    if (planes_.count != taken_.count) {
-      read_rgb(k, tile, out);
-      views_.insert(views_.end(), out.begin(), out.end());
-    } else {
-      const std::vector<View<const float>> taken = readings_of(photographs_->frames, k, tile, out[0]);
-      views_.insert(views_.end(), taken.begin(), taken.end());
-    }
-  }
+  read_frames(photographs_->frames, 0, tile);
+  const std::size_t of_frames = views_.size();
+  if (photographs_->parallel) read_frames(*photographs_->parallel, of_frames, tile);
   return {tile,
           planes_.count,
           planes_.cfa,
-          views_,
+          std::span(views_).first(of_frames),
           &*photographs_->field,
           planes_.count == 1 ? photographs_->noise() : std::nullopt,
-          photographs_->plane_weights};
+          photographs_->plane_weights,
+          photographs_->lobe_share,
+          std::span(views_).subspan(of_frames)};
+}
+
+// Adds the views of all frames; `first_plane` of `readings_` is that of the first.
+void TileReader::read_frames(const Frames& frames, std::size_t first_plane, Rect tile) {
+  std::vector<View<float>> out(static_cast<std::size_t>(planes_.count));
+  for (std::size_t k = 0; k < photographs_->count(); ++k) {
+    for (int p = 0; p < planes_.count && !readings_.empty(); ++p) {
+      const int plane = static_cast<int>(first_plane + k * out.size()) + p;
+      out[static_cast<std::size_t>(p)] = readings_.plane(plane).crop({0, 0, tile.width(), tile.height()});
+    }
+    if (planes_.count != taken_.count) {
+      read_rgb(frames, k, tile, out);
+      views_.insert(views_.end(), out.begin(), out.end());
+    } else {
+      const std::vector<View<const float>> taken = readings_of(frames, k, tile, out[0]);
+      views_.insert(views_.end(), taken.begin(), taken.end());
+    }
+  }
 }
 
 // Demosaics frame k before solving, white-balanced by the flux of its light as the filters expect.
-void TileReader::read_rgb(std::size_t k, Rect tile, std::span<const View<float>> rgb) {
+void TileReader::read_rgb(const Frames& frames, std::size_t k, Rect tile, std::span<const View<float>> rgb) {
   const Size size = photographs_->size;
   const Rect around = {std::max(tile.x0 - kDemosaicReach, 0), std::max(tile.y0 - kDemosaicReach, 0),
                        std::min(tile.x1 + kDemosaicReach, size.width),
                        std::min(tile.y1 + kDemosaicReach, size.height)};
   const View<float> mosaic = mosaic_.plane().crop({0, 0, around.width(), around.height()});
-  readings_of(photographs_->frames, k, around, mosaic);
+  readings_of(frames, k, around, mosaic);
   const CfaPattern& cfa = taken_.cfa;
   const std::array<double, 3> flux = flux_of(k);
   for (int y = 0; y < around.height(); ++y) {

@@ -31,12 +31,13 @@ class TileReader {
   solver::TileInput read(Rect tile);
 
  private:
-  void read_rgb(std::size_t k, Rect tile, std::span<const View<float>> rgb);
+  void read_frames(const Frames& frames, std::size_t first_plane, Rect tile);
+  void read_rgb(const Frames& frames, std::size_t k, Rect tile, std::span<const View<float>> rgb);
   std::array<double, 3> flux_of(std::size_t k) const;
 
   const Photographs* photographs_;
   Planes taken_, planes_;
-  Image<float> readings_, mosaic_;
+  Image<float> readings_, mosaic_;  // readings_: [(state * lights + k) * planes + p]
   std::vector<View<const float>> views_;
 };
 

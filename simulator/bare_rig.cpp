@@ -62,6 +62,8 @@ Result<BareRig> BareRig::of(const Scene& given) {
   scene.material = {};
   scene.targets = furniture(plan->scene, plan->rig.camera);
   scene.damage.clear();
+  // Through the same films, but in one state: what is calibrated is matt.
+  if (scene.films.states == FilmStates::kBoth) scene.films.states = FilmStates::kCrossed;
   scene.frames = FrameFormat::kDng;
   scene.camera.retakes.repeat = false;
   scene.camera.retakes.bracket.reset();

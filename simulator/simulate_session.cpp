@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <new>
 #include <string_view>
@@ -45,43 +46,68 @@ Error interrupted() {
   return {ErrorKind::kInterrupted, "interrupted", "", "stopped on request", ""};
 }
 
+/// The lists of passes that the shots of a session need.
+enum PassKind : std::size_t { kOfShots, kOfBrackets, kOfParallel, kPassKinds };
+using ShotPasses = std::array<PassList, kPassKinds>;
+
 /// One shot of a session.
 struct Exposure {
   int shot = 0;  ///< its number for PassRunner::run
   int led = 0;
   ShotRole role = ShotRole::kLit;
   double exposure_us = 0;
+  Polariser polariser = Polariser::kNone;
+  PassKind passes = kOfShots;
 };
 
-/// In the order of capture: the LEDs, the repeat, brackets, the dark shot.
+/// Of the shots that are taken first.
+Polariser first_state(const FilmSettings& films) {
+  switch (films.states) {
+    case FilmStates::kNone:
+      return Polariser::kNone;
+    case FilmStates::kParallel:
+      return Polariser::kParallel;
+    case FilmStates::kCrossed:
+    case FilmStates::kBoth:
+      break;
+  }
+  return Polariser::kCrossed;
+}
+
+/// In the order of capture: the LEDs, the repeat, brackets, the LEDs through parallel films where they were
+/// crossed before, the dark shot.
 std::vector<Exposure> exposures_of(const Plan& plan) {
   const RetakeSettings& retakes = plan.scene.camera.retakes;
   const int leds = static_cast<int>(plan.rig.leds.leds.size());
   const double exposure_us = plan.rig.exposure_us;
+  const Polariser state = first_state(plan.scene.films);
   std::vector<Exposure> all;
-  for (int led = 1; led <= leds; ++led) all.push_back({led, led, ShotRole::kLit, exposure_us});
-  if (retakes.repeat) all.push_back({leds + 1, 1, ShotRole::kRepeat, exposure_us});
+  for (int led = 1; led <= leds; ++led) all.push_back({led, led, ShotRole::kLit, exposure_us, state});
+  if (retakes.repeat) all.push_back({leds + 1, 1, ShotRole::kRepeat, exposure_us, state});
   for (int led = 1; retakes.bracket && led <= leds; ++led) {
-    all.push_back({2 * leds + led, led, ShotRole::kBracket, bracket_exposure_us(retakes, plan.rig, false)});
+    all.push_back({2 * leds + led, led, ShotRole::kBracket, bracket_exposure_us(retakes, plan.rig, false),
+                   state, kOfBrackets});
   }
+  for (int led = 1; plan.scene.films.states == FilmStates::kBoth && led <= leds; ++led)
+    all.push_back({3 * leds + led, led, ShotRole::kLit, exposure_us, Polariser::kParallel, kOfParallel});
   // Developed frames have no black level.
-  if (plan.scene.frames == FrameFormat::kDng) all.push_back({0, 0, ShotRole::kDark, exposure_us});
+  if (plan.scene.frames == FrameFormat::kDng) all.push_back({0, 0, ShotRole::kDark, exposure_us, state});
   return all;
 }
 
 class SessionWriter {
  public:
-  SessionWriter(const Scene& scene, const Plan& plan, PassList surface, PassList frames, PassList brackets,
+  SessionWriter(const Scene& scene, const Plan& plan, PassList surface, ShotPasses of_shots,
                 const SimulateOptions& options)
       : given_(scene),
         plan_(plan),
         scene_(plan.scene),
         options_(options),
         exposures_(exposures_of(plan)),
-        band_rows_(frames.halo > 0 ? kTallBandRows : kBandRows),
-        surface_runner_(std::move(surface), options.tiles),
-        frame_runner_(std::move(frames), options.tiles),
-        bracket_runner_(std::move(brackets), options.tiles) {}
+        band_rows_(of_shots.front().halo > 0 ? kTallBandRows : kBandRows),
+        surface_runner_(std::move(surface), options.tiles) {
+    for (PassList& list : of_shots) shot_runners_.emplace_back(std::move(list), options.tiles);
+  }
 
   Result<SimulationReport> write(const fs::path& target) {
     if (Result<void> ok = check_room(target); !ok) return ok.error();
@@ -99,11 +125,13 @@ class SessionWriter {
     if (Result<void> ok = publish(aside); !ok) return ok.error();
     report_.frames = frames();
     report_.exposure_us = plan_.rig.exposure_us;
-    report_.passes = frame_runner_.costs();
-    const std::vector<PassCost> of_brackets = bracket_runner_.costs();
-    for (std::size_t p = 0; p < of_brackets.size(); ++p) {
-      report_.passes[p].seconds += of_brackets[p].seconds;
-      report_.passes[p].pixels += of_brackets[p].pixels;
+    report_.passes = shot_runners_.front().costs();
+    for (std::size_t kind = 1; kind < shot_runners_.size(); ++kind) {
+      const std::vector<PassCost> costs = shot_runners_[kind].costs();
+      for (std::size_t p = 0; p < costs.size(); ++p) {
+        report_.passes[p].seconds += costs[p].seconds;
+        report_.passes[p].pixels += costs[p].pixels;
+      }
     }
     report_.left_out = plan_.left_out;
     return std::move(report_);
@@ -126,7 +154,9 @@ class SessionWriter {
     return (scene_.effects.cast_shadows ? 1 : 0) + (scene_.effects.interreflection ? 3 : 0);
   }
   std::string shot_name(int index, const char* ending) const {
-    return fmt::format("{:02}_led{:02}{}", index, exposure(index).led, ending);
+    const Exposure& e = exposure(index);
+    const std::string state = e.polariser == Polariser::kNone ? "" : fmt::format("_{}", name_of(e.polariser));
+    return fmt::format("{:02}_led{:02}{}{}", index, e.led, state, ending);
   }
   const Exposure& exposure(int index) const { return exposures_[static_cast<std::size_t>(index)]; }
 
@@ -273,14 +303,11 @@ class SessionWriter {
 
   Result<TruthFiles> open_light_maps() const {
     std::vector<TruthFiles::Map> maps;
-    for (int index = 0; options_.truth && index < leds(); ++index) {
-      if (scene_.effects.cast_shadows) {
-        maps.push_back({"visibility_" + shot_name(index, ".exr").substr(3), {"Y"}, SampleType::kHalf});
-      }
-      if (scene_.effects.interreflection) {
-        maps.push_back(
-            {"indirect_" + shot_name(index, ".exr").substr(3), {"R", "G", "B"}, SampleType::kHalf});
-      }
+    for (int led = 1; options_.truth && led <= leds(); ++led) {
+      if (scene_.effects.cast_shadows)
+        maps.push_back({fmt::format("visibility_led{:02}.exr", led), {"Y"}, SampleType::kHalf});
+      if (scene_.effects.interreflection)
+        maps.push_back({fmt::format("indirect_led{:02}.exr", led), {"R", "G", "B"}, SampleType::kHalf});
     }
     return TruthFiles::open(folder_ / "truth", {width(), height()}, band_rows_, maps);
   }
@@ -290,23 +317,23 @@ class SessionWriter {
   Result<void> render_frames(const Put& put, TruthFiles& light, int y0, int y1) {
     const Stopwatch timing(report_.render_seconds);
     light.begin_band(y0);
-    const auto run = [&](PassRunner& runner, bool brackets) -> Result<void> {
+    for (std::size_t kind = 0; kind < kPassKinds; ++kind) {
       std::vector<int> shots;
       for (const Exposure& e : exposures_) {
-        if ((e.role == ShotRole::kBracket) == brackets) shots.push_back(e.shot);
+        if (e.passes == kind) shots.push_back(e.shot);
       }
-      if (shots.empty()) return {};
-      return runner.run(
+      if (shots.empty()) continue;
+      const Result<void> ok = shot_runners_[kind].run(
           {0, y0, width(), y1}, shots, options_.stop, [](const Tile&) {},
           [&](const Tile& tile) {
             const auto taken = std::find_if(exposures_.begin(), exposures_.end(),
                                             [&](const Exposure& e) { return e.shot == tile.shot; });
             put(tile, static_cast<int>(taken - exposures_.begin()));
-            if (taken->role == ShotRole::kLit && !light.empty()) put_light(light, tile);
+            if (kind == kOfShots && taken->role == ShotRole::kLit && !light.empty()) put_light(light, tile);
           });
-    };
-    if (Result<void> ok = run(frame_runner_, false); !ok) return ok;
-    return run(bracket_runner_, true);
+      if (!ok) return ok;
+    }
+    return {};
   }
 
   void put_light(TruthFiles& light, const Tile& tile) const {
@@ -336,6 +363,7 @@ class SessionWriter {
     shot.exposure_us = exposure(index).exposure_us;
     shot.iso = scene_.camera.iso;
     shot.f_number = scene_.camera.f_number;
+    shot.polariser = exposure(index).polariser;
     Result<std::string> digest = sha256_of_file(folder_ / shot.file);
     if (!digest) return digest.error();
     shot.sha256 = *digest;
@@ -348,6 +376,7 @@ class SessionWriter {
     session_.fabric = scene_.fabric;
     session_.cloth_height_mm = scene_.geometry.cloth_height_mm;
     session_.rig = "virtual rig";
+    session_.films.leak = scene_.films.leak;
     return write_session(session_);
   }
 
@@ -362,7 +391,8 @@ class SessionWriter {
   const SimulateOptions& options_;
   std::vector<Exposure> exposures_;
   int band_rows_;
-  PassRunner surface_runner_, frame_runner_, bracket_runner_;
+  PassRunner surface_runner_;
+  std::vector<PassRunner> shot_runners_;  ///< by PassKind
   fs::path folder_;
   Session session_;
   SimulationReport report_;
@@ -381,16 +411,19 @@ Result<SimulationReport> simulate_session(const Scene& scene, const fs::path& se
   }
   Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
   const Output output = plan->scene.frames == FrameFormat::kExr ? Output::kRgb : Output::kCounts;
-  Result<PassList> frames = build_passes(plan->scene, plan->rig, output);
-  if (!surface) return surface.error();
-  if (!frames) return frames.error();
-  SceneRig bracket_rig = plan->rig;
+  SceneRig bracket_rig = plan->rig, parallel_rig = plan->rig;
   bracket_rig.exposure_us = bracket_exposure_us(plan->scene.camera.retakes, plan->rig, true);
-  Result<PassList> brackets = build_passes(plan->scene, bracket_rig, output);
-  if (!brackets) return brackets.error();
-  frames->takes_before = brackets->takes_before = options.takes_before;
-  return SessionWriter(scene, *plan, std::move(*surface), std::move(*frames), std::move(*brackets), options)
-      .write(session_folder);
+  parallel_rig.lobe_share = lobe_share_of(plan->scene.films, FilmStates::kParallel);
+  const std::array<const SceneRig*, kPassKinds> rigs = {&plan->rig, &bracket_rig, &parallel_rig};
+  ShotPasses of_shots;
+  for (std::size_t kind = 0; kind < kPassKinds; ++kind) {
+    Result<PassList> passes = build_passes(plan->scene, *rigs[kind], output);
+    if (!passes) return passes.error();
+    passes->takes_before = options.takes_before;
+    of_shots[kind] = std::move(*passes);
+  }
+  if (!surface) return surface.error();
+  return SessionWriter(scene, *plan, std::move(*surface), std::move(of_shots), options).write(session_folder);
 } catch (const std::bad_alloc&) {
   return no_memory("the system refused some");
 }
@@ -400,7 +433,7 @@ Result<void> simulate_truth(const Scene& scene, const fs::path& session, const S
   if (!plan) return plan.error();
   Result<PassList> surface = build_passes(plan->scene, plan->rig, Output::kSurface);
   if (!surface) return surface.error();
-  return SessionWriter(scene, *plan, std::move(*surface), {}, {}, options).write_truth_of(session);
+  return SessionWriter(scene, *plan, std::move(*surface), {}, options).write_truth_of(session);
 } catch (const std::bad_alloc&) {
   return no_memory("the system refused some");
 }

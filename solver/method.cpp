@@ -51,7 +51,8 @@ const MethodName* find_method(std::string_view name) {
   return found == names.end() ? nullptr : &*found;
 }
 
-double Method::reflected(const TileInput& input, const TileOutput& output, int x, int y, Vec3 light) const {
+double Method::reflected(const TileInput& input, const TileOutput& output, int x, int y, Vec3 light,
+                         double /*lobe_share*/) const {
   const Vec3 n = {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
   return output.albedo[input.planes == 1 ? 0 : 1](x, y) * std::max(0.0, dot(n, light));
 }

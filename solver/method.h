@@ -38,7 +38,16 @@ struct TileInput {
   const LightField* field = nullptr;
   std::optional<NoiseModel> noise;  ///< of a mosaic; without one the scatter of the residuals stands for it
   std::array<double, 3> plane_weights = kLuminance;  ///< of RGB; none below 0, their sum is 1
+  double lobe_share =
+      1;  ///< of a lobe that reaches the readings, over that of diffuse light: films change it
+  /// The same lights once more through parallel films, where the readings are of crossed ones; else empty.
+  /// Normals and albedo are solved without them; they tell lobes.
+  std::span<const View<const float>> parallel = {};
 };
+
+/// The lobe's share in readings through parallel films: half of what is mirrored passes, a quarter of what is
+/// scattered. Through crossed ones it is this times their leak.
+inline constexpr double kParallelLobeShare = 2;
 
 /// How many pixels were solved in which way, and readings rejected on the way.
 struct SolveTally {
@@ -72,9 +81,10 @@ class Method {
   virtual void solve(const TileInput& input, const TileOutput& output) const = 0;
   /// Whether it expects RGB (planes = 3) where the photographs are mosaics, as the paper it follows did.
   virtual bool wants_rgb() const { return false; }
-  /// What a pixel of its output sends on of a light of strength 1 from `light`: by Lambert's law, where it
-  /// knows no other. Column and row of the tile; of RGB green speaks.
-  virtual double reflected(const TileInput& input, const TileOutput& output, int x, int y, Vec3 light) const;
+  /// What a pixel of its output sends on of a light of strength 1 from `light`, with that share of its lobe:
+  /// by Lambert's law, where it knows no other. Column and row of the tile; of RGB green speaks.
+  virtual double reflected(const TileInput& input, const TileOutput& output, int x, int y, Vec3 light,
+                           double lobe_share) const;
 };
 
 /// "The paper's": four systems a pixel, one for each channel and one for luminance, each by Eigen's two-sided

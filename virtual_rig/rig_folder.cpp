@@ -106,6 +106,18 @@ virtual_control = "control"
       scene.camera.iso, scene.camera.f_number, scene.geometry.cloth_height_mm);
 }
 
+/// All that there is to know of the rig. Where it has films, its LEDs are what they are behind them: it was
+/// calibrated so.
+Result<Calibration> exactly_known(const LightFrames& frames, bool has_films) {
+  if (!has_films) return exact_calibration(frames.scene(), frames.rig());
+  simulator::Scene scene = frames.scene();
+  scene.films.states = simulator::FilmStates::kCrossed;
+  scene.camera.exposure_us = frames.rig().exposure_us;
+  const Result<simulator::SceneRig> rig = rig_of(scene);
+  if (!rig) return rig.error();
+  return exact_calibration(scene, *rig);
+}
+
 }  // namespace
 
 Result<RigFolder> RigFolder::take(const fs::path& folder, bool keep_log) {
@@ -157,10 +169,11 @@ void RigFolder::remove_made() const {
 Result<void> RigFolder::write(const LightFrames& frames, const simulator::BareRig& rig,
                               const RigFiles& files) const {
   const std::vector<Vec3> taped_mm = rig.taped(kTapeError_mm, kTapeSeed);
-  Calibration known = files.is_bare ? rig.start(taped_mm) : exact_calibration(frames.scene(), frames.rig());
-  known.subject.camera_serial = files.camera_serial;
-  if (!files.is_bare) known.fiducials = rig.fiducials();
-  const Result<Calibration> written = write_calibration(path_ / "calibration", std::move(known));
+  Result<Calibration> known = files.is_bare ? rig.start(taped_mm) : exactly_known(frames, files.polariser);
+  if (!known) return std::move(known).error();
+  known->subject.camera_serial = files.camera_serial;
+  if (!files.is_bare) known->fiducials = rig.fiducials();
+  const Result<Calibration> written = write_calibration(path_ / "calibration", std::move(*known));
   if (!written) return written.error();
   if (Result<void> ok = write_things(rig, files.is_bare); !ok) return ok;
   if (Result<void> ok = make_writable_folder(path_ / "home"); !ok) return ok;

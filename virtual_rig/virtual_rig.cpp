@@ -103,15 +103,16 @@ Result<void> check_leds(const LightFrames& frames) {
 /// The light on the cloth, as a camera sees it that is focused as it is.
 struct SceneLight {
   LightFrames frames;
-  std::optional<LightFrames> matt;  ///< without its gloss, where a polariser takes that away
+  std::optional<LightFrames> matt;  ///< what it scatters alone, behind films, where a polariser parts the two
 };
 
 Result<SceneLight> light_of(simulator::Scene scene, const VirtualRigOptions& options) {
+  scene.films = {};  // they are the rig's: add_films()
   Result<LightFrames> frames = LightFrames::open(scene, options.cache, options.render);
   if (!frames) return frames.error();
   std::optional<LightFrames> matt;
   if (options.polariser && scene.effects.reflectance) {
-    scene.effects.reflectance = false;
+    scene.films = {.states = simulator::FilmStates::kCrossed, .leak = 0};
     Result<LightFrames> without_gloss = LightFrames::open(scene, options.cache, options.render);
     if (!without_gloss) return without_gloss.error();
     matt = std::move(*without_gloss);

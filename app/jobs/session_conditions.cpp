@@ -187,7 +187,9 @@ Result<void> replace_bad_photosites(const SessionPlan& plan, const JobContext& c
     known = std::move(*named);
   }
   std::vector<RawFrame*> others;
-  for (RawFrame& frame : std::get<Mosaics>(more.repeats).frames) others.push_back(&frame);
+  for (pipeline::Frames* each : {&more.repeats, &more.parallel}) {
+    for (RawFrame& frame : std::get<Mosaics>(*each).frames) others.push_back(&frame);
+  }
   for (RawFrame& frame : more.brackets) others.push_back(&frame);
   pipeline::replace_bad_photosites(pipeline::find_bad_photosites(*mosaics, known, context.threads), *mosaics,
                                    others, context.threads);

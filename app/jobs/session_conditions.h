@@ -19,7 +19,7 @@ namespace weft::app {
 
 /// What a session has beyond the shots that are solved, in the order of the plan.
 struct MoreFrames {
-  pipeline::Frames repeats;
+  pipeline::Frames repeats, parallel;
   std::vector<RawFrame> brackets;
 };
 

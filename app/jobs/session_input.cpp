@@ -41,10 +41,11 @@ void tell_of_moved_rig(SessionPlan& plan) {
       why.is_string() ? why.get<std::string>() : "no reason is given"));
 }
 
-// The lit shots of the named LEDs, or of all.
+// The lit shots of the named LEDs, or of all; through crossed films where there are such.
 Result<std::vector<Shot>> choose_lit(const Session& session, const std::vector<int>& leds) {
+  const std::vector<const Shot*> crossed = session.lit(Polariser::kCrossed);
   std::vector<Shot> chosen;
-  for (const Shot* shot : session.lit()) {
+  for (const Shot* shot : crossed.empty() ? session.lit() : crossed) {
     if (leds.empty() || std::count(leds.begin(), leds.end(), shot->led) > 0) chosen.push_back(*shot);
   }
   for (const int led : leds) {
@@ -64,6 +65,24 @@ Result<std::vector<Shot>> choose_lit(const Session& session, const std::vector<i
                  "solve from at least three LEDs"};
   }
   return chosen;
+}
+
+// The other half of a pair: the lit shots once more through parallel films.
+void choose_parallel(SessionPlan& plan) {
+  if (plan.lit.front().polariser != Polariser::kCrossed) return;
+  const std::vector<const Shot*> all = plan.session.lit(Polariser::kParallel);
+  if (all.empty()) return;
+  for (const Shot& lit : plan.lit) {
+    const auto found = std::ranges::find(all, lit.led, &Shot::led);
+    if (found != all.end()) {
+      plan.parallel.push_back(**found);
+      continue;
+    }
+    plan.warnings.push_back(
+        fmt::format("the shots through parallel films were left out: there is none of LED {}", lit.led));
+    plan.parallel.clear();
+    return;
+  }
 }
 
 // The repeats and brackets of the lit shots, with a warning for each that says nothing.
@@ -150,6 +169,7 @@ Result<pipeline::Frames> read_mosaics(const SessionPlan& plan, const std::vector
   pipeline::Mosaics mosaics(std::move(lit), std::move(dark), *plan.calibration.response,
                             {first.exposure_us, first.iso});
   more.repeats = mosaics.alike(take(*frames, plan.repeats.size()));
+  more.parallel = mosaics.alike(take(*frames, plan.parallel.size()));
   more.brackets = std::move(*frames);
   return pipeline::Frames(std::move(mosaics));
 }
@@ -168,8 +188,22 @@ Result<pipeline::Frames> read_developed(const SessionPlan& plan, const std::vect
       scale(image, 1 / (first.exposure_us * 1e-6 * first.iso / 100));
     }
   }
-  more.repeats = pipeline::Developed{std::move(*frames)};
+  more.repeats = pipeline::Developed{take(*frames, plan.repeats.size())};
+  more.parallel = pipeline::Developed{std::move(*frames)};
   return pipeline::Frames(pipeline::Developed{std::move(lit)});
+}
+
+// Of what the surface mirrors, over the share of what it scatters.
+double lobe_share_of(Polariser polariser, const Films& films) {
+  switch (polariser) {
+    case Polariser::kNone:
+      break;
+    case Polariser::kParallel:
+      return solver::kParallelLobeShare;
+    case Polariser::kCrossed:
+      return solver::kParallelLobeShare * films.leak;
+  }
+  return 1;
 }
 
 // Before an hour of work.
@@ -203,6 +237,7 @@ std::vector<Shot> SessionPlan::frames() const {
   std::vector<Shot> all = lit;
   if (dark) all.push_back(*dark);
   all.insert(all.end(), repeats.begin(), repeats.end());
+  all.insert(all.end(), parallel.begin(), parallel.end());
   all.insert(all.end(), brackets.begin(), brackets.end());
   return all;
 }
@@ -251,6 +286,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   if (Result<void> ok = headers.look_at(plan.lit.front()); !ok) return std::move(ok).error();
   plan.raw = headers.is_raw();
   plan.size = headers.size();
+  choose_parallel(plan);
   choose_more(plan);
   for (const Shot& shot : plan.frames()) {
     if (Result<void> ok = headers.look_at(shot); !ok) return std::move(ok).error();
@@ -272,6 +308,9 @@ Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& co
   for (const Shot& shot : plan.lit) photographs.leds.push_back(shot.led);
   Result<Lights> lights = select_lights(*plan.calibration.lights, photographs.leds);
   if (!lights) return std::move(lights).error();
+  if (plan.lit.front().polariser != Polariser::kNone && plan.session.films.scattered != 1)
+    lights =
+        brightened(std::move(*lights), std::vector<double>(plan.lit.size(), plan.session.films.scattered));
   Result<LightField> field =
       LightField::make(std::move(*lights), plan.calibration.camera, plan.size, plan.session.cloth_height_mm);
   if (!field) return std::move(field).error();
@@ -287,11 +326,13 @@ Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& co
       plan.raw ? read_mosaics(plan, shots, context, more) : read_developed(plan, shots, context, more);
   if (!frames) return std::move(frames).error();
   photographs.frames = std::move(*frames);
+  photographs.lobe_share = lobe_share_of(plan.lit.front().polariser, plan.session.films);
   if (plan.raw && plan.calibration.response->veil)
     loaded.conditions.veil = plan.calibration.response->veil->share;
   if (Result<void> ok = replace_bad_photosites(plan, context, loaded, more); !ok) {
     return std::move(ok).error();
   }
+  if (!plan.parallel.empty()) photographs.parallel = std::move(more.parallel);
   join_brackets(plan, loaded, more);
   if (Result<void> ok = leave_out_useless_lights(plan, loaded); !ok) return std::move(ok).error();
   if (Result<void> ok = follow_drift(plan, context, loaded, more); !ok) return std::move(ok).error();

@@ -32,7 +32,8 @@ struct SessionOptions {
 struct SessionPlan {
   Session session;
   Calibration calibration;
-  std::vector<Shot> lit;  ///< the shots to solve from, by LED
+  std::vector<Shot> lit;       ///< the shots to solve from, by LED: of a pair of film states the crossed ones
+  std::vector<Shot> parallel;  ///< of a pair the others, of the same LEDs in the same order; else none
   std::optional<Shot> dark;
   std::vector<Shot> repeats;   ///< second shots of LEDs in `lit`
   std::vector<Shot> brackets;  ///< shots of LEDs in `lit` whose exposure ratio the calibration measured
@@ -42,7 +43,7 @@ struct SessionPlan {
   std::vector<std::string> warnings;  ///< about shots that will not be used
   solver::Extent extent = solver::Extent::kTiles;  ///< of the level that will be solved by
 
-  /// All shots whose frames are read: lit, dark, repeats, brackets.
+  /// All shots whose frames are read: lit, dark, repeats, parallel, brackets.
   std::vector<Shot> frames() const;
 };
 

@@ -35,20 +35,50 @@ struct GlossyCloth {
   double albedo;  ///< grey
   TrueLobe truth;
   std::function<void(Scene&)> change = {};  ///< what else is not as it should be
+  bool is_level = false;                    ///< without relief, and one row for all families
 };
 
 Rgb grey(double value) {
   return {value, value, value};
 }
 
-std::vector<GlossyCloth> cloths() {
-  const auto ggx = [](double alpha) {
-    return Ggx{.alpha = alpha, .f0 = grey(0.04), .beneath = Beneath::kBalanced};
+Ggx ggx(double alpha) {
+  return {.alpha = alpha, .f0 = grey(0.04), .beneath = Beneath::kBalanced};
+}
+
+void with_films(Scene& s) {
+  s.films.states = FilmStates::kBoth;
+}
+void with_led_beside_camera(Scene& s) {
+  s.lights.rings = default_rings();
+  s.lights.rings.push_back({.count = 1, .zenith_deg = 8, .azimuth_deg = 120});
+}
+
+// What one more shot, or as many again, buys.
+std::vector<GlossyCloth> cloths_with_more_light() {
+  const TrueLobe of_velvet = {0.3, kNone, 0.04}, of_wool = {0.7, kNone, 0.04};
+  return {
+      {"ggx 0.50, pair", ggx(0.50), 0.4, {0.50, kNone, 0.04}, with_films},
+      {"ggx 0.60, pair", ggx(0.60), 0.4, {0.60, kNone, 0.04}, with_films},
+      {"satin, pair",
+       AnisotropicGgx{.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05)},
+       0.4,
+       {0.45, 0.1575, 0.05},
+       with_films},
+      {"wool, pair", preset("wool")->reflectance, 0.3, of_wool, with_films},
+      {"velvet, pair", preset("velvet")->reflectance, 0.04, of_velvet, with_films},
+      {"lambert, pair", Lambert{}, 0.5, {}, with_films},
+      {"level ggx 0.10", ggx(0.10), 0.4, {0.10, kNone, 0.04}, {}, true},
+      {"level ggx 0.10, LED at 8", ggx(0.10), 0.4, {0.10, kNone, 0.04}, with_led_beside_camera, true},
+      {"level ggx 0.60, pair", ggx(0.60), 0.4, {0.60, kNone, 0.04}, with_films, true},
   };
+}
+
+std::vector<GlossyCloth> cloths() {
   const AnisotropicGgx satin = {.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05)};
   const AnisotropicGgx dark_satin = {.alpha = 0.35, .anisotropy = 0.6, .f0 = grey(0.05)};
   const TrueLobe of_satin = {0.45, 0.1575, 0.05}, of_dark_satin = {0.35, 0.14, 0.05};
-  return {
+  std::vector<GlossyCloth> all = {
       {"ggx 0.15", ggx(0.15), 0.4, {0.15, kNone, 0.04}},
       {"ggx 0.30", ggx(0.30), 0.4, {0.30, kNone, 0.04}},
       {"ggx 0.50", ggx(0.50), 0.4, {0.50, kNone, 0.04}},
@@ -79,6 +109,9 @@ std::vector<GlossyCloth> cloths() {
       {"wool", preset("wool")->reflectance, 0.3, {}},
       {"velvet", preset("velvet")->reflectance, 0.04, {}},
   };
+  const std::vector<GlossyCloth> more = cloths_with_more_light();
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
 }
 
 AccuracyScene scene_of(AccuracyScene scene, const GlossyCloth& cloth) {
@@ -87,6 +120,10 @@ AccuracyScene scene_of(AccuracyScene scene, const GlossyCloth& cloth) {
   scene.scene.material = {};
   scene.scene.material.reflectance = cloth.reflectance;
   scene.scene.material.albedo = grey(cloth.albedo);
+  if (cloth.is_level) {
+    scene.name = cloth.name;
+    scene.scene.geometry = {};
+  }
   if (cloth.change) cloth.change(scene.scene);
   return scene;
 }
@@ -148,7 +185,7 @@ Result<Rows> gloss_table(const GlossOptions& options) {
   for (const GlossyCloth& cloth : cloths()) {
     if (!options.cloth.empty() && options.cloth != cloth.name) continue;
     for (const AccuracyScene& scene : accuracy_scenes(options.set, options.seed, false)) {
-      if (scene.material != "satin") continue;
+      if (scene.material != "satin" || (cloth.is_level && scene.family != "smooth")) continue;
       Result<Json> row = row_of(scene_of(scene, cloth), cloth, threads);
       if (!row) return std::move(row).error();
       rows.push_back(std::move(*row));

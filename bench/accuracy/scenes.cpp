@@ -117,6 +117,25 @@ RawFrame copy_of(const RawFrame& frame) {
   return {copy_of(frame.counts), frame.cfa, frame.black, frame.white, frame.shot};
 }
 
+// Counts of all LEDs through parallel films.
+Result<void> run_parallel(const Plan& plan, Rect area, int threads, pipeline::Mosaics& mosaics) {
+  SceneRig rig = plan.rig;
+  rig.lobe_share = lobe_share_of(plan.scene.films, FilmStates::kParallel);
+  Result<PassList> passes = build_passes(plan.scene, rig, Output::kCounts);
+  if (!passes) return passes.error();
+  std::vector<int> shots(plan.rig.leds.leds.size());
+  // As a session numbers them: other shots than the crossed ones, with other noise.
+  std::iota(shots.begin(), shots.end(), 3 * static_cast<int>(shots.size()) + 1);
+  const auto nothing = [](const Tile&) {};
+  return PassRunner(std::move(*passes), {.threads = threads})
+      .run(area, shots, {}, nothing, [&](const Tile& tile) {
+        RawFrame& frame = mosaics.frames[static_cast<std::size_t>(tile.led - 1)];
+        for_each_pixel(tile.rect, [&](std::size_t i, int x, int y) {
+          frame.counts(x - area.x0, y - area.y0) = tile.counts[i];
+        });
+      });
+}
+
 // Counts and truth, as the passes of the scene leave them.
 Result<void> run_passes(const Plan& plan, Rect area, int threads, Patch& patch) {
   Result<PassList> passes = build_passes(plan.scene, plan.rig, Output::kCounts);
@@ -199,7 +218,15 @@ Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
   photographs.frames =
       pipeline::Mosaics(std::move(frames), frame_of(*plan, size), response_of(plan->rig.sensor),
                         {plan->rig.exposure_us, scene.camera.iso});
+  photographs.lobe_share = plan->rig.lobe_share;
   if (Result<void> ran = run_passes(*plan, area, threads, patch); !ran) return std::move(ran).error();
+  if (scene.films.states == FilmStates::kBoth) {
+    std::vector<RawFrame> more;
+    for (int k = 0; k < lights; ++k) more.push_back(frame_of(*plan, size));
+    pipeline::Mosaics parallel = photographs.mosaics()->alike(std::move(more));
+    if (Result<void> ran = run_parallel(*plan, area, threads, parallel); !ran) return std::move(ran).error();
+    photographs.parallel = std::move(parallel);
+  }
   for (int k = 0; k < lights; ++k) {
     readings_of(photographs.frames, static_cast<std::size_t>(k), patch.area(), patch.readings.plane(k));
   }

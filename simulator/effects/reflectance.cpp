@@ -34,12 +34,25 @@ Ggx under_light_of(Ggx model, double radius_mm, double distance_mm) {
   return model;
 }
 
+/// What a point sends on, pi times f. Films let through another share of what is mirrored, which needs no
+/// albedo, than of what is scattered.
+template <typename Model>
+Rgb reflected_by(const Model& model, const Rgb& albedo, Vec3 to_light, Vec3 to_view, double lobe_share) {
+  Rgb reflected = model.evaluate(albedo, to_light, to_view);
+  if (lobe_share != 1) {
+    const Rgb mirrored = model.evaluate(Rgb{}, to_light, to_view);
+    for (std::size_t c = 0; c < 3; ++c) reflected[c] += (lobe_share - 1) * mirrored[c];
+  }
+  for (double& f : reflected) f *= kPi;
+  return reflected;
+}
+
 }  // namespace
 
 Pass reflectance_pass(const Scene& scene, const SceneRig& rig) {
   const double radius_mm = scene.effects.finite_led ? scene.lights.led_radius_mm : 0;
   const auto pass = [&](const auto& model) -> std::function<void(Tile&)> {
-    return [model, radius_mm, camera_mm = rig.camera_centre_mm(),
+    return [model, radius_mm, lobe_share = rig.lobe_share, camera_mm = rig.camera_centre_mm(),
             unit = rig.signal_of_unit(scene.camera.iso)](Tile& tile) {
       tile.signal_rect = tile.area;
       tile.signal.assign(tile.irradiance.size(), Rgb{});
@@ -54,9 +67,8 @@ Pass reflectance_pass(const Scene& scene, const SceneRig& rig) {
           const Vec3 to_view = normalized(camera_mm - tile.point_mm[i]);
           Vec3 to_light = frame.local(tile.light[i].direction);
           if (to_light.z < kRisenCosine) to_light = risen(to_light);
-          reflected = under_light_of(model, radius_mm, tile.light[i].distance_mm)
-                          .evaluate(tile.albedo[i], to_light, frame.local(to_view));
-          for (double& f : reflected) f *= kPi;
+          reflected = reflected_by(under_light_of(model, radius_mm, tile.light[i].distance_mm),
+                                   tile.albedo[i], to_light, frame.local(to_view), lobe_share);
         }
         for (std::size_t c = 0; c < 3; ++c) tile.signal[i][c] = reflected[c] * irradiance * flux[c];
       }

@@ -66,7 +66,7 @@ Pass ambient_pass(const Scene& scene, const SceneRig& rig) {
   Rgb brightest{};
   for (const Rgb& light : signal_at_centre(scene, rig)) {
     for (std::size_t c = 0; c < 3; ++c)
-      brightest[c] = std::max(brightest[c], scene.lights.ambient * light[c]);
+      brightest[c] = std::max(brightest[c], rig.room_share * scene.lights.ambient * light[c]);
   }
   return {"ambient", "adds the light of the room to every shot, the dark one too", Stage::kShot,
           even_light(std::vector<Rgb>(rig.leds.leds.size() + 1, brightest))};

@@ -99,6 +99,16 @@ Result<void> place_camera(const Scene& scene, SceneRig& rig) {
   return {};
 }
 
+void place_films(const FilmSettings& films, SceneRig& rig) {
+  if (films.states == FilmStates::kNone) return;
+  const double scattered = films.transmission * films.transmission / 4;
+  for (NearLight& led : rig.leds.leds) {
+    for (double& flux : led.flux_rgb) flux *= scattered;
+  }
+  rig.lobe_share = lobe_share_of(films, films.states);
+  rig.room_share = films.transmission / 2 / scattered;
+}
+
 /// Readings that a white surface gives where it faces the LED, in the brightest channel of the brightest LED.
 double brightest_reading(const DistantLights& lights) {
   double brightest = 0;
@@ -153,12 +163,18 @@ DefectSettings defects_of(const Scene& scene) {
   return defects;
 }
 
+double lobe_share_of(const FilmSettings& films, FilmStates state) {
+  if (state == FilmStates::kNone) return 1;
+  return state == FilmStates::kParallel ? 2 : 2 * films.leak;
+}
+
 Result<SceneRig> rig_of(const Scene& scene) {
   if (Result<void> ok = check_scene(scene); !ok) return ok.error();
   if (Result<void> ok = check_parts(scene); !ok) return ok.error();
   SceneRig rig;
   rig.leds.leds = place_leds(scene.lights);
   if (Result<void> ok = check_places(scene, rig.leds.leds); !ok) return ok.error();
+  place_films(scene.films, rig);
   rig.sensor = sensor_of(scene.camera);
   if (Result<void> ok = place_camera(scene, rig); !ok) return ok.error();
 

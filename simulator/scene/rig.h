@@ -24,6 +24,10 @@ struct SceneRig {
   CameraModel camera;
   std::optional<Lens> lens;  ///< none where the camera is straight above and nothing bends its rays
   double exposure_us = 0;    ///< whole microseconds
+  /// What of the mirrored light arrives over what of the scattered does. `leds` have the flux of their
+  /// scattered light: with films before them and the lens, a quarter of their own.
+  double lobe_share = 1;
+  double room_share = 1;  ///< likewise of light from the room
 
   /// Signal of a reading of 1: seconds at ISO 100.
   double exposure(double iso) const { return exposure_us * 1e-6 * iso / 100; }
@@ -32,9 +36,13 @@ struct SceneRig {
   Vec3 camera_centre_mm() const;
 };
 
-/// Checks the scene, places its LEDs and its camera and chooses the exposure. kBadData where no LED lights
-/// the table's centre, a LED or the camera is not above the cloth, the camera does not see the table, a
-/// target or a filter cannot be used, or the exposure would not be between 1 us and 1000 s.
+/// SceneRig::lobe_share through films in one state; of kBoth crossed ones, which are taken first.
+double lobe_share_of(const FilmSettings& films, FilmStates state);
+
+/// Checks the scene, places its LEDs, its films in their first state and its camera, and chooses the
+/// exposure. kBadData where no LED lights the table's centre, a LED or the camera is not above the cloth, the
+/// camera does not see the table, a target or a filter cannot be used, or the exposure would not be between 1
+/// us and 1000 s.
 Result<SceneRig> rig_of(const Scene& scene);
 
 /// Each LED as the distant light that it is at the table's centre, on the cloth's plane.

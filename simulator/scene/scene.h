@@ -109,6 +109,20 @@ struct LightSettings {
   bool operator==(const LightSettings&) const = default;
 };
 
+/// Which films stand before LEDs and lens, one after the other.
+enum class FilmStates { kNone, kCrossed, kParallel, kBoth };
+
+/// Linear polarisers before every LED and the lens. Light that the cloth scatters has lost its polarisation:
+/// a quarter of it passes. Light that the surface mirrors keeps it: half passes parallel films, and of that
+/// half `leak` passes crossed ones. Light of the room meets the lens's film alone: half passes.
+struct FilmSettings {
+  FilmStates states = FilmStates::kNone;
+  double leak = 0.01;
+  double transmission = 1;  ///< of light along a film's axis, one film
+
+  bool operator==(const FilmSettings&) const = default;
+};
+
 /// spectral: what shines and what filters, from 380 to 730 nm.
 struct SpectraSettings {
   Spectrum led = flat_spectrum(1);
@@ -200,6 +214,7 @@ struct Scene {
   GeometrySettings geometry;
   MaterialSettings material;
   LightSettings lights;
+  FilmSettings films;
   SpectraSettings spectra;
   TransportSettings transport;
   FrameFormat frames = FrameFormat::kDng;

@@ -27,6 +27,7 @@
 namespace weft::simulator {
 
 inline constexpr Range kShare = {0, 1};
+inline constexpr Range kLeak = {0, 0.5};
 inline constexpr Range kFlux = {0, 1e12};
 inline constexpr Range kCoordinate_mm = {-1e4, 1e4};
 inline constexpr Range kAngle_deg = {-360, 360};
@@ -449,6 +450,17 @@ void walk(Visitor& v, LightSection& s) {
 }
 
 template <typename Visitor>
+void walk(Visitor& v, FilmSettings& f) {
+  v.choice("states", f.states,
+           {{"none", FilmStates::kNone},
+            {"crossed", FilmStates::kCrossed},
+            {"parallel", FilmStates::kParallel},
+            {"both", FilmStates::kBoth}});
+  v.number("leak", f.leak, kLeak);
+  v.number("transmission", f.transmission, {0.1, 1});
+}
+
+template <typename Visitor>
 void walk(Visitor& v, SpectraSettings& s) {
   v.spectrum("led", s.led);
   v.spectra("filters", s.filters);
@@ -569,6 +581,7 @@ void walk(Visitor& v, Scene& s) {
   v.section("material", s.material);
   LightSection lights = {s.lights, s.camera.distance_mm};
   v.section("lights", lights);
+  v.optional_section("films", s.films);
   v.optional_section("spectra", s.spectra);
   v.section("transport", s.transport);
   v.list("target", s.targets);

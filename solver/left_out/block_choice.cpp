@@ -42,12 +42,19 @@ struct CellMaps {
   Image<float> sigma{{kHalf, kHalf}, 3};
 };
 
-TileInput part_of(const TileInput& input, Rect part, std::vector<View<const float>>& readings) {
+// `views` keeps those of its readings.
+TileInput part_of(const TileInput& input, Rect part, std::vector<View<const float>>& views) {
   const Rect local = {part.x0 - input.tile.x0, part.y0 - input.tile.y0, part.x1 - input.tile.x0,
                       part.y1 - input.tile.y0};
-  readings.clear();
-  for (const View<const float>& reading : input.readings) readings.push_back(reading.crop(local));
-  return {part, input.planes, input.cfa, readings, input.field, input.noise, input.plane_weights};
+  views.clear();
+  for (const auto& readings : {input.readings, input.parallel}) {
+    for (const View<const float>& reading : readings) views.push_back(reading.crop(local));
+  }
+  TileInput cropped = input;
+  cropped.tile = part;
+  cropped.readings = std::span(views).first(input.readings.size());
+  cropped.parallel = std::span(views).subspan(input.readings.size());
+  return cropped;
 }
 
 TileOutput part_of(const TileOutput& output, Rect tile, Rect part) {
@@ -99,10 +106,10 @@ class Blended : public Method {
     }
   }
   bool wants_rgb() const override { return base_.wants_rgb(); }
-  double reflected(const TileInput& input, const TileOutput& output, int x, int y,
-                   Vec3 light) const override {
+  double reflected(const TileInput& input, const TileOutput& output, int x, int y, Vec3 light,
+                   double lobe_share) const override {
     const bool is_better = choice_.weight_at(input.tile.x0 + x, input.tile.y0 + y) >= 0.5F;
-    return (is_better ? better_ : base_).reflected(input, output, x, y, light);
+    return (is_better ? better_ : base_).reflected(input, output, x, y, light, lobe_share);
   }
 
  private:

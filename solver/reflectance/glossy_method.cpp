@@ -94,8 +94,8 @@ class Glossy : public Method {
   void solve(const TileInput& input, const TileOutput& output) const override {
     base_.solve(input, output);
     LobeReader reader(input, sight_);
-    std::vector<LobeReading> readings(input.field->count());
-    Group from_base(input.field->count()), from_others(input.field->count());
+    std::vector<LobeReading> readings(reader.count());
+    Group from_base(reader.count()), from_others(reader.count());
     const auto finish_others = [&] {
       try_other_starts(from_others);
       write(input, output, from_others);
@@ -128,15 +128,17 @@ class Glossy : public Method {
 
   bool wants_rgb() const override { return base_.wants_rgb(); }
 
-  double reflected(const TileInput& input, const TileOutput& output, int x, int y,
-                   Vec3 light) const override {
-    if ((output.status(x, y) & kGlossy) == 0) return base_.reflected(input, output, x, y, light);
-    std::vector<LobeReading> readings(input.field->count());
-    LobeReader(input, sight_).read(x, y, readings);
+  double reflected(const TileInput& input, const TileOutput& output, int x, int y, Vec3 light,
+                   double lobe_share) const override {
+    if ((output.status(x, y) & kGlossy) == 0) return base_.reflected(input, output, x, y, light, lobe_share);
+    LobeReader reader(input, sight_);
+    std::vector<LobeReading> readings(reader.count());
+    reader.read(x, y, readings);
     const double yarn = (output.status(x, y) & kYarnAcross) != 0 ? kPi / 2 : 0;
     const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
     const Lobe& lobe = lobes_[(output.status(x, y) & kSecondLobe) != 0 ? 1 : 0].lobe;
-    return modelled(lobe, spoken * normal_of(output, x, y), LitFrom(light, readings.front().from.view), yarn);
+    return modelled(lobe, spoken * normal_of(output, x, y),
+                    LitFrom(light, readings.front().from.view, lobe_share), yarn);
   }
 
  private:
@@ -241,9 +243,11 @@ class Glossy : public Method {
     for (std::size_t k = 0; k < readings.size(); ++k) {
       const LobeReading& r = readings[k];
       if (r.weight == 0) continue;
+      const std::size_t lights = input.field->count(), i_of_state = 3 * (k % lights) + plane;
       const double strength =
-          input.field->at(k, static_cast<int>(plane), input.tile.x0 + x, input.tile.y0 + y).strength;
-      const double reading = input.readings[3 * k + plane](x, y) / strength;
+          input.field->at(k % lights, static_cast<int>(plane), input.tile.x0 + x, input.tile.y0 + y).strength;
+      const auto& state = k < lights ? input.readings : input.parallel;
+      const double reading = state[i_of_state](x, y) / strength;
       const Vec3 n = normalized(b);
       const double shine = std::max(0.0, dot(n, r.from.light)) * specular(lobe, n, r.from, yarn);
       const double diffuse = modelled(lobe, b, r.from, yarn) - shine;

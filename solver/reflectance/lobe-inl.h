@@ -40,10 +40,10 @@ HWY_INLINE Vector3 moved(Vector3 a, V step, Vector3 along) {
 // One light over the pixels.
 struct LitLanes {
   Vector3 light, half;
-  V fresnel;
+  V fresnel, lobe_share;
 };
 
-// pi D V F (n . l) of one family, 0 where the light is below the surface.
+// s pi D V F (n . l) of one family, 0 where the light is below the surface.
 template <LobeFamily kFamily>
 class LobeLanes {
  public:
@@ -113,7 +113,7 @@ class LobeLanes {
       const V beside = hn::NegMulAdd(lit, f.view, hn::Add(lit, f.view));
       reflected = hn::Div(hn::Mul(cloth_norm_, facets), hn::Max(beside, number(d_, 1e-4)));
     }
-    const V all = hn::Mul(hn::Mul(cosine, from.fresnel), reflected);
+    const V all = hn::Mul(hn::Mul(hn::Mul(cosine, from.fresnel), reflected), from.lobe_share);
     return hn::IfThenElseZero(hn::Gt(cosine, hn::Zero(d_)), all);
   }
 

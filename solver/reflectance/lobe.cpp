@@ -80,16 +80,17 @@ const char* name_of(LobeFamily family) {
   return kFamilyNames[static_cast<std::size_t>(family)];
 }
 
-LitFrom::LitFrom(Vec3 to_light, Vec3 to_camera)
+LitFrom::LitFrom(Vec3 to_light, Vec3 to_camera, double share_of_lobe)
     : light(to_light),
       view(to_camera),
       half(normalized(to_light + to_camera)),
-      light_half(dot(light, half)) {}
+      light_half(dot(light, half)),
+      lobe_share(share_of_lobe) {}
 
 double specular(const Lobe& lobe, Vec3 n, const LitFrom& from, double yarn) {
   const Cosines c = {std::max(dot(n, from.light), kLeastCosine), std::max(dot(n, from.view), kLeastCosine),
                      dot(n, from.half)};
-  const double f = kPi * fresnel(lobe.f0, from.light_half);
+  const double f = from.lobe_share * kPi * fresnel(lobe.f0, from.light_half);
   switch (lobe.family) {
     case LobeFamily::kLambert:
       return 0;

@@ -19,9 +19,10 @@ const char* name_of(LobeFamily family);
 
 /// What the pixels of one material share. A reading over its strength is
 ///
-///   x = (n . l) (rho (1 - F) (1 - bend (1 - n . l)) + pi F D V),  F = f0 + (1 - f0) (1 - l . h)^5
+///   x = (n . l) (rho (1 - F) (1 - bend (1 - n . l)) + s pi F D V),  F = f0 + (1 - f0) (1 - l . h)^5
 ///
-/// with the half-vector h, and 0 where the light is below the surface. rho and n are each pixel's own.
+/// with the half-vector h and the share s of the lobe that reaches the reading, and 0 where the light is
+/// below the surface. rho and n are each pixel's own.
 struct Lobe {
   LobeFamily family = LobeFamily::kLambert;
   double alpha = 1;  ///< roughness, 0.02 to 1; of a pixel: what lies below it is in it
@@ -39,12 +40,13 @@ struct LitFrom {
   Vec3 light, view;
   Vec3 half;
   double light_half = 0;  ///< l . h
+  double lobe_share = 1;  ///< s above, over the share of the diffuse part: 2 through parallel films
 
   LitFrom() = default;
-  LitFrom(Vec3 to_light, Vec3 to_camera);
+  LitFrom(Vec3 to_light, Vec3 to_camera, double share_of_lobe = 1);
 };
 
-/// pi F D V of a normal. `yarn`: azimuth of the pixel's yarn from `axis`, radians.
+/// s pi F D V of a normal. `yarn`: azimuth of the pixel's yarn from `axis`, radians.
 double specular(const Lobe& lobe, Vec3 normal, const LitFrom& from, double yarn);
 
 /// The angle of normal and half-vector at which a lobe as rough along the yarn as across it would be as

@@ -105,12 +105,13 @@ class LanesFit {
     hn::StoreU(v.z, d_, into.z.data() + at_);
   }
   HWY_INLINE LitLanes lit_by(const LobeBlock::Light& light) const {
-    V fresnel = hn::Zero(d_);
+    V fresnel = hn::Zero(d_), share = hn::Zero(d_);
     if constexpr (kFamily != LobeFamily::kLambert) {
       const V grazing = hn::LoadU(d_, light.grazing.data() + at_);
       fresnel = hn::MulAdd(hn::Sub(number(d_, 1), f0_), grazing, f0_);
+      share = hn::LoadU(d_, light.lobe_share.data() + at_);
     }
-    return {load(light.to_light), load(light.half), fresnel};
+    return {load(light.to_light), load(light.half), fresnel, share};
   }
 
   // The part of rho (n . l) that the diffuse part sends on, without rho.
@@ -298,6 +299,7 @@ void LobeBlock::put(std::size_t pixel, std::span<const LobeReading> readings) {
     Light& light = lights_[k];
     write(light.to_light, r.from.light);
     write(light.half, r.from.half);
+    light.lobe_share[pixel] = static_cast<float>(r.from.lobe_share);
     light.grazing[pixel] = static_cast<float>(std::pow(1 - r.from.light_half, 5));
     light.weight[pixel] = static_cast<float>(r.weight);
     light.reading[pixel] = r.weight > 0 ? static_cast<float>(r.x) : 0.0F;

@@ -24,6 +24,7 @@ class LobeBlock {
   struct Light {
     Lanes3 to_light, half;
     Lane grazing = {};  ///< (1 - l . h)^5
+    Lane lobe_share = {};
     Lane reading = {}, weight = {};
   };
 

@@ -46,7 +46,8 @@ class Slope {
     slopes.by_errors[0] = m.x;
     const std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      const LitFrom turned(normalized(r.from.light + kLightTurn * axes[axis]), r.from.view);
+      const LitFrom turned(normalized(r.from.light + kLightTurn * axes[axis]), r.from.view,
+                           r.from.lobe_share);
       slopes.by_errors[1 + axis] = (modelled(fit_.lobe, b, turned, yarn) - m.x) / kLightTurn;
     }
     return slopes;
@@ -61,19 +62,20 @@ class Slope {
 }  // namespace
 
 LobeByLights::LobeByLights(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted) {
-  const std::size_t pixels = samples.pixels(), lights = pixels > 0 ? samples.of(0).size() : 0;
+  const std::size_t pixels = samples.pixels(), lights = samples.lights();
+  const std::size_t readings_of_pixel = lights * samples.states();
   const Slope slope(fit, fitted);
   ValuesMatrix information = ValuesMatrix::Zero();
   Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(kLobeParameters),
                                                 static_cast<Eigen::Index>(kErrors * lights));
-  std::vector<Slopes> slopes(lights);
+  std::vector<Slopes> slopes(readings_of_pixel);
   const std::size_t count = std::min(pixels, kMostPixels);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pixel = i * pixels / count;
     const auto readings = samples.of(pixel);
     PixelSystem system;
     std::array<Vec3, kLobeParameters> by_both = {};
-    for (std::size_t k = 0; k < lights; ++k) {
+    for (std::size_t k = 0; k < readings_of_pixel; ++k) {
       slopes[k] = {};
       if (readings[k].weight == 0) continue;
       slopes[k] = slope.of(readings[k], pixel);
@@ -84,7 +86,7 @@ LobeByLights::LobeByLights(const LobeSamples& samples, const LobeFit& fit, const
     }
     system.regularise();
     for (Vec3& each : by_both) each = system.solved(each);
-    for (std::size_t k = 0; k < lights; ++k) {
+    for (std::size_t k = 0; k < readings_of_pixel; ++k) {
       const Slopes& s = slopes[k];
       if (s.weight == 0) continue;
       // What the pixel's own normal and albedo do not take up.
@@ -93,7 +95,8 @@ LobeByLights::LobeByLights(const LobeSamples& samples, const LobeFit& fit, const
         left[static_cast<Eigen::Index>(p)] -= dot(by_both[p], s.by_b);
       information += s.weight * left * left.transpose();
       for (std::size_t e = 0; e < kErrors; ++e)
-        mixed.col(static_cast<Eigen::Index>(kErrors * k + e)) += (s.weight * s.by_errors[e]) * left;
+        mixed.col(static_cast<Eigen::Index>(kErrors * (k % lights) + e)) +=
+            (s.weight * s.by_errors[e]) * left;
     }
   }
   const Eigen::MatrixXd change =

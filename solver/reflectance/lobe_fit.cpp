@@ -192,13 +192,13 @@ class SharedFit {
 
 void LobeSamples::add(std::span<const LobeReading> pixel) {
   const std::size_t lane = pixels() % LobeBlock::kPixels;
-  if (lane == 0) blocks_.emplace_back(lights_);
+  if (lane == 0) blocks_.emplace_back(each_);
   blocks_.back().put(lane, pixel);
   readings_.insert(readings_.end(), pixel.begin(), pixel.end());
 }
 
 LobeSamples LobeSamples::first(std::size_t count) const {
-  LobeSamples few(lights_);
+  LobeSamples few(lights_, states());
   for (std::size_t i = 0; i < std::min(count, pixels()); ++i) few.add(of(i));
   return few;
 }

@@ -16,15 +16,18 @@
 
 namespace weft::solver {
 
-/// Pixels of one material, each with all lights.
+/// Pixels of one material, each with all lights, once or in two states of films: first all of the one.
 class LobeSamples {
  public:
-  explicit LobeSamples(std::size_t lights) : lights_(lights) {}
+  explicit LobeSamples(std::size_t lights, std::size_t states = 1)
+      : lights_(lights), each_(lights * states) {}
   void add(std::span<const LobeReading> pixel);
 
-  std::size_t pixels() const { return readings_.size() / lights_; }
+  std::size_t lights() const { return lights_; }
+  std::size_t states() const { return each_ / lights_; }
+  std::size_t pixels() const { return readings_.size() / each_; }
   std::span<const LobeReading> of(std::size_t pixel) const {
-    return {readings_.data() + pixel * lights_, lights_};
+    return {readings_.data() + pixel * each_, each_};
   }
   LobeSamples first(std::size_t count) const;
   std::size_t used() const;  ///< readings with a weight
@@ -34,8 +37,8 @@ class LobeSamples {
                   std::span<double> cost) const;
 
  private:
-  std::size_t lights_;
-  std::vector<LobeReading> readings_;  // [pixel * lights + light]
+  std::size_t lights_, each_;          // each_: readings of a pixel
+  std::vector<LobeReading> readings_;  // [pixel * each_ + state * lights_ + light]
   std::vector<LobeBlock> blocks_;      // the same for the vector kernel
 };
 

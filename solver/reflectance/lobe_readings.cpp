@@ -27,8 +27,20 @@ void LobeReader::read_row(int y) {
   input_.field->read_row(input_.tile.y0 + y, x0, input_.tile.x1, points_);
 }
 
+std::size_t LobeReader::count() const {
+  return input_.field->count() * (input_.parallel.empty() ? 1 : 2);
+}
+
 void LobeReader::read(int x, int y, std::span<LobeReading> readings) {
   read_row(y);
+  const std::size_t lights = input_.field->count();
+  read_state(x, y, input_.readings, input_.lobe_share, readings.first(lights));
+  if (!input_.parallel.empty())
+    read_state(x, y, input_.parallel, kParallelLobeShare, readings.subspan(lights));
+}
+
+void LobeReader::read_state(int x, int y, std::span<const View<const float>> state, double lobe_share,
+                            std::span<LobeReading> readings) {
   const int px = input_.tile.x0 + x, py = input_.tile.y0 + y;
   const int column = px - input_.tile.x0 / LightField::kCell * LightField::kCell;
   const Vec3 view =
@@ -42,7 +54,7 @@ void LobeReader::read(int x, int y, std::span<LobeReading> readings) {
     for (std::size_t p = 0; p < planes; ++p) {
       const int channel = planes == 1 ? input_.cfa.channel_at(px, py) : static_cast<int>(p);
       const LightField::Light light = input_.field->at(k, channel, px, py);
-      const double reading = input_.readings[k * planes + p](x, y);
+      const double reading = state[k * planes + p](x, y);
       direction = light.direction;
       is_lit &= light.strength > 0;
       value += (planes == 1 ? 1 : input_.plane_weights[p]) * reading / light.strength;
@@ -50,7 +62,7 @@ void LobeReader::read(int x, int y, std::span<LobeReading> readings) {
         variance = input_.noise->variance(std::max(reading, 0.0)) / (light.strength * light.strength);
     }
     LobeReading& r = readings[k];
-    r = {LitFrom(direction, view), value, 0};
+    r = {LitFrom(direction, view, lobe_share), value, 0};
     if (!is_lit || !std::isfinite(value)) continue;
     r.weight = 1 / (variance + std::pow(kLobeModelShare * std::max(value, kLeastModelled), 2));
     bright_.push_back(value);

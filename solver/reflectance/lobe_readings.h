@@ -28,15 +28,20 @@ class Sight {
 
 /// The readings of one pixel of a tile after another, in double, with the weights that a lobe is fitted by. A
 /// reading that is saturated or missing, that the LED does not reach, or that is in the dark beside the
-/// bright ones (kShadowShare) has none. Of RGB the weighted sum of the channels, each over its strength.
+/// bright ones of its state of the films (kShadowShare) has none. Of RGB the weighted sum of the channels,
+/// each over its strength.
 class LobeReader {
  public:
   LobeReader(const TileInput& input, Sight sight);
-  /// Column and row of the tile. `readings` has as many as there are lights.
+  /// Readings of a pixel: one a light, and where the input has parallel ones as many again, after the others.
+  std::size_t count() const;
+  /// Column and row of the tile. `readings` has count().
   void read(int x, int y, std::span<LobeReading> readings);
 
  private:
   void read_row(int y);
+  void read_state(int x, int y, std::span<const View<const float>> state, double lobe_share,
+                  std::span<LobeReading> readings);
 
   const TileInput& input_;
   Sight sight_;

@@ -113,7 +113,7 @@ class Splitter {
   };
 
   Group of(const Sides& sides, std::uint8_t side) const {
-    Group group = {LobeSamples(samples_.of(0).size()), {}};
+    Group group = {LobeSamples(samples_.lights(), samples_.states()), {}};
     for (std::size_t i = 0; i < sides.size(); ++i) {
       if (sides[i] != side) continue;
       group.samples.add(samples_.of(i));

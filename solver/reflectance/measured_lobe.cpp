@@ -330,8 +330,10 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
     double wins;  // share of GGX's cost that it must save
   };
   const LobeFit ggx = trial.isotropic(LobeFamily::kGgx);
-  const std::vector<Family> families = {
+  std::vector<Family> families = {
       {ggx, 0}, {trial.isotropic(LobeFamily::kBeckmann), kOtherWins}, {trial.anisotropic(), kYarnWins}};
+  // One state of the films does not tell sheen from a diffuse part that bends.
+  if (samples.states() > 1) families.push_back({trial.isotropic(LobeFamily::kCloth), kOtherWins});
   const LobeFit* straight = &families.front().fit;
   for (const Family& family : families) {
     measured.candidates.push_back({family.fit.lobe, family.fit.chi2});

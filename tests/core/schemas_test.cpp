@@ -51,6 +51,17 @@ TEST(Schemas, Session1_1OfAScan) {
   EXPECT_NEAR(session->shots[2].document["level"].get<double>(), 0.9881240742034876, 1e-9);
 }
 
+TEST(Schemas, Session1_3ThroughFilms) {
+  const Result<Session> session = read_session(kSchemas / "weft.session-1.3");
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_EQ(session->films, (Films{.leak = 0.004, .scattered = 0.23}));
+  EXPECT_EQ(session->lit(Polariser::kCrossed).size(), 3U);
+  EXPECT_EQ(session->lit(Polariser::kParallel).size(), 3U);
+  const Result<Session> before = read_session(kSchemas / "weft.session-1.2");
+  ASSERT_TRUE(before) << before.error().message();
+  EXPECT_EQ(before->films, Films()) << "nobody said";
+}
+
 TEST(Schemas, Calibration1WithCameraResponseAndNearLights) {
   const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1");
   ASSERT_TRUE(calibration) << calibration.error().message();

@@ -23,7 +23,7 @@ Photographs unlit(Size size, const DistantLights& lights) {
 double reading_of(const Cloth& cloth, const DistantLight& light, int c, int x, int y) {
   const auto channel = static_cast<std::size_t>(c);
   const solver::Lobe lobe = cloth.is_matt(x, y) ? solver::Lobe{} : cloth.lobe;
-  const solver::LitFrom from(light.direction, {0, 0, 1});
+  const solver::LitFrom from(light.direction, {0, 0, 1}, cloth.lobe_share);
   return light.irradiance_rgb[channel] *
          solver::modelled(lobe, cloth.albedo[channel] * cloth.normal(x, y), from, cloth.yarn(x, y));
 }
@@ -62,6 +62,7 @@ Photographs developed(Size size, const Cloth& cloth, const DistantLights& lights
     }
   }
   photographs.frames = std::move(frames);
+  photographs.lobe_share = cloth.lobe_share;
   return photographs;
 }
 
@@ -88,6 +89,7 @@ Photographs mosaics(Size size, const Cloth& cloth, const DistantLights& lights) 
   }
   photographs.frames = Mosaics(std::move(frames), std::nullopt,
                                {.electrons_per_count = 2, .read_noise_counts = 3}, {1e6, 100});
+  photographs.lobe_share = cloth.lobe_share;
   return photographs;
 }
 

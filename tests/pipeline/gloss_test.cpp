@@ -118,6 +118,39 @@ TEST(Gloss, OfAPrintOnMattClothIsUsedWhereThePrintIs) {
   EXPECT_LT(mean_error_deg(maps), 0.3) << "by standard " << mean_error_deg(by_standard);
 }
 
+// Velvet's albedo is lost in its sheen by Lambert's law, and through crossed films it is not.
+TEST(Gloss, OfAPairOfFilmsIsSheenAndLeavesTheAlbedo) {
+  Cloth velvet = {.normal = dented,
+                  .albedo = {0.04, 0.04, 0.04},
+                  .lobe = {.family = solver::LobeFamily::kCloth, .alpha = 0.3, .f0 = 0.04}};
+  const auto albedo_of = [&](const Photographs& photographs, FrameFacts& facts) {
+    WholeMaps maps(kSize);
+    facts = solve(photographs, "robust", maps);
+    EXPECT_LT(mean_error_deg(maps), 0.5);
+    double sum = 0;
+    for (int y = 0; y < kSize.height; ++y) {
+      for (int x = 0; x < kSize.width; ++x) sum += maps.albedo(x, y, 1) / static_cast<double>(kSize.pixels());
+    }
+    return sum;
+  };
+  FrameFacts alone, paired;
+  const double without = albedo_of(mosaics(kSize, velvet), alone);
+  velvet.lobe_share = 0.02;
+  Photographs photographs = mosaics(kSize, velvet);
+  velvet.lobe_share = 2;
+  photographs.parallel = mosaics(kSize, velvet).frames;
+  const double with = albedo_of(photographs, paired);
+  EXPECT_FALSE(alone.gloss->is_measured());
+  ASSERT_TRUE(paired.gloss->is_measured()) << name_of(paired.gloss->lobes.front().refusal);
+  const solver::Lobe& lobe = paired.gloss->lobes.front().lobe;
+  EXPECT_EQ(lobe.family, solver::LobeFamily::kCloth);
+  EXPECT_NEAR(lobe.alpha, 0.3, 0.01);
+  EXPECT_NEAR(lobe.f0, 0.04, 0.002);
+  EXPECT_EQ(paired.gloss->share, 1);
+  EXPECT_NEAR(with, 0.04, 0.02 * 0.04) << "without films " << without;
+  EXPECT_GT(without, 1.1 * 0.04);
+}
+
 TEST(Gloss, OfMattClothChangesNothing) {
   const Photographs photographs = mosaics(kSize, {.normal = dented});
   WholeMaps maps(kSize);

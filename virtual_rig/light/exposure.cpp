@@ -23,7 +23,8 @@ using simulator::PhotositeDefect;
 
 constexpr double kThroughCloth = 0.05;
 constexpr double kFilm = 0.5;             // of unpolarised light, through a film
-constexpr double kLeak = 0.01;            // of gloss, through crossed ones
+constexpr double kTwoFilms = 0.25;        // of light that loses its polarisation between them
+constexpr double kLeak = 0.01;            // of gloss, through crossed ones over parallel ones
 constexpr double kThroughout = 1 - 1e-9;  // a sum of several pieces may fall short by rounding
 
 struct WeightedPlane {
@@ -236,8 +237,10 @@ void add_films(GatheredLight& light, double crossed_share, const LightFrames* ma
     return parallel + crossed_share * (crossed - parallel);
   };
   light.matt = matt;
-  light.leds_share = between(1, kLeak);
-  light.matt_share = between(-kFilm, kFilm - kLeak);
+  // All light is scattered and mirrored, and `matt` is what is scattered behind both films: what is mirrored
+  // is the first less four times the second.
+  light.leds_share = matt == nullptr ? kTwoFilms : between(kFilm, kFilm * kLeak);
+  light.matt_share = matt == nullptr ? 0 : between(-1, 1 - 2 * kLeak);
   light.ambient_s *= kFilm;
   light.below_s *= kFilm;
 }

@@ -19,7 +19,7 @@ struct GatheredLight {
   std::vector<double> leds_s;  ///< seconds of each LED's full light
   double ambient_s = 0;        ///< of LightFrames::ambient()
   double below_s = 0;          ///< of the light below the cloth
-  /// The same scene without gloss, where there is a polariser and the cloth has gloss.
+  /// What the cloth scatters alone, behind both films, where there is a polariser and the cloth has gloss.
   const LightFrames* matt = nullptr;
   double leds_share = 1;  ///< of a LED's light that comes through the films
   double matt_share = 0;  ///< of its light in `matt`, besides
@@ -41,9 +41,9 @@ GatheredLight gathered_light(const LightFrames& frames, const std::vector<double
                              const LightFaults& faults, const CameraExposure& exposure);
 
 /// Adds what the outputs of a rig with more than LEDs do to an exposure, by the shares of it that they were
-/// on for. Cloth lets a twentieth of the light below through, evenly. Of films, each perfect but for a
-/// hundredth, parallel ones let half of the light and all gloss through, crossed ones half of the light
-/// alone.
+/// on for. Cloth lets a twentieth of the light below through, evenly. Films are perfect but for a hundredth:
+/// what the cloth scatters loses half of the light at each, what it mirrors half at the first alone where
+/// they are parallel, and nearly all where they are crossed (simulator::FilmSettings).
 void add_light_below(GatheredLight& light, double pin_share, const CameraExposure& exposure);
 void add_films(GatheredLight& light, double crossed_share, const LightFrames* matt);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "bench/oracles/rig.h"
@@ -68,20 +69,34 @@ inline std::vector<LobeReading> readings_of(const PixelModel& model, Vec3 n, dou
   return readings;
 }
 
-inline Vec3 lambert_fit(const std::vector<LobeReading>& readings) {
+/// Through crossed films, and then through parallel ones.
+inline std::vector<LobeReading> pair_of_readings(const Lobe& lobe, Vec3 n, double albedo, double noise,
+                                                 Random& random, double leak = 0.01) {
+  std::vector<LobeReading> readings;
+  for (const double share : {2 * leak, 2.0}) {
+    for (const Vec3& l : ten_directions()) {
+      const LitFrom from(l, {0, 0, 1}, share);
+      readings.push_back(reading_of(modelled(lobe, albedo * n, from, 0), from, noise, random));
+    }
+  }
+  return readings;
+}
+
+inline Vec3 lambert_fit(std::span<const LobeReading> readings) {
   PixelSystem system;
   for (const LobeReading& r : readings) system.add(r.from.light, 1, r.x);
   system.regularise();
   return system.solved(system.gradient);
 }
 
-/// What the ten readings of a pixel are.
+/// What the readings of a pixel are: ten of each state of films.
 using PixelReadings =
     std::function<std::vector<LobeReading>(Vec3 normal, double albedo, double yarn, Random& random)>;
 
 inline PixelTruth pixels_by(const PixelReadings& readings_of_pixel, std::size_t count,
-                            const ClothOfPixels& cloth, std::uint64_t seed) {
+                            const ClothOfPixels& cloth, std::uint64_t seed, std::size_t states = 1) {
   PixelTruth truth;
+  truth.samples = LobeSamples(10, states);
   Random random(seed);
   for (std::size_t i = 0; i < count; ++i) {
     const Vec3 n = random_normal(random, cloth.tilt_deg);
@@ -91,7 +106,7 @@ inline PixelTruth pixels_by(const PixelReadings& readings_of_pixel, std::size_t 
     truth.samples.add(readings);
     truth.b.push_back(albedo * n);
     truth.yarn.push_back(yarn);
-    truth.start.push_back(lambert_fit(readings));
+    truth.start.push_back(lambert_fit(std::span(readings).first(10)));
   }
   return truth;
 }

@@ -335,25 +335,33 @@ TEST(Exposure, IsAFileThatSaysWhatTookItAndWhen) {
   EXPECT_EQ(exif[0x9211], std::string("\x70\x11\x01\0", 4)) << "ImageNumber";
 }
 
-TEST(Films, CrossedTakeTheGlossAndHalfOfTheLight) {
+// As a simulated session is made through films.
+TEST(Films, ShowTheGlossAsTheSimulatorsDo) {
   Scene glossy = small_scene();
   glossy.effects.reflectance = true;
   glossy.material.reflectance = simulator::Ggx{};
-  Scene dull = glossy;
-  dull.effects.reflectance = false;
-  const LightFrames frames = opened(glossy), matt = opened(dull);
-  const auto signal = [&](std::optional<double> crossed_share) {
-    GatheredLight light = gathered(frames, {0, 1, 0});
+  Scene through_films = glossy;
+  through_films.films = {.states = simulator::FilmStates::kCrossed, .leak = 0};
+  const LightFrames frames = opened(glossy), scattered = opened(through_films);
+  const auto signal_in = [](const LightFrames& of, std::optional<double> crossed_share,
+                            const LightFrames* matt) {
+    GatheredLight light = gathered(of, {0, 1, 0});
     light.ambient_s = 0;
-    if (crossed_share) add_films(light, *crossed_share, &matt);
-    return signal_of(frames, light)(64, 48);
+    light.leds_s = {0, 1e-3, 0};
+    if (crossed_share) add_films(light, *crossed_share, matt);
+    return signal_of(of, light)(64, 48);
   };
-  GatheredLight without_gloss = gathered(matt, {0, 1, 0});
-  without_gloss.ambient_s = 0;
-  const double all = signal(std::nullopt), diffuse = signal_of(matt, without_gloss)(64, 48);
-  EXPECT_GT(std::abs(all - diffuse), 0.001 * diffuse) << "the cloth has gloss";
-  EXPECT_NEAR(signal(0.0), all - diffuse / 2, 1e-6 * all) << "parallel";
-  EXPECT_NEAR(signal(1.0), diffuse / 2 + 0.01 * (all - diffuse), 1e-6 * all) << "crossed";
+  const double all = signal_in(frames, std::nullopt, nullptr);
+  const double matt = 4 * signal_in(scattered, std::nullopt, nullptr);
+  EXPECT_GT(std::abs(all - matt), 0.001 * matt) << "the cloth has gloss";
+  const auto filmed = [&](double crossed_share) { return signal_in(frames, crossed_share, &scattered); };
+  EXPECT_NEAR(filmed(0), matt / 4 + (all - matt) / 2, 1e-6 * all) << "parallel";
+  EXPECT_NEAR(filmed(1), matt / 4 + 0.01 * (all - matt) / 2, 1e-6 * all) << "crossed";
+  through_films.films = {.states = simulator::FilmStates::kParallel};
+  EXPECT_NEAR(filmed(0), signal_in(opened(through_films), std::nullopt, nullptr), 1e-6 * all);
+  through_films.films = {.states = simulator::FilmStates::kCrossed};
+  EXPECT_NEAR(filmed(1), signal_in(opened(through_films), std::nullopt, nullptr), 1e-6 * all);
+  EXPECT_NEAR(signal_in(frames, 1, nullptr), all / 4, 1e-6 * all) << "of cloth without gloss";
 }
 
 TEST(LightBelow, ComesThroughTheClothEvenly) {
