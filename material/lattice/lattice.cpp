@@ -41,20 +41,21 @@ double least_repeats_in(Size size, const Cell& cell) {
   return std::min(repeats(cell.a), repeats(cell.b));
 }
 
-// Whether the relief is alike again closer than the diagonal of two by two of the narrowest yarns.
-bool is_too_fine(const Lattice& lattice, const Correlation& mean) {
-  constexpr double kAlike = 0.8;
-  const double diagonal = kLeastYarn_px * std::sqrt(2.0);
-  const auto peaks = mean.peaks(0, 2, 0.68 * mean.reach());
-  const double least = kAlike * peaks.front().value;
-  return std::min(lattice.yarn_x_px, lattice.yarn_y_px) < kLeastYarn_px ||
-         std::ranges::any_of(
-             peaks, [&](const auto& peak) { return length(peak.lag) < diagonal && peak.value > least; });
+// Yarns that are hardly sampled put tops of the correlation where no larger weave has any.
+bool is_too_fine(const Lattice& lattice, const std::vector<const Correlation*>& slopes) {
+  constexpr double kAlike = 0.55, kCloserThan_px = 5;
+  const bool has_close_top = std::ranges::any_of(slopes, [&](const Correlation* each) {
+    const auto peaks = each->peaks(0, 2, 0.68 * each->reach());
+    return std::ranges::any_of(peaks, [&](const auto& peak) {
+      return length(peak.lag) < kCloserThan_px && peak.value > kAlike * peaks.front().value;
+    });
+  });
+  return has_close_top || std::min(lattice.yarn_x_px, lattice.yarn_y_px) < kLeastYarn_px;
 }
 
-LatticeKind kind_of(const Lattice& lattice, const Correlation& mean, Size frame) {
+LatticeKind kind_of(const Lattice& lattice, const std::vector<const Correlation*>& slopes, Size frame) {
   if (least_repeats_in(frame, lattice.weave) < kLeastRepeats) return LatticeKind::kFewRepeats;
-  return is_too_fine(lattice, mean) ? LatticeKind::kTooFine : LatticeKind::kRepeat;
+  return is_too_fine(lattice, slopes) ? LatticeKind::kTooFine : LatticeKind::kRepeat;
 }
 
 // Of the slopes at the nearest repeats.
@@ -173,7 +174,7 @@ Result<Lattice> find_lattice(const Surface& surface, const LatticeOptions& optio
       cell_along_yarns(lattice.weave, yarn_directions(surface, crop, lattice.weave, correlations));
   find_colours(correlations.of[2], along, lattice);
   state_axes(along, lattice);
-  lattice.kind = kind_of(lattice, mean, surface.size());
+  lattice.kind = kind_of(lattice, slopes, surface.size());
   return lattice;
 }
 

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "material/finish/straighten.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "core/parallel.h"
+#include "core/solve_record.h"
+#include "core/vec.h"
+#include "material/finish/resample.h"
+#include "material/usable.h"
+
+namespace weft::material {
+namespace {
+
+constexpr int kMostSide = 32768, kLookupStep = 8, kLeastSide = 64;
+const char* const kWhat = "the cloth cannot be straightened";
+
+// Columns and rows along the yarns, around the centre of the photographed cloth.
+struct Plan {
+  Size size;
+  int repeats_x = 0, repeats_y = 0;
+  Size period_px;
+  Vec2 by_column, by_row;  ///< old pixels, without pulls
+
+  Vec2 lattice_place(double column, double row) const {
+    return (column - (size.width - 1) / 2.0) * by_column + (row - (size.height - 1) / 2.0) * by_row;
+  }
+};
+
+// Whether a rectangle of half sides `u` and `v` old pixels along the yarns lies in the frame.
+bool lies_within(const Cell& axes, Size frame, double u, double v) {
+  const Vec2 across = (u / length(axes.a)) * axes.a, up = (v / length(axes.b)) * axes.b;
+  return std::abs(across.x) + std::abs(up.x) <= (frame.width - 1) / 2.0 &&
+         std::abs(across.y) + std::abs(up.y) <= (frame.height - 1) / 2.0;
+}
+
+// The largest number for which `fits` holds, of those that hold up to some limit.
+template <typename Fits>
+double largest(double beyond, Fits&& fits) {
+  double holds = 0;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = (holds + beyond) / 2;
+    (fits(middle) ? holds : beyond) = middle;
+  }
+  return holds;
+}
+
+// Half sides of a rectangle in the frame: the frame's proportions, then each side as long as it may be.
+std::array<double, 2> widest(const Cell& axes, Size frame) {
+  const double w = frame.width, h = frame.height;
+  const double both = largest(2, [&](double k) { return lies_within(axes, frame, k * w, k * h); });
+  const double u = largest(2 * w, [&](double k) { return lies_within(axes, frame, k, both * h); });
+  const double v = largest(2 * h, [&](double k) { return lies_within(axes, frame, u, k); });
+  return {u, v};
+}
+
+Result<Plan> plan_of(const Surface& surface, const Lattice& lattice, const StraightenOptions& options) {
+  const auto refused = [](ErrorKind kind, std::string why, std::string remedy) {
+    return Error{kind, kWhat, "straighten", std::move(why), std::move(remedy)};
+  };
+  if (lattice.kind != LatticeKind::kRepeat) {
+    return refused(ErrorKind::kBadData, std::string(words_of(lattice.kind)),
+                   "turn the cloth by hand, or take a larger or sharper part of it");
+  }
+  const double mm = options.mm_per_pixel == 0 ? surface.mm_per_pixel : options.mm_per_pixel;
+  if (!(mm > 0 && std::isfinite(mm)))
+    return refused(ErrorKind::kUsage, "mm_per_pixel is not above 0", "ask for a size above 0");
+  if (options.repeats_x < 0 || options.repeats_y < 0)
+    return refused(ErrorKind::kUsage, "a number of repeats is below 0", "ask for 1 repeat or more, or 0");
+  const double scale = surface.mm_per_pixel / mm;
+  const std::array<double, 2> half = widest(lattice.axes, surface.size());
+  const std::array<double, 2> repeat = {scale * length(lattice.axes.a), scale * length(lattice.axes.b)};
+  std::array<int, 2> size = {}, repeats = {options.repeats_x, options.repeats_y}, period = {};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double longest = 2 * scale * half[i] + 1;
+    if (!(longest <= kMostSide)) {
+      return refused(ErrorKind::kUsage,
+                     fmt::format("{:.4g} mm a pixel make {:.0f} pixels a side", mm, longest),
+                     fmt::format("ask for a size that gives {} at most", kMostSide));
+    }
+    size[i] = static_cast<int>(longest);
+    if (repeats[i] == 0) repeats[i] = std::max(1, static_cast<int>(size[i] / repeat[i]) - 1);
+    const double pixels = std::max(1.0, std::round(repeats[i] * repeat[i]));
+    if (!(pixels <= kMostSide)) {
+      return refused(ErrorKind::kUsage, fmt::format("{} repeats are {:.0f} pixels", repeats[i], pixels),
+                     "ask for fewer repeats");
+    }
+    period[i] = static_cast<int>(pixels);
+  }
+  Plan plan = {{size[0], size[1]}, repeats[0], repeats[1], {period[0], period[1]}, {}, {}};
+  plan.by_column = (static_cast<double>(plan.repeats_x) / plan.period_px.width) * lattice.axes.a;
+  plan.by_row = (-static_cast<double>(plan.repeats_y) / plan.period_px.height) * lattice.axes.b;
+  return plan;
+}
+
+// Places of x + d(x) = X: pulls are small against their own length, so few rounds do.
+Lookup lookup_of(const Plan& plan, const Displacement& displacement, int threads) {
+  constexpr int kRounds = 6;
+  Lookup lookup(plan.size, kLookupStep);
+  parallel_for(static_cast<std::size_t>(lookup.nodes().height), threads, [&](std::size_t row, int) {
+    const int j = static_cast<int>(row);
+    for (int i = 0; i < lookup.nodes().width; ++i) {
+      const Vec2 wanted = plan.lattice_place((i - 1) * kLookupStep, (j - 1) * kLookupStep);
+      Vec2 place = wanted;
+      for (int round = 0; round < kRounds; ++round) place = wanted - displacement.at(place);
+      lookup.set(i, j, place);
+    }
+  });
+  return lookup;
+}
+
+void state_pull(double mm_per_pixel, Straightened& out) {
+  const Image<float>& field = out.displacement.field();
+  double squares = 0;
+  for (int y = 0; y < field.height(); ++y) {
+    for (int x = 0; x < field.width(); ++x) {
+      const double pull = length({field(x, y, 0), field(x, y, 1)});
+      squares += pull * pull;
+      out.largest_pull_mm = std::max(out.largest_pull_mm, mm_per_pixel * pull);
+    }
+  }
+  if (!field.empty())
+    out.rms_pull_mm = mm_per_pixel * std::sqrt(squares / static_cast<double>(field.size().pixels()));
+}
+
+}  // namespace
+
+Result<Straightened> straighten(const Surface& surface, const Lattice& lattice,
+                                const StraightenOptions& options) {
+  if (auto usable = check_surface(surface, kLeastSide, kWhat); !usable) return std::move(usable).error();
+  Result<Plan> plan = plan_of(surface, lattice, options);
+  if (!plan) return std::move(plan).error();
+  Straightened out;
+  const double sigma_px =
+      options.lock_in_repeats * std::sqrt(std::min(lattice.axes.area(), 4 * lattice.weave.area()));
+  if (sigma_px > 0) out.displacement = lock_in(surface, lattice.weave, sigma_px, options.threads);
+  out.lookup = lookup_of(*plan, out.displacement, options.threads);
+  out.repeats_x = plan->repeats_x;
+  out.repeats_y = plan->repeats_y;
+  out.period_px = plan->period_px;
+  out.mm_per_pixel_x = surface.mm_per_pixel * length(plan->by_column);
+  out.mm_per_pixel_y = surface.mm_per_pixel * length(plan->by_row);
+  out.turn_deg = lattice.turn_x_deg;
+  out.skew_deg = lattice.turn_y_deg - lattice.turn_x_deg;
+  state_pull(surface.mm_per_pixel, out);
+  out.surface = resampled(surface, out.lookup, out.mm_per_pixel_x, out.mm_per_pixel_y, options.threads);
+  return out;
+}
+
+double repeating_share(const Surface& surface, double repeat_x, double repeat_y) {
+  struct Bin {
+    double n = 0, sum = 0;
+  };
+  const int columns = std::max(1, static_cast<int>(std::lround(repeat_x))),
+            rows = std::max(1, static_cast<int>(std::lround(repeat_y)));
+  const auto place = [](int i, double repeat, int bins) {
+    const double phase = i / repeat - std::floor(i / repeat);
+    return static_cast<std::size_t>(std::min(static_cast<int>(phase * bins), bins - 1));
+  };
+  double between = 0, total = 0;
+  for (int p = 0; p < 2; ++p) {
+    std::vector<Bin> bins(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    double n = 0, sum = 0, squares = 0;
+    for (int y = 0; y < surface.size().height; ++y) {
+      const std::size_t row = place(y, repeat_y, rows) * static_cast<std::size_t>(columns);
+      for (int x = 0; x < surface.size().width; ++x) {
+        if ((surface.status(x, y) & kNoSolution) != 0) continue;
+        const double value = static_cast<double>(surface.slope(x, y, p));
+        Bin& bin = bins[row + place(x, repeat_x, columns)];
+        bin.n += 1;
+        bin.sum += value;
+        n += 1;
+        sum += value;
+        squares += value * value;
+      }
+    }
+    double of_bins = 0, filled = 0;
+    for (const Bin& bin : bins) {
+      if (bin.n == 0) continue;
+      of_bins += bin.sum * bin.sum / bin.n;
+      filled += 1;
+    }
+    if (n <= filled) return 0;
+    const double within = (squares - of_bins) / (n - filled);
+    between += std::max(of_bins - sum * sum / n - (filled - 1) * within, 0.0);
+    total += squares - sum * sum / n;
+  }
+  return total > 0 ? between / total : 0;
+}
+
+}  // namespace weft::material
