@@ -8,10 +8,8 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <vector>
 
 #include "core/parallel.h"
-#include "core/solve_record.h"
 #include "core/vec.h"
 #include "material/finish/resample.h"
 #include "material/usable.h"
@@ -20,7 +18,7 @@ namespace weft::material {
 namespace {
 
 constexpr int kMostSide = 32768, kLookupStep = 8, kLeastSide = 64;
-const char* const kWhat = "the cloth cannot be straightened";
+const char* const kNotStraightened = "the cloth cannot be straightened";
 
 // Columns and rows along the yarns, around the centre of the photographed cloth.
 struct Plan {
@@ -63,7 +61,7 @@ std::array<double, 2> widest(const Cell& axes, Size frame) {
 
 Result<Plan> plan_of(const Surface& surface, const Lattice& lattice, const StraightenOptions& options) {
   const auto refused = [](ErrorKind kind, std::string why, std::string remedy) {
-    return Error{kind, kWhat, "straighten", std::move(why), std::move(remedy)};
+    return Error{kind, kNotStraightened, "straighten", std::move(why), std::move(remedy)};
   };
   if (lattice.kind != LatticeKind::kRepeat) {
     return refused(ErrorKind::kBadData, std::string(words_of(lattice.kind)),
@@ -134,7 +132,8 @@ void state_pull(double mm_per_pixel, Straightened& out) {
 
 Result<Straightened> straighten(const Surface& surface, const Lattice& lattice,
                                 const StraightenOptions& options) {
-  if (auto usable = check_surface(surface, kLeastSide, kWhat); !usable) return std::move(usable).error();
+  if (auto usable = check_surface(surface, kLeastSide, kNotStraightened); !usable)
+    return std::move(usable).error();
   Result<Plan> plan = plan_of(surface, lattice, options);
   if (!plan) return std::move(plan).error();
   Straightened out;
@@ -152,47 +151,6 @@ Result<Straightened> straighten(const Surface& surface, const Lattice& lattice,
   state_pull(surface.mm_per_pixel, out);
   out.surface = resampled(surface, out.lookup, out.mm_per_pixel_x, out.mm_per_pixel_y, options.threads);
   return out;
-}
-
-double repeating_share(const Surface& surface, double repeat_x, double repeat_y) {
-  struct Bin {
-    double n = 0, sum = 0;
-  };
-  const int columns = std::max(1, static_cast<int>(std::lround(repeat_x))),
-            rows = std::max(1, static_cast<int>(std::lround(repeat_y)));
-  const auto place = [](int i, double repeat, int bins) {
-    const double phase = i / repeat - std::floor(i / repeat);
-    return static_cast<std::size_t>(std::min(static_cast<int>(phase * bins), bins - 1));
-  };
-  double between = 0, total = 0;
-  for (int p = 0; p < 2; ++p) {
-    std::vector<Bin> bins(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-    double n = 0, sum = 0, squares = 0;
-    for (int y = 0; y < surface.size().height; ++y) {
-      const std::size_t row = place(y, repeat_y, rows) * static_cast<std::size_t>(columns);
-      for (int x = 0; x < surface.size().width; ++x) {
-        if ((surface.status(x, y) & kNoSolution) != 0) continue;
-        const double value = static_cast<double>(surface.slope(x, y, p));
-        Bin& bin = bins[row + place(x, repeat_x, columns)];
-        bin.n += 1;
-        bin.sum += value;
-        n += 1;
-        sum += value;
-        squares += value * value;
-      }
-    }
-    double of_bins = 0, filled = 0;
-    for (const Bin& bin : bins) {
-      if (bin.n == 0) continue;
-      of_bins += bin.sum * bin.sum / bin.n;
-      filled += 1;
-    }
-    if (n <= filled) return 0;
-    const double within = (squares - of_bins) / (n - filled);
-    between += std::max(of_bins - sum * sum / n - (filled - 1) * within, 0.0);
-    total += squares - sum * sum / n;
-  }
-  return total > 0 ? between / total : 0;
 }
 
 }  // namespace weft::material

@@ -43,8 +43,4 @@ struct Straightened {
 Result<Straightened> straighten(const Surface& surface, const Lattice& lattice,
                                 const StraightenOptions& options = {});
 
-/// The share of the slopes' variance that comes again in every repeat of `repeat_x` x `repeat_y` pixels, 0 to
-/// 1: of an analysis of variance by place in the repeat, so that few repeats do not look alike by chance.
-double repeating_share(const Surface& surface, double repeat_x, double repeat_y);
-
 }  // namespace weft::material

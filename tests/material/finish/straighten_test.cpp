@@ -9,6 +9,7 @@
 #include <ctime>
 
 #include "core/solve_record.h"
+#include "material/finish/mean_repeat.h"
 #include "tests/material/weave.h"
 
 namespace weft::material {
