@@ -38,11 +38,12 @@ double by_printed_fit(double base, double detail) {
   return alpha_of(GlossScale::kGloss, p / q);
 }
 
-// Tails carry lengths where lobes are narrow; broad ones have none left to carry.
+// Between Cauchy's lobes, whose widths add up, and Gauss's, whose squares do: GGX is the first where it is
+// narrow.
 double by_measure(double base, double detail) {
-  constexpr double kNarrow = 0.3, kBroad = 0.4;
-  const double t = std::clamp((std::max(base, detail) - kNarrow) / (kBroad - kNarrow), 0.0, 1.0);
-  return (1 - t) * by_lengths(base, detail) + t * by_variances(base, detail);
+  const double exponent = 9.0 / 7 + 4.0 / 3 * (base * base + detail * detail);
+  const double sum = std::pow(base, exponent) + std::pow(detail, exponent);
+  return std::min(1.0, std::pow(sum, 1 / exponent));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ double alpha_of_power(double power);
 
 /// How the lobe of a base and that of a detail layer on it become one.
 enum class GlossJoin {
-  kMeasured,       ///< lengths up to alpha 0.3, variances from 0.4 of the rougher one, blended between
+  kMeasured,       ///< (a^p + b^p)^(1/p), p = 9/7 + 4/3 (a^2 + b^2): fitted to `weft bench maps --part gloss`
   kLengths,        ///< normal_length() multiplies (seed 001 eq. 34)
   kVariances,      ///< root of the sum of squares
   kPrintedGlosses  ///< fit of kLengths to the glosses of eq. 2, up to 0.017 off (seed 001 eq. 35-37, listing
