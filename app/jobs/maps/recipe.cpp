@@ -128,7 +128,7 @@ Result<RecipeStep> step_from_json(const Json& object, const std::string& where) 
     return unfit(where, "it does not say what to do");
   const std::string name = object["do"].get<std::string>();
   const auto kind =
-      std::ranges::find(step_kinds(), name, [](const StepKind& k) { return std::string(k.name); });
+      std::ranges::find(step_kinds(), name, [](const RecipeStepKind& k) { return std::string(k.name); });
   if (kind == step_kinds().end())
     return unfit(where,
                  fmt::format("there is no step {}; the nearest is {}", name, nearest_of(name, step_kinds())));
@@ -152,8 +152,8 @@ Result<RecipeStep> step_from_json(const Json& object, const std::string& where) 
 
 }  // namespace
 
-const std::vector<StepKind>& step_kinds() {
-  static const std::vector<StepKind> kinds = {
+const std::vector<RecipeStepKind>& step_kinds() {
+  static const std::vector<RecipeStepKind> kinds = {
       {"flatten",
        "Takes slow slopes out",
        {{"by",
@@ -215,13 +215,29 @@ Json json_of(const Recipe& recipe) {
   return {{"steps", std::move(steps)}};
 }
 
-Result<Recipe> read_recipe(const fs::path& file) {
-  for (const KnownRecipe& known : known_recipes()) {
-    if (file != known.name || is_there(file)) continue;
-    Json steps = Json::array();
-    for (const char* name : known.steps) steps.push_back({{"do", name}});
-    return recipe_from_json({{"steps", std::move(steps)}}, known.name);
+std::vector<std::string> recipe_names() {
+  std::vector<std::string> names;
+  for (const KnownRecipe& known : known_recipes()) names.emplace_back(known.name);
+  return names;
+}
+
+Recipe recipe_named(const std::string& name) {
+  Recipe recipe;
+  const auto is_it = [&](const KnownRecipe& known) { return name == known.name; };
+  const auto known = std::ranges::find_if(known_recipes(), is_it);
+  if (known == known_recipes().end()) return recipe;
+  for (const char* step : known->steps) {
+    const auto kind = std::ranges::find_if(
+        step_kinds(), [&](const RecipeStepKind& each) { return each.name == std::string(step); });
+    recipe.steps.push_back({step, Json::object()});
+    for (const StepKey& key : kind->keys)
+      recipe.steps.back().options[key.name] = plain(key.otherwise, key.holds);
   }
+  return recipe;
+}
+
+Result<Recipe> read_recipe(const fs::path& file) {
+  if (Recipe known = recipe_named(file.string()); !known.steps.empty() && !is_there(file)) return known;
   if (!is_there(file) && !file.has_extension()) {
     return Error{ErrorKind::kNoInput, "there is no such recipe", file.string(),
                  fmt::format("no file of this name; weft's own nearest is {}",

@@ -47,20 +47,24 @@ struct StepKey {
   std::vector<std::string> words = {};
 };
 
-struct StepKind {
+struct RecipeStepKind {
   const char* name;
   const char* says;
   std::vector<StepKey> keys;
 };
 
 /// All that a recipe may say.
-const std::vector<StepKind>& step_kinds();
+const std::vector<RecipeStepKind>& step_kinds();
 
 /// {"steps": [{"do": "tile", "repeats": [4, 3]}, ...]}; any other key of the object is passed over, so that a
 /// maps.json is a recipe too. Keys that a step lacks have their default. kBadData with the step's number and
 /// the key; of an unknown name the nearest known one is named.
 Result<Recipe> recipe_from_json(const Json& document, const std::string& where);
 Json json_of(const Recipe& recipe);
+
+/// The names of the recipes that weft brings along, and each of them.
+std::vector<std::string> recipe_names();
+Recipe recipe_named(const std::string& name);
 
 /// A file: TOML with a table [[step]] a step, or JSON as above. Or the name of a recipe that weft brings
 /// along (flat, tile, detail). kNoInput, kBadData.

@@ -2,6 +2,7 @@
 #include "app/jobs/view/layers.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/files.h"
 #include "core/image_io/image_io.h"
@@ -23,6 +24,36 @@ const std::vector<Layer>& known_layers() {
       {"condition", LayerKind::kScalar, "decades", "condition.exr", {"condition"}},
       {"status", LayerKind::kFlags, "share", "status.png", {"Y"}}};
   return layers;
+}
+
+LayerKind kind_of(const std::vector<std::string>& channels) {
+  if (channels == std::vector<std::string>{"X", "Y", "Z"}) return LayerKind::kNormal;
+  if (channels == std::vector<std::string>{"R", "G", "B"}) return LayerKind::kColor;
+  return LayerKind::kScalar;
+}
+
+// A map of maps.json as a layer: of a scalar its first channel. None where it is a number, or lies elsewhere.
+std::optional<Layer> layer_of(const Json& map) {
+  if (!map.is_object() || !map.contains("file")) return {};
+  JsonFields fields(map, "maps");
+  Layer layer;
+  layer.name = fields.text("name");
+  layer.file = fields.text("file");
+  layer.unit = fields.text_or("unit", "");
+  for (const Json& channel : fields.list("channels")) {
+    if (channel.is_string()) layer.channels.push_back(channel.get<std::string>());
+  }
+  layer.kind = kind_of(layer.channels);
+  if (layer.kind == LayerKind::kScalar)
+    layer.channels.resize(std::min<std::size_t>(1, layer.channels.size()));
+  const bool is_inside = layer.file.find('/') == std::string::npos;
+  return fields.status() && is_inside && !layer.channels.empty() ? std::optional(layer) : std::nullopt;
+}
+
+bool has_all(const ImageFileInfo& info, const Layer& layer) {
+  return std::ranges::all_of(layer.channels, [&](const std::string& channel) {
+    return std::ranges::find(info.channels, channel) != info.channels.end();
+  });
 }
 
 }  // namespace
@@ -50,27 +81,38 @@ const Layer* Layers::find(const std::string& name) const {
 Result<Layers> layers_of(const std::filesystem::path& folder) {
   Layers layers;
   std::string file;
-  std::vector<std::string> channels;
+  ImageFileInfo known;
   for (const Layer& layer : known_layers()) {
     if (!is_there(folder / layer.file)) continue;
     if (file != layer.file) {
-      const Result<ImageFileInfo> info = read_image_info(folder / layer.file);
-      if (!info) return info.error();
+      Result<ImageFileInfo> info = read_image_info(folder / layer.file);
+      if (!info) return std::move(info).error();
       if (!layers.all.empty() && !(info->size == layers.size)) {
         return Error{ErrorKind::kBadData, "maps of one folder differ in size", (folder / layer.file).string(),
                      "", "solve the session again"};
       }
       layers.size = info->size;
       file = layer.file;
-      channels = info->channels;
+      known = std::move(*info);
     }
-    const bool has_all = std::ranges::all_of(layer.channels, [&](const std::string& channel) {
-      return std::ranges::find(channels, channel) != channels.end();
-    });
-    if (has_all) layers.all.push_back(layer);
+    if (has_all(known, layer)) layers.all.push_back(layer);
   }
   if (!layers.all.empty()) return layers;
   return Error{ErrorKind::kNoInput, "there are no maps", folder.string(), "", "solve the session first"};
+}
+
+Result<Layers> layers_of_set(const std::filesystem::path& folder, const Json& document) {
+  Result<Layers> layers = layers_of(folder);
+  if (!layers) return layers;
+  JsonFields fields(document, "maps.json");
+  for (const Json& map : fields.list("maps")) {
+    const std::optional<Layer> layer = layer_of(map);
+    if (!layer || layers->find(layer->name) != nullptr) continue;
+    const Result<ImageFileInfo> info = read_image_info(folder / layer->file);
+    if (info && info->size == layers->size && has_all(*info, *layer)) layers->all.push_back(*layer);
+  }
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  return layers;
 }
 
 }  // namespace weft::app

@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/json_document.h"
 #include "core/result.h"
 
-// What can be looked at of a folder of maps: those of a solve, or the truth of a simulated session.
+// What can be looked at of a folder of maps: those of a solve, a set that weft maps made, or the truth of a
+// simulated session.
 
 namespace weft::app {
 
@@ -41,5 +43,9 @@ struct Layers {
   const Layer* find(const std::string& name) const;
 };
 Result<Layers> layers_of(const std::filesystem::path& folder);
+
+/// The same of a set of maps, and those that its maps.json names: of scalars the first channel. One of
+/// another size, or that cannot be read, is left out. kBadData where the document has no list of maps.
+Result<Layers> layers_of_set(const std::filesystem::path& folder, const Json& document);
 
 }  // namespace weft::app

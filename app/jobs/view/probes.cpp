@@ -63,18 +63,32 @@ Rect reduced(Rect part, int level) {
   return part;
 }
 
-// Where a pixel of the maps lies on the plane of the cloth, as this camera sees it.
-Vec3 place_of(const CameraModel& camera, const Ground& ground, double x, double y) {
+// As this camera sees it.
+Vec3 place_seen(const CameraModel& camera, const Ground& ground, double x, double y) {
   const double each = ground.pixels_each, middle = (each - 1) / 2;
   return point_on_plane(camera, each * x + middle, each * y + middle, ground.height_mm);
 }
 
-double length_mm(const CameraModel& camera, const Ground& ground, const Line& line) {
-  const Vec3 a = place_of(camera, ground, line.x0, line.y0), b = place_of(camera, ground, line.x1, line.y1);
-  return std::hypot(b.x - a.x, b.y - a.y);
+// With its standard deviation.
+Json length_of(const Ground& ground, const Line& line) {
+  const auto between = [](Vec3 a, Vec3 b) { return std::hypot(b.x - a.x, b.y - a.y); };
+  Json facts = {{"mm", between(place_on(ground, line.x0, line.y0), place_on(ground, line.x1, line.y1))},
+                {"sigma_mm", nullptr}};
+  if (ground.calibration == nullptr || !ground.calibration->camera_covariance) return facts;
+  const auto length = [&](const CameraModel& seen) {
+    return between(place_seen(seen, ground, line.x0, line.y0), place_seen(seen, ground, line.x1, line.y1));
+  };
+  facts["sigma_mm"] =
+      calibration::propagated(*ground.calibration->camera, *ground.calibration->camera_covariance, length);
+  return facts;
 }
 
 }  // namespace
+
+Vec3 place_on(const Ground& ground, double x, double y) {
+  if (ground.calibration == nullptr) return {ground.mm_per_pixel * x, -ground.mm_per_pixel * y, 0};
+  return place_seen(*ground.calibration->camera, ground, x, y);
+}
 
 Result<Json> region_facts(const Layers& layers, const OpenLayer& open, Rect part) {
   int level = 0;
@@ -106,11 +120,7 @@ Result<Json> region_facts(const Layers& layers, const OpenLayer& open, Rect part
 }
 
 Result<Json> line_facts(const Layers& layers, const OpenLayer& open, const Line& line, const Ground& ground) {
-  const CameraModel& camera = *ground.calibration.camera;
-  const auto length = [&](const CameraModel& seen) { return length_mm(seen, ground, line); };
-  const auto& covariance = ground.calibration.camera_covariance;
-  Json facts = {{"mm", length(camera)}, {"sigma_mm", nullptr}};
-  if (covariance) facts["sigma_mm"] = calibration::propagated(camera, *covariance, length);
+  Json facts = length_of(ground, line);
 
   std::array<std::shared_ptr<Pyramid>, 2> maps;
   const std::array<const char*, 2> names = {"normal", "albedo"};
@@ -138,7 +148,7 @@ Result<Json> line_facts(const Layers& layers, const OpenLayer& open, const Line&
     if (!color) return color.error();
     const double nz = std::max(double{(*normal)(0, 0, 2)}, 1e-3);
     const Vec3 slope = {-double{(*normal)(0, 0, 0)} / nz, -double{(*normal)(0, 0, 1)} / nz, 0};
-    const Vec3 place = place_of(camera, ground, x, y);
+    const Vec3 place = place_on(ground, x, y);
     if (i == 0) first = place;
     if (i > 0) {
       height += 0.5 * ((slope.x + slope_before.x) * (place.x - before.x) +

@@ -30,15 +30,20 @@ struct Line {
   double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
 };
 
-/// Where a solve's pixels lie on the cloth.
+/// Where pixels of maps lie on the cloth.
 struct Ground {
-  const Calibration& calibration;  ///< has a camera
-  int pixels_each = 1;             ///< of the camera, a pixel of the maps and side
-  double height_mm = 0;            ///< of the cloth
+  const Calibration* calibration =
+      nullptr;              ///< has the camera that saw them; none: they are a grid of the table
+  int pixels_each = 1;      ///< of the camera, a pixel of the maps and side
+  double height_mm = 0;     ///< of the cloth
+  double mm_per_pixel = 0;  ///< of the grid
 };
 
+/// Of the rig frame, a place on the plane of the cloth; of a grid, from the first pixel's centre, y up.
+Vec3 place_on(const Ground& ground, double x, double y);
+
 /// {"mm", "sigma_mm", "profile": {"mm", "height_mm", "albedo"}} along a line. The length is that on the plane
-/// of the cloth, its sigma from the covariance of the camera (null where the calibration has none). The
+/// of the cloth, its sigma from the covariance of the camera (null where there is none). The
 /// profile is of the pixels under the line, at most 2000: heights are sums of slopes from the line's begin,
 /// albedo is green's. kBadData where a layer of normals or albedo is not there.
 Result<Json> line_facts(const Layers& layers, const OpenLayer& open, const Line& line, const Ground& ground);

@@ -61,6 +61,7 @@ Resource calibrations_resource(const RigParts& parts);
 Resource scan_resource(const RigParts& parts);
 Resource sessions_resource(const RigParts& parts);
 Resource frames_resource(const RigParts& parts);
+Resource maps_resource(const RigParts& parts);
 Resource solves_resource(const RigParts& parts);
 Resource jobs_resource(const RigParts& parts);
 Resource library_resource(const RigParts& parts);

@@ -13,6 +13,7 @@ const char* frames_description();
 const char* jobs_description();
 const char* library_description();
 const char* login_description();
+const char* maps_description();
 const char* rig_description();
 const char* scan_description();
 const char* server_description();

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/jobs/maps/recipe.h"
 #include "app/jobs/planned_cloth.h"
 #include "core/files.h"
 #include "library/session_files.h"
@@ -22,7 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestWord = 100;
 constexpr std::size_t kLongestFolder = 200;
-constexpr const char* kTorture = "torture";  // the session that its job makes
+constexpr std::size_t kMostWords = 50;
+constexpr std::size_t kLongestRecipe = 100000;  // what Linux takes as one argument is 131072
+constexpr const char* kTorture = "torture";     // the session that its job makes
 constexpr const char* kPlanPicture = "{files}/plan.svg";
 
 Error unfit(const std::string& field, const std::string& rule) {
@@ -33,6 +36,9 @@ Error unfit(const std::string& field, const std::string& rule) {
 enum class Holds {
   kWord,
   kNumber,
+  kFlag,      // true: the option
+  kWords,     // a list, which becomes words by commas
+  kRecipe,    // {"steps": [...]}, which becomes its text
   kSession,   // the name of one
   kFolder,    // one that is there, below the rig's
   kNewFolder  // one that is not there yet
@@ -73,6 +79,26 @@ std::vector<std::string_view> plan_cloths() {
   return names;
 }
 
+std::vector<std::string_view> own_recipes() {
+  static const std::vector<std::string> names = recipe_names();
+  return {names.begin(), names.end()};
+}
+
+// What both verbs of maps take.
+std::vector<JobField> maps_fields() {
+  return {kSession,
+          word("solve", "--solve"),
+          number("mm_per_pixel", "--mm-per-pixel", 1e-4, 100),
+          {"preview", "--preview", Holds::kFlag},
+          word("recipe", "--recipe", own_recipes()),
+          {"steps", "--steps", Holds::kRecipe}};
+}
+
+std::vector<JobField> with_field(std::vector<JobField> fields, JobField field) {
+  fields.push_back(std::move(field));
+  return fields;
+}
+
 const std::vector<JobKind>& job_kinds() {
   static const std::vector<JobKind> kinds = {
       {"solve",
@@ -88,6 +114,8 @@ const std::vector<JobKind>& job_kinds() {
        {"rectify"},
        {kSession, word("solve", "--solve"), number("mm_per_pixel", "--mm-per-pixel", 1e-4, 100),
         number("turn_deg", "--turn", -360, 360)}},
+      {"maps", {"maps"}, with_field(maps_fields(), {"maps", "--maps", Holds::kWords})},
+      {"finish", {"finish"}, maps_fields()},
       {"copy", {"copy"}, {kSession}},
       {"torture", {"torture"}, {}},
       {"rig_plan",
@@ -182,15 +210,36 @@ Result<fs::path> new_folder_below(const fs::path& root, const Json& body, const 
   return made ? folder : made.error();
 }
 
+Result<std::string> number_in(const Json& value, const JobField& field) {
+  const double amount = value.is_number() ? value.get<double>() : field.least - 1;
+  if (amount >= field.least && amount <= field.most) return fmt::format("{}", amount);
+  return unfit(field.field, fmt::format("must be a number from {} to {}", field.least, field.most));
+}
+
+Result<std::string> words_in(const Json& value, const JobField& field) {
+  const bool is_list = value.is_array() && !value.empty() && value.size() <= kMostWords;
+  const bool fits = is_list && std::ranges::all_of(value, [](const Json& each) {
+                      return each.is_string() && is_plain(each.get_ref<const std::string&>());
+                    });
+  if (!fits) return unfit(field.field, fmt::format("must be a list of 1 to {} plain words", kMostWords));
+  return fmt::format("{}", fmt::join(value.get<std::vector<std::string>>(), ","));
+}
+
+// As the verb reads it, so that what is wrong is said before it runs.
+Result<std::string> recipe_in(const Json& value, const JobField& field) {
+  const Result<Recipe> recipe = recipe_from_json(value, field.field);
+  if (!recipe) return unfit(recipe.error().where, recipe.error().why);
+  std::string text = json_of(*recipe).dump();
+  if (text.size() > kLongestRecipe) return unfit(field.field, "is too long");
+  return text;
+}
+
 // What the field becomes; what the job needs of it is added to its needs.
 Result<std::string> argument_of(const Json& body, const JobField& field, const JobPlaces& places,
                                 JobSpec& spec) {
-  if (field.holds == Holds::kNumber) {
-    const Json& value = body[field.field];
-    const double amount = value.is_number() ? value.get<double>() : field.least - 1;
-    if (amount >= field.least && amount <= field.most) return fmt::format("{}", amount);
-    return unfit(field.field, fmt::format("must be a number from {} to {}", field.least, field.most));
-  }
+  if (field.holds == Holds::kNumber) return number_in(body[field.field], field);
+  if (field.holds == Holds::kWords) return words_in(body[field.field], field);
+  if (field.holds == Holds::kRecipe) return recipe_in(body[field.field], field);
   if (field.holds == Holds::kWord) {
     Result<std::string> text = word_in(body, field.field);
     if (text && !field.words.empty() && std::ranges::find(field.words, *text) == field.words.end())
@@ -213,6 +262,25 @@ Result<std::string> argument_of(const Json& body, const JobField& field, const J
   return folder->string();
 }
 
+// The field's option and argument.
+Result<void> add_field(const Json& body, const JobField& field, const JobPlaces& places, JobSpec& spec) {
+  if (!body.contains(field.field)) {
+    if (field.is_needed) return unfit(field.field, fmt::format("is needed by a {} job", spec.kind));
+    return {};
+  }
+  if (field.holds == Holds::kFlag) {
+    const Json& flag = body[field.field];
+    if (!flag.is_boolean()) return unfit(field.field, "must be true or false");
+    if (flag.get<bool>()) spec.arguments.emplace_back(field.option);
+    return {};
+  }
+  Result<std::string> argument = argument_of(body, field, places, spec);
+  if (!argument) return std::move(argument).error();
+  if (*field.option != '\0') spec.arguments.emplace_back(field.option);
+  spec.arguments.push_back(std::move(*argument));
+  return {};
+}
+
 // What one field says of others.
 Result<void> check_together(const std::string& kind, const Json& body) {
   const auto named = [&](const char* field) { return static_cast<int>(body.contains(field)); };
@@ -220,6 +288,7 @@ Result<void> check_together(const std::string& kind, const Json& body) {
     return unfit("session", "either it or input or moved must be named");
   if (kind == "calibrate_update" && named("session") + named("moved") != 1)
     return unfit("session", "either it or moved must be named");
+  if (named("recipe") + named("steps") > 1) return unfit("recipe", "either it or steps may be named");
   if (kind == "rig_plan" && named("cloth") + named("roughness") > 1)
     return unfit("cloth", "either it or roughness may be named");
   if (kind == "rig_plan" && named("f0") > named("roughness"))
@@ -280,14 +349,7 @@ Result<JobSpec> read_job_body(const Json& body, const JobPlaces& places) {
     spec.request_id = std::move(*id);
   }
   for (const JobField& field : kind->fields) {
-    if (!body.contains(field.field)) {
-      if (field.is_needed) return unfit(field.field, fmt::format("is needed by a {} job", kind->name));
-      continue;
-    }
-    Result<std::string> argument = argument_of(body, field, places, spec);
-    if (!argument) return std::move(argument).error();
-    if (*field.option != '\0') spec.arguments.emplace_back(field.option);
-    spec.arguments.push_back(std::move(*argument));
+    if (Result<void> added = add_field(body, field, places, spec); !added) return std::move(added).error();
   }
   if (Result<void> fits = check_together(*name, body); !fits) return std::move(fits).error();
   if (Result<void> added = add_places(spec, places); !added) return std::move(added).error();

@@ -12,7 +12,7 @@ namespace weft::app {
 namespace {
 
 /// What is said, and the word for it. Clients rely on the words.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 50> kCodes = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 51> kCodes = {{
     {"the token is missing or wrong", "not_logged_in"},
     {"the token is wrong", "wrong_token"},
     {"this token may only look", "may_only_look"},
@@ -46,6 +46,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 50> kCodes =
     {"this is no name of a session", "no_such_session"},
     {"there is no such frame", "no_such_frame"},
     {"there is no such solve", "no_such_solve"},
+    {"there is no such set of maps", "no_such_maps"},
     {"there is no such tile", "no_such_tile"},
     {"the readings of this solve are no longer there", "readings_gone"},
     {"nothing is known of millimetres", "no_millimetres"},

@@ -102,7 +102,7 @@ TEST(Recipe, ThatWeftBringsAlongIsFoundByItsName) {
 
 TEST(Recipe, SaysOfEachStepAndKeyWhatItIs) {
   std::set<std::string> names;
-  for (const StepKind& kind : step_kinds()) {
+  for (const RecipeStepKind& kind : step_kinds()) {
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
     EXPECT_NE(std::string(kind.says), "");
     for (const StepKey& key : kind.keys) EXPECT_NE(std::string(key.says), "") << kind.name << "." << key.name;

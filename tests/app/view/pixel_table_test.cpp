@@ -88,7 +88,8 @@ TEST_F(AskedSolve, MeasuresALineInMillimetresWithItsDeviation) {
   // Of a focal length with one percent the length has one.
   const double fx = calibration->camera->fx, sigma = 0.01 * fx;
   calibration->camera_covariance = ParameterCovariance{{"fx"}, {sigma * sigma}};
-  const Result<Json> line = line_facts(*layers, opener(), {20, 100, 220, 100}, {*calibration, 1, 0});
+  const Result<Json> line =
+      line_facts(*layers, opener(), {20, 100, 220, 100}, {.calibration = &*calibration});
   ASSERT_TRUE(line) << line.error().message();
   const double each = kMmPerPixel;
   EXPECT_NEAR((*line)["mm"].get<double>(), 200 * each, 1e-6 * each);

@@ -2432,6 +2432,454 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/sessions/{name}/maps": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** The sets of maps of a session, the newest first */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["MapSets"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                421: components["responses"]["ForeignHost"];
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{name}/maps/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A set of maps with its layers and how they are cut, as a solve is seen */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the set of maps */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ViewedSolve"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{name}/maps/{id}/tiles/{layer}/{level}/{tile}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A tile of 512 pixels, or what is left at the right and lower edge. It may be kept for ever */
+        get: {
+            parameters: {
+                query?: {
+                    /** @description Stops, of colours and relit; 0 unless given */
+                    exposure?: number;
+                    /** @description Of scalars as pictures: the lower end of the scale; 0 unless given */
+                    least?: number;
+                    /** @description Its upper end; 1 unless given */
+                    most?: number;
+                    /** @description x,y,z in the rig frame, to the lamp of relit; from the upper left, 45 degrees high, unless given */
+                    light?: string;
+                    /** @description Of status: SATURATED ... as in formats.md; any bit unless given */
+                    bit?: string;
+                    /** @description Of difference and albedo_difference: another set's id */
+                    with?: string;
+                };
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the set of maps */
+                    id: string;
+                    /** @description Name of a layer; relit, the cloth under a lamp; difference, degrees between these normals and those of another solve; albedo_difference, percent of the albedo of another solve */
+                    layer: string;
+                    /** @description 0 is the map, each next one has half its sides; top is the last, which fits one tile */
+                    level: string;
+                    /** @description COLUMN_ROW.raw, .png or .jpg; normals have no .jpg */
+                    tile: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description raw: little-endian, row by row. Normals RGB10_A2 with 1022 steps (n * 511 + 511), colours three half floats, scalars one, flags a byte (255 is all). jpg and png: for people */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/octet-stream": string;
+                        "image/png": string;
+                        "image/jpeg": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{name}/maps/{id}/pixel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What the maps say in a place; readings is null */
+        get: {
+            parameters: {
+                query: {
+                    /** @description Column, from 0 */
+                    x: number;
+                    /** @description Row, from 0 */
+                    y: number;
+                };
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the set of maps */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["PixelFacts"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{name}/maps/{id}/region": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Figures of a rectangle, by layer and channel */
+        get: {
+            parameters: {
+                query: {
+                    /** @description First column */
+                    x: number;
+                    /** @description First row */
+                    y: number;
+                    /** @description Columns */
+                    w: number;
+                    /** @description Rows */
+                    h: number;
+                };
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the set of maps */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["RegionFacts"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{name}/maps/{id}/line": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A length on the cloth, and what lies under it; sigma_mm is null */
+        get: {
+            parameters: {
+                query: {
+                    /** @description Column of its begin */
+                    x0: number;
+                    /** @description Row of its begin */
+                    y0: number;
+                    /** @description Column of its end */
+                    x1: number;
+                    /** @description Row of its end */
+                    y1: number;
+                };
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the set of maps */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["LineFacts"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/recipes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** All that a recipe may say, and the recipes that weft brings along */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path?: never;
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["Recipes"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                421: components["responses"]["ForeignHost"];
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/rig": {
         parameters: {
             query?: never;
@@ -3840,7 +4288,7 @@ export interface components {
              * @description What this server decided, by a word that stays; absent where another part of weft failed
              * @enum {string}
              */
-            code?: "beyond_file" | "bug" | "changed_meanwhile" | "controls_held" | "devices_closed" | "disk_silent" | "foreign_host" | "foreign_page" | "job_ended" | "job_not_ended" | "job_not_waiting" | "may_only_look" | "no_fabric" | "no_millimetres" | "no_origin" | "no_rig" | "no_scan" | "no_set" | "no_such_call" | "no_such_frame" | "no_such_job" | "no_such_session" | "no_such_set" | "no_such_shot" | "no_such_solve" | "no_such_tile" | "not_json" | "not_logged_in" | "nothing_to_undo" | "readings_gone" | "rig_busy" | "rig_is_real" | "rig_moved" | "scan_ending" | "session_busy" | "session_exists" | "set_complete" | "shot_on_its_way" | "too_busy" | "too_many_streams" | "unreadable" | "wrong_method" | "wrong_token";
+            code?: "beyond_file" | "bug" | "changed_meanwhile" | "controls_held" | "devices_closed" | "disk_silent" | "foreign_host" | "foreign_page" | "job_ended" | "job_not_ended" | "job_not_waiting" | "may_only_look" | "no_fabric" | "no_millimetres" | "no_origin" | "no_rig" | "no_scan" | "no_set" | "no_such_call" | "no_such_frame" | "no_such_job" | "no_such_maps" | "no_such_session" | "no_such_set" | "no_such_shot" | "no_such_solve" | "no_such_tile" | "not_json" | "not_logged_in" | "nothing_to_undo" | "readings_gone" | "rig_busy" | "rig_is_real" | "rig_moved" | "scan_ending" | "session_busy" | "session_exists" | "set_complete" | "shot_on_its_way" | "too_busy" | "too_many_streams" | "unreadable" | "wrong_method" | "wrong_token";
             /** @description What happened */
             what: string;
             /** @description File, field or device */
@@ -4056,10 +4504,10 @@ export interface components {
         };
         JobRequest: {
             /**
-             * @description price: seconds and degrees of every level (weft solve --explain); torture: the session torture, of pixels that are hard to solve, and its solve with the layer condition (weft torture); rig_plan: what one more LED, one moved or polarisers would tell of a cloth (weft rig plan), with the drawing files/plan.svg; check: weft calibrate check
+             * @description price: seconds and degrees of every level (weft solve --explain); torture: the session torture, of pixels that are hard to solve, and its solve with the layer condition (weft torture); rig_plan: what one more LED, one moved or polarisers would tell of a cloth (weft rig plan), with the drawing files/plan.svg; maps, finish: a set of maps (weft maps, weft finish); check: weft calibrate check
              * @enum {string}
              */
-            kind: "solve" | "price" | "rectify" | "copy" | "torture" | "rig_plan" | "check" | "calibrate_camera" | "calibrate_response" | "calibrate_color" | "calibrate_lights" | "calibrate_grey" | "calibrate_patches" | "calibrate_update";
+            kind: "solve" | "price" | "rectify" | "copy" | "torture" | "rig_plan" | "maps" | "finish" | "check" | "calibrate_camera" | "calibrate_response" | "calibrate_color" | "calibrate_lights" | "calibrate_grey" | "calibrate_patches" | "calibrate_update";
             /** @description Name, without .weft; of all but check by input and calibrate_camera, _response, _color, _lights */
             session?: string;
             /** @description Folder below that of the rig file; of calibrate_camera, _response, _color, _lights, and of check */
@@ -4085,9 +4533,9 @@ export interface components {
             within_s?: number;
             /** @description Of solve: the cheapest level that errs by at most so much */
             to_deg?: number;
-            /** @description Of rectify: id; absent: the current one */
+            /** @description Of rectify, maps, finish: id; absent: the current one */
             solve?: string;
-            /** @description Of rectify */
+            /** @description Of rectify, maps, finish */
             mm_per_pixel?: number;
             /** @description Of rectify */
             turn_deg?: number;
@@ -4107,6 +4555,16 @@ export interface components {
             flatness_deg?: number;
             /** @description Of calibrate_lights */
             flicker_percent?: number;
+            /** @description Of maps: which to derive; absent: all */
+            maps?: string[];
+            /** @description Of maps, finish: on a grid four times as coarse; earlier previews of the session go */
+            preview?: boolean;
+            /** @description Of maps, finish: one of those that GET recipes names, in place of steps */
+            recipe?: string;
+            /** @description Of maps, finish: a recipe; what it may say is in GET recipes */
+            steps?: {
+                steps: components["schemas"]["RecipeStep"][];
+            };
             /**
              * @description Of rig_plan; default satin, where there is no roughness
              * @enum {string}
@@ -4202,6 +4660,60 @@ export interface components {
         Entered: {
             /** @enum {string} */
             role: "look" | "operate";
+        };
+        MapSets: {
+            sets: components["schemas"]["MapSetSummary"][];
+        };
+        MapSetSummary: {
+            id: string;
+            /** @description When; ISO 8601 */
+            created: string;
+            /** @description Of its files */
+            bytes: number;
+            /** @description Id of that which they were made of */
+            solve: string;
+            preview: boolean;
+            /** @description It goes on over its borders */
+            is_tile: boolean;
+            width: number;
+            height: number;
+            mm_per_pixel: number;
+            /** @description Names of those derived */
+            maps: string[];
+            /** @description Names of what speaks against it */
+            warnings: string[];
+        };
+        Recipes: {
+            steps: components["schemas"]["StepKind"][];
+            recipes: {
+                name: string;
+                steps: components["schemas"]["RecipeStep"][];
+            }[];
+        };
+        /** @description With the keys of its kind */
+        RecipeStep: {
+            /** @description Name of a kind of step */
+            do: string;
+        } & {
+            [key: string]: unknown;
+        };
+        StepKind: {
+            name: string;
+            /** @description For people */
+            says: string;
+            keys: {
+                name: string;
+                /** @description For people, with its unit */
+                says: string;
+                /** @enum {string} */
+                holds: "number" | "whole" | "flag" | "word" | "numbers" | "spots";
+                /** @description Where a step does not say it */
+                default: unknown;
+                least: number;
+                most: number;
+                /** @description One of which a word is */
+                words: string[];
+            }[];
         };
         Status: {
             rig: string;
@@ -4542,6 +5054,8 @@ export interface components {
                 led: number;
                 position_mm: number[];
             }[];
+            /** @description Of a set of maps: its maps.json (weft.maps/1) */
+            set?: Record<string, unknown>;
         };
         PixelFacts: {
             x: number;

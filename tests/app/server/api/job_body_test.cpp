@@ -104,6 +104,31 @@ TEST_F(JobBody, PlansLightsForTheRigOfTheDaemonAndNoOther) {
   EXPECT_EQ(read(R"({"kind": "rig_plan"})").error().kind, ErrorKind::kNoInput);
 }
 
+TEST_F(JobBody, HasARecipeAsTheTextThatItsVerbReads) {
+  EXPECT_EQ(
+      arguments(R"({"kind": "maps", "session": "satin", "solve": "ab12", "maps": ["height", "cavity"],
+                          "mm_per_pixel": 0.125, "preview": true, "steps": {"steps": [{"do": "flatten"}]}})"),
+      (Words{"maps", "/scans/satin.weft", "--solve", "ab12", "--mm-per-pixel", "0.125", "--preview",
+             "--steps",
+             R"({"steps":[{"do":"flatten","by":"polynomial","degree":3,"cut_mm":20.0,"always":false}]})",
+             "--maps", "height,cavity"}));
+  EXPECT_EQ(arguments(R"({"kind": "finish", "session": "satin", "recipe": "detail", "preview": false})"),
+            (Words{"finish", "/scans/satin.weft", "--recipe", "detail"}));
+  for (const char* wrong :
+       {R"("steps": [])", R"("steps": {"steps": [{"do": "fold"}]})",
+        R"("steps": {"steps": [{"do": "crop", "left_mm": -1}]})", R"("steps": "flat")",
+        R"("recipe": "/etc/passwd")", R"("recipe": "tile", "steps": {"steps": []})", R"("preview": 1)",
+        R"("maps": [])", R"("maps": ["--help"])", R"("maps": "height")"}) {
+    const Result<JobSpec> spec = read(R"({"kind": "maps", "session": "satin", )" + std::string(wrong) + "}");
+    ASSERT_FALSE(spec) << wrong;
+    EXPECT_EQ(spec.error().kind, ErrorKind::kUsage) << wrong;
+  }
+  const Result<JobSpec> third = read(
+      R"({"kind": "maps", "session": "satin", "steps": {"steps": [{"do": "tile"}, {"do": "crop", "at": 3}]}})");
+  ASSERT_FALSE(third);
+  EXPECT_EQ(third.error().where, "steps: step 2");
+}
+
 TEST_F(JobBody, LeadsNowhereElse) {
   for (const char* input : {"..", "../elsewhere", "photographs/../../elsewhere", "/etc", "-o", ".hidden", "",
                             "photographs//board", "photographs/", "a b", "photographs/board\\n"}) {

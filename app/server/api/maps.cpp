@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <utility>
+
+#include "app/jobs/maps/maps.h"
+#include "app/jobs/maps/recipe.h"
+#include "app/server/api/api.h"
+#include "app/server/api/descriptions.h"
+#include "app/server/api/viewed.h"
+#include "library/session_files.h"
+
+namespace weft::app {
+namespace {
+
+// What a list says of a set of maps; null where its document is damaged.
+Json set_summary(const Product& product, const Json& document) {
+  JsonFields fields(document, kMapsProduct.document);
+  const auto is_so = [&](const char* key) { return document.value(key, Json()) == Json(true); };
+  Json summary = {{"id", product.id},
+                  {"created", written_at(product.folder / kMapsProduct.document)},
+                  {"bytes", library::bytes_below(product.folder)},
+                  {"solve", fields.text("solve")},
+                  {"preview", is_so("preview")},
+                  {"is_tile", is_so("is_tile")},
+                  {"width", fields.integer("width")},
+                  {"height", fields.integer("height")},
+                  {"mm_per_pixel", fields.number("mm_per_pixel")},
+                  {"maps", names_in(document, "maps")},
+                  {"warnings", names_in(document, "verdicts")}};
+  return fields.status() ? summary : Json();
+}
+
+Result<Reply> sets(const RigParts& parts, const Call& call) {
+  const Result<Session> session = parts.library.session(call.segments.at(0));
+  if (!session) return session.error();
+  Json list = Json::array();
+  for (const Product& product : list_products(kMapsProduct, map_sets_of(*session))) {
+    const Result<std::optional<Json>> document = find_finished(product);
+    if (!document || !*document) continue;
+    if (Json summary = set_summary(product, **document); !summary.is_null())
+      list.push_back(std::move(summary));
+  }
+  std::ranges::reverse(list);
+  return json_reply({{"sets", std::move(list)}});
+}
+
+Result<Reply> one_set(const RigParts& parts, const Call& call) {
+  const Result<Viewed> viewed = find_map_set(parts, call.segments.at(0), call.segments.at(1));
+  if (!viewed) return viewed.error();
+  const Result<Json> document = viewed_json(parts, *viewed);
+  if (!document) return document.error();
+  return json_reply(*document);
+}
+
+const char* word_of(StepHolds holds) {
+  switch (holds) {
+    case StepHolds::kNumber:
+      return "number";
+    case StepHolds::kWhole:
+      return "whole";
+    case StepHolds::kFlag:
+      return "flag";
+    case StepHolds::kWord:
+      return "word";
+    case StepHolds::kNumbers:
+      return "numbers";
+    case StepHolds::kSpots:
+      return "spots";
+  }
+  return "";
+}
+
+// All that a recipe may say, and the recipes that weft brings along.
+Result<Reply> recipes(const Call&) {
+  Json steps = Json::array(), known = Json::array();
+  for (const RecipeStepKind& kind : step_kinds()) {
+    Json keys = Json::array();
+    for (const StepKey& key : kind.keys) {
+      keys.push_back({{"name", key.name},
+                      {"says", key.says},
+                      {"holds", word_of(key.holds)},
+                      {"default", key.otherwise},
+                      {"least", key.least},
+                      {"most", key.most},
+                      {"words", key.words}});
+    }
+    steps.push_back({{"name", kind.name}, {"says", kind.says}, {"keys", std::move(keys)}});
+  }
+  for (const std::string& name : recipe_names()) {
+    Json recipe = json_of(recipe_named(name));
+    recipe["name"] = name;
+    known.push_back(std::move(recipe));
+  }
+  return json_reply({{"steps", std::move(steps)}, {"recipes", std::move(known)}});
+}
+
+}  // namespace
+
+Resource maps_resource(const RigParts& parts) {
+  const std::string of = "/api/v1/sessions/{name}/maps";
+  const std::string one = of + "/{id}";
+  Resource resource = {{{"GET", of, [&parts](const Call& call) { return sets(parts, call); }},
+                        {"GET", one, [&parts](const Call& call) { return one_set(parts, call); }},
+                        {"GET", "/api/v1/recipes", recipes, false, Pool::kQuick}},
+                       maps_description()};
+  for (Route& route : view_routes(parts, one, find_map_set)) resource.routes.push_back(std::move(route));
+  return resource;
+}
+
+}  // namespace weft::app
