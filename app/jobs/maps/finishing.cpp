@@ -1,18 +1,196 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/maps/finishing.h"
 
-namespace weft::app {
+#include <fmt/format.h>
 
-Result<FinishingFacts> finish_surface(material::Surface& surface, const Recipe& recipe,
-                                      const JobContext& context) {
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "material/finish/straighten.h"
+#include "material/finish/tile.h"
+#include "material/lattice/lattice.h"
+#include "material/maps/flatten.h"
+
+namespace weft::app {
+namespace {
+
+using material::Lattice;
+using material::LatticeKind;
+using material::Surface;
+
+// By material::FlattenMethod.
+constexpr std::array<const char*, 4> kFlattenNames = {"automatic", "repeat", "hann", "high-pass"};
+
+// Steps between a cloth and its end, each with what those before it found.
+class Finisher {
+ public:
+  Finisher(Surface& surface, const FinishingInput& input, const JobContext& context)
+      : surface_(surface), input_(input), context_(context) {}
+
+  Result<Json> run(const Recipe& recipe, std::size_t at) {
+    const RecipeStep& step = recipe.steps[at];
+    if (step.name == "flatten") return flatten(step.options);
+    if (step.name == "straighten") return straighten(repeats_wanted(recipe, at));
+    if (step.name == "tile") return tile();
+    return Json::object();
+  }
+
   FinishingFacts facts;
+
+ private:
+  // Of the tile that comes after; a straightened cloth is scaled so that so many are whole pixels.
+  static std::array<int, 2> repeats_wanted(const Recipe& recipe, std::size_t from) {
+    for (std::size_t i = from; i < recipe.steps.size(); ++i) {
+      if (recipe.steps[i].name != "tile") continue;
+      const auto repeats = recipe.steps[i].options["repeats"].get<std::array<double, 2>>();
+      return {static_cast<int>(repeats[0]), static_cast<int>(repeats[1])};
+    }
+    return {0, 0};
+  }
+
+  // Looked for once in the cloth as it stands.
+  Result<void> find_lattice() {
+    if (lattice_) return {};
+    Result<Lattice> lattice = material::find_lattice(surface_, {.threads = context_.threads});
+    if (!lattice) return std::move(lattice).error();
+    lattice_ = *lattice;
+    facts.yarn_px =
+        lattice->kind == LatticeKind::kRepeat ? std::min(lattice->yarn_x_px, lattice->yarn_y_px) : 0;
+    return {};
+  }
+
+  void warn(std::string name, std::string text, std::string remedy) {
+    facts.verdicts.push_back({std::move(name), std::move(text), std::move(remedy)});
+  }
+
+  Result<Json> flatten(const Json& options) {
+    if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
+    material::FlattenOptions flatten;
+    const bool is_high_pass = options["by"] == "high-pass";
+    if (is_high_pass) flatten.method = material::FlattenMethod::kHighPass;
+    flatten.degree = options["degree"].get<int>();
+    flatten.cut_mm = options["cut_mm"].get<double>();
+    flatten.mm_per_pixel = surface_.mm_per_pixel;
+    flatten.sigma_deg = options["always"].get<bool>() ? 0 : input_.slow_sigma_deg;
+    flatten.threads = context_.threads;
+    if (lattice_->kind == LatticeKind::kRepeat) {
+      const material::Cell& cell = lattice_->colour;
+      flatten.repeat = material::Repeat{cell.a.x, -cell.a.y, cell.b.x, -cell.b.y};
+    }
+    const Result<material::SlowSlopes> slow = material::slow_slopes(
+        surface_.slope.plane(0), surface_.slope.plane(1), surface_.status.plane(), flatten);
+    if (!slow) return slow.error();
+    material::flatten(*slow, surface_.status.plane(), surface_.slope.plane(0), surface_.slope.plane(1),
+                      context_.threads);
+    if (slow->acts) facts.removed = material::removed_slopes(*slow, context_.threads);
+    return Json{
+        {"acts", slow->acts},         {"method", kFlattenNames[static_cast<std::size_t>(slow->method)]},
+        {"tilt_deg", slow->tilt_deg}, {"range_deg", slow->range_deg},
+        {"bow_mm", slow->bow_mm},     {"sigma_deg", flatten.sigma_deg}};
+  }
+
+  Result<Json> straighten(std::array<int, 2> repeats) {
+    if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
+    if (lattice_->kind != LatticeKind::kRepeat) {
+      warn("NO_REPEAT", fmt::format("the cloth was not straightened: {}", material::words_of(lattice_->kind)),
+           "nothing, if it has none; else scan more of it");
+      return Json{{"acts", false}, {"kind", material::name_of(lattice_->kind)}};
+    }
+    material::StraightenOptions options;
+    options.repeats_x = repeats[0];
+    options.repeats_y = repeats[1];
+    options.threads = context_.threads;
+    Result<material::Straightened> straight = material::straighten(surface_, *lattice_, options);
+    if (!straight) return std::move(straight).error();
+    Json found = {{"acts", true},
+                  {"kind", material::name_of(lattice_->kind)},
+                  {"repeats", {straight->repeats_x, straight->repeats_y}},
+                  {"period_px", {straight->period_px.width, straight->period_px.height}},
+                  {"mm_per_pixel", {straight->mm_per_pixel_x, straight->mm_per_pixel_y}},
+                  {"turn_deg", straight->turn_deg},
+                  {"skew_deg", straight->skew_deg},
+                  {"largest_pull_mm", straight->largest_pull_mm},
+                  {"rms_pull_mm", straight->rms_pull_mm}};
+    tile_ = material::tile_of(*straight);
+    surface_ = std::move(straight->surface);
+    lattice_.reset();
+    return found;
+  }
+
+  Result<Json> tile() {
+    material::TileOptions options = tile_.value_or(material::TileOptions());
+    options.threads = context_.threads;
+    if (!tile_)
+      warn("NOT_STRAIGHTENED", "the tile is cut where the cloth is closest to itself, without its repeat",
+           "straighten it first");
+    Result<material::Tile> cut = material::tile(surface_, options);
+    if (!cut) return std::move(cut).error();
+    const auto seam = [](const material::Seam& s) {
+      return Json{{"overlap_px", s.overlap_px},
+                  {"wrap_step_slope", s.wrap_step_slope},
+                  {"wrap_step_albedo", s.wrap_step_albedo},
+                  {"wrap_step_height", s.wrap_step_height},
+                  {"gradient_slope", s.gradient_slope},
+                  {"gradient_albedo", s.gradient_albedo},
+                  {"residual", s.residual},
+                  {"curl", s.curl}};
+    };
+    Json found = {{"has_repeat", cut->has_repeat},
+                  {"from_px", {cut->x0, cut->y0}},
+                  {"places", cut->places},
+                  {"seam_x", seam(cut->x)},
+                  {"seam_y", seam(cut->y)},
+                  {"relief_mm", cut->relief_mm},
+                  {"normal_p99_deg", cut->normal_p99_deg}};
+    for (const auto& [axis, s] : {std::pair{"upright", cut->x}, {"level", cut->y}}) judge(axis, s);
+    surface_ = std::move(cut->surface);
+    tile_.reset();
+    return found;
+  }
+
+  // A joint that is sharper or softer than the cloth around it is seen.
+  void judge(std::string_view axis, const material::Seam& seam) {
+    const auto is_seen = [](double energy) { return energy < kLeastEnergy || energy > kMostEnergy; };
+    if (!is_seen(seam.gradient_slope) && !is_seen(seam.gradient_albedo)) return;
+    warn("SEAM_SEEN",
+         fmt::format("the {} joint has {:.2f} of the cloth's gradient energy in its slopes and {:.2f} in its "
+                     "albedo; {} to {} is not seen",
+                     axis, seam.gradient_slope, seam.gradient_albedo, kLeastEnergy, kMostEnergy),
+         "ask for another number of repeats");
+  }
+
+  static constexpr double kLeastEnergy = 0.9, kMostEnergy = 1.1;
+
+  Surface& surface_;
+  const FinishingInput& input_;
+  const JobContext& context_;
+  std::optional<Lattice> lattice_;
+  std::optional<material::TileOptions> tile_;  // of a cloth that was straightened
+};
+
+}  // namespace
+
+Result<FinishingFacts> finish_surface(Surface& surface, const Recipe& recipe, const FinishingInput& input,
+                                      const JobContext& context) {
+  Finisher finisher(surface, input, context);
   for (std::size_t i = 0; i < recipe.steps.size(); ++i) {
     if (context.stop.stop_requested()) return interrupted();
     context.progress("finish", static_cast<double>(i) / static_cast<double>(recipe.steps.size()));
-    facts.steps.push_back(Json::object());
+    Result<Json> found = finisher.run(recipe, i);
+    if (!found) {
+      Error error = std::move(found).error();
+      error.where = fmt::format("step {} ({}): {}", i + 1, recipe.steps[i].name, error.where);
+      return error;
+    }
+    finisher.facts.steps.push_back(std::move(*found));
   }
-  (void)surface;
-  return facts;
+  return std::move(finisher.facts);
 }
 
 }  // namespace weft::app

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "app/jobs/maps/recipe.h"
+#include "core/image.h"
 #include "core/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
@@ -12,15 +13,23 @@
 
 namespace weft::app {
 
+/// What is known of the cloth beside its maps.
+struct FinishingInput {
+  /// Slow slopes that the calibration does not tell from none, degrees: up to these flattening does nothing.
+  double slow_sigma_deg = 0;
+};
+
 /// What the steps of a recipe found and did.
 struct FinishingFacts {
   std::vector<Json> steps;        ///< one a step
   std::vector<Verdict> verdicts;  ///< what speaks against the result
+  Image<float> removed;           ///< slopes that flattening took off, on the grid it found; empty: none
+  double yarn_px = 0;             ///< width of a yarn where a repeat was looked for; 0: not known
 };
 
 /// Does what the recipe says to all maps of a surface together. Errors: of the steps, with their number;
 /// kInterrupted.
 Result<FinishingFacts> finish_surface(material::Surface& surface, const Recipe& recipe,
-                                      const JobContext& context);
+                                      const FinishingInput& input, const JobContext& context);
 
 }  // namespace weft::app

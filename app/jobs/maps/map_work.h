@@ -39,7 +39,9 @@ struct MapWork {
   const JobContext& context;
 
   std::optional<material::OpacityFacts> opacity = {};  ///< of surface.opacity
+  double yarn_px = 0;                                  ///< width of a yarn; 0: not known
   Image<float> height_mm = {};                         ///< once find_height() was asked
+  Image<float> openness = {}, bent_normal = {};        ///< once find_openness() was asked
   std::vector<MapFacts> made = {};
   std::vector<Verdict> verdicts = {};
 };
@@ -55,8 +57,14 @@ void write_constant(MapWork& work, MapFacts facts, double value, std::string why
 /// Integrates the slopes, once.
 Result<void> find_height(MapWork& work);
 
+/// What the relief hides of the sky, once.
+Result<void> find_openness(MapWork& work);
+
 // Each makes the map of its name.
 Result<void> make_height(MapWork& work);
+Result<void> make_curl(MapWork& work);
+Result<void> make_occlusion(MapWork& work);
+Result<void> make_cavity(MapWork& work);
 Result<void> make_roughness(MapWork& work);
 Result<void> make_gloss(MapWork& work);
 Result<void> make_mips(MapWork& work);

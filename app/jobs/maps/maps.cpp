@@ -13,13 +13,16 @@
 
 #include "app/jobs/maps/finishing.h"
 #include "app/jobs/maps/light_below.h"
+#include "app/jobs/maps/map_checks.h"
 #include "app/jobs/maps/maps_page.h"
 #include "app/jobs/maps/surface_files.h"
 #include "app/jobs/pictures.h"
 #include "app/jobs/rectify.h"
 #include "core/calibration.h"
 #include "core/files.h"
+#include "core/image_io/image_io.h"
 #include "core/session.h"
+#include "core/solve.h"
 #include "material/opacity/fill.h"
 #include "material/opacity/opacity.h"
 #include "report/downsampler.h"
@@ -128,6 +131,34 @@ Json steps_of(const Recipe& recipe, const FinishingFacts& facts) {
   return steps;
 }
 
+// What the calibration leaves open of a slope, as the solve says it of most pixels.
+Result<FinishingInput> known_of(const Session& session, const RectifyReport& rectified) {
+  const Result<Product> solve = find_solve(session.folder, rectified.document["solve"].get<std::string>());
+  if (!solve) return solve.error();
+  const Result<Json> document = read_json(solve->folder / kSolveProduct.document, kSolveProduct.schema, 1);
+  if (!document) return document.error();
+  const Result<SolveFacts> facts = solve_facts_from_json(*document);
+  if (!facts) return facts.error();
+  const Json by_calibration = facts->sigma_normal_deg.value("calibration", Json());
+  const bool is_told = by_calibration.is_object() && by_calibration.value("median", Json()).is_number();
+  return FinishingInput{.slow_sigma_deg = is_told ? by_calibration["median"].get<double>() : 0.0};
+}
+
+// On the grid that flattening found, which later steps changed.
+Result<void> write_removed(MapWork& work, const FinishingFacts& finished) {
+  if (finished.removed.empty()) return {};
+  const fs::path folder = work.folder / "removed";
+  if (Result<void> ok = make_writable_folder(folder); !ok) return ok;
+  MapFacts facts = {.name = "removed", .file = "removed/slopes.exr", .channels = {"slope_x", "slope_y"}};
+  measure(facts, finished.removed.plane(0));
+  facts.why = "slopes that flattening took off, mm a mm";
+  facts.more = {{"width", finished.removed.width()}, {"height", finished.removed.height()}};
+  work.made.push_back(std::move(facts));
+  return write_image(folder / "slopes.exr",
+                     std::vector<View<const float>>{finished.removed.plane(0), finished.removed.plane(1)},
+                     {"slope_x", "slope_y"}, {.compression = work.compression});
+}
+
 // Each that was asked for, in the order of derived_maps().
 Result<void> derive(const std::vector<std::string>& asked, MapWork& work) {
   double done = 0;
@@ -141,7 +172,8 @@ Result<void> derive(const std::vector<std::string>& asked, MapWork& work) {
 }
 
 Json document_of(const Product& product, const RectifyReport& rectified, const MapsOptions& options,
-                 const Recipe& recipe, const FinishingFacts& finished, const MapWork& work) {
+                 const Recipe& recipe, const FinishingFacts& finished, const MapWork& work,
+                 const Json& checks) {
   const Surface& surface = work.surface;
   std::vector<Verdict> verdicts = finished.verdicts;
   verdicts.insert(verdicts.end(), work.verdicts.begin(), work.verdicts.end());
@@ -159,6 +191,7 @@ Json document_of(const Product& product, const RectifyReport& rectified, const M
           {"steps", steps_of(recipe, finished)},
           {"maps", std::move(maps)},
           {"derive", json_of(options.derive)},
+          {"checks", checks},
           {"verdicts", json_of(verdicts)}};
 }
 
@@ -205,7 +238,9 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
   const Result<std::optional<material::OpacityFacts>> opacity =
       find_opacity(options, *session, *rectified, *surface, context);
   if (!opacity) return opacity.error();
-  const Result<FinishingFacts> finished = finish_surface(*surface, recipe, context);
+  const Result<FinishingInput> known = known_of(*session, *rectified);
+  if (!known) return known.error();
+  const Result<FinishingFacts> finished = finish_surface(*surface, recipe, *known, context);
   if (!finished) return finished.error();
   material::fill_holes(*surface, {.threads = context.threads});
   if (Result<void> ok = write_surface(partial.path(), *surface, options.compression); !ok)
@@ -217,9 +252,13 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
                   .options = options.derive,
                   .context = context,
                   .opacity = *opacity,
+                  .yarn_px = finished->yarn_px,
                   .verdicts = missing_bare(options, *session)};
+  if (Result<void> ok = write_removed(work, *finished); !ok) return std::move(ok).error();
   if (Result<void> ok = derive(options.maps, work); !ok) return std::move(ok).error();
-  Json document = document_of(product, *rectified, options, recipe, *finished, work);
+  const Result<Json> checks = check_maps(work, session->dark() != nullptr);
+  if (!checks) return checks.error();
+  Json document = document_of(product, *rectified, options, recipe, *finished, work, *checks);
   if (Result<void> ok = write_maps_page(partial.path(), document); !ok) return std::move(ok).error();
   if (Result<void> ok = write_json(partial.path() / kMapsProduct.document, document); !ok)
     return std::move(ok).error();

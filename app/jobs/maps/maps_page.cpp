@@ -35,6 +35,17 @@ report::Table table_of(const Json& maps) {
   return table;
 }
 
+report::Table table_of_checks(const Json& checks) {
+  report::Table table = {.header = {"check", "", "number", "limit"}};
+  for (const Json& check : checks) {
+    const std::string severity = check["severity"].get<std::string>();
+    if (severity != "passed") table.alarms.insert(table.rows.size());
+    table.rows.push_back({check["name"].get<std::string>(), severity, number_text(check, "number"),
+                          number_text(check, "limit")});
+  }
+  return table;
+}
+
 // What a step was told and found, in one line.
 std::string told(const Json& object) {
   std::string words;
@@ -55,12 +66,16 @@ report::Table table_of_steps(const Json& steps) {
   return table;
 }
 
-Result<std::string> pictures_of(const fs::path& folder, const Json& maps) {
+Result<std::string> pictures_of(const fs::path& folder, const Json& maps, const Json& checks) {
   std::vector<std::pair<std::string, std::string>> shown = {
       {"albedo.png", "albedo"}, {"normal.png", "normal"}, {"relit.png", "relit from the upper left"}};
   for (const Json& map : maps) {
     if (map.contains("picture"))
       shown.emplace_back(map["picture"].get<std::string>(), map["name"].get<std::string>());
+  }
+  for (const Json& check : checks) {
+    if (check.contains("picture"))
+      shown.emplace_back(check["picture"].get<std::string>(), check["name"].get<std::string>());
   }
   std::vector<report::PagePicture> pictures;
   for (const auto& [file, label] : shown) {
@@ -76,7 +91,7 @@ Result<std::string> pictures_of(const fs::path& folder, const Json& maps) {
 Result<void> write_maps_page(const fs::path& folder, const Json& document) {
   const Result<std::vector<Verdict>> verdicts = verdicts_from_json(document["verdicts"], "maps.json");
   if (!verdicts) return verdicts.error();
-  const Result<std::string> pictures = pictures_of(folder, document["maps"]);
+  const Result<std::string> pictures = pictures_of(folder, document["maps"], document["checks"]);
   if (!pictures) return pictures.error();
   const int width = document["width"].get<int>(), height = document["height"].get<int>();
   const double mm = document["mm_per_pixel"].get<double>();
@@ -87,6 +102,7 @@ Result<void> write_maps_page(const fs::path& folder, const Json& document) {
   body += *pictures;
   if (!document["maps"].empty())
     body += report::html_of(report::Section{.title = "Derived maps", .table = table_of(document["maps"])});
+  body += report::html_of(report::Section{.title = "Checks", .table = table_of_checks(document["checks"])});
   if (!document["steps"].empty())
     body +=
         report::html_of(report::Section{.title = "Finishing", .table = table_of_steps(document["steps"])});

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/maps/map_checks.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/jobs/pictures.h"
+#include "report/downsampler.h"
+#include "report/preview.h"
+
+namespace weft::app {
+namespace {
+
+using material::Finding;
+using material::Severity;
+
+// The share of each square of pixels that a finding is about.
+Result<void> draw_where(const std::filesystem::path& file, const Image<std::uint8_t>& where) {
+  Image<float> marked(where.size());
+  for (int y = 0; y < where.height(); ++y) {
+    for (int x = 0; x < where.width(); ++x) marked(x, y) = where(x, y) > 0 ? 1.0F : 0.0F;
+  }
+  report::Downsampler reduced(marked.size(), 1);
+  reduced.add_rows(std::vector<View<const float>>{marked.plane()});
+  return write_png(file, report::heat_picture(reduced.averages().plane(), 1, " share"));
+}
+
+}  // namespace
+
+Result<Json> check_maps(MapWork& work, bool has_measured_black) {
+  material::MapsToValidate maps;
+  maps.surface = &work.surface;
+  maps.openness = work.openness.empty() ? View<const float>() : View<const float>(work.openness.plane());
+  maps.height_mm = work.height_mm.empty() ? View<const float>() : View<const float>(work.height_mm.plane());
+  maps.has_measured_black = has_measured_black;
+  material::ValidationLimits limits;
+  limits.threads = work.context.threads;
+  const Result<std::vector<Finding>> findings = material::validate(maps, limits);
+  if (!findings) return findings.error();
+  Json checks = Json::array();
+  for (const Finding& finding : *findings) {
+    Json check = {{"name", finding.verdict.name},
+                  {"severity", material::name_of(finding.severity)},
+                  {"number", finding.number},
+                  {"limit", finding.limit},
+                  {"text", finding.verdict.text}};
+    if (finding.severity != Severity::kPassed && !finding.where.empty()) {
+      const std::string picture = "where_" + finding.verdict.name + ".png";
+      if (Result<void> ok = draw_where(work.folder / picture, finding.where); !ok)
+        return std::move(ok).error();
+      check["picture"] = picture;
+    }
+    checks.push_back(std::move(check));
+  }
+  const std::vector<Verdict> verdicts = material::verdicts_of(*findings);
+  work.verdicts.insert(work.verdicts.end(), verdicts.begin(), verdicts.end());
+  return checks;
+}
+
+}  // namespace weft::app
