@@ -11,14 +11,15 @@
 namespace weft::material {
 namespace {
 
-// One plane of a tile seen along the axis of a joint: places go on at the borders.
+// One plane seen along the axis of a joint: places go on at its borders.
 class Line {
  public:
   Line(View<const float> plane, Axis axis) : plane_(plane), axis_(axis) {}
   int along() const { return axis_ == Axis::kX ? plane_.width() : plane_.height(); }
   int across() const { return axis_ == Axis::kX ? plane_.height() : plane_.width(); }
   double at(int i, int j) const {
-    i = (i % along() + along()) % along();
+    i = (i + along()) % along();
+    j = (j + across()) % across();
     return static_cast<double>(axis_ == Axis::kX ? plane_(i, j) : plane_(j, i));
   }
   double step(int i, int j) const { return at(i, j) - at(i - 1, j); }
@@ -33,77 +34,98 @@ class Line {
   Axis axis_;
 };
 
-// Places a whole number of repeats away from the joint; without a repeat every eighth of the tile.
-std::vector<int> elsewhere(int along, int overlap, double repeat) {
-  std::vector<int> shifts;
-  const double step = repeat > 0 ? repeat : along / 8.0;
-  for (double shift = std::ceil(overlap / step) * step; shift + overlap <= along; shift += step)
-    shifts.push_back(static_cast<int>(std::lround(shift)));
-  return shifts;
+// Both slopes of a surface: along the axis of a joint and across it.
+struct Slopes {
+  Line along, across;
+
+  Slopes(const Surface& surface, Axis axis)
+      : along(surface.slope.plane(axis == Axis::kX ? 0 : 1), axis),
+        across(surface.slope.plane(axis == Axis::kX ? 1 : 0), axis) {}
+  double step(int i, int j) const { return std::hypot(along.step(i, j), across.step(i, j)); }
+  double curl(int i, int j) const {
+    // Rows run against the slope upwards, so both terms have one sign in either axis.
+    return (along.at(i, j + 1) - along.at(i, j - 1)) + (across.at(i + 1, j) - across.at(i - 1, j));
+  }
+};
+
+Line green_of(const Surface& surface, Axis axis) {
+  return {surface.albedo.plane(surface.albedo.planes() / 2), axis};
 }
 
-double wrap_step(const Line& line, double repeat, int overlap) {
+// The rms step at the border over the largest one a whole number of repeats away.
+double wrap_step(const Line& line, double repeat) {
+  const double every = repeat > 0 ? repeat : line.along() / 8.0;
   double largest = 0;
-  for (const int shift : elsewhere(line.along(), overlap, repeat)) {
-    for (const int near : {-1, 0, 1}) largest = std::max(largest, line.step_energy(shift + near));
+  for (double shift = every; shift < line.along() - 1; shift += every) {
+    for (const int near : {-1, 0, 1})
+      largest = std::max(largest, line.step_energy(static_cast<int>(std::lround(shift)) + near));
   }
   return largest > 0 ? std::sqrt(line.step_energy(0) / largest) : 1;
 }
 
-// Sums of `energy` over places within `reach` of the cut, and its mean over the same places elsewhere.
-template <typename Energy>
-double at_cut_over_elsewhere(const Line& line, const Cut& cut, const std::vector<int>& shifts, int reach,
-                             Energy&& energy) {
-  double here = 0, there = 0;
-  for (int j = 0; j < line.across(); ++j) {
-    const int column = cut.column[static_cast<std::size_t>(j)];
-    for (int i = column - reach; i <= column + reach; ++i) {
-      here += energy(i, j);
-      for (const int shift : shifts) there += energy(i + shift, j) / static_cast<double>(shifts.size());
+// The places around a cut.
+struct Band {
+  const Overlap& overlap;
+  const Cut& cut;
+  int feather, skip, across;
+
+  // Root of the mean square of what is there over that of the sides that were joined, each by its weight.
+  template <typename Joined, typename Before>
+  double ratio(Joined&& joined, Before&& before) const {
+    double here = 0, sides = 0;
+    for (int j = skip; j < across; ++j) {
+      const int column = cut.column[static_cast<std::size_t>(j)];
+      for (int i = std::max(column - 3 * feather, 1); i < std::min(column + 3 * feather, overlap.overlap);
+           ++i) {
+        const double now = joined(i, j), own = before(i, j), beyond = before(i + overlap.period, j);
+        here += now * now;
+        const double weight = own_weight(i, column, feather);
+        sides += weight * own * own + (1 - weight) * beyond * beyond;
+      }
     }
+    return sides > 0 ? std::sqrt(here / sides) : 1;
   }
-  return there > 0 ? here / there : 1;
+};
+
+double residual_ratio(const Tile& tile, const Surface& before, const Band& band, const TileOptions& options) {
+  double squares = 0;
+  for (int p = 0; p < 2; ++p) {
+    const Axis axis = band.overlap.axis;
+    MeanRepeat mean(options.repeat_x_px, options.repeat_y_px);
+    mean.add(before.slope.plane(p));
+    const Line now(tile.surface.slope.plane(p), axis), then(before.slope.plane(p), axis);
+    const auto usual = [&](int i, int j) { return axis == Axis::kX ? mean.at(i, j) : mean.at(j, i); };
+    const double level = p == 0 ? tile.mean_right : tile.mean_up;
+    const double ratio = band.ratio([&](int i, int j) { return now.at(i, j) + level - usual(i, j); },
+                                    [&](int i, int j) { return then.at(i, j) - usual(i, j); });
+    squares += ratio * ratio / 2;
+  }
+  return std::sqrt(squares);
 }
 
 }  // namespace
 
-Seam seam_of(const Tile& tile, const Overlap& overlap, const Cut& cut, int feather, double repeat_x,
-             double repeat_y) {
-  const double repeat = overlap.axis == Axis::kX ? repeat_x : repeat_y;
-  const Line right(tile.surface.slope.plane(0), overlap.axis), up(tile.surface.slope.plane(1), overlap.axis),
-      albedo(tile.surface.albedo.plane(tile.surface.albedo.planes() / 2), overlap.axis),
-      height(tile.height_mm.plane(), overlap.axis);
-  const std::vector<int> shifts = elsewhere(right.along(), overlap.overlap, repeat);
+Seam seam_of(const Tile& tile, const Surface& before, const Overlap& overlap, const Cut& cut, int skip,
+             const TileOptions& options) {
+  const Axis axis = overlap.axis;
+  const double repeat = axis == Axis::kX ? options.repeat_x_px : options.repeat_y_px;
+  const Slopes slopes(tile.surface, axis), slopes_before(before, axis);
+  const Line albedo = green_of(tile.surface, axis), albedo_before = green_of(before, axis);
+  const Band band = {overlap, cut, options.feather_px, skip, albedo.across()};
+  const auto squared = [](double ratio) { return ratio * ratio; };
   Seam seam;
   seam.overlap_px = overlap.overlap;
   seam.cut_cost = cut.cost;
-  seam.wrap_step_slope =
-      std::max(wrap_step(right, repeat, overlap.overlap), wrap_step(up, repeat, overlap.overlap));
-  seam.wrap_step_albedo = wrap_step(albedo, repeat, overlap.overlap);
-  seam.wrap_step_height = wrap_step(height, repeat, overlap.overlap);
-  if (shifts.empty()) return seam;
-  const auto steps = [&](const Line& line) {
-    return [&line](int i, int j) { return line.step(i, j) * line.step(i, j); };
-  };
-  const auto both_steps = [&](int i, int j) { return steps(right)(i, j) + steps(up)(i, j); };
-  seam.gradient_slope = at_cut_over_elsewhere(right, cut, shifts, feather, both_steps);
-  seam.gradient_albedo = at_cut_over_elsewhere(albedo, cut, shifts, feather, steps(albedo));
-  const auto curl = [&](int i, int j) {
-    // One slope changes along the axis, the other across it; which way is up does not matter for the square.
-    const int n = right.across(), before = (j + n - 1) % n, after = (j + 1) % n;
-    const Line& along = overlap.axis == Axis::kX ? right : up;
-    const Line& other = overlap.axis == Axis::kX ? up : right;
-    const double c = (along.at(i, after) - along.at(i, before)) + (other.at(i + 1, j) - other.at(i - 1, j));
-    return c * c;
-  };
-  seam.curl = std::sqrt(at_cut_over_elsewhere(right, cut, shifts, 2 * feather, curl));
-  if (repeat <= 0) return seam;
-  const Image<float> residual_right = without_mean_repeat(tile.surface.slope.plane(0), repeat_x, repeat_y),
-                     residual_up = without_mean_repeat(tile.surface.slope.plane(1), repeat_x, repeat_y);
-  const Line r(residual_right.plane(), overlap.axis), u(residual_up.plane(), overlap.axis);
-  seam.residual = std::sqrt(at_cut_over_elsewhere(r, cut, shifts, feather, [&](int i, int j) {
-    return r.at(i, j) * r.at(i, j) + u.at(i, j) * u.at(i, j);
-  }));
+  seam.wrap_step_slope = std::max(wrap_step(slopes.along, repeat), wrap_step(slopes.across, repeat));
+  seam.wrap_step_albedo = wrap_step(albedo, repeat);
+  seam.wrap_step_height = wrap_step(Line(tile.height_mm.plane(), axis), repeat);
+  seam.gradient_slope = squared(band.ratio([&](int i, int j) { return slopes.step(i, j); },
+                                           [&](int i, int j) { return slopes_before.step(i, j); }));
+  seam.gradient_albedo = squared(band.ratio([&](int i, int j) { return albedo.step(i, j); },
+                                            [&](int i, int j) { return albedo_before.step(i, j); }));
+  seam.curl = band.ratio([&](int i, int j) { return slopes.curl(i, j); },
+                         [&](int i, int j) { return slopes_before.curl(i, j); });
+  if (tile.has_repeat) seam.residual = residual_ratio(tile, before, band, options);
   return seam;
 }
 

@@ -5,8 +5,10 @@
 
 namespace weft::material {
 
-/// What can be seen of the joint along one axis of a finished tile. `repeat` pixels along that axis, 0: none.
-Seam seam_of(const Tile& tile, const Overlap& overlap, const Cut& cut, int feather, double repeat_x,
-             double repeat_y);
+/// What can be seen of the joint along one axis of a finished tile. `before` is the cloth that was joined,
+/// its first pixel the tile's. The first `skip` places across the axis are left out: another joint changed
+/// them.
+Seam seam_of(const Tile& tile, const Surface& before, const Overlap& overlap, const Cut& cut, int skip,
+             const TileOptions& options);
 
 }  // namespace weft::material

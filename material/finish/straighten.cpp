@@ -18,7 +18,12 @@ namespace weft::material {
 namespace {
 
 constexpr int kMostSide = 32768, kLookupStep = 8, kLeastSide = 64;
+constexpr double kJoint_px = 48;  ///< what the ends of a tile need at least to be joined
 const char* const kNotStraightened = "the cloth cannot be straightened";
+
+Error not_straightened(ErrorKind kind, std::string why, std::string remedy) {
+  return {kind, kNotStraightened, "straighten", std::move(why), std::move(remedy)};
+}
 
 // Columns and rows along the yarns, around the centre of the photographed cloth.
 struct Plan {
@@ -59,36 +64,50 @@ std::array<double, 2> widest(const Cell& axes, Size frame) {
   return {u, v};
 }
 
-Result<Plan> plan_of(const Surface& surface, const Lattice& lattice, const StraightenOptions& options) {
-  const auto refused = [](ErrorKind kind, std::string why, std::string remedy) {
-    return Error{kind, kNotStraightened, "straighten", std::move(why), std::move(remedy)};
-  };
-  if (lattice.kind != LatticeKind::kRepeat) {
-    return refused(ErrorKind::kBadData, std::string(words_of(lattice.kind)),
-                   "turn the cloth by hand, or take a larger or sharper part of it");
+// The frame less what pulls at its border may reach beyond it.
+Size frame_within(Size frame, const Displacement& displacement) {
+  const Image<float>& field = displacement.field();
+  double across = 0, down = 0;
+  for (int y = 0; y < field.height(); ++y) {
+    for (int x = 0; x < field.width(); ++x) {
+      if (x > 0 && y > 0 && x < field.width() - 1 && y < field.height() - 1) continue;
+      across = std::max(across, std::abs(static_cast<double>(field(x, y, 0))));
+      down = std::max(down, std::abs(static_cast<double>(field(x, y, 1))));
+    }
   }
+  return {std::max(1, frame.width - 2 * static_cast<int>(std::ceil(across))),
+          std::max(1, frame.height - 2 * static_cast<int>(std::ceil(down)))};
+}
+
+Result<Plan> plan_of(const Surface& surface, const Lattice& lattice, const Displacement& displacement,
+                     const StraightenOptions& options) {
   const double mm = options.mm_per_pixel == 0 ? surface.mm_per_pixel : options.mm_per_pixel;
   if (!(mm > 0 && std::isfinite(mm)))
-    return refused(ErrorKind::kUsage, "mm_per_pixel is not above 0", "ask for a size above 0");
+    return not_straightened(ErrorKind::kUsage, "mm_per_pixel is not above 0", "ask for a size above 0");
   if (options.repeats_x < 0 || options.repeats_y < 0)
-    return refused(ErrorKind::kUsage, "a number of repeats is below 0", "ask for 1 repeat or more, or 0");
+    return not_straightened(ErrorKind::kUsage, "a number of repeats is below 0",
+                            "ask for 1 repeat or more, or 0");
   const double scale = surface.mm_per_pixel / mm;
-  const std::array<double, 2> half = widest(lattice.axes, surface.size());
+  const std::array<double, 2> half = widest(lattice.axes, frame_within(surface.size(), displacement));
   const std::array<double, 2> repeat = {scale * length(lattice.axes.a), scale * length(lattice.axes.b)};
   std::array<int, 2> size = {}, repeats = {options.repeats_x, options.repeats_y}, period = {};
   for (std::size_t i = 0; i < 2; ++i) {
     const double longest = 2 * scale * half[i] + 1;
     if (!(longest <= kMostSide)) {
-      return refused(ErrorKind::kUsage,
-                     fmt::format("{:.4g} mm a pixel make {:.0f} pixels a side", mm, longest),
-                     fmt::format("ask for a size that gives {} at most", kMostSide));
+      return not_straightened(ErrorKind::kUsage,
+                              fmt::format("{:.4g} mm a pixel make {:.0f} pixels a side", mm, longest),
+                              fmt::format("ask for a size that gives {} at most", kMostSide));
     }
     size[i] = static_cast<int>(longest);
-    if (repeats[i] == 0) repeats[i] = std::max(1, static_cast<int>(size[i] / repeat[i]) - 1);
+    if (repeats[i] == 0) {
+      const double for_joint = std::max(repeat[i], kJoint_px);
+      repeats[i] = std::max(1, static_cast<int>((size[i] - for_joint) / repeat[i]));
+    }
     const double pixels = std::max(1.0, std::round(repeats[i] * repeat[i]));
     if (!(pixels <= kMostSide)) {
-      return refused(ErrorKind::kUsage, fmt::format("{} repeats are {:.0f} pixels", repeats[i], pixels),
-                     "ask for fewer repeats");
+      return not_straightened(ErrorKind::kUsage,
+                              fmt::format("{} repeats are {:.0f} pixels", repeats[i], pixels),
+                              "ask for fewer repeats");
     }
     period[i] = static_cast<int>(pixels);
   }
@@ -134,12 +153,17 @@ Result<Straightened> straighten(const Surface& surface, const Lattice& lattice,
                                 const StraightenOptions& options) {
   if (auto usable = check_surface(surface, kLeastSide, kNotStraightened); !usable)
     return std::move(usable).error();
-  Result<Plan> plan = plan_of(surface, lattice, options);
-  if (!plan) return std::move(plan).error();
+  if (lattice.kind != LatticeKind::kRepeat) {
+    return not_straightened(ErrorKind::kBadData, std::string(words_of(lattice.kind)),
+                            "turn the cloth by hand, or take a larger or sharper part of it");
+  }
   Straightened out;
+  // A plain weave's yarns are half its repeat apart, so they carry twice as many waves as their repeat says.
   const double sigma_px =
       options.lock_in_repeats * std::sqrt(std::min(lattice.axes.area(), 4 * lattice.weave.area()));
   if (sigma_px > 0) out.displacement = lock_in(surface, lattice.weave, sigma_px, options.threads);
+  Result<Plan> plan = plan_of(surface, lattice, out.displacement, options);
+  if (!plan) return std::move(plan).error();
   out.lookup = lookup_of(*plan, out.displacement, options.threads);
   out.repeats_x = plan->repeats_x;
   out.repeats_y = plan->repeats_y;

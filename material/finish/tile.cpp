@@ -22,7 +22,7 @@
 namespace weft::material {
 namespace {
 
-constexpr int kLeastOverlap_px = 24, kMostPlaces = 64, kBlock_px = 16;
+constexpr int kLeastOverlap_px = 48, kMostPlaces = 64, kBlock_px = 16;
 const char* const kNoTile = "no tile can be cut";
 
 Error no_tile(ErrorKind kind, std::string why, std::string remedy) {
@@ -139,10 +139,9 @@ Start best_start(const Surface& surface, const Side& x, const Side& y, int margi
   return best;
 }
 
-// 1 at the cuts, 0 from two feathers on.
+// 1 where both sides are mixed, within half a feather of a cut, 0 from a feather on.
 double closeness(int place, int column, int feather) {
-  const double t = std::clamp(2.0 - std::abs(place + 0.5 - column) / feather, 0.0, 1.0);
-  return t * t * (3 - 2 * t);
+  return std::clamp(2 - 2 * std::abs(place + 0.5 - column) / feather, 0.0, 1.0);
 }
 
 double angle_between_deg(Vec2 a, Vec2 b) {
@@ -170,7 +169,7 @@ void make_integrable(const Cut& across, const Cut& down, int feather, Tile& tile
       slope(x, y, 1) = static_cast<float>(mixed.y);
       const double angle = angle_between_deg(mixed, of_height);
       everywhere.push_back(angle);
-      if (weight > 0.5) at_cuts.push_back(angle);
+      if (weight == 1) at_cuts.push_back(angle);
       lowest = std::min(lowest, periodic.height(x, y));
       highest = std::max(highest, periodic.height(x, y));
     }
@@ -233,8 +232,8 @@ Result<Tile> tile(const Surface& surface, const TileOptions& options) {
   out.places = start.places;
   out.has_repeat = options.repeat_x_px > 0 && options.repeat_y_px > 0;
   make_integrable(across, down, feather, out, options.threads);
-  out.x = seam_of(out, in_x, across, feather, options.repeat_x_px, options.repeat_y_px);
-  out.y = seam_of(out, in_y, down, feather, options.repeat_x_px, options.repeat_y_px);
+  out.x = seam_of(out, whole, in_x, across, y->overlap, options);
+  out.y = seam_of(out, wrapped, in_y, down, 0, options);
   return out;
 }
 

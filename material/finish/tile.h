@@ -22,18 +22,19 @@ struct TileOptions {
 /// The period and the repeat that straighten() left.
 TileOptions tile_of(const Straightened& straightened);
 
-/// One joint of a tile, along one axis. Ratios compare pixels at the joint with pixels of the same place in
-/// other repeats, so that 1 means "as everywhere".
+/// One joint of a tile, along one axis. But for the steps at the border all are of what lies within ten
+/// pixels of the cut, over the same of both sides before they were joined: 1 means that nothing is to be
+/// seen, less than 1 that the joint is blurred.
 struct Seam {
   int overlap_px = 0;
   double cut_cost = 0;         ///< mean squared difference of both sides along the cut, in variances
-  double wrap_step_slope = 0;  ///< rms step at the picture's border over the largest one at the same phase
+  double wrap_step_slope = 0;  ///< rms step at the border over the largest one at the same place of a repeat
   double wrap_step_albedo = 0;
   double wrap_step_height = 0;
-  double gradient_slope = 0;  ///< energy of steps across the cut over that of the same places elsewhere
+  double gradient_slope = 0;  ///< energy of the steps from pixel to pixel along the axis
   double gradient_albedo = 0;
-  double residual = 0;  ///< sd from the mean repeat at the cut over elsewhere; 0 without a repeat
-  double curl = 0;      ///< rms at the cut over elsewhere
+  double residual = 0;  ///< sd of the slopes from the mean repeat; 0 without a repeat
+  double curl = 0;      ///< rms
 };
 
 /// A cloth that goes on at its borders.

@@ -30,6 +30,13 @@ TEST(Tile, Explore) {
     const Result<Lattice> l = find_lattice(s);
     for (int n : {0, 5}) {
       const Result<Straightened> f = straighten(s, *l, {.repeats_x = n, .repeats_y = n});
+      int un = 0;
+      for (int y = 0; y < f->surface.size().height; ++y)
+        for (int x = 0; x < f->surface.size().width; ++x)
+          if (f->surface.status(x, y)) {
+            if (++un < 5) std::printf("unsolved %d %d\n", x, y);
+          }
+      std::printf("unsolved %d of %d x %d\n", un, f->surface.size().width, f->surface.size().height);
       const double t0 = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
       const Result<Tile> t = tile(f->surface, tile_of(*f));
       const double t1 = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
