@@ -24,6 +24,8 @@ constexpr std::size_t kWaves = 6;
 constexpr int kHarmonics = 6, kReference_px = 512;
 constexpr double kFinest = 0.35;  ///< cycles a pixel
 constexpr int kNodesInSigma = 4;
+// The low pass flattens bends; the second round sees only what the first one left of them.
+constexpr int kRounds = 2;
 
 // A wave of the lattice, and what the slopes at the frame's centre hold of it.
 struct Wave {
@@ -40,11 +42,12 @@ double slope_at(const Surface& surface, int x, int y, int channel) {
   return (surface.status(x, y) & kNoSolution) != 0 ? 0 : static_cast<double>(surface.slope(x, y, channel));
 }
 
-// exp(-2 pi i cycles . place) along a row from x0, without a sine for each pixel.
+// exp(-2 pi i cycles . place) along a row, without a sine for each pixel.
 class Phasor {
  public:
-  Phasor(Vec2 cycles, Vec2 place)
-      : value_(std::polar(1.0, -2 * kPi * dot(cycles, place))), step_(std::polar(1.0, -2 * kPi * cycles.x)) {}
+  Phasor(Vec2 cycles, Vec2 place, Vec2 step = {1, 0})
+      : value_(std::polar(1.0, -2 * kPi * dot(cycles, place))),
+        step_(std::polar(1.0, -2 * kPi * dot(cycles, step))) {}
   Complex next() {
     const Complex here = value_;
     value_ *= step_;
@@ -54,6 +57,10 @@ class Phasor {
  private:
   Complex value_, step_;
 };
+
+Size nodes_of(Size frame, int step) {
+  return {(frame.width + step - 1) / step, (frame.height + step - 1) / step};
+}
 
 double hann(int i, int n) {
   const double s = std::sin(kPi * (i + 0.5) / n);
@@ -94,20 +101,29 @@ std::vector<Wave> strongest_waves(const Surface& surface, const Cell& weave, int
   return waves;
 }
 
-// The wave's part of the slopes around each node: real and imaginary part.
-Image<float> demodulated(const Surface& surface, const Wave& wave, int step, double sigma_px, int threads) {
+// The wave's part of the slopes around each node, real and imaginary part, where the cloth is pulled by
+// `known`: what remains is the phase of what is not known yet.
+Image<float> demodulated(const Surface& surface, const Wave& wave, const Displacement& known, int step,
+                         double sigma_px, int threads) {
   const Size size = surface.size();
-  Image<float> nodes({(size.width + step - 1) / step, (size.height + step - 1) / step}, 2);
+  Image<float> nodes(nodes_of(size, step), 2);
   const std::array<Complex, 2> against = {std::conj(wave.reference[0]), std::conj(wave.reference[1])};
   parallel_for(static_cast<std::size_t>(nodes.height()), threads, [&](std::size_t row, int) {
     const int j = static_cast<int>(row), y1 = std::min((j + 1) * step, size.height);
     std::vector<Complex> sums(static_cast<std::size_t>(nodes.width()));
     for (int y = j * step; y < y1; ++y) {
-      Phasor phasor(wave.cycles, from_centre(size, 0, y));
-      for (int x = 0; x < size.width; ++x) {
-        const Complex turned = phasor.next();
-        sums[static_cast<std::size_t>(x / step)] +=
-            (slope_at(surface, x, y, 0) * against[0] + slope_at(surface, x, y, 1) * against[1]) * turned;
+      Vec2 place = from_centre(size, 0, y), lattice = place + known.at(place);
+      for (int i = 0; i < nodes.width(); ++i) {
+        // The displacement is as good as linear between nodes.
+        const Vec2 next = place + Vec2{static_cast<double>(step), 0}, lattice_next = next + known.at(next);
+        Phasor phasor(wave.cycles, lattice, (1.0 / step) * (lattice_next - lattice));
+        for (int x = i * step; x < std::min((i + 1) * step, size.width); ++x) {
+          const Complex turned = phasor.next();
+          sums[static_cast<std::size_t>(i)] +=
+              (slope_at(surface, x, y, 0) * against[0] + slope_at(surface, x, y, 1) * against[1]) * turned;
+        }
+        place = next;
+        lattice = lattice_next;
       }
     }
     for (int i = 0; i < nodes.width(); ++i) {
@@ -178,6 +194,14 @@ Image<float> followed(const std::vector<Wave>& waves, const std::vector<Image<fl
   return field;
 }
 
+void add(const Image<float>& more, Image<float>& field) {
+  for (int p = 0; p < field.planes(); ++p) {
+    for (int y = 0; y < field.height(); ++y) {
+      for (int x = 0; x < field.width(); ++x) field(x, y, p) += more(x, y, p);
+    }
+  }
+}
+
 }  // namespace
 
 Displacement::Displacement(Image<float> field, int step, Size frame)
@@ -207,9 +231,16 @@ Displacement lock_in(const Surface& surface, const Cell& weave, double sigma_px,
   const int step = std::max(1, static_cast<int>(sigma_px / kNodesInSigma));
   const std::vector<Wave> waves = strongest_waves(surface, weave, threads);
   if (waves.empty()) return {};
-  std::vector<Image<float>> parts;
-  for (const Wave& wave : waves) parts.push_back(demodulated(surface, wave, step, sigma_px, threads));
-  return {followed(waves, parts), step, surface.size()};
+  Displacement known;
+  for (int round = 0; round < kRounds; ++round) {
+    std::vector<Image<float>> parts;
+    for (const Wave& wave : waves)
+      parts.push_back(demodulated(surface, wave, known, step, sigma_px, threads));
+    Image<float> field = followed(waves, parts);
+    if (round > 0) add(known.field(), field);
+    known = {std::move(field), step, surface.size()};
+  }
+  return known;
 }
 
 }  // namespace weft::material

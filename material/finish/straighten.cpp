@@ -119,14 +119,14 @@ Result<Plan> plan_of(const Surface& surface, const Lattice& lattice, const Displ
 
 // Places of x + d(x) = X: pulls are small against their own length, so few rounds do.
 Lookup lookup_of(const Plan& plan, const Displacement& displacement, int threads) {
-  constexpr int kRounds = 6;
+  constexpr int kIterations = 6;
   Lookup lookup(plan.size, kLookupStep);
   parallel_for(static_cast<std::size_t>(lookup.nodes().height), threads, [&](std::size_t row, int) {
     const int j = static_cast<int>(row);
     for (int i = 0; i < lookup.nodes().width; ++i) {
       const Vec2 wanted = plan.lattice_place((i - 1) * kLookupStep, (j - 1) * kLookupStep);
       Vec2 place = wanted;
-      for (int round = 0; round < kRounds; ++round) place = wanted - displacement.at(place);
+      for (int round = 0; round < kIterations; ++round) place = wanted - displacement.at(place);
       lookup.set(i, j, place);
     }
   });

@@ -65,7 +65,7 @@ TEST(Straighten, Explore) {
         .warp_px = 1,
         .bow_px = 12}}) {
     const Surface s = weave_surface(w, {1024, 1024});
-    for (double sigma : {0., .5, .8, 1.5, 3.}) {
+    for (double sigma : {0., .5, .8, 1.5}) {
       const double t0 = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
       const Straightened f = straightened(s, {.lock_in_repeats = sigma});
       const double t1 = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
