@@ -25,7 +25,7 @@ constexpr int kHarmonics = 6, kReference_px = 512;
 constexpr double kFinest = 0.35;  ///< cycles a pixel
 constexpr int kNodesInSigma = 4;
 // The low pass flattens bends; the second round sees only what the first one left of them.
-constexpr int kRounds = 2;
+constexpr int kRounds = 3;
 
 // A wave of the lattice, and what the slopes at the frame's centre hold of it.
 struct Wave {

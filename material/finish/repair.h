@@ -17,13 +17,13 @@ struct Spot {
   double radius_mm = 0;
   double width_mm = 0, height_mm = 0;
   /// Where the filling comes from, pixels x right, y up; nothing: the best is looked for. A recipe keeps it.
-  std::optional<Vec2> source_px;
+  std::optional<Vec2> source_px = {};
 };
 
 /// What repair is asked.
 struct RepairOptions {
-  std::vector<Spot> spots;
-  Cell cell;           ///< repeats of the cloth, pixels: Lattice::axes, or a straightened cloth's
+  std::vector<Spot> spots = {};
+  Cell cell = {};      ///< repeats of the cloth, pixels: Lattice::axes, or a straightened cloth's
   int feather_px = 4;  ///< 0 to 16
   int ring_px = 9;     ///< around a spot: what must match, 1 to 64
   int threads = 0;

@@ -30,6 +30,7 @@ struct WeaveSettings {
   Binding binding = kPlain;
   double pitch_x_px = 12, pitch_y_px = 12;
   double turn_deg = 0;    ///< of the warp's normal from x, counterclockwise
+  double skew_deg = 0;    ///< how much farther the weft's normal is turned
   double wander = 0;      ///< sideways shift of each yarn, standard deviation in pitches
   double noise_deg = 0;   ///< of the normals
   double tone = 0.08;     ///< standard deviation of the yarns' albedo, relative
@@ -68,14 +69,16 @@ class Weave {
   Place place(Vec2 at, Size size) const {
     const double u = at.x / size.width, v = at.y / size.height, t = 2 * kPi;
     const double pull = settings_.warp_px, bow = settings_.bow_px;
-    const double c = std::cos(radians(settings_.turn_deg)), s = std::sin(radians(settings_.turn_deg));
+    const double c = std::cos(radians(settings_.turn_deg)), sine = std::sin(radians(settings_.turn_deg));
+    const double weft_deg = settings_.turn_deg + settings_.skew_deg;
+    const double weft_c = std::cos(radians(weft_deg)), weft_s = std::sin(radians(weft_deg));
     // Even along both axes, so that pulling neither turns nor stretches the cloth as a whole.
     const double wave = std::cos(t * u) * std::cos(t * v), along = -t * std::sin(t * u) * std::cos(t * v),
                  up = -t * std::cos(t * u) * std::sin(t * v);
     const Vec2 pulled = {at.x + pull * wave, at.y - pull * wave + 4 * bow * u * u};
     const Vec2 by_x = {1 + pull * along / size.width, (-pull * along + 8 * bow * u) / size.width};
     const Vec2 by_y = {pull * up / size.height, 1 - pull * up / size.height};
-    const auto turned = [&](Vec2 a) { return Vec2{c * a.x + s * a.y, c * a.y - s * a.x}; };
+    const auto turned = [&](Vec2 a) { return Vec2{c * a.x + sine * a.y, weft_c * a.y - weft_s * a.x}; };
     return {turned(pulled), turned(by_x), turned(by_y)};
   }
 

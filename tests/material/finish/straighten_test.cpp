@@ -1,83 +1,155 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/finish/straighten.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <ctime>
+#include <limits>
+#include <vector>
 
 #include "core/solve_record.h"
+#include "core/statistics.h"
 #include "material/finish/mean_repeat.h"
-#include "tests/material/weave.h"
+#include "tests/material/finish/cloths.h"
 
 namespace weft::material {
 namespace {
 
-Straightened straightened(const Surface& surface, const StraightenOptions& options = {}) {
-  const Result<Lattice> lattice = find_lattice(surface);
-  EXPECT_TRUE(lattice) << lattice.error().message();
-  Result<Straightened> out = straighten(surface, *lattice, options);
-  EXPECT_TRUE(out) << out.error().message();
-  return out ? std::move(out).value() : Straightened();
+double share_of(const Straightened& found) {
+  return repeating_share(found.surface, static_cast<double>(found.period_px.width) / found.repeats_x,
+                         static_cast<double>(found.period_px.height) / found.repeats_y);
 }
 
-/// The farthest that a warp or a weft yarn is turned from its axis, in degrees, at three by three places.
-double farthest_turn_deg(const Straightened& found, const WeaveSettings& settings, Size frame) {
+TEST(Straighten, PutsTheYarnsOnTheAxesAtNinePlaces) {
+  const Size frame = {640, 640};
+  for (const WeaveSettings& weave : {WeaveSettings{.binding = kTwill,
+                                    .pitch_x_px = 10.2,
+                                    .pitch_y_px = 9.1,
+                                    .turn_deg = 2.1,
+                                    .skew_deg = 1.5,
+                                    .wander = 0.02,
+                                    .warp_px = 1},
+                                     WeaveSettings{.binding = kSatin5,
+                                     .pitch_x_px = 9.3,
+                                     .pitch_y_px = 10.7,
+                                     .turn_deg = -1.8,
+                                     .wander = 0.02,
+                                     .bow_px = 5}}) {
+    const Surface cloth = weave_surface(weave, frame);
+    const Straightened found = straightened(cloth);
+    EXPECT_LT(farthest_turn_deg(found, weave, frame), 0.05) << weave.binding.name;
+    EXPECT_GT(farthest_turn_deg(straightened(cloth, {.lock_in_repeats = 0}), weave, frame), 0.1);
+    EXPECT_NEAR(found.turn_deg, weave.turn_deg, 0.1) << weave.binding.name;
+    EXPECT_NEAR(found.skew_deg, weave.skew_deg, 0.1) << weave.binding.name;
+    EXPECT_GT(found.largest_pull_mm, 0.02) << weave.binding.name;
+  }
+}
+
+TEST(Straighten, MakesMoreOfTheReliefRepeat) {
+  // A displacement with the wrong sign doubles the pulls.
+  const WeaveSettings weave = {.binding = kSatin5,
+                               .pitch_x_px = 9.3,
+                               .pitch_y_px = 10.7,
+                               .turn_deg = -0.8,
+                               .wander = 0.03,
+                               .warp_px = 1.5};
+  const Surface cloth = weave_surface(weave, {512, 512});
+  const double affine = share_of(straightened(cloth, {.lock_in_repeats = 0})),
+               locked = share_of(straightened(cloth));
+  EXPECT_GT(locked, 0.75);
+  EXPECT_GT(locked, affine + 0.1);
+}
+
+TEST(Straighten, TurnsAndShearsSlopesAsASurfacesDo) {
+  const WeaveSettings settings = {
+      .binding = kTwill, .pitch_x_px = 16, .pitch_y_px = 14, .turn_deg = 8, .skew_deg = 3, .noise_deg = 0};
+  const Size frame = {400, 400};
+  const Straightened found = straightened(weave_surface(settings, frame), {.lock_in_repeats = 0});
   const Weave weave(settings);
-  const Size grid = found.surface.size();
-  const double half = 2 * std::max(settings.pitch_x_px, settings.pitch_y_px);
-  const auto cloth_at = [&](double x, double y) { return weave.place(found.lookup.at(x, y).at, frame).at; };
-  double farthest = 0;
-  for (const double u : {0.15, 0.5, 0.85}) {
-    for (const double v : {0.15, 0.5, 0.85}) {
-      const double x = u * grid.width, y = v * grid.height;
-      const Vec2 up = cloth_at(x, y - half) - cloth_at(x, y + half),
-                 right = cloth_at(x + half, y) - cloth_at(x - half, y);
-      farthest = std::max({farthest, std::abs(degrees(std::atan2(up.x, up.y))),
-                           std::abs(degrees(std::atan2(right.y, right.x)))});
+  // In the cloth's own axes its slopes are known; straightened axes are those, in another scale each.
+  const Vec2 across = weave.place({1, 0}, frame).at, up = weave.place({0, 1}, frame).at;
+  std::vector<double> errors;
+  for (int y = 20; y < found.surface.size().height - 20; y += 3) {
+    for (int x = 20; x < found.surface.size().width - 20; x += 3) {
+      const Lookup::Place place = found.lookup.at(x, y);
+      const auto point = weave.top(weave.place(place.at, frame).at);
+      const Vec2 column = {across.x * place.by_column.x + up.x * place.by_column.y, 0};
+      const double right = point.dx * column.x * found.surface.mm_per_pixel / found.mm_per_pixel_x;
+      errors.push_back(std::abs(static_cast<double>(found.surface.slope(x, y, 0)) -
+                                right * settings.mm_per_pixel / found.surface.mm_per_pixel));
     }
   }
-  return farthest;
+  EXPECT_LT(median(errors), 0.005);
 }
 
-TEST(Straighten, Explore) {
-  for (const WeaveSettings& w :
-       {WeaveSettings{.pitch_x_px = 21.6, .pitch_y_px = 21.6, .turn_deg = 1.9, .wander = 0.03, .warp_px = 1},
-        WeaveSettings{.binding = kTwill,
-        .pitch_x_px = 14.2,
-        .pitch_y_px = 13.1,
-        .turn_deg = 2.1,
-        .wander = 0.04,
-        .warp_px = 1},
-        WeaveSettings{.binding = kSatin5,
-        .pitch_x_px = 11.3,
-        .pitch_y_px = 13.7,
-        .turn_deg = -.8,
-        .wander = 0.04,
-        .warp_px = 1},
-        WeaveSettings{.binding = kSatin5,
-        .pitch_x_px = 11.3,
-        .pitch_y_px = 13.7,
-        .turn_deg = -.8,
-        .wander = 0.04,
-        .warp_px = 1,
-        .bow_px = 12}}) {
-    const Surface s = weave_surface(w, {1024, 1024});
-    for (double sigma : {0., .5, .8, 1.5}) {
-      const double t0 = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-      const Straightened f = straightened(s, {.lock_in_repeats = sigma});
-      const double t1 = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-      const double rx = static_cast<double>(f.period_px.width) / f.repeats_x,
-                   ry = static_cast<double>(f.period_px.height) / f.repeats_y;
-      std::printf(
-          "%s bow %.0f sigma %.1f: share %.3f turn %.4f size %d x %d period %d x %d = %d x %d pull %.3f %.3f "
-          "mm %.2f s\n",
-          w.binding.name, w.bow_px, sigma, repeating_share(f.surface, rx, ry),
-          farthest_turn_deg(f, w, {1024, 1024}), f.surface.size().width, f.surface.size().height,
-          f.period_px.width, f.period_px.height, f.repeats_x, f.repeats_y, f.largest_pull_mm, f.rms_pull_mm,
-          t1 - t0);
+TEST(Straighten, MakesRepeatsWholeAndStatesTheScaleOfEachAxis) {
+  const WeaveSettings weave = {.binding = kTwill, .pitch_x_px = 9.7, .pitch_y_px = 11.3, .turn_deg = 1};
+  const Surface cloth = weave_surface(weave, {512, 400});
+  for (const double mm_per_pixel : {0.0, 0.03, 0.06}) {
+    const Straightened found =
+        straightened(cloth, {.mm_per_pixel = mm_per_pixel, .repeats_x = 3, .repeats_y = 2});
+    EXPECT_EQ(found.repeats_x, 3);
+    EXPECT_EQ(found.repeats_y, 2);
+    const double width_mm = 3 * 4 * 9.7 * 0.04, height_mm = 2 * 4 * 11.3 * 0.04;
+    EXPECT_NEAR(found.period_px.width * found.mm_per_pixel_x, width_mm, 2e-4 * width_mm);
+    EXPECT_NEAR(found.period_px.height * found.mm_per_pixel_y, height_mm, 2e-4 * height_mm);
+    EXPECT_NEAR(found.surface.mm_per_pixel, mm_per_pixel == 0 ? 0.04 : mm_per_pixel, 4e-4);
+  }
+}
+
+TEST(Straighten, TurnsYarnAzimuthsAndKeepsHoles) {
+  const WeaveSettings weave = {.binding = kTwill, .turn_deg = 5, .wander = 0.02};
+  Surface cloth = weave_surface(weave, {400, 400});
+  cloth.lobe = Image<float>(cloth.size(), 4);
+  cloth.opacity = Image<float>(cloth.size());
+  for (int y = 0; y < 400; ++y) {
+    for (int x = 0; x < 400; ++x) {
+      cloth.lobe(x, y, 0) = 0.45F;
+      cloth.lobe(x, y, 2) = x < 200 ? 5.0F : 3.0F;
+      const bool is_hole = std::hypot(x - 200, y - 200) < 20;
+      cloth.opacity(x, y) = is_hole ? 0.0F : 1.0F;
+      if (is_hole) cloth.status(x, y) = kNoSolution | kDark;
+    }
+  }
+  const Straightened found = straightened(cloth, {.lock_in_repeats = 0});
+  const Size size = found.surface.size();
+  const int cx = size.width / 2, cy = size.height / 2;
+  const auto azimuth_off = [](double a, double b) { return std::abs(std::remainder(a - b, 180.0)); };
+  EXPECT_LT(azimuth_off(static_cast<double>(found.surface.lobe(20, cy, 2)), 0), 0.1);
+  EXPECT_LT(azimuth_off(static_cast<double>(found.surface.lobe(size.width - 20, cy, 2)), -2), 0.1);
+  EXPECT_EQ(found.surface.lobe(20, cy, 0), 0.45F);
+  EXPECT_EQ(found.surface.status(cx, cy), kNoSolution | kDark);
+  EXPECT_EQ(found.surface.slope(cx, cy, 0), 0);
+  EXPECT_EQ(found.surface.sigma_deg(cx, cy), 180);
+  EXPECT_NEAR(found.surface.opacity(cx, cy), 0, 1e-6);
+  EXPECT_NEAR(found.surface.opacity(30, 30), 1, 1e-6);
+  EXPECT_EQ(found.surface.status(30, 30), 0);
+}
+
+TEST(Straighten, RefusesAClothWithoutRepeatAndGridsThatMakeNoPicture) {
+  const Surface felt = felt_surface({256, 256});
+  const Result<Lattice> none = find_lattice(felt);
+  ASSERT_TRUE(none);
+  const Result<Straightened> refused = straighten(felt, *none);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().why, testing::HasSubstr("no way carries"));
+  const Surface cloth = weave_surface({.wander = 0.02}, {256, 256});
+  const Result<Lattice> lattice = find_lattice(cloth);
+  ASSERT_TRUE(lattice);
+  for (const double mm : {-1.0, 1e-6, std::numeric_limits<double>::infinity(), std::nan("")})
+    EXPECT_FALSE(straighten(cloth, *lattice, {.mm_per_pixel = mm})) << mm;
+  EXPECT_FALSE(straighten(cloth, *lattice, {.repeats_x = -1}));
+}
+
+TEST(Straighten, IsTheSameForAnyNumberOfThreads) {
+  const Surface cloth = weave_surface({.binding = kTwill, .turn_deg = 3, .wander = 0.03}, {256, 256});
+  const Straightened one = straightened(cloth, {.threads = 1}), many = straightened(cloth, {.threads = 5});
+  ASSERT_EQ(one.surface.size(), many.surface.size());
+  for (int y = 0; y < one.surface.size().height; ++y) {
+    for (int x = 0; x < one.surface.size().width; ++x) {
+      ASSERT_EQ(one.surface.slope(x, y, 0), many.surface.slope(x, y, 0)) << x << ", " << y;
+      ASSERT_EQ(one.surface.albedo(x, y, 1), many.surface.albedo(x, y, 1)) << x << ", " << y;
     }
   }
 }

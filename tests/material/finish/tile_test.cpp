@@ -1,60 +1,161 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "material/finish/tile.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdio>
-#include <ctime>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
-#include "tests/material/weave.h"
+#include "core/solve_record.h"
+#include "material/finish/seam.h"
+#include "tests/material/finish/cloths.h"
 
 namespace weft::material {
 namespace {
 
-TEST(Tile, Explore) {
-  for (const WeaveSettings& w :
-       {WeaveSettings{.pitch_x_px = 21.6, .pitch_y_px = 21.6, .turn_deg = 1.9, .wander = 0.03, .warp_px = 1},
-        WeaveSettings{.binding = kTwill,
-        .pitch_x_px = 14.2,
-        .pitch_y_px = 13.1,
-        .turn_deg = 2.1,
-        .wander = 0.04,
-        .warp_px = 1},
-        WeaveSettings{.binding = kSatin5,
-        .pitch_x_px = 11.3,
-        .pitch_y_px = 13.7,
-        .turn_deg = -.8,
-        .wander = 0.04,
-        .warp_px = 1}}) {
-    const Surface s = weave_surface(w, {1024, 1024});
-    const Result<Lattice> l = find_lattice(s);
-    for (int n : {0, 5}) {
-      const Result<Straightened> f = straighten(s, *l, {.repeats_x = n, .repeats_y = n});
-      int un = 0;
-      for (int y = 0; y < f->surface.size().height; ++y)
-        for (int x = 0; x < f->surface.size().width; ++x)
-          if (f->surface.status(x, y)) {
-            if (++un < 5) std::printf("unsolved %d %d\n", x, y);
-          }
-      std::printf("unsolved %d of %d x %d\n", un, f->surface.size().width, f->surface.size().height);
-      const double t0 = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-      const Result<Tile> t = tile(f->surface, tile_of(*f));
-      const double t1 = static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
-      if (!t) {
-        std::printf("%s\n", t.error().message().c_str());
-        continue;
-      }
-      std::printf(
-          "%s %d x %d from %d of %d starts, relief %.3f mm, mean slope %.4f %.4f, p99 cuts %.2f all %.2f, "
-          "%.2f s\n",
-          w.binding.name, t->surface.size().width, t->surface.size().height, t->x0, t->places, t->relief_mm,
-          t->mean_right, t->mean_up, t->normal_p99_at_cuts_deg, t->normal_p99_deg, t1 - t0);
-      for (const Seam& m : {t->x, t->y})
-        std::printf(
-            "  overlap %d cost %.3f wrap %.2f %.2f %.2f gradient slope %.3f albedo %.3f residual %.3f curl "
-            "%.3f\n",
-            m.overlap_px, m.cut_cost, m.wrap_step_slope, m.wrap_step_albedo, m.wrap_step_height,
-            m.gradient_slope, m.gradient_albedo, m.residual, m.curl);
+Tile tile_from(const Surface& surface, const TileOptions& options) {
+  Result<Tile> found = tile(surface, options);
+  EXPECT_TRUE(found) << found.error().message();
+  return found ? std::move(found).value() : Tile();
+}
+
+TEST(Tile, OfAWeaveHidesItsJoints) {
+  const WeaveSettings weave = {.binding = kTwill,
+                               .pitch_x_px = 10.2,
+                               .pitch_y_px = 9.1,
+                               .turn_deg = 2.1,
+                               .wander = 0.04,
+                               .warp_px = 1};
+  const Straightened cloth = straightened(weave_surface(weave, {640, 640}), {.repeats_x = 6, .repeats_y = 7});
+  const Tile found = tile_from(cloth.surface, tile_of(cloth));
+  EXPECT_EQ(found.surface.size(), cloth.period_px);
+  EXPECT_TRUE(found.surface.is_tile);
+  EXPECT_GT(found.places, 9);
+  for (const auto& [seam, axis] : {std::pair{found.x, "x"}, {found.y, "y"}}) {
+    EXPECT_LE(seam.wrap_step_slope, 1.0) << axis;
+    EXPECT_LE(seam.wrap_step_albedo, 1.0) << axis;
+    EXPECT_LE(seam.wrap_step_height, 1.0) << axis;
+    EXPECT_GT(seam.gradient_slope, 0.9) << axis;
+    EXPECT_LT(seam.gradient_slope, 1.1) << axis;
+    EXPECT_GT(seam.gradient_albedo, 0.9) << axis;
+    EXPECT_LT(seam.gradient_albedo, 1.1) << axis;
+    EXPECT_GT(seam.residual, 0.85) << axis;
+    EXPECT_LT(seam.residual, 1.15) << axis;
+    EXPECT_LE(seam.curl, 1.1) << axis;
+  }
+  EXPECT_LT(found.normal_p99_at_cuts_deg, 1);
+}
+
+TEST(Tile, ShowsASeamThatIsBlurred) {
+  const Surface felt = felt_surface({300, 200});
+  const Overlap overlap = {Axis::kX, 240, 40};
+  Cut cut;
+  cut.column.assign(200, 20);
+  const TileOptions options;
+  Tile found;
+  found.surface = joined(felt, overlap, cut, options.feather_px);
+  found.height_mm = Image<float>(found.surface.size());
+  const Seam sharp = seam_of(found, felt, overlap, cut, 0, options);
+  EXPECT_GT(sharp.gradient_slope, 0.9);
+  EXPECT_GT(sharp.gradient_albedo, 0.9);
+  const Surface before = joined(felt, overlap, cut, options.feather_px);
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 16; x < 25; ++x) {
+      const auto mean = [&](const Image<float>& map, int p) {
+        return (map(x - 1, y, p) + map(x, y, p) + map(x + 1, y, p)) / 3;
+      };
+      for (int p = 0; p < 2; ++p) found.surface.slope(x, y, p) = mean(before.slope, p);
+      for (int p = 0; p < 3; ++p) found.surface.albedo(x, y, p) = mean(before.albedo, p);
+    }
+  }
+  const Seam blurred = seam_of(found, felt, overlap, cut, 0, options);
+  EXPECT_LT(blurred.gradient_slope, 0.85);
+  EXPECT_LT(blurred.gradient_albedo, 0.85);
+}
+
+TEST(Tile, HasAPeriodicHeightThatItsSlopesAgreeWith) {
+  const WeaveSettings weave = {
+      .binding = kSatin5, .pitch_x_px = 10, .pitch_y_px = 12, .turn_deg = 1, .wander = 0.03};
+  const Straightened cloth = straightened(weave_surface(weave, {400, 400}));
+  const Tile found = tile_from(cloth.surface, tile_of(cloth));
+  const Size size = found.surface.size();
+  double squares = 0, mean = 0;
+  for (int y = 0; y < size.height; ++y) {
+    const double rise = (static_cast<double>(found.surface.slope(0, y, 0)) +
+                         static_cast<double>(found.surface.slope(size.width - 1, y, 0))) /
+                        2 * found.surface.mm_per_pixel;
+    const double step = static_cast<double>(found.height_mm(0, y) - found.height_mm(size.width - 1, y));
+    squares += (step - rise) * (step - rise) / size.height;
+  }
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) mean += static_cast<double>(found.surface.slope(x, y, 0));
+  }
+  EXPECT_GT(found.relief_mm, 0.05);
+  EXPECT_LT(std::sqrt(squares), 0.01 * found.relief_mm);
+  EXPECT_LT(std::abs(mean / static_cast<double>(size.pixels())), 1e-4);
+}
+
+TEST(Tile, OfFeltIsCutWithoutARepeatAndSaysSo) {
+  const Tile found = tile_from(felt_surface({320, 280}), {});
+  EXPECT_FALSE(found.has_repeat);
+  EXPECT_EQ(found.surface.size(), (Size{280, 245}));
+  for (const Seam& seam : {found.x, found.y}) {
+    EXPECT_GT(seam.gradient_slope, 0.85);
+    EXPECT_LT(seam.gradient_slope, 1.15);
+    EXPECT_GT(seam.gradient_albedo, 0.85);
+    EXPECT_LT(seam.gradient_albedo, 1.15);
+    EXPECT_LE(seam.wrap_step_slope, 1.1);
+    EXPECT_EQ(seam.residual, 0);
+  }
+}
+
+TEST(Tile, StartsWhereNothingIsMissing) {
+  Surface felt = felt_surface({400, 400});
+  for (int y = 10; y < 40; ++y) {
+    for (int x = 20; x < 50; ++x) felt.status(x, y) = kNoSolution;
+  }
+  const Tile found = tile_from(felt, {.period_px = {200, 200}, .overlap_px = 40});
+  EXPECT_GT(found.x0 + found.y0, 0);
+  int unsolved = 0;
+  for (int y = 0; y < 200; ++y) {
+    for (int x = 0; x < 200; ++x) unsolved += (found.surface.status(x, y) & kNoSolution) != 0;
+  }
+  EXPECT_EQ(unsolved, 0);
+}
+
+TEST(Tile, RefusesWhatCannotBeJoined) {
+  const Surface cloth = felt_surface({200, 200});
+  const auto refusal = [&](const TileOptions& options) {
+    const Result<Tile> found = tile(cloth, options);
+    EXPECT_FALSE(found);
+    return found ? "" : found.error().why;
+  };
+  EXPECT_THAT(refusal({.period_px = {0, 0}, .repeat_x_px = 101, .repeat_y_px = 20}),
+              testing::HasSubstr("a repeat along x"));
+  EXPECT_THAT(refusal({.period_px = {196, 100}}), testing::HasSubstr("do not fit"));
+  EXPECT_THAT(refusal({.period_px = {100, 90}, .repeat_x_px = 20, .repeat_y_px = 20}),
+              testing::HasSubstr("4.500 repeats"));
+  EXPECT_THAT(refusal({.period_px = {10, 100}, .repeat_x_px = 40, .repeat_y_px = 20}),
+              testing::HasSubstr("0.250 repeats"));
+  EXPECT_THAT(refusal({.period_px = {0, 0}, .feather_px = 0}), testing::HasSubstr("feather"));
+  EXPECT_THAT(refusal({.period_px = {0, 0}, .repeat_x_px = std::nan("")}), testing::HasSubstr("repeat"));
+  Tile found = tile_from(cloth, {});
+  EXPECT_FALSE(tile(found.surface, {}));
+  found.surface.is_tile = false;
+  found.surface.albedo(3, 3, 0) = std::numeric_limits<float>::infinity();
+  EXPECT_FALSE(tile(found.surface, {}));
+}
+
+TEST(Tile, IsTheSameForAnyNumberOfThreads) {
+  const Surface cloth = felt_surface({160, 150});
+  const Tile one = tile_from(cloth, {.threads = 1}), many = tile_from(cloth, {.threads = 4});
+  for (int y = 0; y < one.surface.size().height; ++y) {
+    for (int x = 0; x < one.surface.size().width; ++x) {
+      ASSERT_EQ(one.height_mm(x, y), many.height_mm(x, y)) << x << ", " << y;
+      ASSERT_EQ(one.surface.slope(x, y, 1), many.surface.slope(x, y, 1)) << x << ", " << y;
     }
   }
 }
