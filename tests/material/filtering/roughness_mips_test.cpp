@@ -251,6 +251,16 @@ TEST(RoughnessMips, WidenTheFinestLevelOfSamplesAndLeaveThatOfFacets) {
   EXPECT_NEAR(finest(PixelMeaning::kSample).lobe(4, 4, 0), std::sqrt(0.01 + variance), 1e-6);
 }
 
+TEST(RoughnessMips, TellOneAlphaForAWholeLevel) {
+  const Surface half = made_surface({8, 8}, [](int x, int y) {
+    return std::array{x < 4 ? 0.0 : 0.5 * (y % 2 == 0 ? 1 : -1), 0.0};
+  });
+  const MipLevel level = std::move(mips_of(half, {.alpha = 0.1}).front());
+  const double rough = double{level.lobe(3, 1, 0)}, smooth = double{level.lobe(0, 1, 0)};
+  EXPECT_NEAR(level.mean_alpha, std::sqrt((rough * rough + smooth * smooth) / 2), 1e-7);
+  EXPECT_GT(rough, 4 * smooth);
+}
+
 TEST(RoughnessMips, AreRefusedForAnAlphaThatIsNone) {
   for (const double alpha : {-0.1, 1.1, std::nan("")}) {
     EXPECT_FALSE(roughness_mips(level_surface({4, 4}), {.alpha = alpha})) << alpha;
