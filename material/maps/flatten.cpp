@@ -242,15 +242,9 @@ Result<SlowSlopes> slow_slopes(View<const float> right, View<const float> up,
     SlopePolynomial polynomial(right.size(), options.degree);
     slow.degree = options.degree;
     std::optional<FitWindow> window;
-    if (options.repeat && options.method != FlattenMethod::kHann) {
-      window = window_of_repeats(right.size(), *options.repeat);
-      slow.lacks_repeats = !window;
-    }
-    slow.method = window ? FlattenMethod::kRepeat : FlattenMethod::kHann;
-    if (!window && options.method == FlattenMethod::kRepeat) {
-      return unusable_slopes(ErrorKind::kBadData, "the frame holds fewer than six repeats either way",
-                             "choose the method hann");
-    }
+    if (options.method == FlattenMethod::kRepeat) window = window_of_repeats(right.size(), *options.repeat);
+    slow.lacks_repeats = options.method == FlattenMethod::kRepeat && !window;
+    if (slow.lacks_repeats) slow.method = FlattenMethod::kHann;
     if (!window) window = FitWindow{hann(right.size().width), hann(right.size().height)};
     if (!fit_under(*window, map, options.threads, polynomial)) {
       return unusable_slopes(ErrorKind::kBadData, "too few pixels have slopes", "look at the status map");

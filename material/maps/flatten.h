@@ -18,21 +18,23 @@ struct Repeat {
   double first_x = 0, first_y = 0, second_x = 0, second_y = 0;
 };
 
-/// All but kHighPass fit one polynomial to all pixels by weighted least squares. A weave's slopes are a
-/// hundred times what is looked for, and leak into a fit where its window ends; so windows end softly.
+/// The first two fit one polynomial to all pixels by weighted least squares. A weave's slopes are a hundred
+/// times what is looked for, and leak into a fit where its window ends; so windows end softly.
 enum class FlattenMethod {
-  kAutomatic,  ///< kRepeat where a repeat is given of which the frame holds six either way, else kHann
-  kRepeat,     ///< a window that falls over two whole repeats at the border: corners count nearly in full
-  kHann,       ///< a Hann window over the frame: corners count for little
-  kHighPass,   ///< all that is slower than a wavelength, folds too
+  /// A Hann window over the frame: the least leak, also of folds; corners count for little.
+  kHann,
+  /// A window that falls over two whole repeats at the border: corners count nearly in full, but so do folds.
+  kRepeat,
+  /// All that is slower than a wavelength, folds too.
+  kHighPass,
 };
 
 struct FlattenOptions {
-  FlattenMethod method = FlattenMethod::kAutomatic;
+  FlattenMethod method = FlattenMethod::kHann;
   int degree = 3;  ///< of the polynomial, 1 to 5: a cubic is safe, a quintic takes corner errors as well
-  std::optional<Repeat> repeat;
-  double cut_mm = 0;        ///< kHighPass: the wavelength of which half is removed
-  double mm_per_pixel = 0;  ///< must be given
+  std::optional<Repeat> repeat = {};  ///< kRepeat
+  double cut_mm = 0;                  ///< kHighPass: the wavelength of which half is removed
+  double mm_per_pixel = 0;            ///< must be given
   /// What is known of slow slopes: where none is steeper than this, nothing is removed.
   double sigma_deg = 0;
   int threads = 0;  ///< 0: all the machine has. Changes no byte
@@ -41,12 +43,13 @@ struct FlattenOptions {
 /// The slow part of the slopes of a cloth, to be taken off: what wrong lights, a bent table and a tilt leave.
 class SlowSlopes {
  public:
-  FlattenMethod method = FlattenMethod::kAutomatic;  ///< the one that ran
-  int degree = 0;                                    ///< of the polynomial; 0 for kHighPass
-  bool lacks_repeats = false;  ///< kAutomatic was given a repeat, but the frame holds too few of it
-  std::int64_t means = 0;      ///< kRepeatMeans: cells that went into the fit
-  double tilt_deg = 0;         ///< of the mean slope
-  double range_deg = 0;        ///< the largest angle between a slow slope and their mean
+  FlattenMethod method = FlattenMethod::kHann;  ///< the one that ran
+  int degree = 0;                               ///< of the polynomial; 0 for kHighPass
+  bool lacks_repeats =
+      false;               ///< kRepeat was asked for, but the frame holds fewer than six either way: kHann
+  std::int64_t means = 0;  ///< kRepeatMeans: cells that went into the fit
+  double tilt_deg = 0;     ///< of the mean slope
+  double range_deg = 0;    ///< the largest angle between a slow slope and their mean
   double bow_mm = 0;  ///< how far the surface of these slopes, without its tilt, rises from lowest to highest
   bool acts = false;  ///< tilt or range is above sigma_deg; else the field is 0 everywhere
 
@@ -71,8 +74,9 @@ class SlowSlopes {
 /// which may be empty, or with a slope that is not finite has no part in it.
 ///
 /// In slope space and not as a turn of normals towards the vertical, which would cost 4.3 degrees of detail.
-/// Repeats are taken as they are, oblique or not, and may be off by a fiftieth. Polynomials take no fold of
-/// many repeats; a high pass does, which is how to ask for that.
+/// Repeats are taken as they are, oblique or not, and may be off by a fiftieth. Under a Hann window
+/// a cubic takes a twentieth of folds of which the frame holds four, less of shorter ones; a high pass takes
+/// them, which is how to ask for that.
 ///
 /// kUsage for shapes that differ and options out of range; kBadData where too few pixels have slopes.
 Result<SlowSlopes> slow_slopes(View<const float> right, View<const float> up,

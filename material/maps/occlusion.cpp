@@ -120,23 +120,24 @@ struct HeightField {
   }
 };
 
-/// A place between two lines, and the height there.
+/// A place between two lines.
 struct Between {
   const LineHorizons& upper;
   const LineHorizons& lower;
   std::size_t column;
   float part;  ///< of the way from the upper line to the lower one
-  float height;
 
-  /// The horizon as both lines have it, seen from the height of the place itself: in a crease that lies lower
-  /// than both lines.
-  float horizon(Horizons LineHorizons::*side) const {
+  /// How far the place lies under what both lines make of it: in a crease it is lower than they are.
+  float depth(float height) const {
+    const float depth = upper.height[column] + part * (lower.height[column] - upper.height[column]) - height;
+    return std::isfinite(depth) ? depth : 0;
+  }
+  /// The horizon as the lines have it, seen from there.
+  float horizon(Horizons LineHorizons::*side, float depth) const {
     const Horizons &above = upper.*side, &below = lower.*side;
-    const bool has_above = above.inverse[column] > 0, has_below = below.inverse[column] > 0;
-    const float from_above = above.from(column, has_above ? upper.height[column] - height : 0);
-    const float from_below = below.from(column, has_below ? lower.height[column] - height : 0);
-    if (!has_above) return from_below;
-    return has_below ? from_above + part * (from_below - from_above) : from_above;
+    const float from_above = above.from(column, depth), from_below = below.from(column, depth);
+    if (!(above.inverse[column] > 0)) return from_below;
+    return below.inverse[column] > 0 ? from_above + part * (from_below - from_above) : from_above;
   }
 };
 
@@ -173,10 +174,13 @@ class BetweenLines {
       if (!is_inside(i)) continue;
       any = true;
       const float height = field_.height(x0 + k, pixels_.y[i]);
-      const Between between = {upper, lower, x, static_cast<float>(y - y_line), height};
+      const Between between = {upper, lower, x, static_cast<float>(y - y_line)};
       const bool is_there = std::isfinite(height);
-      pixels_.forward[i] = is_there ? a_column_ * between.horizon(&LineHorizons::to_right) : kOpenHorizon;
-      pixels_.backward[i] = is_there ? a_column_ * between.horizon(&LineHorizons::to_left) : kOpenHorizon;
+      const float depth = between.depth(height);
+      pixels_.forward[i] =
+          is_there ? a_column_ * between.horizon(&LineHorizons::to_right, depth) : kOpenHorizon;
+      pixels_.backward[i] =
+          is_there ? a_column_ * between.horizon(&LineHorizons::to_left, depth) : kOpenHorizon;
       const auto n = field_.normal(x0 + k, pixels_.y[i]);
       pixels_.nx[i] = n[0];
       pixels_.ny[i] = n[1];

@@ -34,7 +34,7 @@ inline std::uint8_t weight_of_sigma(float sigma_deg, double usual_deg) {
 
 struct TiledHeightOptions {
   /// The method is that of the tiles: by default the cosine transform where all pixels of one count alike.
-  HeightOptions height;
+  HeightOptions height = {};
   int tile_px = 512;  ///< side of a tile, from 64
   int halo_px = 128;  ///< what a tile shares with its neighbours on each side; from 8 to half a tile
 };
