@@ -12,6 +12,10 @@
 #include <string_view>
 #include <utility>
 
+#include "material/filtering/detail.h"
+#include "material/finish/color.h"
+#include "material/finish/crop.h"
+#include "material/finish/repair.h"
 #include "material/finish/straighten.h"
 #include "material/finish/tile.h"
 #include "material/lattice/lattice.h"
@@ -37,8 +41,12 @@ class Finisher {
     const RecipeStep& step = recipe.steps[at];
     if (step.name == "flatten") return flatten(step.options);
     if (step.name == "straighten") return straighten(repeats_wanted(recipe, at));
+    if (step.name == "crop") return crop(step.options);
     if (step.name == "tile") return tile();
-    return Json::object();
+    if (step.name == "repair") return repair(step.options);
+    if (step.name == "color") return color(step.options);
+    if (step.name == "scale") return scale(step.options);
+    return detail();
   }
 
   FinishingFacts facts;
@@ -152,6 +160,94 @@ class Finisher {
     surface_ = std::move(cut->surface);
     tile_.reset();
     return found;
+  }
+
+  Result<Json> crop(const Json& options) {
+    const double mm = surface_.mm_per_pixel;
+    material::CropOptions crop = {options["left_mm"], options["top_mm"], options["width_mm"],
+                                  options["height_mm"]};
+    if (crop.width_mm == 0) crop.width_mm = mm * surface_.size().width - crop.left_mm;
+    if (crop.height_mm == 0) crop.height_mm = mm * surface_.size().height - crop.top_mm;
+    Result<material::Cropped> cropped = material::crop(surface_, crop);
+    if (!cropped) return std::move(cropped).error();
+    const Rect& part = cropped->part_px;
+    surface_ = std::move(cropped->surface);
+    lattice_.reset();
+    return Json{{"from_px", {part.x0, part.y0}}, {"size_px", {part.width(), part.height()}}};
+  }
+
+  // The repeats that spots are filled from: of a straightened cloth upright, else as they are found.
+  Result<material::Cell> cell() {
+    if (tile_) return material::Cell{{tile_->repeat_x_px, 0}, {0, tile_->repeat_y_px}};
+    if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
+    if (lattice_->kind == LatticeKind::kRepeat) return lattice_->axes;
+    return Error{ErrorKind::kBadData, "spots are filled from other repeats", "repair",
+                 std::string(material::words_of(lattice_->kind)), "crop the spots away"};
+  }
+
+  Result<Json> repair(const Json& options) {
+    if (options["spots"].empty()) return Json{{"filled", Json::array()}};
+    const Result<material::Cell> cell = this->cell();
+    if (!cell) return cell.error();
+    material::RepairOptions repair;
+    repair.cell = *cell;
+    repair.threads = context_.threads;
+    for (const Json& spot : options["spots"]) {
+      material::Spot place;
+      place.x_mm = spot["x_mm"];
+      place.y_mm = spot["y_mm"];
+      place.radius_mm = spot["radius_mm"];
+      repair.spots.push_back(place);
+    }
+    Result<material::Repaired> repaired = material::repair(std::move(surface_), repair);
+    if (!repaired) return std::move(repaired).error();
+    surface_ = std::move(repaired->surface);
+    Json filled = Json::array();
+    for (const material::Filled& each : repaired->filled) {
+      filled.push_back({{"repeats", {each.repeats_a, each.repeats_b}},
+                        {"source_px", {each.spot.source_px->x, each.spot.source_px->y}},
+                        {"mismatch", each.mismatch},
+                        {"pixels", each.pixels}});
+    }
+    return Json{{"filled", std::move(filled)}};
+  }
+
+  Result<Json> color(const Json& options) {
+    material::ColorOptions color;
+    color.white_gains = options["gain"].get<std::array<double, 3>>();
+    color.exposure = std::exp2(options["exposure"].get<double>());
+    Result<material::Colored> colored = material::color(std::move(surface_), color);
+    if (!colored) return std::move(colored).error();
+    surface_ = std::move(colored->surface);
+    if (colored->share_above_white > 0)
+      warn(
+          "ALBEDO_ABOVE_WHITE",
+          fmt::format("{:.2g} percent of the pixels have an albedo over 1", 100 * colored->share_above_white),
+          "take a smaller exposure");
+    return Json{{"share_above_white", colored->share_above_white}};
+  }
+
+  Result<Json> scale(const Json& options) {
+    const double before = surface_.mm_per_pixel, after = options["mm_per_pixel"];
+    if (after == 0) return Json{{"times", 1}};
+    Result<Surface> scaled = material::scale(std::move(surface_), after);
+    if (!scaled) return std::move(scaled).error();
+    surface_ = std::move(*scaled);
+    return Json{{"times", after / before}};
+  }
+
+  Result<Json> detail() {
+    material::DetailOptions options;
+    if (tile_) options.repeat = {tile_->repeat_x_px, tile_->repeat_y_px};
+    options.threads = context_.threads;
+    Result<material::DetailLayer> layer = material::detail_layer(surface_, {}, options);
+    if (!layer) return std::move(layer).error();
+    surface_.slope = std::move(layer->slope);
+    surface_.albedo = std::move(layer->albedo);
+    facts.is_detail = true;
+    return Json{{"slope_taken_out", {layer->facts.slope_x, layer->facts.slope_y}},
+                {"mean_taken_out", layer->facts.albedo},
+                {"share_of_frame", layer->facts.share_of_frame}};
   }
 
   // A joint that is sharper or softer than the cloth around it is seen.

@@ -24,6 +24,7 @@ struct FinishingFacts {
   std::vector<Json> steps;        ///< one a step
   std::vector<Verdict> verdicts;  ///< what speaks against the result
   Image<float> removed;           ///< slopes that flattening took off, on the grid it found; empty: none
+  bool is_detail = false;         ///< albedo is over its mean: no reflectance
   double yarn_px = 0;             ///< width of a yarn where a repeat was looked for; 0: not known
 };
 

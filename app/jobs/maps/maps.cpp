@@ -46,12 +46,13 @@ Json json_of(const DeriveOptions& options) {
           {"cloth", options.cloth}};
 }
 
-Result<RectifyReport> rectified_maps(const MapsOptions& options, const JobContext& context) {
+Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_pixel,
+                                     const JobContext& context) {
   RectifyOptions rectify;
   rectify.session = options.session;
   rectify.solve = options.solve;
   rectify.calibration = options.calibration;
-  rectify.mm_per_pixel = options.mm_per_pixel;
+  rectify.mm_per_pixel = mm_per_pixel;
   return rectify_session(rectify, context);
 }
 
@@ -94,12 +95,6 @@ std::vector<Verdict> missing_bare(const MapsOptions& options, const Session& ses
   return {{"OPACITY_UNKNOWN",
            "the light below photographed the cloth, but nobody knows how bright the bare table is",
            "scan the table without cloth by the same exposure and name that session with --bare"}};
-}
-
-// A coarse surface is finished in a moment and shows what will come out.
-Recipe as_preview(Recipe recipe, double mm_per_pixel) {
-  recipe.steps.insert(recipe.steps.begin(), {"scale", {{"mm_per_pixel", kPreviewFactor * mm_per_pixel}}});
-  return recipe;
 }
 
 // Albedo, normals and relit cloth, as a person looks at them first.
@@ -172,8 +167,7 @@ Result<void> derive(const std::vector<std::string>& asked, MapWork& work) {
 }
 
 Json document_of(const Product& product, const RectifyReport& rectified, const MapsOptions& options,
-                 const Recipe& recipe, const FinishingFacts& finished, const MapWork& work,
-                 const Json& checks) {
+                 const FinishingFacts& finished, const MapWork& work, const Json& checks) {
   const Surface& surface = work.surface;
   std::vector<Verdict> verdicts = finished.verdicts;
   verdicts.insert(verdicts.end(), work.verdicts.begin(), work.verdicts.end());
@@ -188,7 +182,7 @@ Json document_of(const Product& product, const RectifyReport& rectified, const M
           {"mm_per_pixel", surface.mm_per_pixel},
           {"is_tile", surface.is_tile},
           {"preview", options.is_preview},
-          {"steps", steps_of(recipe, finished)},
+          {"steps", steps_of(options.recipe, finished)},
           {"maps", std::move(maps)},
           {"derive", json_of(options.derive)},
           {"checks", checks},
@@ -210,17 +204,20 @@ void remove_previews(const fs::path& parent, const fs::path& but_not) {
 Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& context) {
   const Result<Session> session = read_session(options.session);
   if (!session) return session.error();
-  const Result<RectifyReport> rectified = rectified_maps(options, context);
-  if (!rectified) return rectified.error();
+  Result<RectifyReport> rectified = rectified_maps(options, options.mm_per_pixel, context);
+  if (rectified && options.is_preview) {
+    const double coarse_mm = kPreviewFactor * rectified->document["mm_per_pixel"].get<double>();
+    rectified = rectified_maps(options, coarse_mm, context);
+  }
+  if (!rectified) return std::move(rectified).error();
   const double mm_per_pixel = rectified->document["mm_per_pixel"].get<double>();
-  const Recipe recipe = options.is_preview ? as_preview(options.recipe, mm_per_pixel) : options.recipe;
 
   Result<std::string> bare = digest_of(options.bare);
   if (!bare) return std::move(bare).error();
   const fs::path parent = session->folder / "maps";
   const Json inputs = {{"version", kVersion},
                        {"rectified", rectified->document["id"]},
-                       {"recipe", json_of(recipe)},
+                       {"recipe", json_of(options.recipe)},
                        {"maps", options.maps},
                        {"derive", json_of(options.derive)},
                        {"bare", *bare},
@@ -240,7 +237,7 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
   if (!opacity) return opacity.error();
   const Result<FinishingInput> known = known_of(*session, *rectified);
   if (!known) return known.error();
-  const Result<FinishingFacts> finished = finish_surface(*surface, recipe, *known, context);
+  const Result<FinishingFacts> finished = finish_surface(*surface, options.recipe, *known, context);
   if (!finished) return finished.error();
   material::fill_holes(*surface, {.threads = context.threads});
   if (Result<void> ok = write_surface(partial.path(), *surface, options.compression); !ok)
@@ -256,9 +253,11 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
                   .verdicts = missing_bare(options, *session)};
   if (Result<void> ok = write_removed(work, *finished); !ok) return std::move(ok).error();
   if (Result<void> ok = derive(options.maps, work); !ok) return std::move(ok).error();
-  const Result<Json> checks = check_maps(work, session->dark() != nullptr);
+  // A layer of detail has no reflectance that could be checked.
+  const Result<Json> checks =
+      finished->is_detail ? Result<Json>(Json::array()) : check_maps(work, session->dark() != nullptr);
   if (!checks) return checks.error();
-  Json document = document_of(product, *rectified, options, recipe, *finished, work, *checks);
+  Json document = document_of(product, *rectified, options, *finished, work, *checks);
   if (Result<void> ok = write_maps_page(partial.path(), document); !ok) return std::move(ok).error();
   if (Result<void> ok = write_json(partial.path() / kMapsProduct.document, document); !ok)
     return std::move(ok).error();

@@ -186,7 +186,9 @@ const std::vector<RecipeStepKind>& step_kinds() {
        "Multiplies the albedo",
        {{"gain", "of red, green and blue", StepHolds::kNumbers, Json::array({1, 1, 1}), 0.01, 100},
         {"exposure", "in stops", StepHolds::kNumber, 0, -10, 10}}},
-      {"scale", "Another size of pixels", {{"mm_per_pixel", "0: as it is", StepHolds::kNumber, 0, 0, 1000}}},
+      {"scale",
+       "Corrects the size of pixels, where it was typed or measured wrongly",
+       {{"mm_per_pixel", "0: as it is", StepHolds::kNumber, 0, 0, 1000}}},
       {"detail", "Slopes with mean zero and albedo over its mean, to be laid over other maps", {}}};
   return kinds;
 }
