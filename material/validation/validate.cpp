@@ -6,6 +6,7 @@
 
 #include "core/parallel.h"
 #include "core/solve_record.h"
+#include "core/statistics.h"
 #include "material/validation/checks.h"
 
 namespace weft::material {
@@ -15,6 +16,10 @@ constexpr double kLeastClothOpacity = 0.3;
 
 Error not_validated(ErrorKind kind, std::string why, std::string remedy) {
   return {kind, "the maps cannot be checked", "validation", std::move(why), std::move(remedy)};
+}
+
+Error nothing_solved() {
+  return not_validated(ErrorKind::kBadData, "no pixel has a solution", "look at the status map of the solve");
 }
 
 Result<void> check_sizes(const MapsToValidate& maps) {
@@ -103,10 +108,7 @@ Result<std::vector<Finding>> validate(const MapsToValidate& maps, const Validati
   Image<std::uint8_t> counts = counting(*maps.surface);
   Image<float> albedo = averaged(*maps.surface, counts, limits.threads);
   const double pixels = counted(counts);
-  if (pixels == 0) {
-    return not_validated(ErrorKind::kBadData, "no pixel has a solution",
-                         "look at the status map of the solve");
-  }
+  if (pixels == 0) return nothing_solved();
   const Checked checked = {maps, limits, std::move(counts), std::move(albedo), pixels};
   std::vector<Finding> found;
   for (const auto check : {dark_albedo, bright_albedo, gamut, saturation}) found.push_back(check(checked));
@@ -120,6 +122,30 @@ Result<std::vector<Finding>> validate(const MapsToValidate& maps, const Validati
   if (!maps.height_mm.empty()) found.push_back(height_off_slopes(checked));
   found.push_back(texel_density(checked));
   if (!maps.greys.empty()) found.push_back(greys(checked));
+  return found;
+}
+
+Result<AlbedoPercentiles> albedo_percentiles(const Surface& surface, int threads) {
+  const MapsToValidate maps = {.surface = &surface};
+  if (Result<void> ok = check_sizes(maps); !ok) return std::move(ok).error();
+  const Image<std::uint8_t> counts = counting(surface);
+  const Image<float> albedo = averaged(surface, counts, threads);
+  AlbedoPercentiles found;
+  for (std::size_t channel = 0; channel < found.values.size(); ++channel) {
+    std::vector<float> values;
+    for (int y = 0; y < counts.height(); ++y) {
+      for (int x = 0; x < counts.width(); ++x) {
+        if (counts(x, y) == 0) continue;
+        const int c = static_cast<int>(channel);
+        values.push_back(c < 3 ? albedo(x, y, c) : static_cast<float>(luminance_at(albedo, x, y)));
+      }
+    }
+    if (values.empty()) return nothing_solved();
+    for (std::size_t i = 0; i < AlbedoPercentiles::kPercent.size(); ++i) {
+      const double rank = AlbedoPercentiles::kPercent[i] / 100 * static_cast<double>(values.size() - 1);
+      found.values[channel][i] = double{value_of_rank<float>(values, static_cast<std::size_t>(rank + 0.5))};
+    }
+  }
   return found;
 }
 
