@@ -200,6 +200,36 @@ TEST(Validation, SeesASeam) {
   EXPECT_EQ(marked_pixels(ramp), 2 * kSide);
 }
 
+TEST(Validation, OfWovenClothSeesACropOfPartsOfRepeatsAndNoneOfWholeOnes) {
+  for (const simulator::Family family :
+       {simulator::Family::kSmooth, simulator::Family::kPlain, simulator::Family::kDeep}) {
+    const simulator::GeometrySettings geometry = simulator::family_settings(family);  // yarns of 0.5 mm
+    Surface tile = woven_surface({100, 100}, geometry), crop = woven_surface({87, 100}, geometry);
+    tile.is_tile = crop.is_tile = true;
+    EXPECT_EQ(finding("SEAM", {.surface = &tile}).severity, Severity::kPassed);
+    EXPECT_EQ(finding("SEAM", {.surface = &crop}).severity, Severity::kError)
+        << finding("SEAM", {.surface = &crop}).verdict.text;
+  }
+}
+
+TEST(Validation, BelievesTheHeightOfAWeaveWithAllItsCreases) {
+  for (const simulator::Family family :
+       {simulator::Family::kSmooth, simulator::Family::kPlain, simulator::Family::kDeep}) {
+    const simulator::GeometrySettings geometry = simulator::family_settings(family);
+    const Surface surface = woven_surface({100, 100}, geometry);
+    const simulator::Surface cloth = simulator::surface_of(geometry);
+    Image<float> height({100, 100});
+    for (int y = 0; y < 100; ++y) {
+      for (int x = 0; x < 100; ++x) {
+        height(x, y) =
+            static_cast<float>(simulator::point_at(cloth, (x - 50) * 0.02, (50 - y) * 0.02).height_mm);
+      }
+    }
+    const Finding found = finding("HEIGHT_OFF_SLOPES", {.surface = &surface, .height_mm = height.plane()});
+    EXPECT_EQ(found.severity, Severity::kPassed) << found.verdict.text;
+  }
+}
+
 TEST(Validation, SeesNormalsThatAreNone) {
   Cloth cloth;
   cloth.normals(3, 3, 2) = std::numeric_limits<float>::quiet_NaN();
