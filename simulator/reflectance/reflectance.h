@@ -11,8 +11,10 @@
 #include "simulator/reflectance/cloth.h"
 #include "simulator/reflectance/directions.h"
 #include "simulator/reflectance/disney_diffuse.h"
+#include "simulator/reflectance/fibre_cones.h"
 #include "simulator/reflectance/ggx.h"
 #include "simulator/reflectance/lambert.h"
+#include "simulator/reflectance/mixed_ggx.h"
 #include "simulator/reflectance/multiple_scattering.h"
 #include "simulator/reflectance/oren_nayar.h"
 
@@ -25,7 +27,7 @@
 namespace weft::simulator {
 
 using Reflectance = std::variant<Lambert, Ggx, AnisotropicGgx, Beckmann, BlinnPhong, Cloth,
-                                 MultipleScattering, OrenNayar, DisneyDiffuse>;
+                                 MultipleScattering, OrenNayar, DisneyDiffuse, FibreCones, MixedGgx>;
 
 /// f in 1/sr; `albedo` is the diffuse reflectance of the pixel, 0 to 1.
 Rgb evaluate(const Reflectance& model, const Rgb& albedo, Vec3 to_light, Vec3 to_view);

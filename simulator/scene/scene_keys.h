@@ -358,10 +358,26 @@ void walk(Visitor& v, DisneyDiffuse& m) {
 }
 
 template <typename Visitor>
+void walk(Visitor& v, FibreCones& m) {
+  v.number("spread_deg", m.spread_deg, {0.1, 45});
+  v.number("tilt_deg", m.tilt_deg, {-20, 20});
+  v.number("twist_deg", m.twist_deg, {-90, 90});
+  walk_lobe(v, m.f0, m.beneath);
+}
+
+template <typename Visitor>
+void walk(Visitor& v, MixedGgx& m) {
+  v.number("alpha", m.alpha, kShare);
+  v.number("second_alpha", m.second_alpha, kShare);
+  v.number("second_share", m.second_share, kShare);
+  walk_lobe(v, m.f0, m.beneath);
+}
+
+template <typename Visitor>
 void walk(Visitor& v, Reflectance& r) {
   choose(v, "model", r,
          {"lambert", "ggx", "anisotropic_ggx", "beckmann", "blinn_phong", "cloth", "multiple_scattering",
-          "oren_nayar", "disney_diffuse"});
+          "oren_nayar", "disney_diffuse", "fibre_cones", "mixed_ggx"});
   std::visit([&](auto& model) { walk(v, model); }, r);
 }
 

@@ -47,16 +47,19 @@ TEST(WhiteFurnace, ModelsOverWhiteReflectWhatTheirTableSays) {
 }
 
 TEST(WhiteFurnace, MirroringLobesLoseWhatFacetsShadow) {
-  expect_table({{"GGX 0.1", Ggx{0.1, kWhite, Beneath::kLambert}, {0.988, 0.969, 0.873}},
-                {"GGX 0.5", Ggx{0.5, kWhite, Beneath::kLambert}, {0.688, 0.686, 0.777}},
-                {"GGX 1", Ggx{1, kWhite, Beneath::kLambert}, {0.307, 0.409, 0.565}},
-                {"anisotropic GGX 0.5, 0.5",
-                 AnisotropicGgx{0.5, 0.5, kWhite, Beneath::kLambert},
-                 {0.790, 0.749, 0.789}},
-                {"Beckmann 0.5", Beckmann{0.5, kWhite, Beneath::kLambert}, {0.943, 0.872, 0.942}},
-                {"Blinn-Phong 0.5", BlinnPhong{0.5, kWhite, Beneath::kLambert}, {0.995, 0.783, 0.341}},
-                {"cloth 0.3", Cloth{0.3, 4, kWhite}, {0.184, 0.244, 0.567}}},
-               kBlack);
+  expect_table(
+      {{"GGX 0.1", Ggx{0.1, kWhite, Beneath::kLambert}, {0.988, 0.969, 0.873}},
+       {"GGX 0.5", Ggx{0.5, kWhite, Beneath::kLambert}, {0.688, 0.686, 0.777}},
+       {"GGX 1", Ggx{1, kWhite, Beneath::kLambert}, {0.307, 0.409, 0.565}},
+       {"anisotropic GGX 0.5, 0.5",
+        AnisotropicGgx{0.5, 0.5, kWhite, Beneath::kLambert},
+        {0.790, 0.749, 0.789}},
+       {"Beckmann 0.5", Beckmann{0.5, kWhite, Beneath::kLambert}, {0.943, 0.872, 0.942}},
+       {"Blinn-Phong 0.5", BlinnPhong{0.5, kWhite, Beneath::kLambert}, {0.995, 0.783, 0.341}},
+       {"cloth 0.3", Cloth{0.3, 4, kWhite}, {0.184, 0.244, 0.567}},
+       {"fibres 6", FibreCones{6, 0, 0, kWhite, Beneath::kLambert}, {0.456, 0.587, 0.980}},
+       {"fibres 6, seen across", FibreCones{6, 0, 110, kWhite, Beneath::kLambert}, {0.456, 0.451, 0.466}}},
+      kBlack);
 }
 
 TEST(WhiteFurnace, NoLobeAloneReflectsMoreThanItReceives) {
@@ -87,6 +90,17 @@ TEST(WhiteFurnace, ClothAndCoupledLobesKeepEnergyOverWhite) {
       }
     }
   }
+}
+
+// A cone that leans by its scales has no partner at grazing angles.
+TEST(WhiteFurnace, ConesOfFibresGiveTooMuchWhereTheyGraze) {
+  const auto mirrored = [](double spread_deg, double tilt_deg, double zenith_deg) {
+    const FibreCones fibres = {spread_deg, tilt_deg, 0, kWhite, Beneath::kLambert};
+    return directional_albedo(fibres, kBlack, at_angles(zenith_deg), 300);
+  };
+  for (const double spread_deg : {3.0, 6.0, 20.0}) EXPECT_LT(mirrored(spread_deg, 2, 70), 1) << spread_deg;
+  EXPECT_GT(mirrored(6, 0, 90), 1.2);
+  EXPECT_GT(mirrored(13, 4, 90), 3);
 }
 
 TEST(WhiteFurnace, FiveModelsGiveTooMuchAtGrazingAnglesOverWhite) {

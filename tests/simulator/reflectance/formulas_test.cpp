@@ -41,7 +41,8 @@ TEST(Reflectance, OnlyIsotropicModelsAreTheSameAfterATurn) {
   const Vec3 l = at_angles(50, 5), v = at_angles(40, 160);
   for (const NamedModel& each : models()) {
     const auto* fibres = std::get_if<AnisotropicGgx>(&each.model);
-    const bool directed = fibres != nullptr && fibres->anisotropy > 0;
+    const bool directed =
+        (fibres != nullptr && fibres->anisotropy > 0) || std::holds_alternative<FibreCones>(each.model);
     const Rgb albedo = directed ? kBlack : kWhite;  // the lobe alone
     const double change =
         green(each.model, albedo, turned(l), turned(v)) / green(each.model, albedo, l, v) - 1;
@@ -280,6 +281,33 @@ TEST(Cloth, GlowsAtTheRimInTheColourOfItsFibres) {
       << "light behind the viewer";
   const Rgb f = evaluate(velvet, kBlack, rim, rim);
   EXPECT_NEAR(f[2] / f[0], 5, 1e-9) << "two tones: l.h is 1, so F is f0";
+}
+
+TEST(FibreCones, MirrorLightIntoAConeAboutThemselves) {
+  const FibreCones fibres = {4, 3, 0, kWhite, Beneath::kLambert};
+  const Vec3 l = at_angles(30);  // theta of 30 degrees
+  for (const double phi_deg : {0.0, 40.0, -70.0}) {
+    const auto reflected = [&](double theta_deg) {
+      const double theta = radians(theta_deg), phi = radians(phi_deg);
+      const Vec3 v = {std::sin(theta), std::cos(theta) * std::sin(phi), std::cos(theta) * std::cos(phi)};
+      // Of the lobe what depends on more than theta_h taken off: cos^2 theta_d and what fibres hide.
+      const double theta_d = radians((theta_deg - 30) / 2);
+      return green(fibres, kBlack, l, v) * std::cos(theta_d) * std::cos(theta_d) * (l.z + v.z - l.z * v.z);
+    };
+    // theta_h is the tilt where theta is 2 x 3 - 30.
+    const double top = reflected(-24);
+    EXPECT_GT(top, reflected(-23)) << phi_deg;
+    EXPECT_GT(top, reflected(-25)) << phi_deg;
+    // A sigma of theta_h is two of theta.
+    EXPECT_NEAR(reflected(-24 + 8) / top, std::exp(-0.5), 1e-12) << phi_deg;
+    EXPECT_NEAR(top, std::cos(radians(phi_deg) / 2) / (8 * radians(4) * std::sqrt(2 * kPi)), 1e-9) << phi_deg;
+  }
+}
+
+TEST(MixedGgx, IsTheShareOfEachOfItsLobes) {
+  const Vec3 l = at_angles(40), v = at_angles(20, 170);
+  const double a = green(Ggx{0.2}, kBlack, l, v), b = green(Ggx{0.6}, kBlack, l, v);
+  EXPECT_NEAR(green(MixedGgx{0.2, 0.6, 0.25}, kBlack, l, v), 0.75 * a + 0.25 * b, 1e-12);
 }
 
 }  // namespace

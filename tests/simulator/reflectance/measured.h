@@ -79,6 +79,8 @@ inline const std::vector<NamedModel>& models() {
       list.push_back({"Beckmann" + at, Beckmann{x, kFibre, Beneath::kBalanced}});
       list.push_back({"Blinn-Phong" + at, BlinnPhong{x, kFibre, Beneath::kLambert}});
       list.push_back({"cloth" + at, Cloth{x, 4, kFibre}});
+      list.push_back({"fibres" + at, FibreCones{3 + 40 * x, 5 - 10 * x, 80 * x, kFibre}});
+      list.push_back({"mixed GGX" + at, MixedGgx{0.3, 1 - x, x, kFibre}});
     }
     return list;
   }();

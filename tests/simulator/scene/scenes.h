@@ -15,14 +15,15 @@ namespace weft::simulator {
 
 inline const std::filesystem::path kSource = WEFT_SOURCE_DIR;
 
-inline const std::vector<GeometryKind> kKinds = {
-    GeometryKind::kFlat,   GeometryKind::kTilted,   GeometryKind::kPlain,
-    GeometryKind::kTwill,  GeometryKind::kSatin,    GeometryKind::kKnit,
-    GeometryKind::kSphere, GeometryKind::kCylinder, GeometryKind::kHeightMap};
+inline const std::vector<Reflectance> kModels = {
+    Lambert{},   Ggx{},           AnisotropicGgx{}, Beckmann{}, BlinnPhong{}, Cloth{}, MultipleScattering{},
+    OrenNayar{}, DisneyDiffuse{}, FibreCones{},     MixedGgx{}};
 
-inline const std::vector<Reflectance> kModels = {Lambert{},      Ggx{},   AnisotropicGgx{},     Beckmann{},
-                                                 BlinnPhong{},   Cloth{}, MultipleScattering{}, OrenNayar{},
-                                                 DisneyDiffuse{}};
+/// Every kind, as many as there are models.
+inline const std::vector<GeometryKind> kKinds = {
+    GeometryKind::kFlat,      GeometryKind::kTilted, GeometryKind::kPlain,  GeometryKind::kTwill,
+    GeometryKind::kSatin,     GeometryKind::kKnit,   GeometryKind::kSphere, GeometryKind::kCylinder,
+    GeometryKind::kHeightMap, GeometryKind::kPlain,  GeometryKind::kSatin};
 
 inline Scene parsed(const std::string& toml) {
   Result<Scene> scene = parse_scene(toml, "scene.toml");
@@ -112,7 +113,9 @@ inline MaterialSettings every_material(std::size_t number) {
                                            Cloth{0.3, 5, f0},
                                            MultipleScattering{0.3},
                                            OrenNayar{0.3},
-                                           DisneyDiffuse{0.3}};
+                                           DisneyDiffuse{0.3},
+                                           FibreCones{7, 3, 20, f0, Beneath::kLambert},
+                                           MixedGgx{0.3, 0.6, 0.2, f0, Beneath::kCoupled}};
   m.reflectance = models[number];
   return m;
 }
