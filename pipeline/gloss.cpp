@@ -27,6 +27,7 @@ constexpr std::size_t kFarApart = 2654435761U;
 struct GlossSamples {
   std::vector<solver::LobeReading> readings;  // as many of each pixel
   std::vector<Vec3> start;
+  std::vector<std::size_t> part;  // quarter of the frame
 
   std::span<const solver::LobeReading> of(std::size_t pixel) const {
     const std::size_t each = readings.size() / start.size();
@@ -43,6 +44,7 @@ class Sampler {
         base_(base),
         correction_(correction),
         step_(step),
+        frame_(photographs.size),
         sight_(sight_of(photographs)) {}
 
   void take(Rect tile, GlossSamples& samples) {
@@ -60,15 +62,21 @@ class Sampler {
         samples.readings.insert(samples.readings.end(), readings.begin(), readings.end());
         samples.start.push_back(static_cast<double>(maps.albedo(x, y)) *
                                 Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)});
+        samples.part.push_back(part_of(tile.x0 + x, tile.y0 + y));
       }
     }
   }
 
  private:
+  std::size_t part_of(int x, int y) const {
+    return (2 * y < frame_.height ? 0U : 2U) + (2 * x < frame_.width ? 0U : 1U);
+  }
+
   TileReader reader_;
   const solver::Method& base_;
   const LightCorrection* correction_;
   int step_;
+  Size frame_;
   solver::Sight sight_;
   CorrectedTile corrected_;
 };
@@ -127,18 +135,24 @@ Result<std::vector<solver::MeasuredLobe>> measure_gloss(const Photographs& photo
   for (const GlossSamples& part : parts) {
     all.readings.insert(all.readings.end(), part.readings.begin(), part.readings.end());
     all.start.insert(all.start.end(), part.start.begin(), part.start.end());
+    all.part.insert(all.part.end(), part.part.begin(), part.part.end());
   }
   // Pixels that follow each other are far apart in the frame, so that the first of them stand for all.
   solver::LobeSamples samples(photographs.count(), photographs.parallel ? 2 : 1);
   std::vector<Vec3> start;
+  std::vector<std::size_t> part;
   const std::size_t pixels = all.start.size();
   for (std::size_t i = 0; i < std::min(pixels, kGlossPixels); ++i) {
     const std::size_t pixel = i * kFarApart % pixels;
     samples.add(all.of(pixel));
     start.push_back(all.start[pixel]);
+    part.push_back(all.part[pixel]);
   }
   std::vector<solver::MeasuredLobe> lobes = solver::measure_materials(samples, start, threads);
   if (Result<void> ok = add_calibration(photographs, lobes); !ok) return std::move(ok).error();
+  solver::MeasuredLobe& lobe = lobes.front();
+  if (lobes.size() == 1 && lobe.is_measured())
+    lobe.parts = solver::measure_parts(samples, lobe.fit, part, lobe.sigma_alpha, threads);
   return lobes;
 }
 

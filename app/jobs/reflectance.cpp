@@ -68,6 +68,24 @@ Json candidates_of(const MeasuredLobe& lobe) {
   return candidates;
 }
 
+// What the quarters of the frame say of alpha, and whether they say the same.
+void add_parts(const std::vector<solver::LobePart>& parts, Json& cluster) {
+  Json all = Json::array();
+  for (const solver::LobePart& part : parts) {
+    all.push_back({{"part", solver::name_of_part(part.part)},
+                   {"alpha", part.alpha},
+                   {"sigma", part.alpha * part.sigma_alpha},
+                   {"pixels", part.pixels}});
+  }
+  cluster["parts"] = std::move(all);
+  const auto change = solver::change_across(parts);
+  if (!change) return;
+  const auto& [smoothest, roughest] = *change;
+  cluster["warning"] = fmt::format(
+      "the cloth's roughness changes across the frame: {:.3f} at the {}, {:.3f} at the {}", smoothest.alpha,
+      solver::name_of_part(smoothest.part), roughest.alpha, solver::name_of_part(roughest.part));
+}
+
 Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
   Json cluster = {{"observable", true}};
   add_lobe(lobe.lobe, cluster);
@@ -94,6 +112,7 @@ Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
   for (const solver::LobePoint& point : lobe.points)
     points.push_back({point.half_deg, point.reading, point.lobe});
   cluster["points"] = std::move(points);
+  if (!lobe.parts.empty()) add_parts(lobe.parts, cluster);
   return cluster;
 }
 
@@ -137,9 +156,13 @@ std::string cluster_section(const Json& cluster) {
     lobe.points.push_back({point[0].get<double>(), point[2].get<double>()});
   }
   std::ranges::sort(lobe.points, {}, &report::PlotPoint::x);
-  return report::plot_svg({.x_label = "normal to half-vector, degrees",
-                           .y_label = "over the lobe's peak",
-                           .series = {std::move(readings), std::move(lobe)}});
+  const std::string warning = cluster.contains("warning")
+                                  ? fmt::format("<p>Warning: {}. One lobe stands for all of it.</p>\n",
+                                                escape_markup(cluster["warning"].get<std::string>()))
+                                  : "";
+  return warning + report::plot_svg({.x_label = "normal to half-vector, degrees",
+                                     .y_label = "over the lobe's peak",
+                                     .series = {std::move(readings), std::move(lobe)}});
 }
 
 }  // namespace
@@ -147,7 +170,7 @@ std::string cluster_section(const Json& cluster) {
 Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) {
   Json clusters = Json::array();
   for (const MeasuredLobe& lobe : facts.lobes) clusters.push_back(cluster_of(lobe, scale));
-  return {{"schema", "weft.reflectance/1"},
+  return {{"schema", "weft.reflectance/1.1"},
           {"albedo_scale", name_of(scale)},
           {"share", facts.share},
           {"clusters", std::move(clusters)}};

@@ -11,7 +11,7 @@
 
 namespace weft::app {
 
-/// reflectance.json, schema weft.reflectance/1 (docs/formats.md). Where the scale of the albedo is relative
+/// reflectance.json, schema weft.reflectance/1.1 (docs/formats.md). Where the scale of the albedo is relative
 /// so is f0, and what is said is f0 over the albedo.
 Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale);
 

@@ -9,6 +9,7 @@
 
 #include "solver/reflectance/lobe_by_lights.h"
 #include "solver/reflectance/lobe_fit.h"
+#include "solver/reflectance/lobe_parts.h"
 
 namespace weft::solver {
 
@@ -54,6 +55,7 @@ struct MeasuredLobe {
   std::vector<LobePoint> points;        ///< at most kMostLobePoints, where they tell more than noise
   double weft_share = 0;                ///< pixels whose yarn lies across the axis
   double median_albedo = 0;             ///< of the pixels, as `lobe` leaves it
+  std::vector<LobePart> parts;          ///< of a frame of one material (pipeline::measure_gloss)
   std::array<double, 2> half_deg = {};  ///< angles of normals to half-vectors: 2nd and 98th percentile
 
   bool is_measured() const { return refusal == LobeRefusal::kNone; }

@@ -22,7 +22,8 @@ Photographs unlit(Size size, const DistantLights& lights) {
 
 double reading_of(const Cloth& cloth, const DistantLight& light, int c, int x, int y) {
   const auto channel = static_cast<std::size_t>(c);
-  const solver::Lobe lobe = cloth.is_matt(x, y) ? solver::Lobe{} : cloth.lobe;
+  solver::Lobe lobe = cloth.is_matt(x, y) ? solver::Lobe{} : cloth.lobe;
+  lobe.alpha *= cloth.roughening(x, y);
   const solver::LitFrom from(light.direction, {0, 0, 1}, cloth.lobe_share);
   return light.irradiance_rgb[channel] *
          solver::modelled(lobe, cloth.albedo[channel] * cloth.normal(x, y), from, cloth.yarn(x, y));

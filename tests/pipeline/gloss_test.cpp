@@ -151,6 +151,29 @@ TEST(Gloss, OfAPairOfFilmsIsSheenAndLeavesTheAlbedo) {
   EXPECT_GT(without, 1.1 * 0.04);
 }
 
+TEST(Gloss, WhoseRoughnessChangesAcrossTheFrameIsSeen) {
+  const auto change_of = [](double rougher) {
+    const Photographs photographs = mosaics(
+        kSize,
+        {.normal = dented, .albedo = {0.1, 0.08, 0.06}, .lobe = kSilk, .roughening = [rougher](int x, int) {
+           return 1 + rougher * x / kSize.width;
+         }});
+    const auto base = solver::robust_method();
+    const auto lobes = measure_gloss(photographs, *base, nullptr, 2);
+    EXPECT_TRUE(lobes && lobes->size() == 1 && lobes->front().is_measured());
+    EXPECT_EQ(lobes->front().parts.size(), solver::kFrameParts);
+    return solver::change_across(lobes->front().parts);
+  };
+  EXPECT_FALSE(change_of(0));
+  const auto change = change_of(0.2);
+  ASSERT_TRUE(change);
+  // The means of the halves: 5 and 15 percent rougher than at the left edge.
+  EXPECT_EQ((*change)[0].part % 2, 0U) << "smoothest at the " << solver::name_of_part((*change)[0].part);
+  EXPECT_EQ((*change)[1].part % 2, 1U) << "roughest at the " << solver::name_of_part((*change)[1].part);
+  EXPECT_NEAR((*change)[0].alpha, 1.05 * kSilk.alpha, 0.01 * kSilk.alpha);
+  EXPECT_NEAR((*change)[1].alpha, 1.15 * kSilk.alpha, 0.01 * kSilk.alpha);
+}
+
 TEST(Gloss, OfMattClothChangesNothing) {
   const Photographs photographs = mosaics(kSize, {.normal = dented});
   WholeMaps maps(kSize);

@@ -108,6 +108,22 @@ TEST(ReflectanceWords, AreOfBothMaterials) {
   EXPECT_EQ(reflectance_said(document), Json({{"used", true}, {"says", reflectance_words(summary)}}));
 }
 
+TEST(ReflectanceWords, SayWhereRoughnessChanges) {
+  pipeline::GlossFacts facts = satin();
+  facts.lobes[0].parts = {{0, 0.2, 0.01, 900}, {1, 0.21, 0.01, 910}, {3, 0.26, 0.01, 890}};
+  const Json document = reflectance_document(facts, AlbedoScale::kAbsolute);
+  const Json& cluster = document["clusters"][0];
+  ASSERT_EQ(cluster["parts"].size(), 3U);
+  EXPECT_EQ(cluster["parts"][2]["part"], "lower right");
+  EXPECT_NEAR(cluster["parts"][2]["sigma"].get<double>(), 0.0026, 1e-12);
+  const std::string warning =
+      "the cloth's roughness changes across the frame: 0.200 at the upper left, 0.260 at the lower right";
+  EXPECT_EQ(cluster["warning"], warning);
+  EXPECT_THAT(reflectance_section(document), testing::HasSubstr(warning));
+  facts.lobes[0].parts.pop_back();
+  EXPECT_FALSE(reflectance_document(facts, AlbedoScale::kAbsolute)["clusters"][0].contains("warning"));
+}
+
 TEST(ReflectanceWords, AreNoneWhereNoLobeWasMeasuredAndTheSectionSaysWhy) {
   pipeline::GlossFacts facts;
   facts.lobes.resize(1);
