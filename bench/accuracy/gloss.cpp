@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "core/parallel.h"
 #include "pipeline/gloss.h"
 #include "simulator/reflectance/presets.h"
+#include "simulator/sampling/random.h"
 #include "solver/reflectance/glossy_method.h"
 
 namespace weft::bench {
@@ -36,10 +38,29 @@ struct GlossyCloth {
   TrueLobe truth;
   std::function<void(Scene&)> change = {};  ///< what else is not as it should be
   bool is_level = false;                    ///< without relief, and one row for all families
+  bool is_calibrated_wrong = false;         ///< see put_off()
 };
 
 Rgb grey(double value) {
   return {value, value, value};
+}
+
+void weave_as_satin(Scene& scene) {
+  scene.geometry.kind = GeometryKind::kSatin;
+}
+
+// Ink that differs from one eighth of a yarn to the next, by a factor of two at most.
+void vary_within_yarns(Scene& scene) {
+  constexpr int kSide = 96;
+  auto ink = std::make_shared<Image<float>>(Size{kSide, kSide}, 3);
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      const auto bits = philox({static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y), 0, 0}, {17, 0});
+      for (int p = 0; p < 3; ++p) (*ink)(x, y, p) = static_cast<float>(0.5 + 0.5 * uniform(bits[0], bits[1]));
+    }
+  }
+  scene.material.print.albedo = std::move(ink);
+  scene.material.print.placement.mm_per_sample = 0.1;
 }
 
 Ggx ggx(double alpha) {
@@ -96,6 +117,18 @@ std::vector<GlossyCloth> cloths() {
          s.lights.flicker = 0.003;
        }},
       {"satin, blurred", satin, 0.4, of_satin, [](Scene& s) { s.effects.defocus = true; }},
+      {"satin weave", satin, 0.4, of_satin, weave_as_satin},
+      {"dark satin weave", dark_satin, 0.06, of_dark_satin, weave_as_satin},
+      {"fibres", FibreCones{}, 0.4, {}},
+      {"dark fibres", FibreCones{}, 0.06, {}},
+      {"fibres, satin weave", FibreCones{}, 0.4, {}, weave_as_satin},
+      {"two lobes", MixedGgx{.alpha = 0.15, .second_alpha = 0.5, .f0 = grey(0.05)}, 0.4, {}},
+      {"dark two lobes", MixedGgx{.alpha = 0.15, .second_alpha = 0.5, .f0 = grey(0.05)}, 0.06, {}},
+      {"ggx 0.30, calibrated wrong", ggx(0.30), 0.4, {0.30, kNone, 0.04}, {}, false, true},
+      {"satin, calibrated wrong", satin, 0.4, of_satin, {}, false, true},
+      {"dark satin, calibrated wrong", dark_satin, 0.06, of_dark_satin, {}, false, true},
+      {"satin, albedo varies", satin, 0.5, of_satin, vary_within_yarns},
+      {"dark satin, albedo varies", dark_satin, 0.08, of_dark_satin, vary_within_yarns},
       {"blinn-phong 0.35", BlinnPhong{.gloss = 0.35, .f0 = grey(0.04)}, 0.4, {}},
       {"satin, lambert beneath",
        AnisotropicGgx{.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05), .beneath = Beneath::kLambert}, 0.4,
@@ -128,6 +161,26 @@ AccuracyScene scene_of(AccuracyScene scene, const GlossyCloth& cloth) {
   return scene;
 }
 
+// Every LED half a percent brighter or darker than it is said to be, and 1 mm from where it is said to stand.
+Result<void> put_off(Patch& patch) {
+  NearLights lights = std::get<NearLights>(patch.field().lights());
+  for (std::size_t k = 0; k < lights.leds.size(); ++k) {
+    const auto number = static_cast<std::uint32_t>(k);
+    const auto bits = philox({number, 0, 0, 0}, {23, 0}), more = philox({number, 1, 0, 0}, {23, 0});
+    const double gain = 1 + 0.005 * (bits[0] % 2 == 0 ? 1 : -1);
+    for (double& flux : lights.leds[k].flux_rgb) flux *= gain;
+    const double z = 2 * uniform(more[0], more[1]) - 1, turn = 2 * kPi * uniform(bits[2], bits[3]);
+    const double across = std::sqrt(1 - z * z);
+    lights.leds[k].position_mm =
+        lights.leds[k].position_mm + Vec3{across * std::cos(turn), across * std::sin(turn), z};
+  }
+  Result<LightField> field = LightField::make(std::move(lights), patch.photographs.camera, patch.size(),
+                                              patch.field().cloth_height_mm());
+  if (!field) return std::move(field).error();
+  patch.photographs.field = std::move(*field);
+  return {};
+}
+
 double seconds_of(const std::function<void()>& work) {
   const auto begin = std::chrono::steady_clock::now();
   work();
@@ -141,6 +194,10 @@ Json or_null(double value) {
 Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int threads) {
   Result<std::vector<Patch>> patches = render_patches(scene, threads);
   if (!patches) return std::move(patches).error();
+  for (Patch& patch : *patches) {
+    if (!cloth.is_calibrated_wrong) continue;
+    if (Result<void> ok = put_off(patch); !ok) return std::move(ok).error();
+  }
   const BoundedPatches bounded = with_bounds(std::move(*patches), threads);
   const Contender robust = {"robust alone", as_product(solver::robust_method())};
   const Contender level = {"robust", by_level(solver::method_of(solver::Level::kRobust))};
@@ -174,6 +231,7 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
               {"true_along", or_null(cloth.truth.along)},
               {"f0", found.is_measured() ? Json(lobe.f0) : Json()},
               {"true_f0", or_null(cloth.truth.f0)},
+              {"changes", solver::change_across(found.parts).has_value()},
               {"fit_s", fit_s}};
 }
 

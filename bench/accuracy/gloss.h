@@ -23,8 +23,8 @@ struct GlossOptions {
 /// (solver::robust_method). lobe_deg, lobe_p95_deg: by the level robust, with the lobe it found.
 /// reference_deg: by the level reference. albedo_rel: mean of |A - B| / B of the level robust.
 /// alpha, along, f0: what was found, beside what is true where that has such numbers. said: measured, or why
-/// not. fit_s: seconds of finding it on one thread.
-/// kUsage where no cloth has the given name.
+/// not. changes: whether alpha is said to change across the frame. fit_s: seconds of finding it on one
+/// thread. kUsage where no cloth has the given name.
 Result<Rows> gloss_table(const GlossOptions& options);
 
 }  // namespace weft::bench
