@@ -163,6 +163,7 @@ Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& 
       measure_gloss(photographs, base, correction, context.threads);
   if (!lobes) return std::move(lobes).error();
   gloss.facts.lobes = std::move(*lobes);
+  gloss.facts.of_film_pair = photographs.parallel.has_value();
   if (!gloss.facts.is_measured()) return gloss;
   const auto glossy = solver::glossy_method(base, lobes_of(gloss.facts), gloss.sight_);
   const auto variant = [&](const solver::Method& method) {

@@ -35,6 +35,7 @@ Result<std::vector<solver::MeasuredLobe>> measure_gloss(const Photographs& photo
 struct GlossFacts {
   std::vector<solver::MeasuredLobe> lobes;  ///< one or two; of a refused one Lambert's law holds
   double share = 0;                         ///< of the blocks of the frame that are solved with them
+  bool of_film_pair = false;                ///< they were sought in crossed and parallel photographs
 
   bool is_measured() const { return lobes.front().is_measured(); }
 };

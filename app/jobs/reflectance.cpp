@@ -46,6 +46,20 @@ const std::map<LobeRefusal, std::pair<const char*, const char*>> kReasons = {
      {"lobes of other roughness or strength explain the readings as well",
       "a LED at 8 degrees from the camera, or a second scan of the cloth tilted by 20 degrees"}}};
 
+// What remains to be done where a pair of films has been used.
+const char* remedy_of_film_pair(LobeRefusal refusal) {
+  switch (refusal) {
+    case LobeRefusal::kLambertFits:
+      return "nothing: it shows neither gloss nor sheen";
+    case LobeRefusal::kStrength:
+    case LobeRefusal::kTooBroad:
+    case LobeRefusal::kBentDiffuse:
+      return "solve with --quality reference, or scan more of the cloth";
+    default:
+      return kReasons.at(refusal).second;
+  }
+}
+
 void add_lobe(const solver::Lobe& lobe, Json& into) {
   into["family"] = name_of(lobe.family);
   if (!lobe.shines()) return;
@@ -116,7 +130,7 @@ Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
   return cluster;
 }
 
-Json cluster_of(const MeasuredLobe& lobe, AlbedoScale scale) {
+Json cluster_of(const MeasuredLobe& lobe, AlbedoScale scale, bool of_film_pair) {
   Json cluster;
   if (lobe.is_measured()) {
     cluster = measured_cluster(lobe, scale);
@@ -124,7 +138,7 @@ Json cluster_of(const MeasuredLobe& lobe, AlbedoScale scale) {
     const auto& [why, remedy] = kReasons.at(lobe.refusal);
     cluster = {{"observable", false},
                {"why", why},
-               {"remedy", remedy},
+               {"remedy", of_film_pair ? remedy_of_film_pair(lobe.refusal) : remedy},
                {"typed", {{"alpha", kTypedAlpha}, {"f0", kTypedF0}}}};
   }
   cluster["said"] = name_of(lobe.refusal);
@@ -169,7 +183,7 @@ std::string cluster_section(const Json& cluster) {
 
 Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) {
   Json clusters = Json::array();
-  for (const MeasuredLobe& lobe : facts.lobes) clusters.push_back(cluster_of(lobe, scale));
+  for (const MeasuredLobe& lobe : facts.lobes) clusters.push_back(cluster_of(lobe, scale, facts.of_film_pair));
   return {{"schema", "weft.reflectance/1.1"},
           {"albedo_scale", name_of(scale)},
           {"share", facts.share},

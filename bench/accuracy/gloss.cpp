@@ -77,7 +77,7 @@ void with_led_beside_camera(Scene& s) {
 
 // What one more shot, or as many again, buys.
 std::vector<GlossyCloth> cloths_with_more_light() {
-  const TrueLobe of_velvet = {0.3, kNone, 0.04}, of_wool = {0.7, kNone, 0.04};
+  const TrueLobe of_velvet = {0.3, kNone, 0.05}, of_wool = {0.7, kNone, 0.046};
   return {
       {"ggx 0.50, pair", ggx(0.50), 0.4, {0.50, kNone, 0.04}, with_films},
       {"ggx 0.60, pair", ggx(0.60), 0.4, {0.60, kNone, 0.04}, with_films},

@@ -425,8 +425,9 @@ class Bounds {
     direct_ = brightest(albedo_, strength);
     const auto at_centre = [](const LedRange& led) { return led.centre_strength; };
     stray_ = l.stray * brightest(albedo_, at_centre);
-    ambient_ = l.ambient * brightest(albedo_, at_centre);
-    white_ = brightest({1, 1, 1}, strength) + (l.stray + l.ambient) * brightest({1, 1, 1}, at_centre);
+    const double room = l.ambient * rig_.room_share;
+    ambient_ = room * brightest(albedo_, at_centre);
+    white_ = brightest({1, 1, 1}, strength) + (l.stray + room) * brightest({1, 1, 1}, at_centre);
     light_ = is_glossy_ ? kInfinite : direct_ * bounced_ + stray_ + ambient_;
     const double hot = d.hot_per_million > 0 ? 1.5 * d.hot_electrons_per_s : 0;
     dark_ = (d.dark_electrons_per_s + hot) * std::exp2((d.temperature_c - 25) / d.dark_doubling_c) *

@@ -332,8 +332,9 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   const LobeFit ggx = trial.isotropic(LobeFamily::kGgx);
   std::vector<Family> families = {
       {ggx, 0}, {trial.isotropic(LobeFamily::kBeckmann), kOtherWins}, {trial.anisotropic(), kYarnWins}};
-  // One state of the films does not tell sheen from a diffuse part that bends.
-  if (samples.states() > 1) families.push_back({trial.isotropic(LobeFamily::kCloth), kOtherWins});
+  // One state of the films does not tell sheen from a diffuse part that bends. Two do: what is left of the
+  // costs is all the shape of the lobe, of which sheen has as many values as GGX.
+  if (samples.states() > 1) families.push_back({trial.isotropic(LobeFamily::kCloth), 0});
   const LobeFit* straight = &families.front().fit;
   for (const Family& family : families) {
     measured.candidates.push_back({family.fit.lobe, family.fit.chi2});

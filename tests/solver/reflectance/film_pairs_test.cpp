@@ -69,9 +69,10 @@ TEST(FilmPair, OfMattClothShowsNoLobe) {
 
 // One state alone does not tell sheen from a diffuse part that bends.
 TEST(FilmPair, IsWhatSheenNeeds) {
-  const Lobe truth = {.family = LobeFamily::kCloth, .alpha = 0.7, .f0 = 0.04};
-  const PixelTruth cloth = pixels_of(model_of(truth), kPairPixels, {}, 35);
+  const Lobe truth = {.family = LobeFamily::kCloth, .alpha = 0.7, .f0 = 0.12};
+  const PixelTruth cloth = pixels_of(model_of(truth), kPairPixels, {.tilt_deg = 40, .albedo = 0.05}, 35);
   const MeasuredLobe found = measure_lobe(cloth.samples, cloth.start, 0);
+  ASSERT_GT(found.candidates.size(), 1U) << "chi2 by Lambert's law " << found.candidates.front().chi2;
   for (const LobeCandidate& candidate : found.candidates)
     EXPECT_NE(candidate.lobe.family, LobeFamily::kCloth);
 }
@@ -92,6 +93,31 @@ TEST(FilmPair, SharesOfALobeAreTheSameInTheKernelAndInDouble) {
     EXPECT_LT(angle_deg(block.b(0), exact.b), 0.02) << name_of(family);
     EXPECT_NEAR(length(block.b(0)), length(exact.b), 1e-3 * length(exact.b)) << name_of(family);
     EXPECT_NEAR(static_cast<double>(block.cost[0]), exact.cost, 0.01 * exact.cost + 1e-3) << name_of(family);
+  }
+}
+
+TEST(FilmPair, WhoseParallelShotsAreSaturatedIsAsOneStateAlone) {
+  const Lobe truth = {.family = LobeFamily::kGgx, .alpha = 0.5, .f0 = 0.04};
+  const PixelTruth cloth = pixels_by(
+      [&](Vec3 n, double albedo, double, Random& random) {
+        auto readings = pair_of_readings(truth, n, albedo, 0.003, random);
+        for (std::size_t i = 10; i < 20; ++i) readings[i].weight = 0;
+        return readings;
+      },
+      kPairPixels, {}, 38, 2);
+  const MeasuredLobe found = measure_lobe(cloth.samples, cloth.start, 0);
+  EXPECT_EQ(found.refusal, LobeRefusal::kLambertFits) << name_of(found.refusal);
+}
+
+TEST(FilmPair, WithoutLeakIsFittedToTheParallelShotsAlone) {
+  const Lobe truth = {.family = LobeFamily::kGgx, .alpha = 0.5, .f0 = 0.04};
+  Random random(39);
+  for (int i = 0; i < 100; ++i) {
+    const Vec3 n = random_normal(random, 25);
+    const auto readings = pair_of_readings(truth, n, 0.3, 0.003, random, 0);
+    const PixelFit fit = fit_pixel(truth, readings, lambert_fit(std::span(readings).first(10)), 0, 20);
+    ASSERT_TRUE(std::isfinite(fit.cost));
+    EXPECT_LT(angle_deg(fit.b, n), 1);
   }
 }
 
