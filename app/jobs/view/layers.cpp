@@ -2,6 +2,8 @@
 #include "app/jobs/view/layers.h"
 
 #include <algorithm>
+#include <array>
+#include <span>
 #include <utility>
 
 #include "core/files.h"
@@ -26,13 +28,18 @@ const std::vector<Layer>& known_layers() {
   return layers;
 }
 
+// Whether they begin so; what follows is not looked at.
+bool begin_with(const std::vector<std::string>& channels, const std::array<const char*, 3>& names) {
+  return channels.size() >= names.size() && std::ranges::equal(std::span(channels).first(names.size()), names);
+}
+
 LayerKind kind_of(const std::vector<std::string>& channels) {
-  if (channels == std::vector<std::string>{"X", "Y", "Z"}) return LayerKind::kNormal;
-  if (channels == std::vector<std::string>{"R", "G", "B"}) return LayerKind::kColor;
+  if (begin_with(channels, {"X", "Y", "Z"})) return LayerKind::kNormal;
+  if (begin_with(channels, {"R", "G", "B"})) return LayerKind::kColor;
   return LayerKind::kScalar;
 }
 
-// A map of maps.json as a layer: of a scalar its first channel. None where it is a number, or lies elsewhere.
+// A map of maps.json as a layer: of a scalar its first channel, else three. None where it is a number, or lies elsewhere.
 std::optional<Layer> layer_of(const Json& map) {
   if (!map.is_object() || !map.contains("file")) return {};
   JsonFields fields(map, "maps");
@@ -44,8 +51,8 @@ std::optional<Layer> layer_of(const Json& map) {
     if (channel.is_string()) layer.channels.push_back(channel.get<std::string>());
   }
   layer.kind = kind_of(layer.channels);
-  if (layer.kind == LayerKind::kScalar)
-    layer.channels.resize(std::min<std::size_t>(1, layer.channels.size()));
+  const std::size_t shown = layer.kind == LayerKind::kScalar ? 1 : 3;
+  layer.channels.resize(std::min(shown, layer.channels.size()));
   const bool is_inside = layer.file.find('/') == std::string::npos;
   return fields.status() && is_inside && !layer.channels.empty() ? std::optional(layer) : std::nullopt;
 }

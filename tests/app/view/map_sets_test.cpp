@@ -28,7 +28,7 @@ class MapSets : public AskedSession {
     MapsOptions options;
     options.session = session();
     options.mm_per_pixel = kGrid_mm;
-    options.maps = {MapName::kHeight};
+    options.maps = {"height"};
     const Result<MapsReport> made = make_maps(options, {});
     ASSERT_TRUE(made) << made.error().message();
     set_ = made->document;

@@ -27,14 +27,14 @@ export function pictureOf(side: Side, look: Look): {sheet: Sheet; form: Form} {
   const [least, most] = look.range;
   switch (side.mode) {
     case 'color':
-      return {sheet: sheet('albedo', {exposure}), form: 'jpg'};
+      return {sheet: sheet(side.layer, {exposure}), form: 'jpg'};
     case 'relit':
       return {sheet: sheet('relit', {exposure, light: look.light.map(rounded).join(',')}), form: 'jpg'};
     case 'normal':
-      return {sheet: sheet('normal', {}), form: 'png'};
+      return {sheet: sheet(side.layer, {}), form: 'png'};
     case 'scalar': {
       const other: Record<string, string> = side.other === null ? {} : {with: side.other};
-      return {sheet: sheet(side.scalar, {least: String(least), most: String(most), ...other}), form: 'png'};
+      return {sheet: sheet(side.layer, {least: String(least), most: String(most), ...other}), form: 'png'};
     }
     case 'flags':
       return {sheet: sheet('status', side.bits[0] === undefined ? {} : {bit: side.bits[0]}), form: 'png'};

@@ -4,19 +4,19 @@ import type {Kind} from './formats';
 import type {Rgb} from './heat';
 import type {Mode} from './shaders';
 import type {LayerName} from './surface';
-import {type Pyramid, type Tile, levelFor, repeats, tilesInView} from './tiles';
+import {type Pyramid, type Repeat, type Tile, levelFor, repeats, tilesInView} from './tiles';
 import type {Point, Size, View} from './view';
 
 export type Vector = [number, number, number];
 
 /** The maps of one folder, shown in one way. */
 export interface Side {
-  /** The address of the maps: /api/v1/sessions/NAME/solves/ID */
+  /** The address of the maps: /api/v1/sessions/NAME/solves/ID, or /maps/ID */
   maps: string;
   pyramid: Pyramid;
   mode: Mode;
-  /** The layer of a scalar: 'sigma', 'difference'. */
-  scalar: string;
+  /** What is seen: 'sigma', 'difference', 'bent_normal'. */
+  layer: string;
   /** Of a difference: the other solve, as SESSION/SOLVE. */
   other: string | null;
   /** What colours are multiplied by before the exposure: not 1 where the albedo has no absolute scale. */
@@ -46,7 +46,7 @@ export interface Scene {
   /** Share of the canvas's width. */
   divider: number;
   look: Look;
-  repeat: 1 | 3;
+  repeat: Repeat;
   /** A hand moves the light: half the resolution will do. */
   is_moving: boolean;
 }
@@ -71,11 +71,11 @@ function sheetOf(side: Side, layer: string, kind: Kind, target: LayerName): Shee
 export function sheetsOf(side: Side, all_bits: readonly string[]): Sheet[] {
   const sheets: Sheet[] = [];
   const isLit = side.mode === 'relit' || side.mode === 'flags';
-  if (side.mode === 'normal' || isLit) sheets.push(sheetOf(side, 'normal', 'normal', 'normal'));
-  if (side.mode === 'color' || isLit) sheets.push(sheetOf(side, 'albedo', 'color', 'color'));
+  if (side.mode === 'normal' || isLit) sheets.push(sheetOf(side, isLit ? 'normal' : side.layer, 'normal', 'normal'));
+  if (side.mode === 'color' || isLit) sheets.push(sheetOf(side, isLit ? 'albedo' : side.layer, 'color', 'color'));
   if (side.mode === 'scalar') {
     const query = side.other === null ? '' : `?with=${encodeURIComponent(side.other)}`;
-    sheets.push({...sheetOf(side, side.scalar, 'scalar', 'scalar'), query});
+    sheets.push({...sheetOf(side, side.layer, 'scalar', 'scalar'), query});
   }
   for (const bit of side.bits) {
     const place = all_bits.indexOf(bit);

@@ -83,9 +83,14 @@ export function tilesInView(pyramid: Pyramid, level: number, view: View, canvas:
   return [...nearest.values()].sort((a, b) => a.far - b.far).map(({tile}) => tile);
 }
 
-/** Where maps lie that are repeated `count` times a side around the first, which stays at 0, 0. */
-export function repeats(size: Size, count: 1 | 3): Point[] {
-  const steps = count === 1 ? [0] : [-1, 0, 1];
+/** How often a map is seen a side. */
+export type Repeat = 1 | 2 | 3;
+
+const stepsOf: Record<Repeat, number[]> = {1: [0], 2: [0, 1], 3: [-1, 0, 1]};
+
+/** Where maps lie that are repeated `count` times a side, of three around the first, which stays at 0, 0. */
+export function repeats(size: Size, count: Repeat): Point[] {
+  const steps = stepsOf[count];
   return steps.flatMap((row) => steps.map((column) => ({x: column * size.width, y: row * size.height})));
 }
 

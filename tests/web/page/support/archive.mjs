@@ -37,10 +37,11 @@ export class Archive {
     return this.#solves.get(`${name} ${level}`);
   }
 
+  /** At the same port as before, where it was served already. */
   async serve() {
     const environment = {...process.env, HOME: this.folder, XDG_STATE_HOME: path.join(this.folder, 'state')};
     delete environment.WEFT_RIG;
-    this.#daemon = spawn(weft, ['serve', '--port', '0', '--archive', this.sessions], {env: environment, cwd: this.folder, stdio: ['ignore', 'pipe', 'ignore']});
+    this.#daemon = spawn(weft, ['serve', '--port', this.address ? new URL(this.address).port : '0', '--archive', this.sessions], {env: environment, cwd: this.folder, stdio: ['ignore', 'pipe', 'ignore']});
     this.address = await firstLine(this.#daemon);
   }
 
@@ -48,9 +49,18 @@ export class Archive {
     return (await fetch(`${this.address}/api/v1/${call}`)).json();
   }
 
-  async stop() {
+  async restart() {
+    await this.#end();
+    await this.serve();
+  }
+
+  async #end() {
     const ended = new Promise((resolve) => this.#daemon?.once('exit', resolve));
     if (this.#daemon?.kill('SIGTERM')) await ended;
+  }
+
+  async stop() {
+    await this.#end();
     fs.rmSync(this.folder, {recursive: true, force: true});
   }
 }

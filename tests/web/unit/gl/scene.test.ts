@@ -4,7 +4,7 @@ import {addressesOf, addressOf, drawnOf, type Scene, sheetsOf, type Side} from '
 
 const bits = ['SATURATED', 'SHADOWED', 'ZERO_DOF', 'DARK', 'ILL_CONDITIONED', 'NO_SOLUTION', 'SPECULAR', 'INVALID_READING'];
 const pyramid = {size: {width: 1400, height: 900}, side: 512, levels: 3};
-const side: Side = {maps: '/api/v1/sessions/s/solves/1', pyramid, mode: 'relit', scalar: 'relit', other: null, gain: 1, bits: []};
+const side: Side = {maps: '/api/v1/sessions/s/solves/1', pyramid, mode: 'relit', layer: 'relit', other: null, gain: 1, bits: []};
 const canvas = {width: 800, height: 600};
 
 function sceneOf(zoom: number): Scene {
@@ -14,7 +14,7 @@ function sceneOf(zoom: number): Scene {
 
 test('relit reads normals and albedo, a scalar itself alone', () => {
   expect(sheetsOf(side, bits).map(({layer}) => layer)).toEqual(['normal', 'albedo']);
-  expect(sheetsOf({...side, mode: 'scalar', scalar: 'sigma_noise'}, bits).map(({layer}) => layer)).toEqual(['sigma_noise']);
+  expect(sheetsOf({...side, mode: 'scalar', layer: 'sigma_noise'}, bits).map(({layer}) => layer)).toEqual(['sigma_noise']);
 });
 
 test('each bit is asked for by its name and has a channel of its own', () => {
@@ -26,7 +26,7 @@ test('each bit is asked for by its name and has a channel of its own', () => {
 });
 
 test('a difference names the other solve', () => {
-  const [sheet] = sheetsOf({...side, mode: 'scalar', scalar: 'difference', other: 's/truth'}, bits);
+  const [sheet] = sheetsOf({...side, mode: 'scalar', layer: 'difference', other: 's/truth'}, bits);
   expect(addressOf(sheet!, {level: 1, column: 2, row: 0})).toBe('/api/v1/sessions/s/solves/1/tiles/difference/1/2_0.raw?with=s%2Ftruth');
 });
 

@@ -50,11 +50,13 @@ export function JobRow({job, canGoFirst = false, onLog}: JobRowProps) {
 /** The session or folder, and where its result can be looked at. */
 function Subject({job}: {job: Job}) {
   const solve = ['solve', 'torture'].includes(job.kind) && job.state === 'done' ? textIn(job.result, 'id') : '';
+  const isOfMaps = ['maps', 'finish'].includes(job.kind) && job.state === 'done';
   if (job.kind === 'rig_plan') return <a href="/calibrate">{job.of}</a>;
   if (job.of.includes('/')) return <span>{job.of}</span>;
   return (
     <>
       <a href={`/sessions/${job.of}`}>{job.of}</a>
+      {isOfMaps && <> <a href={`/viewer/${job.of}/maps/${textIn(job.result, 'id')}`}>Look at them</a></>}
       {solve && <> <a href={`/viewer/${job.of}/${solve}`}>Look at it</a></>}
       {job.kind === 'price' && job.state === 'done' && <> <a href={`/jobs?price=${job.of}`}>Levels</a></>}
     </>

@@ -15,6 +15,8 @@ const titles: Record<string, string> = {
   solve: 'Solve',
   price: 'Price of each level',
   rectify: 'Rectified maps',
+  maps: 'Maps',
+  finish: 'Finished maps',
   copy: 'Second copy',
   torture: 'Torture scene',
   rig_plan: 'Which light to add',
@@ -34,11 +36,13 @@ export function titleOf(kind: string): string {
 
 /** What was asked of it beside its kind: the level, a limit, another calibration. */
 export function wishOf({wants}: Job): string {
-  const {quality, method, within_s, to_deg, calibration, cloth} = wants;
+  const {quality, method, within_s, to_deg, calibration, cloth, preview, recipe} = wants;
   return [
     quality ?? method ?? cloth,
     within_s === undefined ? undefined : `within ${within_s} s`,
     to_deg === undefined ? undefined : `to ${to_deg}°`,
+    recipe,
+    preview ? 'preview' : undefined,
     calibration === undefined ? undefined : `by ${calibration}`,
   ].filter((word) => word !== undefined).join(', ');
 }

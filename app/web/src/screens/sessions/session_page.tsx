@@ -11,6 +11,7 @@ import {Copy} from '../../ui/copy';
 import {timeOf} from '../../ui/words';
 import {Frames} from './frames';
 import {LastWord} from './last_word';
+import {MapSets} from './map_sets';
 import {MetadataForm} from './metadata_form';
 import {askSession, type OneSession} from './one_session';
 import {SessionState} from './session_state';
@@ -55,6 +56,7 @@ export function SessionPage({name}: {name: string}) {
         <div class="columns">
           <div class="column">
             <Solves one={one} onChanged={look} />
+            {one.session.current_solve && <MapSets session={name} solve={one.session.current_solve} />}
             <section class="panel" aria-labelledby="frames-title">
               <h2 id="frames-title">Photographs</h2>
               <Frames session={one.session} onChanged={look} />

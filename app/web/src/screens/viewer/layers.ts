@@ -51,6 +51,11 @@ const explanations: Record<string, string> = {
   height: 'Height of the cloth.',
   condition: 'How much larger the lights that a pixel was solved from may make errors, in decades: at 3 a thousand times. At 16 they do not span three directions.',
   roughness: 'Root of alpha, as games have it. 1 where no lobe was measured.',
+  occlusion: 'Share of the sky that a place sees.',
+  bent_normal: 'Mean direction to the sky that a place sees.',
+  cavity: 'How far a place lies below what is around it.',
+  curl: 'What no height has: slopes that do not come back to where they began.',
+  opacity: 'Share of light that the cloth stops.',
   difference: 'Angle between the normals of the two.',
   albedo_difference: 'By how much the albedo is off, in percent of the other: mean of red, green and blue.',
 };
@@ -62,21 +67,37 @@ export function explanationOf(layer: string): string {
 export function saysOf(layer: string): string {
   const part = SIGMA_PARTS.find(({name}) => name === layer && name !== 'sigma');
   if (part) return `Sigma: ${part.says}`;
-  return [...LAYERS, ...DIFFERENCES].find(({name}) => name === layer)?.says ?? layer;
+  return [...LAYERS, ...DIFFERENCES].find(({name}) => name === layer)?.says ?? inWords(layer);
+}
+
+/** "bent_normal": "Bent normal" */
+function inWords(name: string): string {
+  return name.charAt(0).toUpperCase() + name.slice(1).replaceAll('_', ' ');
 }
 
 export function isDifference(layer: string): boolean {
   return DIFFERENCES.some(({name}) => name === layer);
 }
 
-export function modeOf(layer: string): Mode {
-  if (layer === 'albedo') return 'color';
-  if (layer === 'normal' || layer === 'relit') return layer;
-  return layer === 'status' ? 'flags' : 'scalar';
+export function modeOf(solve: ViewedSolve, layer: string): Mode {
+  if (layer === 'relit') return layer;
+  return solve.layers.find(({name}) => name === layer)?.kind ?? 'scalar';
 }
 
-export function hasScale(layer: string): boolean {
-  return modeOf(layer) === 'scalar';
+export function hasScale(solve: ViewedSolve, layer: string): boolean {
+  return modeOf(solve, layer) === 'scalar';
+}
+
+/** Scales that begin at 0; others begin where most values do. */
+export function beginsAtZero(layer: string): boolean {
+  return /^sigma|^residual|^roughness/.test(layer);
+}
+
+/** Layers as they are chosen from: those with a key, then what else a set of maps has. */
+export function choicesOf(solve: ViewedSolve): LayerChoice[] {
+  const known = LAYERS.filter(({name}) => isThere(solve, name));
+  const others = solve.layers.filter(({name}) => !known.some((each) => each.name === name) && !name.startsWith('sigma'));
+  return [...known, ...others.map(({name}) => ({name, says: saysOf(name), key: ''}))];
 }
 
 export function hasExposure(layer: string): boolean {
@@ -96,7 +117,8 @@ export function unitOf(solve: ViewedSolve, layer: string): string {
   if (layer === 'albedo_difference') return '%';
   const unit = layer === 'difference' ? 'deg' : (solve.layers.find(({name}) => name === layer)?.unit ?? '');
   if (unit === 'deg') return '°';
-  return unit === 'share' ? 'of the albedo' : unit;
+  if (unit === 'share') return layer === 'residual' ? 'of the albedo' : '';
+  return unit;
 }
 
 /** Upper ends of scales that are offered. */

@@ -13,12 +13,12 @@ const stops = [...Array(17).keys()].map((i) => i / 16);
 export function Legend({viewer}: {viewer: Viewer}) {
   const maps = viewer.maps.value;
   const {layer} = viewer.sight.value;
-  if (!maps || !hasScale(layer)) return null;
+  if (!maps || !hasScale(maps.solve, layer)) return null;
   const [least, most] = viewer.range.value;
   const short = (value: number) => String(Number(value.toPrecision(3)));
   return (
     <figure class="legend">
-      <figcaption>{saysOf(layer)}, {unitOf(maps.solve, layer)}</figcaption>
+      <figcaption>{[saysOf(layer), unitOf(maps.solve, layer)].filter((word) => word !== '').join(', ')}</figcaption>
       <svg viewBox="0 0 160 10" aria-hidden="true">
         <linearGradient id="heat">
           {stops.map((share) => <stop key={share} offset={share} stop-color={cssColour(heatColour(share))} />)}

@@ -5,7 +5,7 @@ import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {percentOf} from '../../ui/words';
 import {
-  bitColour, bitMeaning, bitsOf, explanationOf, FULL_SCALES, hasExposure, hasScale, isThere, LAYERS, SIGMA_PARTS, unitOf,
+  bitColour, bitMeaning, bitsOf, choicesOf, explanationOf, FULL_SCALES, hasExposure, hasScale, isThere, SIGMA_PARTS, unitOf,
 } from './layers';
 import {cssColour} from './legend';
 import {sharesOf} from './probe';
@@ -21,8 +21,8 @@ export function LayerPanel({viewer}: {viewer: Viewer}) {
     <section>
       <h2>Layer</h2>
       <div class="layers" role="group" aria-label="Layers">
-        {LAYERS.filter(({name}) => isThere(maps.solve, name)).map(({name, says, key}) => (
-          <Button key={name} keyHint={key} isPressed={family === name}
+        {choicesOf(maps.solve).map(({name, says, key}) => (
+          <Button key={name} keyHint={key || undefined} isPressed={family === name}
             onClick={() => viewer.seeLayer(name)}>
             {says}
           </Button>
@@ -34,7 +34,7 @@ export function LayerPanel({viewer}: {viewer: Viewer}) {
           onChange={(name) => viewer.seeLayer(name)} />
       )}
       {hasExposure(layer) && <Exposure viewer={viewer} />}
-      {hasScale(layer) && <ScaleOfColours viewer={viewer} unit={unitOf(maps.solve, layer)} />}
+      {hasScale(maps.solve, layer) && <ScaleOfColours viewer={viewer} unit={unitOf(maps.solve, layer)} />}
       {bitsOf(maps.solve).length > 0 && <Bits viewer={viewer} bits={bitsOf(maps.solve)} />}
     </section>
   );

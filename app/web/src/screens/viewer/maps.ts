@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The maps of a solve as the daemon tells of them, and a side of the picture made of them.
-import {answer, api} from '../../api/client';
+import {fetched} from '../../api/client';
+import {addressOf} from '../../api/calls';
 import type {Side} from '../../gl/scene';
 import {isDifference, isThere, modeOf, type ViewedSolve} from './layers';
 import {type SolveName, textOf} from './sight';
@@ -16,18 +17,26 @@ export function solveInWords(solve: {method: string; id: string}): string {
 }
 
 export function addressOfMaps(name: SolveName): string {
-  return `/api/v1/sessions/${encodeURIComponent(name.session)}/solves/${encodeURIComponent(name.solve)}`;
+  const of = name.isSet ? 'maps' : 'solves';
+  return `/api/v1/sessions/${encodeURIComponent(name.session)}/${of}/${encodeURIComponent(name.solve)}`;
+}
+
+/** Maps of a solve and those of a set are asked the same. */
+export async function askOf<T>(name: SolveName, what: '' | '/pixel' | '/region' | '/line', query: Record<string, number> = {}): Promise<T> {
+  return (await fetched(addressOf(addressOfMaps(name) + what, {query}))).json() as Promise<T>;
 }
 
 export async function loadMaps(name: SolveName): Promise<Maps> {
-  const solve = await answer(
-    api.GET('/api/v1/sessions/{name}/solves/{solve}', {params: {path: {name: name.session, solve: name.solve}}}),
-  );
-  return {name, solve};
+  return {name, solve: await askOf<ViewedSolve>(name, '')};
 }
 
 export function isSameSize(a: Maps, b: Maps): boolean {
   return a.solve.width === b.solve.width && a.solve.height === b.solve.height;
+}
+
+/** Whether the albedo of the maps is seen in it. */
+function isShaded(layer: string): boolean {
+  return ['albedo', 'relit', 'status'].includes(layer);
 }
 
 /** These maps shown as a layer, and bits of their status over it. Null where they have no such layer. */
@@ -37,10 +46,10 @@ export function sideOf(maps: Maps, layer: string, bits: readonly string[], other
   return {
     maps: addressOfMaps(name),
     pyramid: {size: {width: solve.width, height: solve.height}, side: solve.tile, levels: solve.levels},
-    mode: modeOf(layer),
-    scalar: layer,
+    mode: modeOf(solve, layer),
+    layer,
     other: isDifference(layer) && other ? textOf(other) : null,
-    gain: solve.display_gain,
+    gain: isShaded(layer) ? solve.display_gain : 1,
     bits: isThere(solve, 'status') ? bits : [],
   };
 }

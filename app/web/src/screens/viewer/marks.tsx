@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What lies over the picture: ruler, rectangle, held pixel, divider, lamp.
+import {type Repeat, repeats} from '../../gl/tiles';
 import {type Point, type Size, type View, toCanvas} from '../../gl/view';
 import {placeOf} from './light';
 import {type Maps, solveInWords} from './maps';
@@ -49,16 +50,31 @@ export function LampMark({viewer, density}: {viewer: Viewer; density: number}) {
   return <div class="lamp-mark" aria-hidden="true" style={{transform: `translate(${x}px, ${y}px)`}} />;
 }
 
+/** The borders of a map that is repeated. */
+function Seam({map, count, view, canvas}: {map: Size; count: Repeat; view: View; canvas: Size}) {
+  return (
+    <g class="seam">
+      {repeats(map, count).map((offset) => {
+        const at = toCanvas(offset, view, canvas);
+        return <rect key={`${offset.x},${offset.y}`} x={at.x} y={at.y} width={map.width * view.zoom} height={map.height * view.zoom} />;
+      })}
+    </g>
+  );
+}
+
 export function Marks({viewer}: {viewer: Viewer}) {
   const view = viewer.view.value;
   const canvas = viewer.canvas.value;
-  const {line, box, pixel, divider} = viewer.sight.value;
+  const {line, box, pixel, divider, repeat, seam} = viewer.sight.value;
+  const map = viewer.maps.value?.solve;
   const mark = viewer.pencil.at.value;
   const isDivided = divider !== null && (viewer.scene.value?.sides.length ?? 0) > 1;
-  if (!view || !(line || box || pixel || mark || isDivided)) return null;
+  const hasSeam = seam && repeat > 1;
+  if (!view || !map || !(line || box || pixel || mark || isDivided || hasSeam)) return null;
   const corner = box && toCanvas(box, view, canvas);
   return (
     <svg class="marks" viewBox={`0 0 ${canvas.width} ${canvas.height}`} aria-hidden="true">
+      {hasSeam && <Seam map={map} count={repeat} view={view} canvas={canvas} />}
       {box && corner && <rect class="box" x={corner.x} y={corner.y} width={box.width * view.zoom} height={box.height * view.zoom} />}
       {line && <Ruler ends={[centreOf(line[0], view, canvas), centreOf(line[1], view, canvas)]} />}
       {pixel && <HeldPixel at={centreOf(pixel, view, canvas)} side={view.zoom} />}

@@ -15,7 +15,7 @@ export function Minimap({viewer}: {viewer: Viewer}) {
   const from = toMap({x: 0, y: 0}, view, canvas);
   const to = toMap({x: canvas.width, y: canvas.height}, view, canvas);
   const isWhole = from.x <= 1 && from.y <= 1 && to.x >= width - 1 && to.y >= height - 1;
-  if (isWhole || viewer.sight.value.repeat === 3) return null;
+  if (isWhole || viewer.sight.value.repeat > 1) return null;
   const each = MOST_PX / Math.max(width, height);
   const across = Math.round(width * each);
   const down = Math.round(height * each);

@@ -7,6 +7,8 @@ import {placeOf} from '../../state/place';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Tabs} from '../../ui/tabs';
+import {MadePanel} from '../finish/found';
+import {FinishPanel} from '../finish/panel';
 import type {PictureCanvas} from './canvas';
 import {ComparePanel, optionsOf, useSolves} from './compare_panel';
 import {LightPanel} from './light_panel';
@@ -16,17 +18,19 @@ import {Picture} from './picture';
 import {PixelPanel} from './pixel_panel';
 import {RegionPanel} from './region_panel';
 import {RulerPanel} from './ruler_panel';
-import {addressOfViewer, type Panel, PANELS, solveNameOf, type SolveName, textOf} from './sight';
+import {optionOf, useSets} from './sets';
+import {addressOfViewer, nameOf, type Panel, PANELS, solveNameOf, type SolveName, textOf} from './sight';
 import {StatusLine} from './status_line';
 import {Toolbar, useViewerKeys} from './toolbar';
 import {Viewer} from './viewer';
 import {WhyPanel} from './why_panel';
 
 export default function ViewerScreen() {
-  const [session, solve] = place.value.parts;
+  const {parts} = place.value;
+  const [session] = parts;
   if (session === undefined) return <NoSession />;
-  if (solve === undefined) return <NewestSolve key={session} session={session} />;
-  return <Viewing key={`${session}/${solve}`} name={{session, solve}} />;
+  const name = nameOf(parts);
+  return name ? <Viewing key={parts.join('/')} name={name} /> : <NewestSolve key={session} session={session} />;
 }
 
 function noSolveOf(session: string): ApiError {
@@ -76,7 +80,7 @@ function Viewing({name}: {name: SolveName}) {
       <aside aria-label="What is seen">
         <Head viewer={viewer} />
         <Complaint error={viewer.complaint.value} />
-        <Tabs label="Panels" value={viewer.panel.value} options={panels} onChange={(panel) => viewer.see({panel})}>
+        <Tabs label="Panels" value={viewer.panel.value} options={panelsOf(name)} onChange={(panel) => viewer.see({panel})}>
           <Chosen viewer={viewer} panel={viewer.panel.value} />
         </Tabs>
       </aside>
@@ -84,8 +88,12 @@ function Viewing({name}: {name: SolveName}) {
   );
 }
 
-const names: Record<Panel, string> = {look: 'Look', pixel: 'Pixel', measure: 'Measure', compare: 'Compare', why: 'Why'};
-const panels = PANELS.map((value) => ({value, says: names[value]}));
+const names: Record<Panel, string> = {look: 'Look', pixel: 'Pixel', measure: 'Measure', compare: 'Compare', why: 'Why', finish: 'Finish'};
+
+/** A set of maps lies on a grid of its own, so that it is compared with nothing. */
+function panelsOf({isSet}: SolveName) {
+  return PANELS.filter((panel) => !(isSet && panel === 'compare')).map((value) => ({value, says: names[value]}));
+}
 
 function Chosen({viewer, panel}: {viewer: Viewer; panel: Panel}) {
   switch (panel) {
@@ -98,7 +106,9 @@ function Chosen({viewer, panel}: {viewer: Viewer; panel: Panel}) {
     case 'compare':
       return <ComparePanel viewer={viewer} />;
     case 'why':
-      return <WhyPanel viewer={viewer} />;
+      return viewer.name.isSet ? <MadePanel document={viewer.maps.value?.solve.set} /> : <WhyPanel viewer={viewer} />;
+    case 'finish':
+      return <FinishPanel viewer={viewer} />;
   }
 }
 
@@ -113,8 +123,11 @@ function MeasureHint({viewer}: {viewer: Viewer}) {
 }
 
 function Head({viewer}: {viewer: Viewer}) {
-  const solves = useSolves(viewer.name.session);
+  const {session} = viewer.name;
+  const solves = useSolves(session);
+  const sets = useSets(session);
   const maps = viewer.maps.value;
+  const options = [...optionsOf(session, solves ?? {solves: [], truth: false}), ...sets.map((set) => optionOf(session, set))];
   const choose = (text: string) => {
     const chosen = solveNameOf(text);
     if (chosen) go(addressOfViewer(chosen) + location.search);
@@ -122,9 +135,9 @@ function Head({viewer}: {viewer: Viewer}) {
   return (
     <section class="head">
       <div class="row">
-        <h1>{viewer.name.session}</h1>
+        <h1>{session}</h1>
         {solves && (
-          <Choice label="Solve" value={textOf(viewer.name)} options={optionsOf(viewer.name.session, solves)} onChange={choose} />
+          <Choice label="Solve" value={textOf(viewer.name)} options={options} onChange={choose} />
         )}
       </div>
       {maps && (

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is looked at and how: all of it stands in the address, so that it can be shared and survives a reload.
 import type {Vector} from '../../gl/scene';
+import type {Repeat} from '../../gl/tiles';
 import type {Box, Point, View} from '../../gl/view';
 
 /** A solve of a session; 'truth' stands for the id of a simulated session's own. */
 export interface SolveName {
   session: string;
   solve: string;
+  /** It is the id of a set of maps that was made of a solve. */
+  isSet?: true;
 }
 
-export const PANELS = ['look', 'pixel', 'measure', 'compare', 'why'] as const;
+export const PANELS = ['look', 'pixel', 'measure', 'compare', 'why', 'finish'] as const;
 export type Panel = (typeof PANELS)[number];
 
 export interface Sight {
@@ -26,7 +29,9 @@ export interface Sight {
   other: SolveName | null;
   /** Share of the width where the other begins; null: it is not shown. */
   divider: number | null;
-  repeat: 1 | 3;
+  repeat: Repeat;
+  /** Whether the borders of maps that are repeated are drawn. */
+  seam: boolean;
   /** A pixel that is held, so that its table stays. */
   pixel: Point | null;
   line: [Point, Point] | null;
@@ -47,6 +52,7 @@ export const FIRST_SIGHT: Sight = {
   other: null,
   divider: null,
   repeat: 1,
+  seam: true,
   pixel: null,
   line: null,
   box: null,
@@ -65,12 +71,22 @@ function unit(vector: number[]): Vector | null {
 }
 
 export function solveNameOf(text: string | null): SolveName | null {
-  const [session, solve, ...rest] = (text ?? '').split('/');
-  return session && solve && rest.length === 0 ? {session, solve} : null;
+  return nameOf((text ?? '').split('/'));
+}
+
+/** ['satin', 'd043ba17'] a solve, ['satin', 'maps', '1c0f'] a set of maps. */
+export function nameOf([session, solve, id, ...rest]: readonly string[]): SolveName | null {
+  if (!session || !solve || rest.length > 0) return null;
+  if (id === undefined) return {session, solve};
+  return solve === 'maps' && id ? {session, solve: id, isSet: true} : null;
 }
 
 export function textOf(name: SolveName): string {
-  return `${name.session}/${name.solve}`;
+  return wordsOf(name).join('/');
+}
+
+function wordsOf({session, solve, isSet}: SolveName): string[] {
+  return isSet ? [session, 'maps', solve] : [session, solve];
 }
 
 /** What a query says; what it does not say, or says wrongly, is as at first sight. */
@@ -93,7 +109,8 @@ export function sightOf(query: URLSearchParams): Sight {
     bits: bits === null ? null : bits.split(',').filter((bit) => bit !== ''),
     other: solveNameOf(query.get('with')),
     divider: divider === undefined ? null : Math.min(Math.max(divider, 0), 1),
-    repeat: query.get('repeat') === '3' ? 3 : 1,
+    repeat: ([2, 3] as const).find((count) => String(count) === query.get('repeat')) ?? 1,
+    seam: query.get('seam') !== '0',
     pixel: pixel && {x: pixel[0]!, y: pixel[1]!},
     line: line && [{x: line[0]!, y: line[1]!}, {x: line[2]!, y: line[3]!}],
     box: box && {x: box[0]!, y: box[1]!, width: box[2]!, height: box[3]!},
@@ -123,6 +140,7 @@ export function queryOf(sight: Sight): Record<string, string | null> {
     with: sight.other && textOf(sight.other),
     divider: sight.divider === null ? null : written([sight.divider]),
     repeat: unlessFirst(String(sight.repeat), '1'),
+    seam: sight.seam ? null : '0',
     pixel: pixel && written([pixel.x, pixel.y]),
     line: line && written(line.flatMap(({x, y}) => [x, y])),
     box: box && written([box.x, box.y, box.width, box.height]),
@@ -144,7 +162,7 @@ export function asWritten(sight: Sight): Sight {
 }
 
 /** Where a solve is looked at; with a sight, also how. */
-export function addressOfViewer({session, solve}: SolveName, sight = FIRST_SIGHT): string {
+export function addressOfViewer(name: SolveName, sight = FIRST_SIGHT): string {
   const search = searchOf(sight).toString();
-  return `/viewer/${encodeURIComponent(session)}/${encodeURIComponent(solve)}${search && `?${search}`}`;
+  return `/viewer/${wordsOf(name).map(encodeURIComponent).join('/')}${search && `?${search}`}`;
 }

@@ -4,19 +4,19 @@ import {scaleBar, zoomInWords} from './bars';
 import type {PictureCanvas} from './canvas';
 import {hasScale, isDifference, saysOf, unitOf} from './layers';
 import {lightInWords} from './light';
+import {textOf} from './sight';
 import type {Viewer} from './viewer';
 
 const FOOT_PX = 34;
 
 export function captionOf(viewer: Viewer): string {
   const {layer, light, other, divider} = viewer.sight.value;
-  const {session, solve} = viewer.name;
   const maps = viewer.maps.value;
   const [least, most] = viewer.range.value;
   const how = layer === 'relit' ? ` ${lightInWords(light)}` : '';
-  const scale = maps && hasScale(layer) ? ` ${least} to ${most} ${unitOf(maps.solve, layer)}` : '';
+  const scale = maps && hasScale(maps.solve, layer) ? ` ${least} to ${most} ${unitOf(maps.solve, layer)}` : '';
   const beside = other && (divider !== null || isDifference(layer)) ? ` against ${other.session}/${other.solve}` : '';
-  return `${session}/${solve}${beside}: ${saysOf(layer)}${how}${scale}`;
+  return `${textOf(viewer.name)}${beside}: ${saysOf(layer)}${how}${scale}`;
 }
 
 function drawFoot(context: CanvasRenderingContext2D, viewer: Viewer, width: number, top: number): void {

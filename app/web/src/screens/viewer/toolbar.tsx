@@ -64,8 +64,8 @@ function arrow(viewer: Viewer, by: Point, times: number): void {
   viewer.move((view, canvas) => panned(view, {x: -by.x * canvas.width * ARROW_SHARE, y: -by.y * canvas.height * ARROW_SHARE}));
 }
 
-function tile(viewer: Viewer): void {
-  viewer.see({repeat: viewer.sight.value.repeat === 3 ? 1 : 3}, 'step');
+function tile(viewer: Viewer, count: 2 | 3): void {
+  viewer.see({repeat: viewer.sight.value.repeat === count ? 1 : count}, 'step');
 }
 
 interface Neighbours {
@@ -81,7 +81,7 @@ export function useViewerKeys(viewer: Viewer, {previous, next}: Neighbours): voi
     {key: 'l', does: 'light by drag', run: () => toggleLight(viewer)},
     {key: 'r', does: 'ruler', run: () => toggleTool(viewer, 'ruler')},
     {key: 's', does: 'figures of a rectangle', run: () => toggleTool(viewer, 'region')},
-    {key: 't', does: '3 x 3 tiles', run: () => tile(viewer)},
+    {key: 't', does: '3 x 3 tiles', run: () => tile(viewer, 3)},
     {key: '+', does: 'nearer', run: () => zoomBy(viewer, 1)},
     {key: '-', does: 'farther', run: () => zoomBy(viewer, -1)},
     {key: '0', does: 'all of it', run: () => viewer.see({view: null})},
@@ -97,7 +97,7 @@ export function useViewerKeys(viewer: Viewer, {previous, next}: Neighbours): voi
 
 export function Toolbar({viewer, picture}: {viewer: Viewer; picture: PictureCanvas | null}) {
   const tool = viewer.tool.value;
-  const {repeat} = viewer.sight.value;
+  const {repeat, seam} = viewer.sight.value;
   const take = useAction(async () => {
     if (picture) save(await snapshot(viewer, picture), `${viewer.name.session}-${viewer.sight.value.layer}.png`);
   });
@@ -113,7 +113,9 @@ export function Toolbar({viewer, picture}: {viewer: Viewer; picture: PictureCanv
         <Button kind="quiet" onClick={() => viewer.see({view: null})}>All</Button>
         <Button kind="quiet" onClick={() => zoomTo(viewer, 1)}>1:1</Button>
         <Button kind="quiet" label="Nearer" onClick={() => zoomBy(viewer, 1)}>+</Button>
-        <Button kind="quiet" keyHint="t" isPressed={repeat === 3} onClick={() => tile(viewer)}>3 × 3</Button>
+        <Button kind="quiet" isPressed={repeat === 2} onClick={() => tile(viewer, 2)}>2 × 2</Button>
+        <Button kind="quiet" keyHint="t" isPressed={repeat === 3} onClick={() => tile(viewer, 3)}>3 × 3</Button>
+        {repeat > 1 && <Button kind="quiet" isPressed={seam} onClick={() => viewer.see({seam: !seam}, 'step')}>Seam</Button>}
       </div>
       <div class="row">
         <Button kind="quiet" isDisabled={!picture || take.isBusy} onClick={() => void take.run()}>Snapshot</Button>

@@ -5,9 +5,9 @@ import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/cl
 import type {Scene, Side, Vector} from '../../gl/scene';
 import {type Box, type Point, type Size, type View, clamp, fitted, held} from '../../gl/view';
 import {amend, place} from '../../state/address';
-import {bitColour, bitsOf, fullScale, hasScale, isDifference, isThere} from './layers';
+import {beginsAtZero, bitColour, bitsOf, fullScale, hasScale, isDifference, isThere} from './layers';
 import {Latest} from './latest';
-import {isSameSize, loadMaps, type Maps, sideOf} from './maps';
+import {askOf, isSameSize, loadMaps, type Maps, sideOf} from './maps';
 import {Pencil} from './pencil';
 import {channelsOf, type PixelFacts, type RegionFacts, sharesOf} from './probe';
 import {asWritten, queryOf, type Sight, sightOf, type SolveName} from './sight';
@@ -43,10 +43,6 @@ export class Viewer {
   });
   readonly complaint = signal<ApiError | null>(null);
   readonly pixelComplaint = signal<ApiError | null>(null);
-
-  private get path() {
-    return {name: this.name.session, solve: this.name.solve};
-  }
 
   private readonly ends: (() => void)[] = [];
   private readonly probe: Latest<Point, PixelFacts>;
@@ -166,12 +162,12 @@ export class Viewer {
 
   askRegion(box: Box): Promise<RegionFacts> {
     const query = {x: box.x, y: box.y, w: box.width, h: box.height};
-    return answer(api.GET('/api/v1/sessions/{name}/solves/{solve}/region', {params: {path: this.path, query}}));
+    return askOf(this.name, '/region', query);
   }
 
   askLine([from, to]: [Point, Point]): Promise<Schemas['LineFacts']> {
     const query = {x0: from.x, y0: from.y, x1: to.x, y1: to.y};
-    return answer(api.GET('/api/v1/sessions/{name}/solves/{solve}/line', {params: {path: this.path, query}}));
+    return askOf(this.name, '/line', query);
   }
 
   private write(replace: boolean): void {
@@ -187,7 +183,9 @@ export class Viewer {
     this.sight.value = said;
   }
 
+  /** A set of maps lies on a grid of its own: it is compared with nothing. */
   private followOther(name: SolveName | null): void {
+    if (this.name.isSet) return;
     const known = this.other.peek()?.name;
     if (name?.session === known?.session && name?.solve === known?.solve) return;
     this.other.value = null;
@@ -233,7 +231,8 @@ export class Viewer {
 
   private readonly needsWhole = computed(() => {
     const {layer} = this.sight.value;
-    return this.maps.value !== null && (layer === 'status' || (hasScale(layer) && !isDifference(layer)));
+    const solve = this.maps.value?.solve;
+    return solve !== undefined && (layer === 'status' || (hasScale(solve, layer) && !isDifference(layer)));
   });
 
   /** The picture will change once the daemon's figures are there. */
@@ -260,19 +259,19 @@ export class Viewer {
     if (layer === 'condition') return [0, 8];
     const facts = this.whole.value && Object.values(channelsOf(this.whole.value, layer))[0];
     if (!facts) return [0, 1];
-    return layer === 'height' ? [facts.p5, Math.max(facts.p95, facts.p5 + 1e-6)] : [0, fullScale(facts.p95)];
+    return beginsAtZero(layer) ? [0, fullScale(facts.p95)] : [facts.p5, Math.max(facts.p95, facts.p5 + 1e-6)];
   }
 
   private askPixel(at: Point): Promise<PixelFacts> {
-    return answer(api.GET('/api/v1/sessions/{name}/solves/{solve}/pixel', {params: {path: this.path, query: at}}));
+    return askOf(this.name, '/pixel', {...at});
   }
 
   private takePixel(pixel: PixelFacts, at: Point): void {
     if (this.isClosed) return;
     this.pixel.value = pixel;
     this.pixelComplaint.value = null;
-    const isTruth = this.name.solve === 'truth';
+    const hasReadings = !this.name.isSet && this.name.solve !== 'truth';
     clearTimeout(this.againTimer);
-    if (pixel.readings === null && !isTruth) this.againTimer = window.setTimeout(() => this.probe.want(at), AGAIN_MS);
+    if (pixel.readings === null && hasReadings) this.againTimer = window.setTimeout(() => this.probe.want(at), AGAIN_MS);
   }
 }
