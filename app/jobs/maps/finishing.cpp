@@ -118,6 +118,9 @@ class Finisher {
     if (!straight) return std::move(straight).error();
     Json found = {{"acts", true},
                   {"kind", material::name_of(lattice_->kind)},
+                  {"yarn_px", {lattice_->yarn_x_px, lattice_->yarn_y_px}},
+                  {"colours_repeat", lattice_->colours_repeat},
+                  {"strength", lattice_->strength},
                   {"repeats", {straight->repeats_x, straight->repeats_y}},
                   {"period_px", {straight->period_px.width, straight->period_px.height}},
                   {"mm_per_pixel", {straight->mm_per_pixel_x, straight->mm_per_pixel_y}},

@@ -32,7 +32,8 @@ Result<Json> check_maps(MapWork& work, bool has_measured_black) {
   material::MapsToValidate maps;
   maps.surface = &work.surface;
   maps.openness = work.openness.empty() ? View<const float>() : View<const float>(work.openness.plane());
-  maps.height_mm = work.height_mm.empty() ? View<const float>() : View<const float>(work.height_mm.plane());
+  // The slopes of a tile's height are those of its waves, which differences of pixels are not.
+  if (!work.height_mm.empty() && !work.surface.is_tile) maps.height_mm = work.height_mm.plane();
   maps.has_measured_black = has_measured_black;
   material::ValidationLimits limits;
   limits.threads = work.context.threads;
