@@ -25,8 +25,8 @@ struct Straightened {
   int repeats_x = 0, repeats_y = 0;
   Size period_px;                                 ///< of so many repeats
   double mm_per_pixel_x = 0, mm_per_pixel_y = 0;  ///< exactly; surface.mm_per_pixel is their geometric mean
-  double turn_deg = 0;                            ///< of the warp's normal, taken out; counterclockwise
-  double skew_deg = 0;                            ///< how far warp and weft were from upright, taken out
+  double turn_deg = 0;                            ///< of the yarns along x, taken out; counterclockwise
+  double skew_deg = 0;                            ///< of the yarns along y beyond that, taken out
   Displacement displacement;  ///< of the photographed cloth; its range beyond turn and skew:
   double largest_pull_mm = 0, rms_pull_mm = 0;
   Lookup lookup;  ///< of the surface's pixels in the photographed one

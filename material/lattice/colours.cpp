@@ -15,11 +15,11 @@ namespace {
 constexpr int kMostRepeats = 16;
 // Tones of yarns that do not repeat reach 0.4 somewhere among so many lags.
 constexpr double kLeastLevel = 0.5;
-using Multiples = std::map<std::pair<int, int>, double>;
+using RepeatValues = std::map<std::pair<int, int>, double>;
 
 // Of the luminance at whole repeats of the weave.
-Multiples correlations_at_repeats(const Cell& cell, const Correlation& luminance) {
-  Multiples values;
+RepeatValues correlations_at_repeats(const Cell& cell, const Correlation& luminance) {
+  RepeatValues values;
   for (int j = 0; j <= kMostRepeats; ++j) {
     for (int i = j == 0 ? 1 : -kMostRepeats; i <= kMostRepeats; ++i) {
       const Vec2 lag = cell.at(i, j);
@@ -33,7 +33,7 @@ Multiples correlations_at_repeats(const Cell& cell, const Correlation& luminance
 }
 
 // Away from the yarns' directions: along a yarn its own tone repeats everywhere.
-Multiples without_yarns(Multiples values, const Cell& cell, const Cell& along) {
+RepeatValues without_yarns(RepeatValues values, const Cell& cell, const Cell& along) {
   std::erase_if(values, [&](const auto& each) {
     const Vec2 lag = cell.at(each.first.first, each.first.second);
     const auto lies_along = [&](Vec2 yarn) { return std::abs(cross(lag, yarn)) < 0.5 * cell.area(); };
@@ -42,7 +42,7 @@ Multiples without_yarns(Multiples values, const Cell& cell, const Cell& along) {
   return values;
 }
 
-double level_of(const Multiples& values) {
+double level_of(const RepeatValues& values) {
   constexpr std::size_t kStrongest = 6;
   std::vector<double> sorted;
   for (const auto& [place, value] : values) sorted.push_back(value);
@@ -51,7 +51,7 @@ double level_of(const Multiples& values) {
   return std::accumulate(sorted.begin(), sorted.begin() + kStrongest, 0.0) / kStrongest;
 }
 
-bool holds(const Sublattice& s, const Multiples& values, double level) {
+bool holds(const Sublattice& s, const RepeatValues& values, double level) {
   constexpr int kFewest = 6;
   double sum = 0, least = 1;
   int count = 0;
@@ -71,7 +71,7 @@ bool holds(const Sublattice& s, const Multiples& values, double level) {
 
 std::optional<Sublattice> colour_sublattice(const Cell& cell, const Cell& along,
                                             const Correlation& luminance) {
-  const Multiples values = without_yarns(correlations_at_repeats(cell, luminance), cell, along);
+  const RepeatValues values = without_yarns(correlations_at_repeats(cell, luminance), cell, along);
   const double level = level_of(values);
   if (level < kLeastLevel) return std::nullopt;
   for (int index = 1; index <= kMostRepeats * kMostRepeats; ++index) {

@@ -147,13 +147,16 @@ std::optional<double> Correlation::at(Vec2 lag) const {
 
 Correlation::Peak Correlation::top_of(int x, int y) const {
   const auto value = [&](int dx, int dy) { return static_cast<double>(whole(x + dx, y + dy)); };
-  const auto shift = [](double before, double here, double after) {
-    const double bend = 2 * here - before - after;
-    return bend > 1e-12 ? std::clamp((after - before) / 2 / bend, -0.6, 0.6) : 0.0;
+  Peak peak = {{static_cast<double>(x), static_cast<double>(y)}, value(0, 0)};
+  const auto rise = [&](double before, double after, double& place) {
+    const double bend = 2 * value(0, 0) - before - after;
+    const double shift = bend > 1e-12 ? std::clamp((after - before) / 2 / bend, -0.6, 0.6) : 0.0;
+    place += shift;
+    peak.value += shift * (after - before) / 4;
   };
-  return {
-      {x + shift(value(-1, 0), value(0, 0), value(1, 0)), y + shift(value(0, -1), value(0, 0), value(0, 1))},
-      value(0, 0)};
+  rise(value(-1, 0), value(1, 0), peak.lag.x);
+  rise(value(0, -1), value(0, 1), peak.lag.y);
+  return peak;
 }
 
 std::optional<Correlation::Peak> Correlation::peak_near(Vec2 lag, double radius) const {

@@ -17,7 +17,7 @@ namespace weft::material {
 namespace {
 
 constexpr int kLeastSide = 64;
-constexpr double kSureOfSublattice = 8, kLeastRepeats = 3, kLeastYarn_px = 4;
+constexpr double kLeastRepeats = 3, kLeastYarn_px = 4;
 
 Rect centre_crop(Size size, int side) {
   const int w = std::min(size.width, side), h = std::min(size.height, side);
@@ -97,12 +97,16 @@ void state_axes(const Cell& along, Lattice& lattice) {
 void find_weave(const Cell& first, const Correlation& mean, const std::vector<const Correlation*>& slopes,
                 Lattice& lattice) {
   RefinedCell cell = refined(first, mean);
-  const SublatticeTest test = test_sublattices(cell.cell, slopes);
-  if (test.t > kSureOfSublattice) cell = refined(reduced(test.best.of(cell.cell)), mean);
+  // A sublattice of index 8 may take three rounds of 2.
+  for (int round = 0; round < 3; ++round) {
+    const SublatticeTest test = test_sublattices(cell.cell, slopes);
+    lattice.sublattice_t = std::max(lattice.sublattice_t, test.t);
+    if (test.t <= kSureOfSublattice) break;
+    cell = refined(reduced(test.best.of(cell.cell)), mean);
+  }
   lattice.weave = reduced(cell.cell);
   lattice.residual_px = cell.residual_px;
   lattice.points = cell.points;
-  lattice.sublattice_t = test.t;
   lattice.strength = strength_of(lattice.weave, slopes);
 }
 

@@ -46,7 +46,8 @@ struct Lattice {
   double strength = 0;     ///< correlation of the slopes at the nearest repeats, the lower of both, 0 to 1
   double residual_px = 0;  ///< rms distance of `points` repeats from where the weave's cell puts them
   int points = 0;
-  double sublattice_t = 0;  ///< Welch's t of the coarser lattice that was chosen, or of the best refused one
+  double sublattice_t =
+      0;  ///< Student's t of the coarser lattice that was chosen, or of the best refused one
 };
 
 /// Where the repeat is looked for.
@@ -57,8 +58,8 @@ struct LatticeOptions {
 
 /// The smallest true repeat of a cloth: peaks of the unbiased autocorrelation of its slopes, the pair of ways
 /// whose multiples all are peaks, refined on all peaks in reach. A weave also nearly repeats from yarn to
-/// next yarn, so every sublattice of index 2 to 8 is tested against the rest (Welch 1947), and the surest one
-/// taken at t over 8. Colours are sought apart, at whole repeats of the weave.
+/// next yarn, so every sublattice of index 2 to 8 is tested against the points beside it (Student's t), and
+/// the surest one taken at t over 12. Colours are sought apart, at whole repeats of the weave.
 ///
 /// kBadData where the surface has no pixels, is under 64 pixels wide or high, has no mm_per_pixel, or a value
 /// is not finite. No repeat is not an error: `kind` says what was seen. Same bytes for any thread count.

@@ -2,10 +2,11 @@
 #include "material/lattice/search.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "core/statistics.h"
@@ -15,6 +16,7 @@ namespace weft::material {
 namespace {
 
 constexpr double kNearest_px = 3, kLeastArea_px = 9;
+constexpr double kRounding = 0.02;  ///< of a correlation: what sampling at whole pixels may add
 
 int remainder_of(int i, int n) {
   return (i % n + n) % n;
@@ -99,17 +101,14 @@ void fit_robustly(const std::vector<Row>& rows, RefinedCell& refined) {
   }
 }
 
-// Correlations at multiples of a cell that lie on neither of its sides: along a yarn its own thickness and
-// tone repeat everywhere.
-struct Multiple {
-  int i, j;
-  double distance, value;
-};
+// Mean correlations of the slopes at multiples of a cell. Those on its sides are left out: along a yarn its
+// own thickness and tone repeat everywhere.
+using Multiples = std::map<std::pair<int, int>, double>;
 
-std::vector<Multiple> multiples_off_sides(const Cell& cell, std::span<const Correlation* const> slopes) {
+Multiples multiples_off_sides(const Cell& cell, std::span<const Correlation* const> slopes) {
   constexpr int kReach = 12;
   const double radius = std::min(0.2 * std::min(length(cell.a), length(cell.b)), 5.0);
-  std::vector<Multiple> out;
+  Multiples out;
   for (int j = 1; j <= kReach; ++j) {
     for (int i = -kReach; i <= kReach; ++i) {
       const Vec2 lag = cell.at(i, j);
@@ -119,53 +118,39 @@ std::vector<Multiple> multiples_off_sides(const Cell& cell, std::span<const Corr
         const auto peak = each->peak_near(lag, radius);
         sum += peak ? peak->value : each->at(lag).value_or(0);
       }
-      out.push_back({i, j, length(lag), sum / static_cast<double>(slopes.size())});
+      out[{i, j}] = sum / static_cast<double>(slopes.size());
     }
   }
   return out;
 }
 
-// Takes out of the values what a parabola of the distance explains.
-void take_out_distance(std::vector<Multiple>& multiples) {
-  std::array<double, 5> powers = {};
-  std::array<double, 3> right = {};
-  const double scale = std::ranges::max_element(multiples, {}, &Multiple::distance)->distance;
-  for (const Multiple& m : multiples) {
-    const double d = m.distance / scale;
-    for (std::size_t k = 0; k < 5; ++k) powers[k] += std::pow(d, static_cast<double>(k));
-    for (std::size_t k = 0; k < 3; ++k) right[k] += std::pow(d, static_cast<double>(k)) * m.value;
+// Student's t of how far points of a sublattice stand above the points beside them that are not of it. Beside
+// each other, what falls with distance or along one direction is in both.
+double t_above_neighbours(const Multiples& multiples, const Sublattice& sublattice) {
+  constexpr int kFewest = 6;
+  double n = 0, sum = 0, squares = 0;
+  for (const auto& [place, value] : multiples) {
+    if (!sublattice.has(place.first, place.second)) continue;
+    double beside = 0;
+    int count = 0;
+    for (int j = -1; j <= 1; ++j) {
+      for (int i = -1; i <= 1; ++i) {
+        const auto other = multiples.find({place.first + i, place.second + j});
+        if (other == multiples.end() || sublattice.has(place.first + i, place.second + j)) continue;
+        beside += other->second;
+        ++count;
+      }
+    }
+    if (count == 0) continue;
+    const double above = value - beside / count;
+    n += 1;
+    sum += above;
+    squares += above * above;
   }
-  const Mat3 m = {{{powers[0], powers[1], powers[2]},
-                   {powers[1], powers[2], powers[3]},
-                   {powers[2], powers[3], powers[4]}}};
-  const Vec3 x = {m[0][0], m[1][0], m[2][0]}, y = {m[0][1], m[1][1], m[2][1]},
-             z = {m[0][2], m[1][2], m[2][2]}, b = {right[0], right[1], right[2]};
-  const double determinant = dot(x, cross(y, z));
-  if (!(std::abs(determinant) > 1e-12)) return;
-  const double c0 = dot(b, cross(y, z)) / determinant, c1 = dot(x, cross(b, z)) / determinant,
-               c2 = dot(x, cross(y, b)) / determinant;
-  for (Multiple& each : multiples) {
-    const double d = each.distance / scale;
-    each.value -= c0 + c1 * d + c2 * d * d;
-  }
-}
-
-// Welch 1947: of the values on a sublattice against all others.
-double welch_t(const std::vector<Multiple>& multiples, const Sublattice& sublattice) {
-  struct Group {
-    double n = 0, sum = 0, squares = 0;
-    double mean() const { return sum / n; }
-    double error() const { return (squares / n - mean() * mean()) / n; }
-  };
-  Group on, off;
-  for (const Multiple& m : multiples) {
-    Group& group = sublattice.has(m.i, m.j) ? on : off;
-    group.n += 1;
-    group.sum += m.value;
-    group.squares += m.value * m.value;
-  }
-  if (on.n < 6 || off.n < 6) return 0;
-  return (on.mean() - off.mean()) / std::sqrt(std::max(on.error() + off.error(), 1e-12));
+  if (n < kFewest) return 0;
+  const double mean = sum / n,
+               variance = std::max((squares - n * mean * mean) / (n - 1), kRounding * kRounding);
+  return mean / std::sqrt(variance / n);
 }
 
 }  // namespace
@@ -241,16 +226,14 @@ RefinedCell refined(const Cell& cell, const Correlation& mean) {
 
 SublatticeTest test_sublattices(const Cell& cell, std::span<const Correlation* const> slopes) {
   constexpr int kMostIndex = 8;
-  auto multiples = multiples_off_sides(cell, slopes);
+  const Multiples multiples = multiples_off_sides(cell, slopes);
   SublatticeTest test;
-  if (multiples.size() < 12) return test;
-  take_out_distance(multiples);
-  for (int index = 2; index <= kMostIndex; ++index) {
+  for (int index = 2; index <= kMostIndex && test.t <= kSureOfSublattice; ++index) {
     for (int across = 1; across <= index; ++across) {
       if (index % across != 0) continue;
       for (int shift = 0; shift < across; ++shift) {
         const Sublattice sublattice = {across, shift, index / across};
-        if (const double t = welch_t(multiples, sublattice); t > test.t) test = {sublattice, t};
+        if (const double t = t_above_neighbours(multiples, sublattice); t > test.t) test = {sublattice, t};
       }
     }
   }

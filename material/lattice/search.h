@@ -34,7 +34,11 @@ struct Sublattice {
   Cell of(const Cell& cell) const;
 };
 
-/// The sublattice of index 2 to 8 whose points correlate the most surely above the rest, and Welch's t.
+/// Student's t from which a sublattice is one.
+inline constexpr double kSureOfSublattice = 12;
+
+/// The sublattice whose points correlate the most surely above those beside them, and Student's t: of index
+/// 2, or of the next one up to 8 where none is sure.
 struct SublatticeTest {
   Sublattice best;
   double t = 0;

@@ -22,11 +22,12 @@ inline Straightened straightened(const Surface& surface, const StraightenOptions
   return out ? std::move(out).value() : Straightened();
 }
 
-/// The farthest that a warp or a weft yarn is turned from its axis, in degrees, at three by three places.
+/// The farthest that a warp or a weft yarn is turned from its axis over 96 pixels, in degrees, at three by
+/// three places.
 inline double farthest_turn_deg(const Straightened& found, const WeaveSettings& settings, Size frame) {
   const Weave weave(settings);
   const Size grid = found.surface.size();
-  const double half = 2 * std::max(settings.pitch_x_px, settings.pitch_y_px);
+  const double half = 48;
   const auto cloth_at = [&](double x, double y) { return weave.place(found.lookup.at(x, y).at, frame).at; };
   double farthest = 0;
   for (const double u : {0.15, 0.5, 0.85}) {

@@ -57,10 +57,10 @@ TEST(ThirtyWeaves, HaveTheirCellsAndColours) {
       right_colours += has_colours;
       std::printf(
           "%-9s %4.1f x %4.1f px, wander %.2f, pull %.1f, stripes %d: cell %.2f of %d, colours %.2f of %d, "
-          "%.4f px a yarn, %.3f deg, strength %.2f\n",
+          "%.4f px a yarn, %.3f deg, strength %.2f, t %.1f\n",
           weave.binding.name, weave.pitch_x_px, weave.pitch_y_px, weave.wander, weave.warp_px, stripe,
           error.yarns_of_cell, period, error.yarns_of_colour_cell, striped, error.px_a_yarn, error.turn_deg,
-          lattice->strength);
+          lattice->strength, lattice->sublattice_t);
       if (is_right) {
         EXPECT_LT(error.px_a_yarn, 0.02);
         EXPECT_LT(error.turn_deg, 0.05);
