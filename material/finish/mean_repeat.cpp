@@ -16,19 +16,26 @@ MeanRepeat::MeanRepeat(double repeat_x, double repeat_y)
       sum_(count_.size()) {}
 
 void MeanRepeat::add(int x, int y, double value) {
-  const std::size_t i = index(x, y);
+  const std::size_t i = row(y) + column(x);
   count_[i] += 1;
   sum_[i] += value;
 }
 
 void MeanRepeat::add(View<const float> plane) {
+  std::vector<std::size_t> columns;
+  for (int x = 0; x < plane.width(); ++x) columns.push_back(column(x));
   for (int y = 0; y < plane.height(); ++y) {
-    for (int x = 0; x < plane.width(); ++x) add(x, y, static_cast<double>(plane(x, y)));
+    const std::size_t first = row(y);
+    for (int x = 0; x < plane.width(); ++x) {
+      const std::size_t i = first + columns[static_cast<std::size_t>(x)];
+      count_[i] += 1;
+      sum_[i] += static_cast<double>(plane(x, y));
+    }
   }
 }
 
 double MeanRepeat::at(int x, int y) const {
-  const std::size_t i = index(x, y);
+  const std::size_t i = row(y) + column(x);
   return count_[i] > 0 ? sum_[i] / count_[i] : 0;
 }
 
@@ -42,12 +49,12 @@ double MeanRepeat::places() const {
   return static_cast<double>(std::ranges::count_if(count_, [](double n) { return n > 0; }));
 }
 
-std::size_t MeanRepeat::index(int x, int y) const {
-  const auto place = [](int i, double repeat, int bins) {
-    const double phase = i / repeat - std::floor(i / repeat);
-    return static_cast<std::size_t>(std::min(static_cast<int>(phase * bins), bins - 1));
-  };
-  return place(y, repeat_y_, rows_) * static_cast<std::size_t>(columns_) + place(x, repeat_x_, columns_);
+std::size_t MeanRepeat::column(int x) const {
+  return place_in(x, repeat_x_, columns_);
+}
+
+std::size_t MeanRepeat::row(int y) const {
+  return place_in(y, repeat_y_, rows_) * static_cast<std::size_t>(columns_);
 }
 
 double repeating_share(const Surface& surface, double repeat_x, double repeat_y) {

@@ -22,7 +22,8 @@ class MeanRepeat {
   double places() const;          ///< that something was added to
 
  private:
-  std::size_t index(int x, int y) const;
+  std::size_t column(int x) const;
+  std::size_t row(int y) const;  ///< index of its first place
 
   double repeat_x_, repeat_y_;
   int columns_, rows_;

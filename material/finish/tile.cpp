@@ -154,7 +154,7 @@ void make_integrable(const Cut& across, const Cut& down, int feather, Tile& tile
   tile.mean_right = periodic.mean_right;
   tile.mean_up = periodic.mean_up;
   Image<float>& slope = tile.surface.slope;
-  std::vector<double> at_cuts, everywhere;
+  std::vector<float> at_cuts, everywhere;
   float lowest = 0, highest = 0;
   for (int y = 0; y < slope.height(); ++y) {
     for (int x = 0; x < slope.width(); ++x) {
@@ -167,7 +167,7 @@ void make_integrable(const Cut& across, const Cut& down, int feather, Tile& tile
       const Vec2 mixed = weight * of_height + (1 - weight) * own;
       slope(x, y, 0) = static_cast<float>(mixed.x);
       slope(x, y, 1) = static_cast<float>(mixed.y);
-      const double angle = angle_between_deg(mixed, of_height);
+      const auto angle = static_cast<float>(angle_between_deg(mixed, of_height));
       everywhere.push_back(angle);
       if (weight == 1) at_cuts.push_back(angle);
       lowest = std::min(lowest, periodic.height(x, y));
@@ -180,8 +180,8 @@ void make_integrable(const Cut& across, const Cut& down, int feather, Tile& tile
   }
   tile.height_mm = std::move(periodic.height);
   tile.relief_mm = static_cast<double>(mm * (highest - lowest));
-  tile.normal_p99_deg = quantile(std::move(everywhere), 0.99);
-  tile.normal_p99_at_cuts_deg = quantile(std::move(at_cuts), 0.99);
+  tile.normal_p99_deg = static_cast<double>(quantile(std::move(everywhere), 0.99));
+  tile.normal_p99_at_cuts_deg = static_cast<double>(quantile(std::move(at_cuts), 0.99));
 }
 
 Result<void> check_options(const Surface& surface, const TileOptions& options) {
