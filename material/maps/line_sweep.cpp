@@ -9,6 +9,7 @@
 namespace weft::material {
 namespace {
 
+constexpr int kManyRows = 1 << 20;  ///< more than a line leaves the map by
 constexpr float kAbsent = std::numeric_limits<float>::quiet_NaN();
 
 int wrapped(int i, int count) {
@@ -66,28 +67,27 @@ LineSweep::LineSweep(const SweepLines& lines)
   for (std::size_t n = 1; n < count; ++n) inverse_[n] = 1 / static_cast<float>(n);
 }
 
-float LineSweep::height_at(int column, double y) const {
-  const int rows = lines_.height.height();
-  const double above = std::floor(y);
-  const auto part = static_cast<float>(y - above);
-  int upper = static_cast<int>(above), lower = upper + (part > 0);
-  if (lines_.is_tile) {
-    upper = wrapped(upper, rows);
-    lower = wrapped(lower, rows);
-  } else if (upper < 0 || lower >= rows) {
-    return kAbsent;
-  }
-  const float a = lines_.height(column, upper), b = lines_.height(column, lower);
-  if (!std::isfinite(a)) return std::isfinite(b) ? b : kAbsent;
-  return std::isfinite(b) ? a + part * (b - a) : a;
-}
-
 void LineSweep::sample(int line) {
-  const int width = lines_.height.width();
+  const View<const float> map = lines_.height;
+  const int width = map.width(), rows = map.height();
+  const double first = lines_.y_at(line, first_column_);
   for (int i = 0; i < columns_; ++i) {
-    const int x = first_column_ + i;
-    const int column = lines_.is_tile ? wrapped(x, width) : x;
-    z_[static_cast<std::size_t>(i)] = height_at(column, lines_.y_at(line, x));
+    const double y = first + i * lines_.slope;
+    int upper = static_cast<int>(y + kManyRows) - kManyRows;  // rounded down
+    const auto part = static_cast<float>(y - upper);
+    int lower = upper + (part > 0), column = first_column_ + i;
+    float& z = z_[static_cast<std::size_t>(i)];
+    if (lines_.is_tile) {
+      column = wrapped(column, width);
+      upper = wrapped(upper, rows);
+      lower = wrapped(lower, rows);
+    } else if (upper < 0 || lower >= rows) {
+      z = kAbsent;
+      continue;
+    }
+    const float a = map(column, upper), b = map(column, lower);
+    z = a + part * (b - a);
+    if (!std::isfinite(z)) z = std::isfinite(a) ? a : (std::isfinite(b) ? b : kAbsent);
   }
 }
 

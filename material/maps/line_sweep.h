@@ -50,7 +50,6 @@ class LineSweep {
 
  private:
   void sample(int line);
-  float height_at(int column, double y) const;
 
   const SweepLines& lines_;
   int first_column_, columns_;  ///< of what is walked: a tile and its period before and after it

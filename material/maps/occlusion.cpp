@@ -26,10 +26,10 @@ struct SweepDirection {
   float along_x = 1, along_y = 0;  ///< unit, y down the rows
 };
 
-/// Pixels between two lines: where they are, their normals, and their horizons to both sides.
+/// Pixels between two lines: where they are, their slopes, and their horizons to both sides.
 struct LinePixels {
   std::array<int, kBlock> y = {};
-  Block nx = {}, ny = {}, nz = {};
+  Block p = {}, q = {};  ///< slopes to the right and down the rows
   Block forward = {}, backward = {};
   std::array<Block, kSums> sums = {};
 };
@@ -75,17 +75,18 @@ inline Hidden hidden_by(float horizon, float n_a, float n_z) {
           hides ? to_unit * (across * n_z - along * n_a) : 0};
 }
 
-void add_hidden(const SweepDirection& direction, LinePixels& p) {
+void add_hidden(const SweepDirection& direction, LinePixels& pixels) {
   const float dx = direction.along_x, dy = direction.along_y;
   for (std::size_t i = 0; i < kBlock; ++i) {
-    const float n_a = p.nx[i] * dx + p.ny[i] * dy;
-    const Hidden ahead = hidden_by(p.forward[i], n_a, p.nz[i]);
-    const Hidden behind = hidden_by(p.backward[i], -n_a, p.nz[i]);
+    const float p = pixels.p[i], q = pixels.q[i];
+    const float n_z = 1 / std::sqrt(1 + p * p + q * q), n_a = -n_z * (p * dx + q * dy);
+    const Hidden ahead = hidden_by(pixels.forward[i], n_a, n_z);
+    const Hidden behind = hidden_by(pixels.backward[i], -n_a, n_z);
     const float outward = ahead.outward - behind.outward;
-    p.sums[0][i] += ahead.share + behind.share;
-    p.sums[1][i] += outward * dx;
-    p.sums[2][i] += outward * dy;
-    p.sums[3][i] += ahead.upward + behind.upward;
+    pixels.sums[0][i] += ahead.share + behind.share;
+    pixels.sums[1][i] += outward * dx;
+    pixels.sums[2][i] += outward * dy;
+    pixels.sums[3][i] += ahead.upward + behind.upward;
   }
 }
 
@@ -104,19 +105,17 @@ struct HeightField {
     if (!std::isfinite(b)) b = here, pixels -= 1;
     return pixels > 0 ? (b - a) / pixels : 0.0f;
   }
-  /// Unit, y down the rows.
-  std::array<float, 3> normal(int x, int y) const {
+  /// To the right and down the rows.
+  std::array<float, 2> slopes(int x, int y) const {
     const float here = height(x, y);
-    if (!std::isfinite(here)) return {0, 0, 1};
+    if (!std::isfinite(here)) return {0, 0};
     const int left = neighbour(x - 1, height.width()), right = neighbour(x + 1, height.width());
     const int above = neighbour(y - 1, height.height()), below = neighbour(y + 1, height.height());
-    const auto steps = [&](int from, int at, int to) {
+    const auto steps = [this](int from, int at, int to) {
       return is_tile ? 2.0f : static_cast<float>((from != at) + (to != at));
     };
-    const float p = slope(height(left, y), here, height(right, y), steps(left, x, right));
-    const float q = slope(height(x, above), here, height(x, below), steps(above, y, below));
-    const float z = 1 / std::sqrt(1 + p * p + q * q);
-    return {-p * z, -q * z, z};
+    return {slope(height(left, y), here, height(right, y), steps(left, x, right)),
+            slope(height(x, above), here, height(x, below), steps(above, y, below))};
   }
 };
 
@@ -181,10 +180,9 @@ class BetweenLines {
           is_there ? a_column_ * between.horizon(&LineHorizons::to_right, depth) : kOpenHorizon;
       pixels_.backward[i] =
           is_there ? a_column_ * between.horizon(&LineHorizons::to_left, depth) : kOpenHorizon;
-      const auto n = field_.normal(x0 + k, pixels_.y[i]);
-      pixels_.nx[i] = n[0];
-      pixels_.ny[i] = n[1];
-      pixels_.nz[i] = n[2];
+      const auto slopes = field_.slopes(x0 + k, pixels_.y[i]);
+      pixels_.p[i] = slopes[0];
+      pixels_.q[i] = slopes[1];
       for (std::size_t s = 0; s < kSums; ++s) pixels_.sums[s][i] = sums_[s](x0 + k, pixels_.y[i]);
     }
     return any;
@@ -272,11 +270,14 @@ void finish(const HeightField& field, int directions, int threads, std::array<Im
   parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < size.width; ++x) {
-      const auto n = field.normal(x, y);
+      const auto [p, q] = field.slopes(x, y);
+      const Vec3 normal = normalized({-static_cast<double>(p), -static_cast<double>(q), 1});
       result.openness(x, y) = std::clamp(1 - share * sums[0](x, y), kLeastOpen, 1.0f);
-      const Vec3 seen = {2.0 / 3 * static_cast<double>(n[0]) - static_cast<double>(share * sums[1](x, y)),
-                         -2.0 / 3 * static_cast<double>(n[1]) + static_cast<double>(share * sums[2](x, y)),
-                         2.0 / 3 * static_cast<double>(n[2]) - static_cast<double>(share * sums[3](x, y))};
+      const Vec3 hidden = {static_cast<double>(share * sums[1](x, y)),
+                           static_cast<double>(share * sums[2](x, y)),
+                           static_cast<double>(share * sums[3](x, y))};
+      const Vec3 down_the_rows = 2.0 / 3 * normal - hidden,
+                 seen = {down_the_rows.x, -down_the_rows.y, down_the_rows.z};
       const double seen_length = length(seen);
       const Vec3 bent = seen_length > 1e-6 ? (1 / seen_length) * seen : Vec3{0, 0, 1};
       result.bent_normal(x, y, 0) = static_cast<float>(bent.x);
