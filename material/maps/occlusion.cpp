@@ -226,9 +226,8 @@ void add_direction(const HeightField& field, double slope, const std::array<View
                });
 }
 
-Image<float> transposed(View<const float> map, int threads) {
+void transpose(View<const float> map, View<float> out, int threads) {
   constexpr int kSide = 32;
-  Image<float> out({map.height(), map.width()});
   parallel_for(static_cast<std::size_t>((map.height() + kSide - 1) / kSide), threads,
                [&](std::size_t band, int) {
                  const int y0 = static_cast<int>(band) * kSide, y1 = std::min(y0 + kSide, map.height());
@@ -238,7 +237,6 @@ Image<float> transposed(View<const float> map, int threads) {
                    }
                  }
                });
-  return out;
 }
 
 Image<float> in_pixels(View<const float> height_mm, double mm_per_pixel, int threads) {
@@ -253,18 +251,38 @@ Image<float> in_pixels(View<const float> height_mm, double mm_per_pixel, int thr
 
 // Directions that are flat or steep in the map: the steep ones are the flat ones of the transpose.
 void add_directions(const HeightField& field, bool is_transposed, const OcclusionOptions& options,
-                    std::array<Image<float>, kSums>& sums) {
+                    const std::array<View<float>, kSums>& sums) {
   for (int d = 0; d < options.directions; ++d) {
     const double turn = kPi * (d + 0.5) / options.directions, c = std::cos(turn), s = -std::sin(turn);
     if ((std::abs(s) > std::abs(c)) != is_transposed) continue;
-    add_direction(field, is_transposed ? c / s : s / c,
-                  {sums[0].plane(), sums[1].plane(), sums[2].plane(), sums[3].plane()}, options.threads);
+    add_direction(field, is_transposed ? c / s : s / c, sums, options.threads);
   }
 }
 
-// From what is hidden to openness and bent normals. `sums` are of the map as it lies.
-void finish(const HeightField& field, int directions, int threads, std::array<Image<float>, kSums>& sums,
-            Occlusion& result) {
+// Its sums are given back one by one, so that they and the result never stand side by side.
+void add_steep_directions(View<const float> height, const OcclusionOptions& options,
+                          const std::array<View<float>, kSums>& sums) {
+  const Size size = {height.height(), height.width()};
+  std::array<Image<float>, kSums> turned_sums;
+  std::array<View<float>, kSums> planes;
+  for (std::size_t i = 0; i < kSums; ++i) {
+    turned_sums[i] = Image<float>(size);
+    planes[i] = turned_sums[i].plane();
+  }
+  {
+    Image<float> turned(size);
+    transpose(height, turned.plane(), options.threads);
+    add_directions({turned.plane(), options.is_tile}, true, options, planes);
+  }
+  constexpr std::array<std::size_t, kSums> kTurned = {0, 2, 1, 3};  // x and y change places
+  for (std::size_t i = 0; i < kSums; ++i) {
+    transpose(planes[i], sums[kTurned[i]], options.threads);
+    turned_sums[i] = {};
+  }
+}
+
+// From what is hidden, as sums in the planes of the result, to openness and bent normals.
+void finish(const HeightField& field, int directions, int threads, Occlusion& result) {
   const Size size = field.height.size();
   const float share = 1 / static_cast<float>(directions);
   parallel_for(static_cast<std::size_t>(size.height), threads, [&](std::size_t row, int) {
@@ -272,17 +290,18 @@ void finish(const HeightField& field, int directions, int threads, std::array<Im
     for (int x = 0; x < size.width; ++x) {
       const auto [p, q] = field.slopes(x, y);
       const Vec3 normal = normalized({-static_cast<double>(p), -static_cast<double>(q), 1});
-      result.openness(x, y) = std::clamp(1 - share * sums[0](x, y), kLeastOpen, 1.0f);
-      const Vec3 hidden = {static_cast<double>(share * sums[1](x, y)),
-                           static_cast<double>(share * sums[2](x, y)),
-                           static_cast<double>(share * sums[3](x, y))};
-      const Vec3 down_the_rows = 2.0 / 3 * normal - hidden,
-                 seen = {down_the_rows.x, -down_the_rows.y, down_the_rows.z};
+      float& openness = result.openness(x, y);
+      openness = std::clamp(1 - share * openness, kLeastOpen, 1.0f);
+      float &across = result.bent_normal(x, y, 0), &up = result.bent_normal(x, y, 1),
+            &towards = result.bent_normal(x, y, 2);
+      const Vec3 hidden = {static_cast<double>(share * across), static_cast<double>(share * up),
+                           static_cast<double>(share * towards)};
+      const Vec3 seen = 2.0 / 3 * normal - hidden;  // y down the rows
       const double seen_length = length(seen);
       const Vec3 bent = seen_length > 1e-6 ? (1 / seen_length) * seen : Vec3{0, 0, 1};
-      result.bent_normal(x, y, 0) = static_cast<float>(bent.x);
-      result.bent_normal(x, y, 1) = static_cast<float>(bent.y);
-      result.bent_normal(x, y, 2) = static_cast<float>(bent.z);
+      across = static_cast<float>(bent.x);
+      up = static_cast<float>(-bent.y);
+      towards = static_cast<float>(bent.z);
     }
   });
 }
@@ -303,19 +322,14 @@ Result<Occlusion> occlusion(View<const float> height_mm, const OcclusionOptions&
     return unusable_occlusion("directions are not from 1 to 64", "leave them at 8");
   }
   const int threads = options.threads;
-  Image<float> height = in_pixels(height_mm, options.mm_per_pixel, threads);
-  std::array<Image<float>, kSums> sums;
-  {
-    const Image<float> turned = transposed(height.plane(), threads);
-    for (Image<float>& sum : sums) sum = Image<float>(turned.size());
-    add_directions({turned.plane(), options.is_tile}, true, options, sums);
-    std::swap(sums[1], sums[2]);
-  }
-  for (Image<float>& sum : sums) sum = transposed(sum.plane(), threads);
+  const Image<float> height = in_pixels(height_mm, options.mm_per_pixel, threads);
   const HeightField field = {height.plane(), options.is_tile};
-  add_directions(field, false, options, sums);
   Occlusion result = {Image<float>(size), Image<float>(size, 3)};
-  finish(field, options.directions, threads, sums, result);
+  const std::array<View<float>, kSums> sums = {result.openness.plane(), result.bent_normal.plane(0),
+                                               result.bent_normal.plane(1), result.bent_normal.plane(2)};
+  add_steep_directions(height.plane(), options, sums);
+  add_directions(field, false, options, sums);
+  finish(field, options.directions, threads, result);
   return result;
 }
 

@@ -39,7 +39,7 @@ struct Occlusion {
 /// On weaves with 20 pixels a yarn openness is within 0.006 rms and 0.001 in the mean of rays and the bent
 /// normal within 0.4 degrees (docs/maps.md). A height that is not finite is not there: it hides nothing, and
 /// is open itself. Beyond the border nothing rises; a tile is walked from one period before it. Memory beside
-/// input and output: two planes. The same bytes for any number of threads.
+/// input and output: two planes and for a time two more. The same bytes for any number of threads.
 ///
 /// kUsage for an empty map and for options out of range.
 Result<Occlusion> occlusion(View<const float> height_mm, const OcclusionOptions& options);
