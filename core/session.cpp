@@ -210,7 +210,7 @@ Result<void> write_session(const Session& session) {
   for (const Shot& shot : session.shots) shots.push_back(to_json(shot));
   document["shots"] = std::move(shots);
   if (session.films != Films()) {
-    document["schema"] = std::string(kSessionSchema) + "/1.3";
+    if (!document.contains("films")) document["schema"] = std::string(kSessionSchema) + "/1.3";
     document["films"] = {{"leak", session.films.leak}, {"scattered", session.films.scattered}};
   }
   return write_json(session.folder / "session.json", document);

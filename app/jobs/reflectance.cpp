@@ -183,7 +183,8 @@ std::string cluster_section(const Json& cluster) {
 
 Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) {
   Json clusters = Json::array();
-  for (const MeasuredLobe& lobe : facts.lobes) clusters.push_back(cluster_of(lobe, scale, facts.of_film_pair));
+  for (const MeasuredLobe& lobe : facts.lobes)
+    clusters.push_back(cluster_of(lobe, scale, facts.of_film_pair));
   return {{"schema", "weft.reflectance/1.1"},
           {"albedo_scale", name_of(scale)},
           {"share", facts.share},

@@ -30,7 +30,8 @@ class FilmPairSession : public testing::Test {
   }
 
   app::SessionPlan planned(const fs::path& calibration = {}) const {
-    Result<app::SessionPlan> plan = app::plan_session({.folder = folder_, .calibration = calibration, .leds = {}});
+    Result<app::SessionPlan> plan =
+        app::plan_session({.folder = folder_, .calibration = calibration, .leds = {}});
     EXPECT_TRUE(plan) << plan.error().message();
     return plan ? std::move(*plan) : app::SessionPlan();
   }
