@@ -110,7 +110,7 @@ TEST(ReflectanceWords, AreOfBothMaterials) {
 
 TEST(ReflectanceWords, SayWhereRoughnessChanges) {
   pipeline::GlossFacts facts = satin();
-  facts.lobes[0].parts = {{0, 0.2, 0.01, 900}, {1, 0.21, 0.01, 910}, {3, 0.26, 0.01, 890}};
+  facts.lobes[0].parts = {{0, 0.2, 0.01, 900}, {1, 0.205, 0.01, 910}, {3, 0.26, 0.01, 890}};
   const Json document = reflectance_document(facts, AlbedoScale::kAbsolute);
   const Json& cluster = document["clusters"][0];
   ASSERT_EQ(cluster["parts"].size(), 3U);
