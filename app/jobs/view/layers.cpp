@@ -30,7 +30,8 @@ const std::vector<Layer>& known_layers() {
 
 // Whether they begin so; what follows is not looked at.
 bool begin_with(const std::vector<std::string>& channels, const std::array<const char*, 3>& names) {
-  return channels.size() >= names.size() && std::ranges::equal(std::span(channels).first(names.size()), names);
+  return channels.size() >= names.size() &&
+         std::ranges::equal(std::span(channels).first(names.size()), names);
 }
 
 LayerKind kind_of(const std::vector<std::string>& channels) {
@@ -39,7 +40,8 @@ LayerKind kind_of(const std::vector<std::string>& channels) {
   return LayerKind::kScalar;
 }
 
-// A map of maps.json as a layer: of a scalar its first channel, else three. None where it is a number, or lies elsewhere.
+// A map of maps.json as a layer: of a scalar its first channel, else three. None where it is a number, or
+// lies elsewhere.
 std::optional<Layer> layer_of(const Json& map) {
   if (!map.is_object() || !map.contains("file")) return {};
   JsonFields fields(map, "maps");

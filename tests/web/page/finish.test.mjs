@@ -133,6 +133,25 @@ test('a recipe is seen as a preview, and all maps are made of it', async () => {
   await visitor.leave();
 });
 
+test('a tile is seen twice a side, with what is found of its seam', async () => {
+  const visitor = await visit(browser, archive);
+  const page = await openFinish(visitor);
+  await page.getByRole('button', {name: 'Recipe tile'}).click();
+  assert.deepEqual(await steps(page), ['1 flatten', '2 straighten', '3 tile']);
+  await page.locator('.preview .twice img').nth(3).waitFor({timeout: making_ms});
+  const {result} = await newestJob();
+  assert.equal(result.is_tile, true);
+  await page.locator('.finish .facts').getByText(/seam x: /).waitFor();
+  for (const {text} of result.verdicts) await page.locator('.finish .verdicts').getByText(text).waitFor();
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'finish_tile');
+  await page.getByRole('link', {name: 'Look at the preview'}).click();
+  await page.waitForURL(/viewer\/weave\/maps\/[0-9a-f]+\?.*repeat=2/);
+  await page.locator('canvas[data-ready=true]').waitFor();
+  assert.equal(await page.locator('.seam rect').count(), 4);
+  await visitor.leave();
+});
+
 test('what a step cannot be is said with its number', async () => {
   const visitor = await visit(browser, archive);
   visitor.mayFail(/status of 400/);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a maps.json says: what speaks against the maps, what each step found, where each map comes from.
 import {fieldsOf, isFields, listIn, numberIn, textIn} from '../../ui/fields';
-import {Mark} from '../../ui/mark';
+import {Mark, type Verdict} from '../../ui/mark';
 import {digits} from '../../ui/say';
 import {Table} from '../../ui/table';
 
@@ -35,12 +35,31 @@ export function StepFacts({document}: {document: unknown}) {
   return <ul class="facts">{steps.map(({name, says}, index) => says && <li key={index}><strong>{name}</strong> <span class="dim">{says}</span></li>)}</ul>;
 }
 
+const severities: Record<string, Verdict> = {passed: 'fine', warning: 'warning', error: 'fault'};
+
+/** What was checked of the maps, and how it came out. */
+function Checks({document}: {document: unknown}) {
+  const checks = listIn(document, 'checks');
+  if (checks.length === 0) return null;
+  return (
+    <details class="checks">
+      <summary>{checks.length} checks</summary>
+      <ul>
+        {checks.map((check, index) => (
+          <li key={index}><Mark verdict={severities[textIn(check, 'severity')] ?? 'waiting'}>{textIn(check, 'text')}</Mark></li>
+        ))}
+      </ul>
+    </details>
+  );
+}
+
 /** The maps of a set, each with where it comes from. */
 export function MadePanel({document}: {document: unknown}) {
   return (
     <section class="made">
       <h2>What was made</h2>
       <Verdicts document={document} />
+      <Checks document={document} />
       <StepFacts document={document} />
       <Table caption="Maps" heads={['Map', 'From', 'Least', 'Most', 'Mean']}
         rows={listIn(document, 'maps').filter(isFields).map((map) => ({key: textIn(map, 'name'), cells: cellsOf(map)}))} />
