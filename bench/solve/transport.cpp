@@ -17,6 +17,7 @@
 #include "solver/transport/gather.h"
 #include "solver/transport/horizon.h"
 #include "solver/transport/shadows.h"
+#include "solver/transport/slices.h"
 
 namespace weft::bench {
 namespace {
@@ -184,6 +185,51 @@ Result<void> add_shadows(const Measured& m, const BareEmbree& bare, int reach_px
   return found;
 }
 
+/// Light gathered without rays, against `truth` over the tile that is compared.
+Result<void> add_slices(const Measured& m, const Image<float>& truth, Rows& rows) {
+  const Rect area = area_of_slices(m.timed, GatherSettings{}.reach_px);
+  const Rect picture = m.grid.area();
+  const int count = static_cast<int>(m.lights.count);
+  Image<float> sent({area.width(), area.height()}, count);
+  const std::vector<float> values = direct_radiosity(m.cloth, m.lights, picture);
+  for (int y = std::max(area.y0, picture.y0); y < std::min(area.y1, picture.y1); ++y) {
+    for (int x = std::max(area.x0, picture.x0); x < std::min(area.x1, picture.x1); ++x) {
+      const auto pixel =
+          static_cast<std::size_t>(y - picture.y0) * static_cast<std::size_t>(picture.width()) +
+          static_cast<std::size_t>(x - picture.x0);
+      for (int k = 0; k < count; ++k)
+        sent(x - area.x0, y - area.y0, k) = values[pixel * m.lights.count + static_cast<std::size_t>(k)];
+    }
+  }
+  std::vector<View<const float>> planes;
+  for (int k = 0; k < count; ++k) planes.emplace_back(sent.plane(k));
+  Image<float> light({m.timed.width(), m.timed.height()}, count);
+  const Rect compared = {m.compared.x0 - m.timed.x0, m.compared.y0 - m.timed.y0, m.compared.x1 - m.timed.x0,
+                         m.compared.y1 - m.timed.y0};
+  for (const int directions : {8, 16, 32, 64}) {
+    Result<void> done;
+    const double seconds = least_seconds(kTransportRepeats, [&] {
+      done = gather_by_slices(m.grid.relief(), m.timed, m.cloth.normals_of(m.timed), {area, planes},
+                              {.directions = directions},
+                              planes_of(light, {0, 0, light.width(), light.height()}));
+    });
+    if (!done) return done;
+    Image<float> found(truth.size(), count);
+    for (int k = 0; k < count; ++k) {
+      for (int y = 0; y < found.height(); ++y)
+        std::copy_n(light.plane(k).crop(compared).row(y), found.width(), found.plane(k).row(y));
+    }
+    const Errors errors = errors_of(found, truth);
+    rows.push_back({{"stage", "slices"},
+                    {"directions", directions},
+                    {"ns_per_pixel", seconds * 1e9 / static_cast<double>(m.timed.pixels())},
+                    {"threads", 1},
+                    {"mean_error", errors.mean},
+                    {"rms_error", errors.rms}});
+  }
+  return {};
+}
+
 Result<void> add_gathers(const Measured& m, const BareEmbree& bare, Rows& rows) {
   const std::vector<float> values = direct_radiosity(m.cloth, m.lights, m.grid.area());
   const int count = static_cast<int>(m.lights.count);
@@ -209,7 +255,7 @@ Result<void> add_gathers(const Measured& m, const BareEmbree& bare, Rows& rows) 
     row["rms_error"] = errors.rms;
     rows.push_back(std::move(row));
   }
-  return {};
+  return add_slices(m, *truth, rows);
 }
 
 Result<void> add_horizons(const Measured& m, Rows& rows) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/transport/planes.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -20,6 +23,21 @@ Result<void> check_normals(const Normals& normals, Rect tile) {
   if (holds_tile(normals.x, tile) && holds_tile(normals.y, tile) && holds_tile(normals.z, tile)) return {};
   return bad_transport("normals", "a plane of the normals is smaller than the tile",
                        "give three planes of the tile's size");
+}
+
+Result<void> check_visibility(Rect tile, const LightDirections& lights,
+                              std::span<const View<std::uint32_t>> visible) {
+  if (!lights.at || lights.count == 0) {
+    return bad_transport("lights", "there are none", "give the direction to at least one light");
+  }
+  if (visible.size() != static_cast<std::size_t>(visibility_words(lights.count)) ||
+      !std::ranges::all_of(visible, [&](const auto& plane) { return holds_tile(plane, tile); })) {
+    return bad_transport(
+        "visibility",
+        fmt::format("{} planes for {} lights, or planes smaller than the tile", visible.size(), lights.count),
+        fmt::format("give {} planes of the tile's size", visibility_words(lights.count)));
+  }
+  return {};
 }
 
 Vec3 normal_or_up(const Normals& normals, int column, int row) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string>
 
@@ -27,6 +28,10 @@ bool holds_tile(const View<T>& plane, Rect tile) {
 
 /// kBadData where one of the three planes does not hold the tile.
 Result<void> check_normals(const Normals& normals, Rect tile);
+
+/// kBadData for lights without directions, and where the planes do not hold a bit a light for the tile.
+Result<void> check_visibility(Rect tile, const LightDirections& lights,
+                              std::span<const View<std::uint32_t>> visible);
 
 /// The normal at a place of the tile, or (0, 0, 1) where it is not finite or does not look up.
 Vec3 normal_or_up(const Normals& normals, int column, int row);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "solver/transport/light_cells.h"
 #include "solver/transport/planes.h"
 
 namespace weft::solver {
@@ -15,67 +16,6 @@ namespace {
 
 constexpr int kCell = LightDirections::kCell;
 static_assert(kCell == kPacket, "a packet of pixels lies in one cell of directions");
-
-struct Direction {
-  float x = 0, y = 0, z = 0;
-};
-
-float between(float from, float to, float share) {
-  return from + share * (to - from);
-}
-
-Direction between(Direction from, Direction to, float share) {
-  return {between(from.x, to.x, share), between(from.y, to.y, share), between(from.z, to.z, share)};
-}
-
-/// Where along its cell a pixel lies; the last cell ends with the picture.
-float share_of(int at, int begin, int length) {
-  const int end = std::min(begin + kCell, length - 1);
-  return end > begin ? static_cast<float>(at - begin) / static_cast<float>(end - begin) : 0.0f;
-}
-
-/// The directions to all lights at the corners of the cells of a tile.
-class CellCorners {
- public:
-  CellCorners(const LightDirections& lights, Rect tile, Size picture)
-      : picture_(picture),
-        first_column_(tile.x0 / kCell),
-        first_row_(tile.y0 / kCell),
-        columns_((tile.x1 - 1) / kCell - first_column_ + 2),
-        rows_((tile.y1 - 1) / kCell - first_row_ + 2) {
-    corners_.reserve(lights.count * static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
-    for (std::size_t k = 0; k < lights.count; ++k) {
-      for (int j = 0; j < rows_; ++j) {
-        for (int i = 0; i < columns_; ++i) {
-          const Vec3 l = lights.at(k, std::min((first_column_ + i) * kCell, picture.width - 1),
-                                   std::min((first_row_ + j) * kCell, picture.height - 1));
-          corners_.push_back({static_cast<float>(l.x), static_cast<float>(l.y), static_cast<float>(l.z)});
-        }
-      }
-    }
-  }
-
-  /// To light k at the pixels of row y from x, a multiple of kCell, on.
-  void read(std::size_t k, int x, int y, std::array<Direction, kCell>& directions) const {
-    const int i = x / kCell - first_column_, j = y / kCell - first_row_;
-    const Direction* above = &corners_[(k * static_cast<std::size_t>(rows_) + static_cast<std::size_t>(j)) *
-                                           static_cast<std::size_t>(columns_) +
-                                       static_cast<std::size_t>(i)];
-    const Direction* below = above + columns_;
-    const float down = share_of(y, y / kCell * kCell, picture_.height);
-    const Direction left = between(above[0], below[0], down), right = between(above[1], below[1], down);
-    for (int lane = 0; lane < kCell; ++lane) {
-      directions[static_cast<std::size_t>(lane)] =
-          between(left, right, share_of(x + lane, x, picture_.width));
-    }
-  }
-
- private:
-  Size picture_;
-  int first_column_, first_row_;
-  int columns_, rows_;
-  std::vector<Direction> corners_;  ///< light by light, row by row
-};
 
 /// Sixteen pixels of a row, aligned in the picture, of which those inside the tile take part.
 struct ShadowRun {
@@ -102,13 +42,14 @@ void start_run(const HeightGrid& grid, Rect tile, const Normals& normals, const 
 
 /// Aims at one light. A ray ends above the relief or at its reach.
 /// @return the pixels that face the light, a bit each
-std::uint32_t aim_run(const ShadowRun& run, const RunNormals& n, const std::array<Direction, kCell>& to_light,
-                      float top_px, float reach_px, RayPacket& rays) {
+std::uint32_t aim_run(const ShadowRun& run, const RunNormals& n,
+                      const std::array<LightCells::Direction, kCell>& to_light, float top_px, float reach_px,
+                      RayPacket& rays) {
   std::uint32_t facing = 0;
   for (int lane = 0; lane < kPacket; ++lane) {
     rays.is_active[lane] = 0;
     if (lane < run.begin || lane >= run.end) continue;
-    const Direction l = to_light[static_cast<std::size_t>(lane)];
+    const LightCells::Direction l = to_light[static_cast<std::size_t>(lane)];
     if (!(n.x[lane] * l.x + n.y[lane] * l.y + n.z[lane] * l.z > 0)) continue;
     facing |= 1U << lane;
     const float rise_px = top_px - rays.start_z[lane];
@@ -127,11 +68,11 @@ std::uint32_t aim_run(const ShadowRun& run, const RunNormals& n, const std::arra
 template <typename Blocked, typename Seen>
 void trace(const HeightGrid& grid, Rect tile, const Normals& normals, const LightDirections& lights,
            int reach_px, const Blocked& blocked, const Seen& seen) {
-  const CellCorners corners(lights, tile, grid.relief().height_mm.size());
+  const LightCells cells(lights, tile, grid.relief().height_mm.size());
   const float top_px = grid.relief().top_px();
   RunNormals n;
   RayPacket rays;
-  std::array<Direction, kCell> to_light;
+  std::array<LightCells::Direction, kCell> to_light;
   for (int y = tile.y0; y < tile.y1; ++y) {
     for (int x = tile.x0 / kPacket * kPacket; x < tile.x1; x += kPacket) {
       const ShadowRun run = {x, y, std::max(tile.x0 - x, 0), std::min(tile.x1 - x, kPacket)};
@@ -139,7 +80,7 @@ void trace(const HeightGrid& grid, Rect tile, const Normals& normals, const Ligh
       for (std::size_t first = 0; first < lights.count; first += 32) {
         std::array<std::uint32_t, kPacket> bits = {};
         for (std::size_t k = first; k < std::min(first + 32, lights.count); ++k) {
-          corners.read(k, x, y, to_light);
+          cells.read(k, x, y, to_light);
           const std::uint32_t facing = aim_run(run, n, to_light, top_px, static_cast<float>(reach_px), rays);
           const std::uint32_t lit = facing == 0 ? 0 : facing & ~blocked(rays);
           for (std::size_t lane = 0; lane < kPacket; ++lane) bits[lane] |= ((lit >> lane) & 1) << (k - first);
@@ -154,17 +95,7 @@ Result<void> check(const HeightGrid& grid, Rect tile, const Normals& normals, co
                    int reach_px, std::span<const View<std::uint32_t>> visible) {
   if (auto checked = check_tile(grid, tile, reach_px); !checked) return checked;
   if (auto checked = check_normals(normals, tile); !checked) return checked;
-  if (!lights.at || lights.count == 0) {
-    return bad_transport("lights", "there are none", "give the direction to at least one light");
-  }
-  if (visible.size() != static_cast<std::size_t>(visibility_words(lights.count)) ||
-      !std::ranges::all_of(visible, [&](const auto& plane) { return holds_tile(plane, tile); })) {
-    return bad_transport(
-        "visibility",
-        fmt::format("{} planes for {} lights, or planes smaller than the tile", visible.size(), lights.count),
-        fmt::format("give {} planes of the tile's size", visibility_words(lights.count)));
-  }
-  return {};
+  return check_visibility(tile, lights, visible);
 }
 
 }  // namespace
