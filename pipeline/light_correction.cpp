@@ -11,7 +11,8 @@
 #include "core/job.h"
 #include "core/parallel.h"
 #include "pipeline/picture_axes.h"
-#include "solver/transport/gather.h"
+#include "solver/transport/marched_shadows.h"
+#include "solver/transport/slices.h"
 
 namespace weft::pipeline {
 namespace {
@@ -19,17 +20,6 @@ namespace {
 constexpr int kBlockColumns = 512;
 // As many lights as a normal takes and one to test it by.
 constexpr int kLeastSeen = 4;
-
-// The strength of light k in channel c along a row, straight between points a grid cell apart.
-void read_strengths(const LightField& field, std::size_t k, int c, int y, int x0, int x1, float* strength) {
-  constexpr int kCell = LightField::kCell;
-  for (int cell = x0 / kCell * kCell; cell < x1; cell += kCell) {
-    const double left = field.at(k, c, cell, y).strength, right = field.at(k, c, cell + kCell, y).strength;
-    for (int x = std::max(cell, x0); x < std::min(cell + kCell, x1); ++x) {
-      strength[x - x0] = static_cast<float>(left + (right - left) * (x - cell) / kCell);
-    }
-  }
-}
 
 Rect rows_of(Rect area, int first, int count) {
   return {area.x0, first, area.x1, std::min(first + count, area.y1)};
@@ -40,9 +30,9 @@ Rect rows_of(Rect area, int first, int count) {
 // What one thread needs.
 struct LightCorrection::Worker {
   TileReader reader;
-  std::vector<float> radiosity;
-  std::vector<float> strengths;
-  Rect radiosity_area;
+  Image<float> radiosity = {};  // [k * planes + p] of radiosity_area, 0 where there is no picture
+  std::vector<float> strengths = {};
+  Rect radiosity_area = {};
 };
 
 LightCorrection::LightCorrection(const Photographs& photographs, const SolvedFrame& solved,
@@ -54,7 +44,8 @@ LightCorrection::LightCorrection(const Photographs& photographs, const SolvedFra
       planes_(photographs.planes()),
       options_(options),
       applied_(options.stages),
-      threads_(resolved_threads(threads)) {
+      threads_(resolved_threads(threads)),
+      strengths_(*photographs.field, photographs.size, threads_) {
   directions_.count = photographs.count();
   directions_.at = [&photographs, axes = picture_from_rig(photographs.camera)](std::size_t k, int x, int y) {
     return axes * photographs.field->at(k, 1, x, y).direction;
@@ -62,72 +53,80 @@ LightCorrection::LightCorrection(const Photographs& photographs, const SolvedFra
   if (options_.stages.shadows) shadow_reach_ = solver::shadow_reach(relief, directions_);
 }
 
-// Readings over strength of all pixels of `area`, side by side; what cannot be used is predicted from the
-// solved frame.
+// Calls use(color, first) for each of the two colours that take turns along a row of a plane: of the columns
+// from `first` on every other one is of that colour.
+template <typename Use>
+void LightCorrection::for_each_color(int plane, int y, int x0, int x1, const Use& use) const {
+  for (int x = x0; x < std::min(x0 + 2, x1); ++x) use(planes_.channel_at(plane, x, y), x);
+}
+
+// Readings over strength of all pixels of `area` that the picture has.
 void LightCorrection::read_radiosity(Rect area, Worker& worker) const {
   constexpr int kTileRows = 16;
-  const LightField& field = *photographs_->field;
-  const std::size_t lights = photographs_->count();
-  const auto planes = static_cast<std::size_t>(planes_.count);
-  const auto width = static_cast<std::size_t>(area.width());
+  const int planes = static_cast<int>(photographs_->count()) * planes_.count;
+  const Rect picture = {0, 0, photographs_->size.width, photographs_->size.height};
+  worker.radiosity = Image<float>({area.width(), area.height()}, planes);
   worker.radiosity_area = area;
-  worker.radiosity.resize(width * static_cast<std::size_t>(area.height()) * lights * planes);
-  worker.strengths.resize(width * 3);
-  for (int y0 = area.y0; y0 < area.y1; y0 += kTileRows) {
-    const Rect tile = rows_of(area, y0, kTileRows);
+  const Rect inside = {std::max(area.x0, 0) / kRowGroup * kRowGroup, std::max(area.y0, 0),
+                       std::min(area.x1, picture.x1), std::min(area.y1, picture.y1)};
+  worker.strengths.resize(static_cast<std::size_t>(inside.width()));
+  for (int y0 = inside.y0; y0 < inside.y1; y0 += kTileRows) {
+    const Rect tile = rows_of(inside, y0, kTileRows);
     const std::span<const View<const float>> readings = worker.reader.read(tile).readings;
-    for (int y = tile.y0; y < tile.y1; ++y) {
-      float* row = worker.radiosity.data() + static_cast<std::size_t>(y - area.y0) * width * lights * planes;
-      for (std::size_t k = 0; k < lights; ++k) {
-        for (int c = 0; c < 3; ++c) {
-          read_strengths(field, k, c, y, area.x0, area.x1,
-                         worker.strengths.data() + static_cast<std::size_t>(c) * width);
-        }
-        for (std::size_t p = 0; p < planes; ++p) {
-          const float* reading = readings[k * planes + p].row(y - tile.y0);
-          for (std::size_t i = 0; i < width; ++i) {
-            const int x = area.x0 + static_cast<int>(i);
-            const auto c = static_cast<std::size_t>(planes_.channel_at(static_cast<int>(p), x, y));
-            float value = reading[i] / worker.strengths[c * width + i];
-            if (!std::isfinite(value)) {
-              const Vec3 n = {solved_->normal(x, y, 0), solved_->normal(x, y, 1), solved_->normal(x, y, 2)};
-              const double lit = std::max(0.0, dot(n, directions_.at(k, x, y)));
-              value =
-                  static_cast<float>(static_cast<double>(solved_->albedo(x, y, static_cast<int>(p))) * lit);
-            }
-            row[(i * lights + k) * planes + p] = value;
-          }
-        }
+    for (int y = tile.y0; y < tile.y1; ++y) read_radiosity_row(tile, y, readings, worker);
+  }
+}
+
+// What cannot be used is predicted from the solved frame.
+void LightCorrection::read_radiosity_row(Rect tile, int y, std::span<const View<const float>> readings,
+                                         Worker& worker) const {
+  const Rect area = worker.radiosity_area;
+  const int first = std::max(tile.x0, area.x0);
+  for (std::size_t k = 0; k < photographs_->count(); ++k) {
+    for (int p = 0; p < planes_.count; ++p) {
+      const auto plane = k * static_cast<std::size_t>(planes_.count) + static_cast<std::size_t>(p);
+      const float* reading = readings[plane].row(y - tile.y0) - tile.x0;
+      float* sent = worker.radiosity.plane(static_cast<int>(plane)).row(y - area.y0) - area.x0;
+      for_each_color(p, y, first, tile.x1, [&](int c, int from) {
+        strengths_.read(k, c, y, tile.x0, tile.x1, worker.strengths.data());
+        for (int x = from; x < tile.x1; x += 2)
+          sent[x] = reading[x] / worker.strengths[static_cast<std::size_t>(x - tile.x0)];
+      });
+      for (int x = first; x < tile.x1; ++x) {
+        if (std::isfinite(sent[x])) continue;
+        const Vec3 n = {solved_->normal(x, y, 0), solved_->normal(x, y, 1), solved_->normal(x, y, 2)};
+        const double lit = std::max(0.0, dot(n, directions_.at(k, x, y)));
+        sent[x] = static_cast<float>(static_cast<double>(solved_->albedo(x, y, p)) * lit);
       }
     }
   }
 }
 
+Result<void> LightCorrection::find_shadows(Rect block, const solver::Normals& normals) {
+  std::vector<View<std::uint32_t>> words;
+  for (int w = 0; w < visible_.planes(); ++w) words.push_back(visible_.plane(w).crop(in_slab(block)));
+  return solver::march_to_lights(*relief_, block, normals, directions_, shadow_reach_.reach_px, words);
+}
+
+Result<void> LightCorrection::gather_bounces(Rect block, const solver::Normals& normals, Worker& worker) {
+  read_radiosity(solver::area_of_slices(block, options_.reach_px), worker);
+  std::vector<View<const float>> sent;
+  std::vector<View<float>> arriving;
+  for (int p = 0; p < arriving_.planes(); ++p) {
+    sent.emplace_back(worker.radiosity.plane(p));
+    arriving.push_back(arriving_.plane(p).crop(in_slab(block)));
+  }
+  return solver::gather_by_slices(*relief_, block, normals, {worker.radiosity_area, sent},
+                                  {options_.directions, options_.reach_px, planes_.count == 1}, arriving);
+}
+
 Result<void> LightCorrection::trace_block(Rect block, Worker& worker) {
-  const int bounce_reach = options_.stages.interreflection ? options_.reach_px + 1 : 0;
-  const int halo = std::max(shadow_reach_.reach_px + 1, bounce_reach);
-  Result<solver::HeightGrid> grid = solver::HeightGrid::build(*relief_, block, halo);
-  if (!grid) return std::move(grid).error();
   const solver::Normals normals = {solved_->normal.plane(0).crop(block), solved_->normal.plane(1).crop(block),
                                    solved_->normal.plane(2).crop(block)};
-  const Rect local = {block.x0, block.y0 - slab_.y0, block.x1, block.y1 - slab_.y0};
   if (options_.stages.shadows) {
-    std::vector<View<std::uint32_t>> words;
-    for (int w = 0; w < visible_.planes(); ++w) words.push_back(visible_.plane(w).crop(local));
-    if (Result<void> ok =
-            solver::find_visible_lights(*grid, block, normals, directions_, shadow_reach_.reach_px, words);
-        !ok) {
-      return ok;
-    }
+    if (Result<void> ok = find_shadows(block, normals); !ok) return ok;
   }
-  if (!options_.stages.interreflection) return {};
-  Rect area = solver::within_reach(*relief_, block, options_.reach_px);
-  area.x0 = area.x0 / kRowGroup * kRowGroup;
-  read_radiosity(area, worker);
-  std::vector<View<float>> arriving;
-  for (int p = 0; p < arriving_.planes(); ++p) arriving.push_back(arriving_.plane(p).crop(local));
-  return solver::gather_light(*grid, block, normals, {area, arriving_.planes(), worker.radiosity},
-                              {options_.rays, options_.reach_px, planes_.count == 1}, arriving);
+  return options_.stages.interreflection ? gather_bounces(block, normals, worker) : Result<void>();
 }
 
 Result<void> LightCorrection::prepare(Rect rows) {
@@ -150,7 +149,7 @@ Result<void> LightCorrection::prepare(Rect rows) {
   std::vector<Worker> workers;
   for (int i = 0; i < threads_; ++i) {
     const TileOptions tile = {.width = kBlockColumns + 2 * options_.reach_px + 2 * kRowGroup, .height = 16};
-    workers.push_back({TileReader(*photographs_, tile), {}, {}, {}});
+    workers.push_back({TileReader(*photographs_, tile)});
   }
   std::mutex mutex;
   std::optional<Error> failure;
@@ -182,26 +181,19 @@ void LightCorrection::apply(Rect tile, std::span<const View<float>> readings) co
 void LightCorrection::subtract_bounces(Rect tile, std::span<const View<float>> readings) const {
   if (!applied_.interreflection) return;
   const auto scale = static_cast<float>(applied_.albedo_scale);
-  const LightField& field = *photographs_->field;
-  const std::size_t lights = photographs_->count();
-  const auto planes = static_cast<std::size_t>(planes_.count);
-  const auto width = static_cast<std::size_t>(tile.width());
-  std::vector<float> strengths(3 * width);
-  for (int y = tile.y0; y < tile.y1; ++y) {
-    for (std::size_t k = 0; k < lights; ++k) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        read_strengths(field, k, static_cast<int>(c), y, tile.x0, tile.x1, strengths.data() + c * width);
-      }
-      for (std::size_t p = 0; p < planes; ++p) {
-        float* reading = readings[k * planes + p].row(y - tile.y0);
-        for (std::size_t i = 0; i < width; ++i) {
-          const int x = tile.x0 + static_cast<int>(i), row = y - slab_.y0;
-          const auto c = static_cast<std::size_t>(planes_.channel_at(static_cast<int>(p), x, y));
-          const float albedo = scale * solved_->albedo(x, y, static_cast<int>(p));
-          reading[i] -=
-              albedo * arriving_(x, row, static_cast<int>(k * planes + p)) * strengths[c * width + i];
-        }
-      }
+  std::vector<float> strengths(static_cast<std::size_t>(tile.width()));
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    const std::size_t k = i / static_cast<std::size_t>(planes_.count);
+    const int p = static_cast<int>(i % static_cast<std::size_t>(planes_.count));
+    for (int y = tile.y0; y < tile.y1; ++y) {
+      float* reading = readings[i].row(y - tile.y0) - tile.x0;
+      const float* albedo = solved_->albedo.plane(p).row(y);
+      const float* arriving = arriving_.plane(static_cast<int>(i)).row(y - slab_.y0);
+      for_each_color(p, y, tile.x0, tile.x1, [&](int c, int first) {
+        strengths_.read(k, c, y, tile.x0, tile.x1, strengths.data());
+        for (int x = first; x < tile.x1; x += 2)
+          reading[x] -= scale * albedo[x] * arriving[x] * strengths[static_cast<std::size_t>(x - tile.x0)];
+      });
     }
   }
 }

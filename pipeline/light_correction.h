@@ -6,6 +6,7 @@
 
 #include "core/image.h"
 #include "core/result.h"
+#include "pipeline/light_strengths.h"
 #include "pipeline/photographs.h"
 #include "pipeline/tile_reader.h"
 #include "solver/transport/height_grid.h"
@@ -30,14 +31,14 @@ struct LightStages {
 
 struct LightCorrectionOptions {
   LightStages stages;
-  int rays = 32;      ///< a pixel, that look for light from the cloth
-  int reach_px = 64;  ///< how far they look
+  int directions = 12;  ///< in which a pixel looks for light from the cloth
+  int reach_px = 64;    ///< how far it looks
 };
 
 /// Readings as a convex cloth without shadows would give them. With the relief of a frame that is solved
 /// already, light that the cloth hides from a pixel is marked as shadow (-infinity), and the light that
-/// reaches the pixel from the cloth, absolute albedo times gather_light() (solver/transport/gather.h), is
-/// subtracted.
+/// reaches the pixel from the cloth, absolute albedo times gather_by_slices() (solver/transport/slices.h),
+/// is subtracted.
 ///
 /// Works in slabs of rows, so that memory does not grow with the height of the frame: about (K P + 1) * 4
 /// bytes for each of kSlabRows * width pixels, and a mesh a thread. Bytes depend on neither threads nor
@@ -67,7 +68,14 @@ class LightCorrection {
  private:
   struct Worker;
   Result<void> trace_block(Rect block, Worker& worker);
+  Result<void> find_shadows(Rect block, const solver::Normals& normals);
+  Result<void> gather_bounces(Rect block, const solver::Normals& normals, Worker& worker);
   void read_radiosity(Rect area, Worker& worker) const;
+  void read_radiosity_row(Rect tile, int y, std::span<const View<const float>> readings,
+                          Worker& worker) const;
+  template <typename Use>
+  void for_each_color(int plane, int y, int x0, int x1, const Use& use) const;
+  Rect in_slab(Rect block) const { return {block.x0, block.y0 - slab_.y0, block.x1, block.y1 - slab_.y0}; }
   bool sees(int x, int y, std::size_t k) const;
 
   const Photographs* photographs_;
@@ -77,6 +85,7 @@ class LightCorrection {
   LightCorrectionOptions options_;
   LightStages applied_;
   int threads_;
+  LightStrengths strengths_;
   solver::LightDirections directions_;
   solver::ShadowReach shadow_reach_;
   double seconds_ = 0;

@@ -129,7 +129,8 @@ class Round {
 
  private:
   LightCorrection correct(const LightStages& stages) const {
-    return {photographs_, solved, relief_, {stages, options_.rays, options_.reach_px}, context_.threads};
+    return {
+        photographs_, solved, relief_, {stages, options_.directions, options_.reach_px}, context_.threads};
   }
 
   const Photographs& photographs_;
@@ -137,15 +138,6 @@ class Round {
   const JobContext& context_;
   Image<float> height_;
   solver::Relief relief_;
-};
-
-// What the blocks of a frame are shared between.
-struct TwoMethods {
-  std::unique_ptr<solver::Method> standard, robust;
-
-  std::unique_ptr<solver::Method> by_block(solver::BlockChoice choice) const {
-    return solver::blended_method(*standard, *robust, std::move(choice));
-  }
 };
 
 // A solve under way.
@@ -157,12 +149,11 @@ class Reference {
 
   // By which method each block is solved.
   Result<void> choose_methods() {
-    Result<solver::BlockChoice> choice = choose_by_block(photographs_, {.method = quickly_.standard.get()},
-                                                         {.method = quickly_.robust.get()}, context_);
+    Result<solver::BlockChoice> choice = choose_by_block(photographs_, {.method = standard_.get()},
+                                                         {.method = robust_method_.get()}, context_);
     if (!choice) return std::move(choice).error();
     facts.robust_share = choice->share();
-    quick_ = quickly_.by_block(*choice);
-    exact_ = exactly_.by_block(*choice);
+    method_ = solver::blended_method(*standard_, *robust_method_, *choice);
     robust_ = std::move(*choice);
     return find_gloss(nullptr);
   }
@@ -182,7 +173,7 @@ class Reference {
   Result<void> approach() {
     FrameKeeper first(photographs_, nullptr);
     if (const auto solved =
-            solve_bands(photographs_, gloss_->over(*quick_), tile_, context_, std::ref(first));
+            solve_bands(photographs_, gloss_->over(*method_), tile_, context_, std::ref(first));
         !solved) {
       return solved.error();
     }
@@ -198,7 +189,7 @@ class Reference {
         return {};
       }
       FrameKeeper next(photographs_, &round->solved);
-      const Result<double> solved = round->solve(gloss_->over(*quick_), tile_, std::ref(next), {});
+      const Result<double> solved = round->solve(gloss_->over(*method_), tile_, std::ref(next), {});
       if (!solved) return solved.error();
       ReferenceRound& now = round->facts;
       now.turned_deg = next.mean_turn_deg();
@@ -219,10 +210,10 @@ class Reference {
     if (last_) {
       if (Result<void> ok = find_gloss(last_.get()); !ok) return ok;
     }
-    exact_chosen_ = &gloss_->over(*exact_);
+    last_method_ = &gloss_->over(*method_);
     const Result<double> waited =
-        last_ ? last_->solve(*exact_chosen_, tile_, sink, bands)
-              : solve_bands(photographs_, *exact_chosen_, tile_, context_, sink, bands);
+        last_ ? last_->solve(*last_method_, tile_, sink, bands)
+              : solve_bands(photographs_, *last_method_, tile_, context_, sink, bands);
     if (!waited) return waited.error();
     facts.waited_seconds = *waited;
     if (Result<void> ok = check(); !ok) return ok;
@@ -238,8 +229,8 @@ class Reference {
  private:
   // Of the readings that a round corrects, or of all as they are.
   Result<void> find_gloss(const Round* round) {
-    Result<Gloss> gloss =
-        round != nullptr ? round->find_gloss(*quick_) : Gloss::find(photographs_, *quick_, nullptr, context_);
+    Result<Gloss> gloss = round != nullptr ? round->find_gloss(*method_)
+                                           : Gloss::find(photographs_, *method_, nullptr, context_);
     if (!gloss) return std::move(gloss).error();
     facts.gloss = gloss->facts;
     gloss_ = std::move(*gloss);
@@ -267,8 +258,8 @@ class Reference {
     const std::vector<solver::Patch> patches =
         solver::patches_of(photographs_.size, solver::PatchUse::kReport);
     Result<solver::LeftOut> left_out =
-        last_ ? last_->leave_out_lights_of(patches, *exact_chosen_)
-              : leave_out_lights(photographs_, {.method = exact_chosen_}, patches, context_);
+        last_ ? last_->leave_out_lights_of(patches, *last_method_)
+              : leave_out_lights(photographs_, {.method = last_method_}, patches, context_);
     if (!left_out) return std::move(left_out).error();
     facts.left_out = std::move(*left_out);
     return {};
@@ -278,12 +269,12 @@ class Reference {
   const TileOptions& tile_;
   const ReferenceOptions& options_;
   const JobContext& context_;
-  TwoMethods quickly_ = {solver::standard_method(), solver::robust_method()};
-  TwoMethods exactly_ = {solver::exact_standard_method(), solver::exact_method()};
-  std::unique_ptr<solver::Method> quick_, exact_;
+  const std::unique_ptr<solver::Method> standard_ = solver::standard_method(),
+                                        robust_method_ = solver::robust_method();
+  std::unique_ptr<solver::Method> method_;  ///< the two, by block
   std::optional<Gloss> gloss_;
-  const solver::Method* exact_chosen_ = nullptr;  ///< `exact_`, with the lobe where there is one
-  std::optional<solver::BlockChoice> robust_;     ///< where the better of the two solves
+  const solver::Method* last_method_ = nullptr;  ///< `method_`, with the lobe where there is one
+  std::optional<solver::BlockChoice> robust_;    ///< where the better of the two solves
   std::unique_ptr<Round> last_;
 };
 

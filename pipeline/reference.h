@@ -21,7 +21,7 @@ namespace weft::pipeline {
 struct ReferenceOptions {
   int most_rounds = 4;
   double settled_deg = 0.03;  ///< mean turn of the normals in a round, below which one more round is the last
-  int rays = 32;
+  int directions = 12;        ///< in which a pixel looks for light from the cloth
   int reach_px = 64;
   bool force_stages = false;  ///< whatever gates and left-out light say: for measurements
 };
@@ -54,9 +54,8 @@ struct ReferenceFacts {
 /// Gates (solver/gates) spare the work where nothing can be won; beyond them each effect is taken out only
 /// where left-out light is predicted better without it (choose_light). A round that turns
 /// the normals no less than the one before is refused: the last good one stands. As at the robust level,
-/// blocks where `robust` predicts left-out light no better are solved as `standard` does. The last solve is
-/// in double, with the factorisation that each pixel's conditioning asks for. Without an effect it is the
-/// only one.
+/// blocks where `robust` predicts left-out light no better are solved as `standard` does. Pixels are solved
+/// in double where their conditioning asks for it, as at any level. Without an effect there is but one solve.
 ///
 /// The lobe of a glossy cloth (pipeline/gloss.h) is found before the first round, so that relief and bounces
 /// follow normals that highlights did not turn, and again for the last solve once bounces are out.

@@ -102,9 +102,9 @@ std::unique_ptr<Method> fast_method();
 std::unique_ptr<Method> weighted_method();
 /// Weighted, then readings that do not fit the others are left out one by one.
 std::unique_ptr<Method> standard_method();
-/// Robust in double: what the reference level solves its last round by.
+/// Robust in double: what float32 is held against.
 std::unique_ptr<Method> exact_method();
-/// Standard in double: the same where robust earns nothing.
+/// Standard in double.
 std::unique_ptr<Method> exact_standard_method();
 /// Standard; where its residuals ask for it, from the start that most readings agree on.
 std::unique_ptr<Method> robust_method();

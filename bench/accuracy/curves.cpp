@@ -26,8 +26,8 @@ std::vector<Setting> settings() {
       {"arithmetic", {"float32", as_product(solver::robust_method())}},
       {"arithmetic", {"double", as_product(solver::exact_method())}},
   };
-  for (const int rays : {4, 8, 16, 32, 64, 128}) {
-    all.push_back({"rays", {fmt::format("{}", rays), by_reference({.rays = rays})}});
+  for (const int directions : {4, 8, 16, 32, 64}) {
+    all.push_back({"directions", {fmt::format("{}", directions), by_reference({.directions = directions})}});
   }
   for (const int rounds : {1, 2, 3, 4, 6}) {
     all.push_back(

@@ -78,7 +78,8 @@ TEST(LightCorrection, MarksTheShadowOfAStepToItsEnd) {
 
 TEST(LightCorrection, SubtractsWhatALongWallSendsBack) {
   constexpr double kHeight_px = 16;
-  Step wall(kHeight_px, {.stages = {.shadows = false, .interreflection = true}, .rays = 512, .reach_px = 64});
+  Step wall(kHeight_px,
+            {.stages = {.shadows = false, .interreflection = true}, .directions = 64, .reach_px = 64});
   for (const int x : {46, 50, 58}) {
     // A point sees an endless wall under half of 1 - cos of the angle to its upper edge.
     const double distance = x - kEdge - 0.5;

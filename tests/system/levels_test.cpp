@@ -64,7 +64,7 @@ TEST_F(Levels, ReferenceRunsNoStageOnAFlatCardAndSaysWhy) {
   EXPECT_TRUE(report.facts.reference["rounds"].empty());
   ASSERT_EQ(report.facts.gates.size(), 4U);
   for (const Json& gate : report.facts.gates) EXPECT_EQ(gate["verdict"], "under") << gate;
-  EXPECT_EQ(report.facts.solved_by["double"], kSize.pixels());
+  EXPECT_EQ(report.facts.solved_by["float32"], kSize.pixels());
 }
 
 TEST_F(Levels, PreviewIsHalfTheSizeAndRightOnACard) {
