@@ -87,29 +87,29 @@ void enlarge(const SolvedMaps& half, SolvedMaps& maps) {
   }
 }
 
-Result<void> solve_level(const pipeline::Photographs& photographs, const solver::MethodName& level,
-                         int threads, SolvedMaps& maps) {
-  const auto solved = solve_frame(photographs, level, pipeline::kSolveTile, on_threads(threads),
-                                  keeper_of(photographs.planes(), maps));
-  if (!solved) return solved.error();
-  if (solved->left_out) maps.left_out_rel = solver::error_of_all(*solved->left_out).median;
-  return {};
-}
-
 // Each pixel of a preview stands for the four photosites that it was made of.
 Result<void> solve_at_half_size(const Patch& patch, const solver::MethodName& level, int threads,
                                 SolvedMaps& maps) {
   const Result<pipeline::Photographs> half = pipeline::half_size(patch.photographs, threads);
   if (!half) return half.error();
   SolvedMaps solved(half->size);
-  Result<void> ok = solve_level(*half, level, threads, solved);
+  const Result<pipeline::FrameFacts> facts = solve_level(*half, level, threads, solved);
+  if (!facts) return facts.error();
   maps.planes = solved.planes;
   maps.left_out_rel = solved.left_out_rel;
-  if (ok) enlarge(solved, maps);
-  return ok;
+  enlarge(solved, maps);
+  return {};
 }
 
 }  // namespace
+
+Result<pipeline::FrameFacts> solve_level(const pipeline::Photographs& photographs,
+                                         const solver::MethodName& level, int threads, SolvedMaps& maps) {
+  Result<pipeline::FrameFacts> facts = solve_frame(
+      photographs, level, pipeline::kSolveTile, on_threads(threads), keeper_of(photographs.planes(), maps));
+  if (facts && facts->left_out) maps.left_out_rel = solver::error_of_all(*facts->left_out).median;
+  return facts;
+}
 
 SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
   return [method](const Patch& patch, int threads, SolvedMaps& maps) -> Result<void> {
@@ -126,8 +126,9 @@ SolvePatch as_product(std::shared_ptr<const solver::Method> method) {
 
 SolvePatch by_level(const solver::MethodName& level) {
   return [level](const Patch& patch, int threads, SolvedMaps& maps) {
-    return level.extent == solver::Extent::kHalfSize ? solve_at_half_size(patch, level, threads, maps)
-                                                     : solve_level(patch.photographs, level, threads, maps);
+    if (level.extent == solver::Extent::kHalfSize) return solve_at_half_size(patch, level, threads, maps);
+    const Result<pipeline::FrameFacts> facts = solve_level(patch.photographs, level, threads, maps);
+    return facts ? Result<void>() : facts.error();
   };
 }
 

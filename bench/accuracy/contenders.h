@@ -11,6 +11,7 @@
 #include "bench/accuracy/scenes.h"
 #include "bench/base/solved_maps.h"
 #include "core/result.h"
+#include "pipeline/frame.h"
 #include "pipeline/reference.h"
 #include "solver/method.h"
 
@@ -39,6 +40,9 @@ std::vector<std::string> level_names();
 
 /// The level reference with these options.
 SolvePatch by_reference(const pipeline::ReferenceOptions& options);
+/// Photographs by a level, as the product runs it on a frame of its own size.
+Result<pipeline::FrameFacts> solve_level(const pipeline::Photographs& photographs,
+                                         const solver::MethodName& level, int threads, SolvedMaps& maps);
 /// A level as the product runs it on a frame: from counts to maps. Each pixel of a preview stands for the
 /// four photosites that it was made of.
 SolvePatch by_level(const solver::MethodName& level);

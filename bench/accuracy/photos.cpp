@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <numeric>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "core/image_io/image_io.h"
 #include "core/parallel.h"
 #include "pipeline/cut.h"
+#include "pipeline/frame.h"
 #include "pipeline/plane_weights.h"
 #include "simulator/sampling/random.h"
 #include "solver/method.h"
@@ -73,7 +75,32 @@ Result<Truth> read_truth(const app::PhotoPlan& plan, const std::filesystem::path
 struct Solved {
   double mean_deg = 0;
   double seconds = 0;
+  std::string gloss;  ///< of a level that looks for a lobe: what it found, or why it found none
 };
+
+std::string words_of(const pipeline::GlossFacts& gloss) {
+  const solver::MeasuredLobe& first = gloss.lobes.front();
+  if (!first.is_measured()) return solver::name_of(first.refusal);
+  return gloss.share > 0 ? solver::name_of(first.lobe.family) : "measured, no gain";
+}
+
+// A level by all its steps where it solves a frame of this size, else the method alone.
+Result<void> run(const solver::MethodName& name, const pipeline::Photographs& photographs, int threads,
+                 SolvedMaps& maps, std::string& gloss) {
+  if (name.level && name.extent != solver::Extent::kHalfSize) {
+    const Result<pipeline::FrameFacts> facts = solve_level(photographs, name, threads, maps);
+    if (!facts) return facts.error();
+    if (facts->gloss) gloss = words_of(*facts->gloss);
+    return {};
+  }
+  std::vector<View<const float>> readings;
+  for (const Image<float>& photo : std::get<pipeline::Developed>(photographs.frames).rgb) {
+    for (const View<const float>& plane : planes_of(photo)) readings.push_back(plane);
+  }
+  maps.planes = 3;
+  return solve_images(*name.make(), readings, *photographs.field, {}, std::nullopt, threads, maps,
+                      photographs.plane_weights);
+}
 
 // The photographs of these numbers, from 1, where there is truth.
 Result<pipeline::Photographs> choose(const pipeline::Photographs& all, const std::vector<int>& numbers,
@@ -88,21 +115,13 @@ Result<pipeline::Photographs> choose(const pipeline::Photographs& all, const std
   return chosen;
 }
 
-Result<Solved> solve(const solver::Method& method, const pipeline::Photographs& photographs,
+Result<Solved> solve(const solver::MethodName& name, const pipeline::Photographs& photographs,
                      const Truth& truth, int threads) {
   const Rect part = truth.around;
-  std::vector<View<const float>> readings;
-  for (const Image<float>& photo : std::get<pipeline::Developed>(photographs.frames).rgb) {
-    for (const View<const float>& plane : planes_of(photo)) readings.push_back(plane);
-  }
   SolvedMaps maps(photographs.size);
-  maps.planes = 3;
   Result<void> solved;
   Solved result;
-  result.seconds = least_seconds(1, [&] {
-    solved = solve_images(method, readings, *photographs.field, {}, std::nullopt, threads, maps,
-                          photographs.plane_weights);
-  });
+  result.seconds = least_seconds(1, [&] { solved = run(name, photographs, threads, maps, result.gloss); });
   if (!solved) return std::move(solved).error();
   double sum = 0;
   for (int y = part.y0; y < part.y1; ++y) {
@@ -120,22 +139,27 @@ Result<Solved> solve(const solver::Method& method, const pipeline::Photographs& 
 
 Result<Json> row_of(const solver::MethodName& name, const pipeline::Photographs& photographs,
                     const std::vector<std::vector<int>>& subsets, const Truth& truth, int threads) {
-  const std::unique_ptr<solver::Method> method = name.make();
   std::vector<double> means;
+  std::map<std::string, int> gloss;  // in how many subsets each was said
   double seconds = 0;
   for (const std::vector<int>& numbers : subsets) {
     Result<pipeline::Photographs> chosen = choose(photographs, numbers, truth);
     if (!chosen) return std::move(chosen).error();
     if (!name.keeps_clipped) chosen->plane_weights = pipeline::measure_plane_weights(*chosen);
-    const Result<Solved> solved = solve(*method, *chosen, truth, threads);
+    const Result<Solved> solved = solve(name, *chosen, truth, threads);
     if (!solved) return solved.error();
     means.push_back(solved->mean_deg);
+    if (!solved->gloss.empty()) ++gloss[solved->gloss];
     seconds += solved->seconds;
   }
   const auto count = static_cast<double>(means.size());
   const double mean = std::accumulate(means.begin(), means.end(), 0.0) / count;
   double square = 0;
   for (const double m : means) square += (m - mean) * (m - mean);
+  std::string said;
+  for (const auto& [words, times] : gloss)
+    said += fmt::format("{}{}{}", said.empty() ? "" : ", ", words,
+                        means.size() > 1 ? fmt::format(" {}", times) : "");
   return Json{{"method", name.name},
               {"lights", subsets.front().size()},
               {"subsets", means.size()},
@@ -144,6 +168,7 @@ Result<Json> row_of(const solver::MethodName& name, const pipeline::Photographs&
               {"sd_deg", means.size() > 1 ? std::sqrt(square / (count - 1)) : 0.0},
               {"least_deg", *std::min_element(means.begin(), means.end())},
               {"most_deg", *std::max_element(means.begin(), means.end())},
+              {"gloss", said},
               {"ns_per_pixel", seconds * 1e9 / (count * static_cast<double>(truth.around.pixels()))},
               {"threads", threads}};
 }
