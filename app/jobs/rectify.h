@@ -31,9 +31,10 @@ struct RectifyReport {
 
 /// Puts the maps of a solve on a square grid of the table at the session's cloth_height_mm, lens and
 /// perspective removed (material/rectify.h): normal.exr, albedo.exr, sigma.exr, status.png, of a measured
-/// lobe roughness.exr and specular.exr, and rectify.json (weft.rectified/1), made aside and published whole. Sigma is that of the photographed pixels around: a
-/// mean of several, which the filter takes, has less. Maps of half the frame's size, as the level preview
-/// gives, have half the camera's. Memory holds one map of the solve at a time: 16 to 32 bytes a pixel.
+/// lobe roughness.exr and specular.exr, and rectify.json (weft.rectified/1), made aside and published whole.
+/// Sigma is that of the photographed pixels around: a mean of several, which the filter takes, has less. Maps
+/// of half the frame's size, as the level preview gives, have half the camera's. Memory holds one map of the
+/// solve at a time: 16 to 32 bytes a pixel.
 ///
 /// Errors: kUsage (an option), kNoInput (no session, no complete solve of it), kBadData (a calibration
 /// without camera, maps that are not of its size), kCannotCreate, kInputOutput, kInterrupted.

@@ -46,10 +46,9 @@ class SlowSlopes {
   FlattenMethod method = FlattenMethod::kHann;  ///< the one that ran
   int degree = 0;                               ///< of the polynomial; 0 for kHighPass
   bool lacks_repeats =
-      false;               ///< kRepeat was asked for, but the frame holds fewer than six either way: kHann
-  std::int64_t means = 0;  ///< kRepeatMeans: cells that went into the fit
-  double tilt_deg = 0;     ///< of the mean slope
-  double range_deg = 0;    ///< the largest angle between a slow slope and their mean
+      false;             ///< kRepeat was asked for, but the frame holds fewer than six either way: kHann
+  double tilt_deg = 0;   ///< of the mean slope
+  double range_deg = 0;  ///< the largest angle between a slow slope and their mean
   double bow_mm = 0;  ///< how far the surface of these slopes, without its tilt, rises from lowest to highest
   bool acts = false;  ///< tilt or range is above sigma_deg; else the field is 0 everywhere
 

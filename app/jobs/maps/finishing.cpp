@@ -29,7 +29,7 @@ using material::LatticeKind;
 using material::Surface;
 
 // By material::FlattenMethod.
-constexpr std::array<const char*, 4> kFlattenNames = {"automatic", "repeat", "hann", "high-pass"};
+constexpr std::array<const char*, 3> kFlattenNames = {"polynomial", "corners", "high-pass"};
 
 // Steps between a cloth and its end, each with what those before it found.
 class Finisher {
@@ -78,18 +78,21 @@ class Finisher {
   }
 
   Result<Json> flatten(const Json& options) {
-    if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
     material::FlattenOptions flatten;
-    const bool is_high_pass = options["by"] == "high-pass";
-    if (is_high_pass) flatten.method = material::FlattenMethod::kHighPass;
+    const auto method = std::ranges::find(kFlattenNames, options["by"].get<std::string>());
+    flatten.method = static_cast<material::FlattenMethod>(method - kFlattenNames.begin());
     flatten.degree = options["degree"].get<int>();
     flatten.cut_mm = options["cut_mm"].get<double>();
     flatten.mm_per_pixel = surface_.mm_per_pixel;
     flatten.sigma_deg = options["always"].get<bool>() ? 0 : input_.slow_sigma_deg;
     flatten.threads = context_.threads;
-    if (lattice_->kind == LatticeKind::kRepeat) {
+    if (flatten.method == material::FlattenMethod::kRepeat) {
+      if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
       const material::Cell& cell = lattice_->colour;
-      flatten.repeat = material::Repeat{cell.a.x, -cell.a.y, cell.b.x, -cell.b.y};
+      if (lattice_->kind == LatticeKind::kRepeat)
+        flatten.repeat = material::Repeat{cell.a.x, -cell.a.y, cell.b.x, -cell.b.y};
+      else
+        flatten.method = material::FlattenMethod::kHann;
     }
     const Result<material::SlowSlopes> slow = material::slow_slopes(
         surface_.slope.plane(0), surface_.slope.plane(1), surface_.status.plane(), flatten);
