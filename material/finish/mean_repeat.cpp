@@ -7,6 +7,15 @@
 #include "core/solve_record.h"
 
 namespace weft::material {
+namespace {
+
+std::size_t place_in(int i, double repeat, int places) {
+  const double phase = i / repeat - std::floor(i / repeat);
+  return static_cast<std::size_t>(std::min(static_cast<int>(phase * places), places - 1));
+}
+
+}  // namespace
+
 MeanRepeat::MeanRepeat(double repeat_x, double repeat_y)
     : repeat_x_(repeat_x),
       repeat_y_(repeat_y),
