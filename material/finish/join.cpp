@@ -119,13 +119,15 @@ Surface joined(const Surface& surface, const Overlap& overlap, const Cut& cut, i
   const int across = is_x ? surface.size().height : surface.size().width;
   Surface out = empty_like(surface, is_x ? Size{overlap.period, across} : Size{across, overlap.period});
   const int rows = static_cast<int>(cut.column.size());
-  for (int j = 0; j < across; ++j) {
-    const int column = cut.column[static_cast<std::size_t>(j % rows)];
-    for (int i = 0; i < overlap.period; ++i) {
-      const Pixel own = pixel(overlap.axis, i, j);
+  for (int y = 0; y < out.size().height; ++y) {
+    for (int x = 0; x < out.size().width; ++x) {
+      const int i = is_x ? x : y, j = is_x ? y : x;
+      const Pixel own = {x, y};
       const bool has_two = i < overlap.overlap;
       const Pixel beyond = has_two ? pixel(overlap.axis, i + overlap.period, j) : own;
-      join_pixel(surface, own, beyond, has_two ? own_weight(i, column, feather) : 1, own, out);
+      const double weight =
+          has_two ? own_weight(i, cut.column[static_cast<std::size_t>(j % rows)], feather) : 1;
+      join_pixel(surface, own, beyond, weight, own, out);
     }
   }
   return out;
