@@ -14,6 +14,7 @@
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/jobs/maps/price.h"
 #include "app/jobs/planned_cloth.h"
 
 namespace weft::app {
@@ -24,6 +25,8 @@ struct MapsArguments {
   std::filesystem::path recipe;
   std::string steps;
   bool is_strict = false;
+  bool only_explains = false;
+  PriceAims aims;
 };
 
 constexpr std::array<const char*, 4> kHeightMethods = {"tiled", "direct", "multigrid", "seed"};
@@ -83,6 +86,34 @@ void print_words(const MapsReport& report) {
   print(fmt::format("  look at {}", (report.folder / "report.html").string()));
 }
 
+void print_prices(const std::vector<MapPrice>& prices) {
+  print(fmt::format("{:10}  {:14}  {:>8}  {:>9}", "map", "setting", "seconds", "rms error"));
+  for (const MapPrice& price : prices) {
+    print(fmt::format("{:10}  {:14}  {:>8.2f}  {:>9.5f} {}{}", price.map, price.setting, price.seconds,
+                      price.error, price.unit,
+                      price.is_chosen    ? ", chosen"
+                      : price.is_default ? ", default"
+                                         : ""));
+  }
+  print("height: against the direct solution; occlusion: against 64 directions");
+}
+
+// What each setting costs and is off by on a piece of this cloth, before any of it is spent.
+Result<int> explain(MapsArguments& arguments, const CommonArguments& common) {
+  const Result<std::vector<MapPrice>> prices = [&] {
+    ProgressLine line(common.quiet);
+    return price_maps(arguments.maps, arguments.aims, {common.threads, stop_on_signal(), line.callback()});
+  }();
+  if (!prices) return prices.error();
+  if (!arguments.only_explains) return kDone;
+  if (common.json) {
+    print_json({{"rows", json_of(*prices)}});
+  } else {
+    print_prices(*prices);
+  }
+  return kDone;
+}
+
 Result<int> make(const MapsArguments& arguments, const CommonArguments& common) {
   Result<Recipe> recipe = asked_recipe(arguments);
   if (!recipe) return std::move(recipe).error();
@@ -135,14 +166,29 @@ Run add_maps(Options& options) {
   options.add("--cavity", &derive.cavity_mm, "Radius that a cavity is seen against, mm")
       .in_range(0.01, 1000.0)
       .shows_default();
-  options.add("--directions", &derive.directions, "Of the occlusion's lines, 4 to 64")
-      .in_range(4, 64)
-      .shows_default();
+  const Option directions =
+      options.add("--directions", &derive.directions, "Of the occlusion's lines, 4 to 64")
+          .in_range(4, 64)
+          .shows_default();
   options.add("--cloth", &derive.cloth, "Whose lobe is typed where the photographs tell none")
       .one_of(cloth_names())
       .shows_default();
+  options.add_flag("--explain", &a->only_explains,
+                   "Only say what heights and occlusion cost and are off by, on a piece of this cloth");
+  const Option to =
+      options.add("--to", &a->aims.to, "Rms of openness that is good enough: chooses --directions")
+          .in_range(1e-6, 1.0)
+          .excludes(directions);
+  options.add("--within", &a->aims.within_s, "Seconds that occlusion may take: chooses --directions")
+      .above_zero()
+      .excludes(directions)
+      .excludes(to);
   return [a](const CommonArguments& common) {
     if (a->maps.maps.empty()) a->maps.maps = map_names();
+    if (a->only_explains || a->aims.to || a->aims.within_s) {
+      const Result<int> explained = explain(*a, common);
+      if (!explained || a->only_explains) return explained;
+    }
     return make(*a, common);
   };
 }

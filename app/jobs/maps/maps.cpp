@@ -17,7 +17,6 @@
 #include "app/jobs/maps/maps_page.h"
 #include "app/jobs/maps/surface_files.h"
 #include "app/jobs/pictures.h"
-#include "app/jobs/rectify.h"
 #include "core/calibration.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
@@ -44,16 +43,6 @@ Json json_of(const DeriveOptions& options) {
           {"cavity_mm", options.cavity_mm},
           {"directions", options.directions},
           {"cloth", options.cloth}};
-}
-
-Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_pixel,
-                                     const JobContext& context) {
-  RectifyOptions rectify;
-  rectify.session = options.session;
-  rectify.solve = options.solve;
-  rectify.calibration = options.calibration;
-  rectify.mm_per_pixel = mm_per_pixel;
-  return rectify_session(rectify, context);
 }
 
 // What a session holds, as its session.json tells by the digests of its frames; empty where none is named.
@@ -200,6 +189,16 @@ void remove_previews(const fs::path& parent, const fs::path& but_not) {
 }
 
 }  // namespace
+
+Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_pixel,
+                                     const JobContext& context) {
+  RectifyOptions rectify;
+  rectify.session = options.session;
+  rectify.solve = options.solve;
+  rectify.calibration = options.calibration;
+  rectify.mm_per_pixel = mm_per_pixel;
+  return rectify_session(rectify, context);
+}
 
 Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& context) {
   const Result<Session> session = read_session(options.session);

@@ -8,6 +8,7 @@
 
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/recipe.h"
+#include "app/jobs/rectify.h"
 #include "core/compression.h"
 #include "core/job.h"
 #include "core/json_document.h"
@@ -41,6 +42,11 @@ struct MapsReport {
   bool was_there = false;  ///< a complete one of the same solve, recipe and options was found
   Json document;           ///< maps.json
 };
+
+/// The maps of the solve on a grid of pixels of this size, 0: what the camera sees. Errors of
+/// rectify_session().
+Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_pixel,
+                                     const JobContext& context);
 
 /// Puts the maps of a solve on a square grid of the table (rectify_session()), finishes them by the recipe,
 /// derives others, and publishes all of it whole in a folder named by its inputs, with maps.json
