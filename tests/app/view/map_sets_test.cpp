@@ -28,7 +28,7 @@ class MapSets : public AskedSession {
     MapsOptions options;
     options.session = session();
     options.mm_per_pixel = kGrid_mm;
-    options.maps = {"height"};
+    options.maps = {"height", "occlusion"};
     const Result<MapsReport> made = make_maps(options, {});
     ASSERT_TRUE(made) << made.error().message();
     set_ = made->document;
@@ -54,7 +54,7 @@ TEST_F(MapSets, AreListedWithTheSolveThatTheyWereMadeOf) {
   ASSERT_EQ(sets.size(), 1U);
   EXPECT_EQ(sets[0]["id"], id());
   EXPECT_EQ(sets[0]["solve"], solve_.id);
-  EXPECT_EQ(sets[0]["maps"], Json::array({"height"}));
+  EXPECT_EQ(sets[0]["maps"], Json::array({"height", "occlusion", "bent_normal"}));
   EXPECT_EQ(sets[0]["preview"], false);
   EXPECT_EQ(sets[0]["mm_per_pixel"], kGrid_mm);
   EXPECT_GT(sets[0]["bytes"].get<int>(), 10000);
@@ -72,6 +72,8 @@ TEST_F(MapSets, AreSeenAsASolveIs) {
                                      {"albedo", 6},
                                      {"sigma", 2},
                                      {"height", 2},
+                                     {"occlusion", 2},
+                                     {"bent_normal", 4},
                                      {"status", 1}}) {
     const Answer raw = get(fmt::format("{}/tiles/{}/0/0_0.raw", here(), layer));
     ASSERT_EQ(raw.status, 200) << layer << raw.body;
@@ -80,6 +82,10 @@ TEST_F(MapSets, AreSeenAsASolveIs) {
   }
   EXPECT_EQ(get(here() + "/tiles/relit/top/0_0.jpg").status, 200);
   EXPECT_EQ(get(here() + "/tiles/residual/0/0_0.raw").status, 404);
+  for (const Json& layer : one["layers"]) {
+    EXPECT_EQ(layer["kind"] == "normal", layer["name"] == "normal" || layer["name"] == "bent_normal")
+        << layer;
+  }
 }
 
 TEST_F(MapSets, AreMeasuredInMillimetresOfTheirGrid) {
