@@ -37,11 +37,9 @@ export function withKeys(recipe: Recipe, index: number, keys: Record<string, unk
   return recipe.map((step, each) => (each === index ? {...step, ...keys} : step));
 }
 
-/** The steps that made a set of maps, without what they found; of a preview without its coarse grid. */
+/** The steps that made a set of maps, without what they found. */
 export function recipeOfSet(document: unknown): Recipe {
-  const steps = listIn(document, 'steps').filter(isStep).map(({facts, ...step}) => step);
-  const isPreview = isFields(document) && document['preview'] === true;
-  return isPreview ? steps.slice(1) : steps;
+  return listIn(document, 'steps').filter(isStep).map(({facts, ...step}) => step);
 }
 
 export function isStep(value: unknown): value is Step {
