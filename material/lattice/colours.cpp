@@ -52,7 +52,7 @@ double level_of(const RepeatValues& values) {
 }
 
 bool holds(const Sublattice& s, const RepeatValues& values, double level) {
-  constexpr int kFewest = 6;
+  constexpr int kFewest = 4;
   double sum = 0, least = 1;
   int count = 0;
   for (int j = -2; j <= 2; ++j) {

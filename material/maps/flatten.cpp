@@ -151,6 +151,34 @@ bool fit_under(const FitWindow& window, const SlopeMap& map, int threads, SlopeP
   return all.solve(polynomial);
 }
 
+// Whether a field takes at least half of its own energy off the slopes, all pixels counting alike. One that
+// follows folds which it cannot hold swings out where its window counts little, and adds more than it takes.
+bool takes_what_it_holds(const SlopePolynomial& field, const SlopeMap& map, int threads) {
+  struct Sums {
+    double shared = 0, own = 0;
+  };
+  const Size size = map.right.size();
+  std::vector<Sums> rows(static_cast<std::size_t>(size.height));
+  parallel_for(rows.size(), threads, [&](std::size_t row, int) {
+    const int y = static_cast<int>(row);
+    std::vector<float> right(static_cast<std::size_t>(size.width)), up(right.size());
+    field.read(y, right.data(), up.data());
+    for (int x = 0; x < size.width; ++x) {
+      if (!map.has_slope(x, y)) continue;
+      const double r = static_cast<double>(right[static_cast<std::size_t>(x)]);
+      const double u = static_cast<double>(up[static_cast<std::size_t>(x)]);
+      rows[row].shared += r * static_cast<double>(map.right(x, y)) + u * static_cast<double>(map.up(x, y));
+      rows[row].own += r * r + u * u;
+    }
+  });
+  Sums all;
+  for (const Sums& row : rows) {
+    all.shared += row.shared;
+    all.own += row.own;
+  }
+  return 2 * all.shared - all.own >= 0.5 * all.own;
+}
+
 GaussianGrid slow_plane(const SlopeMap& map, View<const float> plane, const FlattenOptions& options) {
   Image<std::uint8_t> counts(plane.size());
   for (int y = 0; y < counts.height(); ++y) {
@@ -226,7 +254,8 @@ void SlowSlopes::state_facts(const FlattenOptions& options) {
   }
   bow_mm = bow_of(slopes, (size_.width - 1) * options.mm_per_pixel / (kFactSide - 1),
                   (size_.height - 1) * options.mm_per_pixel / (kFactSide - 1));
-  acts = std::max(tilt_deg, range_deg) > options.sigma_deg;
+  const bool is_there = options.method == FlattenMethod::kHighPass || degree > 0;
+  acts = is_there && std::max(tilt_deg, range_deg) > options.sigma_deg;
 }
 
 Result<SlowSlopes> slow_slopes(View<const float> right, View<const float> up,
@@ -239,15 +268,17 @@ Result<SlowSlopes> slow_slopes(View<const float> right, View<const float> up,
   if (options.method == FlattenMethod::kHighPass) {
     slow.field_ = SlowSlopes::Grids{slow_plane(map, right, options), slow_plane(map, up, options)};
   } else {
-    SlopePolynomial polynomial(right.size(), options.degree);
-    slow.degree = options.degree;
     std::optional<FitWindow> window;
     if (options.method == FlattenMethod::kRepeat) window = window_of_repeats(right.size(), *options.repeat);
     slow.lacks_repeats = options.method == FlattenMethod::kRepeat && !window;
     if (slow.lacks_repeats) slow.method = FlattenMethod::kHann;
     if (!window) window = FitWindow{hann(right.size().width), hann(right.size().height)};
-    if (!fit_under(*window, map, options.threads, polynomial)) {
-      return unusable_slopes(ErrorKind::kBadData, "too few pixels have slopes", "look at the status map");
+    SlopePolynomial polynomial;
+    for (slow.degree = options.degree; slow.degree > 0; --slow.degree) {
+      polynomial = SlopePolynomial(right.size(), slow.degree);
+      if (!fit_under(*window, map, options.threads, polynomial))
+        return unusable_slopes(ErrorKind::kBadData, "too few pixels have slopes", "look at the status map");
+      if (takes_what_it_holds(polynomial, map, options.threads)) break;
     }
     slow.field_ = std::move(polynomial);
   }

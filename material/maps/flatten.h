@@ -44,7 +44,9 @@ struct FlattenOptions {
 class SlowSlopes {
  public:
   FlattenMethod method = FlattenMethod::kHann;  ///< the one that ran
-  int degree = 0;                               ///< of the polynomial; 0 for kHighPass
+  /// Of the polynomial, at most that asked for: folds that it cannot hold leave a lower one, or none (0). 0
+  /// for kHighPass.
+  int degree = 0;
   bool lacks_repeats =
       false;             ///< kRepeat was asked for, but the frame holds fewer than six either way: kHann
   double tilt_deg = 0;   ///< of the mean slope

@@ -152,6 +152,28 @@ TEST(Flatten, KeepsFoldsOfManyRepeatsUnlessAskedByAHighPass) {
   EXPECT_LT(misses_deg(high_pass, folds), 0.2 * 8 / std::sqrt(2.0)) << "of the folds' rms";
 }
 
+// A cubic that follows the middle of a fold of eight degrees swings out to 45 in the corners.
+TEST(Flatten, TakesNoSteeperSlopesOffThanAFoldHas) {
+  const Size size = {768, 512};
+  for (const double phase : {0.0, 0.8, 1.6, 2.4}) {
+    const Field fold = [&](double u, double v) {
+      const double along_mm = (0.57 * u * size.width + 0.82 * v * size.height) * kMmPerPixel / 2;
+      const double slope = 0.147 * std::cos(2 * kPi * along_mm / 30 + phase);
+      return std::array{0.57 * slope, 0.82 * slope};
+    };
+    TestSlopes s = yarns_that_wander(size);
+    add(fold, s);
+    const SlowSlopes slow = slow_of(s, {});
+    const Image<float> removed = removed_slopes(slow);
+    float steepest = 0;
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x)
+        steepest = std::max(steepest, std::hypot(removed(x, y, 0), removed(x, y, 1)));
+    }
+    EXPECT_LE(steepest, 0.147F) << "degree " << slow.degree << ", phase " << phase;
+  }
+}
+
 TEST(Flatten, HighPassHalvesTheWavelengthOfItsCut) {
   const Size size = {1200, 300};
   for (const double wavelength_mm : {3.0, 6.0}) {
