@@ -77,7 +77,7 @@ const std::vector<Door> kDoors = {
     {"CLI/", {"app/cli/", "virtual_rig/program/"}},
     {"OpenImageIO/", {"core/image_io/", "bench/"}},
     {"libraw/", {"capture/raw/", "bench/"}},
-    {"hwy/", {"core/", "solver/kernels/", "solver/reflectance/", "tests/"}},
+    {"hwy/", {"core/", "solver/kernels/", "solver/reflectance/", "solver/transport/", "tests/"}},
     {"embree3/", {"simulator/transport/", "solver/transport/", "bench/"}},
     {"spdlog/", {"app/server/"}},
     {"kissfft/", {"core/", "bench/"}},

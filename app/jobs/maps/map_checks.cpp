@@ -38,6 +38,10 @@ Result<Json> check_maps(MapWork& work, bool has_measured_black) {
   material::ValidationLimits limits;
   limits.threads = work.context.threads;
   const Result<std::vector<Finding>> findings = material::validate(maps, limits);
+  if (!findings && findings.error().kind == ErrorKind::kBadData) {
+    work.verdicts.push_back({"NO_CLOTH", "no pixel is cloth that was solved", findings.error().remedy});
+    return Json::array();
+  }
   if (!findings) return findings.error();
   Json checks = Json::array();
   for (const Finding& finding : *findings) {
