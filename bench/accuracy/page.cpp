@@ -509,7 +509,7 @@ std::string accuracy_markdown(const AccuracyFigures& figures) {
                                    {"p95_deg", "95 %"},
                                    {"albedo_mean_rel", "albedo error"},
                                    {"ns_per_pixel", "ns a pixel"}}));
-  add("Resolution, arithmetic, rays and rounds", "curves",
+  add("Resolution, arithmetic, directions and rounds", "curves",
       "![error against time by setting](pictures/curves.svg)\n\n" +
           columns_table(figures.curves, {{"curve", "what"},
                                          {"setting", "setting"},
