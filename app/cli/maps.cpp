@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -28,8 +27,6 @@ struct MapsArguments {
   bool only_explains = false;
   PriceAims aims;
 };
-
-constexpr std::array<const char*, 4> kHeightMethods = {"tiled", "direct", "multigrid", "seed"};
 
 std::vector<std::string> map_names() {
   std::vector<std::string> names;
@@ -160,7 +157,7 @@ Run add_maps(Options& options) {
   options.add("--maps", &a->maps.maps, help_of_maps()).by_commas().one_of(map_names());
   options.add("--bare", &a->maps.bare,
               "Session of the table without cloth, photographed by the light below at the same exposure");
-  options.add_choice("--height", &derive.height, kHeightMethods,
+  options.add_choice("--height", &derive.height, kHeightMethodNames,
                      "How slopes are integrated: tiled, direct, multigrid, seed");
   options.add_flag("--weigh", &derive.weighs_by_sigma, "Height: each pixel by one over its variance");
   options.add("--cavity", &derive.cavity_mm, "Radius that a cavity is seen against, mm")

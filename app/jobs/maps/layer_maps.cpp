@@ -1,31 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a cloth is as a layer over another material, and where it has holes.
-#include <cmath>
 #include <utility>
 
 #include "app/jobs/maps/map_work.h"
-#include "core/image_io/image_io.h"
-#include "core/vec.h"
+#include "app/jobs/maps/surface_files.h"
 #include "material/filtering/detail.h"
 
 namespace weft::app {
-namespace {
-
-Image<float> normals_of(const Image<float>& slope) {
-  Image<float> normal(slope.size(), 3);
-  for (int y = 0; y < slope.height(); ++y) {
-    for (int x = 0; x < slope.width(); ++x) {
-      const Vec3 n = normalized(Vec3{-slope(x, y, 0), -slope(x, y, 1), 1});
-      normal(x, y, 0) = static_cast<float>(n.x);
-      normal(x, y, 1) = static_cast<float>(n.y);
-      normal(x, y, 2) = static_cast<float>(n.z);
-    }
-  }
-  return normal;
-}
-
-}  // namespace
-
 Result<void> make_detail(MapWork& work) {
   if (Result<void> ok = find_height(work); !ok) return ok;
   material::DetailOptions options;
@@ -37,16 +18,10 @@ Result<void> make_detail(MapWork& work) {
   MapFacts normals = {.name = "detail_normal", .file = "detail_normal.exr", .channels = {"X", "Y", "Z"}};
   normals.more = {{"slope_taken_out", {layer->facts.slope_x, layer->facts.slope_y}},
                   {"share_of_frame", layer->facts.share_of_frame}};
-  if (Result<void> ok =
-          write_map(work, std::move(normals), {normal.plane(0), normal.plane(1), normal.plane(2)});
-      !ok)
-    return ok;
+  if (Result<void> ok = write_map(work, std::move(normals), planes_of(normal)); !ok) return ok;
   MapFacts albedo = {.name = "detail_albedo", .file = "detail_albedo.exr", .channels = {"R", "G", "B"}};
   albedo.more = {{"mean_taken_out", layer->facts.albedo}};
-  if (Result<void> ok = write_map(work, std::move(albedo),
-                                  {layer->albedo.plane(0), layer->albedo.plane(1), layer->albedo.plane(2)});
-      !ok)
-    return ok;
+  if (Result<void> ok = write_map(work, std::move(albedo), planes_of(layer->albedo)); !ok) return ok;
   MapFacts height = {
       .name = "detail_height", .file = "detail_height.exr", .unit = "mm", .channels = {"height"}};
   height.more = {{"mean_taken_out", layer->facts.height_mm}};

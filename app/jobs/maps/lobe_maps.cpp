@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "app/jobs/maps/map_work.h"
+#include "app/jobs/maps/surface_files.h"
 #include "app/jobs/planned_cloth.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
@@ -54,12 +55,6 @@ Image<float> on_scale(GlossScale scale, const Image<float>& alpha) {
       values(x, y) = static_cast<float>(material::on_scale(scale, static_cast<double>(alpha(x, y))));
   }
   return values;
-}
-
-std::vector<View<const float>> views_of(const Image<float>& map) {
-  std::vector<View<const float>> views;
-  for (int p = 0; p < map.planes(); ++p) views.push_back(map.plane(p));
-  return views;
 }
 
 }  // namespace
@@ -113,10 +108,10 @@ Result<void> make_mips(MapWork& work) {
   Json listed = Json::array();
   for (const material::MipLevel& level : *levels) {
     const std::string number = fmt::format("{:02}", level.level);
-    const Result<void> normal = write_image(folder / ("normal_" + number + ".exr"), views_of(level.normal),
+    const Result<void> normal = write_image(folder / ("normal_" + number + ".exr"), planes_of(level.normal),
                                             {"X", "Y", "Z"}, {.compression = work.compression});
     if (!normal) return normal;
-    const Result<void> lobe = write_image(folder / ("lobe_" + number + ".exr"), views_of(level.lobe),
+    const Result<void> lobe = write_image(folder / ("lobe_" + number + ".exr"), planes_of(level.lobe),
                                           {"alpha", "alpha_along", "yarn_deg"},
                                           {.type = SampleType::kHalf, .compression = work.compression});
     if (!lobe) return lobe;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -18,6 +19,9 @@
 #include "solver/reflectance/lobe.h"
 
 namespace weft::app {
+
+/// Words for solver::HeightMethod, in its order.
+inline constexpr std::array<const char*, 4> kHeightMethodNames = {"tiled", "direct", "multigrid", "seed"};
 
 /// How maps are derived.
 struct DeriveOptions {

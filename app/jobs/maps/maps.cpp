@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -34,8 +33,6 @@ namespace fs = std::filesystem;
 using material::Surface;
 
 constexpr int kVersion = 1;  // raised whenever the bytes of a map may change
-
-constexpr std::array<const char*, 4> kHeightMethodNames = {"tiled", "direct", "multigrid", "seed"};
 
 Json json_of(const DeriveOptions& options) {
   return {{"height", kHeightMethodNames[static_cast<std::size_t>(options.height)]},
@@ -89,19 +86,9 @@ std::vector<Verdict> missing_bare(const MapsOptions& options, const Session& ses
 // Albedo, normals and relit cloth, as a person looks at them first.
 Result<void> draw_surface(const fs::path& folder, const Surface& surface) {
   report::Downsampler slope(surface.size(), 2), albedo(surface.size(), 3);
-  slope.add_rows(std::vector<View<const float>>{surface.slope.plane(0), surface.slope.plane(1)},
-                 surface.status.plane());
-  albedo.add_rows(std::vector<View<const float>>{surface.albedo.plane(0), surface.albedo.plane(1),
-                                                 surface.albedo.plane(2)},
-                  surface.status.plane());
-  Image<float> normal(slope.averages().size(), 3);
-  for (int y = 0; y < normal.height(); ++y) {
-    for (int x = 0; x < normal.width(); ++x) {
-      normal(x, y, 0) = -slope.averages()(x, y, 0);
-      normal(x, y, 1) = -slope.averages()(x, y, 1);
-      normal(x, y, 2) = 1;
-    }
-  }
+  slope.add_rows(planes_of(surface.slope), surface.status.plane());
+  albedo.add_rows(planes_of(surface.albedo), surface.status.plane());
+  const Image<float> normal = normals_of(slope.averages());
   const Image<float>& seen = albedo.averages();
   const double scale = report::display_scale(seen);
   if (Result<void> ok = write_png(folder / "albedo.png", report::albedo_picture(seen, scale)); !ok) return ok;
@@ -123,9 +110,10 @@ Result<FinishingInput> known_of(const Session& session, const RectifyReport& rec
   if (!document) return document.error();
   const Result<SolveFacts> facts = solve_facts_from_json(*document);
   if (!facts) return facts.error();
-  const Json by_calibration = facts->sigma_normal_deg.value("calibration", Json());
-  const bool is_told = by_calibration.is_object() && by_calibration.value("median", Json()).is_number();
-  return FinishingInput{.slow_sigma_deg = is_told ? by_calibration["median"].get<double>() : 0.0};
+  const Json::json_pointer by_calibration("/calibration/median");
+  const Json& sigma = facts->sigma_normal_deg;
+  const bool is_told = sigma.contains(by_calibration) && sigma[by_calibration].is_number();
+  return FinishingInput{.slow_sigma_deg = is_told ? sigma[by_calibration].get<double>() : 0.0};
 }
 
 // On the grid that flattening found, which later steps changed.
@@ -138,9 +126,8 @@ Result<void> write_removed(MapWork& work, const FinishingFacts& finished) {
   facts.why = "slopes that flattening took off, mm a mm";
   facts.more = {{"width", finished.removed.width()}, {"height", finished.removed.height()}};
   work.made.push_back(std::move(facts));
-  return write_image(folder / "slopes.exr",
-                     std::vector<View<const float>>{finished.removed.plane(0), finished.removed.plane(1)},
-                     {"slope_x", "slope_y"}, {.compression = work.compression});
+  return write_image(folder / "slopes.exr", planes_of(finished.removed), {"slope_x", "slope_y"},
+                     {.compression = work.compression});
 }
 
 // Each that was asked for, in the order of derived_maps().

@@ -93,25 +93,6 @@ Result<Image<float>> read_lobe(const fs::path& folder, Size size) {
   return lobe;
 }
 
-std::vector<View<const float>> views_of(const Image<float>& map) {
-  std::vector<View<const float>> views;
-  for (int p = 0; p < map.planes(); ++p) views.push_back(map.plane(p));
-  return views;
-}
-
-Image<float> normals_of(const Image<float>& slope) {
-  Image<float> normal(slope.size(), 3);
-  for (int y = 0; y < slope.height(); ++y) {
-    for (int x = 0; x < slope.width(); ++x) {
-      const Vec3 n = normalized(Vec3{-slope(x, y, 0), -slope(x, y, 1), 1});
-      normal(x, y, 0) = static_cast<float>(n.x);
-      normal(x, y, 1) = static_cast<float>(n.y);
-      normal(x, y, 2) = static_cast<float>(n.z);
-    }
-  }
-  return normal;
-}
-
 // Roughness as games have it, before the planes that a surface keeps.
 Image<float> roughness_of(const Image<float>& lobe) {
   Image<float> out(lobe.size(), 4);
@@ -132,6 +113,25 @@ Result<void> write_status(const fs::path& file, const Image<std::uint16_t>& stat
 }
 
 }  // namespace
+
+std::vector<View<const float>> planes_of(const Image<float>& map) {
+  std::vector<View<const float>> views;
+  for (int p = 0; p < map.planes(); ++p) views.push_back(map.plane(p));
+  return views;
+}
+
+Image<float> normals_of(const Image<float>& slope) {
+  Image<float> normal(slope.size(), 3);
+  for (int y = 0; y < slope.height(); ++y) {
+    for (int x = 0; x < slope.width(); ++x) {
+      const Vec3 n = normalized(Vec3{-slope(x, y, 0), -slope(x, y, 1), 1});
+      normal(x, y, 0) = static_cast<float>(n.x);
+      normal(x, y, 1) = static_cast<float>(n.y);
+      normal(x, y, 2) = static_cast<float>(n.z);
+    }
+  }
+  return normal;
+}
 
 Result<Surface> read_surface(const fs::path& rectified, double mm_per_pixel) {
   const Result<SolveMaps> maps = SolveMaps::open(rectified);
@@ -167,7 +167,7 @@ Result<void> write_surface(const fs::path& folder, const Surface& surface, Compr
   const WriteOptions half = {.type = SampleType::kHalf, .compression = compression};
   const auto write = [&](const char* name, const Image<float>& map, const std::vector<std::string>& channels,
                          const WriteOptions& options) {
-    return map.empty() ? Result<void>() : write_image(folder / name, views_of(map), channels, options);
+    return map.empty() ? Result<void>() : write_image(folder / name, planes_of(map), channels, options);
   };
   if (Result<void> ok = write_status(folder / "status.png", surface.status); !ok) return ok;
   if (Result<void> ok = write("normal.exr", normals_of(surface.slope), kNormalChannels, whole); !ok)

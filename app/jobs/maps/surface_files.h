@@ -2,12 +2,19 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "core/compression.h"
+#include "core/image.h"
 #include "core/result.h"
 #include "material/surface.h"
 
 namespace weft::app {
+
+std::vector<View<const float>> planes_of(const Image<float>& map);
+
+/// X, Y, Z of unit normals, (-x, -y, 1) by their slopes.
+Image<float> normals_of(const Image<float>& slope);
 
 /// The maps of a folder that weft rectify made, as a surface. Errors of read_image(); kBadData where sizes
 /// differ or a value is not finite.
