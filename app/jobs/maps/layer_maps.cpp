@@ -44,7 +44,7 @@ Result<void> make_opacity(MapWork& work) {
                 {"is_coverage", found.is_coverage()},
                 {"clipped", found.clipped},
                 {"unreadable", found.unreadable}};
-  return draw_map(work, std::move(facts), work.surface.opacity.plane());
+  return draw_map(work, std::move(facts), {work.surface.opacity.plane()});
 }
 
 }  // namespace weft::app

@@ -76,10 +76,10 @@ Result<void> make_roughness(MapWork& work) {
   roughness.file = "roughness.exr";
   roughness.channels = {"roughness", "alpha", "alpha_along", "yarn_deg"};
   const Image<float> shown = on_scale(GlossScale::kRoughness, mean_alphas(work.surface.lobe));
-  if (Result<void> ok = draw_map(work, std::move(roughness), shown.plane()); !ok) return ok;
+  if (Result<void> ok = draw_map(work, std::move(roughness), {shown.plane()}); !ok) return ok;
   specular.file = "specular.exr";
   specular.channels = {"f0"};
-  return draw_map(work, std::move(specular), work.surface.lobe.plane(3));
+  return draw_map(work, std::move(specular), {work.surface.lobe.plane(3)});
 }
 
 Result<void> make_gloss(MapWork& work) {

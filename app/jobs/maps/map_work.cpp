@@ -12,18 +12,17 @@
 namespace weft::app {
 namespace {
 
-// Heat from the least to the largest value.
-Result<void> draw(MapFacts& facts, const std::filesystem::path& folder, View<const float> plane) {
-  report::Downsampler reduced(plane.size(), 1);
-  reduced.add_rows(std::vector<View<const float>>{plane});
-  Image<float> shown(reduced.averages().size());
+// Normals and colours as such, anything else as heat from its least to its largest value.
+report::Picture picture_of(const MapFacts& facts, const Image<float>& reduced) {
+  if (reduced.planes() >= 3 && facts.channels.front() == "X") return report::normal_picture(reduced);
+  if (reduced.planes() >= 3 && facts.channels.front() == "R")
+    return report::albedo_picture(reduced, report::display_scale(reduced));
+  Image<float> shown(reduced.size());
   for (int y = 0; y < shown.height(); ++y) {
-    for (int x = 0; x < shown.width(); ++x)
-      shown(x, y) = reduced.averages()(x, y) - static_cast<float>(facts.least);
+    for (int x = 0; x < shown.width(); ++x) shown(x, y) = reduced(x, y) - static_cast<float>(facts.least);
   }
-  facts.picture = facts.name + ".png";
   const double span = facts.most > facts.least ? facts.most - facts.least : 1;
-  return write_png(folder / facts.picture, report::heat_picture(shown.plane(), span, " " + facts.unit));
+  return report::heat_picture(shown.plane(), span, " " + facts.unit);
 }
 
 }  // namespace
@@ -33,12 +32,16 @@ Result<void> write_map(MapWork& work, MapFacts facts, const std::vector<View<con
                                 .compression = work.compression};
   if (Result<void> ok = write_image(work.folder / facts.file, planes, facts.channels, options); !ok)
     return ok;
-  return draw_map(work, std::move(facts), planes.front());
+  return draw_map(work, std::move(facts), planes);
 }
 
-Result<void> draw_map(MapWork& work, MapFacts facts, View<const float> plane) {
-  measure(facts, plane);
-  if (Result<void> ok = draw(facts, work.folder, plane); !ok) return ok;
+Result<void> draw_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes) {
+  measure(facts, planes.front());
+  report::Downsampler reduced(planes.front().size(), static_cast<int>(planes.size()));
+  reduced.add_rows(planes);
+  facts.picture = facts.name + ".png";
+  const report::Picture picture = picture_of(facts, reduced.averages());
+  if (Result<void> ok = write_png(work.folder / facts.picture, picture); !ok) return ok;
   work.made.push_back(std::move(facts));
   return {};
 }

@@ -50,11 +50,11 @@ struct MapWork {
   std::vector<Verdict> verdicts = {};
 };
 
-/// Writes the planes as the file that `facts` names, half floats but for millimetres, with a picture of the
-/// first one, and adds the map to what was made.
+/// Writes the planes as the file that `facts` names, half floats but for millimetres, with a picture, and
+/// adds the map to what was made.
 Result<void> write_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes);
 /// A map that is a file of the surface already: its range and its picture.
-Result<void> draw_map(MapWork& work, MapFacts facts, View<const float> plane);
+Result<void> draw_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes);
 /// A map that is one number.
 void write_constant(MapWork& work, MapFacts facts, double value, std::string why);
 

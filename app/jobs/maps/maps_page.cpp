@@ -46,22 +46,34 @@ report::Table table_of_checks(const Json& checks) {
   return table;
 }
 
-// What a step was told and found, in one line.
-std::string told(const Json& object) {
+std::string words_of(const Json& value) {
+  if (value.is_number()) return fmt::format("{:.4g}", value.get<double>());
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
   std::string words;
-  for (const auto& [key, value] : object.items()) {
-    if (key == "do" || key == "facts") continue;
-    words += fmt::format("{}{} {}", words.empty() ? "" : ", ", key,
-                         value.is_string() ? value.get<std::string>() : value.dump());
-  }
+  for (const Json& each : value) words += (words.empty() ? "" : ", ") + words_of(each);
   return words;
 }
 
+// A row for each value of what a step was told or found, of those within others too.
+void add_rows(const std::string& step, const std::string& within, const Json& object, report::Table& table) {
+  for (const auto& [key, value] : object.items()) {
+    if (key == "do" || key == "facts") continue;
+    const std::string name = within.empty() ? key : within + " " + key;
+    if (value.is_object()) {
+      add_rows(step, name, value, table);
+    } else {
+      table.rows.push_back({step, name, words_of(value)});
+    }
+  }
+}
+
 report::Table table_of_steps(const Json& steps) {
-  report::Table table = {.header = {"step", "told", "found"}};
+  report::Table table = {.header = {"step", "told, and found", ""}};
   for (const Json& step : steps) {
-    table.rows.push_back(
-        {step["do"].get<std::string>(), told(step), step.contains("facts") ? told(step["facts"]) : ""});
+    const std::string name = step["do"].get<std::string>();
+    add_rows(name, "", step, table);
+    if (step.contains("facts")) add_rows(name, "", step["facts"], table);
   }
   return table;
 }
