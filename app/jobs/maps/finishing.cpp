@@ -100,10 +100,13 @@ class Finisher {
     material::flatten(*slow, surface_.status.plane(), surface_.slope.plane(0), surface_.slope.plane(1),
                       context_.threads);
     if (slow->acts) facts.removed = material::removed_slopes(*slow, context_.threads);
-    return Json{
-        {"acts", slow->acts},         {"method", kFlattenNames[static_cast<std::size_t>(slow->method)]},
-        {"tilt_deg", slow->tilt_deg}, {"range_deg", slow->range_deg},
-        {"bow_mm", slow->bow_mm},     {"sigma_deg", flatten.sigma_deg}};
+    return Json{{"acts", slow->acts},
+                {"method", kFlattenNames[static_cast<std::size_t>(slow->method)]},
+                {"degree_found", slow->degree},
+                {"tilt_deg", slow->tilt_deg},
+                {"range_deg", slow->range_deg},
+                {"bow_mm", slow->bow_mm},
+                {"sigma_deg", flatten.sigma_deg}};
   }
 
   Result<Json> straighten(std::array<int, 2> repeats) {
