@@ -255,6 +255,72 @@ std::array<double, 2> half_angles(const LobeSamples& samples, const LobeFit& fit
   return {quantile(angles, 0.02), quantile(angles, 0.98)};
 }
 
+struct Family {
+  LobeFit fit;
+  double wins;  // share of GGX's cost that it must save
+};
+
+// GGX first.
+std::vector<Family> fitted_families(const Trial& trial, std::size_t states) {
+  std::vector<Family> families = {{trial.isotropic(LobeFamily::kGgx), 0},
+                                  {trial.isotropic(LobeFamily::kBeckmann), kOtherWins},
+                                  {trial.anisotropic(), kYarnWins}};
+  // One state of the films does not tell sheen from a diffuse part that bends. Two do: what is left of the
+  // costs is all the shape of the lobe, of which sheen has as many values as GGX.
+  if (states > 1) families.push_back({trial.isotropic(LobeFamily::kCloth), 0});
+  return families;
+}
+
+const LobeFit& best_of(const std::vector<Family>& families) {
+  const LobeFit& ggx = families.front().fit;
+  const LobeFit* best = &ggx;
+  for (const Family& family : families) {
+    if (is_round(family.fit.lobe)) continue;
+    if (family.fit.total() < (1 - family.wins) * ggx.total() && family.fit.total() < best->total())
+      best = &family.fit;
+  }
+  return *best;
+}
+
+// The families that explain the readings nearly as well as the best one; whether there are any.
+bool add_rivals(const std::vector<Family>& families, const LobeFit& best, double lambert_chi2,
+                std::vector<Lobe>& rivals) {
+  const std::size_t before = rivals.size();
+  for (const Family& family : families) {
+    if (&family.fit == &best || is_round(family.fit.lobe)) continue;
+    if (family.fit.total() < (1 + kUndecided) * best.total() &&
+        refusal_of(family.fit, lambert_chi2) == LobeRefusal::kNone)
+      rivals.push_back(family.fit.lobe);
+  }
+  return rivals.size() > before;
+}
+
+bool is_certain(const MeasuredLobe& measured) {
+  return measured.sigma_alpha < kMostSigmaAlpha && measured.sigma_f0 < kMostSigmaF0 * measured.lobe.f0;
+}
+
+MeasuredLobe refused(LobeRefusal why, MeasuredLobe measured) {
+  MeasuredLobe none;
+  none.refusal = why;
+  none.candidates = std::move(measured.candidates);
+  return none;
+}
+
+// What is said of a lobe beside its values.
+void describe(const LobeSamples& samples, bool bends, MeasuredLobe& measured) {
+  LobeParameters fitted = parameters_of(measured.lobe.family);
+  if (bends) fitted = with_bend(fitted);
+  measured.by_lights = LobeByLights(samples, measured.fit, fitted);
+  add_drift(measured);
+  measured.half_deg = half_angles(samples, measured.fit);
+  measured.points = points_of(samples, measured.fit);
+  std::vector<double> albedos;
+  for (const Vec3& b : measured.fit.b) albedos.push_back(length(b));
+  measured.median_albedo = median(albedos);
+  const auto wefts = std::ranges::count_if(measured.fit.yarn, [](double yarn) { return yarn > 0; });
+  measured.weft_share = static_cast<double>(wefts) / static_cast<double>(measured.fit.yarn.size());
+}
+
 }  // namespace
 
 const char* name_of(LobeRefusal refusal) {
@@ -325,40 +391,20 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   measured.refusal = LobeRefusal::kLambertFits;
   if (!(lambert_chi2 > kLambertFitsTo)) return measured;
 
-  struct Family {
-    LobeFit fit;
-    double wins;  // share of GGX's cost that it must save
-  };
-  const LobeFit ggx = trial.isotropic(LobeFamily::kGgx);
-  std::vector<Family> families = {
-      {ggx, 0}, {trial.isotropic(LobeFamily::kBeckmann), kOtherWins}, {trial.anisotropic(), kYarnWins}};
-  // One state of the films does not tell sheen from a diffuse part that bends. Two do: what is left of the
-  // costs is all the shape of the lobe, of which sheen has as many values as GGX.
-  if (samples.states() > 1) families.push_back({trial.isotropic(LobeFamily::kCloth), 0});
-  const LobeFit* straight = &families.front().fit;
-  for (const Family& family : families) {
-    measured.candidates.push_back({family.fit.lobe, family.fit.chi2});
-    if (is_round(family.fit.lobe)) continue;
-    if (family.fit.total() < (1 - family.wins) * ggx.total() && family.fit.total() < straight->total())
-      straight = &family.fit;
-  }
-  const LobeFit bent = trial.bent(*straight);
+  const std::vector<Family> families = fitted_families(trial, samples.states());
+  for (const Family& family : families) measured.candidates.push_back({family.fit.lobe, family.fit.chi2});
+  const LobeFit& straight = best_of(families);
+  const LobeFit bent = trial.bent(straight);
   measured.candidates.push_back({bent.lobe, bent.chi2});
-  const bool bends = bent.total() < (1 - kBendWins) * straight->total();
-  const LobeFit& best = bends ? bent : *straight;
+  const bool bends = bent.total() < (1 - kBendWins) * straight.total();
+  const LobeFit& best = bends ? bent : straight;
   measured.refusal = refusal_of(best, lambert_chi2);
   if (measured.is_measured() && !bends && !agrees(best.lobe, bent.lobe))
     measured.refusal = LobeRefusal::kBentDiffuse;
   if (!measured.is_measured()) return measured;
-  std::vector<Lobe> rivals = {bends ? straight->lobe : bent.lobe};
-  for (const Family& family : families) {
-    if (&family.fit == straight || is_round(family.fit.lobe)) continue;
-    if (family.fit.total() < (1 + kUndecided) * straight->total() &&
-        refusal_of(family.fit, lambert_chi2) == LobeRefusal::kNone) {
-      measured.is_family_undecided = true;
-      rivals.push_back(family.fit.lobe);
-    }
-  }
+
+  std::vector<Lobe> rivals = {bends ? straight.lobe : bent.lobe};
+  measured.is_family_undecided = add_rivals(families, straight, lambert_chi2, rivals);
   LobeFit refined = Trial(samples, start, threads).refined(best.lobe);
   // What the trial pixels told may not hold for all.
   measured.refusal = refusal_of(refined, lambert_chi2);
@@ -366,23 +412,8 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   measured.fit = std::move(refined);
   measured.lobe = measured.fit.lobe;
   write_sigmas(rivals, measured);
-  if (!(measured.sigma_alpha < kMostSigmaAlpha && measured.sigma_f0 < kMostSigmaF0 * measured.lobe.f0)) {
-    MeasuredLobe refused;
-    refused.refusal = LobeRefusal::kUncertain;
-    refused.candidates = std::move(measured.candidates);
-    return refused;
-  }
-  LobeParameters fitted = parameters_of(measured.lobe.family);
-  if (bends) fitted = with_bend(fitted);
-  measured.by_lights = LobeByLights(samples, measured.fit, fitted);
-  add_drift(measured);
-  measured.half_deg = half_angles(samples, measured.fit);
-  measured.points = points_of(samples, measured.fit);
-  std::vector<double> albedos;
-  for (const Vec3& b : measured.fit.b) albedos.push_back(length(b));
-  measured.median_albedo = median(albedos);
-  const auto wefts = std::ranges::count_if(measured.fit.yarn, [](double yarn) { return yarn > 0; });
-  measured.weft_share = static_cast<double>(wefts) / static_cast<double>(measured.fit.yarn.size());
+  if (!is_certain(measured)) return refused(LobeRefusal::kUncertain, std::move(measured));
+  describe(samples, bends, measured);
   return measured;
 }
 
