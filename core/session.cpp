@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <string_view>
 #include <utility>
@@ -75,6 +76,18 @@ Result<Films> read_films(const Json& films, const std::string& where) {
   if (!(read.leak >= 0 && read.leak <= 0.5)) fields.reject("leak", "must be from 0 to 0.5");
   if (!(read.scattered > 0 && read.scattered <= 1))
     fields.reject("scattered", "must be above 0 and at most 1");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  return read;
+}
+
+Result<ClothPose> read_pose(const Json& pose, const std::string& where) {
+  JsonFields fields(pose, where);
+  ClothPose read;
+  read.tilt_deg = fields.optional_number("tilt_deg").value_or(read.tilt_deg);
+  read.downhill_deg = fields.optional_number("downhill_deg").value_or(read.downhill_deg);
+  if (!(read.tilt_deg >= 0 && read.tilt_deg <= kMostTilt_deg))
+    fields.reject("tilt_deg", fmt::format("must be from 0 to {}", kMostTilt_deg));
+  if (!(std::abs(read.downhill_deg) <= 360)) fields.reject("downhill_deg", "must be from -360 to 360");
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   return read;
 }
@@ -188,6 +201,10 @@ Result<Session> read_session(const std::filesystem::path& folder) {
   Result<Films> read = read_films(films, file.string() + ": films");
   if (!read) return std::move(read).error();
   session.films = *read;
+  Result<ClothPose> pose =
+      read_pose(fields.has("pose") ? fields.object("pose") : Json::object(), file.string() + ": pose");
+  if (!pose) return std::move(pose).error();
+  session.pose = *pose;
   for (std::size_t i = 0; i < shots.size(); ++i) {
     Result<Shot> shot = read_shot(shots[i], fmt::format("{}: shot {}", file.string(), i));
     if (!shot) return std::move(shot).error();
@@ -212,6 +229,10 @@ Result<void> write_session(const Session& session) {
   if (session.films != Films()) {
     if (!document.contains("films")) document["schema"] = std::string(kSessionSchema) + "/1.3";
     document["films"] = {{"leak", session.films.leak}, {"scattered", session.films.scattered}};
+  }
+  if (!session.pose.is_level()) {
+    if (!document.contains("pose")) document["schema"] = std::string(kSessionSchema) + "/1.4";
+    document["pose"] = {{"tilt_deg", session.pose.tilt_deg}, {"downhill_deg", session.pose.downhill_deg}};
   }
   return write_json(session.folder / "session.json", document);
 }

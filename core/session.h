@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/cloth_pose.h"
 #include "core/json_document.h"
 #include "core/result.h"
 
@@ -57,7 +58,8 @@ struct Shot {
 struct Session {
   std::filesystem::path folder;
   std::string fabric;
-  double cloth_height_mm = 0;  ///< of the cloth's surface above the table
+  double cloth_height_mm = 0;  ///< of the cloth's surface above the table, on the z axis
+  ClothPose pose;
   std::string rig;
   std::string calibration_id;
   std::string state = "complete";  ///< "capturing" until the last frame has landed

@@ -139,13 +139,15 @@ class Builder {
 }  // namespace
 
 Result<PassList> build_passes(const Scene& scene, const SceneRig& rig, Output output) {
+  const Result<SceneRig> seen = seen_from_cloth(scene, rig);
+  if (!seen) return seen.error();
   Halos halos;
   if (output != Output::kSurface) {
-    const Result<Halos> needed = halos_of(scene, rig);
+    const Result<Halos> needed = halos_of(scene, *seen);
     if (!needed) return needed.error();
     halos = *needed;
   }
-  return Builder(scene, rig, output, halos).build();
+  return Builder(scene, *seen, output, halos).build();
 }
 
 }  // namespace weft::simulator

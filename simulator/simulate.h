@@ -42,8 +42,12 @@ struct SimulationReport {
 /// DNG, session.json and the exact calibration. Under truth/ there are scene.toml, normal.exr (X, Y, Z),
 /// albedo.exr (R, G, B) and height.exr (mm, above the plane cloth_height_mm). With cast shadows there is a
 /// visibility_ledKK.exr for each LED, the share of the LED that each point sees. With interreflection there
-/// is an indirect_ledKK.exr (R, G, B), the reading of a white surface by light from the cloth alone. The same
-/// scene gives the same bytes. Memory holds a band of rows of everything.
+/// is an indirect_ledKK.exr (R, G, B), the reading of a white surface by light from the cloth alone, and
+/// openness.exr, the share of an even sky that each point sees by its transport.bounce_rays. Of a material
+/// that has lobe_parameters_of() there are roughness.exr (roughness, the root of alpha, of two of their
+/// geometric mean; alpha across the yarn; alpha_along; yarn_deg, its azimuth from x, 0 to 180, 0 where the
+/// lobe has no direction) and specular.exr (R, G, B: f0). The same scene gives the same bytes. Memory holds a
+/// band of rows of everything.
 ///
 /// The folder is made aside, with its parents, and renamed when complete: after an error or an interrupt
 /// there is nothing. Errors: kBadData (the scene), kCannotCreate (`session_folder` exists or may not be

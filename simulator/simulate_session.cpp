@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <new>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -19,6 +21,7 @@
 #include "simulator/frame_parts.h"
 #include "simulator/map_files.h"
 #include "simulator/plan.h"
+#include "simulator/reflectance/lobe_parameters.h"
 
 namespace weft::simulator {
 namespace {
@@ -44,6 +47,14 @@ class Stopwatch {
 
 Error interrupted() {
   return {ErrorKind::kInterrupted, "interrupted", "", "stopped on request", ""};
+}
+
+constexpr int kLobePlanes = 7;  ///< of truth: roughness and specular
+
+/// The yarn's, 0 to 180: it has no head.
+double azimuth_deg(const SurfacePoint& point) {
+  const double turned = degrees(std::atan2(point.along_y, point.along_x));
+  return turned - 180 * std::floor(turned / 180);
 }
 
 /// The lists of passes that the shots of a session need.
@@ -105,6 +116,8 @@ class SessionWriter {
         options_(options),
         exposures_(exposures_of(plan)),
         band_rows_(of_shots.front().halo > 0 ? kTallBandRows : kBandRows),
+        lobe_(plan.scene.effects.reflectance ? lobe_parameters_of(plan.scene.material.reflectance)
+                                             : std::nullopt),
         surface_runner_(std::move(surface), options.tiles) {
     for (PassList& list : of_shots) shot_runners_.emplace_back(std::move(list), options.tiles);
   }
@@ -153,6 +166,10 @@ class SessionWriter {
     if (!options_.truth) return 0;
     return (scene_.effects.cast_shadows ? 1 : 0) + (scene_.effects.interreflection ? 3 : 0);
   }
+  bool has_openness() const { return options_.truth && scene_.effects.interreflection; }
+  std::uint64_t truth_planes() const {
+    return kTruthPlanes + static_cast<std::uint64_t>(lobe_ ? kLobePlanes : 0) + (has_openness() ? 1U : 0U);
+  }
   std::string shot_name(int index, const char* ending) const {
     const Exposure& e = exposure(index);
     const std::string state = e.polariser == Polariser::kNone ? "" : fmt::format("_{}", name_of(e.polariser));
@@ -173,7 +190,7 @@ class SessionWriter {
     const std::uint64_t sample =
         scene_.frames == FrameFormat::kExr ? 3 * sizeof(float) : sizeof(std::uint16_t);
     const std::uint64_t disk =
-        pixels * (kTruthPlanes * sizeof(float) + count * sample + of_leds * sizeof(std::uint16_t));
+        pixels * (truth_planes() * sizeof(float) + count * sample + of_leds * sizeof(std::uint16_t));
     if (const std::uint64_t free = free_disk_bytes(target); free < disk) {
       return Error{ErrorKind::kInputOutput, "no room for the session", target.string(),
                    fmt::format("{} MB are needed, {} MB are free", disk / kMegabyte, free / kMegabyte),
@@ -182,7 +199,7 @@ class SessionWriter {
     const std::uint64_t band_pixels =
         static_cast<std::uint64_t>(std::min(band_rows_, height())) * static_cast<std::uint64_t>(width());
     return check_memory(band_pixels *
-                        (kTruthPlanes * sizeof(float) + count * sample + of_leds * sizeof(float)));
+                        (truth_planes() * sizeof(float) + count * sample + of_leds * sizeof(float)));
   }
 
   Result<void> write_calibration_folder() {
@@ -208,9 +225,14 @@ class SessionWriter {
   Result<void> write_truth() {
     if (!options_.truth) return {};
     if (Result<void> ok = write_file(folder_ / "truth" / "scene.toml", to_toml(given_)); !ok) return ok;
-    Result<TruthFiles> maps = TruthFiles::open(
-        folder_ / "truth", {width(), height()}, band_rows_,
-        {{"normal.exr", {"X", "Y", "Z"}}, {"albedo.exr", {"R", "G", "B"}}, {"height.exr", {"Y"}}});
+    std::vector<TruthFiles::Map> files = {
+        {"normal.exr", {"X", "Y", "Z"}}, {"albedo.exr", {"R", "G", "B"}}, {"height.exr", {"Y"}}};
+    if (lobe_) {
+      files.push_back(
+          {"roughness.exr", {"roughness", "alpha", "alpha_along", "yarn_deg"}, SampleType::kHalf});
+      files.push_back({"specular.exr", {"R", "G", "B"}, SampleType::kHalf});
+    }
+    Result<TruthFiles> maps = TruthFiles::open(folder_ / "truth", {width(), height()}, band_rows_, files);
     if (!maps) return maps.error();
     Result<void> written = for_each_band([&](int y0, int y1) {
       maps->begin_band(y0);
@@ -233,8 +255,27 @@ class SessionWriter {
                                             [&](std::size_t i) { return tile.albedo[i][c]; });
                                  }
                                  maps.put(tile, 6, [&](std::size_t i) { return tile.surface[i].height_mm; });
+                                 if (lobe_) put_lobe(maps, tile);
                                },
                                {});
+  }
+
+  /// Targets on the cloth are matt.
+  void put_lobe(TruthFiles& maps, const Tile& tile) const {
+    const auto put = [&](int plane, double of_cloth, double of_target) {
+      maps.put(tile, kTruthPlanes + plane, [&](std::size_t i) {
+        return tile.target.empty() || tile.target[i] == kCloth ? of_cloth : of_target;
+      });
+    };
+    put(0, std::sqrt(std::sqrt(lobe_->alpha_across * lobe_->alpha_along)), 1);
+    put(1, lobe_->alpha_across, 1);
+    put(2, lobe_->alpha_along, 1);
+    maps.put(tile, kTruthPlanes + 3, [&](std::size_t i) {
+      return lobe_->has_direction && (tile.target.empty() || tile.target[i] == kCloth)
+                 ? azimuth_deg(tile.surface[i])
+                 : 0;
+    });
+    for (std::size_t c = 0; c < 3; ++c) put(4 + static_cast<int>(c), lobe_->f0[c], 0);
   }
 
   Result<void> write_frames() {
@@ -309,6 +350,7 @@ class SessionWriter {
       if (scene_.effects.interreflection)
         maps.push_back({fmt::format("indirect_led{:02}.exr", led), {"R", "G", "B"}, SampleType::kHalf});
     }
+    if (has_openness()) maps.push_back({"openness.exr", {"Y"}, SampleType::kHalf});
     return TruthFiles::open(folder_ / "truth", {width(), height()}, band_rows_, maps);
   }
 
@@ -324,7 +366,11 @@ class SessionWriter {
       }
       if (shots.empty()) continue;
       const Result<void> ok = shot_runners_[kind].run(
-          {0, y0, width(), y1}, shots, options_.stop, [](const Tile&) {},
+          {0, y0, width(), y1}, shots, options_.stop,
+          [&](const Tile& tile) {
+            if (kind == kOfShots && has_openness())
+              light.put(tile, leds() * planes_of_led(), [&](std::size_t i) { return tile.openness[i]; });
+          },
           [&](const Tile& tile) {
             const auto taken = std::find_if(exposures_.begin(), exposures_.end(),
                                             [&](const Exposure& e) { return e.shot == tile.shot; });
@@ -375,6 +421,7 @@ class SessionWriter {
     session_.folder = folder_;
     session_.fabric = scene_.fabric;
     session_.cloth_height_mm = scene_.geometry.cloth_height_mm;
+    session_.pose = scene_.pose;
     session_.rig = "virtual rig";
     session_.films.leak = scene_.films.leak;
     return write_session(session_);
@@ -391,6 +438,7 @@ class SessionWriter {
   const SimulateOptions& options_;
   std::vector<Exposure> exposures_;
   int band_rows_;
+  std::optional<LobeParameters> lobe_;  ///< of the cloth
   PassRunner surface_runner_;
   std::vector<PassRunner> shot_runners_;  ///< by PassKind
   fs::path folder_;

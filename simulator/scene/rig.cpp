@@ -58,10 +58,11 @@ Result<void> check_places(const Scene& scene, const std::vector<NearLight>& leds
     return refusal("too many LEDs", fmt::format("{} of at most {}", leds.size(), kMostLeds), "remove some");
   }
   for (std::size_t i = 0; i < leds.size(); ++i) {
-    if (leds[i].position_mm.z > height_mm && leds[i].position_mm.z > 0) continue;
+    const double over_cloth_mm = seen_from(scene.pose, height_mm, leds[i].position_mm).z;
+    if (over_cloth_mm > height_mm && leds[i].position_mm.z > 0) continue;
     return refusal(fmt::format("LED {} is not above table and cloth", i + 1),
                    fmt::format("it is at z = {} mm and the cloth at {} mm", leds[i].position_mm.z, height_mm),
-                   "raise it or lower geometry.cloth_height_mm");
+                   "raise it, or lower geometry.cloth_height_mm or pose.tilt_deg");
   }
   if (scene.camera.distance_mm > height_mm) return {};
   return refusal("the camera is not above the cloth",
@@ -192,6 +193,18 @@ Result<SceneRig> rig_of(const Scene& scene) {
                                kLongestExposure_us),
                    "change lights.flux or camera.iso");
   }
+  return rig;
+}
+
+Result<SceneRig> seen_from_cloth(const Scene& scene, SceneRig rig) {
+  if (scene.pose.is_level()) return rig;
+  const double height_mm = scene.geometry.cloth_height_mm;
+  rig.leds = std::get<NearLights>(seen_from(scene.pose, height_mm, Lights(std::move(rig.leds))));
+  rig.camera = seen_from(scene.pose, height_mm, rig.camera);
+  if (Result<void> ok = check_camera(rig.camera, height_mm); !ok) return std::move(ok).error();
+  const Result<Lens> lens = Lens::of(rig.camera);
+  if (!lens) return lens.error();
+  rig.lens = *lens;
   return rig;
 }
 

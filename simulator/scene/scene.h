@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/cloth_pose.h"
 #include "core/color_spaces.h"
 #include "core/result.h"
 #include "core/vec.h"
@@ -217,6 +218,9 @@ struct Scene {
   FilmSettings films;
   SpectraSettings spectra;
   TransportSettings transport;
+  /// The plane of the cloth, its folds and all targets, tilted under lights and camera. Truth is that of the
+  /// plane itself.
+  ClothPose pose;
   FrameFormat frames = FrameFormat::kDng;
   std::vector<DamageSettings> damage;   ///< in this order
   std::vector<TargetSettings> targets;  ///< on the table beside or over the cloth

@@ -463,6 +463,12 @@ void walk(Visitor& v, EffectSettings& e) {
 }
 
 template <typename Visitor>
+void walk(Visitor& v, ClothPose& p) {
+  v.number("tilt_deg", p.tilt_deg, {0, kMostTilt_deg});
+  v.number("downhill_deg", p.downhill_deg, kAngle_deg);
+}
+
+template <typename Visitor>
 void walk(Visitor& v, Scene& s) {
   v.text("fabric", s.fabric);
   v.integer("seed", s.seed, 0, std::numeric_limits<std::int64_t>::max());
@@ -470,6 +476,7 @@ void walk(Visitor& v, Scene& s) {
   v.automatic("effects", "to", s.auto_to_sigma);
   v.section("camera", s.camera);
   v.section("geometry", s.geometry);
+  v.optional_section("pose", s.pose);
   v.section("material", s.material);
   LightSection lights = {s.lights, s.camera.distance_mm};
   v.section("lights", lights);

@@ -62,6 +62,15 @@ TEST(Schemas, Session1_3ThroughFilms) {
   EXPECT_EQ(before->films, Films()) << "nobody said";
 }
 
+TEST(Schemas, Session1_4OfATiltedCloth) {
+  const Result<Session> session = read_session(kSchemas / "weft.session-1.4");
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_EQ(session->pose, (ClothPose{.tilt_deg = 20, .downhill_deg = -45}));
+  const Result<Session> before = read_session(kSchemas / "weft.session-1.3");
+  ASSERT_TRUE(before) << before.error().message();
+  EXPECT_TRUE(before->pose.is_level()) << "nobody said";
+}
+
 TEST(Schemas, Calibration1WithCameraResponseAndNearLights) {
   const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1");
   ASSERT_TRUE(calibration) << calibration.error().message();

@@ -345,6 +345,66 @@ TEST(Simulate, TakesAFolderNameWithASlashAtItsEnd) {
   EXPECT_THAT(names_in(folder), ElementsAre("a.weft"));
 }
 
+TEST(Simulate, TruthHoldsTheLobeAndHowYarnsLie) {
+  const fs::path folder = fresh_folder() / "a.weft";
+  Scene scene = small_scene();
+  scene.effects.reflectance = true;
+  scene.material.reflectance = AnisotropicGgx{.alpha = 0.5, .anisotropy = 0.75, .f0 = {0.0625, 0.125, 0.25}};
+  simulated(scene, folder);
+  const Result<LoadedImage> roughness = read_image(folder / "truth" / "roughness.exr");
+  const Result<LoadedImage> specular = read_image(folder / "truth" / "specular.exr");
+  const Result<LoadedImage> albedo = read_image(folder / "truth" / "albedo.exr");
+  ASSERT_TRUE(roughness && specular && albedo);
+  EXPECT_THAT(roughness->info.channels, ElementsAre("roughness", "alpha", "alpha_along", "yarn_deg"));
+  int wefts = 0;
+  for (int y = 0; y < 96; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      EXPECT_NEAR(roughness->planes(x, y, 0), 0.5, 1e-3);  // (0.5 * 0.125)^(1/4)
+      EXPECT_EQ(roughness->planes(x, y, 1), 0.5F);
+      EXPECT_EQ(roughness->planes(x, y, 2), 0.125F);
+      EXPECT_EQ(specular->planes(x, y, 2), 0.25F);
+      // Warp lies along y, and is dyed dark.
+      const bool is_warp = albedo->planes(x, y, 0) < 0.15F;
+      wefts += !is_warp;
+      EXPECT_NEAR(roughness->planes(x, y, 3), is_warp ? 90 : 0, 1e-3) << x << ", " << y;
+    }
+  }
+  EXPECT_GT(wefts, 1000);
+  EXPECT_LT(wefts, 11000);
+}
+
+TEST(Simulate, TruthOfMattClothHasNoLobe) {
+  const fs::path folder = fresh_folder() / "a.weft";
+  simulated(small_scene(), folder);
+  EXPECT_THAT(names_in(folder / "truth"),
+              testing::UnorderedElementsAre("albedo.exr", "height.exr", "normal.exr", "scene.toml"));
+}
+
+TEST(Simulate, TruthHoldsTheOpennessThatBouncesLeave) {
+  for (const bool is_level : {true, false}) {
+    const fs::path folder = fresh_folder() / "a.weft";
+    Scene scene = small_scene();
+    scene.geometry.kind = is_level ? GeometryKind::kFlat : GeometryKind::kTwill;
+    scene.effects.interreflection = true;
+    simulated(scene, folder);
+    const Result<LoadedImage> openness = read_image(folder / "truth" / "openness.exr");
+    ASSERT_TRUE(openness) << is_level;
+    double sum = 0;
+    for (int y = 0; y < 96; ++y) {
+      for (int x = 0; x < 128; ++x) {
+        const float open = openness->planes(x, y);
+        ASSERT_TRUE(open >= 0 && open <= 1) << open;
+        sum += static_cast<double>(open) / (128 * 96);
+      }
+    }
+    if (is_level) {
+      EXPECT_EQ(sum, 1);
+    } else {
+      EXPECT_TRUE(sum > 0.5 && sum < 0.99) << sum;
+    }
+  }
+}
+
 TEST(Simulate, RefusesASceneMadeInCodeThatBreaksItsRanges) {
   Scene scene = small_scene();
   scene.camera.height = -4;
