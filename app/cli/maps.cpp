@@ -83,9 +83,9 @@ void print_words(const MapsReport& report) {
   print(fmt::format("  look at {}", (report.folder / "report.html").string()));
 }
 
-void print_prices(const std::vector<MapPrice>& prices) {
+void print_prices(const MapPrices& prices) {
   print(fmt::format("{:10}  {:14}  {:>8}  {:>9}", "map", "setting", "seconds", "rms error"));
-  for (const MapPrice& price : prices) {
+  for (const MapPrice& price : prices.rows) {
     print(fmt::format("{:10}  {:14}  {:>8.2f}  {:>9.5f} {}{}", price.map, price.setting, price.seconds,
                       price.error, price.unit,
                       price.is_chosen    ? ", chosen"
@@ -97,11 +97,12 @@ void print_prices(const std::vector<MapPrice>& prices) {
 
 // What each setting costs and is off by on a piece of this cloth, before any of it is spent.
 Result<int> explain(MapsArguments& arguments, const CommonArguments& common) {
-  const Result<std::vector<MapPrice>> prices = [&] {
+  const Result<MapPrices> prices = [&] {
     ProgressLine line(common.quiet);
     return price_maps(arguments.maps, arguments.aims, {common.threads, stop_on_signal(), line.callback()});
   }();
   if (!prices) return prices.error();
+  arguments.maps.derive.directions = prices->directions;
   if (!arguments.only_explains) return kDone;
   if (common.json) {
     print_json({{"rows", json_of(*prices)}});
@@ -122,10 +123,7 @@ Result<int> make(const MapsArguments& arguments, const CommonArguments& common) 
   }();
   if (!report) return report.error();
   if (common.json) {
-    Json document = report->document;
-    document["folder"] = report->folder.string();
-    document["was_there"] = report->was_there;
-    print_json(document);
+    print_product(report->document, report->folder, report->was_there);
   } else {
     print_words(*report);
   }
@@ -157,6 +155,12 @@ Run add_maps(Options& options) {
   options.add("--maps", &a->maps.maps, help_of_maps()).by_commas().one_of(map_names());
   options.add("--bare", &a->maps.bare,
               "Session of the table without cloth, photographed by the light below at the same exposure");
+  options
+      .add("--table", &a->maps.table_albedo,
+           "Albedo R,G,B of the table that shows through holes, to be taken out of their rims")
+      .by_commas()
+      .takes(3, 3)
+      .in_range(0.0, 1.0);
   options.add_choice("--height", &derive.height, kHeightMethodNames,
                      "How slopes are integrated: tiled, direct, multigrid, seed");
   options.add_flag("--weigh", &derive.weighs_by_sigma, "Height: each pixel by one over its variance");

@@ -20,10 +20,7 @@ Result<int> rectify(const RectifyOptions& options, const CommonArguments& common
   }();
   if (!report) return report.error();
   if (common.json) {
-    Json document = report->document;
-    document["folder"] = report->folder.string();
-    document["was_there"] = report->was_there;
-    print_json(document);
+    print_product(report->document, report->folder, report->was_there);
     return kDone;
   }
   const Json& d = report->document;

@@ -147,6 +147,12 @@ void print(std::string_view text) {
 void print_json(const Json& document) {
   write_all(stdout, document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n");
 }
+
+void print_product(Json document, const std::filesystem::path& folder, bool was_there) {
+  document["folder"] = folder.string();
+  document["was_there"] = was_there;
+  print_json(document);
+}
 Result<void> flush_output() {
   errno = 0;
   const bool flushed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -49,6 +50,8 @@ std::optional<std::string> typed_line(const std::stop_token& stop);
 
 void print(std::string_view text);  ///< to standard output, with a line end
 void print_json(const Json& document);
+/// The document of a product with its `folder`, and whether it `was_there` before.
+void print_product(Json document, const std::filesystem::path& folder, bool was_there);
 /// kInputOutput if anything printed did not reach standard output: a full disk, a closed pipe.
 Result<void> flush_output();
 void complain(const Error& error);  ///< to standard error

@@ -2,6 +2,7 @@
 // Sets of maps of a small session, by the job and by the program.
 #include "app/jobs/maps/maps.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "app/jobs/gloss_maps.h"
+#include "app/jobs/maps/surface_files.h"
 #include "app/jobs/solve.h"
 #include "core/image_io/image_io.h"
 #include "core/session.h"
@@ -109,6 +112,9 @@ TEST_F(Maps, SayWhatTheyAreAndAreFinite) {
     ASSERT_TRUE(image) << image.error().message();
     ++files;
     EXPECT_EQ(image->info.size.width, d["width"].get<int>());
+    EXPECT_EQ(image->info.attributes.at("weft.source"), map["source"]);
+    EXPECT_NEAR(std::stod(image->info.attributes.at("weft.mm_per_pixel")), d["mm_per_pixel"].get<double>(),
+                1e-6);
     for (int p = 0; p < image->planes.planes(); ++p) {
       for (int y = 0; y < image->planes.height(); ++y) {
         for (int x = 0; x < image->planes.width(); ++x) ASSERT_TRUE(std::isfinite(image->planes(x, y, p)));
@@ -173,47 +179,128 @@ TEST_F(Maps, AreRefusedInWordsAndLeaveNothingBehind) {
   expect_refused(no_table, ErrorKind::kNoInput, "nothing.weft");
   no_table.bare = session_;
   expect_refused(no_table, ErrorKind::kBadData, "no photograph by the light below");
+  MapsOptions table = options();
+  table.table_albedo = {0.1, 0.1, 0.1};
+  expect_refused(table, ErrorKind::kUsage, "--bare");
+  table.bare = session_;
+  table.table_albedo = {0.1, 1.1, 0.1};
+  expect_refused(table, ErrorKind::kUsage, "0.1,1.1,0.1");
 }
 
 // The photograph of a LED, or the dark one, stands for what the light below shows.
-TEST_F(Maps, OfAnOpenTableAreAllHoleAndOfClothThatHidesAllWithoutOne) {
-  const auto add_below = [](const fs::path& folder, bool is_dark) {
+class MapsOverALight : public Maps {
+ protected:
+  void SetUp() override {
+    Maps::SetUp();
+    photographed_below(bare_, 0);
+  }
+
+  // A copy of the session that has the photograph by this LED, from 0, or the dark one for the light below.
+  static constexpr int kDark = -1;
+  void photographed_below(const fs::path& folder, int led) const {
+    fs::copy(session_, folder, fs::copy_options::recursive);
     Result<Session> session = read_session(folder);
     ASSERT_TRUE(session) << session.error().message();
-    Shot below = is_dark ? *session->dark() : *session->lit().front();
+    Shot below = led == kDark ? *session->dark() : *session->lit().at(static_cast<std::size_t>(led));
     below.index = static_cast<int>(session->shots.size());
     below.led = 0;
     below.role = ShotRole::kBelow;
     session->shots.push_back(below);
     const Result<void> written = write_session(*session);
     ASSERT_TRUE(written) << written.error().message();
-  };
-  const fs::path bare = work_ / "bare.weft";
-  fs::copy(session_, bare, fs::copy_options::recursive);
-  add_below(bare, false);
-  const auto opacity_with = [&](bool is_dark) {
-    const std::string name = is_dark ? "closed.weft" : "open.weft";
-    const fs::path cloth = work_ / name;
-    fs::copy(session_, cloth, fs::copy_options::recursive);
-    add_below(cloth, is_dark);
+  }
+  MapsOptions options_by(int led) const {
     MapsOptions wanted = options();
-    wanted.session = cloth;
-    wanted.bare = bare;
+    wanted.session = work_ / fmt::format("by{}.weft", led);
+    if (!fs::exists(wanted.session)) photographed_below(wanted.session, led);
+    wanted.bare = bare_;
     wanted.maps = {"opacity"};
-    const MapsReport report = made(wanted);
-    return report.document["maps"][0];
-  };
-  const Json open = opacity_with(false), closed = opacity_with(true);
+    return wanted;
+  }
+
+  const fs::path bare_ = work_ / "bare.weft";
+};
+
+TEST_F(MapsOverALight, OfAnOpenTableAreAllHoleAndOfClothThatHidesAllWithoutOne) {
+  const Json open = made(options_by(0)).document["maps"][0];
+  const Json closed = made(options_by(kDark)).document["maps"][0];
   EXPECT_EQ(open["way"], "bare-table") << open.dump();
   EXPECT_NEAR(open["mean"].get<double>(), 0, 1e-3);
   EXPECT_EQ(closed["way"], "opaque") << closed.dump();
   EXPECT_NEAR(closed["mean"].get<double>(), 1, 1e-3);
-  const MapsReport unknown = made([&] {
-    MapsOptions o = options();
-    o.session = work_ / "open.weft";
-    return o;
-  }());
-  EXPECT_THAT(unknown.document["verdicts"].dump(), HasSubstr("OPACITY_UNKNOWN"));
+  MapsOptions unknown = options_by(0);
+  unknown.bare.clear();
+  EXPECT_THAT(made(unknown).document["verdicts"].dump(), HasSubstr("OPACITY_UNKNOWN"));
+}
+
+TEST_F(MapsOverALight, HaveMipsThatCutAsMuchAsTheFinest) {
+  const MapsReport report = made(options_by(1));
+  const Json& levels = report.document["maps"][0]["levels"];
+  ASSERT_GT(levels.size(), 3U) << report.document["maps"][0].dump();
+  for (const Json& level : levels) {
+    const auto file = fmt::format("mips/opacity_{:02}.exr", level["level"].get<int>());
+    EXPECT_TRUE(fs::exists(report.folder / file)) << file;
+  }
+}
+
+TEST_F(MapsOverALight, AreOfClothAloneWhereTheTableIsTakenOut) {
+  MapsOptions wanted = options_by(6);
+  const MapsReport seen = made(wanted);
+  wanted.table_albedo = {0.05, 0.05, 0.05};
+  const MapsReport cloth = made(wanted);
+  ASSERT_NE(cloth.folder, seen.folder);
+  const Json& table = cloth.document["table"];
+  ASSERT_GT(table["unmixed"].get<int>(), 0) << table.dump();
+  const auto opacity = read_image(seen.folder / "opacity.exr"), with = read_image(seen.folder / "albedo.exr"),
+             without = read_image(cloth.folder / "albedo.exr");
+  ASSERT_TRUE(opacity && with && without);
+  int compared = 0;
+  for (int y = 0; y < opacity->planes.height(); ++y) {
+    for (int x = 0; x < opacity->planes.width(); ++x) {
+      const float share = opacity->planes(x, y);
+      if (share < 0.4F || share > 0.9F) continue;
+      // A dark table under a share of the pixel made it darker than its cloth.
+      EXPECT_GT(without->planes(x, y, 1), with->planes(x, y, 1)) << x << ", " << y << ": " << share;
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 0);
+}
+
+// An albedo without a scale has no f0; what the solve says of roughness stands.
+TEST(SurfaceFiles, OfARelativeAlbedoKeepTheirRoughness) {
+  const Workspace work;
+  const Size size = {5, 4};
+  app::RectifiedSurface kept;
+  material::Surface& surface = kept.surface;
+  surface.mm_per_pixel = 0.1;
+  surface.slope = Image<float>(size, 2);
+  surface.albedo = Image<float>(size, 3);
+  surface.sigma_deg = Image<float>(size);
+  surface.status = Image<std::uint16_t>(size);
+  surface.lobe = Image<float>(size, 4);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      surface.lobe(x, y, 0) = 0.25F;
+      surface.lobe(x, y, 1) = 0.5F;
+      surface.lobe(x, y, 3) = 0.07F;
+    }
+  }
+  for (const bool has_f0 : {true, false}) {
+    const fs::path folder = work / (has_f0 ? "absolute" : "relative");
+    fs::create_directory(folder);
+    kept.has_f0 = has_f0;
+    const Result<void> written = app::write_surface(folder, kept, Compression::kNone);
+    ASSERT_TRUE(written) << written.error().message();
+    const Image<float> sigma(size, 4);  // rectified maps keep that of each channel
+    ASSERT_TRUE(write_image(folder / "sigma.exr", app::planes_of(sigma), {"R", "G", "B", "normal_deg"}, {}));
+    const auto read = app::read_surface(folder, 0.1);
+    ASSERT_TRUE(read) << read.error().message();
+    EXPECT_EQ(read->has_f0, has_f0);
+    EXPECT_NEAR(read->surface.lobe(2, 2, 0), 0.25, 1e-3);
+    EXPECT_NEAR(read->surface.lobe(2, 2, 1), 0.5, 1e-3);
+    EXPECT_NEAR(read->surface.lobe(2, 2, 3), has_f0 ? 0.07 : app::kTypedF0, 1e-4);
+  }
 }
 
 TEST_F(Maps, ByTheProgramAreTold) {

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a cloth is as a layer over another material, and where it has holes.
+#include <fmt/format.h>
+
+#include <filesystem>
 #include <utility>
+#include <vector>
 
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/surface_files.h"
+#include "core/files.h"
+#include "core/image_io/image_io.h"
 #include "material/filtering/detail.h"
 
 namespace weft::app {
+
 Result<void> make_detail(MapWork& work) {
   if (Result<void> ok = find_height(work); !ok) return ok;
   material::DetailOptions options;
@@ -28,6 +35,28 @@ Result<void> make_detail(MapWork& work) {
   return write_map(work, std::move(height), {layer->height_mm.plane()});
 }
 
+namespace {
+
+// Levels for an alpha test: as much is cut out of each as of the finest.
+Result<void> write_opacity_mips(MapWork& work, MapFacts& facts) {
+  const Result<std::vector<material::OpacityMip>> levels =
+      material::opacity_mips(work.surface.opacity.plane(), {.threads = work.context.threads});
+  if (!levels) return levels.error();
+  const std::filesystem::path folder = work.folder / "mips";
+  if (Result<void> ok = make_writable_folder(folder); !ok) return ok;
+  Json listed = Json::array();
+  for (const material::OpacityMip& level : *levels) {
+    const WriteOptions options = {.type = SampleType::kHalf, .compression = work.compression};
+    const std::filesystem::path file = folder / fmt::format("opacity_{:02}.exr", level.level);
+    if (Result<void> ok = write_image(file, planes_of(level.map), {"opacity"}, options); !ok) return ok;
+    listed.push_back({{"level", level.level}, {"scale", level.scale}, {"coverage", level.coverage}});
+  }
+  facts.more["levels"] = std::move(listed);
+  return {};
+}
+
+}  // namespace
+
 Result<void> make_opacity(MapWork& work) {
   MapFacts facts = {.name = "opacity", .unit = "share", .channels = {"opacity"}};
   if (work.surface.opacity.empty()) {
@@ -44,6 +73,7 @@ Result<void> make_opacity(MapWork& work) {
                 {"is_coverage", found.is_coverage()},
                 {"clipped", found.clipped},
                 {"unreadable", found.unreadable}};
+  if (Result<void> ok = write_opacity_mips(work, facts); !ok) return ok;
   return draw_map(work, std::move(facts), {work.surface.opacity.plane()});
 }
 

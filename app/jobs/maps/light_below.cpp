@@ -24,6 +24,7 @@ using material::MapKind;
 
 // Of full scale: a table that is darker tells nothing of what covers it.
 constexpr float kLeastLight = 0.01F;
+constexpr const char* kNoPhotograph = "it has no photograph by the light below";
 
 const Shot* shot_below(const Session& session) {
   const auto found = std::ranges::find_if(
@@ -46,11 +47,9 @@ Result<Image<float>> picture_of(const Session& session, const Shot& shot, const 
 
 // Light from below by cell, all colours together, less the dark shot: shares of full scale.
 Result<Image<float>> light_of(const Session& session, const Calibration& calibration) {
-  const Shot* below = shot_below(session);
-  if (below == nullptr) return unfit(session, "it has no photograph by the light below");
   const Shot* dark = session.dark();
   if (dark == nullptr) return unfit(session, "it has no dark shot");
-  const Result<Image<float>> lit = picture_of(session, *below, calibration);
+  const Result<Image<float>> lit = picture_of(session, *shot_below(session), calibration);
   if (!lit) return lit.error();
   const Result<Image<float>> unlit = picture_of(session, *dark, calibration);
   if (!unlit) return unlit.error();
@@ -72,41 +71,33 @@ material::TableGrid grid_of(const Json& rectified) {
           rectified["centre_mm"][1].get<double>()};
 }
 
-}  // namespace
-
-bool has_light_below(const Session& session) {
-  return shot_below(session) != nullptr;
+Result<void> check_alike(const Session& cloth, const Session& table) {
+  const Shot *a = shot_below(cloth), *b = shot_below(table);
+  if (a == nullptr) return unfit(cloth, kNoPhotograph);
+  if (b == nullptr) return unfit(table, kNoPhotograph);
+  if (a->exposure_us == b->exposure_us && a->iso == b->iso) return {};
+  return unfit(table, fmt::format("it was exposed for {} us at ISO {}, the cloth for {} us at ISO {}",
+                                  b->exposure_us, b->iso, a->exposure_us, a->iso));
 }
 
-Result<ThroughCloth> light_through_cloth(const Session& session, const fs::path& bare,
-                                         const Calibration& calibration, const Json& rectified, int threads) {
-  if (!calibration.response || !calibration.camera)
-    return unfit(session, "the calibration has no camera.json or no response.json");
-  const Result<Session> table = read_complete_session(bare);
-  if (!table) return table.error();
-  const Result<Image<float>> cloth_light = light_of(session, calibration);
-  if (!cloth_light) return cloth_light.error();
-  const Result<Image<float>> table_light = light_of(*table, calibration);
-  if (!table_light) return table_light.error();
-  const Shot &a = *shot_below(session), &b = *shot_below(*table);
-  if (a.exposure_us != b.exposure_us || a.iso != b.iso) {
-    return unfit(*table, fmt::format("it was exposed for {} us at ISO {}, the cloth for {} us at ISO {}",
-                                     b.exposure_us, b.iso, a.exposure_us, a.iso));
-  }
-  const Size size = cloth_light->size();
-  if (!(size == table_light->size())) return unfit(*table, "its photographs are of another size");
-  // A share that a photograph is full in is infinite.
-  Image<float> share(size);
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const float through = (*cloth_light)(x, y), open = (*table_light)(x, y);
+// cloth / table by cell; infinite where a photograph is full, NaN where the table is dark.
+Image<float> share_of(const Image<float>& cloth, const Image<float>& table) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Image<float> share(cloth.size());
+  for (int y = 0; y < share.height(); ++y) {
+    for (int x = 0; x < share.width(); ++x) {
+      const float through = cloth(x, y), open = table(x, y);
       share(x, y) = open > kLeastLight ? through / open : std::numeric_limits<float>::quiet_NaN();
-      if (std::isinf(through) || std::isinf(open)) share(x, y) = std::numeric_limits<float>::infinity();
+      if (std::isinf(through) || std::isinf(open)) share(x, y) = kInfinity;
     }
   }
-  const material::TableGrid grid = grid_of(rectified);
-  const CameraModel camera = material::reduced_camera(*calibration.camera, 2);
-  const Image<std::uint16_t> all_solved(size);
+  return share;
+}
+
+// Means say the share; the nearest cell says whether it can be told.
+ThroughCloth on_grid(const Image<float>& share, const CameraModel& camera, const material::TableGrid& grid,
+                     int threads) {
+  const Image<std::uint16_t> all_solved(share.size());
   ThroughCloth through = {Image<float>(grid.size), Image<std::uint8_t>(grid.size)};
   Image<float> nearest(grid.size);
   const std::array<View<const float>, 1> seen = {share.plane()};
@@ -120,6 +111,29 @@ Result<ThroughCloth> light_through_cloth(const Session& session, const fs::path&
     }
   }
   return through;
+}
+
+}  // namespace
+
+bool has_light_below(const Session& session) {
+  return shot_below(session) != nullptr;
+}
+
+Result<ThroughCloth> light_through_cloth(const Session& session, const fs::path& bare,
+                                         const Calibration& calibration, const Json& rectified, int threads) {
+  if (!calibration.response || !calibration.camera)
+    return unfit(session, "the calibration has no camera.json or no response.json");
+  const Result<Session> table = read_complete_session(bare);
+  if (!table) return table.error();
+  if (Result<void> ok = check_alike(session, *table); !ok) return std::move(ok).error();
+  const Result<Image<float>> cloth_light = light_of(session, calibration);
+  if (!cloth_light) return cloth_light.error();
+  const Result<Image<float>> table_light = light_of(*table, calibration);
+  if (!table_light) return table_light.error();
+  if (!(cloth_light->size() == table_light->size()))
+    return unfit(*table, "its photographs are of another size");
+  return on_grid(share_of(*cloth_light, *table_light), material::reduced_camera(*calibration.camera, 2),
+                 grid_of(rectified), threads);
 }
 
 }  // namespace weft::app

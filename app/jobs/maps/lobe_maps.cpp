@@ -4,15 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <filesystem>
-#include <system_error>
 #include <utility>
 
+#include "app/jobs/gloss_maps.h"
 #include "app/jobs/maps/map_work.h"
 #include "app/jobs/maps/surface_files.h"
 #include "app/jobs/planned_cloth.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
+#include "core/solve_record.h"
 #include "material/filtering/gloss.h"
 #include "material/filtering/roughness_mips.h"
 
@@ -27,7 +29,7 @@ Lobe typed_lobe(const std::string& cloth) {
   const Lobe& named = std::ranges::find(planned_cloths(), cloth, &NamedCloth::name)->cloth.lobe;
   if (named.family != solver::LobeFamily::kLambert && named.family != solver::LobeFamily::kCloth)
     return named;
-  return {.family = solver::LobeFamily::kGgx, .alpha = 1, .f0 = 0.04};
+  return {.family = solver::LobeFamily::kGgx, .alpha = kTypedAlpha, .f0 = kTypedF0};
 }
 
 double typed_alpha(const std::string& cloth) {
@@ -57,12 +59,22 @@ Image<float> on_scale(GlossScale scale, const Image<float>& alpha) {
   return values;
 }
 
+// Pixels that were solved with a lobe; the others have typed values.
+double measured_share(const material::Surface& surface) {
+  std::int64_t glossy = 0;
+  for (int y = 0; y < surface.size().height; ++y) {
+    const std::uint16_t* row = surface.status.plane().row(y);
+    glossy += std::count_if(row, row + surface.size().width, [](auto bits) { return (bits & kGlossy) != 0; });
+  }
+  return static_cast<double>(glossy) / static_cast<double>(surface.size().pixels());
+}
+
 }  // namespace
 
 Result<void> make_roughness(MapWork& work) {
   MapFacts roughness = {.name = "roughness", .source = MapSource::kMeasured};
   roughness.more = {{"scale", material::name_of(GlossScale::kRoughness)}};
-  MapFacts specular = {.name = "specular", .source = MapSource::kMeasured};
+  MapFacts specular = {.name = "specular", .unit = "share", .source = MapSource::kMeasured};
   if (work.surface.lobe.empty()) {
     const Lobe lobe = typed_lobe(work.options.cloth);
     roughness.source = specular.source = MapSource::kAssumed;
@@ -73,10 +85,18 @@ Result<void> make_roughness(MapWork& work) {
     return {};
   }
   // The files are those of the surface.
+  const double share = measured_share(work.surface);
+  roughness.more["measured_share"] = specular.more["measured_share"] = share;
   roughness.file = "roughness.exr";
   roughness.channels = {"roughness", "alpha", "alpha_along", "yarn_deg"};
   const Image<float> shown = on_scale(GlossScale::kRoughness, mean_alphas(work.surface.lobe));
   if (Result<void> ok = draw_map(work, std::move(roughness), {shown.plane()}); !ok) return ok;
+  if (!work.has_f0) {
+    specular.source = MapSource::kAssumed;
+    specular.more = Json::object();
+    write_constant(work, std::move(specular), kTypedF0, "typed, as the albedo has no absolute scale");
+    return {};
+  }
   specular.file = "specular.exr";
   specular.channels = {"f0"};
   return draw_map(work, std::move(specular), {work.surface.lobe.plane(3)});
@@ -125,9 +145,7 @@ Result<void> make_mips(MapWork& work) {
                     .file = "mips/lobe_LL.exr",
                     .channels = {"alpha", "alpha_along", "yarn_deg"},
                     .source = work.surface.lobe.empty() ? MapSource::kAssumed : MapSource::kDerived};
-  facts.least = listed.front()["mean_alpha"].get<double>();
-  facts.most = listed.back()["mean_alpha"].get<double>();
-  facts.mean = facts.most;
+  measure(facts, levels->front().lobe.plane(0));
   facts.more = {{"rule", material::name_of(material::MipRule::kVmf)}, {"levels", std::move(listed)}};
   work.made.push_back(std::move(facts));
   return {};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/maps/map_facts.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 
@@ -23,6 +25,13 @@ Json json_of(const MapFacts& facts) {
   if (!facts.picture.empty()) json["picture"] = facts.picture;
   json.update(facts.more);
   return json;
+}
+
+ImageAttributes attributes_of(const MapFacts& facts, double mm_per_pixel) {
+  ImageAttributes attributes = {{"weft.source", kMapSourceNames[static_cast<std::size_t>(facts.source)]},
+                                {"weft.mm_per_pixel", fmt::format("{:.9g}", mm_per_pixel)}};
+  if (!facts.unit.empty()) attributes["weft.unit"] = facts.unit;
+  return attributes;
 }
 
 void measure(MapFacts& facts, View<const float> plane) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/image.h"
+#include "core/image_io/image_io.h"
 #include "core/json_document.h"
 
 namespace weft::app {
@@ -33,6 +34,9 @@ struct MapFacts {
   Json more = Json::object();            ///< what is particular to this map
 };
 Json json_of(const MapFacts& facts);
+
+/// What its file says of itself: weft.source, weft.unit, weft.mm_per_pixel.
+ImageAttributes attributes_of(const MapFacts& facts, double mm_per_pixel);
 
 /// Fills the least, the largest and the mean value.
 void measure(MapFacts& facts, View<const float> plane);

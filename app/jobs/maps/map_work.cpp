@@ -29,7 +29,8 @@ report::Picture picture_of(const MapFacts& facts, const Image<float>& reduced) {
 
 Result<void> write_map(MapWork& work, MapFacts facts, const std::vector<View<const float>>& planes) {
   const WriteOptions options = {.type = facts.unit == "mm" ? SampleType::kFloat : SampleType::kHalf,
-                                .compression = work.compression};
+                                .compression = work.compression,
+                                .attributes = attributes_of(facts, work.surface.mm_per_pixel)};
   if (Result<void> ok = write_image(work.folder / facts.file, planes, facts.channels, options); !ok)
     return ok;
   return draw_map(work, std::move(facts), planes);

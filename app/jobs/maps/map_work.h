@@ -29,7 +29,7 @@ struct DeriveOptions {
   solver::HeightMethod height = solver::HeightMethod::kAutomatic;
   bool weighs_by_sigma = false;  ///< height: pixels count by one over the variance of their normal
   double cavity_mm = 2;          ///< radius that a cavity is seen against
-  int directions = 8;            ///< of the occlusion's lines: 4, 8 or 16
+  int directions = 8;            ///< of the occlusion's lines, 4 to 64
   /// Where the photographs do not tell the lobe it is that of this cloth (planned_cloths()).
   std::string cloth = "cotton";
 };
@@ -37,7 +37,8 @@ struct DeriveOptions {
 /// A set of maps under way: what each is derived from, what is shared between them, and what was made.
 struct MapWork {
   const material::Surface& surface;
-  std::filesystem::path folder;
+  bool has_f0 = false;  ///< the lobe's f0 is measured, and not only its roughness
+  std::filesystem::path folder = {};
   Compression compression = Compression::kNone;
   const DeriveOptions& options;
   const JobContext& context;

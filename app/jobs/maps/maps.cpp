@@ -2,6 +2,7 @@
 #include "app/jobs/maps/maps.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -73,6 +74,15 @@ Result<std::optional<material::OpacityFacts>> find_opacity(const MapsOptions& op
   if (!opacity) return std::move(opacity).error();
   surface.opacity = std::move(opacity->map);
   return std::optional(opacity->facts);
+}
+
+// Rims of holes are part table: what of them is cloth. Pixels with too little of it have no solution.
+Result<Json> take_table_out(const MapsOptions& options, Surface& surface, int threads) {
+  if (options.table_albedo.empty()) return Json();
+  const std::vector<double>& a = options.table_albedo;
+  const Result<material::TableFacts> facts = material::remove_table(surface, {a[0], a[1], a[2]}, threads);
+  if (!facts) return facts.error();
+  return Json{{"albedo", a}, {"unmixed", facts->unmixed}, {"left", facts->left}};
 }
 
 // What a photograph by the light below would tell, and does not.
@@ -175,6 +185,90 @@ void remove_previews(const fs::path& parent, const fs::path& but_not) {
   }
 }
 
+Result<void> check(const MapsOptions& options) {
+  const std::vector<double>& table = options.table_albedo;
+  if (table.empty()) return {};
+  const auto unfit = [](std::string why, std::string remedy) {
+    return Error{ErrorKind::kUsage, "the table cannot be taken out of the rims of holes", "--table",
+                 std::move(why), std::move(remedy)};
+  };
+  if (options.bare.empty())
+    return unfit("which share of a pixel is table is told by the bare table alone",
+                 "name its session with --bare");
+  if (table.size() != 3 || std::ranges::any_of(table, [](double a) { return !(a >= 0 && a <= 1); }))
+    return unfit(fmt::format("its albedo is {}", fmt::join(table, ",")), "give R,G,B, each of 0 to 1");
+  return {};
+}
+
+// On the grid that is asked for, or of a preview on a coarser one.
+Result<RectifyReport> rectified_for(const MapsOptions& options, const JobContext& context) {
+  Result<RectifyReport> rectified = rectified_maps(options, options.mm_per_pixel, context);
+  if (!rectified || !options.is_preview) return rectified;
+  const double fine_mm = rectified->document["mm_per_pixel"].get<double>();
+  return rectified_maps(options, kPreviewFactor * fine_mm, context);
+}
+
+Result<Product> product_wanted(const MapsOptions& options, const Session& session,
+                               const RectifyReport& rectified) {
+  Result<std::string> bare = digest_of(options.bare);
+  if (!bare) return std::move(bare).error();
+  const Json inputs = {{"version", kVersion},
+                       {"rectified", rectified.document["id"]},
+                       {"recipe", json_of(options.recipe)},
+                       {"maps", options.maps},
+                       {"derive", json_of(options.derive)},
+                       {"bare", *bare},
+                       {"table_albedo", options.table_albedo},
+                       {"preview", options.is_preview},
+                       {"compression", name_of(options.compression)}};
+  return product_of(kMapsProduct, inputs, session.folder / "maps", options.output);
+}
+
+// All files of the set, in a folder aside; its document.
+Result<Json> make_set(const MapsOptions& options, const Session& session, const RectifyReport& rectified,
+                      const Product& product, const PartialFolder& aside, const JobContext& context) {
+  Result<RectifiedSurface> read =
+      read_surface(rectified.folder, rectified.document["mm_per_pixel"].get<double>());
+  if (!read) return std::move(read).error();
+  Surface& surface = read->surface;
+  if (Result<void> begun = begin(aside, bytes_of_maps(surface.size())); !begun)
+    return std::move(begun).error();
+  const Result<std::optional<material::OpacityFacts>> opacity =
+      find_opacity(options, session, rectified, surface, context);
+  if (!opacity) return opacity.error();
+  const Result<Json> table = take_table_out(options, surface, context.threads);
+  if (!table) return table.error();
+  const Result<FinishingInput> known = known_of(session, rectified);
+  if (!known) return known.error();
+  const Result<FinishingFacts> finished = finish_surface(surface, options.recipe, *known, context);
+  if (!finished) return finished.error();
+  material::fill_holes(surface, {.threads = context.threads});
+  if (Result<void> ok = write_surface(aside.path(), *read, options.compression); !ok)
+    return std::move(ok).error();
+  if (Result<void> ok = draw_surface(aside.path(), surface); !ok) return std::move(ok).error();
+  MapWork work = {.surface = surface,
+                  .has_f0 = read->has_f0,
+                  .folder = aside.path(),
+                  .compression = options.compression,
+                  .options = options.derive,
+                  .context = context,
+                  .opacity = *opacity,
+                  .yarn_px = finished->yarn_px,
+                  .verdicts = missing_bare(options, session)};
+  if (Result<void> ok = write_removed(work, *finished); !ok) return std::move(ok).error();
+  if (Result<void> ok = derive(options.maps, work); !ok) return std::move(ok).error();
+  // A layer of detail has no reflectance that could be checked.
+  const Result<Json> checks =
+      finished->is_detail ? Result<Json>(Json::array()) : check_maps(work, session.dark() != nullptr);
+  if (!checks) return checks.error();
+  Json document = document_of(product, rectified, options, *finished, work, *checks);
+  if (!table->is_null()) document["table"] = *table;
+  if (Result<void> ok = write_maps_page(aside.path(), document); !ok) return std::move(ok).error();
+  if (Result<void> ok = write_json(aside.path() / kMapsProduct.document, document); !ok)
+    return std::move(ok).error();
+  return document;
+}
+
 }  // namespace
 
 Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_pixel,
@@ -188,69 +282,23 @@ Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_p
 }
 
 Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& context) {
+  if (Result<void> ok = check(options); !ok) return std::move(ok).error();
   const Result<Session> session = read_session(options.session);
   if (!session) return session.error();
-  Result<RectifyReport> rectified = rectified_maps(options, options.mm_per_pixel, context);
-  if (rectified && options.is_preview) {
-    const double coarse_mm = kPreviewFactor * rectified->document["mm_per_pixel"].get<double>();
-    rectified = rectified_maps(options, coarse_mm, context);
-  }
-  if (!rectified) return std::move(rectified).error();
-  const double mm_per_pixel = rectified->document["mm_per_pixel"].get<double>();
-
-  Result<std::string> bare = digest_of(options.bare);
-  if (!bare) return std::move(bare).error();
-  const fs::path parent = session->folder / "maps";
-  const Json inputs = {{"version", kVersion},
-                       {"rectified", rectified->document["id"]},
-                       {"recipe", json_of(options.recipe)},
-                       {"maps", options.maps},
-                       {"derive", json_of(options.derive)},
-                       {"bare", *bare},
-                       {"preview", options.is_preview},
-                       {"compression", name_of(options.compression)}};
-  const Product product = product_of(kMapsProduct, inputs, parent, options.output);
-  Result<std::optional<Json>> found = find_finished(product);
+  const Result<RectifyReport> rectified = rectified_for(options, context);
+  if (!rectified) return rectified.error();
+  const Result<Product> product = product_wanted(options, *session, *rectified);
+  if (!product) return product.error();
+  Result<std::optional<Json>> found = find_finished(*product);
   if (!found) return std::move(found).error();
-  if (*found) return MapsReport{product.folder, true, std::move(**found)};
-
-  Result<Surface> surface = read_surface(rectified->folder, mm_per_pixel);
-  if (!surface) return std::move(surface).error();
-  PartialFolder partial(product.folder);
-  if (const Result<void> begun = begin(partial, bytes_of_maps(surface->size())); !begun) return begun.error();
-  const Result<std::optional<material::OpacityFacts>> opacity =
-      find_opacity(options, *session, *rectified, *surface, context);
-  if (!opacity) return opacity.error();
-  const Result<FinishingInput> known = known_of(*session, *rectified);
-  if (!known) return known.error();
-  const Result<FinishingFacts> finished = finish_surface(*surface, options.recipe, *known, context);
-  if (!finished) return finished.error();
-  material::fill_holes(*surface, {.threads = context.threads});
-  if (Result<void> ok = write_surface(partial.path(), *surface, options.compression); !ok)
-    return std::move(ok).error();
-  if (Result<void> ok = draw_surface(partial.path(), *surface); !ok) return std::move(ok).error();
-  MapWork work = {.surface = *surface,
-                  .folder = partial.path(),
-                  .compression = options.compression,
-                  .options = options.derive,
-                  .context = context,
-                  .opacity = *opacity,
-                  .yarn_px = finished->yarn_px,
-                  .verdicts = missing_bare(options, *session)};
-  if (Result<void> ok = write_removed(work, *finished); !ok) return std::move(ok).error();
-  if (Result<void> ok = derive(options.maps, work); !ok) return std::move(ok).error();
-  // A layer of detail has no reflectance that could be checked.
-  const Result<Json> checks =
-      finished->is_detail ? Result<Json>(Json::array()) : check_maps(work, session->dark() != nullptr);
-  if (!checks) return checks.error();
-  Json document = document_of(product, *rectified, options, *finished, work, *checks);
-  if (Result<void> ok = write_maps_page(partial.path(), document); !ok) return std::move(ok).error();
-  if (Result<void> ok = write_json(partial.path() / kMapsProduct.document, document); !ok)
-    return std::move(ok).error();
+  if (*found) return MapsReport{product->folder, true, std::move(**found)};
+  PartialFolder partial(product->folder);
+  Result<Json> document = make_set(options, *session, *rectified, *product, partial, context);
+  if (!document) return std::move(document).error();
   if (Result<void> ok = partial.publish(); !ok) return std::move(ok).error();
-  if (options.is_preview) remove_previews(parent, product.folder);
+  if (options.is_preview) remove_previews(session->folder / "maps", product->folder);
   context.progress("maps", 1);
-  return MapsReport{product.folder, false, std::move(document)};
+  return MapsReport{product->folder, false, std::move(*document)};
 }
 
 }  // namespace weft::app

@@ -29,8 +29,11 @@ struct MapsOptions {
   std::vector<std::string> maps;      ///< to derive (derived_maps()); none: those of the surface alone
   DeriveOptions derive;
   std::filesystem::path bare;  ///< session of the bare table by the light below; empty: there is none
-  double mm_per_pixel = 0;     ///< of the grid; 0: what the camera sees
-  bool is_preview = false;     ///< on a grid kPreviewFactor times as coarse; earlier previews go
+  /// R, G, B of the table, 0 to 1, which rims of holes hold a share of: it is taken out. Wants `bare`; none:
+  /// it stays.
+  std::vector<double> table_albedo;
+  double mm_per_pixel = 0;  ///< of the grid; 0: what the camera sees
+  bool is_preview = false;  ///< on a grid kPreviewFactor times as coarse; earlier previews go
   Compression compression = Compression::kNone;
 };
 
@@ -52,7 +55,8 @@ Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_p
 /// derives others, and publishes all of it whole in a folder named by its inputs, with maps.json
 /// (weft.maps/1), pictures and report.html (docs/maps.md).
 ///
-/// Errors: those of rectify_session(), of finish_surface() and of each map; kInterrupted.
+/// Errors: those of rectify_session(), of finish_surface() and of each map; kUsage for a table's albedo
+/// without `bare` or out of range; kInterrupted.
 Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& context);
 
 }  // namespace weft::app

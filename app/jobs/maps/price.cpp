@@ -92,17 +92,17 @@ std::size_t chosen_of(const std::vector<MapPrice>& prices, const PriceAims& aims
 
 }  // namespace
 
-Result<std::vector<MapPrice>> price_maps(MapsOptions& options, const PriceAims& aims,
-                                         const JobContext& context) {
+Result<MapPrices> price_maps(const MapsOptions& options, const PriceAims& aims, const JobContext& context) {
   const Result<RectifyReport> rectified = rectified_maps(options, options.mm_per_pixel, context);
   if (!rectified) return rectified.error();
-  const Result<Surface> surface =
+  const Result<RectifiedSurface> read =
       read_surface(rectified->folder, rectified->document["mm_per_pixel"].get<double>());
-  if (!surface) return surface.error();
-  const Result<Surface> piece = piece_of(*surface);
+  if (!read) return read.error();
+  const Surface& surface = read->surface;
+  const Result<Surface> piece = piece_of(surface);
   if (!piece) return piece.error();
   const double times =
-      static_cast<double>(surface->size().pixels()) / static_cast<double>(piece->size().pixels());
+      static_cast<double>(surface.size().pixels()) / static_cast<double>(piece->size().pixels());
 
   const Result<Tried> direct = height_by(HeightMethod::kDct, *piece, context);
   if (!direct) return direct.error();
@@ -126,14 +126,13 @@ Result<std::vector<MapPrice>> price_maps(MapsOptions& options, const PriceAims& 
   }
   const std::size_t chosen = chosen_of(occlusion, aims);
   occlusion[chosen].is_chosen = true;
-  options.derive.directions = kDirections[chosen];
   prices.insert(prices.end(), occlusion.begin(), occlusion.end());
-  return prices;
+  return MapPrices{std::move(prices), kDirections[chosen]};
 }
 
-Json json_of(const std::vector<MapPrice>& prices) {
+Json json_of(const MapPrices& prices) {
   Json rows = Json::array();
-  for (const MapPrice& price : prices) {
+  for (const MapPrice& price : prices.rows) {
     rows.push_back({{"map", price.map},
                     {"setting", price.setting},
                     {"seconds", price.seconds},

@@ -29,12 +29,16 @@ struct PriceAims {
   std::optional<double> within_s = {};  ///< for the whole map
 };
 
+struct MapPrices {
+  std::vector<MapPrice> rows;
+  int directions = 0;  ///< of occlusion, as the aims choose them
+};
+
 /// Seconds and errors of heights (each way to integrate, against the direct solution) and of occlusion (4, 8
 /// and 16 directions, against 64), on a piece of 512 x 512 pixels from the middle of the rectified maps.
-/// Seconds are by the number of pixels. Sets options.derive.directions to what the aims choose: the quickest
-/// that is good enough, else the best that is in time; without aims the default. Errors as of make_maps().
-Result<std::vector<MapPrice>> price_maps(MapsOptions& options, const PriceAims& aims,
-                                         const JobContext& context);
-Json json_of(const std::vector<MapPrice>& prices);
+/// Seconds are by the number of pixels. The aims choose the quickest occlusion that is good enough, else the
+/// best that is in time; without aims the default is chosen. Errors as of make_maps().
+Result<MapPrices> price_maps(const MapsOptions& options, const PriceAims& aims, const JobContext& context);
+Json json_of(const MapPrices& prices);
 
 }  // namespace weft::app

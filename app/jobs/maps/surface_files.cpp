@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "app/jobs/gloss_maps.h"
+#include "app/jobs/maps/map_facts.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/solve_maps.h"
@@ -78,19 +80,27 @@ Result<Image<float>> read_planes(const fs::path& file, const std::vector<std::st
   return planes;
 }
 
-// What roughness.exr and specular.exr say, as a surface keeps it; empty where they are not both there.
-Result<Image<float>> read_lobe(const fs::path& folder, Size size) {
-  if (!is_there(folder / "roughness.exr") || !is_there(folder / "specular.exr")) return Image<float>();
+// What roughness.exr and, where it is there, specular.exr say; nothing where no lobe was measured.
+Result<void> read_lobe(const fs::path& folder, RectifiedSurface& into) {
+  if (!is_there(folder / "roughness.exr")) return {};
+  const Size size = into.surface.status.size();
   const Result<Image<float>> roughness = read_planes(folder / "roughness.exr", kLobeChannels, size);
   if (!roughness) return roughness.error();
-  const Result<Image<float>> specular = read_planes(folder / "specular.exr", {"f0"}, size);
-  if (!specular) return specular.error();
-  Image<float> lobe(size, 4);
-  for (int y = 0; y < size.height; ++y) {
-    for (int p = 0; p < 3; ++p) std::copy_n(roughness->plane(p + 1).row(y), size.width, lobe.plane(p).row(y));
-    std::copy_n(specular->plane().row(y), size.width, lobe.plane(3).row(y));
+  Image<float> f0(size);
+  into.has_f0 = is_there(folder / "specular.exr");
+  if (into.has_f0) {
+    Result<Image<float>> specular = read_planes(folder / "specular.exr", {"f0"}, size);
+    if (!specular) return std::move(specular).error();
+    f0 = std::move(*specular);
   }
-  return lobe;
+  into.surface.lobe = Image<float>(size, 4);
+  for (int y = 0; y < size.height; ++y) {
+    for (int p = 0; p < 3; ++p)
+      std::copy_n(roughness->plane(p + 1).row(y), size.width, into.surface.lobe.plane(p).row(y));
+    if (!into.has_f0) std::fill_n(f0.plane().row(y), size.width, static_cast<float>(kTypedF0));
+    std::copy_n(f0.plane().row(y), size.width, into.surface.lobe.plane(3).row(y));
+  }
+  return {};
 }
 
 // Roughness as games have it, before the planes that a surface keeps.
@@ -133,10 +143,11 @@ Image<float> normals_of(const Image<float>& slope) {
   return normal;
 }
 
-Result<Surface> read_surface(const fs::path& rectified, double mm_per_pixel) {
+Result<RectifiedSurface> read_surface(const fs::path& rectified, double mm_per_pixel) {
   const Result<SolveMaps> maps = SolveMaps::open(rectified);
   if (!maps) return maps.error();
-  Surface surface;
+  RectifiedSurface rectified_surface;
+  Surface& surface = rectified_surface.surface;
   surface.mm_per_pixel = mm_per_pixel;
   Result<Image<std::uint16_t>> status = maps->status();
   if (!status) return std::move(status).error();
@@ -156,30 +167,36 @@ Result<Surface> read_surface(const fs::path& rectified, double mm_per_pixel) {
       if (surface.status(x, y) & kNoSolution) surface.sigma_deg(x, y) = kNoSigma_deg;
     }
   }
-  Result<Image<float>> lobe = read_lobe(rectified, size);
-  if (!lobe) return std::move(lobe).error();
-  surface.lobe = std::move(*lobe);
-  return surface;
+  if (Result<void> ok = read_lobe(rectified, rectified_surface); !ok) return std::move(ok).error();
+  return rectified_surface;
 }
 
-Result<void> write_surface(const fs::path& folder, const Surface& surface, Compression compression) {
-  const WriteOptions whole = {.type = SampleType::kFloat, .compression = compression};
-  const WriteOptions half = {.type = SampleType::kHalf, .compression = compression};
-  const auto write = [&](const char* name, const Image<float>& map, const std::vector<std::string>& channels,
-                         const WriteOptions& options) {
-    return map.empty() ? Result<void>() : write_image(folder / name, planes_of(map), channels, options);
+Result<void> write_surface(const fs::path& folder, const RectifiedSurface& rectified,
+                           Compression compression) {
+  const Surface& surface = rectified.surface;
+  const auto write = [&](const char* name, SampleType type, const char* unit,
+                         const std::vector<View<const float>>& planes,
+                         const std::vector<std::string>& channels) {
+    const MapFacts facts = {.unit = unit, .source = MapSource::kMeasured};
+    const WriteOptions options = {type, compression, attributes_of(facts, surface.mm_per_pixel)};
+    return planes.empty() ? Result<void>() : write_image(folder / name, planes, channels, options);
   };
+  using enum SampleType;
+  const Image<float> normal = normals_of(surface.slope);
   if (Result<void> ok = write_status(folder / "status.png", surface.status); !ok) return ok;
-  if (Result<void> ok = write("normal.exr", normals_of(surface.slope), kNormalChannels, whole); !ok)
+  if (Result<void> ok = write("normal.exr", kFloat, "", planes_of(normal), kNormalChannels); !ok) return ok;
+  if (Result<void> ok = write("albedo.exr", kHalf, "share", planes_of(surface.albedo), kColourChannels); !ok)
     return ok;
-  if (Result<void> ok = write("albedo.exr", surface.albedo, kColourChannels, half); !ok) return ok;
-  if (Result<void> ok = write("sigma.exr", surface.sigma_deg, {"normal_deg"}, half); !ok) return ok;
-  if (Result<void> ok = write("opacity.exr", surface.opacity, {"opacity"}, half); !ok) return ok;
+  if (Result<void> ok = write("sigma.exr", kHalf, "deg", planes_of(surface.sigma_deg), {"normal_deg"}); !ok)
+    return ok;
+  if (Result<void> ok = write("opacity.exr", kHalf, "share", planes_of(surface.opacity), {"opacity"}); !ok)
+    return ok;
   if (surface.lobe.empty()) return {};
-  if (Result<void> ok = write("roughness.exr", roughness_of(surface.lobe), kLobeChannels, half); !ok)
+  const Image<float> roughness = roughness_of(surface.lobe);
+  if (Result<void> ok = write("roughness.exr", kHalf, "", planes_of(roughness), kLobeChannels); !ok)
     return ok;
-  const std::array<View<const float>, 1> f0 = {surface.lobe.plane(3)};
-  return write_image(folder / "specular.exr", f0, {"f0"}, half);
+  if (!rectified.has_f0) return {};
+  return write("specular.exr", kHalf, "share", {surface.lobe.plane(3)}, {"f0"});
 }
 
 }  // namespace weft::app
