@@ -8,6 +8,7 @@
 
 #include "bench/base/rig.h"
 #include "bench/maps/cloths.h"
+#include "bench/maps/height_difference.h"
 #include "bench/maps/processor_time.h"
 #include "core/vec.h"
 #include "solver/height/tiled_height.h"
@@ -38,42 +39,6 @@ void add_noise(SampledCloth& cloth, double sigma_deg) {
   }
 }
 
-struct Difference {
-  double rms = 0, largest = 0;
-};
-
-// Of two height maps in pixels, after the plane that fits it best (whose axes are uncorrelated on a frame).
-Difference difference(const Image<float>& a, const Image<float>& b, double mm_per_pixel) {
-  const Size size = a.size();
-  const double middle_x = (size.width - 1) / 2.0, middle_y = (size.height - 1) / 2.0;
-  const auto error = [&](int x, int y) {
-    return (static_cast<double>(a(x, y)) - static_cast<double>(b(x, y))) / mm_per_pixel;
-  };
-  double sum = 0, along_x = 0, along_y = 0, xx = 0, yy = 0;
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const double u = x - middle_x, v = y - middle_y, e = error(x, y);
-      sum += e;
-      along_x += e * u;
-      along_y += e * v;
-      xx += u * u;
-      yy += v * v;
-    }
-  }
-  const double count = static_cast<double>(size.pixels());
-  Difference result;
-  for (int y = 0; y < size.height; ++y) {
-    for (int x = 0; x < size.width; ++x) {
-      const double e =
-          error(x, y) - sum / count - along_x / xx * (x - middle_x) - along_y / yy * (y - middle_y);
-      result.rms += e * e / count;
-      result.largest = std::max(result.largest, std::abs(e));
-    }
-  }
-  result.rms = std::sqrt(result.rms);
-  return result;
-}
-
 struct TilesOf {
   int tile_px, halo_px;
 };
@@ -96,7 +61,7 @@ Result<Rows> maps_height(const MapsBenchOptions& options) {
   Rows rows = {{{"way", "whole"},
                 {"width", size.width},
                 {"height", size.height},
-                {"rms_error_px", difference(reference, cloth.height_mm, kClothPitch_mm).rms},
+                {"rms_error_px", height_difference(reference, cloth.height_mm, kClothPitch_mm).rms},
                 {"us_per_pixel", whole_seconds / pixels * 1e6}}};
   for (const TilesOf& way : {TilesOf{512, 128}, {512, 64}, {1024, 128}}) {
     std::optional<Result<solver::TiledHeight>> tiled;
@@ -104,14 +69,14 @@ Result<Rows> maps_height(const MapsBenchOptions& options) {
       tiled = solver::tiled_height(solver::rows_of(cloth.normals(), {}), {plain, way.tile_px, way.halo_px});
     });
     if (!*tiled) return tiled->error();
-    const Difference to_whole = difference((*tiled)->height_mm, reference, kClothPitch_mm);
+    const HeightDifference to_whole = height_difference((*tiled)->height_mm, reference, kClothPitch_mm);
     rows.push_back(
         {{"way", "tiles of " + std::to_string(way.tile_px) + ", halo " + std::to_string(way.halo_px)},
          {"width", size.width},
          {"height", size.height},
          {"to_whole_rms_px", to_whole.rms},
          {"to_whole_max_px", to_whole.largest},
-         {"rms_error_px", difference((*tiled)->height_mm, cloth.height_mm, kClothPitch_mm).rms},
+         {"rms_error_px", height_difference((*tiled)->height_mm, cloth.height_mm, kClothPitch_mm).rms},
          {"us_per_pixel", seconds / pixels * 1e6},
          {"ratio_to_whole", seconds / whole_seconds}});
   }

@@ -7,12 +7,14 @@
 #include "bench/maps/mips.h"
 #include "bench/maps/occlusion.h"
 #include "bench/maps/opacity.h"
+#include "bench/maps/scans.h"
 
 namespace weft::bench {
 
 std::span<const MapsPart> maps_parts() {
   static constexpr MapsPart kParts[] = {
       {"height", "normals to heights in tiles and as a whole", maps_height},
+      {"scans", "heights of solved normals, and of true ones", maps_scans},
       {"flatten", "slow errors of slopes, removed in each way", maps_flatten},
       {"occlusion", "line sweeps and horizon steps against rays", maps_occlusion},
       {"mips", "rules of roughness mips against shaded pixels", maps_mips},
