@@ -20,6 +20,7 @@
 #include "core/raw_frame.h"
 #include "core/result.h"
 #include "core/veil.h"
+#include "pipeline/gloss_samples.h"
 #include "solver/method.h"
 
 namespace weft::pipeline {
@@ -98,6 +99,9 @@ struct Photographs {
   double lobe_share = 1;  ///< as of solver::TileInput
   /// As many once more, of the same lights through parallel films, where `frames` are of crossed ones.
   std::optional<Frames> parallel;
+  /// The same cloth as it lay otherwise under the same lights, as many states of films: its lobe is sought in
+  /// both.
+  std::optional<GlossSamples> second_pose;
   std::vector<int> leds;                                ///< number of each light in its rig, if it has one
   std::optional<LightField> field;                      ///< always there once the photographs are whole
   std::optional<CameraModel> camera;                    ///< where the lights are near

@@ -35,7 +35,7 @@ struct ScanArguments {
   fs::path output;  ///< session; empty: named by the rig file's template
   std::string fabric;
   std::vector<int> leds;  ///< empty: all
-  std::optional<double> exposure_us, bracket, cloth_height_mm;
+  std::optional<double> exposure_us, bracket, cloth_height_mm, tilt_deg, downhill_deg;
   std::vector<std::string> metadata;   ///< "key=value"
   std::string accept_moved;            ///< why; empty: not
   std::optional<int> again;            ///< LED of a finished session; 0: the dark shot
@@ -68,6 +68,8 @@ Result<Json> body_of(const ScanArguments& arguments) {
   if (arguments.exposure_us) body["exposure_us"] = *arguments.exposure_us;
   if (arguments.bracket) body["bracket"] = *arguments.bracket;
   if (arguments.cloth_height_mm) body["cloth_height_mm"] = *arguments.cloth_height_mm;
+  if (arguments.tilt_deg) body["tilt_deg"] = *arguments.tilt_deg;
+  if (arguments.downhill_deg) body["downhill_deg"] = *arguments.downhill_deg;
   if (!arguments.repeat) body["repeat"] = false;
   if (!arguments.polariser.empty()) body["polariser"] = arguments.polariser;
   if (!arguments.below) body["below"] = false;
@@ -332,6 +334,17 @@ Run add_scan(Options& options) {
       .add("--height", &a->cloth_height_mm,
            "Of the cloth's surface above the table, mm; default the rig file's")
       .in_range(-1000.0, 1000.0);
+  const Option tilt = options
+                          .add("--tilt", &a->tilt_deg,
+                               "The cloth lies on a wedge that tilts it by so many degrees: a second pose, "
+                               "whose lobe weft solve "
+                               "--second-pose seeks together with the first one's; default 0")
+                          .in_range(0.0, kMostTilt_deg);
+  options
+      .add("--downhill", &a->downhill_deg,
+           "With --tilt: azimuth to which it falls, degrees from x towards y; default 0")
+      .in_range(-360.0, 360.0)
+      .needs(tilt);
   options
       .add("--again", &a->again,
            "LED whose shot of the finished session -o is taken once more, 0: the dark shot. The new frame "

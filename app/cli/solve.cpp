@@ -217,6 +217,12 @@ void add_readings(Options& options, const Option& session, SolveArguments& a) {
       .needs(session);
   options
       .add(
+          "--second-pose", &a.options.second_pose,
+          "Session of the same cloth lying tilted (weft scan --tilt), in which robust and reference seek its "
+          "lobe too")
+      .needs(session);
+  options
+      .add(
           "--accept-moved", &a.accept_moved,
           "Solve although the last check of this rig's calibration did not pass before the scan: the reason, "
           "which is kept")

@@ -177,7 +177,8 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   if (!solve) return solve.error();
   const Result<SolveMaps> maps = SolveMaps::open(solve->folder);
   if (!maps) return maps.error();
-  const Result<CameraModel> camera = camera_of_maps(*calibration->camera, maps->size(), solve->folder);
+  const CameraModel seen = seen_from(session->pose, session->cloth_height_mm, *calibration->camera);
+  const Result<CameraModel> camera = camera_of_maps(seen, maps->size(), solve->folder);
   if (!camera) return camera.error();
   const Result<TableGrid> grid =
       material::table_grid(*camera, {options.mm_per_pixel, session->cloth_height_mm, options.turn_deg});

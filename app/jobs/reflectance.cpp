@@ -185,10 +185,12 @@ Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) 
   Json clusters = Json::array();
   for (const MeasuredLobe& lobe : facts.lobes)
     clusters.push_back(cluster_of(lobe, scale, facts.of_film_pair));
-  return {{"schema", "weft.reflectance/1.1"},
-          {"albedo_scale", name_of(scale)},
-          {"share", facts.share},
-          {"clusters", std::move(clusters)}};
+  Json document = {{"schema", "weft.reflectance/1.1"},
+                   {"albedo_scale", name_of(scale)},
+                   {"share", facts.share},
+                   {"clusters", std::move(clusters)}};
+  if (facts.of_second_pose) document["second_pose"] = true;
+  return document;
 }
 
 Json reflectance_summary(const Json& document) {

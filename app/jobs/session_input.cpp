@@ -216,6 +216,21 @@ Result<void> check_memory(const SessionPlan& plan, int threads) {
                "close other programs, or solve on a larger machine"};
 }
 
+// From here on the cloth is level and the rig tilted: maps are those of the cloth's own plane.
+Result<void> lay_level(const Session& session, pipeline::Photographs& photographs) {
+  const ClothPose& pose = session.pose;
+  if (pose.is_level()) return {};
+  const double height_mm = session.cloth_height_mm;
+  if (photographs.camera) photographs.camera = seen_from(pose, height_mm, *photographs.camera);
+  if (photographs.light_covariance)
+    photographs.light_covariance = seen_from(pose, *std::move(photographs.light_covariance));
+  Result<LightField> field = LightField::make(seen_from(pose, height_mm, photographs.field->lights()),
+                                              photographs.camera, photographs.size, height_mm);
+  if (!field) return std::move(field).error();
+  photographs.field = std::move(*field);
+  return {};
+}
+
 Json description_of(const SessionPlan& plan) {
   Json shots = Json::array();
   for (const Shot& shot : plan.frames())
@@ -225,10 +240,14 @@ Json description_of(const SessionPlan& plan) {
                      {"exposure_us", shot.exposure_us},
                      {"iso", shot.iso},
                      {"f_number", shot.f_number}});
-  return {{"session", plan.session.fabric},
-          {"calibration", plan.calibration.id},
-          {"cloth_height_mm", plan.session.cloth_height_mm},
-          {"shots", std::move(shots)}};
+  Json description = {{"session", plan.session.fabric},
+                      {"calibration", plan.calibration.id},
+                      {"cloth_height_mm", plan.session.cloth_height_mm},
+                      {"shots", std::move(shots)}};
+  const ClothPose& pose = plan.session.pose;
+  if (!pose.is_level())
+    description["pose"] = {{"tilt_deg", pose.tilt_deg}, {"downhill_deg", pose.downhill_deg}};
+  return description;
 }
 
 }  // namespace
@@ -336,6 +355,7 @@ Result<LoadedSession> load_session(const SessionPlan& plan, const JobContext& co
   join_brackets(plan, loaded, more);
   if (Result<void> ok = leave_out_useless_lights(plan, loaded); !ok) return std::move(ok).error();
   if (Result<void> ok = follow_drift(plan, context, loaded, more); !ok) return std::move(ok).error();
+  if (Result<void> ok = lay_level(plan.session, photographs); !ok) return std::move(ok).error();
   if (Result<void> ok = follow_cloth(context, loaded); !ok) return std::move(ok).error();
   photographs.plane_weights = pipeline::measure_plane_weights(photographs);
   return loaded;

@@ -363,6 +363,48 @@ Result<SolveReport> solve(const solver::MethodName& method, const Input& input, 
   return Run(method, input, options, context, product).run();
 }
 
+Result<std::optional<SessionPlan>> plan_second_pose(const solver::MethodName& method,
+                                                    const SessionPlan& first, const SessionOptions& input,
+                                                    const SolveOptions& options) {
+  if (options.second_pose.empty()) return std::optional<SessionPlan>();
+  const auto unfit = [&](ErrorKind kind, std::string why, std::string remedy) {
+    return Error{kind, "second pose cannot be used", options.second_pose.string(), std::move(why),
+                 std::move(remedy)};
+  };
+  if (method.level != solver::Level::kRobust && method.level != solver::Level::kReference)
+    return unfit(ErrorKind::kUsage, options.method + " seeks no lobe",
+                 "solve with --quality robust or reference");
+  Result<SessionPlan> second =
+      plan_session({.folder = options.second_pose, .calibration = input.calibration, .leds = input.leds});
+  if (!second) return std::move(second).error();
+  if (second->calibration.id != first.calibration.id)
+    return unfit(ErrorKind::kBadData, "it was scanned with another calibration", "scan both poses in one go");
+  if (second->parallel.empty() != first.parallel.empty())
+    return unfit(ErrorKind::kBadData,
+                 "one of the two was scanned through crossed and parallel films, the other was not",
+                 "scan both in the same way");
+  return std::optional(std::move(*second));
+}
+
+// The frames of one pose at a time.
+Result<LoadedSession> load_poses(const SessionPlan& plan, const std::optional<SessionPlan>& second,
+                                 const JobContext& context) {
+  if (!second) return load_session(plan, context);
+  std::optional<pipeline::GlossSamples> samples;
+  {
+    const Result<LoadedSession> other = load_session(*second, context);
+    if (!other) return other.error();
+    const std::unique_ptr<solver::Method> robust = solver::robust_method();
+    Result<pipeline::GlossSamples> sampled =
+        sample_gloss(other->photographs, *robust, nullptr, context.threads);
+    if (!sampled) return std::move(sampled).error();
+    samples = std::move(*sampled);
+  }
+  Result<LoadedSession> loaded = load_session(plan, context);
+  if (loaded) loaded->photographs.second_pose = std::move(samples);
+  return loaded;
+}
+
 }  // namespace
 
 Result<SolveReport> solve_session(const SessionOptions& input, const SolveOptions& options,
@@ -372,6 +414,9 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
   Result<SessionPlan> plan = plan_session(input);
   if (!plan) return std::move(plan).error();
   plan->extent = method->extent;
+  Result<std::optional<SessionPlan>> second = plan_second_pose(*method, *plan, input, options);
+  if (!second) return std::move(second).error();
+  if (*second) plan->description["second_pose"] = (*second)->description;
   const fs::path truth = plan->session.folder / "truth" / "normal.exr";
   return solve(*method,
                {.title = plan->session.fabric,
@@ -380,7 +425,7 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
                 .default_parent = plan->session.folder / "solve",
                 .truth = is_there(truth) ? truth : fs::path(),
                 .picked = {},
-                .load = [&] { return load_session(*plan, context); }},
+                .load = [&] { return load_poses(*plan, *second, context); }},
                options, context);
 }
 

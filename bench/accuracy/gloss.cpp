@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -39,6 +40,7 @@ struct GlossyCloth {
   std::function<void(Scene&)> change = {};  ///< what else is not as it should be
   bool is_level = false;                    ///< without relief, and one row for all families
   bool is_calibrated_wrong = false;         ///< see put_off()
+  ClothPose second_pose = {};               ///< unless level, the cloth once more as it lies so
 };
 
 Rgb grey(double value) {
@@ -91,6 +93,12 @@ std::vector<GlossyCloth> cloths_with_more_light() {
       {"lambert, pair", Lambert{}, 0.5, {}, with_films},
       {"level ggx 0.10", ggx(0.10), 0.4, {0.10, kNone, 0.04}, {}, true},
       {"level ggx 0.10, LED at 8", ggx(0.10), 0.4, {0.10, kNone, 0.04}, with_led_beside_camera, true},
+      {.name = "level ggx 0.10, tilted by 20 too",
+       .reflectance = ggx(0.10),
+       .albedo = 0.4,
+       .truth = {0.10, kNone, 0.04},
+       .is_level = true,
+       .second_pose = {20, 0}},
       {"level ggx 0.60, pair", ggx(0.60), 0.4, {0.60, kNone, 0.04}, with_films, true},
   };
 }
@@ -181,6 +189,29 @@ Result<void> put_off(Patch& patch) {
   return {};
 }
 
+// The same cloth as it lies otherwise, in the middle of the frame.
+Result<void> add_second_pose(const AccuracyScene& scene, const ClothPose& pose, int threads,
+                             std::vector<Patch>& patches) {
+  Scene tilted = scene.scene;
+  tilted.pose = pose;
+  tilted.seed += 1000;  // other noise
+  Result<Patch> other = render_patch(tilted, scene.patches.front(), threads);
+  if (!other) return std::move(other).error();
+  const auto number = [](pipeline::Photographs& photographs) {
+    photographs.leds.resize(photographs.count());
+    std::iota(photographs.leds.begin(), photographs.leds.end(), 1);
+  };
+  number(other->photographs);
+  Result<pipeline::GlossSamples> samples =
+      sample_gloss(other->photographs, *solver::robust_method(), nullptr, threads);
+  if (!samples) return std::move(samples).error();
+  for (Patch& patch : patches) {
+    number(patch.photographs);
+    patch.photographs.second_pose = *samples;
+  }
+  return {};
+}
+
 double seconds_of(const std::function<void()>& work) {
   const auto begin = std::chrono::steady_clock::now();
   work();
@@ -197,6 +228,10 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
   for (Patch& patch : *patches) {
     if (!cloth.is_calibrated_wrong) continue;
     if (Result<void> ok = put_off(patch); !ok) return std::move(ok).error();
+  }
+  if (!cloth.second_pose.is_level()) {
+    if (Result<void> ok = add_second_pose(scene, cloth.second_pose, threads, *patches); !ok)
+      return std::move(ok).error();
   }
   const BoundedPatches bounded = with_bounds(std::move(*patches), threads);
   const Contender robust = {"robust alone", as_product(solver::robust_method())};

@@ -196,9 +196,10 @@ Result<Patch> render_patch(const Scene& scene, Rect area, int threads) {
   const Result<Plan> plan = plan_of(scene);
   if (!plan) return plan.error();
   const Calibration exact = exact_calibration(plan->scene, plan->rig);
-  const CameraModel camera = cropped(*exact.camera, area);
+  const double height_mm = scene.geometry.cloth_height_mm;
+  const CameraModel camera = seen_from(scene.pose, height_mm, cropped(*exact.camera, area));
   Result<LightField> field =
-      LightField::make(*exact.lights, camera, camera.size, scene.geometry.cloth_height_mm);
+      LightField::make(seen_from(scene.pose, height_mm, *exact.lights), camera, camera.size, height_mm);
   if (!field) return std::move(field).error();
   const Size size = {area.width(), area.height()};
   const auto lights = static_cast<int>(field->count());

@@ -39,6 +39,7 @@ Result<void> make_session(const ScanRequest& request, const std::string& calibra
   session.folder = aside.path();
   session.fabric = request.fabric;
   session.cloth_height_mm = request.cloth_height_mm;
+  session.pose = request.pose;
   session.rig = request.rig;
   session.calibration_id = calibration_id;
   session.state = kCapturing;
@@ -74,6 +75,11 @@ Result<void> check_same_scan(const Session& session, const ScanRequest& request,
     return cannot_resume(session,
                          fmt::format("its cloth is \"{}\" at {} mm, this is \"{}\" at {} mm", session.fabric,
                                      session.cloth_height_mm, request.fabric, request.cloth_height_mm));
+  }
+  if (session.pose != request.pose) {
+    return cannot_resume(session, fmt::format("its cloth lies tilted by {} degrees to {}, this by {} to {}",
+                                              session.pose.tilt_deg, session.pose.downhill_deg,
+                                              request.pose.tilt_deg, request.pose.downhill_deg));
   }
   if (!session.document.contains("plan") || session.document["plan"] != to_json(list)) {
     return cannot_resume(session, "its LEDs, repeat, brackets, polariser or light below are others");

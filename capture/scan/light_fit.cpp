@@ -71,9 +71,12 @@ Patch patch_of(std::size_t i, const std::vector<const std::vector<double>*>& lig
 
 }  // namespace
 
-Result<PatchLights> PatchLights::make(const Calibration& calibration, double cloth_height_mm) {
+Result<PatchLights> PatchLights::make(const Calibration& calibration, double cloth_height_mm,
+                                      const ClothPose& pose) {
   const Size size = calibration.camera->size;
-  const auto field = LightField::make(*calibration.lights, calibration.camera, size, cloth_height_mm);
+  const auto field =
+      LightField::make(seen_from(pose, cloth_height_mm, *calibration.lights),
+                       seen_from(pose, cloth_height_mm, *calibration.camera), size, cloth_height_mm);
   if (!field) return field.error();
   PatchLights model = {PatchGrid::over(size), {}, {}, 0, {}};
   if (calibration.response) model.scale.linearity = calibration.response->linearity;

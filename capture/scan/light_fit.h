@@ -5,6 +5,7 @@
 
 #include "capture/scan/glance.h"
 #include "core/calibration.h"
+#include "core/cloth_pose.h"
 #include "core/result.h"
 #include "core/vec.h"
 
@@ -19,7 +20,8 @@ struct PatchLights {
   std::vector<Vec3> room;  ///< by patch: light from straight above, as strong as a LED on average
 
   /// The calibration has camera and lights. Errors as LightField::make().
-  static Result<PatchLights> make(const Calibration& calibration, double cloth_height_mm);
+  static Result<PatchLights> make(const Calibration& calibration, double cloth_height_mm,
+                                  const ClothPose& pose = {});
 };
 
 /// What frames say of themselves when each is given the light it may have been taken in.

@@ -124,7 +124,7 @@ class Scan {
           fmt::format("with {} LEDs nothing tells that two of them are exchanged: that takes {} or more",
                       list_.leds.size(), kEnoughForPatterns));
     }
-    Result<PatchLights> model = PatchLights::make(*calibration_, request_.cloth_height_mm);
+    Result<PatchLights> model = PatchLights::make(*calibration_, request_.cloth_height_mm, request_.pose);
     if (!model) return model.error();
     so_far_.model = std::move(*model);
     return {};

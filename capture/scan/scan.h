@@ -13,6 +13,7 @@
 
 #include "capture/devices.h"
 #include "core/calibration.h"
+#include "core/cloth_pose.h"
 #include "core/json_document.h"
 #include "core/result.h"
 #include "core/session.h"
@@ -33,6 +34,7 @@ struct ScanRequest {
   std::filesystem::path session;  ///< NAME.weft: not there yet, or an unfinished session of the same rig
   std::string fabric;
   double cloth_height_mm = 0;
+  ClothPose pose;
   Json metadata =
       Json::object();        ///< id, tags, composition, weight, construction, side, notes: kept as given
   Json calibrated = {};      ///< how old the calibration is, and its last check, kept as given

@@ -18,10 +18,10 @@ namespace {
 
 constexpr int kMostDepth = 32;
 constexpr std::size_t kMostFabricBytes = 200;
-constexpr std::array<std::string_view, 16> kFields = {
-    "session",      "fabric",    "cloth_height_mm", "metadata",  "exposure_us", "iso",
-    "f_number",     "leds",      "repeat",          "bracket",   "copy",        "dry_run",
-    "accept_moved", "polariser", "below",           "request_id"};
+constexpr std::array<std::string_view, 18> kFields = {
+    "session",      "fabric",    "cloth_height_mm", "metadata",   "exposure_us", "iso",
+    "f_number",     "leds",      "repeat",          "bracket",    "copy",        "dry_run",
+    "accept_moved", "polariser", "below",           "request_id", "tilt_deg",    "downhill_deg"};
 
 Error refuse(const std::string& where, std::string why, std::string remedy) {
   return {ErrorKind::kUsage, "the request cannot be used", where, std::move(why), std::move(remedy)};
@@ -178,6 +178,7 @@ capture::ScanRequest request_of_session(const Session& session, const capture::R
   capture::ScanRequest request = request_of_rig(rig);
   request.fabric = session.fabric;
   request.cloth_height_mm = session.cloth_height_mm;
+  request.pose = session.pose;
   if (session.document.contains("metadata")) request.metadata = session.document["metadata"];
   if (!session.document.contains("plan") || !session.document["plan"].is_object()) return request;
   const capture::ScanRequest of_rig = request;
@@ -199,6 +200,8 @@ Result<ScanWish> read_scan_body(const Json& body, int leds, const capture::ScanR
   Fields fields(body);
   fields.text("fabric", "1 to 200 characters", request.fabric, is_fabric);
   fields.number("cloth_height_mm", "-1000 to 1000", -1000, 1000, request.cloth_height_mm);
+  fields.number("tilt_deg", "0 to 45", 0, kMostTilt_deg, request.pose.tilt_deg);
+  fields.number("downhill_deg", "-360 to 360", -360, 360, request.pose.downhill_deg);
   fields.number("exposure_us", "0 (metered), or up to 1e9", 0, 1e9, request.exposure.exposure_us);
   fields.number("iso", "1 to 1e6", 1, 1e6, request.exposure.iso);
   fields.number("f_number", "0.5 to 128", 0.5, 128, request.exposure.f_number);

@@ -31,9 +31,9 @@ capture::ScanRequest request_of_rig(const capture::Rig& rig);
 capture::ScanRequest request_of_session(const Session& session, const capture::Rig& rig);
 
 /// The body of POST /api/v1/scan over `otherwise`, every field optional: {"session", "fabric",
-/// "cloth_height_mm", "metadata", "exposure_us", "iso", "f_number", "leds", "repeat", "bracket", "polariser",
-/// "below", "copy", "dry_run", "accept_moved"}. kUsage with the field and what is allowed there; a field that
-/// is not known is refused, with the nearest that is.
+/// "cloth_height_mm", "tilt_deg", "downhill_deg", "metadata", "exposure_us", "iso", "f_number", "leds",
+/// "repeat", "bracket", "polariser", "below", "copy", "dry_run", "accept_moved"}. kUsage with the field and
+/// what is allowed there; a field that is not known is refused, with the nearest that is.
 Result<ScanWish> read_scan_body(const Json& body, int leds, const capture::ScanRequest& otherwise);
 
 }  // namespace weft::app

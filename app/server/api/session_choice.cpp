@@ -64,9 +64,9 @@ bool is_asked_for(const Session& session, const Json& body, const capture::Rig& 
   const capture::ScanRequest begun = request_of_session(session, rig);
   const Result<ScanWish> asked = read_scan_body(body, rig.leds, begun);
   return asked && asked->request.cloth_height_mm == begun.cloth_height_mm &&
-         asked->request.leds == begun.leds && asked->request.repeat == begun.repeat &&
-         asked->request.bracket == begun.bracket && asked->request.below == begun.below &&
-         asked->request.polariser.states == begun.polariser.states &&
+         asked->request.pose == begun.pose && asked->request.leds == begun.leds &&
+         asked->request.repeat == begun.repeat && asked->request.bracket == begun.bracket &&
+         asked->request.below == begun.below && asked->request.polariser.states == begun.polariser.states &&
          asked->request.metadata == begun.metadata && is_exposed_as(session, asked->request.exposure);
 }
 

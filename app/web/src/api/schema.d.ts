@@ -4823,6 +4823,10 @@ export interface components {
             fabric?: string;
             /** @description Of the cloth's surface above the table */
             cloth_height_mm?: number;
+            /** @description Between table and cloth, which lies on a wedge; default 0 */
+            tilt_deg?: number;
+            /** @description Azimuth to which a tilted cloth falls, from x towards y; default 0 */
+            downhill_deg?: number;
             /** @description id, tags, composition, weight, construction, side, notes: kept as given */
             metadata?: Record<string, unknown>;
             /** @description 0: metered for this cloth */

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pipeline/gloss_samples.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/parallel.h"
+#include "core/solve_record.h"
+#include "pipeline/corrected_tile.h"
+#include "pipeline/gloss.h"
+#include "pipeline/light_correction.h"
+#include "pipeline/samples.h"
+#include "pipeline/tile_reader.h"
+#include "solver/reflectance/lobe_readings.h"
+#include "solver/reflectance/measured_lobe.h"
+#include "solver/sample_tiles.h"
+
+namespace weft::pipeline {
+namespace {
+
+// A prime: pixel i times it meets every pixel once.
+constexpr std::size_t kFarApart = 2654435761U;
+
+// Takes pixels of one sample tile after another; one a worker.
+class Sampler {
+ public:
+  Sampler(const Photographs& photographs, const solver::Method& base, const LightCorrection* correction,
+          int step)
+      : reader_(photographs, {.width = solver::kSampleTile, .height = solver::kSampleTile}),
+        base_(base),
+        correction_(correction),
+        step_(step),
+        frame_(photographs.size),
+        sight_(sight_of(photographs)) {}
+
+  void take(Rect tile, GlossSamples& samples) {
+    solver::TileInput input = reader_.read(tile);
+    // Light from the cloth itself is taken off, and shadows are marked.
+    if (correction_ != nullptr) corrected_.apply(*correction_, input);
+    const SampleMaps maps = solve_sample(input, base_);
+    solver::LobeReader reader(input, sight_);
+    std::vector<solver::LobeReading> readings(reader.count());
+    for (int y = 0; y < tile.height(); y += step_) {
+      for (int x = 0; x < tile.width(); x += step_) {
+        if (maps.status(x, y) & (kNoSolution | kDark)) continue;
+        reader.read(x, y, readings);
+        if (solver::used_of(readings) < solver::kLeastLobeReadings) continue;
+        samples.readings.insert(samples.readings.end(), readings.begin(), readings.end());
+        samples.start.push_back(static_cast<double>(maps.albedo(x, y)) *
+                                Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)});
+        samples.part.push_back(part_of(tile.x0 + x, tile.y0 + y));
+      }
+    }
+  }
+
+ private:
+  std::size_t part_of(int x, int y) const {
+    return (2 * y < frame_.height ? 0U : 2U) + (2 * x < frame_.width ? 0U : 1U);
+  }
+
+  TileReader reader_;
+  const solver::Method& base_;
+  const LightCorrection* correction_;
+  int step_;
+  Size frame_;
+  solver::Sight sight_;
+  CorrectedTile corrected_;
+};
+
+void append(const GlossSamples& from, std::size_t pixel, GlossSamples& to) {
+  const std::span<const solver::LobeReading> readings = from.of(pixel);
+  to.readings.insert(to.readings.end(), readings.begin(), readings.end());
+  to.start.push_back(from.start[pixel]);
+  to.part.push_back(from.part[pixel]);
+}
+
+}  // namespace
+
+Result<GlossSamples> sample_gloss(const Photographs& photographs, const solver::Method& base,
+                                  LightCorrection* correction, int threads) {
+  const std::vector<Rect> tiles = solver::sample_tiles(photographs.size);
+  const int step = solver::sample_step(tiles, 4 * kGlossPixels);
+  std::vector<Sampler> samplers;
+  for (int i = 0; i < resolved_threads(threads); ++i)
+    samplers.emplace_back(photographs, base, correction, step);
+  std::vector<GlossSamples> by_tile(tiles.size());
+  // A correction is traced for one row of tiles after another.
+  for (std::size_t begin = 0, end = 0; begin < tiles.size(); begin = end) {
+    while (end < tiles.size() && tiles[end].y0 == tiles[begin].y0) ++end;
+    if (correction != nullptr) {
+      const Rect rows = {0, tiles[begin].y0, photographs.size.width, tiles[begin].y1};
+      if (Result<void> ok = correction->prepare(rows); !ok) return std::move(ok).error();
+    }
+    parallel_for(end - begin, threads, [&](std::size_t i, int worker) {
+      samplers[static_cast<std::size_t>(worker)].take(tiles[begin + i], by_tile[begin + i]);
+    });
+  }
+  GlossSamples all;
+  for (const GlossSamples& tile : by_tile) {
+    for (std::size_t i = 0; i < tile.pixels(); ++i) append(tile, i, all);
+  }
+  GlossSamples chosen;
+  chosen.leds = photographs.leds;
+  chosen.states = photographs.parallel ? 2 : 1;
+  for (std::size_t i = 0; i < std::min(all.pixels(), kGlossPixels); ++i)
+    append(all, i * kFarApart % all.pixels(), chosen);
+  return chosen;
+}
+
+GlossSamples by_leds(const GlossSamples& samples, std::span<const int> leds) {
+  GlossSamples chosen = {.leds = {leds.begin(), leds.end()},
+                         .states = samples.states,
+                         .readings = {},
+                         .start = samples.start,
+                         .part = samples.part};
+  for (std::size_t i = 0; i < samples.pixels(); ++i) {
+    const std::span<const solver::LobeReading> all = samples.of(i);
+    for (std::size_t state = 0; state < samples.states; ++state) {
+      const auto of_state = all.subspan(state * samples.leds.size(), samples.leds.size());
+      for (const int led : leds) {
+        const auto found = std::ranges::find(samples.leds, led) - samples.leds.begin();
+        const bool is_there = found < static_cast<std::ptrdiff_t>(of_state.size());
+        chosen.readings.push_back(of_state[is_there ? static_cast<std::size_t>(found) : 0]);
+        if (!is_there) chosen.readings.back().weight = 0;
+      }
+    }
+  }
+  return chosen;
+}
+
+}  // namespace weft::pipeline
