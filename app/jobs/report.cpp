@@ -347,14 +347,14 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
 
 namespace {
 
-// Of a cloth that moved and was not put right: one verdict or none.
-std::vector<Verdict> moved_verdicts(const PhotographsSummary& photographs) {
+// Of a cloth that moved and was not put right: one verdict or none. Gloss deviates from a fit as well.
+std::vector<Verdict> moved_verdicts(const PhotographsSummary& photographs, bool shines) {
   const char* remedy =
       "see that nothing touches cloth, table and camera while they are scanned, and scan again";
   const pipeline::SessionShifts& shifts = photographs.shifts;
   const double residual = photographs.diagnosis.residual;
   if (!shifts.found) {
-    if (residual <= kMoved) return {};
+    if (residual <= kMoved || shines) return {};
     return {{"CLOTH_MOVED",
              fmt::format("The shots show the cloth in different places, too far apart to be registered, and "
                          "readings deviate by {:.1f} percent from their fit",
@@ -390,12 +390,15 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
       if (fault.kind == kind && matters) verdicts.push_back(say(fault));
     }
   }
-  std::ranges::move(moved_verdicts(photographs), std::back_inserter(verdicts));
+  const bool is_dominated =
+      specular > kSpecularDominated && photographs.outshining >= solver::kLeastOutshining;
+  std::ranges::move(moved_verdicts(photographs, is_dominated || photographs.glossy_share > kMostlyGlossy),
+                    std::back_inserter(verdicts));
   if (check && verdicts.empty()) {
     if (const std::optional<Verdict> unfit = verdict_of(*check, photographs.of_session, level))
       verdicts.push_back(*unfit);
   }
-  if (specular > kSpecularDominated && photographs.outshining >= solver::kLeastOutshining) {
+  if (is_dominated) {
     const bool robust_ran = level && *level >= solver::Level::kRobust;
     verdicts.push_back({"SPECULAR_DOMINATED",
                         fmt::format("Highlights dominate: in {:.0f} percent of the pixels a reading is over "

@@ -87,6 +87,7 @@ struct PhotographsSummary {
   bool of_session = true;       ///< lights are LEDs of a rig; else photographs in a list
   bool noise_is_known = false;  ///< the camera's noise was calibrated
   LightCondition condition;
+  double glossy_share = 0;            ///< of the blocks, solved with a lobe that was measured
   double outshining = 0;              ///< share of pixels, solver/diagnosis/highlights.h
   std::vector<std::string> warnings;  ///< a sentence each, said when the photographs were read
   pipeline::SessionShifts shifts;     ///< of the photographs as they were read
@@ -105,6 +106,9 @@ inline constexpr double kSpecularDominated = 0.2;
 /// Shots that cannot be registered are warned of where readings deviate by more than this from their fit,
 /// over the albedo: cloth that shows nothing to register by fits well.
 inline constexpr double kMoved = 0.05;
+/// Nor are they where more than this share of the cloth is solved with its lobe, or highlights dominate: what
+/// deviates is then gloss.
+inline constexpr double kMostlyGlossy = 0.5;
 /// What is left alone and costs more is warned of.
 inline constexpr double kLeastWarnedShift_deg = 0.2;
 

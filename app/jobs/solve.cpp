@@ -256,6 +256,7 @@ class Run {
     }
     summary_ = summarize_photographs(photographs_, picked_, warnings_, context_);
     summary_.shifts = std::move(shifts_);
+    if (frame->gloss) summary_.glossy_share = frame->gloss->share;
     summary_.shadow_reach_is_capped = frame->reference && frame->reference->shadow_reach_is_capped;
     if (frame->left_out) facts_.check = facts_of(*frame->left_out, summary_.numbers);
     seconds_.report = watch_.lap();

@@ -300,6 +300,13 @@ TEST(Verdicts, WarnOfShotsThatCannotBeRegisteredWhereTheyDoNotFit) {
   summary.diagnosis.residual = 0.11;
   ASSERT_EQ(app::verdicts_of(summary, 0, {}, {}).size(), 1U);
   EXPECT_EQ(app::verdicts_of(summary, 0, {}, {})[0].name, "CLOTH_MOVED");
+  summary.glossy_share = 0.9;  // solved with its lobe
+  EXPECT_THAT(app::verdicts_of(summary, 0, {}, {}), IsEmpty());
+  summary.glossy_share = 0;
+  summary.outshining = 1;
+  const std::vector<Verdict> dominated = app::verdicts_of(summary, 0.5, {}, {});
+  ASSERT_EQ(dominated.size(), 1U);
+  EXPECT_EQ(dominated[0].name, "SPECULAR_DOMINATED");
 }
 
 TEST(Verdicts, WarnOfShadowsFromFartherThanTheyAreLookedFor) {
