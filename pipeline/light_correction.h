@@ -9,8 +9,8 @@
 #include "pipeline/light_strengths.h"
 #include "pipeline/photographs.h"
 #include "pipeline/tile_reader.h"
-#include "solver/transport/height_grid.h"
-#include "solver/transport/shadows.h"
+#include "solver/transport/lights.h"
+#include "solver/transport/relief.h"
 
 namespace weft::pipeline {
 

@@ -12,7 +12,7 @@
 #include "core/vec.h"
 #include "material/maps/flatten.h"
 #include "simulator/geometry/surface.h"
-#include "solver/transport/lattice.h"
+#include "solver/transport/pixel_hash.h"
 
 namespace weft::bench {
 namespace {

@@ -12,7 +12,7 @@
 #include "bench/maps/processor_time.h"
 #include "core/vec.h"
 #include "solver/height/tiled_height.h"
-#include "solver/transport/lattice.h"
+#include "solver/transport/pixel_hash.h"
 
 namespace weft::bench {
 namespace {

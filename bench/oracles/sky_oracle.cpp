@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/transport/gather.h"
+#include "bench/oracles/rays/gather.h"
+#include "solver/transport/relief.h"
 
 namespace weft::test {
 namespace {
@@ -54,12 +55,12 @@ Image<float> normals_of_heights(const Image<float>& height_mm, double mm_per_pix
 Result<Image<float>> openness_by_rays(const Image<float>& height_mm, double mm_per_pixel, Rect tile) {
   const auto relief = solver::Relief::of(height_mm.plane(), mm_per_pixel);
   if (!relief) return relief.error();
-  const auto grid = solver::HeightGrid::build(*relief, tile, kSkyReach_px + 1);
+  const auto grid = HeightGrid::build(*relief, tile, kSkyReach_px + 1);
   if (!grid) return grid.error();
   const Image<float> normal = normals_of_heights(height_mm, mm_per_pixel, tile);
   Image<float> openness({tile.width(), tile.height()});
-  const auto done = solver::trace_openness(*grid, tile, {normal.plane(0), normal.plane(1), normal.plane(2)},
-                                           {.rays = 1024, .reach_px = kSkyReach_px}, openness.plane());
+  const auto done = trace_openness(*grid, tile, {normal.plane(0), normal.plane(1), normal.plane(2)},
+                                   {.rays = 1024, .reach_px = kSkyReach_px}, openness.plane());
   if (!done) return done.error();
   return openness;
 }

@@ -11,18 +11,22 @@
 
 #include "bench/base/bare_embree.h"
 #include "bench/effects/scenes.h"
+#include "bench/oracles/rays/gather.h"
+#include "bench/oracles/rays/height_grid.h"
+#include "bench/oracles/rays/shadows.h"
 #include "core/parallel.h"
 #include "core/tiles.h"
 #include "simulator/geometry/surface.h"
-#include "solver/transport/gather.h"
 #include "solver/transport/horizon.h"
-#include "solver/transport/shadows.h"
+#include "solver/transport/lights.h"
+#include "solver/transport/relief.h"
 #include "solver/transport/slices.h"
 
 namespace weft::bench {
 namespace {
 
 using namespace solver;
+using namespace test;
 
 constexpr int kTransportRepeats = 7;
 constexpr Size kBlock = {1024, 512};

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "core/image.h"
-#include "solver/transport/height_grid.h"
+#include "solver/transport/relief.h"
 
 namespace weft::solver {
 

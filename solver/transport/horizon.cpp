@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "solver/transport/lattice.h"
+#include "solver/transport/pixel_hash.h"
 #include "solver/transport/planes.h"
 
 namespace weft::solver {

@@ -3,8 +3,7 @@
 
 #include "core/image.h"
 #include "core/result.h"
-#include "solver/transport/height_grid.h"
-#include "solver/transport/shadows.h"
+#include "solver/transport/relief.h"
 
 namespace weft::solver {
 

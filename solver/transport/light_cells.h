@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/image.h"
-#include "solver/transport/shadows.h"
+#include "solver/transport/lights.h"
 
 namespace weft::solver {
 

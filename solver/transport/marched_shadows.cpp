@@ -51,7 +51,7 @@ void march_run(march::Run& run) {
   const LaneTag d;
   for (std::size_t lane = 0; lane < run.hidden.size(); lane += hn::Lanes(d)) {
     const float* here = run.height + lane;
-    const Lanes z = hn::Add(hn::LoadU(d, here), hn::Set(d, HeightGrid::kLift));
+    const Lanes z = hn::Add(hn::LoadU(d, here), hn::Set(d, kLift));
     const Lanes tan_elevation = hn::LoadU(d, run.tan_elevation.data() + lane);
     const Lanes top = hn::Set(d, run.top_px);
     auto hidden = hn::Gt(hn::Zero(d), hn::Set(d, 1.0F));

@@ -8,7 +8,8 @@
 #include "core/image.h"
 #include "core/result.h"
 #include "core/vec.h"
-#include "solver/transport/shadows.h"
+#include "solver/transport/lights.h"
+#include "solver/transport/relief.h"
 
 // What the functions of this folder ask of the tiles they are given.
 

@@ -75,7 +75,7 @@ struct Share {
 void gather_direction(const slices::Direction& direction, float share, int x, slices::Row& row) {
   const LaneTag d;
   const float* here = row.height + x;
-  const Lanes z = hn::Add(hn::LoadU(d, here), hn::Set(d, HeightGrid::kLift));
+  const Lanes z = hn::Add(hn::LoadU(d, here), hn::Set(d, kLift));
   const Lanes n_z = hn::LoadU(d, row.normal_z + x);
   const Lanes n_d = hn::MulAdd(hn::Set(d, direction.x), hn::LoadU(d, row.normal_x + x),
                                hn::Mul(hn::Set(d, direction.y), hn::LoadU(d, row.normal_y + x)));

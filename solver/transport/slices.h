@@ -5,8 +5,7 @@
 
 #include "core/image.h"
 #include "core/result.h"
-#include "solver/transport/height_grid.h"
-#include "solver/transport/shadows.h"
+#include "solver/transport/relief.h"
 
 // Light that reaches a pixel from the cloth around it, without rays.
 

@@ -78,7 +78,7 @@ const std::vector<Door> kDoors = {
     {"OpenImageIO/", {"core/image_io/", "bench/"}},
     {"libraw/", {"capture/raw/", "bench/"}},
     {"hwy/", {"core/", "solver/kernels/", "solver/reflectance/", "solver/transport/", "tests/"}},
-    {"embree3/", {"simulator/transport/", "solver/transport/", "bench/"}},
+    {"embree3/", {"simulator/transport/", "bench/"}},
     {"spdlog/", {"app/server/"}},
     {"kissfft/", {"core/", "bench/"}},
     {"sqlite3", {"library/"}},

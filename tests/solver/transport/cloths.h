@@ -8,9 +8,10 @@
 #include <utility>
 #include <vector>
 
-#include "solver/transport/gather.h"
-#include "solver/transport/height_grid.h"
-#include "solver/transport/shadows.h"
+#include "core/image.h"
+#include "core/vec.h"
+#include "solver/transport/lights.h"
+#include "solver/transport/relief.h"
 
 namespace weft::solver {
 
@@ -79,12 +80,6 @@ inline double hidden_in_groove(double part) {
   return (1 - part / std::hypot(part, 1)) / 2;
 }
 
-inline HeightGrid grid_of(const TestCloth& cloth, Rect block, int halo_px) {
-  auto grid = HeightGrid::build(cloth.relief(), block, halo_px);
-  EXPECT_TRUE(grid) << (grid ? "" : grid.error().message());
-  return *std::move(grid);
-}
-
 inline Vec3 direction_of(double elevation_deg, double azimuth_deg) {
   const double e = radians(elevation_deg), a = radians(azimuth_deg);
   return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
@@ -109,31 +104,6 @@ std::vector<View<T>> planes_of(Image<T>& image) {
   std::vector<View<T>> planes;
   for (int p = 0; p < image.planes(); ++p) planes.push_back(image.plane(p));
   return planes;
-}
-
-inline Image<std::uint32_t> visible_in(const HeightGrid& grid, const TestCloth& cloth, Rect tile,
-                                       const LightDirections& lights, int reach_px) {
-  Image<std::uint32_t> bits({tile.width(), tile.height()}, visibility_words(lights.count));
-  const auto done =
-      find_visible_lights(grid, tile, cloth.normals_of(tile), lights, reach_px, planes_of(bits));
-  EXPECT_TRUE(done) << (done ? "" : done.error().message());
-  return bits;
-}
-
-inline Image<float> gathered_in(const HeightGrid& grid, const TestCloth& cloth, Rect tile,
-                                const Radiosity& radiosity, const GatherSettings& settings) {
-  Image<float> light({tile.width(), tile.height()}, radiosity.count);
-  const auto done = gather_light(grid, tile, cloth.normals_of(tile), radiosity, settings, planes_of(light));
-  EXPECT_TRUE(done) << (done ? "" : done.error().message());
-  return light;
-}
-
-inline Image<float> openness_in(const HeightGrid& grid, const TestCloth& cloth, Rect tile,
-                                const GatherSettings& settings) {
-  Image<float> openness({tile.width(), tile.height()});
-  const auto done = trace_openness(grid, tile, cloth.normals_of(tile), settings, openness.plane());
-  EXPECT_TRUE(done) << (done ? "" : done.error().message());
-  return openness;
 }
 
 }  // namespace weft::solver

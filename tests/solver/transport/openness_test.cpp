@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "tests/bench/oracles/rays/traced.h"
 #include "tests/solver/transport/cloths.h"
 
 namespace weft::solver {
@@ -46,10 +47,10 @@ TEST(HorizonScan, FindsWhatAWallHides) {
   const TestCloth step = cloth_over({140, 400}, [&](int x, int) {
     return std::pair{x <= kEdge ? kHeight : 0.0, Vec3{0, 0, 1}};
   });
-  const HeightGrid grid = grid_of(step, step.pixels(), 0);
+  const test::HeightGrid grid = test::grid_of(step, step.pixels(), 0);
   const Rect tile = {64, 168, 96, 232};
   const auto scanned = scanned_in(step, tile, {.slices = 16, .steps = 64, .radius_px = 165});
-  const auto traced = openness_in(grid, step, tile, {.rays = 256, .reach_px = 165});
+  const auto traced = test::openness_in(grid, step, tile, {.rays = 256, .reach_px = 165});
   for (int x = tile.x0; x < tile.x1; ++x) {
     const double expected = (1 + std::cos(std::atan(kHeight / (x - kEdge)))) / 2;
     const Rect column = {x - tile.x0, 0, x - tile.x0 + 1, 64};
@@ -70,9 +71,9 @@ TEST(HorizonScan, FindsWhatTheOtherWallOfAGrooveHides) {
 
 TEST(HorizonScan, AgreesWithRaysOnAWeave) {
   const TestCloth cloth = bumpy_cloth({128, 128});
-  const HeightGrid grid = grid_of(cloth, cloth.pixels(), 0);
+  const test::HeightGrid grid = test::grid_of(cloth, cloth.pixels(), 0);
   const Rect tile = {48, 48, 80, 80}, all = {0, 0, 32, 32};
-  const double traced = mean_of(openness_in(grid, cloth, tile, {.rays = 64}), all);
+  const double traced = mean_of(test::openness_in(grid, cloth, tile, {.rays = 64}), all);
   EXPECT_NEAR(mean_of(scanned_in(cloth, tile, {}), all), traced, 0.03);
   EXPECT_NEAR(mean_of(scanned_in(cloth, tile, {.slices = 8, .steps = 64}), all), traced, 0.01);
 }

@@ -11,6 +11,7 @@
 
 #include "core/parallel.h"
 #include "solver/transport/marched_shadows.h"
+#include "tests/bench/oracles/rays/traced.h"
 #include "tests/solver/transport/cloths.h"
 
 namespace weft::solver {
@@ -72,13 +73,13 @@ TEST(Slices, AgreeWithManyRaysOnAWeave) {
   const TestCloth cloth = bumpy_cloth({96, 96});
   const Rect tile = {32, 32, 64, 64};
   const auto of = [](int x, int y, int) { return 0.5 + 0.3 * std::sin(0.3 * x + 0.2 * y); };
-  const HeightGrid grid = grid_of(cloth, cloth.pixels(), 0);
+  const test::HeightGrid grid = test::grid_of(cloth, cloth.pixels(), 0);
   std::vector<float> values;
   for (int y = 0; y < 96; ++y) {
     for (int x = 0; x < 96; ++x) values.push_back(static_cast<float>(of(x, y, 0)));
   }
   const auto truth =
-      gathered_in(grid, cloth, tile, {cloth.pixels(), 1, values}, {.rays = 2048, .reach_px = 30});
+      test::gathered_in(grid, cloth, tile, {cloth.pixels(), 1, values}, {.rays = 2048, .reach_px = 30});
   const auto error_of = [&](const Image<float>& found) {
     double squares = 0;
     for (int y = 0; y < tile.height(); ++y) {
@@ -87,8 +88,8 @@ TEST(Slices, AgreeWithManyRaysOnAWeave) {
     }
     return std::sqrt(squares / static_cast<double>(tile.pixels()));
   };
-  const double by_rays =
-      error_of(gathered_in(grid, cloth, tile, {cloth.pixels(), 1, values}, {.rays = 32, .reach_px = 30}));
+  const double by_rays = error_of(
+      test::gathered_in(grid, cloth, tile, {cloth.pixels(), 1, values}, {.rays = 32, .reach_px = 30}));
   const double by_slices = error_of(gathered_by_slices(cloth, tile, 1, {.reach_px = 30}, of));
   EXPECT_LT(by_slices, 0.012);
   EXPECT_LT(by_slices, by_rays) << "of 32 rays";
@@ -160,7 +161,7 @@ Image<std::uint32_t> marched_in(const TestCloth& cloth, Rect tile, const LightDi
 TEST(MarchedShadows, AreThoseOfRaysButForTheirEdges) {
   const TestCloth cloth = bumpy_cloth({96, 96});
   const auto by_rays =
-      visible_in(grid_of(cloth, cloth.pixels(), 0), cloth, cloth.pixels(), near_lights(), 40);
+      test::visible_in(test::grid_of(cloth, cloth.pixels(), 0), cloth, cloth.pixels(), near_lights(), 40);
   const auto marched = marched_in(cloth, cloth.pixels(), near_lights(), 40);
   int hidden = 0, differing = 0;
   for (int y = 0; y < 96; ++y) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/transport/height_grid.h"
+#include "bench/oracles/rays/height_grid.h"
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <limits>
 #include <new>
 #include <type_traits>
@@ -15,10 +14,11 @@
 
 #include "solver/transport/planes.h"
 
-namespace weft::solver {
+namespace weft::test {
 namespace {
 
-constexpr int kLongestSide = 1 << 24;    // whole numbers of float32
+using namespace solver;
+
 constexpr int kLongestGridSide = 32767;  // vertices count in 32 bits
 
 std::atomic<std::int64_t> bytes_held = 0;
@@ -134,42 +134,6 @@ Result<void> attach_cells(const Relief& relief, Rect area, RTCScene scene) {
 
 }  // namespace
 
-Result<Relief> Relief::of(View<const float> height_mm, double mm_per_pixel) {
-  const Size size = height_mm.size();
-  if (size.width < 1 || size.height < 1 || size.width > kLongestSide || size.height > kLongestSide) {
-    return bad_transport("height map", fmt::format("{} x {} pixels", size.width, size.height),
-                         fmt::format("give from 1 to {} columns and rows", kLongestSide));
-  }
-  if (!(mm_per_pixel > 0) || !std::isfinite(mm_per_pixel)) {
-    return bad_transport("height map", fmt::format("{} mm a pixel", mm_per_pixel),
-                         "give a finite pitch over 0");
-  }
-  Relief relief{height_mm, mm_per_pixel, height_mm(0, 0), height_mm(0, 0)};
-  for (int y = 0; y < size.height; ++y) {
-    const float* row = height_mm.row(y);
-    for (int x = 0; x < size.width; ++x) {
-      if (!std::isfinite(row[x])) {
-        return bad_transport("height map", fmt::format("the height of pixel ({}, {}) is {} mm", x, y, row[x]),
-                             "fill in heights that are missing");
-      }
-      relief.lowest_mm = std::min(relief.lowest_mm, row[x]);
-      relief.highest_mm = std::max(relief.highest_mm, row[x]);
-    }
-  }
-  const double range_px =
-      (static_cast<double>(relief.highest_mm) - static_cast<double>(relief.lowest_mm)) / mm_per_pixel;
-  if (range_px > kMostRange_px) {
-    return bad_transport("height map", fmt::format("heights differ by {:.6g} pixels", range_px),
-                         fmt::format("flatten the map to at most {} pixels", kMostRange_px));
-  }
-  return relief;
-}
-
-float Relief::top_px() const {
-  return static_cast<float>((static_cast<double>(highest_mm) - static_cast<double>(lowest_mm)) /
-                            mm_per_pixel);
-}
-
 struct HeightGrid::Scene {
   Owned<RTCScene> embree;
 };
@@ -251,7 +215,7 @@ Result<void> check_tile(const HeightGrid& grid, Rect tile, int reach_px) {
         "tile", fmt::format("{} are asked for, the block has {}", words_of(tile), words_of(grid.block())),
         "ask for a tile inside the block");
   }
-  if (reach_px < 1 || reach_px > kLongestSide) {
+  if (reach_px < 1 || reach_px > Relief::kMostSide_px) {
     return bad_transport("tile", fmt::format("a reach of {} pixels", reach_px),
                          "give a reach of at least 1 pixel");
   }
@@ -262,4 +226,4 @@ Result<void> check_tile(const HeightGrid& grid, Rect tile, int reach_px) {
   return {};
 }
 
-}  // namespace weft::solver
+}  // namespace weft::test

@@ -7,32 +7,11 @@
 
 #include "core/image.h"
 #include "core/result.h"
+#include "solver/transport/relief.h"
 
-// The solved height of a cloth as rays meet it. All of solver/transport works in pixels of the picture:
-// x = column, y = -row and z = height over mm_per_pixel, axes as in the rig frame. The camera looks down from
-// infinity and light is distant over the millimetres that relief reaches.
+// A relief as rays meet it, in the pixels of solver/transport/relief.h.
 
-namespace weft::solver {
-
-/// A height map that can be traced: all finite, its range known. Borrows the heights.
-struct Relief {
-  View<const float> height_mm;  ///< one sample a pixel, positive towards the camera
-  double mm_per_pixel = 0;
-  float lowest_mm = 0, highest_mm = 0;
-
-  /// Refuses (kBadData) a map without pixels or with a side over 2^24, a height that is not finite, a
-  /// pixel pitch that is not positive, and a range over kMostRange_px.
-  static Result<Relief> of(View<const float> height_mm, double mm_per_pixel);
-
-  /// z in pixels above the lowest point. Float32 keeps it to 1/4000 pixel within that range.
-  static constexpr double kMostRange_px = 8192;
-  float z_px(int x, int y) const {
-    return static_cast<float>((static_cast<double>(height_mm(x, y)) - static_cast<double>(lowest_mm)) /
-                              mm_per_pixel);
-  }
-  float top_px() const;  ///< z of the highest point
-  Rect pixels() const { return {0, 0, height_mm.width(), height_mm.height()}; }
-};
+namespace weft::test {
 
 /// Rays side by side from the pixels of the relief, in pixels. Directions need no unit length: a ray goes
 /// from start to start + length * direction and its hits are counted in the same measure.
@@ -56,21 +35,19 @@ class HeightGrid {
   /// Over `block` and `halo_px` pixels around it, as far as the relief has them; beyond the relief there is
   /// nothing to meet. kBadData where the block is empty, not inside the relief or, with its halo, over 32767
   /// pixels wide or high; kTryAgain without memory.
-  static Result<HeightGrid> build(const Relief& relief, Rect block, int halo_px);
+  static Result<HeightGrid> build(const solver::Relief& relief, Rect block, int halo_px);
 
   HeightGrid(HeightGrid&&) noexcept;
   HeightGrid& operator=(HeightGrid&&) noexcept;
   ~HeightGrid();
 
-  const Relief& relief() const { return relief_; }
+  const solver::Relief& relief() const { return relief_; }
   Rect block() const { return block_; }  ///< the pixels that rays may start from
   Rect area() const { return area_; }    ///< block and halo, cut off at the relief's border
   int halo_px() const { return halo_px_; }
 
-  /// Rays start this far above their pixel's vertex, so that float32 does not make a ray meet the cell it
-  /// leaves. It moves the edge of a shadow towards what casts it by kLift / tan(elevation of the light):
-  /// 0.03 pixel at 28 degrees.
-  static constexpr float kLift = 1.0f / 64;
+  /// Rays start this far above their pixel's vertex.
+  static constexpr float kLift = solver::kLift;
 
   /// Bit i is set where ray i meets the cloth.
   std::uint32_t occlude(const RayPacket& rays) const;
@@ -83,19 +60,19 @@ class HeightGrid {
 
  private:
   struct Scene;
-  HeightGrid(const Relief& relief, Rect block, Rect area, int halo_px, std::unique_ptr<Scene> scene);
+  HeightGrid(const solver::Relief& relief, Rect block, Rect area, int halo_px, std::unique_ptr<Scene> scene);
 
-  Relief relief_;
+  solver::Relief relief_;
   Rect block_, area_;
   int halo_px_;
   std::unique_ptr<Scene> scene_;
 };
 
 /// The pixels that rays of this reach from a tile may meet, and the one beyond.
-Rect within_reach(const Relief& relief, Rect tile, int reach_px);
+Rect within_reach(const solver::Relief& relief, Rect tile, int reach_px);
 
 /// kBadData where `tile` is empty or not inside the grid's block, or the grid does not hold all that is
 /// within reach of it.
 Result<void> check_tile(const HeightGrid& grid, Rect tile, int reach_px);
 
-}  // namespace weft::solver
+}  // namespace weft::test

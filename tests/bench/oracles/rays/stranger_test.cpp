@@ -8,10 +8,12 @@
 
 #include "simulator/transport/bounces.h"
 #include "simulator/transport/shadows.h"
-#include "tests/solver/transport/cloths.h"
+#include "tests/bench/oracles/rays/traced.h"
 
-namespace weft::solver {
+namespace weft::test {
 namespace {
+
+using namespace solver;
 
 constexpr Size kSize = {56, 56};
 constexpr Rect kTile = {20, 20, 36, 36};
@@ -107,4 +109,4 @@ TEST(Transport, FindsTheBouncesOfTheSimulatorInWhatAPictureMeasures) {
 }
 
 }  // namespace
-}  // namespace weft::solver
+}  // namespace weft::test

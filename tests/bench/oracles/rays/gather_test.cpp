@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/transport/gather.h"
+#include "bench/oracles/rays/gather.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "tests/solver/transport/cloths.h"
+#include "tests/bench/oracles/rays/traced.h"
 
-namespace weft::solver {
+namespace weft::test {
 namespace {
+
+using namespace solver;
 
 /// Each pixel sends back of(x, y, k).
 template <typename Of>
@@ -208,4 +210,4 @@ TEST(GatheredLight, RefusesWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace weft::solver
+}  // namespace weft::test

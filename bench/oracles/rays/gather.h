@@ -4,15 +4,15 @@
 #include <span>
 #include <vector>
 
+#include "bench/oracles/rays/height_grid.h"
 #include "core/image.h"
 #include "core/result.h"
-#include "solver/transport/height_grid.h"
-#include "solver/transport/shadows.h"
+#include "solver/transport/relief.h"
 
 // Light that reaches a pixel from the cloth around it, and the share of the sky it sees: cosine-weighted
 // rays.
 
-namespace weft::solver {
+namespace weft::test {
 
 struct GatherSettings {
   /// A pixel, from 1 to kMostRays. On a deep white weave u errs by 0.05 rms at 8 rays, 0.031 at 16, 0.018 at
@@ -48,16 +48,16 @@ struct Radiosity {
 /// finite or does not look up, rays go about (0, 0, 1). Rays beyond the relief's border leave: u is too low
 /// within the reach of the border. kBadData as check_tile, for settings out of range, for planes or values
 /// that do not fit, and where a radiosity that was met is not finite.
-Result<void> gather_light(const HeightGrid& grid, Rect tile, const Normals& normals,
+Result<void> gather_light(const HeightGrid& grid, Rect tile, const solver::Normals& normals,
                           const Radiosity& radiosity, const GatherSettings& settings,
                           std::span<const View<float>> arriving);
 
 /// The share of the same rays that leave: 1 on a plane, whatever its tilt. `mosaic` is not looked at.
-Result<void> trace_openness(const HeightGrid& grid, Rect tile, const Normals& normals,
+Result<void> trace_openness(const HeightGrid& grid, Rect tile, const solver::Normals& normals,
                             const GatherSettings& settings, View<float> openness);
 
 /// The packets that both would trace, in their order, of arguments that they take: for measurements.
-std::vector<RayPacket> gather_packets(const HeightGrid& grid, Rect tile, const Normals& normals,
+std::vector<RayPacket> gather_packets(const HeightGrid& grid, Rect tile, const solver::Normals& normals,
                                       const GatherSettings& settings);
 
-}  // namespace weft::solver
+}  // namespace weft::test

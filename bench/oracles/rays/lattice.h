@@ -2,12 +2,13 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
+
+#include "solver/transport/pixel_hash.h"
 
 // Directions of cosine-weighted rays.
 
-namespace weft::solver {
+namespace weft::test {
 
 /// A point of the unit square whose sides are joined: [0, 1) both.
 struct TorusPoint {
@@ -27,30 +28,12 @@ struct Lattice {
 };
 Lattice make_lattice(int points);
 
-/// Two numbers from a pixel's coordinates, each bit as good as random (pcg2d of Jarzynski and Olano, JCGT
-/// 9(3), 2020, listing "pcg2d").
-struct PixelHash {
-  std::uint32_t first, second;
-};
-inline PixelHash hash_of(int x, int y) {
-  constexpr std::uint32_t kFactor = 1664525, kStep = 1013904223;
-  std::uint32_t a = static_cast<std::uint32_t>(x) * kFactor + kStep;
-  std::uint32_t b = static_cast<std::uint32_t>(y) * kFactor + kStep;
-  for (int round = 0; round < 2; ++round) {
-    a += b * kFactor;
-    b += a * kFactor;
-    a ^= a >> 16;
-    b ^= b >> 16;
-  }
-  return {a, b};
-}
-
 /// The shift of a pixel: evenly spread over the cell around (0, 0).
-inline TorusPoint shift_of(const Lattice& lattice, PixelHash hash) {
+inline TorusPoint shift_of(const Lattice& lattice, solver::PixelHash hash) {
   constexpr float kToUnit = 1.0f / (1U << 24);
   const float s = static_cast<float>(hash.first >> 8) * kToUnit - 0.5f;
   const float t = static_cast<float>(hash.second >> 8) * kToUnit - 0.5f;
   return {s * lattice.cell[0].u + t * lattice.cell[1].u, s * lattice.cell[0].v + t * lattice.cell[1].v};
 }
 
-}  // namespace weft::solver
+}  // namespace weft::test

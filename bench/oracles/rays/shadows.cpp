@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/transport/shadows.h"
+#include "bench/oracles/rays/shadows.h"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,10 @@
 #include "solver/transport/light_cells.h"
 #include "solver/transport/planes.h"
 
-namespace weft::solver {
+namespace weft::test {
 namespace {
+
+using namespace solver;
 
 constexpr int kCell = LightDirections::kCell;
 static_assert(kCell == kPacket, "a packet of pixels lies in one cell of directions");
@@ -100,20 +102,6 @@ Result<void> check(const HeightGrid& grid, Rect tile, const Normals& normals, co
 
 }  // namespace
 
-ShadowReach shadow_reach(const Relief& relief, const LightDirections& lights, int most_px) {
-  const int right = relief.height_mm.width() - 1, bottom = relief.height_mm.height() - 1;
-  double farthest_px = 0;
-  for (std::size_t k = 0; k < lights.count; ++k) {
-    for (const auto& [x, y] : {std::pair{0, 0}, {right, 0}, {0, bottom}, {right, bottom}}) {
-      const Vec3 l = lights.at(k, x, y);
-      const double reach_px = static_cast<double>(relief.top_px()) * std::hypot(l.x, l.y) / l.z;
-      farthest_px = std::max(farthest_px, l.z > 0 ? reach_px : static_cast<double>(most_px) + 1);
-    }
-  }
-  const int reach_px = static_cast<int>(std::ceil(std::min(farthest_px, 1e9)));
-  return {std::clamp(reach_px, 1, std::max(most_px, 1)), reach_px > most_px};
-}
-
 Result<void> find_visible_lights(const HeightGrid& grid, Rect tile, const Normals& normals,
                                  const LightDirections& lights, int reach_px,
                                  std::span<const View<std::uint32_t>> visible) {
@@ -142,4 +130,4 @@ std::vector<RayPacket> shadow_packets(const HeightGrid& grid, Rect tile, const N
   return packets;
 }
 
-}  // namespace weft::solver
+}  // namespace weft::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/transport/gather.h"
+#include "bench/oracles/rays/gather.h"
 
 #include <fmt/format.h>
 
@@ -9,11 +9,13 @@
 #include <limits>
 #include <vector>
 
-#include "solver/transport/lattice.h"
+#include "bench/oracles/rays/lattice.h"
 #include "solver/transport/planes.h"
 
-namespace weft::solver {
+namespace weft::test {
 namespace {
+
+using namespace solver;
 
 /// A point of the lattice as rays need it: turn, and place in the disc by its squared radius.
 struct Ray {
@@ -242,4 +244,4 @@ std::vector<RayPacket> gather_packets(const HeightGrid& grid, Rect tile, const N
   return packets;
 }
 
-}  // namespace weft::solver
+}  // namespace weft::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/transport/lattice.h"
+#include "bench/oracles/rays/lattice.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,10 @@
 #include <utility>
 #include <vector>
 
-namespace weft::solver {
+namespace weft::test {
 namespace {
+
+using namespace solver;
 
 TEST(Lattice, HasAllItsPointsAndACellOfTheirShare) {
   for (const int points : {1, 2, 3, 5, 8, 32, 100, 128, 1000, 4096}) {
@@ -45,20 +47,5 @@ TEST(Lattice, ShiftedWithinItsCellCoversTheSquareEvenly) {
   for (const int count : met) EXPECT_NEAR(count / expected, 1, 0.15);
 }
 
-TEST(Lattice, HashesOfPixelsThatTouchHaveNothingInCommon) {
-  double along = 0, down = 0, first = 0;
-  constexpr int kSide = 200;
-  const auto unit = [](std::uint32_t bits) { return bits * 0x1p-32 - 0.5; };
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x) {
-      const PixelHash here = hash_of(x, y);
-      along += 12 * unit(here.first) * unit(hash_of(x + 1, y).first) / (kSide * kSide);
-      down += 12 * unit(here.second) * unit(hash_of(x, y + 1).second) / (kSide * kSide);
-      first += 12 * unit(here.first) * unit(here.second) / (kSide * kSide);
-    }
-  }
-  for (const double correlation : {along, down, first}) EXPECT_NEAR(correlation, 0, 0.02);
-}
-
 }  // namespace
-}  // namespace weft::solver
+}  // namespace weft::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/transport/shadows.h"
+#include "bench/oracles/rays/shadows.h"
 
 #include <gtest/gtest.h>
 
@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "core/parallel.h"
-#include "tests/solver/transport/cloths.h"
+#include "tests/bench/oracles/rays/traced.h"
 
-namespace weft::solver {
+namespace weft::test {
 namespace {
+
+using namespace solver;
 
 TEST(CastShadows, LeaveAPlaneAllLit) {
   for (const double slope : {0.0, 0.7}) {
@@ -138,19 +140,10 @@ TEST(CastShadows, AreTheSameBytesFromManyThreads) {
   EXPECT_EQ(run(1), run(4));
 }
 
-TEST(CastShadows, ReachAsFarAsTheLowestLightAllows) {
+TEST(CastShadows, ComeFromNoFartherThanTheReach) {
   const TestCloth step = cloth_over({30, 3}, [](int x, int) {
     return std::pair{x < 3 ? 10.0 : 0.0, Vec3{0, 0, 1}};
   });
-  const LightDirections lights = distant({direction_of(60, 10), direction_of(28, 70)});
-  const ShadowReach free = shadow_reach(step.relief(), lights);
-  EXPECT_EQ(free.reach_px, std::ceil(10 / std::tan(radians(28))));
-  EXPECT_FALSE(free.is_capped);
-  const ShadowReach capped = shadow_reach(step.relief(), lights, 15);
-  EXPECT_EQ(capped.reach_px, 15);
-  EXPECT_TRUE(capped.is_capped);
-  EXPECT_TRUE(shadow_reach(step.relief(), distant({{1, 0, 0}})).is_capped);
-
   const HeightGrid grid = grid_of(step, step.pixels(), 0);
   const auto bits = visible_in(grid, step, step.pixels(), distant({direction_of(28, 180)}), 8);
   for (int x = 4; x < 30; ++x) EXPECT_EQ(bits(x, 1), x <= 10 ? 0U : 1U) << x;
@@ -177,4 +170,4 @@ TEST(CastShadows, RefuseWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace weft::solver
+}  // namespace weft::test

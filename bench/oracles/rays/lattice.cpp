@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "solver/transport/lattice.h"
+#include "bench/oracles/rays/lattice.h"
 
 #include <cmath>
 #include <utility>
 
 #include "core/vec.h"
 
-namespace weft::solver {
+namespace weft::test {
 namespace {
 
 /// A vector of the lattice in steps of 1 / R.
@@ -53,4 +53,4 @@ Lattice make_lattice(int points) {
   return lattice;
 }
 
-}  // namespace weft::solver
+}  // namespace weft::test

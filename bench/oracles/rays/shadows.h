@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "bench/oracles/rays/height_grid.h"
+#include "core/image.h"
+#include "core/result.h"
+#include "solver/transport/lights.h"
+#include "solver/transport/relief.h"
+
+// Cast and attached shadows of a relief by rays: which light a pixel sees.
+
+namespace weft::test {
+
+/// Sets bit k % 32 of visible[k / 32](x - tile.x0, y - tile.y0) where the pixel (x, y) faces light k (n . l
+/// over 0) and the relief does not stand between them within `reach_px`; clears it elsewhere, also for a
+/// normal that is not finite. One ray a pixel and light to the light's middle: penumbras have no width.
+/// The grid is of triangles between pixel centres: a shadow's edge is that of a surface without detail below
+/// a pixel. kBadData as check_tile, for lights without directions and for planes that do not hold the tile.
+Result<void> find_visible_lights(const HeightGrid& grid, Rect tile, const solver::Normals& normals,
+                                 const solver::LightDirections& lights, int reach_px,
+                                 std::span<const View<std::uint32_t>> visible);
+
+/// The packets that find_visible_lights would trace, in its order, of arguments that it takes: for
+/// measurements.
+std::vector<RayPacket> shadow_packets(const HeightGrid& grid, Rect tile, const solver::Normals& normals,
+                                      const solver::LightDirections& lights, int reach_px);
+
+}  // namespace weft::test
