@@ -41,8 +41,8 @@ struct LightCorrectionOptions {
 /// is subtracted.
 ///
 /// Works in slabs of rows, so that memory does not grow with the height of the frame: about (K P + 1) * 4
-/// bytes for each of kSlabRows * width pixels, and a mesh a thread. Bytes depend on neither threads nor
-/// tiles.
+/// bytes for each of kSlabRows * width pixels, and heights around a block a thread. Bytes depend on neither
+/// threads nor tiles.
 class LightCorrection {
  public:
   static constexpr int kSlabRows = 256;

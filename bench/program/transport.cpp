@@ -23,7 +23,7 @@ app::Run add_transport(app::Options& options) {
 }  // namespace
 
 app::Verb transport_verb() {
-  return {"transport", "Shadow and gather rays of the solver: time and error", add_transport};
+  return {"transport", "Light between yarns by horizons and by rays: time and error", add_transport};
 }
 
 }  // namespace weft::bench

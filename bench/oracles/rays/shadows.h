@@ -15,9 +15,7 @@
 
 namespace weft::test {
 
-/// Sets bit k % 32 of visible[k / 32](x - tile.x0, y - tile.y0) where the pixel (x, y) faces light k (n . l
-/// over 0) and the relief does not stand between them within `reach_px`; clears it elsewhere, also for a
-/// normal that is not finite. One ray a pixel and light to the light's middle: penumbras have no width.
+/// The bits of march_to_lights() (solver/transport/marched_shadows.h) by one ray a pixel and light.
 /// The grid is of triangles between pixel centres: a shadow's edge is that of a surface without detail below
 /// a pixel. kBadData as check_tile, for lights without directions and for planes that do not hold the tile.
 Result<void> find_visible_lights(const HeightGrid& grid, Rect tile, const solver::Normals& normals,
