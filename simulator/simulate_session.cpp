@@ -366,11 +366,7 @@ class SessionWriter {
       }
       if (shots.empty()) continue;
       const Result<void> ok = shot_runners_[kind].run(
-          {0, y0, width(), y1}, shots, options_.stop,
-          [&](const Tile& tile) {
-            if (kind == kOfShots && has_openness())
-              light.put(tile, leds() * planes_of_led(), [&](std::size_t i) { return tile.openness[i]; });
-          },
+          {0, y0, width(), y1}, shots, options_.stop, [](const Tile&) {},
           [&](const Tile& tile) {
             const auto taken = std::find_if(exposures_.begin(), exposures_.end(),
                                             [&](const Exposure& e) { return e.shot == tile.shot; });
@@ -388,6 +384,8 @@ class SessionWriter {
       light.put(tile, plane++, [&](std::size_t i) { return tile.visibility[i]; });
     }
     if (!scene_.effects.interreflection) return;
+    if (tile.led == 1)  // of a cloth that moves, as it lay then
+      light.put(tile, leds() * planes_of_led(), [&](std::size_t i) { return tile.openness[i]; });
     const Rgb flux = plan_.rig.leds.leds[static_cast<std::size_t>(tile.led - 1)].flux_rgb;
     for (std::size_t c = 0; c < 3; ++c) {
       light.put(tile, plane++, [&](std::size_t i) { return tile.indirect[i][c] * flux[c]; });

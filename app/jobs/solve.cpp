@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <iterator>
+#include <memory>
 #include <ranges>
 #include <utility>
 #include <vector>
@@ -378,6 +380,8 @@ Result<std::optional<SessionPlan>> plan_second_pose(const solver::MethodName& me
   Result<SessionPlan> second =
       plan_session({.folder = options.second_pose, .calibration = input.calibration, .leds = input.leds});
   if (!second) return std::move(second).error();
+  if (second->description == first.description)
+    return unfit(ErrorKind::kUsage, "it is the session that is solved", "name the scan of the other pose");
   if (second->calibration.id != first.calibration.id)
     return unfit(ErrorKind::kBadData, "it was scanned with another calibration", "scan both poses in one go");
   if (second->parallel.empty() != first.parallel.empty())
@@ -392,9 +396,11 @@ Result<LoadedSession> load_poses(const SessionPlan& plan, const std::optional<Se
                                  const JobContext& context) {
   if (!second) return load_session(plan, context);
   std::optional<pipeline::GlossSamples> samples;
+  std::vector<std::string> warnings;
   {
     const Result<LoadedSession> other = load_session(*second, context);
     if (!other) return other.error();
+    for (const std::string& warning : other->warnings) warnings.push_back("second pose: " + warning);
     const std::unique_ptr<solver::Method> robust = solver::robust_method();
     Result<pipeline::GlossSamples> sampled =
         sample_gloss(other->photographs, *robust, nullptr, context.threads);
@@ -402,7 +408,9 @@ Result<LoadedSession> load_poses(const SessionPlan& plan, const std::optional<Se
     samples = std::move(*sampled);
   }
   Result<LoadedSession> loaded = load_session(plan, context);
-  if (loaded) loaded->photographs.second_pose = std::move(samples);
+  if (!loaded) return loaded;
+  loaded->photographs.second_pose = std::move(samples);
+  std::ranges::move(warnings, std::back_inserter(loaded->warnings));
   return loaded;
 }
 

@@ -85,6 +85,7 @@ TEST_F(SecondPose, IsRefusedInWords) {
   const std::string level = level_.string(), tilted = tilted_.string();
   expect_refusal(work_, {"solve", level, "--second-pose", tilted, "--quality", "fast"}, 64,
                  {"seeks no lobe"});
+  expect_refusal(work_, {"solve", level, "--second-pose", level, "--quality", "robust"}, 64, {"other pose"});
   expect_refusal(work_,
                  {"solve", level, "--second-pose", (work_ / "none.weft").string(), "--quality", "robust"}, 66,
                  {"none.weft"});

@@ -9,12 +9,15 @@
 #include <vector>
 
 #include "app/jobs/maps/map_work.h"
+#include "app/jobs/maps/surface_files.h"
+#include "core/image_io/image_io.h"
 #include "core/solve_record.h"
 #include "core/statistics.h"
 #include "material/finish/periodic_height.h"
 #include "material/maps/cavity.h"
 #include "material/maps/curl.h"
 #include "material/maps/occlusion.h"
+#include "material/maps/specular_occlusion.h"
 #include "material/maps/visibility.h"
 #include "solver/height/tiled_height.h"
 
@@ -64,6 +67,30 @@ void scale(View<float> plane, double factor) {
     for (int x = 0; x < plane.width(); ++x)
       plane(x, y) = static_cast<float>(factor * static_cast<double>(plane(x, y)));
   }
+}
+
+// What of a highlight comes through the cone of bent_normal.exr: the same table for every cloth.
+Result<void> write_cone_table(MapWork& work) {
+  using material::SpecularOcclusion;
+  const SpecularOcclusion table;
+  Image<float> share({SpecularOcclusion::kCones, SpecularOcclusion::kRoughness * SpecularOcclusion::kAngles});
+  const float* next = table.values().data();
+  for (int y = 0; y < share.height(); ++y, next += share.width())
+    std::copy_n(next, share.width(), share.plane().row(y));
+  MapFacts facts = {
+      .name = "specular_occlusion", .file = "specular_occlusion.exr", .unit = "share", .channels = {"share"}};
+  measure(facts, share.plane());
+  facts.more = {
+      {"width", share.width()},
+      {"height", share.height()},
+      {"columns", "cone_deg from 0 to 90"},
+      {"rows", "angle of bent normal and mirror direction from 0 to 90 degrees; in each alpha from 0 to 1"}};
+  const WriteOptions options = {.type = SampleType::kHalf,
+                                .attributes = attributes_of(facts, work.surface.mm_per_pixel)};
+  if (Result<void> ok = write_image(work.folder / facts.file, planes_of(share), facts.channels, options); !ok)
+    return ok;
+  work.made.push_back(std::move(facts));
+  return {};
 }
 
 }  // namespace
@@ -162,9 +189,10 @@ Result<void> make_occlusion(MapWork& work) {
       write_map(work, std::move(facts), {work.openness.plane(), lit.plane(0), lit.plane(1), lit.plane(2)});
   if (!ok) return ok;
   MapFacts bent = {.name = "bent_normal", .file = "bent_normal.exr", .channels = {"X", "Y", "Z", "cone_deg"}};
-  return write_map(
+  ok = write_map(
       work, std::move(bent),
       {work.bent_normal.plane(0), work.bent_normal.plane(1), work.bent_normal.plane(2), cone.plane()});
+  return ok ? write_cone_table(work) : ok;
 }
 
 Result<void> make_cavity(MapWork& work) {
