@@ -227,7 +227,8 @@ TEST(Simulate, GivesTheSameBytesForAnyThreadsAndTilesWithAllEffects) {
   const Scene scene = hard_scene();
   simulated(scene, folder / "one.weft", options);
   const auto one = contents_of(folder / "one.weft");
-  EXPECT_EQ(one.size(), 3U + 1 + 4 + 4 + 2 * 2) << "frames, session, calibration, truth, light of two LEDs";
+  EXPECT_EQ(one.size(), 3U + 1 + 4 + 4 + 2 * 2 + 3)
+      << "frames, session, calibration, truth, light of two LEDs, openness and lobe";
   options.tiles = {64, 32, 3};
   simulated(scene, folder / "many.weft", options);
   for (const auto& [name, bytes] : contents_of(folder / "many.weft")) {
