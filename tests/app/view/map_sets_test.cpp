@@ -54,7 +54,7 @@ TEST_F(MapSets, AreListedWithTheSolveThatTheyWereMadeOf) {
   ASSERT_EQ(sets.size(), 1U);
   EXPECT_EQ(sets[0]["id"], id());
   EXPECT_EQ(sets[0]["solve"], solve_.id);
-  EXPECT_EQ(sets[0]["maps"], Json::array({"height", "occlusion", "bent_normal"}));
+  EXPECT_EQ(sets[0]["maps"], Json::array({"height", "occlusion", "bent_normal", "specular_occlusion"}));
   EXPECT_EQ(sets[0]["preview"], false);
   EXPECT_EQ(sets[0]["mm_per_pixel"], kGrid_mm);
   EXPECT_GT(sets[0]["bytes"].get<int>(), 10000);
