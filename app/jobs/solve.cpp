@@ -7,7 +7,6 @@
 #include <functional>
 #include <iterator>
 #include <memory>
-#include <ranges>
 #include <utility>
 #include <vector>
 
@@ -215,8 +214,8 @@ class Run {
     const std::vector<std::size_t> moved = shifts_.with(pipeline::ShiftVerdict::kLeftOut);
     for (std::size_t k = picked_.size(); k < photographs_.count(); ++k)
       picked_.push_back(static_cast<int>(k) + 1);
-    for (const std::size_t k : std::views::reverse(moved))
-      picked_.erase(picked_.begin() + static_cast<std::ptrdiff_t>(k));
+    for (auto k = moved.rbegin(); k != moved.rend(); ++k)
+      picked_.erase(picked_.begin() + static_cast<std::ptrdiff_t>(*k));
     return leave_out(moved, photographs_);
   }
 

@@ -267,13 +267,14 @@ Result<void> add_horizons(const Measured& m, Rows& rows) {
   Image<float> truth({m.compared.width(), m.compared.height()}), found(truth.size());
   auto done = trace_openness(m.grid, m.compared, normals, {.rays = kMostRays}, truth.plane());
   if (!done) return done;
-  for (const auto& [slices, steps] : {std::pair{4, 8}, {8, 16}}) {
+  for (const auto& counts : {std::pair{4, 8}, {8, 16}}) {
     const double seconds = least_seconds(kTransportRepeats, [&] {
-      done = scan_openness(m.grid.relief(), m.compared, normals, {slices, steps}, found.plane());
+      done =
+          scan_openness(m.grid.relief(), m.compared, normals, {counts.first, counts.second}, found.plane());
     });
     if (!done) return done;
     const Errors errors = errors_of(found, truth);
-    rows.push_back({{"stage", slices == 4 ? "openness 4 x 8" : "openness 8 x 16"},
+    rows.push_back({{"stage", counts.first == 4 ? "openness 4 x 8" : "openness 8 x 16"},
                     {"ns_per_pixel", seconds * 1e9 / static_cast<double>(m.compared.pixels())},
                     {"threads", 1},
                     {"mean_error", errors.mean},

@@ -264,7 +264,7 @@ TEST(Budget, NamesTheModelAndTheCalibrationWhereItHasACovariance) {
                                      {"what the model leaves out", "model"},
                                      {"calibration", "calibration"}}) {
     const auto row = std::find_if(report["budget"].begin(), report["budget"].end(),
-                                  [&](const Json& each) { return each["source"] == source; });
+                                  [&, name = source](const Json& each) { return each["source"] == name; });
     ASSERT_NE(row, report["budget"].end()) << source << report["budget"];
     EXPECT_EQ((*row)["value"], report[std::string("sigma_") + part + "_deg"]["median"]) << source;
     EXPECT_EQ((*row)["value"], parts[part]["median"]) << source;
