@@ -69,9 +69,11 @@ Result<std::vector<solver::MeasuredLobe>> measure_gloss(const Photographs& photo
 Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& base,
                           LightCorrection* correction, const JobContext& context) {
   Gloss gloss(sight_of(photographs));
+  Stopwatch watch;
   Result<std::vector<solver::MeasuredLobe>> lobes =
       measure_gloss(photographs, base, correction, context.threads);
   if (!lobes) return std::move(lobes).error();
+  gloss.facts.seconds = watch.lap();
   gloss.facts.lobes = std::move(*lobes);
   gloss.facts.of_film_pair = photographs.parallel.has_value();
   gloss.facts.of_second_pose = photographs.second_pose.has_value();

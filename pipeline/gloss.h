@@ -32,6 +32,7 @@ Result<std::vector<solver::MeasuredLobe>> measure_gloss(const Photographs& photo
 struct GlossFacts {
   std::vector<solver::MeasuredLobe> lobes;  ///< one or two; of a refused one Lambert's law holds
   double share = 0;                         ///< of the blocks of the frame that are solved with them
+  double seconds = 0;                       ///< that looking for them took, whatever the frame's size
   bool of_film_pair = false;                ///< they were sought in crossed and parallel photographs
   bool of_second_pose = false;              ///< and in a second pose of the cloth
 

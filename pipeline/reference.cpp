@@ -232,6 +232,7 @@ class Reference {
     Result<Gloss> gloss = round != nullptr ? round->find_gloss(*method_)
                                            : Gloss::find(photographs_, *method_, nullptr, context_);
     if (!gloss) return std::move(gloss).error();
+    gloss->facts.seconds += facts.gloss.seconds;
     facts.gloss = gloss->facts;
     gloss_ = std::move(*gloss);
     return {};

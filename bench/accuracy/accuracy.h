@@ -33,7 +33,8 @@ inline constexpr const char* kAllScenes = "all";
 /// albedo_mean_rel, albedo_bias_rel: |A - B| / B and (A - B) / B in the photosite's own colour.
 /// leak: slope of (A - B) / B over the true openness.
 /// left_out_rel: of a level, median of |error| / reading where each light is left out and predicted.
-/// ns_per_pixel: wall time with `threads`, the least of three. ratio_to_unpack, ratio_to_copy: of it to the
+/// ns_per_pixel: wall time with `threads`, the least of five, but for lobe_s: seconds that looking for a lobe
+/// takes, whatever the size. ratio_to_unpack, ratio_to_copy: of it to the
 /// yardsticks (bench/base/yardsticks.h). pareto: nothing else is both quicker and closer.
 /// kUsage where no scene or method has the given name.
 Result<Rows> accuracy_table(const AccuracyTableOptions& options);

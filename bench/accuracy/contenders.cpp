@@ -107,6 +107,7 @@ Result<pipeline::FrameFacts> solve_level(const pipeline::Photographs& photograph
                                          const solver::MethodName& level, int threads, SolvedMaps& maps) {
   Result<pipeline::FrameFacts> facts = solve_frame(
       photographs, level, pipeline::kSolveTile, on_threads(threads), keeper_of(photographs.planes(), maps));
+  maps.lobe_seconds = facts && facts->gloss ? facts->gloss->seconds : 0;
   if (facts && facts->left_out) maps.left_out_rel = solver::error_of_all(*facts->left_out).median;
   return facts;
 }

@@ -186,7 +186,7 @@ LevelOnCloth measured_on(const Rows& table, const std::string& level, const Clot
     if (row["method"] != level || blank == std::string::npos) continue;
     if (!group.has(scene.substr(0, blank), scene.substr(blank + 1))) continue;
     ++n;
-    sum.seconds += number(row, "ns_per_pixel") * 1e-9 * kPixels;
+    sum.seconds += number(row, "ns_per_pixel") * 1e-9 * kPixels + row.value("lobe_s", 0.0);
     sum.mean_deg += number(row, "mean_deg");
     sum.albedo_rel += number(row, "albedo_mean_rel");
     left_out += row.contains("left_out_rel") && row["left_out_rel"].is_number() ? number(row, "left_out_rel")

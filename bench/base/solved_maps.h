@@ -17,6 +17,7 @@ struct SolvedMaps {
   Image<float> normal, albedo, sigma_albedo, sigma_normal_deg, residual;
   Image<std::uint16_t> status;
   double left_out_rel = std::numeric_limits<double>::quiet_NaN();  ///< median error of left-out light
+  double lobe_seconds = 0;                                         ///< that looking for a lobe took
   int planes = 1;  ///< of `albedo`: 1 where each photosite was solved alone, else R, G, B
 
   explicit SolvedMaps(Size size)
