@@ -208,7 +208,7 @@ std::string levels_table(const Rows& table) {
         continue;
       }
       std::string cell =
-          fmt::format("{:.2g} s: **{:.2g}°**, {:.2g} %", m.seconds, m.mean_deg, 100 * m.albedo_rel);
+          fmt::format("{:.3g} s: **{:.2g}°**, {:.2g} %", m.seconds, m.mean_deg, 100 * m.albedo_rel);
       if (std::isfinite(m.left_out_rel)) cell += fmt::format(", {:.2g} %", 100 * m.left_out_rel);
       line.push_back(std::move(cell));
     }
@@ -242,13 +242,13 @@ std::string advice(const Rows& table) {
       "or on a deep weave, where reference has {:.2g}° for its {:.2g}°.\n",
       deg("robust", kSatin), deg("standard", kSatin), deg("reference", kDeep), deg("standard", kDeep));
   lines += fmt::format(
-      "- **robust** gains nothing on smooth matt cloth ({:.2g}° and {:.2g}°) and on satin takes {:.2g} times "
+      "- **robust** gains nothing on smooth matt cloth ({:.2g}° and {:.2g}°) and on satin takes {:.3g} times "
       "the seconds of standard.\n",
       deg("robust", kSmooth), deg("standard", kSmooth), times("robust", "standard", kSatin));
   lines += fmt::format(
-      "- **reference** gains nothing on smooth matt cloth ({:.2g}°) and little on satin ({:.2g}° for "
-      "{:.2g}°); "
-      "on a plain weave it takes {:.2g} times the seconds of standard.\n\n",
+      "- **reference** gains nothing on smooth matt cloth ({:.2g}°); on satin it has {:.2g}° where robust "
+      "has "
+      "{:.2g}°, and on a plain weave it takes {:.3g} times the seconds of standard.\n\n",
       deg("reference", kSmooth), deg("reference", kSatin), deg("robust", kSatin),
       times("reference", "standard", kPlain));
   return lines;
