@@ -153,6 +153,7 @@ void print_product(Json document, const std::filesystem::path& folder, bool was_
   document["was_there"] = was_there;
   print_json(document);
 }
+
 Result<void> flush_output() {
   errno = 0;
   const bool flushed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;

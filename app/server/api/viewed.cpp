@@ -194,7 +194,11 @@ Result<Lying> lying_of(const Viewed& viewed) {
   if (viewed.set) return Lying{};
   Result<Calibration> calibration = read_calibration(viewed.session.calibration_folder());
   if (!calibration) return std::move(calibration).error();
-  if (calibration->camera) return Lying{std::move(*calibration)};
+  if (calibration->camera) {
+    const Session& session = viewed.session;
+    calibration->camera = seen_from(session.pose, session.cloth_height_mm, *calibration->camera);
+    return Lying{std::move(*calibration)};
+  }
   return Error{ErrorKind::kBadData, "nothing is known of millimetres", viewed.session.folder.string(),
                "its calibration has no camera", "calibrate the camera with weft calibrate camera"};
 }

@@ -56,7 +56,8 @@ Result<double> gain_of(const RigParts& parts, const Viewed& viewed);
 
 /// How the maps lie on the cloth.
 struct Lying {
-  std::optional<Calibration> calibration;  ///< with a camera; none: maps on a grid of the table
+  std::optional<Calibration>
+      calibration;  ///< with a camera, as the cloth sees it; none: maps on a grid of the table
   Ground ground(const Viewed& viewed) const;
 };
 /// kBadData where nobody calibrated the camera.

@@ -15,6 +15,16 @@ double seconds() {
   return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
 }
 
+WeaveSettings satin(double bow_px) {
+  return {.binding = kSatin5,
+          .pitch_x_px = 11.3,
+          .pitch_y_px = 13.7,
+          .turn_deg = -0.8,
+          .wander = 0.04,
+          .warp_px = 1,
+          .bow_px = bow_px};
+}
+
 const WeaveSettings kWeaves[] = {
     {.pitch_x_px = 21.6, .pitch_y_px = 21.6, .turn_deg = 1.9, .wander = 0.03, .warp_px = 1},
     {.binding = kTwill,
@@ -23,19 +33,8 @@ const WeaveSettings kWeaves[] = {
      .turn_deg = 2.1,
      .wander = 0.04,
      .warp_px = 1},
-    {.binding = kSatin5,
-     .pitch_x_px = 11.3,
-     .pitch_y_px = 13.7,
-     .turn_deg = -0.8,
-     .wander = 0.04,
-     .warp_px = 1},
-    {.binding = kSatin5,
-     .pitch_x_px = 11.3,
-     .pitch_y_px = 13.7,
-     .turn_deg = -0.8,
-     .wander = 0.04,
-     .warp_px = 1,
-     .bow_px = 12},
+    satin(0),
+    satin(12),
 };
 
 void print_straightened(const WeaveSettings& weave, Size size, const Straightened& cloth,
