@@ -36,7 +36,8 @@ struct SceneRig {
   Vec3 camera_centre_mm() const;
 };
 
-/// What a tilted cloth sees of the rig: itself level, and the rig about it.
+/// What a tilted cloth sees of the rig: itself level, and the rig about it. kBadData where the camera does
+/// not see that plane.
 Result<SceneRig> seen_from_cloth(const Scene& scene, SceneRig rig);
 
 /// SceneRig::lobe_share through films in one state; of kBoth crossed ones, which are taken first.
