@@ -21,7 +21,9 @@ pkg_check_modules(GPHOTO2 REQUIRED IMPORTED_TARGET libgphoto2)
 pkg_check_modules(SERIALPORT REQUIRED IMPORTED_TARGET libserialport)
 pkg_check_modules(HTTPLIB REQUIRED IMPORTED_TARGET cpp-httplib)
 pkg_check_modules(SIMAVR REQUIRED IMPORTED_TARGET simavr)  # GPL-3: only the virtual rig links it
+find_library(SQUISH_LIBRARY squish REQUIRED)  # its pkg-config file names a folder that is not there
 find_package(SQLite3 3.40 REQUIRED)
+find_package(ZLIB REQUIRED)
 pkg_check_modules(LIBUSB REQUIRED IMPORTED_TARGET libusb-1.0)  # its header, for the stand-in
 if(NOT WEFT_PLAIN_THREADS)
   find_package(TBB REQUIRED CONFIG)

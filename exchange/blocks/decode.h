@@ -10,9 +10,9 @@
 namespace weft::exchange {
 
 /// What graphics hardware samples from blocks: channels_of() planes of 0 to 1, without the padding. By the
-/// specification alone, apart from the encoders. bc7 is exact: multiples of 1 / 255, of modes 0 to 7. bc1 to
-/// bc5 are interpolated between end points as fractions; hardware may be 1 / 255 off. The transparent black
-/// of bc1 is black. kBadData for a wrong number of bytes and for the reserved mode of bc7, kUsage for a size
+/// specification alone, apart from the encoders. bc7 is exact, multiples of 1 / 255, and of mode 6 alone. bc1
+/// to bc5 are interpolated between end points as fractions; hardware may be 1 / 255 off. The transparent
+/// black of bc1 is black. kBadData for a wrong number of bytes and for another mode of bc7, kUsage for a size
 /// without pixels.
 Result<Image<float>> decode_blocks(BlockFormat format, std::string_view blocks, Size size, int threads = 0);
 
