@@ -37,7 +37,8 @@ using D = hn::CappedTag<float, Bc4Lanes::kMost>;
 using V = hn::Vec<D>;
 
 constexpr int kRounds = 2;
-constexpr float kReach = 2;  // of the search about the ends of least squares
+constexpr float kStarts = 2;  // half steps
+constexpr float kReach = 2;   // of the search about the ends of least squares
 constexpr float kRefused = 1e30f;
 
 HWY_INLINE V number(float value) {
@@ -72,17 +73,12 @@ class Steps {
   explicit HWY_INLINE Steps(const V (&texel)[16]) : texel_(texel) {}
 
   HWY_INLINE Range fitted() const {
-    Range best = outermost();
-    best.error = error_of(best);
+    Range best = from_many_starts();
     for (int round = 0; round < kRounds; ++round) {
       const Range center = refitted(best);
       for (float up = -kReach; up <= kReach; ++up) {
         for (float on = -kReach; on <= kReach; ++on) {
-          Range tried;
-          tried.low = clamped(hn::Add(center.low, number(up)), 255);
-          tried.high = clamped(hn::Add(center.high, number(on)), 255);
-          tried.error = error_of(tried);
-          best.take_better(tried);
+          best.take_better(moved(center, number(up), number(on)));
         }
       }
     }
@@ -119,6 +115,30 @@ class Steps {
     range.low = hn::Min(low, high);
     range.high = high;
     return range;
+  }
+
+  HWY_INLINE Range moved(const Range& range, V up, V on) const {
+    Range to;
+    to.low = clamped(rounded(hn::Add(range.low, up)), 255);
+    to.high = clamped(rounded(hn::Add(range.high, on)), 255);
+    to.error = error_of(to);
+    return to;
+  }
+
+  // Square errors have many minima: least squares from ends that lie up to a step inside or outside of the
+  // outermost texels.
+  HWY_INLINE Range from_many_starts() const {
+    const Range outer = outermost();
+    const V half = hn::Mul(hn::Sub(outer.high, outer.low), number(0.5f / kLast));
+    Range best = moved(outer, hn::Zero(D()), hn::Zero(D()));
+    for (float up = -kStarts; up <= kStarts; ++up) {
+      for (float on = -kStarts; on <= kStarts; ++on) {
+        const Range start = moved(outer, hn::Mul(half, number(up)), hn::Mul(half, number(on)));
+        best.take_better(start);
+        best.take_better(moved(refitted(start), hn::Zero(D()), hn::Zero(D())));
+      }
+    }
+    return best;
   }
 
   HWY_INLINE V step_of(const Range& range, int i) const {

@@ -81,7 +81,7 @@ const std::vector<Door> kDoors = {
      {"core/", "exchange/blocks/", "solver/kernels/", "solver/reflectance/", "solver/transport/", "tests/"}},
     {"embree3/", {"simulator/transport/", "bench/"}},
     {"spdlog/", {"app/server/"}},
-    {"squish.h", {"exchange/blocks/", "bench/"}},
+    {"squish.h", {"exchange/blocks/", "bench/", "tests/"}},
     {"kissfft/", {"core/", "bench/"}},
     {"sqlite3", {"library/"}},
 };
