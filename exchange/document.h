@@ -28,10 +28,13 @@ struct Document {
 /// no name that Windows keeps for itself (CON, NUL, COM1, also with an extension). kBadData with the part.
 Result<void> check_portable_path(std::string_view path);
 
-/// What every writer asks first. kBadData with the parameter as `where`: a name that is empty or no UTF-8, a
-/// size that is not above 0, a constant that is not finite or outside its range, a texture whose path is not
-/// portable, whose size or bits are none, whose channels do not fit its parameter, whose scale and offset
-/// leave the range, or that lies in sRGB and is no colour.
+/// Whether a text is UTF-8 without control characters.
+bool is_plain_text(std::string_view text);
+
+/// What every writer asks first. kBadData with the parameter as `where`: a name that is empty, a text
+/// that is not plain, a size that is not above 0, a constant that is not finite or outside its range, a
+/// texture whose path is not portable, whose size or bits are none, whose channels do not fit its parameter,
+/// whose scale and offset leave the range, or that lies in sRGB and is no colour.
 Result<void> check_material(const TexturedMaterial& material);
 
 /// Letters, digits and "_" of `name`, "_" for every other character, with "_" before a digit; "cloth" where

@@ -25,7 +25,7 @@ struct GlbOptions {
 ///
 /// glTF fixes the channels: base colour RGB (sRGB) with opacity in A; occlusion R, roughness G, metallic B;
 /// sheen colour RGB (sRGB); sheen roughness A; anisotropy direction RG with strength B of the same file; F0
-/// in A, or as a colour in RGB (sRGB). Height has no place.
+/// in A. Height has no place.
 ///
 /// kBadData: as check_material(); a texture elsewhere than that; an image that is missing, neither PNG nor
 /// JPEG or of another size; several tiles of what does not repeat; 4 GiB and more.

@@ -36,12 +36,8 @@ const char* name_of(SurfaceModel model);
 /// kBadData: as check_material(); no model or one twice; `uv_covers_mm` without a known size.
 Result<Document> materialx_of(const TexturedMaterial& material, const MaterialXOptions& options = {});
 
-/// A layer of a material that is put together while it is drawn.
-struct RuntimeLayer {
-  TexturedMaterial material;
-};
-
-/// Where the weights of layers come from: a texture with "rgb", or the colours of vertices.
+/// Where the weights of layers that are mixed while they are drawn come from: a texture with "rgb", or the
+/// colours of vertices.
 struct RuntimeWeights {
   std::optional<Texture> texture = {};  ///< covers UV from 0 to 1 once; none: vertex colours
 };
@@ -50,7 +46,7 @@ struct RuntimeWeights {
 /// over both by G, the fourth by B, in surface shaders of the first model of the options. UV are those of the
 /// first material, and each keeps its own true size. kBadData: as materialx_of(); none or above four; some
 /// sizes known and some not; a weight texture in sRGB or without the channels.
-Result<Document> materialx_mix_of(const std::string& name, std::span<const RuntimeLayer> layers,
+Result<Document> materialx_mix_of(const std::string& name, std::span<const TexturedMaterial> layers,
                                   const RuntimeWeights& weights, const MaterialXOptions& options = {});
 
 }  // namespace weft::exchange
