@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -16,6 +17,7 @@
 
 // Image files: EXR, TIFF, PNG, and JPEG for reading. OpenImageIO stays behind this header. Values are what
 // the file holds, without transfer function or premultiplication by alpha; full scale of integers is 1.
+// Pixels are not converted by what a file says of its colours.
 
 namespace weft {
 
@@ -26,6 +28,17 @@ enum class SampleType { kUint8, kUint16, kHalf, kFloat };
 /// ("compression", "DateTime").
 using ImageAttributes = std::map<std::string, std::string>;
 
+/// Width and height of a pixel on the cloth, mm. 0: not known, and the file says nothing. PNG holds whole
+/// pixels a metre (pHYs), TIFF and EXR pixels an inch to seven digits; EXR has its height as the aspect.
+using PixelPitch = std::array<double, 2>;
+
+/// What a file says of its colours.
+enum class ColorSpace {
+  kData,  ///< they are none, or nothing is said
+  kSrgb,  ///< with the transfer function of IEC 61966-2-1: the chunk sRGB of a PNG; TIFF and EXR say none
+  kLinearColor  ///< linear Rec.709: the chromaticities of an EXR; PNG and TIFF have no word for it
+};
+
 /// What an image file holds, without its pixels.
 struct ImageFileInfo {
   Size size;
@@ -33,6 +46,8 @@ struct ImageFileInfo {
   SampleType type = SampleType::kFloat;  ///< the widest of the channels; kFloat for anything else
   std::string format;                    ///< "openexr", "tiff", "png", "jpeg"
   ImageAttributes attributes;
+  PixelPitch pitch_mm = {};
+  ColorSpace color = ColorSpace::kData;  ///< a JPEG is always kSrgb
 };
 
 /// An image in memory: one float plane a channel. lround(65535 * v) is the count of a 16-bit file, exactly.
@@ -55,6 +70,8 @@ struct WriteOptions {
   SampleType type = SampleType::kFloat;
   Compression compression = Compression::kNone;
   ImageAttributes attributes = {};
+  PixelPitch pitch_mm = {};
+  ColorSpace color = ColorSpace::kData;
 };
 
 /// Writes an image row band by row band, aside (`FILE.partial`) until `finish` renames it: no date, no host

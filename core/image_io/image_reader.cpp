@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -99,6 +100,41 @@ ImageAttributes attributes_of(const OIIO::ImageSpec& spec, const std::string& fo
   return attributes;
 }
 
+/// EXR has pixels an inch and nothing about the unit.
+PixelPitch pitch_of(const OIIO::ImageSpec& spec, const std::string& format) {
+  const double x = static_cast<double>(spec.get_float_attribute("XResolution"));
+  const double aspect = static_cast<double>(spec.get_float_attribute("PixelAspectRatio", 1));
+  const bool is_exr = format == "openexr";
+  const double y = is_exr ? x * aspect : static_cast<double>(spec.get_float_attribute("YResolution"));
+  const std::string unit = is_exr ? "in" : spec.get_string_attribute("ResolutionUnit").c_str();
+  const double mm = unit == "in" || unit == "inch" ? 25.4 : unit == "cm" ? 10 : unit == "m" ? 1000 : 0;
+  const PixelPitch pitch = {mm / x, mm / y};
+  const bool is_one = x > 0 && y > 0 && mm > 0 && std::isfinite(pitch[0]) && std::isfinite(pitch[1]);
+  return is_one ? pitch : PixelPitch();
+}
+
+/// Whether a chunk of this name stands before the pixels of a PNG.
+bool has_png_chunk(const fs::path& file, std::string_view wanted) {
+  std::ifstream in(file, std::ios::binary);
+  in.seekg(8);
+  std::array<char, 8> head = {};
+  while (in.read(head.data(), head.size())) {
+    const std::string_view name(head.data() + 4, 4);
+    if (name == wanted || name == "IDAT" || name == "IEND") return name == wanted;
+    std::uint32_t bytes = 0;
+    for (std::size_t i = 0; i < 4; ++i) bytes = bytes << 8 | static_cast<unsigned char>(head[i]);
+    in.seekg(std::streamoff{bytes} + 4, std::ios::cur);
+  }
+  return false;
+}
+
+/// OpenImageIO takes every EXR for linear colour and every PNG for sRGB: here it counts what the file says.
+ColorSpace color_of(const OIIO::ImageSpec& spec, const std::string& format, const fs::path& file) {
+  if (format == "jpeg" || (format == "png" && has_png_chunk(file, "sRGB"))) return ColorSpace::kSrgb;
+  const bool is_linear = format == "openexr" && spec.find_attribute("chromaticities") != nullptr;
+  return is_linear ? ColorSpace::kLinearColor : ColorSpace::kData;
+}
+
 /// How often larger than its file the pixels of an EXR can be, with room above what a constant image gives.
 double most_expansion(const OIIO::ImageSpec& spec) {
   const std::string compression = spec.get_string_attribute("compression");
@@ -149,7 +185,9 @@ Result<OpenedImage> open_image(const fs::path& file) {
                  {spec.channelnames.begin(), spec.channelnames.end()},
                  sample_type(spec),
                  *format,
-                 attributes_of(spec, *format)};
+                 attributes_of(spec, *format),
+                 pitch_of(spec, *format),
+                 color_of(spec, *format, file)};
   return opened;
 }
 

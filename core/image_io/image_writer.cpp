@@ -13,6 +13,7 @@
 #include "core/image_io/image_io.h"
 #include "core/image_io/oiio.h"
 #include "core/image_io/pack_row.h"
+#include "core/image_io/spec_words.h"
 
 namespace weft {
 namespace {
@@ -107,6 +108,8 @@ OIIO::ImageSpec spec_of(const std::string& format, Size size, const std::vector<
   spec.attribute("tiff:write_exif", 0);
   // A date of another type than text is dropped; without one, OpenImageIO would write the present.
   spec.attribute("DateTime", 0);
+  add_density(spec, format, options.pitch_mm);
+  add_color(spec, format, options.color);
   return spec;
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/files.h"
+#include "core/text.h"
 
 namespace weft {
 namespace {
@@ -15,22 +16,29 @@ constexpr const char* kUnusable = "the description cannot be used";
 
 }  // namespace
 
-Result<toml::table> read_toml(const std::filesystem::path& file) {
-  const Result<std::string> text = read_text(file);
-  if (!text) return text.error();
+Result<toml::table> parse_toml(std::string_view text, const std::string& where) {
   try {
-    return toml::parse(*text);
+    return toml::parse(text);
   } catch (const toml::parse_error& e) {
-    return Error{ErrorKind::kBadData, kUnusable,
-                 fmt::format("{}: line {}", file.string(), e.source().begin.line),
+    return Error{ErrorKind::kBadData, kUnusable, fmt::format("{}: line {}", where, e.source().begin.line),
                  std::string(e.description()), "correct it there"};
   }
 }
 
+Result<toml::table> read_toml(const std::filesystem::path& file) {
+  const Result<std::string> text = read_text(file);
+  if (!text) return text.error();
+  return parse_toml(*text, file.string());
+}
+
 void TomlKeys::know(std::initializer_list<std::string_view> names) {
   for (const auto& [key, value] : *table_) {
-    if (std::find(names.begin(), names.end(), key.str()) == names.end())
-      reject(std::string(key.str()), "there is no such key");
+    if (std::find(names.begin(), names.end(), key.str()) != names.end()) continue;
+    const auto far = [written = key.str()](std::string_view name) { return edit_distance(written, name); };
+    const auto nearest = std::min_element(
+        names.begin(), names.end(), [&](std::string_view a, std::string_view b) { return far(a) < far(b); });
+    const std::string hint = nearest == names.end() ? "" : "; the nearest is " + std::string(*nearest);
+    reject(std::string(key.str()), "there is no such key" + hint);
   }
 }
 

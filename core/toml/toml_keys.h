@@ -14,6 +14,8 @@
 
 namespace weft {
 
+/// The table of a text; `where` is its file. kBadData with the line.
+Result<toml::table> parse_toml(std::string_view text, const std::string& where);
 /// Reads a TOML file. kNoInput; kBadData with the line.
 Result<toml::table> read_toml(const std::filesystem::path& file);
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/image_io/image_io.h"
+#include "core/result.h"
+
+namespace weft {
+
+struct TiledTextureOptions {
+  SampleType type = SampleType::kHalf;  ///< kHalf or kFloat
+  bool is_periodic = false;             ///< else it ends at its borders
+  bool is_prman = false;                ///< with the metadata that RenderMan looks for
+  ImageAttributes attributes = {};
+  PixelPitch pitch_mm = {};
+  ColorSpace color = ColorSpace::kData;
+};
+
+/// A tiled, mip-mapped OpenEXR file (.tx) as renderers page it in: tiles of 64, zip, levels down to 1 x 1 by
+/// plain means, so that normals of coarse levels are shorter than 1. Written aside and renamed; the same
+/// bytes for the same pixels, without a date and a command line. Errors: kUsage for another type or no
+/// planes, kCannotCreate, kInputOutput with the reason.
+Result<void> write_tiled_texture(const std::filesystem::path& file, std::span<const View<const float>> planes,
+                                 const std::vector<std::string>& channels,
+                                 const TiledTextureOptions& options);
+
+}  // namespace weft
