@@ -5,7 +5,7 @@ import fs from 'node:fs';
 import path from 'node:path';
 import Ajv from 'ajv';
 import formats from 'ajv-formats';
-import {linearOfSrgb} from '../support/compare.mjs';
+import {linearOfSrgb, srgbOfLinear} from '../support/compare.mjs';
 import {judgeAlbedo, judgeNormals} from '../support/judges.mjs';
 import {readPixels} from '../support/pixels.mjs';
 import {byExitCode, has, here, python, run} from '../support/programs.mjs';
@@ -47,11 +47,11 @@ function meanOf({data, channels, width, height}, channel, of = (value) => value)
   return sum / (width * height);
 }
 
-/** A constant is the mean of its texture, for programs without textures. */
+/** A constant is the mean of its texture, for programs without textures; a colour's is averaged in linear light and written in sRGB. */
 function judgeConstants(document, pixels) {
   return all(texturesOf(document).map(({name, constant, factor, offset}, at) => {
     let off;
-    if (name === 'basecolor') off = Math.max(...['r', 'g', 'b'].map((key, channel) => Math.abs(constant[key] - meanOf(pixels[at], channel, linearOfSrgb))));
+    if (name === 'basecolor') off = Math.max(...['r', 'g', 'b'].map((key, channel) => Math.abs(constant[key] - srgbOfLinear(meanOf(pixels[at], channel, linearOfSrgb)))));
     else if (typeof constant === 'number') off = Math.abs(constant - (offset + factor * meanOf(pixels[at], 0)));
     else return {ok: true, says: `${name} is a direction`};
     return below(off, 0.002, '', ` of ${name} from the mean of its texture`);

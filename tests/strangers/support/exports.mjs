@@ -3,16 +3,18 @@
 import fs from 'node:fs';
 import path from 'node:path';
 
-const encodings = {'.png': 'png', '.tif': 'tiff', '.tiff': 'tiff', '.exr': 'exr', '.dds': 'dds', '.tx': 'tx'};
+/** "png, 16 bits", "exr, half", "dds, bc5": encoding, bits a channel, blocks. */
+function storedOf(words) {
+  const [encoding, how] = words.split(', ');
+  const bits = {half: 16, float: 32}[how] ?? Number(/^\d+/.exec(how)?.[0] ?? 8);
+  return {encoding, bits, blocks: encoding === 'dds' ? how : undefined};
+}
 
 function entryOf(folder, preset, document, file) {
-  const channels = file.channels ?? [];
   return {
-    file: path.join(folder, file.file), preset, title: `${preset}/${file.file}`, sha256: file.sha256,
-    encoding: encodings[path.extname(file.file)] ?? path.extname(file.file).slice(1), blocks: file.blocks,
-    bits: file.bits, channels: channels.map((channel) => channel.name ?? channel),
-    ranges: channels.map(({least, most}) => (typeof least === 'number' ? [least, most] : null)),
-    color: file.color ?? 'data', direction: file.normal ?? document.normal ?? 'opengl', roughness: document.roughness ?? 'root',
+    ...storedOf(file.encoding), file: path.join(folder, file.file), preset, title: `${preset}/${file.file}`, sha256: file.sha256,
+    channels: file.channels.map(({name}) => name), ranges: file.channels.map(({at_0, at_1}) => (typeof at_0 === 'number' ? [at_0, at_1] : null)),
+    color: file.color, direction: file.direction ?? 'opengl', roughness: file.roughness ?? document.roughness, lost: file.lost,
   };
 }
 
@@ -25,12 +27,10 @@ export function exportsOf(root) {
     const said = path.join(folder, 'export.json');
     if (!fs.existsSync(said)) continue;
     const document = JSON.parse(fs.readFileSync(said, 'utf8'));
-    for (const file of document.files) {
-      const entry = entryOf(folder, document.preset?.name ?? document.preset ?? name, document, file);
-      const extension = path.extname(file.file).slice(1);
-      if (extension in {glb: 1, mtlx: 1, usda: 1, usdz: 1, u3m: 1, u3ma: 1}) (documents[extension] ??= []).push(entry.file);
-      else if (entry.channels.length) entries.push(entry);
-    }
+    // Files that a document took into itself lie nowhere else.
+    const there = document.files.filter(({file}) => fs.existsSync(path.join(folder, file)));
+    entries.push(...there.map((file) => entryOf(folder, document.preset, document, file)));
+    for (const {kind, file} of document.documents) (documents[kind] ??= []).push(path.join(folder, file));
   }
   return {entries, documents};
 }
