@@ -11,6 +11,7 @@
 
 #include "core/files.h"
 #include "core/text.h"
+#include "core/toml/toml_json.h"
 #include "core/toml/toml_keys.h"
 
 namespace weft::app {
@@ -43,25 +44,6 @@ template <typename Named>
 std::string nearest_of(const std::string& name, const std::vector<Named>& known) {
   const auto distance = [&](const Named& each) { return edit_distance(name, each.name); };
   return std::ranges::min_element(known, {}, distance)->name;
-}
-
-// Tables and arrays become objects and lists.
-Json json_of(const toml::node& node) {
-  if (const toml::table* table = node.as_table()) {
-    Json object = Json::object();
-    for (const auto& [key, value] : *table) object[std::string(key.str())] = json_of(value);
-    return object;
-  }
-  if (const toml::array* array = node.as_array()) {
-    Json list = Json::array();
-    for (const toml::node& value : *array) list.push_back(json_of(value));
-    return list;
-  }
-  if (const auto flag = node.as_boolean()) return flag->get();
-  if (const auto whole = node.as_integer()) return whole->get();
-  if (const auto number = node.value<double>()) return *number;
-  if (const auto text = node.value<std::string>()) return *text;
-  return nullptr;
 }
 
 bool is_within(const Json& value, const StepKey& key) {
@@ -260,7 +242,7 @@ Result<Recipe> read_recipe(const fs::path& file) {
       return unfit(file.string(), fmt::format("there is no key {}, only step", std::string(key.str())));
   }
   const toml::node* steps = table->get("step");
-  return recipe_from_json({{"steps", steps != nullptr ? json_of(*steps) : Json::array()}}, file.string());
+  return recipe_from_json({{"steps", steps != nullptr ? weft::json_of(*steps) : Json::array()}}, file.string());
 }
 
 }  // namespace weft::app

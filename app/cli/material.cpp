@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/exit_code.h"
+#include "app/cli/options.h"
+#include "app/cli/terminal.h"
+#include "app/cli/verbs.h"
+#include "app/jobs/material/build.h"
+#include "app/jobs/material/new_material.h"
+#include "app/jobs/material/watch.h"
+#include "core/verdict.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MaterialArguments {
+  std::vector<std::string> files;
+  fs::path output;
+  bool no_pictures = false;
+  Compression compression = Compression::kNone;
+  NewMaterial made;
+};
+
+Result<std::vector<MaterialPlace>> places_of(const MaterialArguments& a) {
+  std::vector<MaterialPlace> places;
+  for (const std::string& file : a.files) {
+    Result<MaterialPlace> place = find_material(file, {});
+    if (!place) return std::move(place).error();
+    places.push_back(std::move(*place));
+  }
+  return places;
+}
+
+std::string shown(const Json& value) {
+  if (value.is_array() && value.size() == 1) return value[0].dump();
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+Result<int> resolve(const MaterialArguments& a, const CommonArguments& common) {
+  const Result<std::vector<MaterialPlace>> places = places_of(a);
+  if (!places) return places.error();
+  const Result<ResolvedMaterial> material = resolve_material(places->front(), materials_on_disk());
+  if (!material) return material.error();
+  const Json document = json_of(*material);
+  if (common.json) {
+    print_json(document);
+    return kDone;
+  }
+  for (const Json& each : document["values"]) {
+    print(fmt::format("{:28}  {:32}  {}", each["key"].get<std::string>(), shown(each["value"]),
+                      each["from"].get<std::string>()));
+  }
+  return kDone;
+}
+
+Json json_of_build(const BuildReport& report) {
+  Json materials = Json::array();
+  for (const BuiltMaterial& each : report.materials) {
+    materials.push_back({{"material", each.place.name},
+                         {"name", each.document["name"]},
+                         {"id", each.id},
+                         {"folder", each.folder.string()},
+                         {"was_there", each.was_there},
+                         {"verdicts", each.document["verdicts"]}});
+  }
+  return {{"built", report.built},
+          {"kept", report.kept},
+          {"hashed", report.hashed},
+          {"materials", std::move(materials)}};
+}
+
+void print_build(const BuildReport& report) {
+  for (const BuiltMaterial& each : report.materials) {
+    const Json& d = each.document;
+    print(each.folder.string());
+    if (each.was_there) print("  is there already: nothing that it depends on has changed");
+    const std::string size = d.contains("size_mm")
+                                 ? fmt::format(" of {:.5g} mm", d["mm_per_pixel"].get<double>())
+                                 : ", of no known size";
+    print(fmt::format("  {}: {} x {} pixels{}{}", d["name"].get<std::string>(), d["width"].get<int>(),
+                      d["height"].get<int>(), size, d["is_tile"].get<bool>() ? ", a tile" : ""));
+    for (const Json& verdict : d["verdicts"])
+      print(fmt::format("  {}: {}; {}", verdict["name"].get<std::string>(),
+                        verdict["text"].get<std::string>(), verdict["remedy"].get<std::string>()));
+  }
+  print(fmt::format("{} built, {} kept", report.built, report.kept));
+}
+
+Result<BuildOptions> build_options(const MaterialArguments& a) {
+  Result<std::vector<MaterialPlace>> places = places_of(a);
+  if (!places) return std::move(places).error();
+  return BuildOptions{std::move(*places), a.output, {a.compression, !a.no_pictures}};
+}
+
+Result<int> build(const MaterialArguments& a, const CommonArguments& common) {
+  const Result<BuildOptions> options = build_options(a);
+  if (!options) return options.error();
+  const Result<BuildReport> report = [&] {
+    ProgressLine line(common.quiet);
+    return build_materials(*options, {common.threads, stop_on_signal(), line.callback()});
+  }();
+  if (!report) return report.error();
+  if (common.json) {
+    print_json(json_of_build(*report));
+  } else {
+    print_build(*report);
+  }
+  return kDone;
+}
+
+Result<int> watch(const MaterialArguments& a, const CommonArguments& common) {
+  const Result<BuildOptions> options = build_options(a);
+  if (!options) return options.error();
+  const auto tell = [&](const Result<BuildReport>& report) {
+    if (!report) return complain(report.error());
+    if (common.json) {
+      print(json_of_build(*report).dump());
+    } else {
+      print_build(*report);
+    }
+    static_cast<void>(flush_output());
+  };
+  watch_materials({*options}, {.threads = common.threads, .stop = stop_on_signal()}, tell);
+  return kDone;
+}
+
+Result<int> graph(const MaterialArguments& a, const CommonArguments& common) {
+  const Result<std::vector<MaterialPlace>> places = places_of(a);
+  if (!places) return places.error();
+  DigestCache digests({});
+  const Result<MaterialTree> tree = plan_materials(*places, materials_on_disk(), digests);
+  if (!tree) return tree.error();
+  if (common.json) {
+    print_json({{"graph", graph_of(*tree)}});
+  } else {
+    print(graph_of(*tree));
+  }
+  return kDone;
+}
+
+Result<int> list(const CommonArguments& common) {
+  Json materials = Json::array();
+  for (const MaterialPlace& place : list_materials()) {
+    const Result<MaterialFile> file = read_material(place);
+    const bool has_notes = file && file->top.contains("notes");
+    materials.push_back({{"name", place.name},
+                         {"file", place.file.string()},
+                         {"notes", has_notes ? file->top.at("notes").value : Json("")}});
+    if (!file) materials.back()["error"] = file.error().message();
+  }
+  if (common.json) {
+    print_json({{"materials", std::move(materials)}});
+    return kDone;
+  }
+  for (const Json& each : materials)
+    print(fmt::format(
+        "{:26}  {}", each["name"].get<std::string>(),
+        each.contains("error") ? each["error"].get<std::string>() : each["notes"].get<std::string>()));
+  return kDone;
+}
+
+Result<int> show(const MaterialArguments& a, const CommonArguments& common) {
+  const Result<std::vector<MaterialPlace>> places = places_of(a);
+  if (!places) return places.error();
+  const Result<std::string> text = material_text(places->front());
+  if (!text) return text.error();
+  if (common.json) {
+    print_json({{"name", places->front().name}, {"text", *text}});
+  } else {
+    print(*text);
+  }
+  return kDone;
+}
+
+Result<int> make_new(const MaterialArguments& a, const CommonArguments& common) {
+  const Result<void> made = write_new_material(a.made);
+  if (!made) return made.error();
+  if (common.json) {
+    print_json({{"file", fs::absolute(a.made.file).string()}});
+  } else {
+    print(a.made.file.string());
+  }
+  return kDone;
+}
+
+void add_files(Options& options, MaterialArguments& a) {
+  options.add("material", &a.files, "TOML files, or library:NAME").required();
+}
+
+void add_build_options(Options& options, MaterialArguments& a) {
+  add_files(options, a);
+  options.add("-o,--output", &a.output,
+              "Folder that all built materials go into, by their ids; default build/ beside each file");
+  options.add_choice("--compress", &a.compression, kCompressionNames, "Of EXR files: none, zip, piz");
+  options.add_flag("--no-pictures", &a.no_pictures, "No preview.png");
+}
+
+Run add_new(Options& options) {
+  const auto a = std::make_shared<MaterialArguments>();
+  options.add("file", &a->made.file, "The file to be written, NAME.toml").required();
+  options.add("--inherits", &a->made.inherits, "What it begins with: a TOML file, or library:NAME");
+  options.add("--scan", &a->made.scan, "Session or folder of maps whose measured and derived maps it takes");
+  options
+      .add("--layer", &a->made.layers,
+           "Materials to be laid on it, bottom to top: library:dirt/dust goes into what is deep")
+      .one_at_a_time();
+  return [a](const CommonArguments& common) { return make_new(*a, common); };
+}
+
+Run add_resolve(Options& options) {
+  const auto a = std::make_shared<MaterialArguments>();
+  options.add("material", &a->files, "A TOML file, or library:NAME").required().takes(1, 1);
+  return [a](const CommonArguments& common) { return resolve(*a, common); };
+}
+
+Run add_build(Options& options) {
+  const auto a = std::make_shared<MaterialArguments>();
+  add_build_options(options, *a);
+  return [a](const CommonArguments& common) { return build(*a, common); };
+}
+
+Run add_watch(Options& options) {
+  const auto a = std::make_shared<MaterialArguments>();
+  add_build_options(options, *a);
+  return [a](const CommonArguments& common) { return watch(*a, common); };
+}
+
+Run add_graph(Options& options) {
+  const auto a = std::make_shared<MaterialArguments>();
+  add_files(options, *a);
+  return [a](const CommonArguments& common) { return graph(*a, common); };
+}
+
+Run add_list(Options&) {
+  return [](const CommonArguments& common) { return list(common); };
+}
+
+Run add_show(Options& options) {
+  const auto a = std::make_shared<MaterialArguments>();
+  options.add("material", &a->files, "A TOML file, or library:NAME").required().takes(1, 1);
+  return [a](const CommonArguments& common) { return show(*a, common); };
+}
+
+}  // namespace
+
+Verb material_verb() {
+  return {.name = "material",
+          .help = "Materials that inherit, layer and rebuild (docs/materials.md)",
+          .verbs = {
+              {"new", "Write a material that begins with another, or with a scan", add_new},
+              {"resolve", "Every value of a material with the file that it comes from", add_resolve},
+              {"build", "Compose the maps of materials and of all that they lie on, where something changed",
+               add_build},
+              {"graph", "What materials depend on, for Graphviz", add_graph},
+              {"watch", "Build, and again whenever a file changes, until stopped", add_watch},
+              {"list", "Materials of the library: weft's own and the user's", add_list},
+              {"show", "The text of a material", add_show}}};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/result.h"
+#include "material/filtering/detail.h"
+#include "material/layers/field.h"
+#include "material/layers/parameters.h"
+
+// One layer on what lies below it, a parameter at a time: what a stack needs at once is two fields and a
+// mask. Means are of numbers in linear space (seed 000, "Compositing"; seed 002, "Material Layering").
+
+namespace weft::material {
+
+enum class LayerBlend {
+  kReplace,  ///< below + mask (layer - below)
+  /// The layer's relief and pattern are added to what is below and nothing else of it changes: slopes and
+  /// heights less their mean, the albedo multiplied by the layer's over its mean.
+  kDetail
+};
+const char* name_of(LayerBlend blend);
+std::optional<LayerBlend> layer_blend_named(std::string_view name);
+
+struct LayOptions {
+  LayerBlend blend = LayerBlend::kReplace;
+  NormalBlend normals = NormalBlend::kAddSlopes;  ///< of kDetail
+  double alpha = 1;                               ///< multiplies the mask, 0 to 1
+  int threads = 0;
+};
+
+/// Lays `layer` on `below` through `mask`, 1 plane, which counts from 0 to 1. Maps have one size. What is
+/// the same everywhere stays so where nothing varies. kUsage for sizes or planes that differ.
+///
+/// kDetail leaves every parameter alone but albedo, normal and height. A plane of an albedo whose mean is not
+/// above 0 leaves what is below.
+Result<void> lay(Parameter parameter, Field& below, const Field& layer, const Field& mask,
+                 const LayOptions& options);
+
+/// Multiplies each plane: albedo by its tint, slopes by their scale.
+void multiply(Field& field, const std::array<double, 3>& factors, int threads);
+
+/// Brings values into `least` to `most`, and says of how many that changed.
+std::int64_t clamp_to(Field& field, double least, double most);
+
+}  // namespace weft::material
