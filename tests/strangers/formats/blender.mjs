@@ -7,7 +7,7 @@ import {angles, difference, linearOfSrgb, normalsOf} from '../support/compare.mj
 import {imageOfTexture, plain, putTogether, takeApart, withImage} from '../support/glb.mjs';
 import {greenFlipped, readPixels, readPng, readPngFile, writePng} from '../support/pixels.mjs';
 import {has, here, run} from '../support/programs.mjs';
-import {below, sameLength} from '../support/report.mjs';
+import {all, below, sameLength} from '../support/report.mjs';
 
 export const whyNoBlender = has('blender') ? '' : 'there is no blender (Debian\'s blender, 270 MB)';
 
@@ -47,6 +47,36 @@ function judgeNormals(seen, own, limit, against) {
   return below(mean, limit, ' deg', ` in the mean from ${against}, most ${most.toFixed(2)}, tilt below 40 deg`);
 }
 
+/** How the picture's light over its albedo goes with the cosine to the lamp, which stands up, left and in front. */
+function judgeRelief(picture, own, normals) {
+  const toLamp = [-1, 1, 1].map((value) => value / Math.sqrt(3));
+  const light = ({data, channels}, texel) => [0.2126, 0.7152, 0.0722].reduce((sum, weight, at) => sum + weight * linearOfSrgb(data[channels * texel + at]), 0);
+  let [n, sx, sy, sxx, syy, sxy] = [0, 0, 0, 0, 0, 0];
+  for (let texel = 0; texel < picture.width * picture.height; texel += 1) {
+    const cosine = Math.max(0, toLamp.reduce((sum, value, at) => sum + value * normals.data[3 * texel + at], 0));
+    const shade = light(picture, texel) / Math.max(0.01, light(own.albedo, texel));
+    n += 1;
+    sx += cosine;
+    sy += shade;
+    sxx += cosine * cosine;
+    syy += shade * shade;
+    sxy += cosine * shade;
+  }
+  const correlation = (n * sxy - sx * sy) / Math.sqrt((n * sxx - sx * sx) * (n * syy - sy * sy));
+  return {ok: correlation > 0.8, says: `its light goes with the cosine to the lamp by ${correlation.toFixed(3)} (at least 0.8)`};
+}
+
+/** Colour spaces that Blender gives the images of a .glb, by their names: colours sRGB, all else none. */
+function judgeSpaces(spaces, {json}) {
+  const [{pbrMetallicRoughness: metal, extensions: more = {}}] = json.materials;
+  const colors = [metal.baseColorTexture, more.KHR_materials_sheen?.sheenColorTexture, more.KHR_materials_specular?.specularColorTexture];
+  const names = colors.filter(Boolean).map(({index}) => json.images[json.textures[index].source].name);
+  return all(json.images.filter(({name}) => spaces[name]).map(({name}) => {
+    const wanted = names.includes(name) ? 'sRGB' : 'Non-Color';
+    return {ok: spaces[name] === wanted, says: `${name} is ${spaces[name]}`};
+  }));
+}
+
 /** The tasks of one .glb: without its extensions for passes, since sheen is mixed into them; flipped; larger. */
 function tasksOfGlb(file, truth, folder, scratch) {
   const name = path.basename(file, '.glb');
@@ -60,7 +90,7 @@ function tasksOfGlb(file, truth, folder, scratch) {
   const size = {width: truth.width, height: truth.height};
   const task = (from, shows, out) => ({kind: 'glb', file: from, shows, out, ...size});
   return {
-    title: `${path.basename(file)}`, own,
+    title: `${path.basename(file)}`, own, parts,
     tasks: [task(even, 'passes', path.join(scratch, `${name}_passes.exr`)), task(flipped, 'passes', path.join(scratch, `${name}_flipped.exr`)), task(file, 'picture', path.join(folder, `${name}_glb.png`))],
   };
 }
@@ -99,7 +129,14 @@ function checkOne({report, set, read, truth}) {
       report.refuses(`${title} ${['width', 'height'][axis]} a ten thousandth larger, by Blender`, sameLength(good.size_m[axis] * 1000, mm * 1.0001, set.sizeLimit ?? 1e-6));
     });
   }
-  report.check(`${title} a picture by Blender`, {ok: fs.existsSync(set.tasks[2].out), says: `${set.tasks[2].out} ${Object.entries(shown.spaces).map(([image, space]) => `${image} ${space}`).join(', ')}`});
+  if (set.parts) {
+    report.check(`${title} colour spaces by Blender`, judgeSpaces(shown.spaces, set.parts));
+    const exchanged = Object.fromEntries(Object.entries(shown.spaces).map(([image, space]) => [image, space === 'sRGB' ? 'Non-Color' : 'sRGB']));
+    report.refuses(`${title} colour spaces exchanged`, judgeSpaces(exchanged, set.parts));
+  }
+  const picture = readPngFile(set.tasks[2].out);
+  report.check(`${title} picture by Blender, ${path.basename(set.tasks[2].out)}`, judgeRelief(picture, own, mine));
+  report.refuses(`${title} picture by Blender, against a relief with green flipped`, judgeRelief(picture, own, normalsOf(own.normal, {greenSign: -1})));
   return undefined;
 }
 
