@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "app/jobs/map_files.h"
 #include "core/image_io/image_io.h"
 #include "core/parallel.h"
 #include "core/tiles.h"
@@ -72,7 +73,9 @@ Result<void> write_condition_map(const pipeline::Photographs& photographs, const
   if (Result<void> ok = for_each_tile({0, 0, size.width, size.height}, tile, context.stop, look); !ok)
     return ok;
   const std::array<View<const float>, 1> plane = {decades.plane()};
-  return write_image(file, plane, {"condition"}, {.type = SampleType::kHalf, .compression = compression});
+  return write_image(
+      file, plane, {"condition"},
+      {.type = SampleType::kHalf, .compression = compression, .pitch_mm = pitch_in_the_middle(photographs)});
 }
 
 }  // namespace weft::app

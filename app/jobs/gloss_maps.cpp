@@ -92,12 +92,12 @@ PictureKinds picture_kinds(const pipeline::GlossFacts& facts) {
 }  // namespace
 
 Result<void> write_gloss_maps(const fs::path& folder, const pipeline::GlossFacts& facts, AlbedoScale scale,
-                              Compression compression, bool previews) {
+                              Compression compression, PixelPitch pitch_mm, bool previews) {
   if (!facts.is_measured() || facts.share == 0) return {};
   const Result<LoadedImage> status = read_image(folder / "status.png");
   if (!status) return status.error();
   const Size size = status->info.size;
-  const WriteOptions options = {.type = SampleType::kHalf, .compression = compression};
+  const WriteOptions options = {.type = SampleType::kHalf, .compression = compression, .pitch_mm = pitch_mm};
   Result<ImageWriter> roughness = ImageWriter::open(
       folder / "roughness.exr", size, {"roughness", "alpha", "alpha_along", "yarn_deg"}, options);
   if (!roughness) return std::move(roughness).error();

@@ -5,6 +5,7 @@
 
 #include "core/albedo_scale.h"
 #include "core/compression.h"
+#include "core/image_io/image_io.h"
 #include "core/result.h"
 #include "pipeline/gloss.h"
 
@@ -23,6 +24,6 @@ inline constexpr double kTypedF0 = 0.04, kTypedAlpha = 1;
 /// Pixels without GLOSSY have typed values. Nothing is written where no lobe was measured or none is used.
 /// Errors: of files; kTryAgain where memory is short.
 Result<void> write_gloss_maps(const std::filesystem::path& folder, const pipeline::GlossFacts& facts,
-                              AlbedoScale scale, Compression compression, bool previews);
+                              AlbedoScale scale, Compression compression, PixelPitch pitch_mm, bool previews);
 
 }  // namespace weft::app

@@ -5,8 +5,18 @@
 
 namespace weft::app {
 
+PixelPitch pitch_in_the_middle(const pipeline::Photographs& photographs) {
+  if (!photographs.camera || !photographs.field) return {};
+  const CameraModel& camera = *photographs.camera;
+  const double x = (camera.size.width - 1) / 2.0, y = (camera.size.height - 1) / 2.0;
+  const double height_mm = photographs.field->cloth_height_mm();
+  const Vec3 middle = point_on_plane(camera, x, y, height_mm);
+  return {length(point_on_plane(camera, x + 1, y, height_mm) - middle),
+          length(point_on_plane(camera, x, y + 1, height_mm) - middle)};
+}
+
 Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size, Compression compression,
-                                const std::vector<std::string>& sigma) {
+                                const std::vector<std::string>& sigma, PixelPitch pitch_mm) {
   struct Spec {
     std::optional<ImageWriter>* writer;
     const char* name;
@@ -19,8 +29,9 @@ Result<MapFiles> MapFiles::open(const std::filesystem::path& folder, Size size, 
                            Spec{&files.sigma_, "sigma.exr", sigma, SampleType::kHalf},
                            Spec{&files.residual_, "residual.exr", {"residual"}, SampleType::kHalf},
                            Spec{&files.status_, "status.png", {"Y"}, SampleType::kUint16}}) {
-    Result<ImageWriter> opened = ImageWriter::open(folder / spec.name, size, spec.channels,
-                                                   {.type = spec.type, .compression = compression});
+    Result<ImageWriter> opened =
+        ImageWriter::open(folder / spec.name, size, spec.channels,
+                          {.type = spec.type, .compression = compression, .pitch_mm = pitch_mm});
     if (!opened) return std::move(opened).error();
     spec.writer->emplace(std::move(*opened));
   }

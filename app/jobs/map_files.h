@@ -14,12 +14,15 @@
 
 namespace weft::app {
 
+/// Of a pixel in the middle of the frame, where the cloth lies; 0 where no camera is known.
+PixelPitch pitch_in_the_middle(const pipeline::Photographs& photographs);
+
 /// The map files of a solve, written band by band: docs/formats.md.
 class MapFiles {
  public:
-  /// `sigma` names the channels of sigma.exr (pipeline/sigma_channels.h).
+  /// `sigma` names the channels of sigma.exr (pipeline/sigma_channels.h); `pitch_mm` as ImageFileInfo has it.
   static Result<MapFiles> open(const std::filesystem::path& folder, Size size, Compression compression,
-                               const std::vector<std::string>& sigma);
+                               const std::vector<std::string>& sigma, PixelPitch pitch_mm);
   /// `sigma` has a view over band.albedo_rows for each of those names.
   Result<void> write(const pipeline::MapBand& band, std::span<const View<const float>> sigma);
   Result<void> finish();

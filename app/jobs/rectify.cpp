@@ -86,8 +86,10 @@ Result<void> rectify_map(const Rectification& r, const std::string& name, MapKin
                        : static_cast<int>(yarn_channel - map->info.channels.begin());
   std::vector<View<const float>> planes;
   for (int p = 0; p < map->planes.planes(); ++p) planes.push_back(map->planes.plane(p));
-  Result<ImageWriter> writer =
-      ImageWriter::open(r.to / name, r.grid.size, map->info.channels, {type, r.options.compression});
+  Result<ImageWriter> writer = ImageWriter::open(r.to / name, r.grid.size, map->info.channels,
+                                                 {.type = type,
+                                                  .compression = r.options.compression,
+                                                  .pitch_mm = {r.grid.mm_per_pixel, r.grid.mm_per_pixel}});
   if (!writer) return std::move(writer).error();
   Image<float> band({r.grid.size.width, r.options.band_rows}, static_cast<int>(planes.size()));
   const Result<void> done = by_bands(r, [&](int y, int rows) {
@@ -103,8 +105,9 @@ Result<void> rectify_map(const Rectification& r, const std::string& name, MapKin
 }
 
 Result<void> rectify_status(const Rectification& r, std::int64_t& solved) {
-  Result<ImageWriter> writer =
-      ImageWriter::open(r.to / "status.png", r.grid.size, {"Y"}, {.type = SampleType::kUint16});
+  Result<ImageWriter> writer = ImageWriter::open(
+      r.to / "status.png", r.grid.size, {"Y"},
+      {.type = SampleType::kUint16, .pitch_mm = {r.grid.mm_per_pixel, r.grid.mm_per_pixel}});
   if (!writer) return std::move(writer).error();
   Image<std::uint16_t> band({r.grid.size.width, r.options.band_rows});
   const Result<void> done = by_bands(r, [&](int y, int rows) {

@@ -222,8 +222,9 @@ class Run {
   Result<void> solve_into_files() {
     Result<Finish> finish = Finish::make(photographs_, context_.threads);
     if (!finish) return std::move(finish).error();
+    const PixelPitch pitch_mm = pitch_in_the_middle(photographs_);
     Result<MapFiles> files =
-        MapFiles::open(partial_.path(), facts_.size, options_.compression, finish->sigma_names());
+        MapFiles::open(partial_.path(), facts_.size, options_.compression, finish->sigma_names(), pitch_mm);
     if (!files) return std::move(files).error();
     seconds_.prepare = watch_.lap();
 
@@ -272,7 +273,7 @@ class Run {
     if (Result<void> ok = files->finish(); !ok) return ok;
     if (frame->gloss) {
       const Result<void> written = write_gloss_maps(partial_.path(), *frame->gloss, facts_.albedo_scale,
-                                                    options_.compression, options_.previews);
+                                                    options_.compression, pitch_mm, options_.previews);
       if (!written) return written;
     }
     seconds_.write = frame->waited_seconds + watch_.lap();

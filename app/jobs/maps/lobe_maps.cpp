@@ -128,12 +128,14 @@ Result<void> make_mips(MapWork& work) {
   Json listed = Json::array();
   for (const material::MipLevel& level : *levels) {
     const std::string number = fmt::format("{:02}", level.level);
-    const Result<void> normal = write_image(folder / ("normal_" + number + ".exr"), planes_of(level.normal),
-                                            {"X", "Y", "Z"}, {.compression = work.compression});
+    const PixelPitch pitch_mm = pitch_of_level(work.surface, level.normal.size());
+    const Result<void> normal =
+        write_image(folder / ("normal_" + number + ".exr"), planes_of(level.normal), {"X", "Y", "Z"},
+                    {.compression = work.compression, .pitch_mm = pitch_mm});
     if (!normal) return normal;
-    const Result<void> lobe = write_image(folder / ("lobe_" + number + ".exr"), planes_of(level.lobe),
-                                          {"alpha", "alpha_along", "yarn_deg"},
-                                          {.type = SampleType::kHalf, .compression = work.compression});
+    const Result<void> lobe = write_image(
+        folder / ("lobe_" + number + ".exr"), planes_of(level.lobe), {"alpha", "alpha_along", "yarn_deg"},
+        {.type = SampleType::kHalf, .compression = work.compression, .pitch_mm = pitch_mm});
     if (!lobe) return lobe;
     listed.push_back({{"level", level.level},
                       {"width", level.normal.width()},

@@ -54,7 +54,7 @@ class GlossMaps : public ::testing::Test {
 
 TEST_F(GlossMaps, HaveTheLobeWhereItWasUsedAndTypedValuesElsewhere) {
   const Result<void> written =
-      write_gloss_maps(folder_.path(), satin(), AlbedoScale::kAbsolute, Compression::kNone, true);
+      write_gloss_maps(folder_.path(), satin(), AlbedoScale::kAbsolute, Compression::kNone, {}, true);
   ASSERT_TRUE(written) << written.error().message();
   const Result<LoadedImage> roughness = read_image(folder_.path() / "roughness.exr");
   ASSERT_TRUE(roughness) << roughness.error().message();
@@ -80,7 +80,8 @@ TEST_F(GlossMaps, HaveTheLobeWhereItWasUsedAndTypedValuesElsewhere) {
 }
 
 TEST_F(GlossMaps, OfARelativeAlbedoSayNothingOfF0) {
-  ASSERT_TRUE(write_gloss_maps(folder_.path(), satin(), AlbedoScale::kRelative, Compression::kNone, false));
+  ASSERT_TRUE(
+      write_gloss_maps(folder_.path(), satin(), AlbedoScale::kRelative, Compression::kNone, {}, false));
   EXPECT_TRUE(has("roughness.exr"));
   EXPECT_FALSE(has("specular.exr"));
   EXPECT_FALSE(has("reflectance.png"));
@@ -91,7 +92,8 @@ TEST_F(GlossMaps, AreNotWrittenWhereNoLobeWasMeasuredOrUsed) {
   refused.lobes.resize(1);
   unused.share = 0;
   for (const pipeline::GlossFacts& facts : {refused, unused}) {
-    ASSERT_TRUE(write_gloss_maps(folder_.path(), facts, AlbedoScale::kAbsolute, Compression::kNone, true));
+    ASSERT_TRUE(
+        write_gloss_maps(folder_.path(), facts, AlbedoScale::kAbsolute, Compression::kNone, {}, true));
     EXPECT_FALSE(has("roughness.exr") || has("specular.exr") || has("reflectance.png"));
   }
 }
