@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/export/export.h"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/exit_code.h"
+#include "app/cli/options.h"
+#include "app/cli/terminal.h"
+#include "app/cli/verbs.h"
+#include "app/jobs/export/export_json.h"
+#include "app/jobs/export/preset_files.h"
+#include "app/jobs/export/price.h"
+
+namespace weft::app {
+namespace {
+
+struct ExportArguments {
+  ExportOptions options;
+  std::string shown;
+  bool lists = false;
+  bool only_explains = false;
+};
+
+Result<int> list_presets(const CommonArguments& common) {
+  Json rows = Json::array();
+  for (const KnownPreset& known : known_presets()) {
+    const Result<exchange::Preset> preset = read_preset(known.name);
+    const std::string says = preset ? preset->says : preset.error().message();
+    rows.push_back({{"name", known.name}, {"says", says}, {"file", known.file.string()}});
+    if (!common.json)
+      print(
+          fmt::format("{:12}  {}{}", known.name, says, known.file.empty() ? "" : ", " + known.file.string()));
+  }
+  if (common.json) print_json({{"presets", std::move(rows)}});
+  return kDone;
+}
+
+Result<int> show_preset(const std::string& name) {
+  Result<std::string> text = preset_text(name);
+  if (!text) return std::move(text).error();
+  if (!text->empty() && text->back() == '\n') text->pop_back();
+  print(*text);
+  return kDone;
+}
+
+std::string lost_words(const Json& lost) {
+  std::string words;
+  if (lost.contains("normal_deg")) {
+    const Json& deg = lost["normal_deg"];
+    words += fmt::format("; normals {:.3g} deg, 95 % within {:.3g}, at most {:.3g}",
+                         deg["mean"].get<double>(), deg["p95"].get<double>(), deg["max"].get<double>());
+  }
+  if (lost.contains("albedo")) {
+    const Json& albedo = lost["albedo"];
+    words += fmt::format("; albedo {:.2g}", albedo["mean"].get<double>());
+    if (albedo["psnr_db"].is_number()) words += fmt::format(", {:.1f} dB", albedo["psnr_db"].get<double>());
+  }
+  return words;
+}
+
+void print_report(const ExportReport& report) {
+  const Json& d = report.document;
+  print(report.folder.string());
+  if (report.was_there) print("  is there already: same maps, same preset, same options");
+  const std::string size =
+      d["size_mm"].is_array()
+          ? fmt::format("{:.6g} x {:.6g} mm", d["size_mm"][0].get<double>(), d["size_mm"][1].get<double>())
+          : "size not known";
+  print(fmt::format("  {} x {} pixels, {}, normals {}, roughness as {}", d["width"].get<int>(),
+                    d["height"].get<int>(), size, d["normal"].get<std::string>(),
+                    d["roughness"].get<std::string>()));
+  for (const Json& file : d["files"]) {
+    print(fmt::format("  {}: {}, {:.2f} MB{}", file["file"].get<std::string>(),
+                      file["encoding"].get<std::string>(), file["bytes"].get<double>() * 1e-6,
+                      lost_words(file["lost"])));
+  }
+  for (const Json& document : d["documents"]) {
+    print(fmt::format("  {}: {:.2f} MB", document["file"].get<std::string>(),
+                      document["bytes"].get<double>() * 1e-6));
+    for (const Json& left_out : document["left_out"]) print("    " + left_out.get<std::string>());
+  }
+  for (const Json& text : d["notes"]) print("  " + text.get<std::string>());
+}
+
+Result<int> run_export(const ExportArguments& a, const CommonArguments& common) {
+  const Result<std::vector<ExportReport>> reports = [&] {
+    ProgressLine line(common.quiet);
+    return export_maps(a.options, {common.threads, stop_on_signal(), line.callback()});
+  }();
+  if (!reports) return reports.error();
+  Json exports = Json::array();
+  for (const ExportReport& report : *reports) {
+    if (!common.json) print_report(report);
+    Json json = {
+        {"folder", report.folder.string()}, {"was_there", report.was_there}, {"seconds", report.seconds}};
+    json.update(report.document);
+    exports.push_back(std::move(json));
+  }
+  if (common.json) print_json({{"exports", std::move(exports)}});
+  return kDone;
+}
+
+void print_prices(const std::vector<ExportPrice>& prices) {
+  print(fmt::format("{:28}  {:15}  {:>9}  {:>8}  {}", "file", "stored as", "MB", "seconds", "lost"));
+  for (const ExportPrice& price : prices) {
+    const std::string name = price.preset.empty() ? price.file : price.preset + ": " + price.file;
+    std::string lost = lost_words(json_of(price.loss));
+    if (lost.starts_with("; ")) lost.erase(0, 2);
+    print(fmt::format("{:28}  {:15}  {:>9.2f}  {:>8.2f}  {}{}", name, words_of(price.stored),
+                      price.bytes * 1e-6, price.seconds, lost, price.is_chosen ? ", chosen" : ""));
+  }
+  print("bytes and seconds of the whole cloth, by one thread, from a piece of its middle");
+}
+
+Result<int> explain_export(const ExportArguments& a, const CommonArguments& common) {
+  const Result<std::vector<ExportPrice>> prices =
+      price_exports(a.options, {common.threads, stop_on_signal(), [](std::string_view, double) {}});
+  if (!prices) return prices.error();
+  if (common.json) {
+    print_json({{"rows", json_of(*prices)}});
+  } else {
+    print_prices(*prices);
+  }
+  return kDone;
+}
+
+Error missing(const char* option, const char* remedy) {
+  return {ErrorKind::kUsage, "nothing can be exported", option, "it is missing", remedy};
+}
+
+Run add_export(Options& options) {
+  const auto a = std::make_shared<ExportArguments>();
+  ExportOptions& e = a->options;
+  options.add("input", &e.input, "Session folder, or a folder of a set of maps, a built material or a solve");
+  options
+      .add("--preset", &e.presets,
+           "Which files: names of --list, or files that end in .toml (docs/exports.md), by commas")
+      .by_commas();
+  options.add("-o,--output", &e.output,
+              "Folder; of several presets it gets one for each. Default SESSION/export/PRESET");
+  options.add("--maps", &e.maps, "Id of the set of maps; default the session's newest");
+  options.add("--name", &e.name, "Of the cloth, in file names; default as it is called");
+  options.add("--size", &e.size_px, "Pixels of the longer side; default as many as there are")
+      .in_range(1, 1 << 20);
+  options.add_flag("--dx10", &e.is_dx10, "DDS files with headers of DX10 alone, which say sRGB");
+  options.add_flag("--list", &a->lists, "Only list the presets");
+  options.add("--show", &a->shown, "Only print a preset as TOML, to begin one of your own with");
+  options.add_flag("--explain", &a->only_explains,
+                   "Only say what each file and each format costs and loses on this cloth");
+  options.add("--to", &e.to_deg, "Degrees that normals may lose in the mean: chooses their bits")
+      .in_range(1e-6, 90.0);
+  return [a](const CommonArguments& common) -> Result<int> {
+    if (a->lists) return list_presets(common);
+    if (!a->shown.empty()) return show_preset(a->shown);
+    if (a->options.input.empty()) return missing("input", "name a session or a folder of maps");
+    if (a->only_explains) return explain_export(*a, common);
+    if (a->options.presets.empty()) return missing("--preset", "name one of weft export --list");
+    return run_export(*a, common);
+  };
+}
+
+}  // namespace
+
+Verb export_verb() {
+  return {"export", "Write the maps as files and materials that other programs open", add_export};
+}
+
+}  // namespace weft::app

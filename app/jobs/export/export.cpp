@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/export/export.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <memory>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "app/jobs/export/documents.h"
+#include "app/jobs/export/encode_files.h"
+#include "app/jobs/export/export_json.h"
+#include "app/jobs/export/plan.h"
+#include "app/jobs/export/price.h"
+#include "core/files.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error is_taken(const fs::path& folder, std::string why) {
+  return {ErrorKind::kCannotCreate, "output folder is taken", folder.string(), std::move(why),
+          "name another folder with -o, or remove it"};
+}
+
+// What lies where an export is to go: nothing, an export that may be replaced, or an error for anything else.
+Result<std::optional<Json>> earlier_export(const fs::path& folder) {
+  if (!is_there(folder)) return std::optional<Json>();
+  const fs::path file = folder / kExportProduct.document;
+  if (!is_there(file)) {
+    std::error_code failed;
+    if (fs::is_directory(folder, failed) && fs::is_empty(folder, failed) && !failed)
+      return std::optional<Json>();
+    return is_taken(folder, "it holds something other than an export");
+  }
+  Result<Json> document = read_json(file, kExportProduct.schema, 1);
+  if (!document) return std::move(document).error();
+  std::set<std::string> ours = {kExportProduct.document};
+  for (const char* list : {"files", "documents"}) {
+    if (!document->contains(list)) continue;
+    for (const Json& each : (*document)[list]) ours.insert(each.value("file", ""));
+  }
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder, failed)) {
+    const std::string name = fs::relative(entry.path(), folder, failed).generic_string();
+    if (!entry.is_directory() && !ours.contains(name))
+      return is_taken(folder, fmt::format("beside an earlier export it holds {}", name));
+  }
+  if (failed) return cannot_read(folder, failed.value());
+  return std::optional<Json>(std::move(*document));
+}
+
+// Whether every file that the document names is there.
+bool is_whole(const fs::path& folder, const Json& document) {
+  for (const char* list : {"files", "documents"}) {
+    for (const Json& each : document[list]) {
+      const bool is_inside = each.contains("inside");
+      if (!is_inside && !is_there(folder / each.value("file", ""))) return false;
+    }
+  }
+  return true;
+}
+
+// An earlier export goes only once the new one is whole, and comes back where that cannot take its place.
+Result<void> publish(PartialFolder& partial, const fs::path& target) {
+  if (!is_there(target)) return partial.publish();
+  const fs::path old =
+      target.parent_path() / fmt::format(".{}.old-{}", target.filename().string(), ::getpid());
+  std::error_code failed;
+  fs::rename(target, old, failed);
+  if (failed) return cannot_write(target, failed.value());
+  Result<void> published = partial.publish();
+  if (!published) {
+    fs::rename(old, target, failed);
+    return published;
+  }
+  fs::remove_all(old, failed);
+  return {};
+}
+
+// One plan on its way to its folder.
+struct Work {
+  const PlannedExport* plan = nullptr;
+  std::unique_ptr<PartialFolder> partial;
+  ExportReport report;
+};
+
+Result<void> finish(Work& work, const MapFolder& folder, const Json& provenance,
+                    const std::vector<EncodedFile>& files) {
+  Stopwatch watch;
+  const fs::path& aside = work.partial->path();
+  const Result<std::vector<WrittenDocument>> documents = write_documents(*work.plan, folder, files, aside);
+  if (!documents) return documents.error();
+  work.report.document = export_document(*work.plan, folder, provenance, files, *documents);
+  if (Result<void> ok = write_json(aside / kExportProduct.document, work.report.document); !ok) return ok;
+  work.report.seconds = watch.lap();
+  for (const EncodedFile& file : files) work.report.seconds += file.seconds;
+  return {};
+}
+
+Result<void> make_all(std::vector<Work>& works, const MapFolder& folder, const ExportOptions& options,
+                      const JobContext& context) {
+  std::vector<EncodeTarget> targets;
+  std::vector<Work*> wanted;
+  std::uint64_t bytes = 0;
+  for (Work& work : works) {
+    if (work.report.was_there) continue;
+    work.partial = std::make_unique<PartialFolder>(work.plan->folder);
+    bytes += most_bytes(*work.plan);
+    if (Result<void> ok = begin(*work.partial, bytes); !ok) return ok;
+    targets.push_back({work.plan, work.partial->path()});
+    wanted.push_back(&work);
+  }
+  if (wanted.empty()) return {};
+  const Result<Json> provenance = provenance_of(folder);
+  if (!provenance) return provenance.error();
+  const Result<std::vector<std::vector<EncodedFile>>> files =
+      encode_files(folder, targets, options.is_dx10, context);
+  if (!files) return files.error();
+  for (std::size_t i = 0; i < wanted.size(); ++i) {
+    if (Result<void> ok = finish(*wanted[i], folder, *provenance, (*files)[i]); !ok) return ok;
+  }
+  for (Work* work : wanted) {
+    if (context.stop.stop_requested()) return interrupted();
+    if (Result<void> ok = publish(*work->partial, work->plan->folder); !ok) return ok;
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<ExportReport>> export_maps(const ExportOptions& options, const JobContext& context) {
+  const Result<MapFolder> folder = open_map_folder(options.input, options.maps);
+  if (!folder) return folder.error();
+  Result<std::vector<PlannedExport>> plans = plan_exports(options, *folder);
+  if (!plans) return std::move(plans).error();
+  if (options.to_deg) {
+    if (Result<void> ok = choose_bits(options, *folder, *options.to_deg, *plans, context); !ok)
+      return std::move(ok).error();
+  }
+  std::vector<Work> works;
+  for (const PlannedExport& plan : *plans) {
+    Result<std::optional<Json>> earlier = earlier_export(plan.folder);
+    if (!earlier) return std::move(earlier).error();
+    Work work = {.plan = &plan, .partial = nullptr, .report = {.folder = plan.folder}};
+    if (*earlier && (*earlier)->value("id", "") == plan.id && is_whole(plan.folder, **earlier)) {
+      work.report.was_there = true;
+      work.report.document = std::move(**earlier);
+    }
+    works.push_back(std::move(work));
+  }
+  if (Result<void> ok = make_all(works, *folder, options, context); !ok) return std::move(ok).error();
+  std::vector<ExportReport> reports;
+  for (Work& work : works) reports.push_back(std::move(work.report));
+  context.progress("encode", 1);
+  return reports;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/jobs/export/map_folder.h"
+#include "core/job.h"
+#include "core/json_document.h"
+#include "core/product.h"
+#include "core/result.h"
+#include "exchange/presets/preset.h"
+
+namespace weft::app {
+
+inline constexpr ProductKind kExportProduct = {"weft.export", "export.json", "export",
+                                               "make it first with weft export"};
+
+struct ExportOptions {
+  std::filesystem::path input;            ///< a session, a set of maps, a built material or a solve
+  std::string maps = {};                  ///< id of the set of a session; empty: its newest
+  std::vector<std::string> presets = {};  ///< names, or files that end in .toml
+  /// Empty: SESSION/export/<preset>, of a folder elsewhere FOLDER/export/<preset>. Of several presets each
+  /// has a folder of its name in it.
+  std::filesystem::path output = {};
+  std::string name = {};              ///< of the cloth in file names; empty: as it is called
+  int size_px = 0;                    ///< of the longer side; 0: as the preset has it
+  bool is_dx10 = false;               ///< DDS with DX10 headers alone
+  std::optional<double> to_deg = {};  ///< normals lose at most this in the mean: chooses their bits
+};
+
+/// What an export of one preset left behind.
+struct ExportReport {
+  std::filesystem::path folder;
+  bool was_there = false;  ///< a complete one of the same maps, preset and options was found
+  Json document = {};      ///< export.json
+  double seconds = 0;      ///< 0 where it was there
+};
+
+/// Packs the maps for each preset, writes its files and documents, measures what they lose by reading them
+/// back, and publishes each folder whole, with export.json (weft.export/1, docs/formats.md). Files that are
+/// alike in several presets are encoded once. An earlier export in the same place is replaced; anything else
+/// there is refused. Everything that can be refused is refused before a file is made.
+///
+/// Errors: those of open_map_folder() and read_preset(); kBadData where a preset asks for what the maps lack,
+/// or names do not fit a disk; kUsage for a size above the maps'; kCannotCreate where the output holds
+/// something else; kInputOutput; kInterrupted.
+Result<std::vector<ExportReport>> export_maps(const ExportOptions& options, const JobContext& context);
+
+}  // namespace weft::app

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/export/map_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "app/jobs/maps/maps.h"
+#include "core/albedo_scale.h"
+#include "core/files.h"
+#include "core/image_io/image_io.h"
+#include "core/product.h"
+#include "core/solve.h"
+#include "core/text.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using exchange::Plane;
+
+constexpr const char* kUnusable = "the maps cannot be exported";
+
+struct FolderKind {
+  const char* document;
+  const char* schema;
+  const char* kind;
+};
+constexpr std::array<FolderKind, 3> kFolderKinds = {{{"maps.json", "weft.maps", "maps"},
+                                                     {"material.json", "weft.material-build", "material"},
+                                                     {"solve.json", "weft.solve", "solve"}}};
+
+Error unfit_folder(const std::string& where, std::string why) {
+  return {ErrorKind::kBadData, kUnusable, where, std::move(why), "make the maps again"};
+}
+
+bool stays_inside(const std::string& file) {
+  const fs::path path(file);
+  return !file.empty() && path.is_relative() &&
+         std::ranges::none_of(path, [](const fs::path& part) { return part == ".."; });
+}
+
+// The newest set of maps that is no preview, or the one with this id.
+Result<fs::path> set_of_session(const fs::path& session, const std::string& id) {
+  if (id.empty()) {
+    std::vector<Product> sets = list_products(kMapsProduct, session / "maps");
+    std::ranges::reverse(sets);
+    for (const Product& set : sets) {
+      const Result<Json> document = read_json(set.folder / kMapsProduct.document, kMapsProduct.schema, 1);
+      if (document && !document->value("preview", false)) return set.folder;
+    }
+  }
+  Result<Product> found = find_product(kMapsProduct, session / "maps", id);
+  if (!found) return std::move(found).error();
+  return found->folder;
+}
+
+Result<FolderMap> map_from_json(const Json& entry, const std::string& where) {
+  JsonFields fields(entry, where);
+  FolderMap map = {.name = fields.text("name"), .source = fields.text_or("source", "assumed"), .more = entry};
+  map.file = fields.text_or("file", "");
+  map.constant = fields.optional_number("constant");
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  if (map.file.empty() != map.constant.has_value())
+    return unfit_folder(where, "a map has a file or is one number, and this one is not");
+  if (map.constant) return map;
+  if (!stays_inside(map.file)) return unfit_folder(where + ": file", "it leaves the folder");
+  map.least = fields.optional_number("least").value_or(0);
+  map.most = fields.optional_number("most").value_or(0);
+  return map;
+}
+
+// The files of a solve, whose document does not list them.
+std::vector<FolderMap> maps_of_solve(const fs::path& folder) {
+  std::vector<FolderMap> maps;
+  for (const char* name : {"normal", "albedo", "roughness", "specular"}) {
+    const std::string file = fmt::format("{}.exr", name);
+    if (is_there(folder / file)) maps.push_back({.name = name, .file = file, .source = "measured"});
+  }
+  return maps;
+}
+
+// Parameters of a built material that are no maps: a number or three, or {"value", "source"} of them.
+Result<void> add_parameters(const Json& parameters, const std::string& where, std::vector<FolderMap>& maps) {
+  for (const auto& [name, written] : parameters.items()) {
+    const bool is_object = written.is_object() && written.contains("value");
+    const Json& value = is_object ? written["value"] : written;
+    std::vector<double> numbers;
+    for (const Json& each : value.is_array() ? value : Json::array({value})) {
+      if (each.is_number()) numbers.push_back(each.get<double>());
+    }
+    if (numbers.empty()) continue;
+    if (!std::ranges::all_of(numbers, [](double number) { return std::isfinite(number); }))
+      return unfit_folder(where + ": " + name, "it is no finite number");
+    if (std::ranges::any_of(maps, [&name = name](const FolderMap& map) { return map.name == name; }))
+      continue;
+    maps.push_back({.name = name,
+                    .source = is_object ? written.value("source", "assumed") : "assumed",
+                    .constant = numbers.front(),
+                    .more = {{"numbers", numbers}}});
+  }
+  return {};
+}
+
+// A set lies in SESSION/maps/ID, a solve in SESSION/solve/ID.
+void find_session(MapFolder& folder) {
+  const fs::path session = absolute_folder(folder.folder).parent_path().parent_path();
+  if (!is_there(session / "session.json")) return;
+  if (Result<Session> read = read_session(session)) folder.session = std::move(*read);
+}
+
+std::string scale_of(const MapFolder& folder) {
+  constexpr const char* kKey = "albedo_scale";
+  if (folder.document.contains(kKey) && folder.document[kKey].is_string())
+    return folder.document[kKey].get<std::string>();
+  if (!folder.session || !folder.document.contains("solve") || !folder.document["solve"].is_string())
+    return "unknown";
+  const Result<Product> solve =
+      find_solve(folder.session->folder, folder.document["solve"].get<std::string>());
+  if (!solve) return "unknown";
+  const Result<Json> document = read_json(solve->folder / kSolveProduct.document, kSolveProduct.schema, 1);
+  return document ? document->value(kKey, "unknown") : "unknown";
+}
+
+std::string cloth_name(const MapFolder& folder) {
+  std::string name = folder.document.value("name", "");
+  if (name.empty() && folder.session) name = folder.session->fabric;
+  if (name.empty() && folder.session) name = folder.session->folder.stem().string();
+  if (name.empty()) name = absolute_folder(folder.folder).filename().string();
+  return plain_name(name);
+}
+
+Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
+  Result<Json> document = read_json(path / kind.document, kind.schema, 1);
+  if (!document) return std::move(document).error();
+  MapFolder folder;
+  folder.folder = path;
+  folder.kind = kind.kind;
+  folder.document_file = kind.document;
+  const std::string where = (path / kind.document).string();
+  JsonFields fields(*document, where);
+  folder.id = fields.text("id");
+  folder.size = {fields.integer("width"), fields.integer("height")};
+  if (folder.size.width < 1 || folder.size.height < 1)
+    fields.reject("width", "must be above 0, and height too");
+  folder.mm_per_pixel = fields.optional_number("mm_per_pixel");
+  if (folder.mm_per_pixel && !(*folder.mm_per_pixel > 0)) fields.reject("mm_per_pixel", "must be above 0");
+  folder.is_tile = document->contains("is_tile") && (*document)["is_tile"] == true;
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  if (folder.kind == "solve") {
+    folder.maps = maps_of_solve(path);
+  } else {
+    const Json& maps = fields.list("maps");
+    if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+    for (std::size_t i = 0; i < maps.size(); ++i) {
+      Result<FolderMap> map = map_from_json(maps[i], fmt::format("{}: maps {}", where, i + 1));
+      if (!map) return std::move(map).error();
+      folder.maps.push_back(std::move(*map));
+    }
+  }
+  if (document->contains("parameters") && (*document)["parameters"].is_object()) {
+    if (Result<void> ok = add_parameters((*document)["parameters"], where + ": parameters", folder.maps); !ok)
+      return std::move(ok).error();
+  }
+  folder.document = std::move(*document);
+  find_session(folder);
+  folder.albedo_scale = scale_of(folder);
+  folder.name = cloth_name(folder);
+  return folder;
+}
+
+// A number of the roughness map: alpha where it is said, else the square of the root.
+std::optional<double> alpha_constant(const FolderMap& map, const char* key) {
+  if (map.more.contains(key) && map.more[key].is_number()) return map.more[key].get<double>();
+  if (map.more.contains("alpha") && map.more["alpha"].is_number()) return map.more["alpha"].get<double>();
+  return map.constant ? std::optional(*map.constant * *map.constant) : std::nullopt;
+}
+
+std::optional<double> number_of(const MapFolder& folder, const char* name) {
+  const FolderMap* map = folder.map(name);
+  return map == nullptr ? std::nullopt : map->constant;
+}
+
+// Of two alphas whose smaller one is `alpha`, by the strength of KHR_materials_anisotropy. The highlight of a
+// built material is stretched along anisotropy_deg, so its larger alpha stands along.
+PlaneOrigin roughness_constant(const MapFolder& folder, const FolderMap& map, Plane plane) {
+  const std::optional<double> alpha = alpha_constant(map, "alpha");
+  if (plane == Plane::kAlpha) return {.constant = alpha};
+  const double strength = number_of(folder, "anisotropy").value_or(0);
+  if (plane == Plane::kYarnDeg) return {.constant = number_of(folder, "anisotropy_deg").value_or(0)};
+  const std::optional<double> along = alpha_constant(map, "alpha_along");
+  if (strength == 0 || !alpha) return {.constant = along};
+  return {.constant = *alpha + (1 - *alpha) * strength * strength};
+}
+
+}  // namespace
+
+const FolderMap* MapFolder::map(const std::string& wanted) const {
+  const auto found = std::ranges::find(maps, wanted, &FolderMap::name);
+  return found == maps.end() ? nullptr : &*found;
+}
+
+Result<MapFolder> open_map_folder(const fs::path& input, const std::string& maps_id) {
+  fs::path folder = input;
+  if (is_there(input / "session.json")) {
+    const Result<fs::path> set = set_of_session(input, maps_id);
+    if (!set) return set.error();
+    folder = *set;
+  } else if (!maps_id.empty()) {
+    return Error{ErrorKind::kUsage, kUnusable, "--maps",
+                 "it chooses among the sets of a session, and " + input.string() + " is none",
+                 "name the session, or leave --maps out"};
+  }
+  for (const FolderKind& kind : kFolderKinds) {
+    if (is_there(folder / kind.document)) return read_folder(folder, kind);
+  }
+  return Error{ErrorKind::kNoInput, kUnusable, input.string(),
+               "it is no session, no set of maps, no built material and no solve",
+               "name a folder with session.json, maps.json, material.json or solve.json"};
+}
+
+Result<Json> provenance_of(const MapFolder& folder) {
+  Json json = {{folder.kind, folder.id}};
+  const Result<std::string> digest = sha256_of_file(folder.folder / folder.document_file);
+  if (!digest) return digest.error();
+  json[folder.kind + "_sha256"] = *digest;
+  for (const char* key : {"solve", "rectified", "inputs"}) {
+    if (folder.kind != key && folder.document.contains(key)) json[key] = folder.document[key];
+  }
+  if (!folder.session) return json;
+  const Session& session = *folder.session;
+  const Result<std::string> session_digest = sha256_of_file(session.folder / "session.json");
+  if (!session_digest) return session_digest.error();
+  json["session"] = {
+      {"name", session.folder.filename().string()}, {"fabric", session.fabric}, {"sha256", *session_digest}};
+  json["calibration"] = session.calibration_id;
+  json["raws"] = Json::array();
+  for (const Shot& shot : session.shots)
+    json["raws"].push_back({{"file", shot.file}, {"sha256", shot.sha256}});
+  return json;
+}
+
+PlaneOrigin origin_of(const MapFolder& folder, Plane plane) {
+  const exchange::PlaneKind& kind = exchange::kind_of(plane);
+  const FolderMap* map = folder.map(kind.map);
+  if (map == nullptr && std::string(kind.map) == "specular") map = folder.map("f0");
+  if (map == nullptr) return {};
+  if (map->file.empty() && map->more.contains("numbers") && map->more["numbers"].size() == 3) {
+    const std::size_t part = std::string_view("RGB").find(kind.channel);
+    return {.constant = map->more["numbers"][std::min<std::size_t>(part, 2)].get<double>()};
+  }
+  if (map->file.empty()) {
+    return std::string(kind.map) == "roughness" ? roughness_constant(folder, *map, plane)
+                                                : PlaneOrigin{.constant = map->constant};
+  }
+  std::vector<std::string> channels = {kind.channel};
+  if (plane == Plane::kAlphaAlong) channels.emplace_back("alpha");
+  return {.file = map->file, .channels = std::move(channels)};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "core/json_document.h"
+#include "core/result.h"
+#include "core/session.h"
+#include "exchange/presets/channels.h"
+
+namespace weft::app {
+
+/// One map of a folder: a file or a number.
+struct FolderMap {
+  std::string name;                ///< "albedo"
+  std::string file = {};           ///< relative to the folder; empty: the map is a number
+  std::string source = "assumed";  ///< "measured", "derived" or "assumed"
+  std::optional<double> constant = {};
+  double least = 0, most = 0;  ///< of the first channel of a file
+  Json more = Json::object();  ///< its entry in the document
+};
+
+/// A folder of maps of one cloth: a set of maps (maps.json), a built material (material.json), or a solve
+/// (solve.json) as it was photographed.
+struct MapFolder {
+  std::filesystem::path folder;
+  std::string kind;  ///< "maps", "material" or "solve"
+  std::string id;
+  std::string name;  ///< of the cloth
+  Size size;
+  std::optional<double> mm_per_pixel;  ///< none: photographs do not tell
+  bool is_tile = false;
+  std::string albedo_scale;  ///< "absolute", "relative" or, where nobody says, "unknown"
+  std::vector<FolderMap> maps;
+  std::string document_file;  ///< "maps.json"
+  Json document;
+  std::optional<Session> session;  ///< that it lies in
+
+  const FolderMap* map(const std::string& name) const;
+};
+
+/// `input` is a session (then its newest set of maps that is no preview, or the one of `maps_id`) or a folder
+/// as above. kNoInput where there is no such thing; kBadData with file and key for a document that cannot be
+/// used, a map's file that leaves the folder, sizes and pitches that are none.
+Result<MapFolder> open_map_folder(const std::filesystem::path& input, const std::string& maps_id);
+
+/// What leads back to the photographs: ids, and the SHA-256 of documents, maps and raw files.
+Result<Json> provenance_of(const MapFolder& folder);
+
+/// The numbers of maps that are none but numbers, and for the planes of `wanted` which file and channel they
+/// are read from.
+struct PlaneOrigin {
+  std::string file = {};                   ///< empty: a number or nothing
+  std::vector<std::string> channels = {};  ///< the first of these that the file has
+  std::optional<double> constant = {};
+};
+PlaneOrigin origin_of(const MapFolder& folder, exchange::Plane plane);
+
+}  // namespace weft::app

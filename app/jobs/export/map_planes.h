@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "app/jobs/export/map_folder.h"
+#include "core/image.h"
+#include "core/result.h"
+#include "exchange/presets/channels.h"
+
+namespace weft::app {
+
+/// The planes of a folder of maps, each file read when its planes are first asked for.
+class MapPlanes {
+ public:
+  /// Everything is averaged down to `size`, which is at most the folder's: heights, colours and data as they
+  /// are, normals as slopes, alphas by their squares, yarns by the nearest.
+  MapPlanes(const MapFolder& folder, Size size, int threads)
+      : folder_(folder), size_(size), threads_(threads) {}
+
+  /// Reads what `wanted` needs and lets go of the files that it does not need. kBadData with the file: it is
+  /// of another size, lacks a channel, or holds a value that is no finite number.
+  Result<void> load(const std::set<exchange::Plane>& wanted);
+
+  /// What is loaded; of files that are not, an empty plane with a number, so that it counts as there.
+  const exchange::SourcePlanes& planes() const { return planes_; }
+
+  /// The planes as check_file() needs them: which are there, without a pixel.
+  static exchange::SourcePlanes outline_of(const MapFolder& folder);
+
+ private:
+  Result<void> read(const std::string& file, const std::vector<exchange::Plane>& planes);
+
+  const MapFolder& folder_;
+  Size size_;
+  int threads_;
+  std::map<std::string, Image<float>> loaded_;  ///< by file, planes in the order of exchange::Plane
+  exchange::SourcePlanes planes_;
+};
+
+/// What channels need to know of the cloth beside its pixels, of planes that are loaded: the range of heights
+/// by the document, the mean luminance and the mean slopes where albedo and normals are loaded.
+exchange::ChannelFacts channel_facts(const MapFolder& folder, const exchange::SourcePlanes& planes);
+
+}  // namespace weft::app

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/export/price.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <set>
+#include <system_error>
+#include <utility>
+
+#include "app/jobs/export/export_json.h"
+#include "app/jobs/export/map_planes.h"
+#include "app/jobs/export/texture_file.h"
+#include "core/temporary_folder.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using exchange::BlockFormat;
+using exchange::Encoding;
+using exchange::PresetFile;
+using exchange::Stored;
+
+constexpr int kPiecePx = 512;
+constexpr int kTrials = 2;  // the quicker one counts, as the first also warms caches
+
+// A piece from the middle of the maps.
+struct Piece {
+  exchange::SourcePlanes planes;
+  exchange::ChannelFacts facts;
+  Size size;
+  double times = 1;  ///< pixels of the cloth over those of the piece
+};
+
+Piece piece_of(const MapPlanes& maps, const MapFolder& folder) {
+  Piece piece;
+  piece.planes = maps.planes();
+  piece.facts = channel_facts(folder, piece.planes);
+  piece.size = {std::min(kPiecePx, folder.size.width), std::min(kPiecePx, folder.size.height)};
+  const int x = (folder.size.width - piece.size.width) / 2, y = (folder.size.height - piece.size.height) / 2;
+  for (exchange::SourcePlane& plane : piece.planes) {
+    if (!plane.pixels.empty())
+      plane.pixels = plane.pixels.crop({x, y, x + piece.size.width, y + piece.size.height});
+  }
+  piece.times = static_cast<double>(folder.size.pixels()) / static_cast<double>(piece.size.pixels());
+  return piece;
+}
+
+// Writes and reads one file of the piece.
+class Trials {
+ public:
+  explicit Trials(const Piece& piece) : piece_(piece) {}
+
+  Result<ExportPrice> price(const PresetFile& file, exchange::RoughnessConvention roughness) {
+    static const std::vector<std::string> kEndings = {".png", ".tif", ".exr", ".dds", ".tx"};
+    const fs::path path =
+        folder_.path() / ("trial" + kEndings[static_cast<std::size_t>(file.stored.encoding)]);
+    TextureInput input = {.file = file, .planes = piece_.planes, .facts = piece_.facts, .size = piece_.size};
+    input.facts.roughness = roughness;
+    input.facts.direction = file.direction;
+    ExportPrice price;
+    price.stored = file.stored;
+    for (int trial = 0; trial < kTrials; ++trial) {
+      Stopwatch watch;
+      if (Result<void> ok = write_texture(path, input, 1); !ok) return std::move(ok).error();
+      const double seconds = piece_.times * watch.lap();
+      price.seconds = trial == 0 ? seconds : std::min(price.seconds, seconds);
+    }
+    std::error_code failed;
+    price.bytes = piece_.times * static_cast<double>(fs::file_size(path, failed));
+    Result<Image<float>> read = read_texture(path, input, 1);
+    if (!read) return std::move(read).error();
+    price.loss = exchange::measure_loss(file, input.planes, input.facts, std::move(*read));
+    return price;
+  }
+
+ private:
+  const Piece& piece_;
+  TemporaryFolder folder_;
+};
+
+bool has_normals(const PresetFile& file) {
+  const auto has = [&](const char* name) {
+    return std::ranges::find(file.channels, name) != file.channels.end();
+  };
+  return has("normal.x") && has("normal.y");
+}
+
+// The ways in which the encoding of a file may hold as many channels.
+std::vector<Stored> ways_of(const PresetFile& file) {
+  const std::size_t channels = file.channels.size();
+  std::vector<Stored> ways;
+  const auto add = [&](int bits, BlockFormat blocks) {
+    Stored way = file.stored;
+    way.bits = bits;
+    way.blocks = blocks;
+    ways.push_back(way);
+  };
+  switch (file.stored.encoding) {
+    case Encoding::kPng:
+    case Encoding::kTiff:
+      for (const int bits : {8, 16}) add(bits, file.stored.blocks);
+      break;
+    case Encoding::kExr:
+    case Encoding::kTx:
+      for (const int bits : {16, 32}) add(bits, file.stored.blocks);
+      break;
+    case Encoding::kDds:
+      if (channels == 2) add(8, BlockFormat::kBc5);
+      if (channels == 3) add(8, BlockFormat::kBc1);
+      if (channels >= 3) add(8, BlockFormat::kBc7);
+      break;
+  }
+  return ways;
+}
+
+// What normals and albedo are in every format, to compare with.
+std::vector<PresetFile> everything() {
+  std::vector<PresetFile> files;
+  const auto add = [&](std::vector<std::string> channels, Stored stored) {
+    const bool is_color = channels.front() == "albedo.r";
+    if (is_color) stored.color = stored.is_float() ? ColorSpace::kLinearColor : ColorSpace::kSrgb;
+    PresetFile file;
+    file.name = is_color ? "albedo" : "normals";
+    file.channels = std::move(channels);
+    file.stored = stored;
+    files.push_back(std::move(file));
+  };
+  const std::vector<std::string> rgb = {"albedo.r", "albedo.g", "albedo.b"},
+                                 xyz = {"normal.x", "normal.y", "normal.z"};
+  for (const std::vector<std::string>& channels : {xyz, rgb}) {
+    for (const Encoding encoding : {Encoding::kPng, Encoding::kTiff, Encoding::kExr}) {
+      const std::vector<int> bits = encoding == Encoding::kExr ? std::vector{16, 32} : std::vector{8, 16};
+      for (const int each : bits) add(channels, {.encoding = encoding, .bits = each});
+    }
+    for (const BlockFormat blocks : {BlockFormat::kBc1, BlockFormat::kBc7})
+      add(channels, {.encoding = Encoding::kDds, .blocks = blocks});
+  }
+  add({"normal.x", "normal.y"}, {.encoding = Encoding::kDds, .blocks = BlockFormat::kBc5});
+  return files;
+}
+
+// All planes that the plans and the comparison need.
+std::set<exchange::Plane> needed(const std::vector<PlannedExport>& plans) {
+  std::set<exchange::Plane> planes;
+  const auto add = [&](const PresetFile& file) {
+    for (const std::string& name : file.channels) {
+      const auto& of = exchange::channel_named(name)->planes;
+      planes.insert(of.begin(), of.end());
+    }
+  };
+  for (const PlannedExport& plan : plans) {
+    for (const PlannedFile& planned : plan.files) add(planned.file);
+  }
+  for (const PresetFile& file : everything()) add(file);
+  return planes;
+}
+
+Result<void> choose_for(PlannedFile& planned, const std::string& preset, double to_deg,
+                        exchange::RoughnessConvention roughness, Trials& trials) {
+  std::optional<ExportPrice> best, kept;
+  for (const Stored& way : ways_of(planned.file)) {
+    PresetFile file = planned.file;
+    file.stored = way;
+    Result<ExportPrice> price = trials.price(file, roughness);
+    if (!price) return std::move(price).error();
+    const double deg = price->loss.normal->mean_deg;
+    if (!best || deg < best->loss.normal->mean_deg) best = *price;
+    if (deg <= to_deg && (!kept || price->bytes < kept->bytes)) kept = *price;
+  }
+  if (kept) {
+    planned.file.stored = kept->stored;
+    return {};
+  }
+  return Error{ErrorKind::kUsage, "normals cannot be kept so well", "--to",
+               fmt::format("{} of preset {} loses {:.2g} degrees at best, as {}", planned.name, preset,
+                           best->loss.normal->mean_deg, words_of(best->stored)),
+               "allow more, or choose a preset of 16 bits or floats: png16, tiff16, exr"};
+}
+
+}  // namespace
+
+Result<void> choose_bits(const ExportOptions& options, const MapFolder& folder, double to_deg,
+                         std::vector<PlannedExport>& plans, const JobContext& context) {
+  MapPlanes maps(folder, folder.size, context.threads);
+  if (Result<void> ok = maps.load({exchange::Plane::kNormalX}); !ok) return ok;
+  const Piece piece = piece_of(maps, folder);
+  Trials trials(piece);
+  for (PlannedExport& plan : plans) {
+    for (PlannedFile& planned : plan.files) {
+      if (!has_normals(planned.file)) continue;
+      if (context.stop.stop_requested()) return interrupted();
+      Result<void> chosen = choose_for(planned, plan.preset.name, to_deg, plan.preset.roughness, trials);
+      if (!chosen) return chosen;
+    }
+    if (Result<void> ok = seal(options, folder, plan); !ok) return ok;
+  }
+  return {};
+}
+
+Result<std::vector<ExportPrice>> price_exports(const ExportOptions& options, const JobContext& context) {
+  const Result<MapFolder> folder = open_map_folder(options.input, options.maps);
+  if (!folder) return folder.error();
+  Result<std::vector<PlannedExport>> plans = plan_exports(options, *folder);
+  if (!plans) return std::move(plans).error();
+  if (options.to_deg) {
+    if (Result<void> ok = choose_bits(options, *folder, *options.to_deg, *plans, context); !ok)
+      return std::move(ok).error();
+  }
+  MapPlanes maps(*folder, folder->size, context.threads);
+  if (Result<void> ok = maps.load(needed(*plans)); !ok) return std::move(ok).error();
+  const Piece piece = piece_of(maps, *folder);
+  Trials trials(piece);
+  std::vector<ExportPrice> prices;
+  for (const PlannedExport& plan : *plans) {
+    const double smaller =
+        static_cast<double>(plan.size.pixels()) / static_cast<double>(folder->size.pixels());
+    for (const PlannedFile& planned : plan.files) {
+      if (context.stop.stop_requested()) return interrupted();
+      Result<ExportPrice> price = trials.price(planned.file, plan.preset.roughness);
+      if (!price) return std::move(price).error();
+      price->preset = plan.preset.name;
+      price->file = planned.name;
+      price->bytes *= smaller;
+      price->seconds *= smaller;
+      price->is_chosen = options.to_deg && has_normals(planned.file);
+      prices.push_back(std::move(*price));
+    }
+  }
+  for (const PresetFile& file : everything()) {
+    if (context.stop.stop_requested()) return interrupted();
+    Result<ExportPrice> price = trials.price(file, exchange::RoughnessConvention::kRoot);
+    if (!price) return std::move(price).error();
+    price->file = file.name;
+    prices.push_back(std::move(*price));
+  }
+  return prices;
+}
+
+Json json_of(const std::vector<ExportPrice>& prices) {
+  Json rows = Json::array();
+  for (const ExportPrice& price : prices) {
+    Json row = {{"file", price.file},          {"encoding", words_of(price.stored)},
+                {"bytes", price.bytes},        {"seconds", price.seconds},
+                {"lost", json_of(price.loss)}, {"chosen", price.is_chosen}};
+    if (!price.preset.empty()) row["preset"] = price.preset;
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "app/jobs/export/export.h"
+#include "app/jobs/export/map_folder.h"
+#include "app/jobs/export/plan.h"
+#include "core/job.h"
+#include "core/json_document.h"
+#include "core/result.h"
+#include "exchange/presets/loss.h"
+
+namespace weft::app {
+
+/// What one way to store some channels costs and loses on this cloth.
+struct ExportPrice {
+  std::string preset;  ///< empty: no preset's, but to be compared with
+  std::string file;    ///< of the preset, or "normals", "albedo"
+  exchange::Stored stored;
+  double bytes = 0, seconds = 0;  ///< of the whole cloth, by one thread, from those of the piece
+  exchange::Loss loss;
+  bool is_chosen = false;  ///< by what the normals may lose
+};
+
+/// Bytes, seconds and losses of each file of the presets, and of normals and albedo in every format, on a
+/// piece of 512 x 512 pixels from the middle of the maps, before anything is written but in the system's
+/// temporary folder. With `to_deg` the files of normals are priced as they would be chosen. Errors of
+/// export_maps().
+Result<std::vector<ExportPrice>> price_exports(const ExportOptions& options, const JobContext& context);
+Json json_of(const std::vector<ExportPrice>& prices);
+
+/// Gives each file with normals the fewest bits of its own encoding with which they lose at most `to_deg` in
+/// the mean, measured on that piece. kUsage where its encoding has none, with the best that there is.
+Result<void> choose_bits(const ExportOptions& options, const MapFolder& folder, double to_deg,
+                         std::vector<PlannedExport>& plans, const JobContext& context);
+
+}  // namespace weft::app

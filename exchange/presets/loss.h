@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/image.h"
+#include "exchange/presets/channels.h"
+#include "exchange/presets/preset.h"
+
+namespace weft::exchange {
+
+/// Angles between the normals of the maps and those of a file.
+struct AngleLoss {
+  double mean_deg = 0, p95_deg = 0, max_deg = 0;  ///< p95 to one percent of itself
+};
+
+/// Of reflectance: the mean of its absolute difference, and 10 log10 of 1 over the mean square difference of
+/// the samples as the file holds them (of sRGB after its transfer function); none where nothing is lost.
+struct ColorLoss {
+  double mean_abs = 0;
+  std::optional<double> psnr_db = {};
+};
+
+/// A channel's values, and by how much the file's differ.
+struct ChannelLoss {
+  std::string channel;
+  double least = 0, most = 0, mean = 0;  ///< of the maps' values
+  double mean_abs = 0, most_abs = 0;     ///< of the difference
+  std::int64_t cut = 0;                  ///< pixels whose value is outside of what the file can hold
+};
+
+/// What a file holds otherwise than the maps.
+struct Loss {
+  std::optional<AngleLoss> normal = {};  ///< of a file with normal.x and normal.y
+  std::optional<ColorLoss> albedo = {};  ///< of a file with albedo.r, .g and .b
+  std::vector<ChannelLoss> channels = {};
+};
+
+/// `samples` are those of the file as it was read back, a plane a channel, of the size of the maps. They are
+/// used up.
+Loss measure_loss(const PresetFile& file, const SourcePlanes& planes, const ChannelFacts& facts,
+                  Image<float> samples);
+
+/// The angle between two directions that need not be unit, to rounding also where it is small.
+double angle_deg(const float* a, const float* b);
+
+}  // namespace weft::exchange

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "exchange/presets/mips.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "exchange/blocks/dds.h"
+#include "exchange/presets/reduce.h"
+
+namespace weft::exchange {
+namespace {
+
+std::optional<int> place_of(const PresetFile& file, const std::string& channel) {
+  const auto found = std::ranges::find(file.channels, channel);
+  if (found == file.channels.end()) return std::nullopt;
+  return static_cast<int>(found - file.channels.begin());
+}
+
+// The third part of a unit direction that looks to the viewer.
+Image<float> third_of(View<const float> x, View<const float> y) {
+  Image<float> z(x.size());
+  for (int j = 0; j < x.height(); ++j) {
+    for (int i = 0; i < x.width(); ++i)
+      z(i, j) = std::sqrt(std::max(0.0F, 1 - x(i, j) * x(i, j) - y(i, j) * y(i, j)));
+  }
+  return z;
+}
+
+void reduce_direction(const PresetFile& file, const std::string& stem, const Image<float>& values,
+                      int threads, Image<float>& to) {
+  const std::optional<int> x = place_of(file, stem + ".x"), y = place_of(file, stem + ".y"),
+                           z = place_of(file, stem + ".z");
+  if (!x || !y) return;
+  const Image<float> third = third_of(values.plane(*x), values.plane(*y));
+  Image<float> spare(to.size());
+  reduce_normals({values.plane(*x), values.plane(*y), third.plane()}, threads,
+                 {to.plane(*x), to.plane(*y), z ? to.plane(*z) : spare.plane()});
+}
+
+}  // namespace
+
+Image<float> next_level(const PresetFile& file, const Image<float>& values, int threads) {
+  Image<float> next(level_size(values.size(), 1), values.planes());
+  for (int c = 0; c < values.planes(); ++c) reduce(values.plane(c), Averaging::kMean, threads, next.plane(c));
+  for (const char* stem : {"normal", "detail.normal"}) reduce_direction(file, stem, values, threads, next);
+  return next;
+}
+
+}  // namespace weft::exchange
