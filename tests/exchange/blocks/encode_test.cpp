@@ -214,7 +214,8 @@ TEST(OddSizes, HoldTheSameBlocksAsThePaddedPicture) {
 
 TEST(Blocks, AreTheSameBytesForAnyThreadsAndVectors) {
   for (const BlockFormat format : kBlockFormats) {
-    const Image<float> image = red_satin({203, 117}, planes_for(format));
+    // A multiplication that is fused with its addition changes a block of 1024 x 64 texels of bc7.
+    const Image<float> image = red_satin({1021, 63}, planes_for(format));
     const std::string one = encoded(format, image, 1);
     for (const int threads : {2, 3, 8}) EXPECT_EQ(encoded(format, image, threads), one) << threads;
     test::on_every_target([&] { EXPECT_EQ(encoded(format, image, 2), one) << name_of(format); });

@@ -35,7 +35,7 @@ std::vector<Image<float>> chain_of(const Image<float>& image, MipMean mean, int 
   return levels ? std::move(*levels) : std::vector<Image<float>>{};
 }
 
-double mean_of(const Image<float>& image, int plane = 0) {
+double mean_of_plane(const Image<float>& image, int plane = 0) {
   double sum = 0;
   for (int y = 0; y < image.height(); ++y) {
     for (int x = 0; x < image.width(); ++x) sum += static_cast<double>(image(x, y, plane));
@@ -63,7 +63,8 @@ TEST(TextureMips, KeepTheMeanOfEverySize) {
       for (const Image<float>& level : levels) {
         size = {std::max(1, size.width / 2), std::max(1, size.height / 2)};
         ASSERT_EQ(level.size(), size);
-        ASSERT_NEAR(mean_of(level), mean_of(image), 2e-6) << width << " x " << height << " at " << size.width;
+        ASSERT_NEAR(mean_of_plane(level), mean_of_plane(image), 2e-6)
+            << width << " x " << height << " at " << size.width;
       }
       ASSERT_EQ(size.pixels(), 1);
     }
