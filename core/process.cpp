@@ -46,14 +46,19 @@ std::vector<std::string> merged(const std::vector<std::string>& environment) {
 
 Error cannot_start(const fs::path& program, int error_number) {
   return {ErrorKind::kNoInput, "a program cannot be started", program.string(), system_reason(error_number),
-          "build all of weft"};
+          "install or build all of weft"};
 }
 
 }  // namespace
 
 fs::path program_beside(const std::string& name) {
   std::error_code failed;
-  return fs::read_symlink("/proc/self/exe", failed).parent_path() / name;
+  const fs::path here = fs::read_symlink("/proc/self/exe", failed).parent_path();
+  for (const char* folder : {".", "../libexec/weft", "../../bin"}) {
+    const fs::path program = (here / folder / name).lexically_normal();
+    if (fs::is_regular_file(program, failed)) return program;
+  }
+  return here / name;
 }
 
 Error become(const fs::path& program, const std::vector<std::string>& arguments) {
@@ -61,6 +66,25 @@ Error become(const fs::path& program, const std::vector<std::string>& arguments)
   words.insert(words.end(), arguments.begin(), arguments.end());
   ::execv(program.c_str(), pointers_to(words).data());
   return cannot_start(program, errno);
+}
+
+Result<void> start_apart(const std::vector<std::string>& command) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDWR, 0);
+  posix_spawn_file_actions_adddup2(&actions, STDIN_FILENO, STDOUT_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, STDIN_FILENO, STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
+  std::vector<std::string> arguments = command;
+  pid_t pid = 0;
+  const int failed = posix_spawnp(&pid, command.front().c_str(), &actions, &attributes,
+                                  pointers_to(arguments).data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed != 0) return cannot_start(command.front(), failed);
+  return {};
 }
 
 Result<std::unique_ptr<ChildProcess>> ChildProcess::start(const std::vector<std::string>& command,

@@ -14,12 +14,18 @@
 
 namespace weft {
 
-/// Another program of weft, where it is installed: beside the running one.
+/// Another program of weft: beside the running one, as they are built, else where they are installed, which
+/// is bin/ for what people call and libexec/weft/ for all else of one prefix. Beside the running one where it
+/// is nowhere.
 std::filesystem::path program_beside(const std::string& name);
 
 /// Becomes `program` with these arguments: its output and exit code are this process's. Returns only where
 /// that fails. kNoInput.
 Error become(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+
+/// Starts a program, found along $PATH, that outlives this one: in a session of its own, heard by nobody.
+/// kNoInput.
+Result<void> start_apart(const std::vector<std::string>& command);
 
 /// A program that runs beside this one, killed with this object if it still does.
 class ChildProcess {

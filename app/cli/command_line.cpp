@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/cli/command_line.h"
 
-#include <glog/logging.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <exception>
 #include <new>
 #include <optional>
-#include <span>
+#include <string>
 #include <string_view>
 
+#include "app/cli/command_parser.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
@@ -18,11 +17,6 @@
 
 namespace weft::app {
 namespace {
-
-struct RunOfVerb {
-  const CLI::App* verb;
-  Run run;
-};
 
 void add_common(Options& options, CommonArguments& common) {
   options.add_flag("--json", &common.json, "Print one JSON document on standard output");
@@ -32,19 +26,6 @@ void add_common(Options& options, CommonArguments& common) {
   options.add("--threads", &common.threads, "Threads; 0 is all the machine has")
       .shows_default()
       .in_range(0, 1024);
-}
-
-void add_verbs(CLI::App& parent, std::span<const Verb> verbs, CommonArguments& common,
-               std::vector<RunOfVerb>& runs) {
-  parent.require_subcommand(1);
-  for (const Verb& verb : verbs) {
-    CLI::App* cli = parent.add_subcommand(verb.name, verb.help);
-    if (!verb.verbs.empty()) add_verbs(*cli, verb.verbs, common, runs);
-    if (verb.add == nullptr) continue;
-    Options options(*cli);
-    runs.push_back({cli, verb.add(options)});
-    add_common(options, common);
-  }
 }
 
 // The exit code where there is nothing to run: --help, or a usage error.
@@ -63,6 +44,18 @@ std::optional<int> read(CLI::App& cli, int argc, char** argv) {
     }
     return asked_for_help ? kDone : kUsageError;
   }
+}
+
+std::string words_of_exit_codes() {
+  std::string text = "Exit codes:";
+  std::size_t line = text.size();
+  for (const ExitCodeWords& each : kExitCodes) {
+    const std::string next = std::to_string(each.code) + " " + each.words;
+    if (line + next.size() > 100) text += "\n", line = 0;
+    text += (line == 0 ? "" : " ") + next + (each.code == kExitCodes.back().code ? "." : ",");
+    line += next.size() + 2;
+  }
+  return text;
 }
 
 // The one place where an error becomes words and an exit code.
@@ -85,26 +78,57 @@ int finish(const Run& run, const CommonArguments& common) {
   }
 }
 
+/// The verb that the first words say, and how many they are.
+struct SaidVerb {
+  const Verb* verb = nullptr;
+  int words = 0;
+};
+
+SaidVerb said_verb(const std::vector<Verb>& verbs, int argc, char** argv) {
+  SaidVerb said;
+  const std::vector<Verb>* among = &verbs;
+  while (said.words + 1 < argc) {
+    const auto found = std::ranges::find(*among, std::string_view(argv[said.words + 1]), &Verb::name);
+    if (found == among->end()) break;
+    said = {&*found, said.words + 1};
+    among = &found->verbs;
+  }
+  return said;
+}
+
 }  // namespace
 
+void add_verbs(CLI::App& parent, const std::vector<Verb>& verbs, CommonArguments& common,
+               std::vector<RunOfVerb>& runs) {
+  parent.require_subcommand(1);
+  for (const Verb& verb : verbs) {
+    CLI::App* cli = parent.add_subcommand(verb.name, verb.help);
+    if (!verb.verbs.empty()) add_verbs(*cli, verb.verbs, common, runs);
+    if (verb.add == nullptr) continue;
+    Options options(*cli);
+    runs.push_back({cli, verb.add(options)});
+    add_common(options, common);
+  }
+}
+
 int run_program(const Program& program, int argc, char** argv) {
-  FLAGS_minloglevel = google::GLOG_FATAL;  // Ceres writes a line for every step of a fit that failed
-  const auto is_said = [&](const Verb& verb) { return argc > 1 && verb.name == argv[1]; };
-  const auto said = std::ranges::find_if(program.verbs, is_said);
-  if (said != program.verbs.end() && !said->program.empty())
-    return finish(become(program_beside(said->program), {argv + 2, argv + argc}));
+  const SaidVerb said = said_verb(program.verbs, argc, argv);
+  if (said.verb != nullptr && !said.verb->program.empty())
+    return finish(become(program_beside(said.verb->program), {argv + 1 + said.words, argv + argc}));
+  const auto run_by_others = [&] {
+    return finish(become(program_beside(program.others), {argv + 1, argv + argc}));
+  };
+  if (said.verb != nullptr && said.verb->add == nullptr && said.verb->verbs.empty()) return run_by_others();
 
   CLI::App cli(program.help, program.name);
-  cli.set_version_flag("--version", WEFT_VERSION);
-  cli.footer(
-      "Exit codes: 0 done, 2 done with warnings under --strict, 64 usage, 65 bad data, 66 no input, 69 "
-      "device not there,\n"
-      "70 our own bug, 73 cannot create, 74 input/output, 75 try again, 76 protocol, 130 interrupted.");
+  cli.set_version_flag("--version", program.version.empty() ? WEFT_VERSION : program.version);
+  cli.footer(words_of_exit_codes());
   CommonArguments common;
   std::vector<RunOfVerb> runs;
   add_verbs(cli, program.verbs, common, runs);
   if (const std::optional<int> code = read(cli, argc, argv)) return *code;
   const auto chosen = std::ranges::find_if(runs, [](const RunOfVerb& each) { return each.verb->parsed(); });
+  if (chosen == runs.end()) return run_by_others();
   if (common.events) speak_events();
   const int code = finish(chosen->run, common);
   tell_end(code);

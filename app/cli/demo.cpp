@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "app/cli/carried_scenes.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
@@ -12,6 +13,7 @@
 #include "core/files.h"
 #include "core/process.h"
 #include "core/session.h"
+#include "core/temporary_folder.h"
 #include "simulator/scene/resolution.h"
 #include "simulator/simulate.h"
 #include "virtual_rig/rig_process.h"
@@ -24,8 +26,10 @@ namespace fs = std::filesystem;
 struct DemoArguments {
   fs::path output = "demo";
   std::optional<double> megapixels;
-  fs::path scene;
+  fs::path scene;  ///< empty: the one that the program carries
 };
+
+constexpr const char* kVirtualRig = "weft-virtual-rig";
 
 Result<std::uint64_t> bytes_in(const fs::path& folder) {
   std::uint64_t bytes = 0;
@@ -38,6 +42,7 @@ Result<std::uint64_t> bytes_in(const fs::path& folder) {
 }
 
 struct Outcome {
+  bool is_scanned = false;  ///< else rendered, where no virtual rig is installed
   double scan_seconds = 0;
   std::size_t frames = 0;
   SolveReport solved;
@@ -74,11 +79,31 @@ Result<void> scan(const DemoArguments& arguments, const simulator::Scene& scene,
   return simulator::simulate_truth(scene, session, options);
 }
 
+/// The session with its truth straight from the simulator.
+Result<void> render(const simulator::Scene& scene, const fs::path& session, const CommonArguments& common) {
+  ProgressLine line(common.quiet);
+  simulator::SimulateOptions options;
+  options.tiles.threads = common.threads;
+  options.stop = stop_on_signal();
+  options.progress = [&line](int done, int rows) { line.update("render", double(done) / rows); };
+  const Result<simulator::SimulationReport> made = simulator::simulate_session(scene, session, options);
+  if (!made) return made.error();
+  return {};
+}
+
+Result<void> photograph(const DemoArguments& arguments, const simulator::Scene& scene,
+                        const fs::path& session, const CommonArguments& common) {
+  if (is_there(program_beside(kVirtualRig))) return scan(arguments, scene, session, common);
+  note("weft: no virtual rig is installed, so the photographs are rendered");
+  return render(scene, session, common);
+}
+
 Result<Outcome> scan_and_solve(const DemoArguments& arguments, const simulator::Scene& scene,
                                const fs::path& session, const CommonArguments& common) {
   Outcome outcome;
   Stopwatch watch;
-  if (Result<void> ok = scan(arguments, scene, session, common); !ok) return std::move(ok).error();
+  outcome.is_scanned = is_there(program_beside(kVirtualRig));
+  if (Result<void> ok = photograph(arguments, scene, session, common); !ok) return std::move(ok).error();
   outcome.scan_seconds = watch.lap();
   const Result<Session> scanned = read_session(session);
   if (!scanned) return scanned.error();
@@ -113,8 +138,9 @@ void print_table(const simulator::Scene& scene, const Outcome& o) {
                     o.normal.mean_deg, o.normal.median_deg, o.normal.p95_deg));
   print(fmt::format("  albedo error    mean {:.2f} %, bias {:+.2f} %", 100 * o.albedo.mean_rel,
                     100 * o.albedo.bias_rel));
-  print(fmt::format("  scan            {:.2f} s with the virtual rig's start; {} MB of raw frames",
-                    o.scan_seconds, o.session_bytes / 1000000));
+  print(fmt::format("  {}          {:.2f} s{}; {} MB of raw frames", o.is_scanned ? "scan  " : "render",
+                    o.scan_seconds, o.is_scanned ? " with the virtual rig's start" : "",
+                    o.session_bytes / 1000000));
   print(
       fmt::format("  solve           {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, "
                   "sync {:.2f}; {} MB of maps",
@@ -125,6 +151,7 @@ void print_table(const simulator::Scene& scene, const Outcome& o) {
 Json json_of(const Outcome& o) {
   const SolveSeconds& s = o.solved.seconds;
   return {
+      {"scanned", o.is_scanned},
       {"folder", o.solved.folder.string()},
       {"sheet", (o.solved.folder / "sheet.png").string()},
       {"normal",
@@ -142,7 +169,12 @@ Json json_of(const Outcome& o) {
       {"map_bytes", o.map_bytes}};
 }
 
-Result<int> demo(const DemoArguments& arguments, const CommonArguments& common) {
+Result<int> demo(DemoArguments arguments, const CommonArguments& common) {
+  const TemporaryFolder scratch;
+  if (arguments.scene.empty()) {
+    arguments.scene = scratch.path() / "demo.toml";
+    if (Result<void> ok = write_file(arguments.scene, demo_scene()); !ok) return std::move(ok).error();
+  }
   Result<simulator::Scene> scene = simulator::read_scene(arguments.scene);
   if (!scene) return std::move(scene).error();
   if (arguments.megapixels) simulator::resize(scene->camera, *arguments.megapixels);
@@ -164,7 +196,7 @@ Result<int> demo(const DemoArguments& arguments, const CommonArguments& common) 
 
 Run add_demo(Options& options) {
   const auto a = std::make_shared<DemoArguments>();
-  options.add("scene", &a->scene, "Scene file (TOML)").required();
+  options.add("scene", &a->scene, "Scene file (TOML); default a houndstooth of velour");
   options.add("-o,--output", &a->output, "Folder for the session and its maps").shows_default();
   options.add("--megapixels", &a->megapixels, "Size instead of the scene's, millions of pixels")
       .in_range(0.01, 200.0);

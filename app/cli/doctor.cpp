@@ -34,9 +34,9 @@ std::vector<SetupFinding> examine_devices(const capture::Rig& rig) {
                              return words_of((*board)->facts());
                            },
                            .camera = [&]() -> Result<capture::CameraFacts> {
-                             auto camera = capture::open_camera(rig);
-                             if (!camera) return std::move(camera).error();
-                             return (*camera)->connect();
+                             auto opened = capture::open_camera(rig);
+                             if (!opened) return std::move(opened).error();
+                             return (*opened)->connect();
                            }});
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "core/result.h"
 
 namespace weft::app {
@@ -20,6 +22,25 @@ enum ExitCode {
   kProtocolError = 76,
   kInterruptedError = 130,
 };
+
+struct ExitCodeWords {
+  ExitCode code;
+  const char* words;  ///< as help and the manual have them
+};
+
+inline constexpr std::array kExitCodes = {
+    ExitCodeWords{kDone, "done"},
+    ExitCodeWords{kDoneWithWarnings, "done with warnings under --strict"},
+    ExitCodeWords{kUsageError, "usage"},
+    ExitCodeWords{kBadDataError, "bad data"},
+    ExitCodeWords{kNoInputError, "no input"},
+    ExitCodeWords{kNoDeviceError, "device not there"},
+    ExitCodeWords{kInternalError, "our own bug"},
+    ExitCodeWords{kCannotCreateError, "cannot create"},
+    ExitCodeWords{kInputOutputError, "input/output"},
+    ExitCodeWords{kTryAgainError, "try again"},
+    ExitCodeWords{kProtocolError, "protocol"},
+    ExitCodeWords{kInterruptedError, "interrupted"}};
 
 constexpr ExitCode exit_code_of(ErrorKind kind) {
   switch (kind) {

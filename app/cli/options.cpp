@@ -71,7 +71,9 @@ bool Option::is_given() const {
 }
 
 Option Options::add(const std::string& names, Value value, const std::string& help) {
-  return Option(std::visit([&](auto* each) { return verb_.add_option(names, *each, help); }, value));
+  CLI::Option* option = std::visit([&](auto* each) { return verb_.add_option(names, *each, help); }, value);
+  if (std::holds_alternative<std::filesystem::path*>(value)) option->type_name("PATH");
+  return Option(option);
 }
 
 Option Options::add_flag(const std::string& names, bool* value, const std::string& help) {

@@ -29,7 +29,7 @@ struct RigPlanArguments {
   std::optional<double> roughness, f0, albedo, relief_deg;
 };
 
-std::vector<std::string> cloth_names() {
+std::vector<std::string> planned_cloth_names() {
   std::vector<std::string> names;
   for (const NamedCloth& each : planned_cloths()) names.push_back(each.name);
   return names;
@@ -102,8 +102,9 @@ Run add_rig_plan(Options& options) {
   const auto a = std::make_shared<RigPlanArguments>();
   options.add("rig", &a->plan.rig,
               "Rig file or calibration folder; default $WEFT_RIG, ./rig.toml, ~/.config/weft/rig.toml");
-  const Option cloth =
-      options.add("--cloth", &a->cloth, "What is to be scanned").one_of(cloth_names()).shows_default();
+  const Option cloth = options.add("--cloth", &a->cloth, "What is to be scanned")
+                           .one_of(planned_cloth_names())
+                           .shows_default();
   const Option file =
       options.add("--reflectance", &a->reflectance, "reflectance.json of a solve: its first lobe");
   const Option roughness =

@@ -14,12 +14,14 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/server/http/client.h"
+#include "app/server/rig/rig_lock.h"
 #include "app/server/rig_server.h"
 #include "app/server/service_manager.h"
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
 #include "core/files.h"
+#include "core/process.h"
 
 namespace weft::app {
 namespace {
@@ -31,6 +33,7 @@ struct ServeArguments {
   std::optional<std::string> host;  ///< in place of what the rig file says
   std::optional<int> port;
   std::vector<std::string> archives;
+  bool open = false;  ///< the page, in a browser
 };
 
 constexpr auto kTick = std::chrono::milliseconds(50);
@@ -50,15 +53,35 @@ std::string percent_encoded(std::string_view text) {
   return encoded;
 }
 
+std::string page_address(const std::string& address, const std::string& token) {
+  return token.empty() ? address : address + "/#" + percent_encoded(token);
+}
+
 Result<void> say_address(const RigServer& server, const std::string& rig, bool json) {
   if (json) {
     print_json({{"rig", rig}, {"address", server.address()}, {"port", server.port()}});
   } else {
     // A log is no place for a token.
-    const bool read_by_a_person = isatty(STDOUT_FILENO) != 0 && !server.token().empty();
-    print(server.address() + (read_by_a_person ? "/#" + percent_encoded(server.token()) : ""));
+    const bool read_by_a_person = isatty(STDOUT_FILENO) != 0;
+    print(read_by_a_person ? page_address(server.address(), server.token()) : server.address());
   }
   return flush_output();
+}
+
+void open_page(const std::string& address, const std::string& token) {
+  if (const Result<void> opened = start_apart({"xdg-open", page_address(address, token)}); !opened)
+    note("weft: no browser could be opened (xdg-open): open " + address);
+}
+
+/// Opens the page of a daemon that owns this rig already; nothing where none does.
+Result<bool> open_page_of_owner(const capture::Rig& rig) {
+  const Result<std::optional<std::string>> owner = address_of_owner(rig);
+  if (!owner) return owner.error();
+  if (!*owner) return false;
+  const Result<std::string> token = token_of_owner(rig);
+  if (!token) return token.error();
+  open_page(**owner, *token);
+  return true;
 }
 
 /// Tells the service manager that all is well for as long as the server answers a client.
@@ -78,6 +101,14 @@ class Watchdog {
   Clock::time_point next_ = {};
 };
 
+/// Where sessions are that nobody said a folder for.
+Result<std::string> own_sessions() {
+  const char* home = std::getenv("HOME");
+  const std::filesystem::path folder = std::filesystem::path(home == nullptr ? "/" : home) / "weft";
+  if (Result<void> made = make_writable_folder(folder); !made) return std::move(made).error();
+  return folder.string();
+}
+
 /// What a server works on that has archives and no rig.
 capture::Rig no_rig(const std::vector<std::string>& archives) {
   capture::Rig rig;
@@ -93,8 +124,13 @@ capture::Rig no_rig(const std::vector<std::string>& archives) {
 }
 
 /// The rig of its file; where none is named or found and there are archives, no rig.
-Result<capture::Rig> rig_to_serve(const ServeArguments& arguments) {
+Result<capture::Rig> rig_to_serve(ServeArguments arguments) {
   const std::filesystem::path file = find_rig(arguments.rig);
+  if (arguments.open && arguments.rig.empty() && arguments.archives.empty() && !is_there(file)) {
+    Result<std::string> folder = own_sessions();
+    if (!folder) return std::move(folder).error();
+    arguments.archives.push_back(std::move(*folder));
+  }
   const bool has_rig = !arguments.rig.empty() || arguments.archives.empty() || is_there(file);
   Result<capture::Rig> rig = has_rig ? capture::read_rig(file) : no_rig(arguments.archives);
   if (!rig) return rig;
@@ -116,6 +152,11 @@ Result<int> serve(const ServeArguments& arguments, const CommonArguments& common
   const std::stop_token stop = stop_on_signal();
   const Result<capture::Rig> rig = rig_to_serve(arguments);
   if (!rig) return rig.error();
+  if (arguments.open) {
+    const Result<bool> opened = open_page_of_owner(*rig);
+    if (!opened) return opened.error();
+    if (*opened) return kDone;
+  }
 
   const Result<std::unique_ptr<RigServer>> server =
       RigServer::start(*rig, capture::open_devices, run_scan_of,
@@ -123,6 +164,7 @@ Result<int> serve(const ServeArguments& arguments, const CommonArguments& common
   if (!server) return server.error();
   if (Result<void> said = say_address(**server, rig->name, common.json); !said)
     return std::move(said).error();
+  if (arguments.open) open_page((*server)->address(), (*server)->token());
   tell_service_manager(fmt::format("READY=1\nSTATUS=rig {} at {}", rig->name, (*server)->address()));
 
   Watchdog watchdog(**server);
@@ -149,6 +191,9 @@ Run add_serve(Options& options) {
       "--archive", &a->archives,
       "Folder of sessions to show beside the rig's, with those below it; may be given again. Without a "
       "rig file the server has no rig: library and jobs alone");
+  options.add_flag("--open", &a->open,
+                   "Open the page in a browser, of a daemon that runs already too. Without a rig file and "
+                   "an archive the sessions of ~/weft are shown");
   return [a](const CommonArguments& common) { return serve(*a, common); };
 }
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <memory>
 
+#include "app/cli/carried_scenes.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
-#include "app/cli/torture_scene.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/solve.h"
 #include "core/files.h"

@@ -22,7 +22,8 @@ struct CommonArguments {
 /// Runs a verb by what its options have read, prints its result, and returns the exit code of a success.
 using Run = std::function<Result<int>(const CommonArguments&)>;
 
-/// A word of the command line. One of the last three members says what follows it.
+/// A word of the command line. One of the last three members says what follows it; where none does, another
+/// program runs it (Program::others).
 struct Verb {
   std::string name;
   std::string help;                   ///< its line in the list of verbs, and the top of its own help

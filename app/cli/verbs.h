@@ -18,6 +18,8 @@ Verb calibrate_verb();
 Verb rectify_verb();
 Verb finish_verb();
 Verb maps_verb();
+Verb material_verb();
+Verb export_verb();
 Verb serve_verb();
 Verb scan_verb();
 Verb rig_verb();

@@ -4,9 +4,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <thread>
 
 #include "core/files.h"
 #include "tests/core/image_io/scratch_folder.h"
@@ -68,6 +71,22 @@ TEST(Process, ThatIsNotThereIsNamed) {
   EXPECT_THAT(error.message(),
               testing::AllOf(testing::HasSubstr("nothing"), testing::HasSubstr("No such file"),
                              testing::HasSubstr("build all of weft")));
+}
+
+TEST(Process, StartedApartIsHeardByNobodyAndGoesOn) {
+  const ScratchFolder folder;
+  const std::filesystem::path file = folder / "written";
+  const Result<void> started =
+      start_apart({"sh", "-c",
+                   "echo unheard; ps -o sid= -p $$ > '" + file.string() + ".part'; mv '" + file.string() +
+                       ".part' '" + file.string() + "'"});
+  ASSERT_TRUE(started) << started.error().message();
+  for (int i = 0; i < 1000 && !std::filesystem::exists(file); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  const Result<std::string> session = read_text(file);
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_NE(std::stol(*session), ::getsid(0));
+  EXPECT_EQ(start_apart({"weft-no-such-program"}).error().kind, ErrorKind::kNoInput);
 }
 
 TEST(Process, FindsItsNeighboursBesideItself) {

@@ -3,7 +3,8 @@
 
 namespace weft::app {
 
-/// testdata/scenes/torture.toml.
+// Scenes that the program carries, by their name in testdata/scenes/.
+const char* demo_scene();
 const char* torture_scene();
 
 }  // namespace weft::app

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// What `weft` loads before it knows which verb it runs. Loading OpenImageIO and OpenCV costs 0.3 s and 130
+// MB.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace weft::app {
+namespace {
+
+using testing::HasSubstr;
+
+struct Said {
+  std::string text;
+  int status = -1;  ///< as the shell says it
+};
+
+Said said_by(const std::string& command) {
+  Said said;
+  FILE* pipe = ::popen((command + " 2>&1").c_str(), "r");
+  std::array<char, 4096> block = {};
+  for (std::size_t n; (n = std::fread(block.data(), 1, block.size(), pipe)) > 0;)
+    said.text.append(block.data(), n);
+  const int status = ::pclose(pipe);
+  said.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return said;
+}
+
+/// Names of the shared objects that the loader maps for a program, those of its libraries too.
+std::vector<std::string> loaded_by(const std::string& program) {
+  std::vector<std::string> names;
+  std::istringstream lines(said_by("LD_TRACE_LOADED_OBJECTS=1 '" + program + "'").text);
+  for (std::string name, rest; lines >> name && std::getline(lines, rest);) names.push_back(name);
+  return names;
+}
+
+bool loads(const std::vector<std::string>& names, const std::string& begin) {
+  return std::ranges::any_of(names, [&](const std::string& name) { return name.starts_with(begin); });
+}
+
+TEST(Start, LoadsNeitherOpenImageIONorOpenCV) {
+  const std::vector<std::string> light = loaded_by(WEFT_PROGRAM);
+  EXPECT_TRUE(loads(light, "libc.so")) << testing::PrintToString(light);
+  for (const char* heavy : {"libOpenImageIO", "libopencv", "libembree", "libceres", "libglog", "libOpenEXR"})
+    EXPECT_FALSE(loads(light, heavy)) << heavy << " among " << testing::PrintToString(light);
+  EXPECT_LT(light.size(), 40U) << testing::PrintToString(light);
+  // The same question finds them where they are.
+  const std::vector<std::string> heavy = loaded_by(WEFT_WORK);
+  EXPECT_TRUE(loads(heavy, "libOpenImageIO")) << testing::PrintToString(heavy);
+  EXPECT_TRUE(loads(heavy, "libopencv")) << testing::PrintToString(heavy);
+}
+
+TEST(Start, HelpIsThatOfTheProgramWithAllVerbs) {
+  const Said light = said_by(WEFT_PROGRAM " --help"), whole = said_by(WEFT_WORK " --help");
+  EXPECT_EQ(light.status, 0);
+  EXPECT_EQ(light.text, whole.text);
+  EXPECT_THAT(light.text, HasSubstr("solve"));
+}
+
+TEST(Start, AVerbThatIsElsewhereKeepsItsWordsAndItsExitCode) {
+  for (const char* words : {"solve --help", "solve", "solve no-such.weft", "solve --no-such", "calibrate",
+                            "calibrate camera", "bench solve --help"}) {
+    const Said light = said_by(std::string(WEFT_PROGRAM " ") + words);
+    const Said whole = said_by(std::string(WEFT_WORK " ") + words);
+    EXPECT_EQ(light.status, whole.status) << words << "\n" << light.text;
+    EXPECT_EQ(light.text, whole.text) << words;
+  }
+}
+
+TEST(Start, AWordThatIsNoVerbIsRefusedAtOnce) {
+  EXPECT_EQ(said_by(WEFT_PROGRAM " solv").status, 64);
+  EXPECT_EQ(said_by(WEFT_PROGRAM).status, 64);
+}
+
+TEST(Start, VersionNamesTheCommit) {
+  const Said said = said_by(WEFT_PROGRAM " --version");
+  EXPECT_EQ(said.status, 0);
+  const Said commit = said_by("git -C '" WEFT_SOURCE_DIR "' cat-file -e HEAD");
+  EXPECT_THAT(said.text,
+              testing::ContainsRegex(commit.status == 0 ? "^" WEFT_VERSION " \\([0-9a-f]{12}(-dirty)?\\)\n$"
+                                                        : "^" WEFT_VERSION "\n$"));
+}
+
+}  // namespace
+}  // namespace weft::app
