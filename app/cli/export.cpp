@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -23,6 +24,7 @@ namespace {
 struct ExportArguments {
   ExportOptions options;
   std::string shown;
+  std::string to;
   bool lists = false;
   bool only_explains = false;
 };
@@ -134,6 +136,19 @@ Error missing(const char* option, const char* remedy) {
   return {ErrorKind::kUsage, "nothing can be exported", option, "it is missing", remedy};
 }
 
+Result<void> read_aim(ExportArguments& a) {
+  if (a.to.empty()) return {};
+  char* end = nullptr;
+  const double deg = std::strtod(a.to.c_str(), &end);
+  const std::string unit = end;
+  if (deg > 0 && deg <= 90 && (unit.empty() || unit == "deg")) {
+    a.options.to_deg = deg;
+    return {};
+  }
+  return Error{ErrorKind::kUsage, "nothing can be exported", "--to",
+               "\"" + a.to + "\" is no angle of 0 to 90 degrees", "write 0.1 or 0.1deg"};
+}
+
 Run add_export(Options& options) {
   const auto a = std::make_shared<ExportArguments>();
   ExportOptions& e = a->options;
@@ -153,9 +168,10 @@ Run add_export(Options& options) {
   options.add("--show", &a->shown, "Only print a preset as TOML, to begin one of your own with");
   options.add_flag("--explain", &a->only_explains,
                    "Only say what each file and each format costs and loses on this cloth");
-  options.add("--to", &e.to_deg, "Degrees that normals may lose in the mean: chooses their bits")
-      .in_range(1e-6, 90.0);
+  options.add("--to", &a->to,
+              "Degrees that normals may lose in the mean, as 0.1 or 0.1deg: chooses their bits");
   return [a](const CommonArguments& common) -> Result<int> {
+    if (Result<void> ok = read_aim(*a); !ok) return std::move(ok).error();
     if (a->lists) return list_presets(common);
     if (!a->shown.empty()) return show_preset(a->shown);
     if (a->options.input.empty()) return missing("input", "name a session or a folder of maps");

@@ -45,7 +45,7 @@ struct ExportReport {
 /// there is refused. Everything that can be refused is refused before a file is made.
 ///
 /// Errors: those of open_map_folder() and read_preset(); kBadData where a preset asks for what the maps lack,
-/// or names do not fit a disk; kUsage for a size above the maps'; kCannotCreate where the output holds
+/// names do not fit a disk, or a size is above the maps'; kCannotCreate where the output holds
 /// something else; kInputOutput; kInterrupted.
 Result<std::vector<ExportReport>> export_maps(const ExportOptions& options, const JobContext& context);
 

@@ -31,7 +31,7 @@ Error unfit_export(std::string where, std::string why, std::string remedy) {
 Result<Size> size_of(const ExportOptions& options, const MapFolder& folder, const Preset& preset) {
   const int longer = std::max(folder.size.width, folder.size.height);
   if (options.size_px > longer) {
-    return Error{ErrorKind::kUsage, "the maps cannot be exported", "--size",
+    return Error{ErrorKind::kBadData, "the maps cannot be exported", "--size",
                  fmt::format("{} pixels are asked for, the maps have {}", options.size_px, longer),
                  "ask for at most as many: pixels that were not scanned are not made up"};
   }

@@ -175,7 +175,7 @@ Result<void> choose_for(PlannedFile& planned, const std::string& preset, double 
     planned.file.stored = kept->stored;
     return {};
   }
-  return Error{ErrorKind::kUsage, "normals cannot be kept so well", "--to",
+  return Error{ErrorKind::kBadData, "normals cannot be kept so well", "--to",
                fmt::format("{} of preset {} loses {:.2g} degrees at best, as {}", planned.name, preset,
                            best->loss.normal->mean_deg, words_of(best->stored)),
                "allow more, or choose a preset of 16 bits or floats: png16, tiff16, exr"};

@@ -32,7 +32,7 @@ Result<std::vector<ExportPrice>> price_exports(const ExportOptions& options, con
 Json json_of(const std::vector<ExportPrice>& prices);
 
 /// Gives each file with normals the fewest bits of its own encoding with which they lose at most `to_deg` in
-/// the mean, measured on that piece. kUsage where its encoding has none, with the best that there is.
+/// the mean, measured on that piece. kBadData where its encoding has none, with the best that there is.
 Result<void> choose_bits(const ExportOptions& options, const MapFolder& folder, double to_deg,
                          std::vector<PlannedExport>& plans, const JobContext& context);
 

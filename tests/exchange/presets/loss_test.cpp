@@ -94,5 +94,16 @@ TEST(Loss, CountsPixelsThatAnIntegerCannotHold) {
   EXPECT_NEAR(loss.channels[0].most_abs, 0.4, 1e-6);
 }
 
+TEST(Loss, OfHalfEndsAtItsLargestNumberAndSaysSo) {
+  TestMaps maps({3, 1});
+  maps.set(Plane::kHeight, [](int x, int) { return x == 0 ? 1.0 : x == 1 ? 65504.0 : 1e6; });
+  const PresetFile file = file_of({"height"}, {.encoding = Encoding::kExr, .bits = 16});
+  Image<float> read = maps.samples(file);
+  read(2, 0) = 65504;
+  const Loss loss = measure_loss(file, maps.planes(), {}, std::move(read));
+  EXPECT_EQ(loss.channels[0].cut, 1);
+  EXPECT_NEAR(loss.channels[0].most_abs, 1e6 - 65504, 1);
+}
+
 }  // namespace
 }  // namespace weft::exchange

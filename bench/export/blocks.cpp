@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/export/blocks.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <ctime>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/base/yardsticks.h"
+#include "bench/export/solved_cloth.h"
+#include "core/color_spaces.h"
+#include "core/vec.h"
+#include "exchange/blocks/decode.h"
+#include "exchange/blocks/encode.h"
+
+namespace weft::bench {
+namespace {
+
+using exchange::BlockFormat;
+using Planes = std::vector<View<const float>>;
+
+constexpr Size kMost = {1536, 1024}, kTimed = {4096, 4096};
+constexpr int kTimedThreads = 2;
+
+enum class Holds { kAlbedo, kNormal, kMask };
+struct BlockRow {
+  BlockFormat format;
+  const char* of;
+  Holds holds;
+  std::size_t planes;
+};
+// A normal's x and y in bc1 leave blue empty.
+constexpr BlockRow kRows[] = {{BlockFormat::kBc1, "albedo", Holds::kAlbedo, 3},
+                              {BlockFormat::kBc3, "albedo, mask", Holds::kAlbedo, 4},
+                              {BlockFormat::kBc7, "albedo", Holds::kAlbedo, 3},
+                              {BlockFormat::kBc7, "albedo, mask", Holds::kAlbedo, 4},
+                              {BlockFormat::kBc4, "normal x", Holds::kMask, 1},
+                              {BlockFormat::kBc5, "normal x, y", Holds::kNormal, 2},
+                              {BlockFormat::kBc1, "normal x, y, z", Holds::kNormal, 3},
+                              {BlockFormat::kBc7, "normal x, y, z", Holds::kNormal, 3}};
+
+// R, G, B as sRGB, and nz as a mask that has edges.
+Image<float> albedo_texture(const SolvedCloth& cloth) {
+  Image<float> texture(cloth.albedo.size(), 4);
+  for (int y = 0; y < texture.height(); ++y) {
+    for (int x = 0; x < texture.width(); ++x) {
+      Rgb linear = {};
+      for (int p = 0; p < 3; ++p) linear[static_cast<std::size_t>(p)] = cloth.albedo(x, y, p);
+      const Rgb display = srgb_of_rec709(linear);
+      for (int p = 0; p < 3; ++p) texture(x, y, p) = static_cast<float>(display[static_cast<std::size_t>(p)]);
+      texture(x, y, 3) = std::clamp(4 * cloth.normal(x, y, 2) - 2.9F, 0.0F, 1.0F);
+    }
+  }
+  return texture;
+}
+
+Image<float> normal_texture(const SolvedCloth& cloth) {
+  Image<float> texture(cloth.normal.size(), 3);
+  for (int p = 0; p < 3; ++p) {
+    for (int y = 0; y < texture.height(); ++y) {
+      for (int x = 0; x < texture.width(); ++x) texture(x, y, p) = 0.5F * cloth.normal(x, y, p) + 0.5F;
+    }
+  }
+  return texture;
+}
+
+Planes planes_of_texture(const Image<float>& texture, std::size_t count) {
+  Planes planes;
+  for (std::size_t p = 0; p < count; ++p) planes.push_back(texture.plane(static_cast<int>(p)));
+  return planes;
+}
+
+// Of `count` planes; with `in_8_bits` against the values that 8 bits have.
+double psnr_of(const Planes& planes, const Image<float>& decoded, bool in_8_bits) {
+  double sum = 0;
+  for (std::size_t p = 0; p < planes.size(); ++p) {
+    for (int y = 0; y < decoded.height(); ++y) {
+      for (int x = 0; x < decoded.width(); ++x) {
+        const double value = std::clamp(static_cast<double>(planes[p](x, y)), 0.0, 1.0);
+        const double meant = in_8_bits ? std::floor(255 * value + 0.5) / 255 : value;
+        const double off = static_cast<double>(decoded(x, y, static_cast<int>(p))) - meant;
+        sum += off * off;
+      }
+    }
+  }
+  return -10 * std::log10(
+                   sum / (static_cast<double>(decoded.size().pixels()) * static_cast<double>(planes.size())));
+}
+
+void put_angles(const Image<float>& normal, const Image<float>& decoded, Json& row) {
+  std::vector<double> angles;
+  double sum = 0;
+  for (int y = 0; y < decoded.height(); ++y) {
+    for (int x = 0; x < decoded.width(); ++x) {
+      const double nx = 2.0 * decoded(x, y, 0) - 1, ny = 2.0 * decoded(x, y, 1) - 1;
+      const Vec3 read = normalized(Vec3{nx, ny, std::sqrt(std::max(0.0, 1 - nx * nx - ny * ny))});
+      angles.push_back(angle_deg(read, {normal(x, y, 0), normal(x, y, 1), normal(x, y, 2)}));
+      sum += angles.back();
+    }
+  }
+  std::sort(angles.begin(), angles.end());
+  row["mean_deg"] = sum / static_cast<double>(angles.size());
+  row["p95_deg"] = angles[angles.size() * 95 / 100];
+  row["max_deg"] = angles.back();
+}
+
+Image<float> side_by_side(const Image<float>& texture, Size size) {
+  Image<float> large(size, texture.planes());
+  for (int p = 0; p < texture.planes(); ++p) {
+    for (int y = 0; y < size.height; ++y) {
+      const float* from = texture.plane(p).row(y % texture.height());
+      for (int x = 0; x < size.width; ++x) large(x, y, p) = from[x % texture.width()];
+    }
+  }
+  return large;
+}
+
+struct BlockTimes {
+  double processor = 0, wall = 0;  ///< of one thread, and of two
+};
+
+BlockTimes times_of(BlockFormat format, const Planes& planes) {
+  BlockTimes times;
+  const std::clock_t begin = std::clock();
+  (void)exchange::encode_blocks(format, planes, 1);
+  times.processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  times.wall = least_seconds(2, [&] { (void)exchange::encode_blocks(format, planes, kTimedThreads); });
+  return times;
+}
+
+struct Pictures {
+  SolvedCloth cloth;
+  Image<float> albedo, normal, large_albedo, large_normal;
+};
+
+Result<Json> row_of_format(const BlockRow& asked, const Pictures& pictures, double& bc1_seconds) {
+  const bool is_albedo = asked.holds == Holds::kAlbedo;
+  const Planes planes = planes_of_texture(is_albedo ? pictures.albedo : pictures.normal, asked.planes);
+  const Result<std::string> blocks = exchange::encode_blocks(asked.format, planes);
+  if (!blocks) return blocks.error();
+  const Result<Image<float>> decoded = exchange::decode_blocks(asked.format, *blocks, planes[0].size());
+  if (!decoded) return decoded.error();
+
+  Json row = {{"format", exchange::name_of(asked.format)}, {"of", asked.of}};
+  row["psnr_db"] = psnr_of(planes, *decoded, false);
+  row["psnr_8bit_db"] = psnr_of(planes, *decoded, true);
+  for (const char* key : {"mean_deg", "p95_deg", "max_deg"}) row[key] = nullptr;
+  if (asked.holds == Holds::kNormal) put_angles(pictures.cloth.normal, *decoded, row);
+
+  const BlockTimes times =
+      times_of(asked.format,
+               planes_of_texture(is_albedo ? pictures.large_albedo : pictures.large_normal, asked.planes));
+  const double pixels = static_cast<double>(kTimed.pixels());
+  const double read = pixels * sizeof(float) * static_cast<double>(asked.planes);
+  const double written = static_cast<double>(exchange::bytes_of(asked.format, kTimed));
+  if (bc1_seconds == 0) bc1_seconds = times.wall;
+  row["mp_s"] = pixels / 1e6 / times.processor;
+  row["s_16mp"] = times.wall * 16e6 / pixels;
+  row["copies"] = times.wall / copy_seconds(read + written, kTimedThreads);
+  row["bc1s"] = times.wall / bc1_seconds;
+  return row;
+}
+
+}  // namespace
+
+Result<Rows> export_blocks(const ExportBenchOptions& options) {
+  Result<SolvedCloth> cloth = solved_cloth(options.scene, kMost, options.threads);
+  if (!cloth) return std::move(cloth).error();
+  Pictures pictures;
+  pictures.cloth = std::move(*cloth);
+  pictures.albedo = albedo_texture(pictures.cloth);
+  pictures.normal = normal_texture(pictures.cloth);
+  pictures.large_albedo = side_by_side(pictures.albedo, kTimed);
+  pictures.large_normal = side_by_side(pictures.normal, kTimed);
+  Rows rows;
+  double bc1_seconds = 0;
+  for (const BlockRow& asked : kRows) {
+    Result<Json> row = row_of_format(asked, pictures, bc1_seconds);
+    if (!row) return std::move(row).error();
+    (*row)["tilt_deg"] = pictures.cloth.mean_tilt_deg;
+    rows.push_back(std::move(*row));
+  }
+  return rows;
+}
+
+}  // namespace weft::bench
