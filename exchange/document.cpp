@@ -100,8 +100,7 @@ std::string numbers_text(const std::vector<double>& values) {
 }
 
 double ior_of_f0(double f0) {
-  const double root = std::sqrt(std::clamp(f0, 0.0, 0.9999));
-  return (1 + root) / (1 - root);
+  return 2 / (1 - std::sqrt(std::clamp(f0, 0.0, 0.9999))) - 1;
 }
 
 Alphas alphas_of(double roughness, double anisotropy) {

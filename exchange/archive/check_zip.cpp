@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <zlib.h>
 
+#include <algorithm>
 #include <set>
 
 #include "exchange/archive/little_endian.h"
@@ -101,9 +102,11 @@ class Checker {
                         "its bytes begin at " + std::to_string(payload_at) + ", which is no multiple of 64");
     }
     if (extra.empty()) return {};
-    const bool is_whole = extra.size() >= 4 && std::size_t{u16_at(extra, 2)} + 4 == extra.size();
+    const bool is_empty = extra.substr(std::min<std::size_t>(extra.size(), 4)).find_first_not_of('\0') ==
+                          std::string_view::npos;
+    const bool is_whole = is_empty && extra.size() >= 4 && std::size_t{u16_at(extra, 2)} + 4 == extra.size();
     if (!is_whole || u16_at(extra, 0) != zip::kAligningField) {
-      return unlike_zip(listed.name, "its extra field is not one of the id 0x1986");
+      return unlike_zip(listed.name, "its extra field is not one of zeros with the id 0x1986");
     }
     return {};
   }
