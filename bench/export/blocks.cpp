@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/export/blocks.h"
 
+#include <squish.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -118,6 +120,37 @@ Image<float> side_by_side(const Image<float>& texture, Size size) {
   return large;
 }
 
+struct Pictures {
+  SolvedCloth cloth;
+  Image<float> albedo, normal, large_albedo, large_normal;
+};
+
+// What libsquish alone makes of a normal's x and y in bc5: the yardstick of our search for ends.
+Result<Json> row_of_libsquish(const Pictures& pictures) {
+  const Size size = pictures.normal.size();
+  std::vector<squish::u8> texels(static_cast<std::size_t>(size.pixels()) * 4, 255);
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
+      squish::u8* texel = &texels[4 * static_cast<std::size_t>(std::int64_t{y} * size.width + x)];
+      for (int p = 0; p < 2; ++p) texel[p] = static_cast<squish::u8>(255 * pictures.normal(x, y, p) + 0.5F);
+    }
+  }
+  std::string blocks(exchange::bytes_of(BlockFormat::kBc5, size), '\0');
+  const std::clock_t begin = std::clock();
+  squish::CompressImage(texels.data(), size.width, size.height, blocks.data(), squish::kBc5);
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  const Result<Image<float>> decoded = exchange::decode_blocks(BlockFormat::kBc5, blocks, size);
+  if (!decoded) return decoded.error();
+  const Planes planes = planes_of_texture(pictures.normal, 2);
+  Json row = {{"format", "bc5 of libsquish"}, {"of", "normal x, y"}};
+  row["psnr_db"] = psnr_of(planes, *decoded, false);
+  row["psnr_8bit_db"] = psnr_of(planes, *decoded, true);
+  put_angles(pictures.cloth.normal, *decoded, row);
+  row["mp_s"] = static_cast<double>(size.pixels()) / 1e6 / seconds;
+  for (const char* key : {"s_16mp", "copies", "bc1s"}) row[key] = nullptr;
+  return row;
+}
+
 struct BlockTimes {
   double processor = 0, wall = 0;  ///< of one thread, and of two
 };
@@ -130,11 +163,6 @@ BlockTimes times_of(BlockFormat format, const Planes& planes) {
   times.wall = least_seconds(2, [&] { (void)exchange::encode_blocks(format, planes, kTimedThreads); });
   return times;
 }
-
-struct Pictures {
-  SolvedCloth cloth;
-  Image<float> albedo, normal, large_albedo, large_normal;
-};
 
 Result<Json> row_of_format(const BlockRow& asked, const Pictures& pictures, double& bc1_seconds) {
   const bool is_albedo = asked.holds == Holds::kAlbedo;
@@ -180,9 +208,12 @@ Result<Rows> export_blocks(const ExportBenchOptions& options) {
   for (const BlockRow& asked : kRows) {
     Result<Json> row = row_of_format(asked, pictures, bc1_seconds);
     if (!row) return std::move(row).error();
-    (*row)["tilt_deg"] = pictures.cloth.mean_tilt_deg;
     rows.push_back(std::move(*row));
   }
+  Result<Json> row = row_of_libsquish(pictures);
+  if (!row) return std::move(row).error();
+  rows.push_back(std::move(*row));
+  for (Json& each : rows) each["tilt_deg"] = pictures.cloth.mean_tilt_deg;
   return rows;
 }
 

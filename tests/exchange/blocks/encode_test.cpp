@@ -214,11 +214,12 @@ TEST(OddSizes, HoldTheSameBlocksAsThePaddedPicture) {
 
 TEST(Blocks, AreTheSameBytesForAnyThreadsAndVectors) {
   for (const BlockFormat format : kBlockFormats) {
-    // A multiplication that is fused with its addition changes a block of 1024 x 64 texels of bc7.
-    const Image<float> image = red_satin({1021, 63}, planes_for(format));
+    // A multiplication that is fused with its addition changes one block of this picture in bc7.
+    const Size size = format == BlockFormat::kBc7 ? Size{1024, 64} : Size{203, 117};
+    const Image<float> image = red_satin(size, planes_for(format));
     const std::string one = encoded(format, image, 1);
-    for (const int threads : {2, 3, 8}) EXPECT_EQ(encoded(format, image, threads), one) << threads;
-    test::on_every_target([&] { EXPECT_EQ(encoded(format, image, 2), one) << name_of(format); });
+    for (const int threads : {2, 3, 8}) EXPECT_TRUE(encoded(format, image, threads) == one) << threads;
+    test::on_every_target([&] { EXPECT_TRUE(encoded(format, image, 2) == one) << name_of(format); });
   }
 }
 
