@@ -84,6 +84,7 @@ const std::vector<Door> kDoors = {
     {"squish.h", {"exchange/blocks/", "bench/", "tests/"}},
     {"kissfft/", {"core/", "bench/"}},
     {"sqlite3", {"library/"}},
+    {"zlib.h", {"exchange/archive/", "tests/exchange/"}},
 };
 
 bool starts_with_any(std::string_view path, const Prefixes& prefixes) {
