@@ -46,7 +46,8 @@ std::string uuid_of(std::string_view sha256);
 
 /// The document with all members of one side, `front`. Scalars are grey images of PNG, JPEG or TIFF,
 /// constants the means, colours as constants in sRGB. Roughness and anisotropy become those of the principled
-/// model (Burley 2012), exact where the anisotropy is the same everywhere. `custom.weft` holds the
+/// model (Burley 2012), exact at their means: one factor scales the map of
+/// roughness. `custom.weft` holds the
 /// provenance.
 ///
 /// kBadData: as check_material(); no known size (U3M is in millimetres); a scalar in one channel of a colour
