@@ -49,7 +49,8 @@ std::vector<Route> api_routes(const RigParts& parts) {
       scan_resource(parts),    sessions_resource(parts), frames_resource(parts),
       jobs_resource(parts),    library_resource(parts),  events_resource(parts),
       control_resource(parts), devices_resource(parts),  calibrations_resource(parts),
-      solves_resource(parts),  maps_resource(parts),     virtual_rig_resource(parts)};
+      solves_resource(parts),  maps_resource(parts),     virtual_rig_resource(parts),
+      exports_resource(parts), materials_resource(parts)};
   std::vector<Route> routes;
   Reply description = json_reply(whole_description(resources));
   description.keeping = Keeping::kAskAgain;

@@ -63,6 +63,8 @@ Resource sessions_resource(const RigParts& parts);
 Resource frames_resource(const RigParts& parts);
 Resource maps_resource(const RigParts& parts);
 Resource solves_resource(const RigParts& parts);
+Resource exports_resource(const RigParts& parts);
+Resource materials_resource(const RigParts& parts);
 Resource jobs_resource(const RigParts& parts);
 Resource library_resource(const RigParts& parts);
 Resource events_resource(const RigParts& parts);

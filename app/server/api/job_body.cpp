@@ -13,6 +13,7 @@
 
 #include "app/jobs/maps/recipe.h"
 #include "app/jobs/planned_cloth.h"
+#include "app/server/api/library_materials.h"
 #include "core/files.h"
 #include "library/session_files.h"
 
@@ -40,6 +41,8 @@ enum class Holds {
   kWords,     // a list, which becomes words by commas
   kRecipe,    // {"steps": [...]}, which becomes its text
   kSession,   // the name of one
+  kMaterial,  // the key of one of the library
+  kBuild,     // likewise, of which the newest build or that of `set` is meant
   kFolder,    // one that is there, below the rig's
   kNewFolder  // one that is not there yet
 };
@@ -52,6 +55,7 @@ struct JobField {
   bool is_needed = false;
   double least = 0, most = 0;                // of a number
   std::vector<std::string_view> words = {};  // that are allowed; none: all
+  const char* unless = "";                   // another field, which says it already
 };
 
 struct JobKind {
@@ -94,6 +98,17 @@ std::vector<JobField> maps_fields() {
           {"steps", "--steps", Holds::kRecipe}};
 }
 
+// Of what and by which presets files are made.
+std::vector<JobField> export_fields() {
+  JobField set = word("set", "--maps");
+  set.unless = "material";
+  return {{"session", "", Holds::kSession},
+          {"material", "", Holds::kBuild},
+          set,
+          word("name", "--name"),
+          {"presets", "--preset", Holds::kWords, true}};
+}
+
 std::vector<JobField> with_field(std::vector<JobField> fields, JobField field) {
   fields.push_back(std::move(field));
   return fields;
@@ -116,6 +131,9 @@ const std::vector<JobKind>& job_kinds() {
         number("turn_deg", "--turn", -360, 360)}},
       {"maps", {"maps"}, with_field(maps_fields(), {"maps", "--maps", Holds::kWords})},
       {"finish", {"finish"}, maps_fields()},
+      {"export", {"export"}, export_fields()},
+      {"export_price", {"export", "--explain"}, export_fields()},
+      {"material", {"material", "build"}, {{"material", "", Holds::kMaterial, true}}},
       {"copy", {"copy"}, {kSession}},
       {"torture", {"torture"}, {}},
       {"rig_plan",
@@ -234,6 +252,27 @@ Result<std::string> recipe_in(const Json& value, const JobField& field) {
   return text;
 }
 
+Result<std::string> material_in(const Json& body, const JobField& field, const JobPlaces& places,
+                                JobSpec& spec) {
+  const Json& key = body[field.field];
+  if (!key.is_string()) return unfit(field.field, "must be the key of a material");
+  spec.of = key.get<std::string>();
+  if (field.holds == Holds::kMaterial) {
+    const Result<MaterialPlace> place = places.material(spec.of);
+    if (!place) return place.error();
+    if (!place->is_shipped()) return place->file.string();
+    // What comes with weft lies in no folder of the user's, and so is told where it is built.
+    spec.arguments.insert(spec.arguments.end(), {"--output", builds_of(*place).string()});
+    return place->name;
+  }
+  const Json set = body.value("set", Json(""));
+  if (!set.is_string()) return unfit("set", "must be a text");
+  const Result<fs::path> build = places.build(spec.of, set.get<std::string>());
+  if (!build) return build.error();
+  spec.needs.push_back(build->string());
+  return build->string();
+}
+
 // What the field becomes; what the job needs of it is added to its needs.
 Result<std::string> argument_of(const Json& body, const JobField& field, const JobPlaces& places,
                                 JobSpec& spec) {
@@ -246,6 +285,8 @@ Result<std::string> argument_of(const Json& body, const JobField& field, const J
       return unfit(field.field, fmt::format("must be one of {}", fmt::join(field.words, ", ")));
     return text;
   }
+  if (field.holds == Holds::kMaterial || field.holds == Holds::kBuild)
+    return material_in(body, field, places, spec);
   Result<fs::path> folder = fs::path();
   if (field.holds == Holds::kSession) {
     const Json& name = body[field.field];
@@ -268,6 +309,7 @@ Result<void> add_field(const Json& body, const JobField& field, const JobPlaces&
     if (field.is_needed) return unfit(field.field, fmt::format("is needed by a {} job", spec.kind));
     return {};
   }
+  if (*field.unless != '\0' && body.contains(field.unless)) return {};
   if (field.holds == Holds::kFlag) {
     const Json& flag = body[field.field];
     if (!flag.is_boolean()) return unfit(field.field, "must be true or false");
@@ -288,6 +330,8 @@ Result<void> check_together(const std::string& kind, const Json& body) {
     return unfit("session", "either it or input or moved must be named");
   if (kind == "calibrate_update" && named("session") + named("moved") != 1)
     return unfit("session", "either it or moved must be named");
+  if (kind.starts_with("export") && named("session") + named("material") != 1)
+    return unfit("session", "either it or material must be named");
   if (named("recipe") + named("steps") > 1) return unfit("recipe", "either it or steps may be named");
   if (kind == "rig_plan" && named("cloth") + named("roughness") > 1)
     return unfit("cloth", "either it or roughness may be named");

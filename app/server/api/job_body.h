@@ -5,6 +5,7 @@
 #include <functional>
 #include <string>
 
+#include "app/jobs/material/material_place.h"
 #include "app/server/jobs/job.h"
 #include "core/json_document.h"
 #include "core/result.h"
@@ -20,6 +21,10 @@ struct JobPlaces {
   std::filesystem::path sessions;       ///< where new ones go
   std::filesystem::path copy;           ///< of finished sessions; empty: where each session says
   std::filesystem::path rig_file = {};  ///< empty: there is no rig
+  /// A material of the library by its key. kNoInput.
+  std::function<Result<MaterialPlace>(const std::string& key)> material = {};
+  /// The folder of what was built of one; without an id of the newest build. kNoInput.
+  std::function<Result<std::filesystem::path>(const std::string& key, const std::string& id)> build = {};
 };
 
 /// The folder that a field of a body names, below another one where no link leads out of it. kUsage,

@@ -8,6 +8,7 @@
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
 #include "app/server/api/job_body.h"
+#include "app/server/api/library_materials.h"
 #include "app/server/api/scan_body.h"
 #include "library/session_name.h"
 
@@ -23,7 +24,13 @@ JobPlaces places_of(const RigParts& parts) {
     return found->folder;
   };
   const capture::Rig& rig = parts.rig;
-  return {session, rig.file.parent_path(), rig.name, rig.scan.sessions, rig.scan.copy, rig.file};
+  const auto build = [](const std::string& key, const std::string& id) -> Result<std::filesystem::path> {
+    const Result<Product> found = find_build(key, id);
+    if (!found) return found.error();
+    return found->folder;
+  };
+  return {session,  rig.file.parent_path(), rig.name, rig.scan.sessions, rig.scan.copy,
+          rig.file, library_material,       build};
 }
 
 Result<Reply> add_job(const RigParts& parts, const Call& call) {

@@ -10,6 +10,8 @@
 #include <variant>
 
 #include "app/jobs/maps/maps.h"
+#include "app/jobs/material/build.h"
+#include "app/server/api/library_materials.h"
 #include "app/server/api/tile_query.h"
 #include "core/camera.h"
 #include "core/files.h"
@@ -80,8 +82,8 @@ Json common_json(const Viewed& viewed) {
   } else if (viewed.solve) {
     for (const Verdict& verdict : viewed.solve->warnings) warnings.push_back(verdict.name);
   }
-  const bool is_absolute =
-      viewed.solve ? viewed.solve->albedo_scale == AlbedoScale::kAbsolute : !viewed.set.has_value();
+  const bool is_absolute = viewed.solve ? viewed.solve->albedo_scale == AlbedoScale::kAbsolute
+                                        : viewed.is_build || !viewed.set.has_value();
   Json document = {{"id", viewed.id},
                    {"method", viewed.solve ? viewed.solve->method : kTruth},
                    {"width", viewed.layers.size.width},
@@ -89,8 +91,9 @@ Json common_json(const Viewed& viewed) {
                    {"albedo_scale", is_absolute ? "absolute" : "relative"},
                    {"warnings", std::move(warnings)}};
   if (viewed.id == kTruth) return document;
-  document["created"] =
-      written_at(viewed.folder / (viewed.set ? kMapsProduct.document : kSolveProduct.document));
+  document["created"] = written_at(viewed.folder / (viewed.is_build ? kMaterialProduct.document
+                                                    : viewed.set    ? kMapsProduct.document
+                                                                    : kSolveProduct.document));
   document["bytes"] = library::bytes_below(viewed.folder);
   return document;
 }
@@ -112,6 +115,7 @@ Json layers_json(const Layers& layers) {
 
 // At the middle of the frame; null where nobody knows.
 Json mm_per_pixel_of(const Viewed& viewed) {
+  if (viewed.set && viewed.mm_per_pixel <= 0) return nullptr;
   const Result<Lying> lying = lying_of(viewed);
   if (!lying) return nullptr;
   const Ground ground = lying->ground(viewed);
@@ -166,6 +170,26 @@ Result<Viewed> find_map_set(const RigParts& parts, const std::string& name, cons
   return viewed;
 }
 
+Result<Viewed> find_built_maps(const RigParts&, const std::string& material, const std::string& id) {
+  const Result<Product> product = find_build(material, id);
+  Result<Json> document = finished(product, "there is no such build", id);
+  if (!document) return std::move(document).error();
+  JsonFields fields(*document, kMaterialProduct.document);
+  Viewed viewed;
+  viewed.mm_per_pixel = fields.optional_number("mm_per_pixel").value_or(0);
+  const Size size = {fields.integer("width"), fields.integer("height")};
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  viewed.folder = product->folder;
+  viewed.id = product->id;
+  viewed.content = "material-" + product->id;
+  viewed.set = std::move(*document);
+  viewed.is_build = true;
+  if (Result<void> ok = add_layers(viewed); !ok && ok.error().kind != ErrorKind::kNoInput)
+    return std::move(ok).error();
+  if (viewed.layers.all.empty()) viewed.layers.size = size;
+  return viewed;
+}
+
 Result<std::shared_ptr<Pyramid>> pyramid_of(const RigParts& parts, const Viewed& viewed,
                                             const std::string& name) {
   const Layer* layer = viewed.layers.find(name);
@@ -175,7 +199,8 @@ Result<std::shared_ptr<Pyramid>> pyramid_of(const RigParts& parts, const Viewed&
 
 Result<double> gain_of(const RigParts& parts, const Viewed& viewed) {
   const bool is_truth = !viewed.solve && !viewed.set;
-  if (is_truth || (viewed.solve && viewed.solve->albedo_scale == AlbedoScale::kAbsolute)) return 1.0;
+  if (is_truth || viewed.is_build || (viewed.solve && viewed.solve->albedo_scale == AlbedoScale::kAbsolute))
+    return 1.0;
   const Result<std::shared_ptr<Pyramid>> albedo = pyramid_of(parts, viewed, "albedo");
   if (!albedo) return albedo.error();
   const int top = (*albedo)->levels() - 1;

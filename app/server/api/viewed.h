@@ -31,7 +31,8 @@ struct Viewed {
   std::string content;  ///< names their bytes
   std::optional<SolveFacts>
       solve;  ///< that they are, or that a set was made of; none: the truth, or one that is gone
-  std::optional<Json> set;  ///< maps.json of a set of maps
+  std::optional<Json> set;  ///< maps.json of a set of maps, material.json of what was built of a material
+  bool is_build = false;    ///< the set is that of a material, and has no session
   double mm_per_pixel = 0;  ///< of a set
   Layers layers;
 
@@ -46,6 +47,8 @@ std::filesystem::path map_sets_of(const Session& session);
 using FindMaps = Result<Viewed> (*)(const RigParts& parts, const std::string& session, const std::string& id);
 Result<Viewed> find_solve_maps(const RigParts& parts, const std::string& session, const std::string& id);
 Result<Viewed> find_map_set(const RigParts& parts, const std::string& session, const std::string& id);
+/// Likewise what was built of the material that has this key (library_materials.h).
+Result<Viewed> find_built_maps(const RigParts& parts, const std::string& material, const std::string& id);
 
 /// A layer of the maps. kNoInput where they have none of this name; errors of Pyramid::open().
 Result<std::shared_ptr<Pyramid>> pyramid_of(const RigParts& parts, const Viewed& viewed,

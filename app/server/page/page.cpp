@@ -37,13 +37,16 @@ const char* type_of(std::string_view path) {
 }
 
 // The first words of the addresses that the page itself takes apart.
-constexpr std::array<const char*, 6> kScreens = {"desk", "sessions", "viewer", "calibrate", "jobs", "doctor"};
-constexpr const char* kSetOfMaps = "/viewer/{session}/maps/{id}";
+constexpr std::array<const char*, 8> kScreens = {"desk",      "sessions", "viewer", "material",
+                                                 "calibrate", "jobs",     "doctor", "tour"};
+constexpr std::array<const char*, 2> kSetsOfMaps = {"/viewer/{session}/maps/{id}",
+                                                    "/material/{of}/{is}/{id}"};
 constexpr const char* kIndex = "/index.html";
 
 std::vector<std::string> addresses_of(std::string_view path) {
   if (path != kIndex) return {std::string(path)};
-  std::vector<std::string> addresses = {"/", kSetOfMaps};
+  std::vector<std::string> addresses = {"/"};
+  addresses.insert(addresses.end(), kSetsOfMaps.begin(), kSetsOfMaps.end());
   for (const char* screen : kScreens) {
     for (const char* further : {"", "/{a}", "/{a}/{b}"}) {
       addresses.push_back(std::string("/") + screen + further);

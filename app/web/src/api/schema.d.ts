@@ -1082,6 +1082,317 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/presets": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What cloths can be exported as: the presets that weft brings along, and the user's own */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path?: never;
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["Presets"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                421: components["responses"]["ForeignHost"];
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{name}/exports": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What was exported of a session */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["Exports"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                421: components["responses"]["ForeignHost"];
+                /** @description The session.json cannot be used */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{name}/exports/{preset}/files/{file}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A file of an export */
+        get: {
+            parameters: {
+                query?: never;
+                header?: {
+                    /** @description One range of bytes */
+                    Range?: string;
+                };
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Name of the preset */
+                    preset: string;
+                    /** @description Name of the file as its export.json has it, with : for / */
+                    file: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description Its bytes; the ETag is their SHA-256 */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/octet-stream": string;
+                    };
+                };
+                /** @description The range that was asked for */
+                206: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/octet-stream": string;
+                    };
+                };
+                /** @description If-None-Match names its ETag */
+                304: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content?: never;
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description The range is beyond the file */
+                416: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The export.json cannot be used */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds/{id}/exports": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What was exported of a built material */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                    /** @description Id of the build */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["Exports"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                421: components["responses"]["ForeignHost"];
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds/{id}/exports/{preset}/files/{file}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A file of an export of a built material */
+        get: {
+            parameters: {
+                query?: never;
+                header?: {
+                    /** @description One range of bytes */
+                    Range?: string;
+                };
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                    /** @description Id of the build */
+                    id: string;
+                    /** @description Name of the preset */
+                    preset: string;
+                    /** @description Name of the file as its export.json has it, with : for / */
+                    file: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description Its bytes; the ETag is their SHA-256 */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/octet-stream": string;
+                    };
+                };
+                /** @description The range that was asked for */
+                206: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/octet-stream": string;
+                    };
+                };
+                /** @description If-None-Match names its ETag */
+                304: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content?: never;
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description The range is beyond the file */
+                416: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The export.json cannot be used */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/sessions/{name}/frames/{index}/tiles/{level}/{tile}": {
         parameters: {
             query?: never;
@@ -2880,6 +3191,556 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/materials": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Materials in layers: those of the user's library, and those that weft brings along */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path?: never;
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["Materials"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                421: components["responses"]["ForeignHost"];
+            };
+        };
+        put?: never;
+        /** Writes a material into the user's library that differs from another by its layers */
+        post: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path?: never;
+                cookie?: never;
+            };
+            requestBody: {
+                content: {
+                    "application/json": components["schemas"]["NewMaterial"];
+                };
+            };
+            responses: {
+                /** @description It is there */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["WrittenMaterial"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description A material of this name is there, and was not made by this call from the same one */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                413: components["responses"]["TooLong"];
+                415: components["responses"]["NotJson"];
+                421: components["responses"]["ForeignHost"];
+                /** @description It could not be read: a layer that is not there */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A material with all that it inherits, and the file that each value comes from */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ResolvedMaterial"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                421: components["responses"]["ForeignHost"];
+                /** @description It cannot be read: a circle, an unknown key, a map that is not there */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What was built of a material, the newest first */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["Builds"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                421: components["responses"]["ForeignHost"];
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A built material with its layers and how they are cut, as a solve is seen */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                    /** @description Id of the build */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ViewedSolve"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds/{id}/tiles/{layer}/{level}/{tile}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A tile of 512 pixels, or what is left at the right and lower edge. It may be kept for ever */
+        get: {
+            parameters: {
+                query?: {
+                    /** @description Stops, of colours and relit; 0 unless given */
+                    exposure?: number;
+                    /** @description Of scalars as pictures: the lower end of the scale; 0 unless given */
+                    least?: number;
+                    /** @description Its upper end; 1 unless given */
+                    most?: number;
+                    /** @description x,y,z in the rig frame, to the lamp of relit; from the upper left, 45 degrees high, unless given */
+                    light?: string;
+                    /** @description Of status: SATURATED ... as in formats.md; any bit unless given */
+                    bit?: string;
+                    /** @description Of difference and albedo_difference: another set's id */
+                    with?: string;
+                };
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                    /** @description Id of the build */
+                    id: string;
+                    /** @description Name of a layer; relit, the cloth under a lamp; difference, degrees between these normals and those of another solve; albedo_difference, percent of the albedo of another solve */
+                    layer: string;
+                    /** @description 0 is the map, each next one has half its sides; top is the last, which fits one tile */
+                    level: string;
+                    /** @description COLUMN_ROW.raw, .png or .jpg; normals have no .jpg */
+                    tile: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description raw: little-endian, row by row. Normals RGB10_A2 with 1022 steps (n * 511 + 511), colours three half floats, scalars one, flags a byte (255 is all). jpg and png: for people */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/octet-stream": string;
+                        "image/png": string;
+                        "image/jpeg": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds/{id}/pixel": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** What the maps say in a place; readings is null */
+        get: {
+            parameters: {
+                query: {
+                    /** @description Column, from 0 */
+                    x: number;
+                    /** @description Row, from 0 */
+                    y: number;
+                };
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                    /** @description Id of the build */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["PixelFacts"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds/{id}/region": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** Figures of a rectangle, by layer and channel */
+        get: {
+            parameters: {
+                query: {
+                    /** @description First column */
+                    x: number;
+                    /** @description First row */
+                    y: number;
+                    /** @description Columns */
+                    w: number;
+                    /** @description Rows */
+                    h: number;
+                };
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                    /** @description Id of the build */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["RegionFacts"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/materials/{name}/builds/{id}/line": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A length on the cloth, and what lies under it; sigma_mm is null */
+        get: {
+            parameters: {
+                query: {
+                    /** @description Column of its begin */
+                    x0: number;
+                    /** @description Row of its begin */
+                    y0: number;
+                    /** @description Column of its end */
+                    x1: number;
+                    /** @description Row of its end */
+                    y1: number;
+                };
+                header?: never;
+                path: {
+                    /** @description Material, as GET materials has its key */
+                    name: string;
+                    /** @description Id of the build */
+                    id: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description As it is */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["LineFacts"];
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
+                /** @description Too much is asked for at once, or memory is short */
+                409: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/rig": {
         parameters: {
             query?: never;
@@ -4468,6 +5329,36 @@ export interface components {
             thumbnail?: string;
             histogram?: components["schemas"]["Histogram"];
         };
+        Presets: {
+            presets: components["schemas"]["Preset"][];
+        };
+        Preset: {
+            name: string;
+            /** @description For people */
+            says: string;
+            /** @description The user's, not one that weft brings along */
+            is_own: boolean;
+            /** @description Names, {name} being that of the cloth; some may be left out where a cloth has no map for them */
+            files: string[];
+            /** @description Why it cannot be read; empty: it can */
+            fault: string;
+        };
+        Exports: {
+            exports: components["schemas"]["Exported"][];
+        };
+        Exported: {
+            preset: string;
+            /** @description Where it lies on the server's machine */
+            folder: string;
+            /** @description When; ISO 8601 */
+            created: string;
+            /** @description Of its files */
+            bytes: number;
+            /** @description Its export.json (weft.export/1) */
+            document: {
+                [key: string]: unknown;
+            };
+        };
         Channel: {
             /** @description Photosites in 64 equal steps from black to white */
             bins: number[];
@@ -4504,10 +5395,10 @@ export interface components {
         };
         JobRequest: {
             /**
-             * @description price: seconds and degrees of every level (weft solve --explain); torture: the session torture, of pixels that are hard to solve, and its solve with the layer condition (weft torture); rig_plan: what one more LED, one moved or polarisers would tell of a cloth (weft rig plan), with the drawing files/plan.svg; maps, finish: a set of maps (weft maps, weft finish); check: weft calibrate check
+             * @description price: seconds and degrees of every level (weft solve --explain); torture: the session torture, of pixels that are hard to solve, and its solve with the layer condition (weft torture); rig_plan: what one more LED, one moved or polarisers would tell of a cloth (weft rig plan), with the drawing files/plan.svg; maps, finish: a set of maps (weft maps, weft finish); export: files by presets (weft export); export_price: what they would hold and lose (weft export --explain); material: a material of the library is built (weft material build); check: weft calibrate check
              * @enum {string}
              */
-            kind: "solve" | "price" | "rectify" | "copy" | "torture" | "rig_plan" | "maps" | "finish" | "check" | "calibrate_camera" | "calibrate_response" | "calibrate_color" | "calibrate_lights" | "calibrate_grey" | "calibrate_patches" | "calibrate_update";
+            kind: "solve" | "price" | "rectify" | "copy" | "torture" | "rig_plan" | "maps" | "finish" | "export" | "export_price" | "material" | "check" | "calibrate_camera" | "calibrate_response" | "calibrate_color" | "calibrate_lights" | "calibrate_grey" | "calibrate_patches" | "calibrate_update";
             /** @description Name, without .weft; of all but check by input and calibrate_camera, _response, _color, _lights */
             session?: string;
             /** @description Folder below that of the rig file; of calibrate_camera, _response, _color, _lights, and of check */
@@ -4585,6 +5476,14 @@ export interface components {
             aim?: "all" | "normal" | "alpha" | "f0";
             /** @description Of rig_plan: seconds a shot; default 4 */
             pace?: number;
+            /** @description Of export, export_price: names */
+            presets?: string[];
+            /** @description Of export, export_price: id of a set of maps of the session; absent: the newest */
+            set?: string;
+            /** @description Of material, and of export and export_price in place of session: as GET materials has its key */
+            material?: string;
+            /** @description Of export, export_price: what {name} in names of files stands for; absent: that of the session */
+            name?: string;
             /** @description The same again is the same job */
             request_id?: string;
         };
@@ -4714,6 +5613,59 @@ export interface components {
                 /** @description One of which a word is */
                 words: string[];
             }[];
+        };
+        Materials: {
+            materials: components["schemas"]["MaterialSummary"][];
+        };
+        MaterialSummary: {
+            /** @description What calls name it by */
+            key: string;
+            /** @description As files of materials write it */
+            name: string;
+            /** @description The user's, not one that weft brings along */
+            is_own: boolean;
+        };
+        ResolvedMaterial: {
+            material: string;
+            /** @description Itself, what it inherits, and so on */
+            generations: string[];
+            /** @description Names, bottom to top */
+            layers: string[];
+            values: components["schemas"]["MaterialValue"][];
+        };
+        MaterialValue: {
+            key: string;
+            /** @description In its one form */
+            value: unknown;
+            /** @description File that says it */
+            from: string;
+        };
+        Builds: {
+            builds: {
+                id: string;
+                /** @description When; ISO 8601 */
+                created: string;
+                /** @description Of its files */
+                bytes: number;
+            }[];
+        };
+        NewMaterial: {
+            name: string;
+            /** @description Key of the other */
+            inherits: string;
+            /** @description From the bottom to the top; layers that are not named stay above them */
+            layers: {
+                name: string;
+                alpha?: number;
+                remove?: boolean;
+            }[];
+        };
+        WrittenMaterial: {
+            key: string;
+            /** @description On the server's machine */
+            file: string;
+            /** @description weft.material/1 */
+            text: string;
         };
         Status: {
             rig: string;

@@ -19,6 +19,7 @@ const tabs = [
   {screen: 'desk', says: 'Desk'},
   {screen: 'sessions', says: 'Library'},
   {screen: 'viewer', says: 'Viewer'},
+  {screen: 'material', says: 'Material'},
   {screen: 'calibrate', says: 'Calibrate'},
   {screen: 'jobs', says: 'Jobs'},
   {screen: 'doctor', says: 'Doctor'},

@@ -11,6 +11,7 @@ const screens: Record<string, Load> = {
   desk: () => import('../screens/desk/screen'),
   sessions: () => import('../screens/sessions/screen'),
   viewer: () => import('../screens/viewer/screen'),
+  material: () => import('../screens/material/screen'),
   calibrate: () => import('../screens/calibrate/screen'),
   jobs: () => import('../screens/jobs/screen'),
   doctor: () => import('../screens/doctor/screen'),

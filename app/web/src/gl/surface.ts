@@ -5,6 +5,7 @@ import type {Kind} from './formats';
 import {HEAT_STEPS, type Rgb, heatTexels} from './heat';
 import {Program} from './program';
 import {COPY, COPY_SHARE, type Mode, RECTANGLE, shading} from './shaders';
+import {fillTexture, NORMAL_SCALE, sampledTexture} from './upload';
 import type {Box, Size} from './view';
 
 export interface TileTexture extends Size {
@@ -43,22 +44,6 @@ interface Target {
   frame: WebGLFramebuffer;
 }
 
-const uploads = (gl: WebGL2RenderingContext): Record<Kind, [GLenum, GLenum, GLenum]> => ({
-  normal: [gl.RGB10_A2, gl.RGBA, gl.UNSIGNED_INT_2_10_10_10_REV],
-  color: [gl.RGB16F, gl.RGB, gl.HALF_FLOAT],
-  scalar: [gl.R16F, gl.RED, gl.HALF_FLOAT],
-  flags: [gl.R8, gl.RED, gl.UNSIGNED_BYTE],
-});
-
-function valuesOf(kind: Kind, bytes: ArrayBuffer): ArrayBufferView {
-  if (kind === 'normal') return new Uint32Array(bytes);
-  if (kind === 'flags') return new Uint8Array(bytes);
-  return new Uint16Array(bytes);
-}
-
-/** 1023 texel steps are 1 to WebGL, 511 to either side of 511 to the daemon. */
-const NORMAL_SCALE = [1023 / 511, -1] as const;
-
 /** The one canvas of a viewer. Made anew after its context was lost. */
 export class Surface {
   private readonly gl: WebGL2RenderingContext;
@@ -87,10 +72,8 @@ export class Surface {
   }
 
   upload(kind: Kind, size: Size, bytes: ArrayBuffer): TileTexture {
-    const {gl} = this;
-    const [internal, format, type] = uploads(gl)[kind];
-    const texture = this.sampled(gl.LINEAR);
-    gl.texImage2D(gl.TEXTURE_2D, 0, internal, size.width, size.height, 0, format, type, valuesOf(kind, bytes));
+    const texture = this.sampled(this.gl.LINEAR);
+    fillTexture(this.gl, kind, size, bytes);
     return {texture, ...size, bytes: bytes.byteLength};
   }
 
@@ -225,13 +208,6 @@ export class Surface {
   }
 
   private sampled(filter: GLenum): WebGLTexture {
-    const {gl} = this;
-    const texture = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
-    gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
-    return texture;
+    return sampledTexture(this.gl, filter, this.gl.CLAMP_TO_EDGE);
   }
 }

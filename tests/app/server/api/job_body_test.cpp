@@ -29,7 +29,15 @@ class JobBody : public testing::Test {
       if (name == "satin") return fs::path("/scans/satin.weft");
       return Error{ErrorKind::kNoInput, "there is no such session", name, "", ""};
     };
-    return read_job_body(Json::parse(body), {session, folder_, "north", "/scans", "/copies", rig_file_});
+    const auto material = [](const std::string& key) -> Result<MaterialPlace> {
+      return key == "own" ? MaterialPlace{"library:own", "/materials/own.toml"}
+                          : MaterialPlace{"library:" + key};
+    };
+    const auto build = [](const std::string& key, const std::string& id) -> Result<fs::path> {
+      return fs::path("/materials") / key / (id.empty() ? "newest" : id);
+    };
+    return read_job_body(Json::parse(body),
+                         {session, folder_, "north", "/scans", "/copies", rig_file_, material, build});
   }
   std::vector<std::string> arguments(const std::string& body) const {
     const Result<JobSpec> spec = read(body);
@@ -127,6 +135,33 @@ TEST_F(JobBody, HasARecipeAsTheTextThatItsVerbReads) {
       R"({"kind": "maps", "session": "satin", "steps": {"steps": [{"do": "tile"}, {"do": "crop", "at": 3}]}})");
   ASSERT_FALSE(third);
   EXPECT_EQ(third.error().where, "steps: step 2");
+}
+
+TEST_F(JobBody, ExportsMapsOfASessionOrABuiltMaterial) {
+  EXPECT_EQ(
+      arguments(R"({"kind": "export", "session": "satin", "set": "ab12", "presets": ["unreal", "glb"]})"),
+      (Words{"export", "/scans/satin.weft", "--maps", "ab12", "--preset", "unreal,glb"}));
+  EXPECT_EQ(arguments(R"({"kind": "export_price", "session": "satin", "presets": ["exr"], "name": "red"})"),
+            (Words{"export", "--explain", "/scans/satin.weft", "--name", "red", "--preset", "exr"}));
+  EXPECT_EQ(arguments(R"({"kind": "export", "material": "dusty", "set": "ab", "presets": ["glb"]})"),
+            (Words{"export", "/materials/dusty/ab", "--preset", "glb"}));
+  EXPECT_EQ(arguments(R"({"kind": "export", "material": "dusty", "presets": ["glb"]})"),
+            (Words{"export", "/materials/dusty/newest", "--preset", "glb"}));
+  EXPECT_EQ(arguments(R"({"kind": "material", "material": "cotton"})"),
+            (Words{"material", "build", "--output", (user_materials_folder() / "build").string(),
+                   "library:cotton"}));
+  EXPECT_EQ(arguments(R"({"kind": "material", "material": "own"})"),
+            (Words{"material", "build", "/materials/own.toml"}));
+  EXPECT_EQ(read(R"({"kind": "material", "material": "cotton"})")->of, "cotton");
+  for (const char* wrong :
+       {R"({"kind": "export", "session": "satin"})", R"({"kind": "export", "presets": ["glb"]})",
+        R"({"kind": "export", "session": "satin", "material": "a", "presets": ["glb"]})",
+        R"({"kind": "export", "session": "satin", "presets": ["../glb"]})",
+        R"({"kind": "export", "material": "a", "set": 1, "presets": ["glb"]})", R"({"kind": "material"})"}) {
+    const Result<JobSpec> spec = read(wrong);
+    ASSERT_FALSE(spec) << wrong;
+    EXPECT_EQ(spec.error().kind, ErrorKind::kUsage) << wrong;
+  }
 }
 
 TEST_F(JobBody, LeadsNowhereElse) {

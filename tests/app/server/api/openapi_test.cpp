@@ -312,6 +312,63 @@ TEST_F(OpenApi, DescribesTheLibrary) {
   EXPECT_EQ(found("tag=autumn"), 1);
 }
 
+TEST_F(OpenApi, DescribesWhatLeaves) {
+  const std::string of = "/api/v1/sessions/{name}/exports", here = "/api/v1/sessions/done/exports";
+  const std::string file = of + "/{preset}/files/{file}", there = here + "/glb/files/";
+  const Json presets = conforming("GET", "/api/v1/presets", "/api/v1/presets").json()["presets"];
+  const bool has_glb = std::ranges::any_of(presets, [](const Json& each) { return each["name"] == "glb"; });
+  EXPECT_TRUE(has_glb) << presets;
+  EXPECT_EQ(conforming("GET", of, here).json()["exports"].size(), 0U);
+  EXPECT_EQ(conforming("GET", file, there + "a.glb").status, 404);
+
+  const std::filesystem::path folder = scripted_.session("done") / "export" / "glb";
+  std::filesystem::create_directories(folder / "maps");
+  ASSERT_TRUE(write_file(folder / "maps" / "a.png", "texels"));
+  ASSERT_TRUE(write_file(folder / "secret.txt", "none of theirs"));
+  const std::string digest = sha256_of("texels");
+  const Json document = {{"schema", "weft.export/1"},
+                         {"files",
+                          {{{"file", "maps/a.png"}, {"sha256", digest}, {"bytes", 6}},
+                           {{"file", "../../session.json"}, {"sha256", digest}, {"bytes", 6}}}},
+                         {"documents", Json::array()}};
+  ASSERT_TRUE(write_json(folder / "export.json", document));
+  const Json listed = conforming("GET", of, here).json()["exports"];
+  ASSERT_EQ(listed.size(), 1U);
+  EXPECT_EQ(listed[0]["preset"], "glb");
+  EXPECT_EQ(listed[0]["document"]["files"].size(), 2U);
+  const Answer texels = conforming("GET", file, there + "maps:a.png");
+  EXPECT_EQ(texels.status, 200);
+  EXPECT_EQ(texels.body, "texels");
+  EXPECT_THAT(texels.head, testing::HasSubstr("attachment; filename=\"a.png\""));
+  EXPECT_EQ(conforming("GET", file, there + "maps:a.png", "", {{"If-None-Match", '"' + digest + '"'}}).status,
+            304);
+  EXPECT_EQ(conforming("GET", file, there + "maps:a.png", "", {{"Range", "bytes=2-3"}}).body, "xe");
+  for (const char* other :
+       {"secret.txt", "export.json", "..:..:session.json", "..%2F..%2Fsession.json", ".."})
+    EXPECT_NE(ask(port_, "GET", there + other).status, 200) << other;
+  EXPECT_EQ(conforming("GET", file, here + "/../files/a").status, 404);
+}
+
+TEST_F(OpenApi, DescribesMaterials) {
+  const std::string of = "/api/v1/materials";
+  const Json list = conforming("GET", of, of).json()["materials"];
+  const auto cotton =
+      std::ranges::find_if(list, [](const Json& each) { return each["key"] == "cloth:cotton"; });
+  ASSERT_NE(cotton, list.end()) << list;
+  EXPECT_EQ((*cotton)["is_own"], false);
+  const Json resolved = conforming("GET", of + "/{name}", of + "/cloth:dark-satin").json();
+  EXPECT_EQ(resolved["generations"].size(), 2U) << resolved;
+  EXPECT_EQ(conforming("GET", of + "/{name}", of + "/none").status, 404);
+  EXPECT_EQ(conforming("GET", of + "/{name}/builds", of + "/cloth:cotton/builds").status, 200);
+  const std::string build = of + "/{name}/builds/{id}", none = of + "/cloth:cotton/builds/0";
+  EXPECT_EQ(conforming("GET", build, none).status, 404);
+  EXPECT_EQ(conforming("GET", build + "/exports", none + "/exports").status, 404);
+  EXPECT_EQ(conforming("GET", build + "/pixel", none + "/pixel?x=0&y=0").status, 404);
+  EXPECT_EQ(conforming("POST", "/api/v1/jobs", "/api/v1/jobs", R"({"kind": "material", "material": "none"})")
+                .status,
+            404);
+}
+
 /// Clients tell errors apart by these words.
 TEST_F(OpenApi, NamesTheCodeOfEveryErrorThatTheServerDecides) {
   std::set<std::string> words;

@@ -32,6 +32,18 @@ export class Archive {
     }
   }
 
+  /** Runs a verb on a session. */
+  async make(verb, name, ...more) {
+    await run(weft, [verb, path.join(this.sessions, `${name}.weft`), ...more, '--quiet']);
+  }
+
+  /** A file below the home of whoever serves. */
+  write(name, text) {
+    const file = path.join(this.folder, name);
+    fs.mkdirSync(path.dirname(file), {recursive: true});
+    fs.writeFileSync(file, text);
+  }
+
   /** The id of the solve of a session at a level. */
   solve(name, level) {
     return this.#solves.get(`${name} ${level}`);
@@ -40,7 +52,7 @@ export class Archive {
   /** At the same port as before, where it was served already. */
   async serve() {
     const environment = {...process.env, HOME: this.folder, XDG_STATE_HOME: path.join(this.folder, 'state')};
-    delete environment.WEFT_RIG;
+    for (const other of ['WEFT_RIG', 'XDG_DATA_HOME', 'XDG_CONFIG_HOME']) delete environment[other];
     this.#daemon = spawn(weft, ['serve', '--port', this.address ? new URL(this.address).port : '0', '--archive', this.sessions], {env: environment, cwd: this.folder, stdio: ['ignore', 'pipe', 'ignore']});
     this.address = await firstLine(this.#daemon);
   }

@@ -17,6 +17,9 @@ const titles: Record<string, string> = {
   rectify: 'Rectified maps',
   maps: 'Maps',
   finish: 'Finished maps',
+  export: 'Export',
+  export_price: 'Price of an export',
+  material: 'Built material',
   copy: 'Second copy',
   torture: 'Torture scene',
   rig_plan: 'Which light to add',
@@ -36,12 +39,13 @@ export function titleOf(kind: string): string {
 
 /** What was asked of it beside its kind: the level, a limit, another calibration. */
 export function wishOf({wants}: Job): string {
-  const {quality, method, within_s, to_deg, calibration, cloth, preview, recipe} = wants;
+  const {quality, method, within_s, to_deg, calibration, cloth, preview, recipe, presets} = wants;
   return [
     quality ?? method ?? cloth,
     within_s === undefined ? undefined : `within ${within_s} s`,
     to_deg === undefined ? undefined : `to ${to_deg}°`,
     recipe,
+    Array.isArray(presets) ? presets.join(', ') : undefined,
     preview ? 'preview' : undefined,
     calibration === undefined ? undefined : `by ${calibration}`,
   ].filter((word) => word !== undefined).join(', ');

@@ -15,6 +15,7 @@ export function MapSets({session, solve}: {session: string; solve: string}) {
         {sets.map((set) => (
           <li key={set.id}>
             <a class="button" href={addressOfViewer({session, solve: set.id, isSet: true})}>Look at them</a>
+            <a class="button" href={`/material/${session}/maps/${set.id}`}>As a material</a>
             <span><strong>{setInWords(set)}</strong> <span class="dim numbers">{set.width} × {set.height}, {timeOf(set.created)}, {bytesOf(set.bytes)}</span></span>
             {set.warnings.length > 0 && <Mark verdict="warning">{counted(set.warnings.length, 'warning')}</Mark>}
           </li>

@@ -147,6 +147,7 @@ function Head({viewer}: {viewer: Viewer}) {
           {maps.solve.albedo_scale === 'relative' && ', albedo without an absolute scale'}
         </p>
       )}
+      {viewer.name.isSet && <a href={`/material/${textOf(viewer.name)}`}>As a material</a>}
       {maps?.solve.warnings.map((warning) => <p key={warning} class="warning">▲ {warning}</p>)}
     </section>
   );
