@@ -7,6 +7,7 @@
 #include <array>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "bench/oracles/simulated_cloth.h"
@@ -94,6 +95,39 @@ class Stage {
     return told;
   }
 
+  /// Frames that a finished session has of light that was put out: it comes on with a LED's shot, whoever
+  /// scans mends it at the first refusal, and what was accused is taken again.
+  int wrong_at_the_end(int from, const Story& with_light) const {
+    ScanEvidence evidence(model_.grid, model_);
+    std::vector<int> leds(static_cast<std::size_t>(cloth_.leds()));
+    std::iota(leds.begin(), leds.end(), 1);
+    const auto plan = capture::plan_shots({leds, true, {}}, {cloth_.scene_exposure_us(), 100, 8}, {});
+    std::set<int> wrong, missing;
+    for (const auto& shot : plan) missing.insert(shot.index);
+    bool is_mended = false;
+    for (int takes = 0; !missing.empty() && takes < 100; ++takes) {
+      const auto& shot = plan[static_cast<std::size_t>(*missing.begin())];
+      const bool is_repeat = shot.role == ShotRole::kRepeat && shot.led > 0;
+      const bool is_wrong = !is_mended && shot.role != ShotRole::kDark && (is_repeat || shot.led >= from);
+      const Story story = is_wrong ? with_light : plain;
+      std::vector<double> light = seen(story(is_repeat ? kRepeat : shot.led), is_repeat);
+      const capture::ShotVerdict verdict = evidence.judge(shot, light);
+      if (verdict.finding != Finding::kAgrees) {
+        is_mended = true;
+        for (const int index : verdict.accused) {
+          evidence.forget(index);
+          wrong.erase(index);
+          missing.insert(index);
+        }
+        continue;
+      }
+      missing.erase(shot.index);
+      if (is_wrong) wrong.insert(shot.index);
+      evidence.accept(shot, std::move(light));
+    }
+    return static_cast<int>(wrong.size() + missing.size());
+  }
+
  private:
   std::vector<double> less_dark(std::vector<double> light, double times) const {
     for (std::size_t i = 0; i < light.size(); ++i) light[i] = times * (light[i] - dark_[i]);
@@ -170,6 +204,15 @@ Json row_of(const std::string& scene, const Stage& stage) {
           .is_refused();
     });
   };
+  const auto put_out = [&](double light) {
+    return count([&](int from) {
+      return stage.wrong_at_the_end(from, [=](int led) {
+        Lighting lighting = plain(led);
+        lighting.room = light;
+        return lighting;
+      }) == 0;
+    });
+  };
   const auto replaced = [&](int a) {
     return stage.tell([=](int led) { return plain(led == a ? a % n + 1 : led); }).is_refused();
   };
@@ -196,7 +239,9 @@ Json row_of(const std::string& scene, const Stage& stage) {
           {"dim", count(dim)},
           {"stays_lit", stays_lit(stage)},
           {"room_30", with_room_light(0.3)},
-          {"room_10", with_room_light(0.1)}};
+          {"room_10", with_room_light(0.1)},
+          {"put_out_100", put_out(1)},
+          {"put_out_30", put_out(0.3)}};
 }
 
 }  // namespace

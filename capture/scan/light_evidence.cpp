@@ -21,9 +21,12 @@ constexpr double kDimLevel = 0.35;           // gave too little
 constexpr double kDimWarns = 0.6;            // is only spoken of: glossy cloth may look so
 constexpr double kSuspiciousMisfit = 0.002;  // below it the plan is believed without trying other stories
 constexpr std::size_t kStoryStep = 5;        // every fifth patch is looked at: 48 columns have no factor 5
+constexpr std::size_t kGlanceStep = 25;      // of those every fifth, to see which stories are worth that
+constexpr double kWorthALook = 0.8;          // of the plan's misfit at that glance
 constexpr double kMostFull = 0.5;            // of a frame's patches, for it to be held against the others
 constexpr double kFarBetter = 0.6;       // of the plan's misfit, at most, for another story to be believed
 constexpr double kBetterBy = 0.002;      // and by this at least
+constexpr double kAsGood = 1.25;         // of the least misfit: frames of such a story are in doubt as well
 constexpr double kDriftWarns = 0.005;    // of a repeat's brightness
 constexpr double kRepeatLevel = 0.08;    // beyond it a repeat is not the same light
 constexpr double kRepeatPattern = 0.05;  // scatter of a repeat over its first, beyond noise
@@ -92,7 +95,8 @@ const std::vector<Vec3>& light_of(int led, const PatchLights& model) {
   return model.leds[static_cast<std::size_t>(led - 1)];
 }
 
-double misfit_in(const FrameLights& lights, const Readings& readings, const PatchLights& model) {
+double misfit_in(const FrameLights& lights, const Readings& readings, const PatchLights& model,
+                 std::size_t step = kStoryStep) {
   std::vector<std::vector<Vec3>> sums;
   sums.reserve(lights.size());
   std::vector<const std::vector<Vec3>*> incident;
@@ -104,7 +108,7 @@ double misfit_in(const FrameLights& lights, const Readings& readings, const Patc
     for (std::size_t i = 0; i < led.size(); ++i) sums.back()[i] = led[i] + light.times * (*light.more)[i];
     incident.back() = &sums.back();
   }
-  return fit_light(readings, incident, kStoryStep).misfit;
+  return fit_light(readings, incident, step).misfit;
 }
 
 /// Another LED lights in the place of a frame's, or two LEDs are exchanged.
@@ -129,14 +133,17 @@ void add_exchanges(const FrameLights& planned, int leds, std::vector<Story>& sto
   }
 }
 
-/// Light that comes on with any of the frames and stays. `own_led` has it anyhow; 0: none has.
+/// Light that comes on with any of the frames and stays, or goes out again with a later one: somebody may
+/// have mended it before the scan went on. `own_led` has it anyhow; 0: none has.
 void add_more_light(const FrameLights& planned, const std::vector<Vec3>& more, double times, int own_led,
                     Finding finding, const std::string& sentence, std::vector<Story>& stories) {
   for (std::size_t from = 0; from < planned.size(); ++from) {
     if (planned[from].led == own_led) continue;
-    stories.push_back({finding, sentence, planned});
+    Story story = {finding, sentence, planned};
     for (std::size_t f = from; f < planned.size(); ++f) {
-      if (planned[f].led != own_led) stories.back().lights[f] = {planned[f].led, &more, times};
+      if (planned[f].led == own_led) continue;
+      story.lights[f] = {planned[f].led, &more, times};
+      stories.push_back(story);
     }
   }
 }
@@ -155,6 +162,37 @@ std::vector<Story> stories_beside(const FrameLights& planned, const PatchLights&
                    stories);
   }
   return stories;
+}
+
+/// A story that leaves far less than the plan.
+struct Believed {
+  Story story;
+  double misfit = 0;
+};
+
+std::vector<Believed> believed_stories(const FrameLights& planned, const Readings& readings,
+                                       const PatchLights& model, double misfit_as_planned) {
+  const double least = std::min(kFarBetter * misfit_as_planned, misfit_as_planned - kBetterBy);
+  const double worth = kWorthALook * misfit_in(planned, readings, model, kGlanceStep);
+  std::vector<Believed> believed;
+  for (Story& story : stories_beside(planned, model)) {
+    if (misfit_in(story.lights, readings, model, kGlanceStep) >= worth) continue;
+    const double misfit = misfit_in(story.lights, readings, model);
+    if (misfit < least) believed.push_back({std::move(story), misfit});
+  }
+  return believed;
+}
+
+bool comes_and_goes(const Story& story) {
+  return story.finding == Finding::kRoomLight || story.finding == Finding::kStaysLit;
+}
+
+/// Whether a story of light that comes and goes is as likely as the best one, which is of such light too:
+/// only the frames that it begins and ends with are told apart by little.
+bool is_as_good(const Believed& story, const Believed& best) {
+  if (story.misfit <= best.misfit) return true;
+  return comes_and_goes(best.story) && story.story.sentence == best.story.sentence &&
+         story.misfit <= kAsGood * best.misfit;
 }
 
 }  // namespace
@@ -348,16 +386,17 @@ ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vect
   const double misfit_as_planned = misfit_in(planned, readings, *model_);
   verdict.misfit = misfit_as_planned;
   if (misfit_as_planned < kSuspiciousMisfit) return verdict;
-  double least = std::min(kFarBetter * misfit_as_planned, misfit_as_planned - kBetterBy);
-  for (const Story& story : stories_beside(planned, *model_)) {
-    const double misfit = misfit_in(story.lights, readings, *model_);
-    if (misfit >= least) continue;
-    least = misfit;
-    verdict = {story.finding, story.sentence, {}, {}, {}, misfit_as_planned};
-    for (std::size_t f = 0; f < frames.size(); ++f) {
-      if (story.lights[f] != planned[f]) verdict.accused.push_back(frames[f].shot.index);
-    }
+  const std::vector<Believed> believed = believed_stories(planned, readings, *model_, misfit_as_planned);
+  if (believed.empty()) return verdict;
+  const auto best = std::ranges::min_element(believed, {}, &Believed::misfit);
+  verdict = {best->story.finding, best->story.sentence, {}, {}, {}, misfit_as_planned};
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    const bool is_in_doubt = std::ranges::any_of(believed, [&](const Believed& each) {
+      return each.story.lights[f] != planned[f] && is_as_good(each, *best);
+    });
+    if (is_in_doubt) verdict.accused.push_back(frames[f].shot.index);
   }
+  verdict.is_over = comes_and_goes(best->story) && best->story.lights.back() == planned.back();
   return verdict;
 }
 

@@ -43,10 +43,11 @@ struct ShotVerdict {
   std::optional<double> level;
   std::optional<double> misfit;      ///< of LightFit, as planned
   Finding doubt = Finding::kAgrees;  ///< what a frame that is kept is warned of
+  bool is_over = false;              ///< light that was wrong is right again: the newest frame is not accused
 
-  /// Whether the same shot once more may come out right.
+  /// Whether the same shots once more may come out right.
   bool may_pass() const {
-    return finding == Finding::kDark || finding == Finding::kDim || finding == Finding::kChanged;
+    return is_over || finding == Finding::kDark || finding == Finding::kDim || finding == Finding::kChanged;
   }
 };
 

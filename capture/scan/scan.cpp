@@ -441,7 +441,7 @@ class Scan {
 
     std::vector<double> light = so_far.evidence->glance(*frame);
     const ShotVerdict verdict = so_far.evidence->judge(shot, light);
-    if (verdict.finding != Finding::kAgrees) return refused(verdict, so_far);
+    if (verdict.finding != Finding::kAgrees) return refused(shot, verdict, so_far);
 
     KeptFrame kept = {
         {}, histogram_rgb(*frame), verdict.warnings, {code_of(verdict.doubt), verdict.level, verdict.misfit}};
@@ -471,7 +471,7 @@ class Scan {
   }
 
   /// Takes what is accused out of the session, so that it is taken again, now or by the next scan.
-  Kept refused(const ShotVerdict& verdict, FramesSoFar& so_far) {
+  Kept refused(const PlannedShot& shot, const ShotVerdict& verdict, FramesSoFar& so_far) {
     Kept kept = {Error{ErrorKind::kBadData, verdict.sentence, names_of(verdict.accused),
                        "the photograph does not agree with the calibrated light",
                        verdict.finding == Finding::kChanged
@@ -483,17 +483,19 @@ class Scan {
     if (!out) return {out.error(), {}};
     for (const int index : verdict.accused) {
       so_far.evidence->forget(index);
-      const PlannedShot& shot = planned(index);
+      const PlannedShot& accused = planned(index);
       report_.refused({index,
-                       shot.led,
-                       shot.role,
-                       shot.polariser,
+                       accused.led,
+                       accused.role,
+                       accused.polariser,
                        {code_of(verdict.finding), verdict.level, verdict.misfit},
                        kept.error->message()});
     }
     report_.change(
         [&](ScanStatus& status) { status.frames = static_cast<int>(journal_->session().shots.size()); });
-    if (verdict.may_pass() && !request_.again) kept.take_again = verdict.accused;
+    if (!verdict.may_pass() || request_.again) return kept;
+    kept.take_again = verdict.accused;
+    if (verdict.is_over) kept.take_again.push_back(shot.index);
     return kept;
   }
 

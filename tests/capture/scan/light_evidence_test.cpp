@@ -12,8 +12,11 @@ namespace weft::capture {
 namespace {
 
 using test::Lighting;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsSupersetOf;
+using testing::Not;
 
 constexpr int kRepeat = -1;
 constexpr int kDarkAgain = -2;                   // the dark shot at the end
@@ -190,6 +193,18 @@ TEST(LightEvidence, TellsALampThatIsSwitchedOnMeanwhileAtTheRepeatAtLatest) {
     return lighting;
   });
   EXPECT_NE(t.verdict.finding, Finding::kAgrees);
+}
+
+TEST(LightEvidence, AccusesTheFramesOfALampThatIsOutAgain) {
+  const Told t = told(woven(), [](int led) {
+    Lighting lighting = as_planned(led);
+    if (led == 3 || led == 4) lighting.room = 0.5;
+    return lighting;
+  });
+  EXPECT_EQ(t.verdict.finding, Finding::kRoomLight) << t.verdict.sentence;
+  EXPECT_THAT(t.verdict.accused, IsSupersetOf({3, 4}));
+  EXPECT_THAT(t.verdict.accused, Not(Contains(t.at))) << "the newest is right";
+  EXPECT_TRUE(t.verdict.is_over && t.verdict.may_pass()) << "so they are taken again at once";
 }
 
 TEST(LightEvidence, SpeaksOfLightThatCameBetweenTheTwoDarkShots) {
