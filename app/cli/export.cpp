@@ -152,7 +152,9 @@ Result<void> read_aim(ExportArguments& a) {
 Run add_export(Options& options) {
   const auto a = std::make_shared<ExportArguments>();
   ExportOptions& e = a->options;
-  options.add("input", &e.input, "Session folder, or a folder of a set of maps, a built material or a solve");
+  options.add("input", &e.input,
+              "Session folder; folder of a set of maps, a built material or a solve; material: FILE.toml, "
+              "library:NAME");
   options
       .add("--preset", &e.presets,
            "Which files: names of --list, or files that end in .toml (docs/exports.md), by commas")

@@ -140,7 +140,10 @@ void LossMeter::add_samples(const std::vector<View<float>>& truth, const std::ve
   for (const std::size_t c : albedo_) {
     for (int y = 0; y < truth[c].height(); ++y) {
       for (int x = 0; x < truth[c].width(); ++x) {
-        const double difference = static_cast<double>(truth[c](x, y)) - static_cast<double>(read[c](x, y));
+        const double wanted = file_.stored.is_float()
+                                  ? static_cast<double>(truth[c](x, y))
+                                  : std::clamp(static_cast<double>(truth[c](x, y)), 0.0, 1.0);
+        const double difference = wanted - static_cast<double>(read[c](x, y));
         albedo_squares_ += difference * difference;
       }
     }

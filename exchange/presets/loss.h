@@ -18,7 +18,8 @@ struct AngleLoss {
 };
 
 /// Of reflectance: the mean of its absolute difference, and 10 log10 of 1 over the mean square difference of
-/// the samples as the file holds them (of sRGB after its transfer function); none where nothing is lost.
+/// the samples as the file holds them (of sRGB after its transfer function, of integers cut to 0 to 1); none
+/// where nothing is lost.
 struct ColorLoss {
   double mean_abs = 0;
   std::optional<double> psnr_db = {};

@@ -160,6 +160,7 @@ Result<std::vector<WrittenDocument>> write_documents(const PlannedExport& plan, 
   }
   for (const auto& [name, bytes] : held) input.bytes.emplace(name, bytes);
   for (const PlannedDocument& planned : plan.documents) {
+    if (planned.kind == DocumentKind::kLayers) continue;
     Result<WrittenDocument> document = write_document(planned, input);
     if (!document) return std::move(document).error();
     written.push_back(std::move(*document));

@@ -12,8 +12,9 @@
 
 namespace weft::app {
 
-/// Writes the documents of a plan beside its textures, which are in `folder` already. Errors of the writers
-/// (exchange/gltf, materialx, usd, u3m), with the preset and the document as `where`.
+/// Writes the documents of a plan, but for `layers` (write_layers()), beside its textures, which are in
+/// `folder` already. Errors of the writers (exchange/gltf, materialx, usd, u3m), with the preset and the
+/// document as `where`.
 Result<std::vector<WrittenDocument>> write_documents(const PlannedExport& plan, const MapFolder& maps,
                                                      const std::vector<EncodedFile>& files,
                                                      const std::filesystem::path& folder);

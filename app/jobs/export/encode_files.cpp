@@ -31,10 +31,12 @@ struct Task {
 
 // What makes two textures alike, whatever preset asks for them.
 std::string key_of(const PlannedExport& plan, const exchange::PresetFile& file) {
-  return fmt::format("{}x{} {} {} {} {} {} {}", plan.size.width, plan.size.height,
-                     fmt::join(file.channels, ","), words_of(file.stored),
-                     static_cast<int>(file.stored.color), file.stored.is_prman,
-                     static_cast<int>(file.direction), static_cast<int>(plan.preset.roughness));
+  const bool has_roughness = std::ranges::any_of(
+      file.channels, [](const std::string& channel) { return channel.starts_with("roughness"); });
+  return fmt::format(
+      "{}x{} {} {} {} {} {} {}", plan.size.width, plan.size.height, fmt::join(file.channels, ","),
+      words_of(file.stored), static_cast<int>(file.stored.color), file.stored.is_prman,
+      static_cast<int>(file.direction), has_roughness ? static_cast<int>(plan.preset.roughness) : -1);
 }
 
 std::vector<Task> tasks_of(const std::vector<EncodeTarget>& targets) {

@@ -13,9 +13,13 @@
 #include "app/jobs/export/documents.h"
 #include "app/jobs/export/encode_files.h"
 #include "app/jobs/export/export_json.h"
+#include "app/jobs/export/layers.h"
 #include "app/jobs/export/plan.h"
 #include "app/jobs/export/price.h"
+#include "app/jobs/material/build.h"
+#include "app/jobs/material/material_place.h"
 #include "core/files.h"
+#include "core/text.h"
 
 namespace weft::app {
 namespace {
@@ -90,12 +94,20 @@ struct Work {
 };
 
 Result<void> finish(Work& work, const MapFolder& folder, const Json& provenance,
-                    const std::vector<EncodedFile>& files) {
+                    const std::vector<EncodedFile>& files, const JobContext& context) {
   Stopwatch watch;
   const fs::path& aside = work.partial->path();
-  const Result<std::vector<WrittenDocument>> documents = write_documents(*work.plan, folder, files, aside);
-  if (!documents) return documents.error();
-  work.report.document = export_document(*work.plan, folder, provenance, files, *documents);
+  Result<std::vector<WrittenDocument>> documents = write_documents(*work.plan, folder, files, aside);
+  if (!documents) return std::move(documents).error();
+  std::vector<EncodedFile> all = files;
+  for (const PlannedDocument& planned : work.plan->documents) {
+    if (planned.kind != exchange::DocumentKind::kLayers) continue;
+    const Result<WrittenLayers> layers = write_layers(*work.plan, planned, folder, files, aside, context);
+    if (!layers) return layers.error();
+    all.insert(all.end(), layers->files.begin(), layers->files.end());
+    documents->insert(documents->end(), layers->documents.begin(), layers->documents.end());
+  }
+  work.report.document = export_document(*work.plan, folder, provenance, all, *documents);
   if (Result<void> ok = write_json(aside / kExportProduct.document, work.report.document); !ok) return ok;
   work.report.seconds = watch.lap();
   for (const EncodedFile& file : files) work.report.seconds += file.seconds;
@@ -122,7 +134,7 @@ Result<void> make_all(std::vector<Work>& works, const MapFolder& folder, const E
       encode_files(folder, targets, options.is_dx10, context);
   if (!files) return files.error();
   for (std::size_t i = 0; i < wanted.size(); ++i) {
-    if (Result<void> ok = finish(*wanted[i], folder, *provenance, (*files)[i]); !ok) return ok;
+    if (Result<void> ok = finish(*wanted[i], folder, *provenance, (*files)[i], context); !ok) return ok;
   }
   for (Work* work : wanted) {
     if (context.stop.stop_requested()) return interrupted();
@@ -133,7 +145,28 @@ Result<void> make_all(std::vector<Work>& works, const MapFolder& folder, const E
 
 }  // namespace
 
-Result<std::vector<ExportReport>> export_maps(const ExportOptions& options, const JobContext& context) {
+Result<ExportOptions> with_built_material(ExportOptions options, const JobContext& context) {
+  const std::string written = options.input.string();
+  const bool is_library = written.starts_with(kLibraryPrefix);
+  if (!is_library && (!written.ends_with(".toml") || !is_there(options.input))) return options;
+  const Result<MaterialPlace> place = find_material(written, fs::current_path());
+  if (!place) return place.error();
+  const fs::path base =
+      is_library ? fs::absolute(plain_name(written)) : fs::absolute(options.input).replace_extension();
+  BuildOptions build;
+  build.materials = {*place};
+  if (place->is_shipped()) build.output = base.string() + "-build";
+  const Result<BuildReport> built = build_materials(build, context);
+  if (!built) return built.error();
+  options.input = built->materials.front().folder;
+  options.material_base = base.string() + "-export";
+  return options;
+}
+
+Result<std::vector<ExportReport>> export_maps(const ExportOptions& asked, const JobContext& context) {
+  const Result<ExportOptions> with_folder = with_built_material(asked, context);
+  if (!with_folder) return with_folder.error();
+  const ExportOptions& options = *with_folder;
   const Result<MapFolder> folder = open_map_folder(options.input, options.maps);
   if (!folder) return folder.error();
   Result<std::vector<PlannedExport>> plans = plan_exports(options, *folder);

@@ -19,16 +19,19 @@ inline constexpr ProductKind kExportProduct = {"weft.export", "export.json", "ex
                                                "make it first with weft export"};
 
 struct ExportOptions {
-  std::filesystem::path input;            ///< a session, a set of maps, a built material or a solve
+  /// A session, a set of maps, a built material, a solve, or a material that is built first: a file that ends
+  /// in .toml, or library:NAME.
+  std::filesystem::path input;
   std::string maps = {};                  ///< id of the set of a session; empty: its newest
   std::vector<std::string> presets = {};  ///< names, or files that end in .toml
-  /// Empty: SESSION/export/<preset>, of a folder elsewhere FOLDER/export/<preset>. Of several presets each
-  /// has a folder of its name in it.
+  /// Empty: SESSION/export/<preset>, of a folder elsewhere FOLDER/export/<preset>, of a material's file
+  /// NAME-export/<preset> beside it. Of several presets each has a folder of its name in it.
   std::filesystem::path output = {};
-  std::string name = {};              ///< of the cloth in file names; empty: as it is called
-  int size_px = 0;                    ///< of the longer side; 0: as the preset has it
-  bool is_dx10 = false;               ///< DDS with DX10 headers alone
-  std::optional<double> to_deg = {};  ///< normals lose at most this in the mean: chooses their bits
+  std::filesystem::path material_base = {};  ///< in place of the folder's own: with_built_material()
+  std::string name = {};                     ///< of the cloth in file names; empty: as it is called
+  int size_px = 0;                           ///< of the longer side; 0: as the preset has it
+  bool is_dx10 = false;                      ///< DDS with DX10 headers alone
+  std::optional<double> to_deg = {};         ///< normals lose at most this in the mean: chooses their bits
 };
 
 /// What an export of one preset left behind.
@@ -38,6 +41,10 @@ struct ExportReport {
   Json document = {};      ///< export.json
   double seconds = 0;      ///< 0 where it was there
 };
+
+/// The same with the folder of the built material, where the input is a material's file or name. Errors of
+/// build_materials().
+Result<ExportOptions> with_built_material(ExportOptions options, const JobContext& context);
 
 /// Packs the maps for each preset, writes its files and documents, measures what they lose by reading them
 /// back, and publishes each folder whole, with export.json (weft.export/1, docs/formats.md). Files that are

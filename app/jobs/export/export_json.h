@@ -18,8 +18,8 @@ struct WrittenDocument {
   std::string kind;
   std::string sha256;
   std::uint64_t bytes = 0;
-  std::vector<std::string> files;     ///< that it names or holds
-  std::vector<std::string> left_out;  ///< what its format cannot hold
+  std::vector<std::string> files = {};     ///< that it names or holds
+  std::vector<std::string> left_out = {};  ///< what its format cannot hold
 };
 
 /// export.json (weft.export/1, docs/formats.md).

@@ -73,14 +73,13 @@ Result<FolderMap> map_from_json(const Json& entry, const std::string& where) {
   return map;
 }
 
-// The files of a solve, whose document does not list them.
-std::vector<FolderMap> maps_of_solve(const fs::path& folder) {
-  std::vector<FolderMap> maps;
+// The files of a surface, which documents of sets and solves do not list.
+void add_surface(MapFolder& folder) {
   for (const char* name : {"normal", "albedo", "roughness", "specular"}) {
     const std::string file = fmt::format("{}.exr", name);
-    if (is_there(folder / file)) maps.push_back({.name = name, .file = file, .source = "measured"});
+    if (folder.map(name) == nullptr && is_there(folder.folder / file))
+      folder.maps.push_back({.name = name, .file = file, .source = "measured"});
   }
-  return maps;
 }
 
 // Parameters of a built material that are no maps: a number or three, or {"value", "source"} of them.
@@ -150,9 +149,7 @@ Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
   if (folder.mm_per_pixel && !(*folder.mm_per_pixel > 0)) fields.reject("mm_per_pixel", "must be above 0");
   folder.is_tile = document->contains("is_tile") && (*document)["is_tile"] == true;
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
-  if (folder.kind == "solve") {
-    folder.maps = maps_of_solve(path);
-  } else {
+  if (folder.kind != "solve") {
     const Json& maps = fields.list("maps");
     if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
     for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -165,6 +162,7 @@ Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
     if (Result<void> ok = add_parameters((*document)["parameters"], where + ": parameters", folder.maps); !ok)
       return std::move(ok).error();
   }
+  if (folder.kind != "material") add_surface(folder);
   folder.document = std::move(*document);
   find_session(folder);
   folder.albedo_scale = scale_of(folder);

@@ -69,10 +69,16 @@ void copy_plane(View<const float> from, View<float> to) {
 }  // namespace
 
 SourcePlanes MapPlanes::outline_of(const MapFolder& folder) {
+  static const float kNoValue = 0;
+  const View<const float> kSomePixel(&kNoValue, {1, 1}, 1);
   SourcePlanes planes;
   for (std::size_t p = 0; p < planes.size(); ++p) {
     const PlaneOrigin origin = origin_of(folder, static_cast<Plane>(p));
-    planes[p].constant = origin.file.empty() ? origin.constant : std::optional(0.0);
+    if (origin.file.empty()) {
+      planes[p].constant = origin.constant;
+    } else {
+      planes[p].pixels = kSomePixel;
+    }
   }
   return planes;
 }

@@ -28,7 +28,8 @@ class MapPlanes {
   /// What is loaded; of files that are not, an empty plane with a number, so that it counts as there.
   const exchange::SourcePlanes& planes() const { return planes_; }
 
-  /// The planes as check_file() needs them: which are there, without a pixel.
+  /// The planes as check_file() and says_something() need them: those of files have a pixel without a
+  /// meaning.
   static exchange::SourcePlanes outline_of(const MapFolder& folder);
 
  private:

@@ -114,8 +114,7 @@ Result<void> add_documents(const MapFolder& folder, PlannedExport& plan, std::se
 
 void add_notes(const MapFolder& folder, PlannedExport& plan) {
   if (!folder.mm_per_pixel)
-    plan.notes.emplace_back(
-        "The size is not known: photographs without a calibrated camera have no millimetres.");
+    plan.notes.emplace_back("The size is not known: these maps state no millimetres.");
   if (folder.albedo_scale == "relative")
     plan.notes.emplace_back("The albedo is relative: it lacks one common factor to be a reflectance.");
   if (!folder.is_tile) plan.notes.emplace_back("The maps are no tile: they do not go on over their borders.");
@@ -177,6 +176,7 @@ fs::path folder_of(const ExportOptions& options, const MapFolder& folder, const 
     const fs::path output = fs::absolute(options.output).lexically_normal();
     return options.presets.size() == 1 ? output : output / preset;
   }
+  if (!options.material_base.empty()) return options.material_base / preset;
   const fs::path base = folder.session ? folder.session->folder : folder.folder;
   return absolute_folder(base) / "export" / preset;
 }

@@ -201,7 +201,10 @@ Result<void> choose_bits(const ExportOptions& options, const MapFolder& folder, 
   return {};
 }
 
-Result<std::vector<ExportPrice>> price_exports(const ExportOptions& options, const JobContext& context) {
+Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const JobContext& context) {
+  const Result<ExportOptions> with_folder = with_built_material(asked, context);
+  if (!with_folder) return with_folder.error();
+  const ExportOptions& options = *with_folder;
   const Result<MapFolder> folder = open_map_folder(options.input, options.maps);
   if (!folder) return folder.error();
   Result<std::vector<PlannedExport>> plans = plan_exports(options, *folder);

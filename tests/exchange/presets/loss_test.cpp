@@ -10,8 +10,8 @@
 namespace weft::exchange {
 namespace {
 
-const std::vector<std::string> kNormal = {"normal.x", "normal.y", "normal.z"};
-const std::vector<std::string> kAlbedo = {"albedo.r", "albedo.g", "albedo.b"};
+const std::vector<std::string> kLostNormal = {"normal.x", "normal.y", "normal.z"};
+const std::vector<std::string> kLostAlbedo = {"albedo.r", "albedo.g", "albedo.b"};
 
 Loss loss_at(const TestMaps& maps, const PresetFile& file) {
   Image<float> samples = maps.samples(file);
@@ -22,7 +22,7 @@ Loss loss_at(const TestMaps& maps, const PresetFile& file) {
 TEST(Loss, OfAFlatNormalInEightBitsIsWhatOneHalfStepTurnsIt) {
   TestMaps maps({4, 4});
   maps.set_slopes([](int, int) { return std::array<double, 2>{0, 0}; });
-  const Loss loss = loss_at(maps, file_of(kNormal));
+  const Loss loss = loss_at(maps, file_of(kLostNormal));
   ASSERT_TRUE(loss.normal);
   // 128 of 255 is 1/255 in x and in y.
   const double expected = std::atan(std::sqrt(2.0) / 255) * 180 / 3.14159265358979;
@@ -34,7 +34,8 @@ TEST(Loss, OfAFlatNormalInEightBitsIsWhatOneHalfStepTurnsIt) {
 TEST(Loss, OfNormalsInSixteenBitsIsUnderAThousandthOfADegree) {
   TestMaps maps({64, 64});
   maps.set_slopes([](int x, int y) { return std::array<double, 2>{0.02 * x - 0.6, 0.01 * y}; });
-  const Loss eight = loss_at(maps, file_of(kNormal)), sixteen = loss_at(maps, file_of(kNormal, {.bits = 16}));
+  const Loss eight = loss_at(maps, file_of(kLostNormal)),
+             sixteen = loss_at(maps, file_of(kLostNormal, {.bits = 16}));
   EXPECT_LT(sixteen.normal->mean_deg, 0.001);
   EXPECT_GT(eight.normal->mean_deg, 0.1);
   EXPECT_NEAR(eight.normal->mean_deg / sixteen.normal->mean_deg, 257, 30);
@@ -43,15 +44,15 @@ TEST(Loss, OfNormalsInSixteenBitsIsUnderAThousandthOfADegree) {
 TEST(Loss, SeesAFlippedDirectionAsTwiceItsTilt) {
   TestMaps maps({4, 4});
   maps.set_slopes([](int, int) { return std::array<double, 2>{0, std::tan(0.2)}; });
-  Image<float> flipped = maps.samples(file_of(kNormal, {.bits = 16}, NormalDirection::kDirectX));
-  const Loss loss = measure_loss(file_of(kNormal, {.bits = 16}), maps.planes(), {}, std::move(flipped));
+  Image<float> flipped = maps.samples(file_of(kLostNormal, {.bits = 16}, NormalDirection::kDirectX));
+  const Loss loss = measure_loss(file_of(kLostNormal, {.bits = 16}), maps.planes(), {}, std::move(flipped));
   EXPECT_NEAR(loss.normal->mean_deg, 0.4 * 180 / 3.14159265358979, 0.01);
 }
 
 TEST(Loss, OfASlopeOf89DegreesIsThatOfItsDirection) {
   TestMaps maps({4, 4});
   maps.set_slopes([](int, int) { return std::array<double, 2>{std::tan(89 * 3.14159265358979 / 180), 0}; });
-  const Loss three = loss_at(maps, file_of(kNormal));
+  const Loss three = loss_at(maps, file_of(kLostNormal));
   EXPECT_LT(three.normal->max_deg, 0.4) << "of three parts";
   const Loss two = loss_at(maps, file_of({"normal.x", "normal.y"}));
   EXPECT_GT(two.normal->max_deg, 0.5) << "of two parts the third is rebuilt from a difference near 0";
@@ -62,7 +63,7 @@ TEST(Loss, OfAlbedoIsInReflectanceAndInDecibelsOfItsSamples) {
   TestMaps maps({16, 16});
   for (const Plane plane : {Plane::kAlbedoR, Plane::kAlbedoG, Plane::kAlbedoB})
     maps.set(plane, [](int x, int y) { return 0.003 * (x + 16 * y); });
-  const PresetFile file = file_of(kAlbedo, {.color = ColorSpace::kSrgb});
+  const PresetFile file = file_of(kLostAlbedo, {.color = ColorSpace::kSrgb});
   Image<float> samples = maps.samples(file);
   for (int y = 0; y < 16; ++y) {
     for (int x = 0; x < 16; ++x) samples(x, y, 1) += 0.01F;
@@ -76,7 +77,7 @@ TEST(Loss, OfAlbedoIsInReflectanceAndInDecibelsOfItsSamples) {
 TEST(Loss, OfFloatsIsNothingAndHasNoDecibels) {
   TestMaps maps({4, 4});
   for (const Plane plane : {Plane::kAlbedoR, Plane::kAlbedoG, Plane::kAlbedoB}) maps.set(plane, 0.3);
-  const PresetFile file = file_of(kAlbedo, {.encoding = Encoding::kExr, .bits = 32});
+  const PresetFile file = file_of(kLostAlbedo, {.encoding = Encoding::kExr, .bits = 32});
   const Loss loss = measure_loss(file, maps.planes(), {}, maps.samples(file));
   EXPECT_EQ(loss.albedo->mean_abs, 0);
   EXPECT_FALSE(loss.albedo->psnr_db);
@@ -88,7 +89,7 @@ TEST(Loss, CountsPixelsThatAnIntegerCannotHold) {
   maps.set(Plane::kAlbedoR, [](int x, int) { return -0.1 + 0.5 * x; });  // -0.1, 0.4, 0.9, 1.4
   maps.set(Plane::kAlbedoG, 0.5);
   maps.set(Plane::kAlbedoB, 0.5);
-  const Loss loss = loss_at(maps, file_of(kAlbedo, {.color = ColorSpace::kSrgb}));
+  const Loss loss = loss_at(maps, file_of(kLostAlbedo, {.color = ColorSpace::kSrgb}));
   EXPECT_EQ(loss.channels[0].cut, 2);
   EXPECT_EQ(loss.channels[1].cut, 0);
   EXPECT_NEAR(loss.channels[0].most_abs, 0.4, 1e-6);

@@ -12,13 +12,13 @@
 namespace weft::exchange {
 namespace {
 
-const std::vector<std::string> kNormal = {"normal.x", "normal.y", "normal.z"};
+const std::vector<std::string> kPackedNormal = {"normal.x", "normal.y", "normal.z"};
 
 TEST(Packing, FlipsFloatsBeforeTheyAreRounded) {
   TestMaps maps({4, 4});
   maps.set_slopes([](int, int) { return std::array<double, 2>{0, 0}; });
   for (const NormalDirection direction : {NormalDirection::kOpenGl, NormalDirection::kDirectX}) {
-    Image<float> samples = maps.samples(file_of(kNormal, {}, direction));
+    Image<float> samples = maps.samples(file_of(kPackedNormal, {}, direction));
     TestMaps::round_to_bits(samples, 8);
     EXPECT_EQ(std::lround(255 * samples(1, 1, 0)), 128) << "flat is 128, whatever the direction";
     EXPECT_EQ(std::lround(255 * samples(1, 1, 1)), 128) << "a flipped byte would be 127";
@@ -29,8 +29,8 @@ TEST(Packing, FlipsFloatsBeforeTheyAreRounded) {
 TEST(Packing, TurnsTheSecondPartOfANormalForDirectX) {
   TestMaps maps({2, 2});
   maps.set_slopes([](int, int) { return std::array<double, 2>{0.3, -0.5}; });
-  const Image<float> gl = maps.samples(file_of(kNormal)),
-                     dx = maps.samples(file_of(kNormal, {}, NormalDirection::kDirectX));
+  const Image<float> gl = maps.samples(file_of(kPackedNormal)),
+                     dx = maps.samples(file_of(kPackedNormal, {}, NormalDirection::kDirectX));
   EXPECT_FLOAT_EQ(gl(0, 0, 0), dx(0, 0, 0));
   EXPECT_FLOAT_EQ(gl(0, 0, 1), 1 - dx(0, 0, 1));
   EXPECT_GT(gl(0, 0, 1), 0.5F) << "a surface that falls upwards faces up";
@@ -59,8 +59,8 @@ TEST(Packing, GivesBackItsValuesFromItsSamples) {
   ChannelFacts facts;
   facts.height_least_mm = -0.3;
   facts.height_most_mm = 0.26;
-  for (const auto& channels :
-       std::vector<std::vector<std::string>>{kNormal, {"height"}, {"albedo.r", "albedo.g", "albedo.b"}}) {
+  for (const auto& channels : std::vector<std::vector<std::string>>{
+           kPackedNormal, {"height"}, {"albedo.r", "albedo.g", "albedo.b"}}) {
     for (const bool is_float : {false, true}) {
       const Stored stored = {.encoding = is_float ? Encoding::kExr : Encoding::kPng,
                              .bits = is_float ? 32 : 16,

@@ -56,7 +56,8 @@ TEST(PresetFile, NamesTheNearestOfWhatItDoesNotKnow) {
 
 TEST(PresetFile, RefusesWhatAnEncodingCannotHold) {
   expect_refused(with(kGood, "bits = 16", "bits = 32"), {"file 1: bits", "png holds 8 or 16"});
-  expect_refused(with(kGood, "bits = 16", "encoding = \"dds\""), {"name", "does not end in .dds"});
+  expect_refused(with(kGood, "bits = 16", "encoding = \"dds\""), {"blocks", "a dds has blocks"});
+  expect_refused(with(kGood, "bits = 16", "encoding = \"exr\""), {"name", "does not end in .exr"});
   const std::string dds =
       with(with(kGood, "_n.png", "_n.dds"), "bits = 16", "encoding = \"dds\"\nblocks = \"bc5\"");
   expect_refused(dds, {"channels", "3 are named where dds, bc5 holds 2"});
