@@ -37,6 +37,7 @@ function truthOf(folder) {
   const truth = new Maps(folder);
   truth.albedo = truth.pixelsOf('albedo', ['R', 'G', 'B']);
   truth.normal = truth.pixelsOf('normal', ['X', 'Y', 'Z']);
+  if (!truth.albedo || !truth.normal) throw new Error(`${folder} has no albedo.exr with R, G, B and no normal.exr with X, Y, Z of its size`);
   return truth;
 }
 

@@ -111,6 +111,8 @@ def passes():
 def picture(samples):
     scene = bpy.context.scene
     scene.cycles.samples = samples
+    scene.cycles.pixel_filter_type = 'BOX'
+    scene.cycles.filter_width = 1
     scene.view_settings.view_transform = 'Standard'
     scene.render.image_settings.file_format = 'PNG'
     lamp = bpy.data.lights.new('lamp', 'SUN')
@@ -130,11 +132,11 @@ def run(task):
     for image in bpy.data.images:
         image.use_fake_user = True
     size_m = look_at_it(task)
+    for material in bpy.data.materials:
+        for node in material.node_tree.nodes if material.use_nodes else []:
+            if node.type == 'TEX_IMAGE':
+                node.interpolation = 'Closest'
     if task['shows'] == 'passes':
-        for material in bpy.data.materials:
-            for node in material.node_tree.nodes if material.use_nodes else []:
-                if node.type == 'TEX_IMAGE':
-                    node.interpolation = 'Closest'
         passes()
     else:
         picture(task.get('samples', 16))

@@ -2,7 +2,7 @@
 // .dds: WebGL in Chromium is the arbiter of the blocks; Pillow and OpenImageIO read what each of them can.
 import fs from 'node:fs';
 import path from 'node:path';
-import {difference} from '../support/compare.mjs';
+import {difference, withoutPadding} from '../support/compare.mjs';
 import {bytesOfLevel, headerOf} from '../support/dds.mjs';
 import {judgeFile} from './images.mjs';
 import {readPixels} from '../support/pixels.mjs';
@@ -110,13 +110,14 @@ async function throughWebGl(browser, known, offset = 0) {
   }));
 }
 
-function checkReaders({report, known, arbiter, shifted}) {
+function checkReaders({report, known, arbiter, shifted, entryOf}) {
   for (const reader of ['pillow', 'openimageio']) {
     const files = [...known].filter(([file, header]) => canRead(reader, header) && !arbiter.get(file).error).map(([file]) => file);
     const read = files.length ? readPixels(reader, files) : [];
     files.forEach((file, at) => {
-      report.check(`${path.basename(file)} ${known.get(file).format} by ${reader}`, judgeAgreement(read[at], arbiter.get(file), known.get(file)));
-      if (!shifted.get(file)?.error) report.refuses(`${path.basename(file)} against blocks shifted by one, by ${reader}`, judgeAgreement(read[at], shifted.get(file), known.get(file)));
+      const title = entryOf(file)?.title ?? path.basename(file);
+      report.check(`${title} ${known.get(file).format} by ${reader}`, judgeAgreement(read[at], arbiter.get(file), known.get(file)));
+      if (!shifted.get(file)?.error) report.refuses(`${title} against blocks shifted by one, by ${reader}`, judgeAgreement(read[at], shifted.get(file), known.get(file)));
     });
   }
 }
@@ -136,8 +137,8 @@ export async function check({report, files, entryOf, truth, browser, scratch}) {
   for (const [file, texels] of arbiter) {
     const entry = entryOf(file);
     if (texels.error) report.check(`${path.basename(file)} by WebGL`, {ok: false, says: texels.error});
-    else if (entry) judgeFile({report, entry, texels, truth, reader: 'WebGL'});
+    else if (entry) judgeFile({report, entry, texels: withoutPadding(texels, truth), truth, reader: 'WebGL'});
   }
-  checkReaders({report, known, arbiter, shifted});
+  checkReaders({report, known, arbiter, shifted, entryOf});
   return undefined;
 }

@@ -11,65 +11,112 @@ import {readPixels, readPngFile} from '../support/pixels.mjs';
 import {byExitCode, has, run} from '../support/programs.mjs';
 import {all, below, sameLength} from '../support/report.mjs';
 
-/** Means of absolute differences that blocks may cost, and degrees of their normals. */
-const ofBlocks = {bc1: 0.02, bc3: 0.03, bc4: 0.01, bc5: 0.01, bc7: 0.01};
-const ofBlocksDeg = 3;
-
-/** Every channel that the catalogue knows, against the maps; `order` permutes the channels for a twin. */
+/** Every channel that the catalogue knows, against the maps; `order` permutes the channels for a twin. Blocks and .tx are judged by what they are said to lose. */
 function judgeTexels(texels, entry, truth, order = (at) => at) {
   const size = sameSize(texels, truth);
   if (!size.ok) return size;
   const verdicts = [];
-  const blocks = entry.encoding === 'dds';
   entry.channels.forEach((name, at) => {
     const sample = sampleOf(at, truth, entry);
-    if (!sample || (isNormal(name) && (blocks || entry.encoding === 'tx'))) return;
-    let [most, sum] = [0, 0];
+    if (!sample) return;
     const channel = texels.channels > 1 ? order(at) : 0;
+    let most = 0;
     for (let texel = 0; texel < truth.width * truth.height; texel += 1) {
       const off = Math.abs(texels.data[texel * texels.channels + channel] - sample(texel));
-      sum += off;
       if (!(off <= most)) most = off;
     }
     const limit = texels.whole ? halfStep(texels) : halfStep(texels) * Math.max(1, ...(entry.ranges[at] ?? [1]).map(Math.abs));
-    if (blocks) verdicts.push(below(sum / (truth.width * truth.height), ofBlocks[entry.blocks], '', ` of ${name} in the mean`));
-    else verdicts.push(below(most, limit, '', ` of ${name} at most`));
+    verdicts.push(below(most, limit, '', ` of ${name} at most`));
   });
   if (!verdicts.length) return null;
-  const worst = verdicts.every(({ok}) => ok) ? verdicts.slice(0, 1) : verdicts;
-  const rest = verdicts.length > 1 && worst.length === 1 ? [{ok: true, says: `and ${verdicts.length - 1} channels more`}] : [];
-  return all([...worst, ...rest]);
+  const bad = verdicts.filter(({ok}) => !ok);
+  if (bad.length) return all(bad);
+  return {ok: true, says: `${verdicts[0].says}${verdicts.length > 1 ? ` and ${verdicts.length - 1} channels more` : ''}`};
+}
+
+/** Whether channels that are exchanged are different ones. */
+function canTell(entry, truth, order) {
+  return entry.channels.some((_, at) => {
+    const [one, other] = [sampleOf(at, truth, entry), entry.channels[order(at)] && sampleOf(order(at), truth, entry)];
+    if (!one || !other) return false;
+    for (let texel = 0; texel < truth.width * truth.height; texel += 1) if (Math.abs(one(texel) - other(texel)) > 0.05) return true;
+    return false;
+  });
+}
+
+/** What export.json says that blocks lose, against what this reader sees: decibels of colours, means of data. */
+function judgeBlocks(texels, entry, truth, order = (at) => at) {
+  const size = sameSize(texels, truth);
+  if (!size.ok) return size;
+  const verdicts = [];
+  let [squares, colors] = [0, 0];
+  entry.channels.forEach((name, at) => {
+    const sample = sampleOf(at, truth, entry);
+    if (!sample || isNormal(name)) return;
+    let [sum, square] = [0, 0];
+    const count = truth.width * truth.height;
+    for (let texel = 0; texel < count; texel += 1) {
+      const off = Math.abs(texels.data[texel * texels.channels + order(at)] - sample(texel));
+      sum += off;
+      square += off * off;
+    }
+    if (name.startsWith('albedo.')) {
+      squares += square / count;
+      colors += 1;
+    } else {
+      const [least, most] = entry.ranges[at];
+      verdicts.push(below(Math.abs(sum / count - entry.means[at] / Math.max(1e-9, most - least)), 0.003, '', ` between what ${name} loses and is said to`));
+    }
+  });
+  if (colors && entry.lost.albedo?.psnr_db) {
+    const psnr_db = 10 * Math.log10(colors / squares);
+    verdicts.push(below(Math.abs(psnr_db - entry.lost.albedo.psnr_db), 0.2, ' dB', ` between ${psnr_db.toFixed(2)} dB of the albedo and what is said`));
+  }
+  return verdicts.length ? all(verdicts) : null;
+}
+
+function normalsIn(texels, entry, greenSign) {
+  const z = entry.channels.indexOf('normal.z');
+  const stored = ['exr', 'tx'].includes(entry.encoding);
+  return normalsOf(texels, {greenSign, rebuildZ: z < 0, stored, channels: [entry.channels.indexOf('normal.x'), entry.channels.indexOf('normal.y'), z]});
 }
 
 function judgeDirection(texels, entry, truth, greenSign) {
   const size = sameSize(texels, truth);
   if (!size.ok) return size;
-  const z = entry.channels.indexOf('normal.z');
-  const stored = ['exr', 'tx'].includes(entry.encoding);
-  const read = normalsOf(texels, {greenSign, rebuildZ: z < 0, stored, channels: [entry.channels.indexOf('normal.x'), entry.channels.indexOf('normal.y'), z]});
-  const {mean, most} = angles(read, truth.normal);
-  const limit = entry.encoding === 'dds' ? ofBlocksDeg : texels.bits === 8 ? 0.2 : stored && texels.bits === 16 ? 0.02 : 0.01;
+  const {mean, most} = angles(normalsIn(texels, entry, greenSign), truth.normal);
+  const limit = entry.encoding === 'dds' ? entry.lost.normal_deg.mean + 0.1 : texels.bits === 8 ? 0.2 : texels.whole || texels.bits === 32 ? 0.01 : 0.02;
   return below(mean, limit, ' deg', `, most ${most.toFixed(2)}, tilt below 40 deg`);
+}
+
+/** Degrees that export.json says are lost, over all tilts, against what this reader sees. */
+function judgeSaidLoss(texels, entry, truth, greenSign) {
+  const {mean} = angles(normalsIn(texels, entry, greenSign), truth.normal, 180);
+  const said = entry.lost.normal_deg.mean;
+  // Graphics hardware rounds what a block says to 8 bits.
+  const limit = entry.encoding === 'dds' ? 0.1 : 0.02 * said + 0.0005;
+  return below(Math.abs(mean - said), limit, ' deg', ` between the ${mean.toFixed(4)} that are lost over all tilts and what is said`);
+}
+
+function judgeNormals({report, entry, texels, truth, title}) {
+  const green = entry.direction === 'directx' ? -1 : 1;
+  report.check(`${title} its normals`, judgeDirection(texels, entry, truth, green));
+  report.refuses(`${title} with green flipped`, judgeDirection(texels, entry, truth, -green));
+  if (!entry.lost?.normal_deg) return;
+  report.check(`${title} what its normals lose`, judgeSaidLoss(texels, entry, truth, green));
+  report.refuses(`${title} what its normals lose with green flipped`, judgeSaidLoss(texels, entry, truth, -green));
 }
 
 /** What a reader found in a file, held against the maps, and twins of it. */
 export function judgeFile({report, entry, texels, truth, reader}) {
   const title = `${entry.title} by ${reader}`;
   if (texels.error) return report.check(title, {ok: false, says: texels.error});
-  const verdict = judgeTexels(texels, entry, truth);
-  if (verdict) {
-    report.check(`${title}, ${texels.bits} bits`, verdict);
-    const [first, second] = entry.channels;
-    if (verdict.ok && second && first !== second) {
-      const twin = judgeTexels(texels, entry, truth, (at) => [1, 2, 0, 3][at] % texels.channels);
-      if (twin) report.refuses(`${title} with channels exchanged`, twin);
-    }
-  }
-  if (truth.normal && entry.channels.includes('normal.x')) {
-    const green = entry.direction === 'directx' ? -1 : 1;
-    report.check(`${title}, ${texels.bits} bits`, judgeDirection(texels, entry, truth, green));
-    report.refuses(`${title} with green flipped`, judgeDirection(texels, entry, truth, -green));
-  }
+  const judge = entry.encoding === 'dds' ? judgeBlocks : judgeTexels;
+  const verdict = judge(texels, entry, truth);
+  const exchange = (at) => [1, 2, 0, 3][at] % texels.channels;
+  if (verdict) report.check(`${title}, ${texels.bits} bits`, verdict);
+  if (verdict?.ok && canTell(entry, truth, exchange)) report.refuses(`${title} with channels exchanged`, judge(texels, entry, truth, exchange));
+  if (entry.channels.includes('normal.x')) judgeNormals({report, entry, texels, truth, title});
   return undefined;
 }
 

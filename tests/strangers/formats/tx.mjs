@@ -3,8 +3,10 @@
 import fs from 'node:fs';
 import path from 'node:path';
 import {sampleOf} from '../support/catalogue.mjs';
+import {readPixels} from '../support/pixels.mjs';
 import {run} from '../support/programs.mjs';
 import {all, below} from '../support/report.mjs';
+import {judgeFile} from './images.mjs';
 
 function levelsDownToOne(width, height) {
   const levels = [];
@@ -14,8 +16,7 @@ function levelsDownToOne(width, height) {
   }
 }
 
-function judgeLayout(out, truth, code = 0) {
-  if (code !== 0) return {ok: false, says: out.trim().split('\n')[0] || `exit code ${code}`};
+function judgeLayout(out, truth) {
   const levels = /MIP-map levels: (.*)/.exec(out)?.[1].trim().split(' ') ?? [];
   return all([
     {ok: /openexr/.test(out), says: 'openexr'},
@@ -39,18 +40,27 @@ function judgeMeans(out, entry, truth, off = 0) {
   return all(verdicts);
 }
 
+/** The words on each file of a program that speaks of one after the other: a part begins with the file's name. */
+function partsOf(out, files) {
+  const starts = files.map((file) => out.indexOf(`${file} `));
+  return files.map((_, at) => (starts[at] < 0 ? '' : out.slice(starts[at], starts[at + 1] > 0 ? starts[at + 1] : undefined)));
+}
+
 export async function check({report, entries, truth, scratch}) {
-  for (const entry of entries.filter(({encoding}) => encoding === 'tx')) {
-    const {code, out, err} = run('iinfo', ['-v', entry.file]);
-    report.check(`${entry.title} by iinfo`, judgeLayout(out + err, truth, code));
-    report.refuses(`${entry.title} for a cloth twice as wide`, judgeLayout(out, {...truth, width: 2 * truth.width}));
-    const stats = run('oiiotool', ['--stats', '--info', entry.file]).out;
-    report.check(`${entry.title} by oiiotool`, judgeMeans(stats, entry, truth));
-    report.refuses(`${entry.title} with a mean 0.001 off`, judgeMeans(stats, entry, truth, 0.001));
-    const cut = path.join(scratch, `cut_${path.basename(entry.file)}`);
-    const bytes = fs.readFileSync(entry.file);
-    fs.writeFileSync(cut, bytes.subarray(0, bytes.length >> 1));
-    const broken = run('oiiotool', ['--stats', '--info', cut]);
-    report.refuses(`${entry.title} cut in the middle, by oiiotool`, judgeMeans(broken.code === 0 ? broken.out : '', entry, truth));
-  }
+  const files = entries.map(({file}) => file);
+  const layouts = partsOf(run('iinfo', ['-v', ...files]).out, files);
+  const stats = partsOf(run('oiiotool', ['--stats', '--info', ...files]).out, files);
+  entries.forEach((entry, at) => {
+    report.check(`${entry.title} by iinfo`, judgeLayout(layouts[at], truth));
+    report.refuses(`${entry.title} for a cloth twice as wide`, judgeLayout(layouts[at], {...truth, width: 2 * truth.width}));
+    report.check(`${entry.title} by oiiotool`, judgeMeans(stats[at], entry, truth));
+    report.refuses(`${entry.title} with a mean 0.001 off`, judgeMeans(stats[at], entry, truth, 0.001));
+  });
+  const levels = readPixels('openimageio', files);
+  entries.forEach((entry, at) => judgeFile({report, entry, texels: levels[at], truth, reader: 'openimageio'}));
+  const cut = path.join(scratch, 'cut.tx');
+  const bytes = fs.readFileSync(files[0]);
+  fs.writeFileSync(cut, bytes.subarray(0, bytes.length >> 1));
+  const broken = run('oiiotool', ['--stats', '--info', cut]);
+  report.refuses(`${entries[0].title} cut short, by oiiotool`, judgeMeans(broken.code === 0 ? broken.out : '', entries[0], truth));
 }

@@ -12,8 +12,10 @@ export class Maps {
     const file = ['maps.json', 'material.json'].map((name) => path.join(folder, name)).find((name) => fs.existsSync(name));
     this.facts = JSON.parse(fs.readFileSync(file, 'utf8'));
     this.maps = new Map(this.facts.maps.map((map) => [map.name, map]));
-    const names = [...this.maps.values()].filter((map) => map.file?.endsWith('.exr') && wanted.has(map.name)).map(({name}) => name);
-    const read = readPixels('openimageio', names.map((name) => path.join(folder, this.maps.get(name).file)));
+    // Solved maps lie beside the derived ones that the document lists.
+    const fileOf = (name) => path.join(folder, this.maps.get(name)?.file ?? `${name}.exr`);
+    const names = wanted.filter((name) => fileOf(name).endsWith('.exr') && fs.existsSync(fileOf(name)));
+    const read = readPixels('openimageio', names.map(fileOf));
     this.pixels = new Map(names.map((name, at) => [name, read[at]]).filter(([, pixels]) => pixels.width === this.facts.width));
     this.width = this.facts.width;
     this.height = this.facts.height;
@@ -39,7 +41,7 @@ export class Maps {
   }
 }
 
-const wanted = new Set(['albedo', 'normal', 'height', 'occlusion', 'opacity', 'roughness', 'specular', 'cavity', 'metallic', 'sheen', 'sheen_roughness', 'cloth']);
+const wanted = ['albedo', 'normal', 'height', 'occlusion', 'opacity', 'roughness', 'specular', 'cavity', 'metallic', 'sheen', 'sheen_roughness', 'cloth'];
 const otherwise = {opacity: 1, metallic: 0};
 
 const conventions = {

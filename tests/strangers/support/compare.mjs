@@ -16,6 +16,16 @@ export function sameSize(read, truth) {
   return {ok, says: `${read.width} x ${read.height} pixels${ok ? '' : `, not ${truth.width} x ${truth.height}`}`};
 }
 
+/** The upper left of a picture whose sides were filled up to multiples of 4. */
+export function withoutPadding(pixels, {width, height}) {
+  const whole = (side) => 4 * Math.ceil(side / 4);
+  if (pixels.error || pixels.width !== whole(width) || pixels.height !== whole(height)) return pixels;
+  const data = new Float32Array(width * height * pixels.channels);
+  const row = width * pixels.channels;
+  for (let y = 0; y < height; y += 1) data.set(pixels.data.subarray(y * pixels.width * pixels.channels).subarray(0, row), y * row);
+  return {...pixels, width, height, data};
+}
+
 /** Differences of channels [[channel of read, of truth], ...] by value(read) and value(truth). */
 export function difference(read, truth, channels, {ofRead = (v) => v, ofTruth = (v) => v} = {}) {
   let sum = 0;

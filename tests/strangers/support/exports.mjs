@@ -15,6 +15,7 @@ function entryOf(folder, preset, document, file) {
     ...storedOf(file.encoding), file: path.join(folder, file.file), preset, title: `${preset}/${file.file}`, sha256: file.sha256,
     channels: file.channels.map(({name}) => name), ranges: file.channels.map(({at_0, at_1}) => (typeof at_0 === 'number' ? [at_0, at_1] : null)),
     color: file.color, direction: file.direction ?? 'opengl', roughness: file.roughness ?? document.roughness, lost: file.lost,
+    means: file.channels.map(({lost}) => lost.mean),
   };
 }
 

@@ -3,9 +3,9 @@
 import {angles, difference, normalsOf, sameSize, srgbOfLinear} from './compare.mjs';
 import {below} from './report.mjs';
 
-/** A whole number is off by half a step at most; a half float by half of its last place. */
+/** A whole number is off by half a step at most and what 32-bit floats round before; a half float by half of its last place. */
 export function halfStep({bits, whole}) {
-  if (whole) return 0.501 / (2 ** bits - 1);
+  if (whole) return 0.5 / (2 ** bits - 1) + 2e-7;
   return bits === 16 ? 2 ** -11 : 1e-6;
 }
 
