@@ -64,10 +64,10 @@ async function openMaterial(visitor, query = '') {
 /** Of a row or column of the canvas: the first and the last pixel of the cloth. */
 function extent(shot, box, along) {
   const of = (x, y) => shot.data[4 * (y * shot.width + x) + 1] > 20;
-  const middle = along === 'x' ? box.y + box.height / 2 : box.x + box.width / 2;
+  const middle = Math.floor(along === 'x' ? box.y + box.height / 2 : box.x + box.width / 2);
   const [from, to] = along === 'x' ? [box.x, box.x + box.width] : [box.y, box.y + box.height];
   const seen = [];
-  for (let at = from; at < to; at++) if (along === 'x' ? of(at, middle) : of(middle, at)) seen.push(at);
+  for (let at = Math.ceil(from); at < to; at++) if (along === 'x' ? of(at, middle) : of(middle, at)) seen.push(at);
   return seen.at(-1) - seen[0] + 1;
 }
 
@@ -239,7 +239,7 @@ test('a material shows its layers and the files behind them, is built and looked
   const dust = page.getByRole('list', {name: /^Layers/}).getByRole('listitem').filter({hasText: 'dust'}).first();
   await dust.getByText('50 %').waitFor();
   await dust.getByText('mask: 0.4').waitFor();
-  await page.getByText('Values of the material', {exact: true}).first().click();
+  await page.locator('summary').filter({hasText: 'Values of the material'}).click();
   const rough = page.getByRole('row', {name: /surface\.roughness/});
   await rough.getByText('dusty.toml').or(rough.getByText('library:dusty')).waitFor();
   await page.getByRole('row', {name: /surface\.cloth/}).getByText('library:cloth/wool').waitFor();

@@ -65,7 +65,7 @@ function ScreenCheck() {
         <>
           <p class="dim">Lay a bank card on the outline and draw it to the card's size: {CARD_MM.join(' × ')} mm.</p>
           <div class="card" style={{width: `${CARD_MM[0] * scale}px`, height: `${CARD_MM[1] * scale}px`}} />
-          <Slider label="Size of the outline" value={scale} ends={[BROWSER_PX_PER_MM / 2, BROWSER_PX_PER_MM * 2]} says={`${scale.toFixed(2)} px a mm`} onChange={keep} />
+          <Slider label="Size of the outline" value={scale} ends={[BROWSER_PX_PER_MM / 2, BROWSER_PX_PER_MM * 2]} says={`${scale.toFixed(2)} px/mm`} onChange={keep} />
           {!isKnown && <Button onClick={() => keep(scale)}>It fits</Button>}
         </>
       )}
