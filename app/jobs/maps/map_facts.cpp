@@ -28,8 +28,10 @@ Json json_of(const MapFacts& facts) {
 }
 
 ImageAttributes attributes_of(const MapFacts& facts, double mm_per_pixel) {
-  ImageAttributes attributes = {{"weft.source", kMapSourceNames[static_cast<std::size_t>(facts.source)]},
-                                {"weft.mm_per_pixel", fmt::format("{:.9g}", mm_per_pixel)}};
+  ImageAttributes attributes = {
+      {"weft.source", kMapSourceNames[static_cast<std::size_t>(facts.source)]},
+  };
+  if (mm_per_pixel > 0) attributes["weft.mm_per_pixel"] = fmt::format("{:.9g}", mm_per_pixel);
   if (!facts.unit.empty()) attributes["weft.unit"] = facts.unit;
   return attributes;
 }

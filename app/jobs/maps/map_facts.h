@@ -35,7 +35,7 @@ struct MapFacts {
 };
 Json json_of(const MapFacts& facts);
 
-/// What its file says of itself: weft.source, weft.unit, weft.mm_per_pixel.
+/// What its file says of itself: weft.source, weft.unit and, above 0, weft.mm_per_pixel.
 ImageAttributes attributes_of(const MapFacts& facts, double mm_per_pixel);
 
 /// Fills the least, the largest and the mean value.

@@ -99,8 +99,14 @@ class Composer {
     facts.file = facts.name + ".exr";
     const std::vector<View<const float>> planes = planes_of(map);
     measure(facts, planes.front());
-    const WriteOptions options = {SampleType::kFloat, options_.compression,
-                                  attributes_of(facts, surface_.mm_per_pixel)};
+    const double mm = surface_.mm_per_pixel;
+    const WriteOptions options = {.type = SampleType::kFloat,
+                                  .compression = options_.compression,
+                                  .attributes = attributes_of(facts, mm),
+                                  .pitch_mm = {mm, mm},
+                                  .color = facts.name == "albedo" || facts.name == "sheen"
+                                               ? ColorSpace::kLinearColor
+                                               : ColorSpace::kData};
     Result<void> ok = write_image(folder_ / facts.file, planes, facts.channels, options);
     maps_.push_back(json_of(facts));
     return ok;

@@ -126,10 +126,10 @@ std::optional<std::vector<double>> same_everywhere(const MapSet& set, const Scan
 
 std::optional<std::array<double, 2>> size_of(const ImageFileInfo& info) {
   const auto mm = info.attributes.find("weft.mm_per_pixel");
-  if (mm == info.attributes.end()) return {};
-  const double each = std::strtod(mm->second.c_str(), nullptr);
-  if (!(each > 0 && each < 1e3)) return {};
-  return std::array<double, 2>{each * info.size.width, each * info.size.height};
+  const double each = mm == info.attributes.end() ? 0 : std::strtod(mm->second.c_str(), nullptr);
+  const PixelPitch pitch = each > 0 ? PixelPitch{each, each} : info.pitch_mm;
+  if (!(pitch[0] > 0 && pitch[0] < 1e3 && pitch[1] > 0 && pitch[1] < 1e3)) return {};
+  return std::array<double, 2>{pitch[0] * info.size.width, pitch[1] * info.size.height};
 }
 
 void take_words(const Json& value, MapFile& map) {

@@ -43,15 +43,18 @@ void watch_materials(const WatchOptions& options, const JobContext& context,
   for (const MaterialPlace& place : options.build.materials) {
     if (!place.is_shipped()) files.push_back(place.file);
   }
+  bool is_second_look = false;
   while (!context.stop.stop_requested()) {
     // What changes while it is built is seen afterwards.
-    std::vector<FileState> before = states_of(files);
+    const std::vector<FileState> before = states_of(files);
     const Result<BuildReport> report = build_materials(options.build, context);
     if (context.stop.stop_requested()) return;
-    tell(report);
-    if (report && report->files != files) {
+    if (!is_second_look || !report || report->built > 0) tell(report);
+    // A file that is new to the list may have changed before anybody looked at it.
+    is_second_look = report && report->files != files;
+    if (is_second_look) {
       files = report->files;
-      before = states_of(files);
+      continue;
     }
     while (states_of(files) == before) {
       if (!wait(context.stop, options.every_ms)) return;
