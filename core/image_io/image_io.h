@@ -29,7 +29,7 @@ enum class SampleType { kUint8, kUint16, kHalf, kFloat };
 using ImageAttributes = std::map<std::string, std::string>;
 
 /// Width and height of a pixel on the cloth, mm. 0: not known, and the file says nothing. PNG holds whole
-/// pixels a metre (pHYs), TIFF and EXR pixels an inch to seven digits; EXR has its height as the aspect.
+/// pixels a metre (pHYs), TIFF and EXR pixels an inch to seven digits; TIFF none of less than one an inch.
 using PixelPitch = std::array<double, 2>;
 
 /// What a file says of its colours.

@@ -23,11 +23,10 @@ void add_density(OIIO::ImageSpec& spec, const std::string& format, PixelPitch pi
   };
   spec.attribute("ResolutionUnit", is_png ? "m" : "in");
   spec.attribute("XResolution", density(x_mm));
-  if (format != "openexr") {
-    spec.attribute("YResolution", density(y_mm));
-  } else if (std::abs(x_mm / y_mm - 1) > 1e-9) {
+  if (format != "openexr") spec.attribute("YResolution", density(y_mm));
+  // EXR and OpenImageIO's TIFF have the height by the aspect.
+  if (!is_png && std::abs(x_mm / y_mm - 1) > 1e-9)
     spec.attribute("PixelAspectRatio", static_cast<float>(x_mm / y_mm));
-  }
 }
 
 // Of linear colour nothing is said to OpenImageIO: it would write a gamma of 1 into a PNG, which browsers

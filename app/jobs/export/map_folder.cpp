@@ -245,6 +245,7 @@ PlaneOrigin origin_of(const MapFolder& folder, Plane plane) {
   const exchange::PlaneKind& kind = exchange::kind_of(plane);
   const FolderMap* map = folder.map(kind.map);
   if (map == nullptr && std::string(kind.map) == "specular") map = folder.map("f0");
+  if (map == nullptr && std::string(kind.map) == "height") map = folder.map("height_mm");
   if (map == nullptr) return {};
   if (map->file.empty() && map->more.contains("numbers") && map->more["numbers"].size() == 3) {
     const std::size_t part = std::string_view("RGB").find(kind.channel);
