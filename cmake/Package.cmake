@@ -55,7 +55,6 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_COMPRESSION_TYPE gzip)  # lintian of Debian 12 refuses zstd, and xz takes minutes
 # What is started by name and linked by nobody.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "systemd, udev, xdg-utils")
 set(CPACK_DEBIAN_PACKAGE_SUGGESTS "avrdude, gphoto2")

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# make.sh BUILD OUTPUT: the Debian package of a build, in OUTPUT. What no build makes goes into BUILD/package/doc:
-# changelogs and the bill of materials. The only date in all of it is SOURCE_DATE_EPOCH, else that of the commit.
+# make.sh BUILD OUTPUT [gzip]: the Debian package of a build, in OUTPUT, packed by xz or more quickly. What no build
+# makes goes into BUILD/package/doc: changelogs and the bill of materials. The only date in all of it is
+# SOURCE_DATE_EPOCH, else that of the commit.
 set -euo pipefail
 build=$(realpath "$1") output=$(realpath -m "$2")
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
@@ -21,5 +22,5 @@ weft ($version-1) unstable; urgency=medium
  -- weft developers <weft@weft.example>  $(LC_ALL=C date -u -R -d "@$SOURCE_DATE_EPOCH")
 END
 node cmake/package/sbom.mjs "$version" . "$build"/bin/weft "$build"/bin/weft-{work,camera,bench} >"$doc/weft.cdx.json"
-cd "$output" && cpack --config "$build/CPackConfig.cmake" -B "$output"
+cd "$output" && cpack -D CPACK_DEBIAN_COMPRESSION_TYPE="${3:-xz}" --config "$build/CPackConfig.cmake" -B "$output"
 rm -rf "$output/_CPack_Packages"

@@ -9,7 +9,7 @@ import { existsSync, readFileSync, realpathSync } from 'node:fs';
 import { join } from 'node:path';
 
 // Debian packages that leave something in the programs and are not named by them.
-const HELD = ['libcli11-dev', 'libeigen3-dev', 'libkissfft-dev', 'libtomlplusplus-dev', 'nlohmann-json3-dev'];
+const HELD = ['libceres-dev', 'libcli11-dev', 'libeigen3-dev', 'libkissfft-dev', 'nlohmann-json3-dev'];
 
 const [version, source, ...programs] = process.argv.slice(2);
 if (programs.length === 0) {

@@ -36,7 +36,7 @@ rm "$root/tmp/weft.deb"
 say "installed, with $(((after - before) / 1024)) MiB of what it needs"
 
 say "version $(inside weft --version)"
-unshare -n chroot "$root" env -i PATH=/usr/bin:/bin HOME=/root sh -c 'cd /root && weft demo --megapixels 0.05 -q' >&2
+unshare -n chroot "$root" env -i PATH=/usr/bin:/bin HOME=/root sh -c 'cd /root && weft demo --megapixels 0.01 -q' >&2
 [[ -s $(echo "$root"/root/demo/demo.weft/solve/*/normal.exr) ]]
 say 'the demo ran without a network'
 inside man -P cat weft-solve | grep -q 'SYNOPSIS'
