@@ -119,9 +119,12 @@ Result<void> make_all(std::vector<Work>& works, const MapFolder& folder, const E
   std::vector<EncodeTarget> targets;
   std::vector<Work*> wanted;
   std::uint64_t bytes = 0;
+  // Each knows which parents were not there before any of them.
+  for (Work& work : works) {
+    if (!work.report.was_there) work.partial = std::make_unique<PartialFolder>(work.plan->folder);
+  }
   for (Work& work : works) {
     if (work.report.was_there) continue;
-    work.partial = std::make_unique<PartialFolder>(work.plan->folder);
     bytes += most_bytes(*work.plan);
     if (Result<void> ok = begin(*work.partial, bytes); !ok) return ok;
     targets.push_back({work.plan, work.partial->path()});

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <string>
@@ -60,6 +61,14 @@ Result<WrittenDocument> written(const fs::path& folder, const std::string& name,
   return WrittenDocument{.name = name, .kind = kind, .sha256 = sha256_of(bytes), .bytes = bytes.size()};
 }
 
+bool is_plain(const std::vector<EncodedFile>& files) {
+  return std::ranges::all_of(files, [](const EncodedFile& file) {
+    return std::ranges::all_of(file.loss.channels, [](const exchange::ChannelLoss& channel) {
+      return channel.least == channel.most;
+    });
+  });
+}
+
 std::vector<std::string> names_of(const std::vector<EncodedFile>& files) {
   std::vector<std::string> names;
   for (const EncodedFile& file : files) names.push_back(file.name);
@@ -85,6 +94,9 @@ Result<WrittenLayers> write_layers(const PlannedExport& plan, const PlannedDocum
         encode_files(*layer, {{&*planned, folder}}, false, context);
     if (!encoded) return std::move(encoded).error();
     materials.push_back(textured_material(*planned, *layer, encoded->front()));
+    // What is the same everywhere covers any rectangle.
+    if (!materials.back().size_mm && is_plain(encoded->front()))
+      materials.back().size_mm = materials.front().size_mm;
     packed[layer->id] = names_of(encoded->front());
     for (EncodedFile& file : encoded->front()) layers.files.push_back(std::move(file));
   }
