@@ -78,12 +78,12 @@ function canRead(reader, {format, dx10, srgb}) {
   return format === 'bc1' || format === 'bc3' ? !dx10 : !srgb;
 }
 
-/** All readers of a block agree: exactly on bc7, by the rounding of a step on the others. */
+/** All readers of a block agree: exactly on bc7, by the rounding of one step on bc4 and bc5, of two on colours of bc1 and bc3. */
 function judgeAgreement(read, arbiter, {format}) {
   if (read.error) return {ok: false, says: read.error};
   const count = Math.min(channelsOf[format], 3);
   const channels = Array.from({length: count}, (_, channel) => [channel, channel]);
-  return below(difference(read, arbiter, channels).most * 255, format === 'bc7' ? 0.01 : 1.01, ' / 255', ' from WebGL at most');
+  return below(difference(read, arbiter, channels).most * 255, {bc7: 0.01, bc4: 1.01, bc5: 1.01}[format] ?? 2.01, ' / 255', ' from WebGL at most');
 }
 
 function headers(report, files) {
