@@ -30,6 +30,7 @@ say "a fresh Debian $(cat "$root/etc/debian_version")"
 
 cp "$package" "$root/tmp/weft.deb"
 before=$(inside dpkg-query -W -f '${Installed-Size}\n' | awk '{ sum += $1 } END { print sum }')
+inside apt-get -qq update
 inside apt-get -qq install -y --no-install-recommends /tmp/weft.deb >/dev/null
 after=$(inside dpkg-query -W -f '${Installed-Size}\n' | awk '{ sum += $1 } END { print sum }')
 rm "$root/tmp/weft.deb"
