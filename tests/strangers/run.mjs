@@ -7,16 +7,16 @@ import path from 'node:path';
 import {parseArgs} from 'node:util';
 import {Browser, whyNoBrowser} from './support/browser.mjs';
 import {Maps} from './support/catalogue.mjs';
-import {different, exportsOf} from './support/exports.mjs';
+import {different, exportsOf, mapsOf} from './support/exports.mjs';
 import {has, hasModule, python} from './support/programs.mjs';
 import {Report} from './support/report.mjs';
 
 const help = `node run.mjs EXPORTS --maps FOLDER -o FOLDER [--only GROUP,...] [--blender] [--strict]
   EXPORTS    a folder of exports, a preset each
-  --maps     the maps that were exported
+  --maps     the maps that were exported, or the folder where they lie under their id
   -o         for checks.txt with a line a check, and the pictures of Blender
   --quiet    failures, what was skipped, and sums
-  --only     images, tx, dds, glb, mtlx, usd, u3m, blender
+  --only     origin, images, tx, dds, glb, mtlx, usd, u3m, blender
   --blender  Blender too, which takes a quarter of a minute
   --strict   what is skipped is a failure
 `;
@@ -70,7 +70,7 @@ async function main() {
     loud: quiet ? show : () => {},
   });
   const skips = missing();
-  const truth = truthOf(maps);
+  const truth = truthOf(mapsOf(root, maps));
   const {entries, documents} = exportsOf(root);
   const scratch = fs.mkdtempSync(path.join(os.tmpdir(), 'weft-strangers-'));
   const browser = whyNoBrowser ? null : await Browser.open();
@@ -84,6 +84,7 @@ async function main() {
   if (!browser) report.skip('MaterialX, USD and glTF in Chromium, and blocks', whyNoBrowser);
   const ofKind = (...kinds) => common.entries.filter(({encoding}) => kinds.includes(encoding));
   const named = (...kinds) => kinds.flatMap((kind) => documents[kind] ?? []);
+  await group('origin', './formats/origin.mjs', {root});
   await group('images', './formats/images.mjs', {entries: ofKind('png', 'tiff', 'exr')});
   await group('tx', './formats/tx.mjs', {entries: ofKind('tx')});
   const blocks = ofKind('dds');
@@ -93,8 +94,9 @@ async function main() {
   await group('usd', './formats/usd.mjs', {files: named('usda', 'usdz')});
   await group('u3m', './formats/u3m.mjs', {files: named('u3m', 'u3ma')});
   const {whyNoBlender} = await import('./formats/blender.mjs');
-  if (!blender) report.skip('Blender', 'it was not asked for: --blender');
-  else if (whyNoBlender) report.skip('Blender', whyNoBlender);
+  if (!blender) {
+    if (!only) report.skip('Blender', 'it was not asked for: --blender');
+  } else if (whyNoBlender) report.skip('Blender', whyNoBlender);
   else await group('blender', './formats/blender.mjs', {glbs: named('glb'), images: imagesForBlender(entries)});
   await browser?.close();
   fs.rmSync(scratch, {recursive: true});

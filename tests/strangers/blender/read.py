@@ -139,7 +139,7 @@ def run(task):
     if task['shows'] == 'passes':
         passes()
     else:
-        picture(task.get('samples', 16))
+        picture(task.get('samples', 8))
     bpy.ops.render.render(write_still=True)
     spaces = {image.name: image.colorspace_settings.name for image in bpy.data.images if image.size[0]}
     return {'size_m': size_m, 'spaces': spaces}

@@ -9,8 +9,9 @@ import {readPixels} from './pixels.mjs';
 /** A folder of maps: {width, height, mm_per_pixel, size_mm, plane(map, channel) -> function of a texel or null}. */
 export class Maps {
   constructor(folder) {
-    const file = ['maps.json', 'material.json'].map((name) => path.join(folder, name)).find((name) => fs.existsSync(name));
-    this.facts = JSON.parse(fs.readFileSync(file, 'utf8'));
+    this.kind = fs.existsSync(path.join(folder, 'maps.json')) ? 'maps' : 'material';
+    this.file = path.join(folder, `${this.kind}.json`);
+    this.facts = JSON.parse(fs.readFileSync(this.file, 'utf8'));
     this.maps = new Map(this.facts.maps.map((map) => [map.name, map]));
     // Solved maps lie beside the derived ones that the document lists.
     const fileOf = (name) => path.join(folder, this.maps.get(name)?.file ?? `${name}.exr`);

@@ -44,3 +44,15 @@ export function different(entries) {
     return entry.sha256 ? !seen.has(key) && seen.add(key) : true;
   });
 }
+
+/** The folder of maps that exports were made of: `folder` itself, or the one in it that is named by their id. */
+export function mapsOf(root, folder) {
+  if (['maps.json', 'material.json'].some((name) => fs.existsSync(path.join(folder, name)))) return folder;
+  for (const name of fs.readdirSync(root)) {
+    const said = path.join(root, name, 'export.json');
+    if (!fs.existsSync(said)) continue;
+    const {from} = JSON.parse(fs.readFileSync(said, 'utf8'));
+    return path.join(folder, from.material ?? from.maps);
+  }
+  return folder;
+}
