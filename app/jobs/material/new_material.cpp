@@ -49,7 +49,9 @@ std::string text_of(const NewMaterial& material) {
     text += fmt::format("\n[[layer]]\nname = {}\nmaterial = {}\n", quoted_text(name),
                         quoted_text(as_written(layer, folder)));
     if (layer.find("dirt/") == std::string::npos && name != "dust") continue;
-    text += "mask = { from = \"height\", kind = \"cavity\", radius_mm = 0.5 }\n";
+    // Without a scan there is no height that a mask could follow.
+    text += material.scan.empty() ? "mask = 0.3\n"
+                                  : "mask = { from = \"height\", kind = \"cavity\", radius_mm = 0.5 }\n";
     text += "only = [\"albedo\", \"roughness\", \"specular\", \"cloth\", \"sheen\", \"sheen_roughness\"]\n";
   }
   return text;

@@ -17,7 +17,8 @@ struct NewMaterial {
   std::vector<std::string> layers;  ///< materials to be laid on it, bottom to top
 };
 
-/// Its text, relative to its file where it can be. One of dirt goes into what is deep.
+/// Its text, relative to its file where it can be. One of dirt goes into what is deep
+/// of a scan.
 std::string text_of(const NewMaterial& material);
 
 /// Writes it. kCannotCreate where the file is there; kBadData and kNoInput where it could not be resolved,
