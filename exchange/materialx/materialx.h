@@ -18,7 +18,7 @@ enum class SurfaceModel { kOpenPbr, kStandardSurface, kGltfPbr };
 
 struct MaterialXOptions {
   /// Each becomes a surfacematerial of its own, named after the cloth: the first NAME, further ones
-  /// NAME_standard_surface and so on. three.js reads standard_surface alone.
+  /// NAME_standard_surface and so on. three.js 0.187 reads each of them, and no mix.
   std::vector<SurfaceModel> models = {SurfaceModel::kOpenPbr, SurfaceModel::kStandardSurface};
   /// What one unit of UV covers; none: one texture, so that UV from 0 to 1 shows all of it.
   std::optional<std::array<double, 2>> uv_covers_mm = {};
