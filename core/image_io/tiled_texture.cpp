@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/image_io/tiled_texture.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-#include <unistd.h>
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
 
-#include <array>
-#include <cerrno>
+#include <algorithm>
 #include <cstddef>
-#include <fstream>
-#include <sstream>
+#include <memory>
+#include <string_view>
+#include <vector>
 
 #include "core/files.h"
 #include "core/image_io/oiio.h"
@@ -22,69 +21,114 @@ namespace fs = std::filesystem;
 
 constexpr int kTilePx = 64;
 
-OIIO::ImageSpec config_of(const TiledTextureOptions& options) {
-  OIIO::ImageSpec config;
-  config.set_format(options.type == SampleType::kHalf ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
-  config.tile_width = config.tile_height = kTilePx;
-  config.attribute("maketx:fileformatname", "openexr");
-  config.attribute("compression", "zip");
-  config.attribute("wrapmodes", options.is_periodic ? "periodic,periodic" : "clamp,clamp");
-  config.attribute("maketx:prman_metadata", options.is_prman ? 1 : 0);
-  // What would be the present and the program's own words.
-  config.attribute("DateTime", "1980:01:01 00:00:00");
-  config.attribute("Software", "weft");
-  return config;
+/// A level with its channels side by side.
+struct Level {
+  Size size;
+  std::vector<float> samples;
+};
+
+Level first_level(std::span<const View<const float>> planes) {
+  Level level = {planes[0].size(), {}};
+  level.samples.resize(static_cast<std::size_t>(level.size.pixels()) * planes.size());
+  std::size_t i = 0;
+  for (int y = 0; y < level.size.height; ++y) {
+    for (int x = 0; x < level.size.width; ++x) {
+      for (const View<const float>& plane : planes) level.samples[i++] = plane(x, y);
+    }
+  }
+  return level;
 }
 
-OIIO::ImageBuf buffer_of(std::span<const View<const float>> planes, const std::vector<std::string>& channels,
-                         const TiledTextureOptions& options) {
-  OIIO::ImageSpec spec(planes[0].width(), planes[0].height(), static_cast<int>(planes.size()),
-                       OIIO::TypeFloat);
+/// Which pixels of a line a coarser one covers: two, or three at the end of an odd line.
+struct Cover {
+  int first = 0, last = 0;
+};
+Cover cover_of(int i, int coarse, int fine) {
+  if (coarse == fine) return {i, i};
+  return {2 * i, i + 1 == coarse ? fine - 1 : 2 * i + 1};
+}
+
+/// Sides halved and rounded down, never below 1; each pixel is the mean of those that it covers.
+Level next_level(const Level& fine, std::size_t channels) {
+  Level level = {{std::max(1, fine.size.width / 2), std::max(1, fine.size.height / 2)}, {}};
+  level.samples.resize(static_cast<std::size_t>(level.size.pixels()) * channels);
+  std::vector<double> sums(channels);
+  std::size_t out = 0;
+  for (int y = 0; y < level.size.height; ++y) {
+    const Cover rows = cover_of(y, level.size.height, fine.size.height);
+    for (int x = 0; x < level.size.width; ++x) {
+      const Cover columns = cover_of(x, level.size.width, fine.size.width);
+      std::fill(sums.begin(), sums.end(), 0.0);
+      for (int j = rows.first; j <= rows.last; ++j) {
+        for (int i = columns.first; i <= columns.last; ++i) {
+          const std::size_t at = (static_cast<std::size_t>(j) * static_cast<std::size_t>(fine.size.width) +
+                                  static_cast<std::size_t>(i)) *
+                                 channels;
+          for (std::size_t c = 0; c < channels; ++c) sums[c] += static_cast<double>(fine.samples[at + c]);
+        }
+      }
+      const int count = (rows.last - rows.first + 1) * (columns.last - columns.first + 1);
+      for (std::size_t c = 0; c < channels; ++c) level.samples[out++] = static_cast<float>(sums[c] / count);
+    }
+  }
+  return level;
+}
+
+OIIO::ImageSpec spec_of_texture(Size size, const std::vector<std::string>& channels,
+                                const TiledTextureOptions& options) {
+  OIIO::ImageSpec spec(size.width, size.height, static_cast<int>(channels.size()),
+                       options.type == SampleType::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat);
   spec.channelnames = channels;
+  spec.tile_width = spec.tile_height = kTilePx;
   for (const auto& [key, text] : options.attributes) spec.attribute(key, text);
+  spec.attribute("compression", "zip");
+  spec.attribute("textureformat", "Plain Texture");
+  spec.attribute("wrapmodes", options.is_periodic ? "periodic,periodic" : "clamp,clamp");
+  if (options.is_prman) {
+    spec.attribute("PixarTextureFormat", "Plain Texture");
+    spec.attribute("fovcot", static_cast<float>(size.width) / static_cast<float>(size.height));
+  }
+  // A date of another type than text is dropped; without one, OpenImageIO would write the present.
+  spec.attribute("DateTime", 0);
   add_density(spec, "openexr", options.pitch_mm);
   add_color(spec, "openexr", options.color);
-  OIIO::ImageBuf buffer(spec);
-  std::vector<float> row(planes.size() * static_cast<std::size_t>(spec.width));
-  for (int y = 0; y < spec.height; ++y) {
-    for (std::size_t c = 0; c < planes.size(); ++c) {
-      const float* samples = planes[c].row(y);
-      for (int x = 0; x < spec.width; ++x) row[static_cast<std::size_t>(x) * planes.size() + c] = samples[x];
-    }
-    buffer.set_pixels(OIIO::ROI(0, spec.width, y, y + 1), OIIO::TypeFloat, row.data());
-  }
-  return buffer;
+  return spec;
+}
+
+Error refused(const fs::path& file, const std::string& why) {
+  return {ErrorKind::kInputOutput, "cannot encode", file.string(), oiio_reason(why), "choose another format"};
 }
 
 }  // namespace
 
+// Into memory first: threads of OpenEXR wait for each other for ever where a disk is full.
 Result<void> write_tiled_texture(const fs::path& file, std::span<const View<const float>> planes,
                                  const std::vector<std::string>& channels,
-                                 const TiledTextureOptions& options) try {
+                                 const TiledTextureOptions& options) {
   prepare_oiio();
   const bool is_float = options.type == SampleType::kHalf || options.type == SampleType::kFloat;
   if (planes.empty() || planes.size() != channels.size() || planes[0].empty() || !is_float) {
     return Error{ErrorKind::kUsage, "cannot write such a texture", file.string(),
                  "it has no planes, or samples that are neither half nor float", "choose half or float"};
   }
-  fs::path aside = file;
-  aside += ".partial";
-  // What cannot be created is told by the system's own reason.
-  if (!std::ofstream(aside, std::ios::binary)) return cannot_write(file, errno);
-  std::ostringstream said;
-  const OIIO::ImageBuf buffer = buffer_of(planes, channels, options);
-  const bool made = OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, buffer,
-                                                     aside.string(), config_of(options), &said);
-  if (!made) {
-    ::unlink(aside.c_str());
-    return Error{ErrorKind::kInputOutput, "cannot write", file.string(), oiio_reason(OIIO::geterror()),
-                 "free disk space or choose another disk"};
+  std::vector<unsigned char> bytes;
+  OIIO::Filesystem::IOVecOutput sink(bytes);
+  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("openexr");
+  if (!output) return refused(file, OIIO::geterror());
+  if (!output->set_ioproxy(&sink)) return refused(file, output->geterror());
+  const std::string name = file.string();
+  Level level = first_level(planes);
+  OIIO::ImageOutput::OpenMode mode = OIIO::ImageOutput::Create;
+  while (true) {
+    const OIIO::ImageSpec spec = spec_of_texture(level.size, channels, options);
+    if (!output->open(name, spec, mode)) return refused(file, output->geterror());
+    if (!output->write_image(OIIO::TypeFloat, level.samples.data())) return refused(file, output->geterror());
+    if (level.size == Size{1, 1}) break;
+    level = next_level(level, planes.size());
+    mode = OIIO::ImageOutput::AppendMIPLevel;
   }
-  if (::rename(aside.c_str(), file.c_str()) != 0) return cannot_write(file, errno);
-  return {};
-} catch (const std::exception& failure) {
-  return Error{ErrorKind::kInputOutput, "cannot write", file.string(), failure.what(),
-               "free disk space or choose another disk"};
+  if (!output->close()) return refused(file, output->geterror());
+  return write_file(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
 }
 
 }  // namespace weft

@@ -45,7 +45,13 @@ std::vector<std::string> shipped_names() {
 /// One small session with a set of all maps, made once for all tests.
 class Exports : public testing::Test {
  protected:
-  static void SetUpTestSuite() {
+  // A workspace has the name of a running test: the first one makes it.
+  void SetUp() override {
+    if (work_ == nullptr) {
+      ASSERT_NO_FATAL_FAILURE(make_maps());
+    }
+  }
+  static void make_maps() {
     work_ = new Workspace();
     session_ = *work_ / "cloth.weft";
     simulate(scene_named("twill", {192, 128}), session_);
@@ -57,7 +63,7 @@ class Exports : public testing::Test {
     app::MapsOptions maps;
     maps.session = session_;
     for (const app::DerivedMap& map : app::derived_maps()) maps.maps.emplace_back(map.name);
-    const auto made = app::make_maps(maps, {});
+    const auto made = weft::app::make_maps(maps, {});
     ASSERT_TRUE(made) << made.error().message();
     maps_ = made->folder;
     mm_per_pixel_ = made->document["mm_per_pixel"].get<double>();
