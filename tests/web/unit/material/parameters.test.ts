@@ -22,6 +22,13 @@ test('each parameter has its mark, and what is assumed can be tried otherwise', 
   });
 });
 
+test('what a solve left is measured, though a maps.json does not list it', () => {
+  const document = {maps: [{name: 'roughness', source: 'assumed', constant: 1}]};
+  const of = parametersOf(document, [{name: 'normal'}, {name: 'albedo'}, {name: 'roughness'}, {name: 'sigma'}]);
+  const found = Object.fromEntries(of.map(({name, source, isMap}) => [name, [source, isMap]]));
+  expect([found['normal'], found['albedo'], found['roughness']]).toEqual([['measured', true], ['measured', true], ['assumed', false]]);
+});
+
 test('numbers of a built material stand beside its maps', () => {
   const built = {...maps, parameters: {sheen: {value: [0.1, 0.2, 0.3], source: 'assumed'}, metallic: {value: 1, source: 'assumed'}, sheen_roughness: 0.3}};
   const {sheen, metallic, sheen_roughness} = brief(built);

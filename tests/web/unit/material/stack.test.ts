@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
-import {movedBy, ownValues, requestOf, stackOf, valueInWords, wishesOf} from '../../../../app/web/src/screens/material/stack';
+import {builtBy, movedBy, ownValues, requestOf, stackOf, valueInWords, wishesOf} from '../../../../app/web/src/screens/material/stack';
 
 const values = [
   {key: 'name', value: 'dusty', from: '/m/dusty.toml'},
@@ -28,6 +28,11 @@ test('values are read as words', () => {
   expect(valueInWords({from: 'height', at_mm: 0.1, soft_mm: 0.05})).toBe('height, at 0.1 mm, soft 0.05 mm');
   expect(valueInWords({value: 0.5})).toBe('0.5');
   expect(valueInWords(true)).toBe('true');
+});
+
+test('a build is that of the material that was asked for', () => {
+  expect(builtBy({built: 2, materials: [{name: 'dusty', id: '2b97'}]})).toBe('2b97');
+  expect(builtBy(null)).toBe('');
 });
 
 test('layers that are moved, dimmed and turned off are asked for from the bottom to the top', () => {

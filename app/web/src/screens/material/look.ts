@@ -24,7 +24,7 @@ export class Look {
   private timer = 0;
 
   readonly document = computed(() => this.viewed.value?.set);
-  readonly parameters = computed(() => parametersOf(this.document.value));
+  readonly parameters = computed(() => parametersOf(this.document.value, this.viewed.value?.layers));
 
   readonly cloth = computed<Cloth | null>(() => {
     const viewed = this.viewed.value;

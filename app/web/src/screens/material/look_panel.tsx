@@ -109,12 +109,14 @@ function SourceMark({parameter: {source}}: {parameter: Parameter}) {
 }
 
 function Value({look, parameter: {name, says, ends, isMap, unit, why}, value}: {look: Look; parameter: Parameter; value: number | null}) {
-  const words = value === null ? '' : `${isMap ? 'map, mean ' : ''}${Number(value.toPrecision(3))} ${unit === 'share' ? '' : unit}`;
+  const number = value === null ? '' : `${Number(value.toPrecision(3))} ${unit === 'share' ? '' : unit}`;
+  // The mean of a normal or a height is 0, and says nothing.
+  const words = !isMap ? number : value === null || name === 'normal' || name === 'height' ? 'map' : `map, mean ${number}`;
   return (
     <>
       {ends && value !== null
         ? <Slider label={says} value={value} ends={ends} isAssumed onChange={(to) => look.see({typed: {...look.sight.peek().typed, [name]: to}})} />
-        : <span class="dim numbers">{isMap && name === 'normal' ? 'map' : words}</span>}
+        : <span class="dim numbers">{words}</span>}
       {why && <span class="dim">{why}</span>}
     </>
   );

@@ -61,8 +61,13 @@ function meanOf(numbers: readonly number[]): number | null {
   return numbers.length === 0 ? null : numbers.reduce((sum, each) => sum + each, 0) / numbers.length;
 }
 
-export function parametersOf(document: unknown): Parameter[] {
-  const maps = listIn(document, 'maps');
+/** What a solve left stands beside a maps.json and not in it: `layers` have it. */
+const solved = ['albedo', 'normal', 'roughness'];
+
+export function parametersOf(document: unknown, layers: readonly {name: string}[] = []): Parameter[] {
+  const listed = listIn(document, 'maps');
+  const isSolved = (name: string) => solved.includes(name) && !listed.some((each) => textIn(each, 'name') === name);
+  const maps = [...listed, ...layers.filter(({name}) => isSolved(name)).map(({name}) => ({name, file: `${name}.exr`, source: 'measured'}))];
   const numbers = fieldsOf(fieldsOf(document)['parameters']);
   return kinds.flatMap(({name, says, otherwise, ends}): Parameter[] => {
     const names = [name, otherNames[name]];

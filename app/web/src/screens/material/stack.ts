@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stack of a material as its files say it: layers from the bottom to the top, each value with the file it is from.
 import type {Schemas} from '../../api/client';
-import {fieldsOf, isFields} from '../../ui/fields';
+import {isFields, listIn, textIn} from '../../ui/fields';
 
 type Resolved = Schemas['ResolvedMaterial'];
 export type Value = Schemas['MaterialValue'];
@@ -98,6 +98,5 @@ export function ownValues({values}: Pick<Resolved, 'values'>): Value[] {
 
 /** Of what a job of the kind material left. */
 export function builtBy(result: unknown): string {
-  const id = fieldsOf(result)['id'];
-  return typeof id === 'string' ? id : '';
+  return textIn(listIn(result, 'materials')[0], 'id');
 }
