@@ -366,7 +366,8 @@ TEST_F(Exports, ArePricedBeforeTheyAreMadeAndChooseTheirBits) {
   ASSERT_EQ(priced.exit_code, 0) << priced.error;
   EXPECT_FALSE(fs::exists(session_ / "export"));
   std::map<std::string, double> deg;
-  for (const Json& row : priced.json()["rows"]) {
+  const Json prices = priced.json();
+  for (const Json& row : prices["rows"]) {
     if (row["file"] == "normals")
       deg[row["encoding"].get<std::string>()] = row["lost"]["normal_deg"]["mean"].get<double>();
   }
