@@ -5,7 +5,7 @@ import {after, before, test} from 'node:test';
 import {luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
-const screens = ['desk', 'sessions', 'viewer', 'calibrate', 'jobs', 'doctor'];
+const screens = ['desk', 'sessions', 'viewer', 'material', 'calibrate', 'jobs', 'doctor'];
 let browser, rig;
 before(async () => {
   ({browser, rig} = await setUp({names: ['rig.lan'], token: true}, '--host-resolver-rules=MAP rig.lan 127.0.0.1'));
