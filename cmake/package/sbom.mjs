@@ -1,4 +1,3 @@
-#!/usr/bin/env node
 // SPDX-License-Identifier: Apache-2.0
 // sbom.mjs VERSION SOURCE PROGRAM...: the bill of materials of these programs in CycloneDX 1.5, on standard output:
 // Debian packages of the shared libraries that they name, those that they hold (headers and static libraries), and

@@ -37,8 +37,8 @@ rm "$root/tmp/weft.deb"
 say "installed, with $(((after - before) / 1024)) MiB of what it needs"
 
 say "version $(inside weft --version)"
-unshare -n chroot "$root" env -i PATH=/usr/bin:/bin HOME=/root sh -c 'cd /root && weft demo --megapixels 0.01 -q' >&2
-[[ -s $(echo "$root"/root/demo/demo.weft/solve/*/normal.exr) ]]
+unshare -n chroot "$root" env -i PATH=/usr/bin:/bin HOME=/var/tmp sh -c 'cd /var/tmp && weft demo --megapixels 0.01 -q' >&2
+[[ -s $(echo "$root"/var/tmp/demo/demo.weft/solve/*/normal.exr) ]]
 say 'the demo ran without a network'
 inside man -P cat weft-solve | grep -q 'SYNOPSIS'
 say 'man weft-solve has a page'
@@ -51,6 +51,6 @@ mkdir -p "$root/etc/weft" "$root/var/lib/weft/north"
 touch "$root/etc/weft/north.toml" "$root/var/lib/weft/north/cloth.weft"
 inside apt-get -qq purge -y weft >/dev/null
 left=$(traces)
-[[ $left == $'/etc/weft\n/root/demo/demo.weft\n/var/lib/weft\n/var/lib/weft/north/cloth.weft' ]] ||
+[[ $left == $'/etc/weft\n/var/tmp/demo/demo.weft\n/var/lib/weft\n/var/lib/weft/north/cloth.weft' ]] ||
   { printf 'purge left\n%s\n' "$left" >&2 && exit 1; }
 say 'purged; only data is left'
