@@ -51,6 +51,6 @@ mkdir -p "$root/etc/weft" "$root/var/lib/weft/north"
 touch "$root/etc/weft/north.toml" "$root/var/lib/weft/north/cloth.weft"
 inside apt-get -qq purge -y weft >/dev/null
 left=$(traces)
-[[ $left == $'/etc/weft\n/var/tmp/demo/demo.weft\n/var/lib/weft\n/var/lib/weft/north/cloth.weft' ]] ||
+[[ $left == $'/etc/weft\n/var/lib/weft\n/var/lib/weft/north/cloth.weft\n/var/tmp/demo/demo.weft' ]] ||
   { printf 'purge left\n%s\n' "$left" >&2 && exit 1; }
 say 'purged; only data is left'
