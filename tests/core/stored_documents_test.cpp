@@ -65,6 +65,7 @@ Result<Json> product_again(const fs::path& file) {
 
 constexpr ProductKind kRectified = {"weft.rectified", "rectify.json", "set of rectified maps", ""};
 constexpr ProductKind kMaps = {"weft.maps", "maps.json", "set of maps", ""};
+constexpr ProductKind kExport = {"weft.export", "export.json", "export", ""};
 
 template <const char* kName>
 Result<Json> document_again(const fs::path& file) {
@@ -91,6 +92,7 @@ const std::vector<Format> kFormats = {{"weft.session", session_again},
                                       {"weft.solve", product_again<kSolveProduct>},
                                       {"weft.rectified", product_again<kRectified>},
                                       {"weft.maps", product_again<kMaps>},
+                                      {"weft.export", product_again<kExport>},
                                       {kSolveReport, document_again<kSolveReport>},
                                       {kCalibrationReport, document_again<kCalibrationReport>},
                                       {kCalibrationCheck, document_again<kCalibrationCheck>},
