@@ -68,7 +68,7 @@ class BitReader {
   explicit BitReader(const std::uint8_t* bytes) : bytes_(bytes) {}
   unsigned take(int bits) {
     unsigned value = 0;
-    for (int i = 0; i < bits; ++i, ++at_) value |= (bytes_[at_ / 8] >> (at_ % 8) & 1U) << i;
+    for (int i = 0; i < bits; ++i, ++at_) value |= (unsigned{bytes_[at_ / 8]} >> (at_ % 8) & 1U) << i;
     return value;
   }
 
