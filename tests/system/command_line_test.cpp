@@ -323,8 +323,7 @@ TEST(Usage, ErrorsEndWith64AndLeaveNothing) {
       {{"compare", "a.exr"}, {"truth"}},
       {{"compare", "a.exr", "b.exr", "--kind", "height"}, {"--kind", "height"}},
       {{"bench"}, {"subcommand"}},
-      {{"bench", "solve", "--megapixels", "0"}, {"--megapixels"}},
-      {{"demo"}, {"scene"}}};
+      {{"bench", "solve", "--megapixels", "0"}, {"--megapixels"}}};
   for (const auto& [arguments, words] : wrong) {
     SCOPED_TRACE("weft " + joined(arguments));
     expect_refusal(work, arguments, 64, words, {.folder = work.path()});

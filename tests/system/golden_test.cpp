@@ -44,6 +44,17 @@ double largest_half_steps(const fs::path& tested, const fs::path& truth) {
   return largest;
 }
 
+/// Of two maps of one channel, whatever else their files say; -1 where they cannot be compared.
+int differing_pixels(const fs::path& tested, const fs::path& truth) {
+  const Result<LoadedImage> a = read_image(tested), b = read_image(truth);
+  if (!a || !b || a->info.size != b->info.size) return -1;
+  int differing = 0;
+  for (int y = 0; y < a->info.size.height; ++y) {
+    for (int x = 0; x < a->info.size.width; ++x) differing += a->planes(x, y) != b->planes(x, y);
+  }
+  return differing;
+}
+
 void expect_golden_maps(const fs::path& maps) {
   const Result<app::NormalComparison> normal =
       app::compare_normals(maps / "normal.exr", kExpected / "normal.exr", {});
@@ -51,7 +62,7 @@ void expect_golden_maps(const fs::path& maps) {
   EXPECT_EQ(normal->pixels, 256 * 256);
   EXPECT_LT(normal->max_deg, 0.005);
   EXPECT_LE(largest_half_steps(maps / "albedo.exr", kExpected / "albedo.exr"), 1.001);
-  EXPECT_EQ(bytes_of(maps / "status.png"), bytes_of(kExpected / "status.png"));
+  EXPECT_EQ(differing_pixels(maps / "status.png", kExpected / "status.png"), 0);
 }
 
 TEST(Golden, TheStoredSessionSolvesToTheStoredMaps) {
@@ -88,8 +99,9 @@ TEST(Golden, AScanOfAnEarlierVersionIsSolvedAndItsSolveOfThenRectified) {
   const Outcome rectified = run_weft({"rectify", scan.string(), "--solve", "7cf91e8f08f74f49",
                                       "--mm-per-pixel", "12", "-o", (work / "rectified").string(), "-q"});
   ASSERT_EQ(rectified.exit_code, 0) << rectified.error;
-  EXPECT_EQ(bytes_of(work / "rectified" / "status.png"),
-            bytes_of(scan / "rectified" / "409d289d795aa39e" / "status.png"));
+  EXPECT_EQ(differing_pixels(work / "rectified" / "status.png",
+                             scan / "rectified" / "409d289d795aa39e" / "status.png"),
+            0);
   EXPECT_EQ(contents_of(scan), before);
 }
 

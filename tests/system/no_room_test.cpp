@@ -70,7 +70,7 @@ TEST_F(NoRoom, AMapThatCannotGrowEndsASolve) {
   for (const std::uint64_t bytes : {1024U, 16000U}) {
     SCOPED_TRACE(bytes);
     expect_refusal(work_, {"solve", session_.string(), "-q"}, 74,
-                   {"cannot write", session_.string(), "normal.exr", "File too large", kFreeDisk},
+                   {"cannot write", session_.string(), ".exr: File too large", kFreeDisk},
                    {.largest_file_bytes = bytes});
   }
 }
