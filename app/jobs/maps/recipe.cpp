@@ -242,7 +242,8 @@ Result<Recipe> read_recipe(const fs::path& file) {
       return unfit(file.string(), fmt::format("there is no key {}, only step", std::string(key.str())));
   }
   const toml::node* steps = table->get("step");
-  return recipe_from_json({{"steps", steps != nullptr ? weft::json_of(*steps) : Json::array()}}, file.string());
+  return recipe_from_json({{"steps", steps != nullptr ? weft::json_of(*steps) : Json::array()}},
+                          file.string());
 }
 
 }  // namespace weft::app
