@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/gloss.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -78,7 +79,7 @@ Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& 
   gloss.facts.of_film_pair = photographs.parallel.has_value();
   gloss.facts.of_second_pose = photographs.second_pose.has_value();
   if (!gloss.facts.is_measured()) return gloss;
-  const auto glossy = solver::glossy_method(base, lobes_of(gloss.facts), gloss.sight_);
+  const auto glossy = solver::glossy_method(gloss.beneath(base), lobes_of(gloss.facts), gloss.sight_);
   const auto variant = [&](const solver::Method& method) {
     return SolveVariant{.method = &method, .correction = correction, .judged_by_parallel = true};
   };
@@ -89,9 +90,16 @@ Result<Gloss> Gloss::find(const Photographs& photographs, const solver::Method& 
   return gloss;
 }
 
+// A pixel with a lobe begins where the cheaper method leaves it: what that gets wrong the lobe explains.
+const solver::Method& Gloss::beneath(const solver::Method& base) const {
+  const bool all_shine =
+      std::ranges::all_of(facts.lobes, [](const solver::MeasuredLobe& l) { return l.is_measured(); });
+  return all_shine && !base.wants_rgb() ? *standard_ : base;
+}
+
 const solver::Method& Gloss::over(const solver::Method& base) {
   if (!choice_) return base;
-  methods_.push_back(solver::glossy_method(base, lobes_of(facts), sight_));
+  methods_.push_back(solver::glossy_method(beneath(base), lobes_of(facts), sight_));
   methods_.push_back(solver::blended_method(base, *methods_.back(), *choice_));
   return *methods_.back();
 }

@@ -50,12 +50,15 @@ class Gloss {
   GlossFacts facts;
 
   /// Solves with the lobes where they earn their place, elsewhere as `base`, which must outlive this, does.
+  /// Where all materials have a lobe it begins from the standard method's normals.
   const solver::Method& over(const solver::Method& base);
 
  private:
   explicit Gloss(solver::Sight sight) : sight_(sight) {}
+  const solver::Method& beneath(const solver::Method& base) const;
 
   solver::Sight sight_;
+  std::unique_ptr<solver::Method> standard_ = solver::standard_method();
   std::optional<solver::BlockChoice> choice_;
   std::vector<std::unique_ptr<solver::Method>> methods_;  // that over() gave away
 };

@@ -218,6 +218,19 @@ double seconds_of(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
+// Microseconds a pixel of a method on one thread.
+Result<double> pixel_us(const Patch& patch, const solver::Method& method) {
+  SolvedMaps maps(patch.size());
+  Result<void> solved;
+  const double seconds = least_seconds(3, [&] {
+    const pipeline::Photographs& photographs = patch.photographs;
+    solved = solve_images(method, planes_of(patch.readings), patch.field(), photographs.planes().cfa,
+                          photographs.noise(), 1, maps);
+  });
+  if (!solved) return solved.error();
+  return 1e6 * seconds / static_cast<double>(patch.size().pixels());
+}
+
 Json or_null(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
@@ -252,6 +265,12 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
   const solver::MeasuredLobe& found = measured->front();
   const solver::Lobe& lobe = found.lobe;
   const bool has_yarn = lobe.family == solver::LobeFamily::kAnisotropicGgx;
+  const auto glossy = solver::glossy_method(*base, {{lobe, solver::one_sigma_off(lobe, found.covariance)}},
+                                            pipeline::sight_of(photographs));
+  const Result<double> base_us = pixel_us(bounded.patches.front(), *base);
+  const Result<double> glossy_us = pixel_us(bounded.patches.front(), *glossy);
+  if (!base_us) return base_us.error();
+  if (!glossy_us) return glossy_us.error();
   return Json{{"cloth", scene.name},
               {"robust_deg", number(*before, "mean_deg")},
               {"lobe_deg", number(*after, "mean_deg")},
@@ -267,7 +286,9 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
               {"f0", found.is_measured() ? Json(lobe.f0) : Json()},
               {"true_f0", or_null(cloth.truth.f0)},
               {"changes", solver::change_across(found.parts).has_value()},
-              {"fit_s", fit_s}};
+              {"fit_s", fit_s},
+              {"robust_us", *base_us},
+              {"glossy_us", found.is_measured() ? Json(*glossy_us) : Json()}};
 }
 
 }  // namespace

@@ -11,80 +11,202 @@
 
 #include "solver/in_double/pixelwise.h"
 #include "solver/reflectance/lobe_block.h"
+#include "solver/reflectance/lobe_rows.h"
 #include "solver/reflectance/measured_lobe.h"
 
 namespace weft::solver {
 namespace {
 
-constexpr int kSteps = 8;
 // One reading more than a normal and an albedo have unknowns.
-constexpr int kLeastReadings = 4;
+constexpr float kLeastReadings = 4;
+// Where a pixel begins again: where it is, then other_starts.
+constexpr std::size_t kStages = 1 + kOtherStarts;
+
+double root_of_sum(double a, double b) {
+  return std::sqrt(std::max(a + b, 0.0));
+}
 
 // A pixel of a tile that is being solved.
 struct Pixel {
   int x = 0, y = 0;
-  int used = 0;       // readings with a weight
   double albedo = 0;  // as the base left it
 };
 
 // Pixels of a tile, wherever they lie, side by side for the vector kernel.
 struct Group {
-  explicit Group(std::size_t lights) : block(lights), readings(lights * LobeBlock::kPixels) {}
+  explicit Group(std::size_t lights) : block(lights) {}
 
-  std::span<const LobeReading> of(std::size_t i) const {
-    const std::size_t lights = block.lights().size();
-    return {readings.data() + i * lights, lights};
-  }
-  void add(const Pixel& pixel, std::span<const LobeReading> of_pixel, Vec3 b) {
-    std::ranges::copy(of_pixel,
-                      readings.begin() + static_cast<std::ptrdiff_t>(pixels.size() * of_pixel.size()));
-    block.put(pixels.size(), of_pixel);
-    start.push_back(b);
-    pixels.push_back(pixel);
-  }
-  bool is_full() const { return pixels.size() == LobeBlock::kPixels; }
-  void clear() {
-    pixels.clear();
-    start.clear();
+  void add(const Pixel& pixel, const LobeBlock& other, std::size_t i) {
+    block.copy(count, other, i);
+    pixels[count++] = pixel;
   }
 
-  LobeBlock block;  // solved from the last start
-  LobeBlock best{0};
-  std::vector<LobeReading> readings;
-  std::vector<Pixel> pixels;
-  std::vector<Vec3> start;
+  LobeBlock block;
+  std::array<Pixel, LobeBlock::kPixels> pixels;
+  std::size_t count = 0;
 };
 
-// Variances of b along its normal, which is that of the albedo, and across it.
-struct Variances {
-  double along = 0, across = 0;
-};
-struct PixelVariances {
-  Variances of_readings, of_lobe;
-};
-
-// `pulls` (pull_of) of lobes one sigma off.
-PixelVariances variances_of(const LobeBlock& block, std::size_t i, Vec3 n,
-                            std::span<const LobeBlock::Lanes3> pulls) {
-  PixelSystem system;
-  for (std::size_t e = 0; e < system.a.size(); ++e) system.a[e] = block.normal_matrix[e][i];
-  const std::array<Vec3, 3> columns = {system.solved({1, 0, 0}), system.solved({0, 1, 0}),
-                                       system.solved({0, 0, 1})};
-  PixelVariances v;
-  v.of_readings.along = n.x * dot(columns[0], n) + n.y * dot(columns[1], n) + n.z * dot(columns[2], n);
-  v.of_readings.across = columns[0].x + columns[1].y + columns[2].z - v.of_readings.along;
-  for (const LobeBlock::Lanes3& pull : pulls) {
-    const Vec3 change = system.solved({pull.x[i], pull.y[i], pull.z[i]});
-    const double along = dot(change, n);
-    v.of_lobe.along += along * along;
-    v.of_lobe.across += dot(change, change) - along * along;
+// One tile.
+class GlossyTile {
+ public:
+  GlossyTile(const std::vector<KnownLobe>& lobes, Sight sight, const TileInput& input,
+             const TileOutput& output)
+      : lobes_(lobes), input_(input), output_(output), rows_(input, sight), row_(rows_.count()) {
+    readings_.resize(rows_.count());
   }
-  return v;
-}
 
-double root_of_sum(double a, double b) {
-  return std::sqrt(std::max(a + b, 0.0));
-}
+  void solve() {
+    for (int y = 0; y < input_.tile.height(); ++y) {
+      rows_.go_to_row(y);
+      for (int x = 0; x < input_.tile.width(); x += kRowGroup) solve_row_group(x, y);
+    }
+    for (std::size_t stage = 0; stage < again_.size(); ++stage) {
+      if (again_[stage]) begin_again(stage);
+    }
+  }
+
+ private:
+  static bool is_explained(const LobeBlock& block, std::size_t i) {
+    return 2 * double{block.cost[i]} < kTryOthersFrom * std::max(1.0, double{block.used[i]} - 3);
+  }
+  Vec3 normal_of(int x, int y) const {
+    return {output_.normal[0](x, y), output_.normal[1](x, y), output_.normal[2](x, y)};
+  }
+  // Of RGB that of the weighted sum.
+  double albedo_of(int x, int y) const {
+    if (input_.planes == 1) return output_.albedo[0](x, y);
+    double albedo = 0;
+    for (std::size_t p = 0; p < 3; ++p) albedo += input_.plane_weights[p] * output_.albedo[p](x, y);
+    return albedo;
+  }
+
+  void solve_row_group(int x, int y) {
+    row_.count = static_cast<std::size_t>(std::min(kRowGroup, input_.tile.width() - x));
+    rows_.read(x, row_.block);
+    bool any = false;
+    for (std::size_t i = 0; i < row_.count; ++i) {
+      Pixel& pixel = row_.pixels[i];
+      pixel = {x + static_cast<int>(i), y, albedo_of(x + static_cast<int>(i), y)};
+      row_.block.begin_at(i, pixel.albedo * normal_of(pixel.x, y));
+      if ((output_.status(pixel.x, y) & (kNoSolution | kDark)) != 0) row_.block.leave_out(i);
+      any |= row_.block.used[i] >= kLeastReadings;
+    }
+    if (!any) return;
+    improve(row_);
+    finish(row_, 0);
+  }
+
+  void improve(Group& group) const {
+    for (std::size_t l = 0; l < lobes_.size(); ++l)
+      improve_block(lobes_[l].lobe, l, group.block, group.count);
+  }
+
+  // Writes the pixels whose readings are explained, and passes the others on to a stage, if there is one
+  // left.
+  void finish(Group& group, std::size_t next_stage) {
+    std::array<bool, LobeBlock::kPixels> is_done = {};
+    for (std::size_t i = 0; i < group.count; ++i) {
+      if (group.block.used[i] < kLeastReadings) continue;
+      is_done[i] = next_stage == kStages || is_explained(group.block, i);
+      if (is_done[i]) continue;
+      if (!again_[next_stage]) again_[next_stage] = std::make_unique<Group>(rows_.count());
+      Group& next = *again_[next_stage];
+      next.add(group.pixels[i], group.block, i);
+      if (next.count == LobeBlock::kPixels) begin_again(next_stage);
+    }
+    write(group, is_done);
+  }
+
+  void begin_again(std::size_t stage) {
+    Group& group = *again_[stage];
+    for (std::size_t i = 0; i < group.count; ++i) {
+      if (stage == 0) {
+        group.block.begin_at(i, group.block.b(i));
+        continue;
+      }
+      for (std::size_t k = 0; k < readings_.size(); ++k) readings_[k] = group.block.reading(i, k);
+      group.block.begin_at(i, other_starts(readings_, group.pixels[i].albedo)[stage - 1]);
+    }
+    improve(group);
+    finish(group, stage + 1);
+    group.count = 0;
+  }
+
+  void write(const Group& group, const std::array<bool, LobeBlock::kPixels>& is_done) const {
+    for (std::size_t l = 0; l < lobes_.size(); ++l) {
+      const auto by_lobe = [&](std::size_t i) {
+        return is_done[i] && group.block.lobe[i] == static_cast<float>(l) &&
+               std::isfinite(group.block.cost[i]) && length(group.block.b(i)) > 0;
+      };
+      bool any = false;
+      for (std::size_t i = 0; i < group.count; ++i) any = any || by_lobe(i);
+      if (!lobes_[l].lobe.shines() || !any) continue;
+      BlockVariances variances;
+      write_variances(lobes_[l].lobe, lobes_[l].one_sigma_off, group.block, group.count, variances);
+      for (std::size_t i = 0; i < group.count; ++i) {
+        if (by_lobe(i)) write_pixel(group, i, variances);
+      }
+    }
+  }
+
+  void write_pixel(const Group& group, std::size_t i, const BlockVariances& v) const {
+    const int x = group.pixels[i].x, y = group.pixels[i].y;
+    const Vec3 b = group.block.b(i);
+    const double rho = length(b);
+    const Vec3 n = (1 / rho) * b;
+    output_.normal[0](x, y) = static_cast<float>(n.x);
+    output_.normal[1](x, y) = static_cast<float>(n.y);
+    output_.normal[2](x, y) = static_cast<float>(n.z);
+    const double sigma = degrees(root_of_sum(v.across_of_readings[i], v.across_of_lobe[i])) / rho;
+    output_.sigma_normal_deg(x, y) = static_cast<float>(std::min(sigma, double{kUnknownAngleDeg}));
+    output_.residual(x, y) = finite(group.block.residual[i] / rho);
+    // What the lobe explains is no misfit any more.
+    unsigned solved = kGlossy;
+    if (group.block.across[i] > 0) solved |= kYarnAcross;
+    if (group.block.lobe[i] > 0) solved |= kSecondLobe;
+    output_.status(x, y) = static_cast<std::uint16_t>((output_.status(x, y) & ~unsigned{kSpecular}) | solved);
+    for (std::size_t p = 0; p < static_cast<std::size_t>(input_.planes); ++p) {
+      const double share = input_.planes == 1 ? 1 : plane_share(group, i, p);
+      output_.albedo[p](x, y) = finite(rho * share);
+      // A highlight has the colour of the light: what is wrong with it is as much in all channels.
+      output_.sigma_albedo[p](x, y) =
+          finite(root_of_sum(v.along_of_readings[i] * share * share, v.along_of_lobe[i]));
+    }
+  }
+
+  // Albedo of one plane of RGB over that of the weighted sum: what its readings leave once the lobe, which
+  // has the colour of the light, is taken off.
+  double plane_share(const Group& group, std::size_t i, std::size_t plane) const {
+    const Lobe& lobe = lobes_[static_cast<std::size_t>(group.block.lobe[i])].lobe;
+    const int x = group.pixels[i].x, y = group.pixels[i].y;
+    const Vec3 b = group.block.b(i), n = normalized(b);
+    const double yarn = group.block.across[i] > 0 ? kPi / 2 : 0;
+    double of_plane = 0, of_all = 0;
+    for (std::size_t k = 0; k < readings_.size(); ++k) {
+      const LobeReading r = group.block.reading(i, k);
+      if (r.weight == 0) continue;
+      const std::size_t lights = input_.field->count(), i_of_state = 3 * (k % lights) + plane;
+      const double strength =
+          input_.field->at(k % lights, static_cast<int>(plane), input_.tile.x0 + x, input_.tile.y0 + y)
+              .strength;
+      const auto& state = k < lights ? input_.readings : input_.parallel;
+      const double reading = state[i_of_state](x, y) / strength;
+      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(lobe, n, r.from, yarn);
+      const double diffuse = modelled(lobe, b, r.from, yarn) - shine;
+      of_plane += r.weight * diffuse * (reading - shine);
+      of_all += r.weight * diffuse * diffuse;
+    }
+    return of_all > 0 ? std::max(0.0, of_plane / of_all) : 1;
+  }
+
+  const std::vector<KnownLobe>& lobes_;
+  const TileInput& input_;
+  const TileOutput& output_;
+  LobeRows rows_;
+  Group row_;
+  std::array<std::unique_ptr<Group>, kStages> again_;  // pixels that other starts are tried on
+  std::vector<LobeReading> readings_;
+};
 
 class Glossy : public Method {
  public:
@@ -93,37 +215,7 @@ class Glossy : public Method {
 
   void solve(const TileInput& input, const TileOutput& output) const override {
     base_.solve(input, output);
-    LobeReader reader(input, sight_);
-    std::vector<LobeReading> readings(reader.count());
-    Group from_base(reader.count()), from_others(reader.count());
-    const auto finish_others = [&] {
-      try_other_starts(from_others);
-      write(input, output, from_others);
-      from_others.clear();
-    };
-    const auto finish = [&] {
-      solve_from_base(from_base);
-      write(input, output, from_base);
-      for (std::size_t i = 0; i < from_base.pixels.size(); ++i) {
-        if (is_explained(from_base, i)) continue;
-        from_others.add(from_base.pixels[i], from_base.of(i), from_base.best.b(i));
-        if (from_others.is_full()) finish_others();
-      }
-      from_base.clear();
-    };
-    for (int y = 0; y < input.tile.height(); ++y) {
-      for (int x = 0; x < input.tile.width(); ++x) {
-        if (output.status(x, y) & (kNoSolution | kDark)) continue;
-        reader.read(x, y, readings);
-        const int used = used_of(readings);
-        if (used < kLeastReadings) continue;
-        const double albedo = albedo_of(input, output, x, y);
-        from_base.add({x, y, used, albedo}, readings, albedo * normal_of(output, x, y));
-        if (from_base.is_full()) finish();
-      }
-    }
-    finish();
-    finish_others();
+    GlossyTile(lobes_, sight_, input, output).solve();
   }
 
   bool wants_rgb() const override { return base_.wants_rgb(); }
@@ -137,128 +229,11 @@ class Glossy : public Method {
     const double yarn = (output.status(x, y) & kYarnAcross) != 0 ? kPi / 2 : 0;
     const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
     const Lobe& lobe = lobes_[(output.status(x, y) & kSecondLobe) != 0 ? 1 : 0].lobe;
-    return modelled(lobe, spoken * normal_of(output, x, y),
-                    LitFrom(light, readings.front().from.view, lobe_share), yarn);
+    const Vec3 n = {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
+    return modelled(lobe, spoken * n, LitFrom(light, readings.front().from.view, lobe_share), yarn);
   }
 
  private:
-  static Vec3 normal_of(const TileOutput& output, int x, int y) {
-    return {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
-  }
-  // Of RGB that of the weighted sum.
-  static double albedo_of(const TileInput& input, const TileOutput& output, int x, int y) {
-    if (input.planes == 1) return output.albedo[0](x, y);
-    double albedo = 0;
-    for (std::size_t p = 0; p < 3; ++p) albedo += input.plane_weights[p] * output.albedo[p](x, y);
-    return albedo;
-  }
-  static bool is_explained(const Group& group, std::size_t i) {
-    return 2 * group.best.cost[i] < kTryOthersFrom * std::max(1, group.pixels[i].used - 3);
-  }
-
-  // The starts of all pixels, by all lobes with both yarns; what costs less than the best so far takes its
-  // place.
-  void try_starts(Group& group, std::span<const Vec3> starts, bool is_first) const {
-    for (std::size_t l = 0; l < lobes_.size(); ++l) {
-      group.block.lobe.fill(static_cast<std::uint8_t>(l));
-      for (const double yarn : {0.0, kPi / 2}) {
-        if (yarn > 0 && lobes_[l].lobe.family != LobeFamily::kAnisotropicGgx) continue;
-        for (std::size_t i = 0; i < group.pixels.size(); ++i) group.block.start(i, starts[i], yarn);
-        fit_block(lobes_[l].lobe, group.block, kSteps);
-        if (is_first && l == 0 && yarn == 0) {
-          group.best = group.block;
-          continue;
-        }
-        for (std::size_t i = 0; i < group.pixels.size(); ++i) {
-          if (group.block.cost[i] < group.best.cost[i]) group.best.take(i, group.block);
-        }
-      }
-    }
-  }
-
-  void solve_from_base(Group& group) const { try_starts(group, group.start, true); }
-
-  void try_other_starts(Group& group) const {
-    try_starts(group, group.start, true);
-    std::vector<Vec3> starts(group.pixels.size());
-    for (std::size_t s = 0; s < kOtherStarts; ++s) {
-      for (std::size_t i = 0; i < starts.size(); ++i) {
-        const double albedo = group.pixels[i].albedo;
-        starts[i] = other_starts(group.of(i), albedo)[s];
-      }
-      try_starts(group, starts, false);
-    }
-  }
-
-  void write(const TileInput& input, const TileOutput& output, Group& group) const {
-    for (std::size_t l = 0; l < lobes_.size(); ++l) {
-      if (!lobes_[l].lobe.shines()) continue;
-      std::vector<LobeBlock::Lanes3> pulls;
-      for (const Lobe& off : lobes_[l].one_sigma_off)
-        pulls.push_back(pull_of(off, lobes_[l].lobe, group.best));
-      for (std::size_t i = 0; i < group.pixels.size(); ++i) {
-        if (group.best.lobe[i] != l) continue;
-        const Vec3 b = group.best.b(i);
-        if (!(length(b) > 0) || !std::isfinite(group.best.cost[i])) continue;
-        write_pixel(input, output, group, i, pulls);
-      }
-    }
-  }
-
-  void write_pixel(const TileInput& input, const TileOutput& output, const Group& group, std::size_t i,
-                   std::span<const LobeBlock::Lanes3> pulls) const {
-    const int x = group.pixels[i].x, y = group.pixels[i].y;
-    const Vec3 b = group.best.b(i);
-    const double rho = length(b);
-    const Vec3 n = (1 / rho) * b;
-    const PixelVariances v = variances_of(group.best, i, n, pulls);
-    output.normal[0](x, y) = static_cast<float>(n.x);
-    output.normal[1](x, y) = static_cast<float>(n.y);
-    output.normal[2](x, y) = static_cast<float>(n.z);
-    const double sigma = degrees(root_of_sum(v.of_readings.across, v.of_lobe.across)) / rho;
-    output.sigma_normal_deg(x, y) = static_cast<float>(std::min(sigma, double{kUnknownAngleDeg}));
-    output.residual(x, y) = finite(group.best.residual[i] / rho);
-    // What the lobe explains is no misfit any more.
-    unsigned solved = kGlossy;
-    if (group.best.yarn_y[i] > 0.5F) solved |= kYarnAcross;
-    if (group.best.lobe[i] > 0) solved |= kSecondLobe;
-    output.status(x, y) = static_cast<std::uint16_t>((output.status(x, y) & ~unsigned{kSpecular}) | solved);
-    for (std::size_t p = 0; p < static_cast<std::size_t>(input.planes); ++p) {
-      const double share = input.planes == 1 ? 1 : plane_share(input, group, i, b, x, y, p);
-      output.albedo[p](x, y) = finite(rho * share);
-      // A highlight has the colour of the light: what is wrong with it is as much in all channels.
-      output.sigma_albedo[p](x, y) =
-          finite(root_of_sum(v.of_readings.along * share * share, v.of_lobe.along));
-    }
-  }
-
-  // Albedo of one plane of RGB over that of the weighted sum: what its readings leave once the lobe, which
-  // has the colour of the light, is taken off.
-  double plane_share(const TileInput& input, const Group& group, std::size_t i, Vec3 b, int x, int y,
-                     std::size_t plane) const {
-    const Lobe& lobe = lobe_of(group, i);
-    const double yarn = std::atan2(group.best.yarn_y[i], group.best.yarn_x[i]);
-    double of_plane = 0, of_all = 0;
-    const auto readings = group.of(i);
-    for (std::size_t k = 0; k < readings.size(); ++k) {
-      const LobeReading& r = readings[k];
-      if (r.weight == 0) continue;
-      const std::size_t lights = input.field->count(), i_of_state = 3 * (k % lights) + plane;
-      const double strength =
-          input.field->at(k % lights, static_cast<int>(plane), input.tile.x0 + x, input.tile.y0 + y).strength;
-      const auto& state = k < lights ? input.readings : input.parallel;
-      const double reading = state[i_of_state](x, y) / strength;
-      const Vec3 n = normalized(b);
-      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(lobe, n, r.from, yarn);
-      const double diffuse = modelled(lobe, b, r.from, yarn) - shine;
-      of_plane += r.weight * diffuse * (reading - shine);
-      of_all += r.weight * diffuse * diffuse;
-    }
-    return of_all > 0 ? std::max(0.0, of_plane / of_all) : 1;
-  }
-
-  const Lobe& lobe_of(const Group& group, std::size_t i) const { return lobes_[group.best.lobe[i]].lobe; }
-
   const Method& base_;
   std::vector<KnownLobe> lobes_;
   Sight sight_;

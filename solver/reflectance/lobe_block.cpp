@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/reflectance/lobe_block.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "solver/reflectance/lobe_block.cpp"
@@ -16,222 +18,345 @@ namespace weft::solver {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Turn of the normal that a lobe's slope is taken from: what float32 can tell of it.
-constexpr float kTurn = 1e-3F;
 constexpr float kMostStep = 0.3F;
 constexpr int kMostHalvings = 4;
-// Of the cost: a step that wins less is the last.
-constexpr float kLeastFall = 1e-6F;
+// Evaluations from one start, in rounds between which yarns and starts are compared.
+constexpr int kRounds = 5, kStepsOfRound = 2;
+// The next step is the last where it should win no more than this and a share of the cost: it moves b by a
+// fiftieth of its sigma.
+struct Last {
+  float wins, share;
+};
+constexpr Last kToSigma = {2e-4F, 1e-5F}, kToRounding = {0, 1e-7F};
+// And where it is no longer than this share of b: further off the prediction counts for nothing.
+constexpr float kLastStep = 0.03F;
+// A fit is given up where so many times what its next step should win leave it dearer than another.
+constexpr float kHope = 4;
 
-// One vector of pixels of a block.
+// A factor of a symmetric matrix, L D L^T.
+struct Factor {
+  V inverse_d0, inverse_d1, inverse_d2, l10, l20, l21;
+};
+
+HWY_INLINE Factor factor_of(D d, const Symmetric& m) {
+  const V one = number(d, 1), least = hn::MulAdd(number(d, 1e-7), trace(m), number(d, 1e-30));
+  Factor f;
+  f.inverse_d0 = hn::Div(one, hn::Max(m.xx, least));
+  f.l10 = hn::Mul(m.xy, f.inverse_d0);
+  f.l20 = hn::Mul(m.xz, f.inverse_d0);
+  f.inverse_d1 = hn::Div(one, hn::Max(hn::NegMulAdd(f.l10, m.xy, m.yy), least));
+  const V rest = hn::NegMulAdd(f.l20, m.xy, m.yz);
+  f.l21 = hn::Mul(rest, f.inverse_d1);
+  const V d2 = hn::NegMulAdd(f.l21, rest, hn::NegMulAdd(f.l20, m.xz, m.zz));
+  f.inverse_d2 = hn::Div(one, hn::Max(d2, least));
+  return f;
+}
+
+HWY_INLINE Vector3 solved_by(const Factor& f, Vector3 right) {
+  const V y = hn::NegMulAdd(f.l10, right.x, right.y);
+  const V z = hn::NegMulAdd(f.l21, y, hn::NegMulAdd(f.l20, right.x, right.z));
+  Vector3 x;
+  x.z = hn::Mul(z, f.inverse_d2);
+  x.y = hn::NegMulAdd(f.l21, x.z, hn::Mul(y, f.inverse_d1));
+  x.x = hn::NegMulAdd(f.l20, x.z, hn::NegMulAdd(f.l10, x.y, hn::Mul(right.x, f.inverse_d0)));
+  return x;
+}
+
+HWY_INLINE V blended(M where, V a, V b) {
+  return hn::IfThenElse(where, a, b);
+}
+HWY_INLINE Vector3 blended(M where, Vector3 a, Vector3 b) {
+  return {blended(where, a.x, b.x), blended(where, a.y, b.y), blended(where, a.z, b.z)};
+}
+HWY_INLINE Symmetric blended(M where, const Symmetric& a, const Symmetric& b) {
+  return {blended(where, a.xx, b.xx), blended(where, a.xy, b.xy), blended(where, a.xz, b.xz),
+          blended(where, a.yy, b.yy), blended(where, a.yz, b.yz), blended(where, a.zz, b.zz)};
+}
+
+// One vector of pixels of a block, by one lobe.
 template <LobeFamily kFamily>
 class LanesFit {
  public:
-  LanesFit(D d, const Lobe& lobe, LobeBlock& block, std::size_t at)
+  // Azimuths of a yarn.
+  struct Yarn {
+    V x, y;
+  };
+
+  LanesFit(D d, const Lobe& lobe, const LobeBlock& block, std::size_t at, Last last = kToSigma)
       : d_(d),
+        last_(last),
         lobe_(d, lobe),
         bend_(number(d, lobe.bend)),
         f0_(number(d, lobe.f0)),
+        cosine_(std::cos(lobe.axis)),
+        sine_(std::sin(lobe.axis)),
         block_(block),
         at_(at),
-        view_(load(block.view)) {
-    const V cosine = number(d, std::cos(lobe.axis)), sine = number(d, std::sin(lobe.axis));
-    const V x = hn::LoadU(d, block.yarn_x.data() + at), y = hn::LoadU(d, block.yarn_y.data() + at);
-    yarn_x_ = hn::NegMulAdd(sine, y, hn::Mul(cosine, x));
-    yarn_y_ = hn::MulAdd(sine, x, hn::Mul(cosine, y));
+        view_(load(block.view)) {}
+
+  void fit(LobeBlock& block, int steps) const {
+    const V across = hn::LoadU(d_, block.across.data() + at_);
+    Walk walk = begin(yarn_of(hn::Gt(across, hn::Zero(d_))));
+    walk.left = hn::Set(d_, static_cast<float>(steps));
+    advance(walk, steps + kMostHalvings);
+    write(walk.at, hn::Inf(d_), across, block, 0);
   }
 
-  void run(int steps) {
-    Vector3 b = load(block_.solved);
-    V cost = cost_of(b);
-    M active = hn::Ge(cost, hn::Zero(d_));
-    for (int i = 0; i < steps && !hn::AllFalse(d_, active); ++i) {
-      Vector3 step = newton_step(b);
-      const V size = hn::Sqrt(dot(step, step)), most = hn::Mul(hn::Set(d_, kMostStep), hn::Sqrt(dot(b, b)));
-      active = hn::And(active, hn::Lt(size, hn::Inf(d_)));
-      step = scaled(step, hn::IfThenElse(hn::Gt(size, most), hn::Div(most, size), number(d_, 1)));
-      V tried = cost_of(moved(b, number(d_, 1), step));
-      for (int halved = 0; halved < kMostHalvings; ++halved) {
-        const M dearer = hn::And(active, hn::Gt(tried, cost));
-        if (hn::AllFalse(d_, dearer)) break;
-        const Vector3 half = scaled(step, number(d_, 0.5));
-        step = {hn::IfThenElse(dearer, half.x, step.x), hn::IfThenElse(dearer, half.y, step.y),
-                hn::IfThenElse(dearer, half.z, step.z)};
-        tried = hn::IfThenElse(dearer, cost_of(moved(b, number(d_, 1), step)), tried);
+  void improve(LobeBlock& block, std::size_t index) const {
+    const V best = hn::LoadU(d_, block.cost.data() + at_);
+    const V zero = hn::Zero(d_);
+    Walk along = begin({number(d_, cosine_), number(d_, sine_)});
+    if constexpr (kFamily == LobeFamily::kAnisotropicGgx) {
+      Walk across = begin({number(d_, -sine_), number(d_, cosine_)});
+      for (int round = 0; round < kRounds; ++round) {
+        advance(along, kStepsOfRound);
+        advance(across, kStepsOfRound);
+        give_up(along, hn::Min(best, across.at.cost));
+        give_up(across, hn::Min(best, along.at.cost));
       }
-      active = hn::And(active, hn::Lt(tried, cost));
-      b = moved(b, number(d_, 1), masked(active, step));
-      const V won = hn::Sub(cost, tried);
-      cost = hn::IfThenElse(active, tried, cost);
-      active = hn::And(active, hn::Ge(won, hn::Mul(hn::Set(d_, kLeastFall), cost)));
+      const M is_across = hn::Lt(across.at.cost, along.at.cost);
+      take(is_across, across.at, along.at);
+      write(along.at, best, hn::IfThenElseZero(is_across, number(d_, 1)), block, index);
+    } else {
+      for (int round = 0; round < kRounds; ++round) {
+        advance(along, kStepsOfRound);
+        give_up(along, best);
+      }
+      write(along.at, best, zero, block, index);
     }
-    store(b, block_.solved);
-    hn::StoreU(cost, d_, block_.cost.data() + at_);
-    const NormalSums sums = sums_of(b);
-    hn::StoreU(hn::Sqrt(hn::Div(sums.square, hn::Max(sums.used, number(d_, 1)))), d_,
-               block_.residual.data() + at_);
-    const Symmetric m = sums.matrix;
-    const V elements[] = {m.xx, m.xy, m.xz, m.yy, m.yz, m.zz};
-    for (std::size_t i = 0; i < 6; ++i) hn::StoreU(elements[i], d_, block_.normal_matrix[i].data() + at_);
   }
 
-  void write_pull(const LanesFit& other, LobeBlock::Lanes3& pull) const {
-    const Turned turned = turned_at(load(block_.solved));
-    const Facing facing = other.facing_of(turned.n);
-    Vector3 sum = zero_vector(d_);
-    for (const LobeBlock::Light& light : block_.lights()) {
-      const Linear r = linear(light, turned);
-      const V off = hn::Sub(other.modelled(facing, turned.rho, other.lit_by(light)), r.model);
-      add_scaled(sum, off, scaled(r.by_b, r.weight));
+  void write_variances(std::span<const Lobe> one_sigma_off, BlockVariances& variances) const {
+    const V is_across = hn::LoadU(d_, block_.across.data() + at_), zero = hn::Zero(d_);
+    const M across = hn::Gt(is_across, zero);
+    const Vector3 b = load(block_.solved);
+    Symmetric m;
+    V* const elements[] = {&m.xx, &m.xy, &m.xz, &m.yy, &m.yz, &m.zz};
+    for (std::size_t i = 0; i < 6; ++i) *elements[i] = hn::LoadU(d_, block_.normal_matrix[i].data() + at_);
+    const Factor f = factor_of(d_, m);
+    // Of the inverse the diagonal, by the inverse of L.
+    const V l20 = hn::MulSub(f.l10, f.l21, f.l20);
+    const V of_readings = hn::MulAdd(hn::Mul(f.l10, f.l10), f.inverse_d1,
+                                     hn::MulAdd(hn::Mul(l20, l20), f.inverse_d2, f.inverse_d0));
+    const V beside = hn::MulAdd(hn::Mul(f.l21, f.l21), f.inverse_d2, hn::Add(f.inverse_d1, f.inverse_d2));
+    const Place place = place_of(b, yarn_of(across));
+    V along_of_lobe = zero, across_of_lobe = zero;
+    for (const Lobe& off : one_sigma_off) {
+      const LanesFit other(d_, off, block_, at_);
+      const Place other_place = other.place_of(b, other.yarn_of(across));
+      Vector3 pull = zero_vector(d_);
+      for (const LobeBlock::Light& light : block_.lights()) {
+        const Linear r = linear(light, place);
+        add_scaled(pull, hn::Mul(r.weight, hn::Sub(other.linear(light, other_place).model, r.model)), r.by_b);
+      }
+      const Vector3 change = solved_by(f, pull);
+      along_of_lobe = hn::MulAdd(change.x, change.x, along_of_lobe);
+      across_of_lobe = hn::MulAdd(change.y, change.y, hn::MulAdd(change.z, change.z, across_of_lobe));
     }
-    store(sum, pull);
+    store(of_readings, variances.along_of_readings);
+    store(beside, variances.across_of_readings);
+    store(along_of_lobe, variances.along_of_lobe);
+    store(across_of_lobe, variances.across_of_lobe);
   }
 
  private:
-  using Facing = typename LobeLanes<kFamily>::Facing;
-  struct NormalSums {
+  using Lanes = LobeLanes<kFamily>;
+  // b, with what its readings share.
+  struct Place {
+    Vector3 b;
+    V rho, inverse_rho;
+    Frame frame;
+    typename Lanes::Seen seen;
+  };
+  // What the readings say there.
+  struct Point {
+    Vector3 b;
+    V rho;
+    Frame frame;
+    V cost, square;  // of residuals
     Symmetric matrix;
     Vector3 gradient;
-    V square, used;  // of residuals, and how many
+  };
+  // A fit under way.
+  struct Walk {
+    Yarn yarn;
+    Point at;
+    Vector3 step;
+    V wins;      // what the step should win, were the readings linear
+    V failures;  // of this step
+    V left;      // steps that may still be taken
+    M active;
   };
 
   HWY_INLINE Vector3 load(const LobeBlock::Lanes3& v) const {
     return {hn::LoadU(d_, v.x.data() + at_), hn::LoadU(d_, v.y.data() + at_),
             hn::LoadU(d_, v.z.data() + at_)};
   }
-  HWY_INLINE void store(Vector3 v, LobeBlock::Lanes3& into) const {
-    hn::StoreU(v.x, d_, into.x.data() + at_);
-    hn::StoreU(v.y, d_, into.y.data() + at_);
-    hn::StoreU(v.z, d_, into.z.data() + at_);
-  }
-  HWY_INLINE LitLanes lit_by(const LobeBlock::Light& light) const {
-    V fresnel = hn::Zero(d_), share = hn::Zero(d_);
-    if constexpr (kFamily != LobeFamily::kLambert) {
-      const V grazing = hn::LoadU(d_, light.grazing.data() + at_);
-      fresnel = hn::MulAdd(hn::Sub(number(d_, 1), f0_), grazing, f0_);
-      share = hn::LoadU(d_, light.lobe_share.data() + at_);
-    }
-    return {load(light.to_light), load(light.half), fresnel, share};
+  HWY_INLINE void store(V v, LobeBlock::Lane& into) const { hn::StoreU(v, d_, into.data() + at_); }
+  HWY_INLINE void store(M where, V v, LobeBlock::Lane& into) const {
+    store(blended(where, v, hn::LoadU(d_, into.data() + at_)), into);
   }
 
-  // The part of rho (n . l) that the diffuse part sends on, without rho.
-  struct Diffuse {
-    V cosine, beneath, straight;
-    HWY_INLINE V share() const { return hn::Mul(hn::Mul(cosine, beneath), straight); }
-  };
-  HWY_INLINE Diffuse diffuse(Vector3 n, const LitLanes& from) const {
-    const V cosine = hn::Max(dot(n, from.light), hn::Zero(d_)), one = number(d_, 1);
-    return {cosine, hn::Sub(one, from.fresnel), hn::NegMulAdd(bend_, hn::Sub(one, cosine), one)};
+  HWY_INLINE Yarn yarn_of(M across) const {
+    return {blended(across, number(d_, -sine_), number(d_, cosine_)),
+            blended(across, number(d_, cosine_), number(d_, sine_))};
   }
 
-  HWY_INLINE Facing facing_of(Vector3 n) const { return lobe_.facing(n, view_, yarn_x_, yarn_y_); }
-  HWY_INLINE V modelled(const Facing& facing, V rho, const LitLanes& from) const {
-    return hn::MulAdd(rho, diffuse(facing.normal, from).share(), lobe_.shine(facing, from));
+  HWY_INLINE Place place_of(Vector3 b, const Yarn& yarn) const {
+    Place p;
+    p.b = b;
+    p.rho = hn::Max(hn::Sqrt(dot(b, b)), number(d_, 1e-12));
+    p.inverse_rho = hn::Div(number(d_, 1), p.rho);
+    p.frame = frame_of(d_, scaled(b, p.inverse_rho), yarn.x, yarn.y);
+    p.seen = lobe_.seen(p.frame, view_);
+    return p;
   }
 
-  V cost_of(Vector3 b) const {
-    const V rho = hn::Max(hn::Sqrt(dot(b, b)), number(d_, 1e-12)), one = number(d_, 1);
-    const Facing facing = facing_of(scaled(b, hn::Div(one, rho)));
-    V cost = hn::Zero(d_);
-    const V huber = number(d_, kHuberSigmas);
-    for (const LobeBlock::Light& light : block_.lights()) {
-      const V model = modelled(facing, rho, lit_by(light));
-      const V w = hn::LoadU(d_, light.weight.data() + at_);
-      const V size = hn::Mul(hn::Abs(hn::Sub(hn::LoadU(d_, light.reading.data() + at_), model)), hn::Sqrt(w));
-      const V inner = hn::Min(size, huber);
-      // Half of the square up to Huber's limit, its tangent beyond.
-      cost = hn::Add(cost, hn::Mul(inner, hn::NegMulAdd(number(d_, 0.5), inner, size)));
-    }
-    return cost;
-  }
-
-  // Pixels at b, and with normals turned to both sides, which slopes are taken from.
-  struct Turned {
-    Vector3 n, first, second;
-    V rho, by_turn;
-    Facing here, to_first, to_second;
-  };
-  HWY_INLINE Turned turned_at(Vector3 b) const {
-    const V one = number(d_, 1), zero = hn::Zero(d_);
-    Turned t;
-    t.rho = hn::Max(hn::Sqrt(dot(b, b)), number(d_, 1e-12));
-    const V inverse_rho = hn::Div(one, t.rho);
-    t.n = scaled(b, inverse_rho);
-    // The axis that is least along the normal, for two directions across it.
-    const M is_up = hn::Gt(hn::Abs(t.n.z), number(d_, 0.5));
-    const Vector3 aside = {hn::IfThenElseZero(is_up, one), zero, hn::IfThenZeroElse(is_up, one)};
-    t.first = normalised(d_, cross_of(aside, t.n));
-    t.second = cross_of(t.n, t.first);
-    const V turn = hn::Set(d_, kTurn);
-    t.here = facing_of(t.n);
-    t.to_first = facing_of(normalised(d_, moved(t.n, turn, t.first)));
-    t.to_second = facing_of(normalised(d_, moved(t.n, turn, t.second)));
-    t.by_turn = hn::Mul(inverse_rho, hn::Set(d_, 1 / kTurn));
-    return t;
-  }
-
-  // One reading there, with the derivative of its model by b.
+  // One reading at a place, with the derivative of its model by b in the frame.
   struct Linear {
     V model, residual, weight;  // Huber's weight
+    V cost;
     M is_used;
     Vector3 by_b;
   };
-  HWY_INLINE Linear linear(const LobeBlock::Light& light, const Turned& t) const {
-    const LitLanes from = lit_by(light);
-    const Diffuse part = diffuse(t.n, from);
-    const V shine = lobe_.shine(t.here, from);
-    Linear reading;
-    reading.model = hn::MulAdd(t.rho, part.share(), shine);
-    reading.residual = hn::Sub(hn::LoadU(d_, light.reading.data() + at_), reading.model);
-    const V bent = hn::Mul(hn::Mul(bend_, part.cosine), part.beneath);
-    Vector3 j = scaled(from.light, hn::MulAdd(part.beneath, part.straight, bent));
-    j = moved(j, hn::Neg(hn::Mul(bent, part.cosine)), t.n);
-    j = masked(hn::Gt(part.cosine, hn::Zero(d_)), j);
-    j = moved(j, hn::Mul(hn::Sub(lobe_.shine(t.to_first, from), shine), t.by_turn), t.first);
-    reading.by_b = moved(j, hn::Mul(hn::Sub(lobe_.shine(t.to_second, from), shine), t.by_turn), t.second);
-    const V w = hn::LoadU(d_, light.weight.data() + at_), huber = number(d_, kHuberSigmas);
-    reading.is_used = hn::Gt(w, hn::Zero(d_));
-    const V size = hn::Mul(hn::Abs(reading.residual), hn::Sqrt(w));
-    reading.weight = hn::IfThenElse(hn::Lt(size, huber), w, hn::Div(hn::Mul(w, huber), hn::Max(size, huber)));
-    return reading;
-  }
-
-  NormalSums sums_of(Vector3 b) const {
-    const V one = number(d_, 1), zero = hn::Zero(d_);
-    const Turned turned = turned_at(b);
-    NormalSums sums = {zero_matrix(d_), zero_vector(d_), zero, zero};
-    for (const LobeBlock::Light& light : block_.lights()) {
-      const Linear r = linear(light, turned);
-      sums.square = hn::Add(sums.square, hn::IfThenElseZero(r.is_used, square_of(r.residual)));
-      sums.used = hn::Add(sums.used, hn::IfThenElseZero(r.is_used, one));
-      const Vector3 wj = scaled(r.by_b, r.weight);
-      add_outer(sums.matrix, wj, r.by_b);
-      add_scaled(sums.gradient, r.residual, wj);
+  HWY_INLINE Linear linear(const LobeBlock::Light& light, const Place& p) const {
+    const V zero = hn::Zero(d_), one = number(d_, 1);
+    const Toward to = toward(p.frame, load(light.to_light));
+    V beneath = one;
+    typename Lanes::Shine shine = {zero, zero, zero};
+    if constexpr (kFamily != LobeFamily::kLambert) {
+      const V grazing = hn::LoadU(d_, light.grazing.data() + at_);
+      const V fresnel = hn::MulAdd(hn::Sub(one, f0_), grazing, f0_);
+      beneath = hn::Sub(one, fresnel);
+      shine = lobe_.shine(p.frame, p.seen, to, toward(p.frame, load(light.half)),
+                          hn::Mul(fresnel, hn::Set(d_, light.lobe_share)));
     }
-    const V little = hn::MulAdd(number(d_, 1e-6), trace(sums.matrix), number(d_, 1e-30));
-    sums.matrix.xx = hn::Add(sums.matrix.xx, little);
-    sums.matrix.yy = hn::Add(sums.matrix.yy, little);
-    sums.matrix.zz = hn::Add(sums.matrix.zz, little);
-    return sums;
+    const V cosine = hn::Max(to.normal, zero), lit = hn::IfThenElseZero(hn::Gt(to.normal, zero), beneath);
+    const V straight = hn::NegMulAdd(bend_, hn::Sub(one, cosine), one);
+    const V by_turn = hn::Mul(lit, hn::MulAdd(bend_, cosine, straight));
+    Linear r;
+    r.by_b.x = hn::Mul(hn::Mul(lit, straight), cosine);
+    r.by_b.y = hn::MulAdd(by_turn, to.along, hn::Mul(shine.by_along, p.inverse_rho));
+    r.by_b.z = hn::MulAdd(by_turn, to.across, hn::Mul(shine.by_across, p.inverse_rho));
+    r.model = hn::MulAdd(p.rho, r.by_b.x, shine.value);
+    r.residual = hn::Sub(hn::LoadU(d_, light.reading.data() + at_), r.model);
+    const V root_weight = hn::LoadU(d_, light.root_weight.data() + at_), huber = number(d_, kHuberSigmas);
+    r.is_used = hn::Gt(root_weight, zero);
+    const V size = hn::Mul(hn::Abs(r.residual), root_weight), inner = hn::Min(size, huber);
+    // Half of the square up to Huber's limit, its tangent beyond.
+    r.cost = hn::Mul(inner, hn::NegMulAdd(number(d_, 0.5), inner, size));
+    r.weight = hn::Mul(square_of(root_weight), hn::Div(huber, hn::Max(size, huber)));
+    return r;
   }
 
-  Vector3 newton_step(Vector3 b) const {
-    const NormalSums sums = sums_of(b);
-    // Scaled to a trace of 1, since the determinant of large weights leaves the range of float32.
-    const V scale = hn::Div(number(d_, 1), trace(sums.matrix));
-    const Symmetric& m = sums.matrix;
-    const Symmetric unit = {hn::Mul(m.xx, scale), hn::Mul(m.xy, scale), hn::Mul(m.xz, scale),
-                            hn::Mul(m.yy, scale), hn::Mul(m.yz, scale), hn::Mul(m.zz, scale)};
-    return times(inverted(d_, unit).matrix, scaled(sums.gradient, scale));
+  Point point_at(Vector3 b, const Yarn& yarn) const {
+    const Place place = place_of(b, yarn);
+    const V zero = hn::Zero(d_);
+    Point p = {b, place.rho, place.frame, zero, zero, zero_matrix(d_), zero_vector(d_)};
+    for (const LobeBlock::Light& light : block_.lights()) {
+      const Linear r = linear(light, place);
+      p.cost = hn::Add(p.cost, r.cost);
+      p.square = hn::Add(p.square, hn::IfThenElseZero(r.is_used, square_of(r.residual)));
+      const Vector3 wj = scaled(r.by_b, r.weight);
+      add_outer(p.matrix, wj, r.by_b);
+      add_scaled(p.gradient, r.residual, wj);
+    }
+    // So that every pixel has a step.
+    const V little = hn::MulAdd(number(d_, 1e-6), trace(p.matrix), number(d_, 1e-30));
+    p.matrix.xx = hn::Add(p.matrix.xx, little);
+    p.matrix.yy = hn::Add(p.matrix.yy, little);
+    p.matrix.zz = hn::Add(p.matrix.zz, little);
+    return p;
+  }
+
+  HWY_INLINE void take(M where, const Point& from, Point& into) const {
+    into.b = blended(where, from.b, into.b);
+    into.rho = blended(where, from.rho, into.rho);
+    into.frame.normal = blended(where, from.frame.normal, into.frame.normal);
+    into.frame.along = blended(where, from.frame.along, into.frame.along);
+    into.frame.across = blended(where, from.frame.across, into.frame.across);
+    into.cost = blended(where, from.cost, into.cost);
+    into.square = blended(where, from.square, into.square);
+    into.matrix = blended(where, from.matrix, into.matrix);
+    into.gradient = blended(where, from.gradient, into.gradient);
+  }
+
+  Walk begin(const Yarn& yarn) const {
+    const V zero = hn::Zero(d_);
+    Walk w = {yarn,       point_at(load(block_.start), yarn), zero_vector(d_), zero, zero, hn::Inf(d_),
+              no_lane(d_)};
+    w.active = hn::Lt(w.at.cost, hn::Inf(d_));
+    aim(w, w.active);
+    return w;
+  }
+
+  // The next step of some lanes. Where it is the last it is taken at once.
+  HWY_INLINE void aim(Walk& w, M where) const {
+    const Point& p = w.at;
+    const Vector3 step = solved_by(factor_of(d_, p.matrix), p.gradient);
+    const V size = hn::Sqrt(dot(step, step)), most = hn::Mul(hn::Set(d_, kMostStep), p.rho);
+    const V wins = hn::Mul(number(d_, 0.5), dot(p.gradient, step));
+    const V shorter = blended(hn::Gt(size, most), hn::Div(most, size), number(d_, 1));
+    const Vector3 in_frame = scaled(step, shorter);
+    const Vector3 in_rig = moved(moved(scaled(p.frame.normal, in_frame.x), in_frame.y, p.frame.along),
+                                 in_frame.z, p.frame.across);
+    const M is_none = hn::AndNot(hn::Lt(size, hn::Inf(d_)), where);
+    w.active = hn::AndNot(is_none, w.active);
+    where = hn::AndNot(is_none, where);
+    w.step = blended(where, in_rig, w.step);
+    w.wins = blended(where, wins, w.wins);
+    w.failures = hn::IfThenZeroElse(where, w.failures);
+    M is_last = hn::Lt(wins, hn::MulAdd(hn::Set(d_, last_.share), p.cost, hn::Set(d_, last_.wins)));
+    is_last = hn::And(is_last, hn::Lt(size, hn::Mul(hn::Set(d_, kLastStep), p.rho)));
+    is_last = hn::And(is_last, where);
+    w.at.b = moved(w.at.b, number(d_, 1), masked(is_last, in_rig));
+    w.active = hn::AndNot(is_last, w.active);
+  }
+
+  // So many evaluations, of steps that are halved until the cost falls.
+  void advance(Walk& w, int evaluations) const {
+    const V one = number(d_, 1);
+    for (int i = 0; i < evaluations && !hn::AllFalse(d_, w.active); ++i) {
+      const Point trial = point_at(moved(w.at.b, one, w.step), w.yarn);
+      const M better = hn::And(w.active, hn::Lt(trial.cost, w.at.cost));
+      take(better, trial, w.at);
+      w.failures = hn::Add(w.failures, one);
+      w.active = hn::And(w.active, hn::Or(better, hn::Le(w.failures, number(d_, kMostHalvings))));
+      w.left = hn::Sub(w.left, hn::IfThenElseZero(better, one));
+      w.active = hn::And(w.active, hn::Gt(w.left, hn::Zero(d_)));
+      w.step = scaled(w.step, number(d_, 0.5));
+      aim(w, hn::And(better, w.active));
+    }
+  }
+
+  HWY_INLINE void give_up(Walk& w, V cost_of_others) const {
+    const V least = hn::NegMulAdd(hn::Set(d_, kHope), w.wins, w.at.cost);
+    w.active = hn::AndNot(hn::Gt(least, cost_of_others), w.active);
+  }
+
+  void write(const Point& p, V best, V across, LobeBlock& block, std::size_t index) const {
+    const M better = hn::Lt(p.cost, best);
+    store(better, p.b.x, block.solved.x);
+    store(better, p.b.y, block.solved.y);
+    store(better, p.b.z, block.solved.z);
+    store(better, p.cost, block.cost);
+    store(better, across, block.across);
+    store(better, number(d_, static_cast<double>(index)), block.lobe);
+    const V used = hn::Max(hn::LoadU(d_, block.used.data() + at_), number(d_, 1));
+    store(better, hn::Sqrt(hn::Div(p.square, used)), block.residual);
+    const Symmetric& m = p.matrix;
+    const V elements[] = {m.xx, m.xy, m.xz, m.yy, m.yz, m.zz};
+    for (std::size_t i = 0; i < 6; ++i) store(better, elements[i], block.normal_matrix[i]);
   }
 
   D d_;
-  LobeLanes<kFamily> lobe_;
+  Last last_;
+  Lanes lobe_;
   V bend_, f0_;
-  LobeBlock& block_;
+  double cosine_, sine_;  // of the lobe's axis
+  const LobeBlock& block_;
   std::size_t at_;
   Vector3 view_;
-  V yarn_x_, yarn_y_;
 };
 
 // Calls `work` with the family as a constant.
@@ -255,16 +380,24 @@ void fit_block_lanes(const Lobe& lobe, LobeBlock& block, int steps) {
   const D d;
   for_family(lobe.family, [&]<LobeFamily kFamily>() {
     for (std::size_t at = 0; at < LobeBlock::kPixels; at += hn::Lanes(d))
-      LanesFit<kFamily>(d, lobe, block, at).run(steps);
+      LanesFit<kFamily>(d, lobe, block, at, kToRounding).fit(block, steps);
   });
 }
 
-void pull_block_lanes(const Lobe& lobe, const Lobe& other, LobeBlock& block, LobeBlock::Lanes3& pull) {
+void improve_block_lanes(const Lobe& lobe, std::size_t index, LobeBlock& block, std::size_t pixels) {
   const D d;
   for_family(lobe.family, [&]<LobeFamily kFamily>() {
-    for (std::size_t at = 0; at < LobeBlock::kPixels; at += hn::Lanes(d)) {
-      LanesFit<kFamily>(d, lobe, block, at).write_pull(LanesFit<kFamily>(d, other, block, at), pull);
-    }
+    for (std::size_t at = 0; at < pixels; at += hn::Lanes(d))
+      LanesFit<kFamily>(d, lobe, block, at).improve(block, index);
+  });
+}
+
+void write_variances_lanes(const Lobe& lobe, std::span<const Lobe> one_sigma_off, const LobeBlock& block,
+                           std::size_t pixels, BlockVariances& variances) {
+  const D d;
+  for_family(lobe.family, [&]<LobeFamily kFamily>() {
+    for (std::size_t at = 0; at < pixels; at += hn::Lanes(d))
+      LanesFit<kFamily>(d, lobe, block, at).write_variances(one_sigma_off, variances);
   });
 }
 
@@ -276,60 +409,102 @@ HWY_AFTER_NAMESPACE();
 namespace weft::solver {
 
 HWY_EXPORT(fit_block_lanes);
-HWY_EXPORT(pull_block_lanes);
+HWY_EXPORT(improve_block_lanes);
+HWY_EXPORT(write_variances_lanes);
 
 void fit_block(const Lobe& lobe, LobeBlock& block, int steps) {
   HWY_DYNAMIC_DISPATCH(fit_block_lanes)(lobe, block, steps);
 }
 
-LobeBlock::Lanes3 pull_of(const Lobe& other, const Lobe& lobe, LobeBlock& block) {
-  LobeBlock::Lanes3 pull;
-  HWY_DYNAMIC_DISPATCH(pull_block_lanes)(lobe, other, block, pull);
-  return pull;
+void improve_block(const Lobe& lobe, std::size_t index, LobeBlock& block, std::size_t pixels) {
+  HWY_DYNAMIC_DISPATCH(improve_block_lanes)(lobe, index, block, pixels);
 }
 
+void write_variances(const Lobe& lobe, std::span<const Lobe> one_sigma_off, const LobeBlock& block,
+                     std::size_t pixels, BlockVariances& variances) {
+  HWY_DYNAMIC_DISPATCH(write_variances_lanes)(lobe, one_sigma_off, block, pixels, variances);
+}
+
+namespace {
+
+void write_lanes(LobeBlock::Lanes3& into, std::size_t pixel, Vec3 v) {
+  into.x[pixel] = static_cast<float>(v.x);
+  into.y[pixel] = static_cast<float>(v.y);
+  into.z[pixel] = static_cast<float>(v.z);
+}
+
+Vec3 read_lanes(const LobeBlock::Lanes3& from, std::size_t pixel) {
+  return {from.x[pixel], from.y[pixel], from.z[pixel]};
+}
+
+}  // namespace
+
 void LobeBlock::put(std::size_t pixel, std::span<const LobeReading> readings) {
-  const auto write = [pixel](Lanes3& into, Vec3 v) {
-    into.x[pixel] = static_cast<float>(v.x);
-    into.y[pixel] = static_cast<float>(v.y);
-    into.z[pixel] = static_cast<float>(v.z);
-  };
   for (std::size_t k = 0; k < lights_.size(); ++k) {
     const LobeReading& r = readings[k];
     Light& light = lights_[k];
-    write(light.to_light, r.from.light);
-    write(light.half, r.from.half);
-    light.lobe_share[pixel] = static_cast<float>(r.from.lobe_share);
+    write_lanes(light.to_light, pixel, r.from.light);
+    write_lanes(light.half, pixel, r.from.half);
+    light.lobe_share = static_cast<float>(r.from.lobe_share);
     light.grazing[pixel] = static_cast<float>(std::pow(1 - r.from.light_half, 5));
-    light.weight[pixel] = static_cast<float>(r.weight);
+    light.root_weight[pixel] = static_cast<float>(std::sqrt(r.weight));
     light.reading[pixel] = r.weight > 0 ? static_cast<float>(r.x) : 0.0F;
   }
-  write(view, readings.front().from.view);
+  used[pixel] = static_cast<float>(used_of(readings));
+  write_lanes(view, pixel, readings.front().from.view);
+  cost[pixel] = std::numeric_limits<float>::infinity();
 }
 
-void LobeBlock::start(std::size_t pixel, Vec3 b, double yarn) {
-  solved.x[pixel] = static_cast<float>(b.x);
-  solved.y[pixel] = static_cast<float>(b.y);
-  solved.z[pixel] = static_cast<float>(b.z);
-  yarn_x[pixel] = static_cast<float>(std::cos(yarn));
-  yarn_y[pixel] = static_cast<float>(std::sin(yarn));
+void LobeBlock::begin_at(std::size_t pixel, Vec3 b) {
+  write_lanes(start, pixel, b);
 }
 
-void LobeBlock::take(std::size_t pixel, const LobeBlock& other) {
-  const auto copy = [pixel](Lane& into, const Lane& from) { into[pixel] = from[pixel]; };
-  copy(solved.x, other.solved.x);
-  copy(solved.y, other.solved.y);
-  copy(solved.z, other.solved.z);
-  copy(yarn_x, other.yarn_x);
-  copy(yarn_y, other.yarn_y);
-  copy(cost, other.cost);
-  copy(residual, other.residual);
-  lobe[pixel] = other.lobe[pixel];
-  for (std::size_t i = 0; i < normal_matrix.size(); ++i) copy(normal_matrix[i], other.normal_matrix[i]);
+void LobeBlock::copy(std::size_t pixel, const LobeBlock& other, std::size_t other_pixel) {
+  const auto lane = [&](Lane& into, const Lane& from) { into[pixel] = from[other_pixel]; };
+  const auto lanes = [&](Lanes3& into, const Lanes3& from) {
+    lane(into.x, from.x);
+    lane(into.y, from.y);
+    lane(into.z, from.z);
+  };
+  for (std::size_t k = 0; k < lights_.size(); ++k) {
+    Light& into = lights_[k];
+    const Light& from = other.lights_[k];
+    lanes(into.to_light, from.to_light);
+    lanes(into.half, from.half);
+    lane(into.grazing, from.grazing);
+    lane(into.reading, from.reading);
+    lane(into.root_weight, from.root_weight);
+    into.lobe_share = from.lobe_share;
+  }
+  lanes(view, other.view);
+  lanes(start, other.start);
+  lanes(solved, other.solved);
+  for (const auto member :
+       {&LobeBlock::used, &LobeBlock::cost, &LobeBlock::lobe, &LobeBlock::across, &LobeBlock::residual})
+    lane(this->*member, other.*member);
+  for (std::size_t i = 0; i < normal_matrix.size(); ++i) lane(normal_matrix[i], other.normal_matrix[i]);
 }
 
-Vec3 LobeBlock::b(std::size_t pixel) const {
-  return {solved.x[pixel], solved.y[pixel], solved.z[pixel]};
+void LobeBlock::leave_out(std::size_t pixel) {
+  for (Light& light : lights_) light.root_weight[pixel] = 0;
+  used[pixel] = 0;
+}
+
+void LobeBlock::reset() {
+  cost.fill(std::numeric_limits<float>::infinity());
+}
+
+LobeReading LobeBlock::reading(std::size_t pixel, std::size_t light) const {
+  const Light& of = lights_[light];
+  LobeReading r;
+  r.from.light = read_lanes(of.to_light, pixel);
+  r.from.view = read_lanes(view, pixel);
+  r.from.half = read_lanes(of.half, pixel);
+  r.from.light_half = dot(r.from.light, r.from.half);
+  r.from.lobe_share = of.lobe_share;
+  r.x = of.reading[pixel];
+  r.weight = double{of.root_weight[pixel]} * of.root_weight[pixel];
+  return r;
 }
 
 }  // namespace weft::solver

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -13,7 +12,8 @@
 
 namespace weft::solver {
 
-/// Up to kRowGroup pixels side by side, as the vector kernel reads them.
+/// Up to kRowGroup pixels side by side, as the vector kernels read them. Fields are filled by the kernels;
+/// what they hold in lanes without a pixel is finite and means nothing.
 class LobeBlock {
  public:
   static constexpr std::size_t kPixels = kRowGroup;
@@ -24,37 +24,64 @@ class LobeBlock {
   struct Light {
     Lanes3 to_light, half;
     Lane grazing = {};  ///< (1 - l . h)^5
-    Lane lobe_share = {};
-    Lane reading = {}, weight = {};
+    Lane reading = {};
+    Lane root_weight = {};  ///< one over sigma; 0 leaves the reading out
+    float lobe_share = 1;
   };
 
   explicit LobeBlock(std::size_t lights) : lights_(lights) {}
+
+  /// Readings of a pixel that is not solved yet.
   void put(std::size_t pixel, std::span<const LobeReading> readings);
-  void start(std::size_t pixel, Vec3 b, double yarn);
-  Vec3 b(std::size_t pixel) const;
-  /// What another block of the same pixels solved of one.
-  void take(std::size_t pixel, const LobeBlock& other);
+  /// Where the next fit begins.
+  void begin_at(std::size_t pixel, Vec3 b);
+  /// Of another block, with what is solved of it.
+  void copy(std::size_t pixel, const LobeBlock& other, std::size_t other_pixel);
+  /// Takes a pixel's readings away: its cost becomes 0.
+  void leave_out(std::size_t pixel);
+  /// Forgets what was solved.
+  void reset();
+
+  LobeReading reading(std::size_t pixel, std::size_t light) const;
+  Vec3 b(std::size_t pixel) const { return {solved.x[pixel], solved.y[pixel], solved.z[pixel]}; }
 
   const std::vector<Light>& lights() const { return lights_; }
+  std::vector<Light>& lights() { return lights_; }
 
   Lanes3 view;
-  Lanes3 solved;                  ///< b
-  Lane yarn_x = {}, yarn_y = {};  ///< cosine and sine of the yarn's azimuth, from the lobe's axis
-  Lane cost = {};                 ///< as of fit_pixel
-  std::array<std::uint8_t, kPixels> lobe = {};  ///< by which of several; kept by take()
-  Lane residual = {};                           ///< rms of reading less model, over those with a weight
-  std::array<Lane, 6> normal_matrix = {};       ///< J^T W J at the solution: xx, xy, xz, yy, yz, zz
+  Lane used = {};      ///< how many readings have a weight
+  Lanes3 start;        ///< b
+  Lanes3 solved;       ///< b; nothing yet where `cost` is infinite
+  Lane cost = {};      ///< as of fit_pixel
+  Lane lobe = {};      ///< by which of several
+  Lane across = {};    ///< 1 where the yarn lies across the lobe's axis, else 0
+  Lane residual = {};  ///< rms of reading less model, over those with a weight
+  /// J^T W J at the solution, by b along the normal, along the yarn and across it: 00, 01, 02, 11, 12, 22.
+  std::array<Lane, 6> normal_matrix = {};
 
  private:
   std::vector<Light> lights_;
 };
 
-/// fit_pixel for a whole block, in float32 vectors: from `solved` on, which it leaves solved, with its cost
-/// and normal matrix. No pixel's result depends on the others.
+/// fit_pixel for a whole block, in float32 vectors: from `start` on, with the yarns as `across` says, at most
+/// so many steps. No pixel's result depends on the others.
 void fit_block(const Lobe& lobe, LobeBlock& block, int steps);
 
-/// J^T W (x of `other` - x of `lobe`) of every pixel as it stands, for two lobes of one family. A cloth that
-/// reflects by `other` and is solved by `lobe` has its b moved by (J^T W J)^-1 times it, to first order.
-LobeBlock::Lanes3 pull_of(const Lobe& other, const Lobe& lobe, LobeBlock& block);
+/// fit_pixel for the first `pixels` of a block, to a fiftieth of its sigma: from `start` on, with both yarns
+/// where the family has them. Where that costs less than what is solved it takes its place, as number `index`
+/// of several lobes. A fit that cannot come below what is solved any more is given up.
+void improve_block(const Lobe& lobe, std::size_t index, LobeBlock& block, std::size_t pixels);
+
+/// Variances of b along its normal, which is that of the albedo, and across it, which is that of both
+/// directions together.
+struct BlockVariances {
+  LobeBlock::Lane along_of_readings = {}, across_of_readings = {};
+  LobeBlock::Lane along_of_lobe = {}, across_of_lobe = {};
+};
+/// Of every pixel as it stands, for lobes of the family of `lobe`, by which it was solved, that are one sigma
+/// off: (J^T W J)^-1 of the readings, and the squares of (J^T W J)^-1 J^T W (x of each - x of `lobe`) of the
+/// lobe, to first order. None is negative or no number.
+void write_variances(const Lobe& lobe, std::span<const Lobe> one_sigma_off, const LobeBlock& block,
+                     std::size_t pixels, BlockVariances& variances);
 
 }  // namespace weft::solver

@@ -213,7 +213,10 @@ void LobeSamples::fit_pixels(const Lobe& lobe, std::span<const double> yarn, int
   parallel_for(blocks_.size(), threads, [&](std::size_t i, int) {
     LobeBlock block = blocks_[i];
     const std::size_t first = i * LobeBlock::kPixels, end = std::min(pixels(), first + LobeBlock::kPixels);
-    for (std::size_t pixel = first; pixel < end; ++pixel) block.start(pixel - first, b[pixel], yarn[pixel]);
+    for (std::size_t pixel = first; pixel < end; ++pixel) {
+      block.begin_at(pixel - first, b[pixel]);
+      block.across[pixel - first] = yarn[pixel] > 0 ? 1 : 0;
+    }
     fit_block(lobe, block, steps);
     for (std::size_t pixel = first; pixel < end; ++pixel) {
       b[pixel] = block.b(pixel - first);

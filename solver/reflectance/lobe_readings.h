@@ -20,6 +20,8 @@ class Sight {
     return camera_mm_ ? normalized(*camera_mm_ - Vec3{x_mm, y_mm, height_mm_}) : Vec3{0, 0, 1};
   }
   bool is_far() const { return !camera_mm_.has_value(); }
+  /// The camera from the plane of the cloth; 0 where it is far.
+  Vec3 above_cloth_mm() const { return camera_mm_ ? *camera_mm_ - Vec3{0, 0, height_mm_} : Vec3{}; }
 
  private:
   std::optional<Vec3> camera_mm_;

@@ -88,7 +88,7 @@ TEST(FilmPair, SharesOfALobeAreTheSameInTheKernelAndInDouble) {
     const PixelFit exact = fit_pixel(lobe, readings, start, 0, 20);
     LobeBlock block(readings.size());
     block.put(0, readings);
-    block.start(0, start, 0);
+    block.begin_at(0, start);
     fit_block(lobe, block, 20);
     EXPECT_LT(angle_deg(block.b(0), exact.b), 0.02) << name_of(family);
     EXPECT_NEAR(length(block.b(0)), length(exact.b), 1e-3 * length(exact.b)) << name_of(family);

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solver/reflectance/lobe.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 
 #include "simulator/reflectance/reflectance.h"
-#include "solver/reflectance/lobe_block.h"
 #include "tests/solver/reflectance/pixels.h"
 
 namespace weft::solver {
@@ -77,58 +75,6 @@ TEST(Lobe, IsReciprocal) {
     for (int i = 0; i < 100; ++i) {
       const Vec3 n = random_normal(random, 20), l = random_normal(random, 50), v = random_normal(random, 50);
       EXPECT_NEAR(specular(lobe, n, LitFrom(l, v), 0.2), specular(lobe, n, LitFrom(v, l), 0.2), 1e-9);
-    }
-  }
-}
-
-TEST(Lobe, KernelFitsAPixelAsDoubleDoes) {
-  for (const Lobe& lobe : kLobes) {
-    const PixelTruth cloth = pixels_of(model_of(lobe), 64, {.has_both_yarns = true}, 3);
-    LobeBlock block(10);
-    for (std::size_t i = 0; i < 64; ++i) {
-      block.put(i, cloth.samples.of(i));
-      block.start(i, cloth.start[i], cloth.yarn[i]);
-    }
-    fit_block(lobe, block, 12);
-    double worst = 0;
-    for (std::size_t i = 0; i < 64; ++i) {
-      const PixelFit truth = fit_pixel(lobe, cloth.samples.of(i), cloth.start[i], cloth.yarn[i], 12);
-      // Where two valleys are as deep either may be taken.
-      if (std::abs(block.cost[i] - truth.cost) > 0.01 * (1 + truth.cost)) {
-        EXPECT_LT(block.cost[i], 1.5 * truth.cost + 1) << name_of(lobe.family) << " pixel " << i;
-        continue;
-      }
-      worst = std::max(worst, angle_deg(block.b(i), truth.b));
-    }
-    EXPECT_LT(worst, 0.05) << name_of(lobe.family);
-  }
-}
-
-TEST(Lobe, FitsNoNumberThatIsNone) {
-  const std::array<Lobe, 5> extremes = {
-      Lobe{.family = LobeFamily::kGgx, .alpha = 0.02, .f0 = 0.6},
-      Lobe{.family = LobeFamily::kGgx, .alpha = 1, .f0 = 0},
-      Lobe{.family = LobeFamily::kAnisotropicGgx, .alpha = 0.02, .f0 = 0.6, .along = 20},
-      Lobe{.family = LobeFamily::kBeckmann, .alpha = 0.02, .f0 = 0.1},
-      Lobe{.family = LobeFamily::kCloth, .alpha = 1, .f0 = 0.6}};
-  Random random(4);
-  for (const Lobe& lobe : extremes) {
-    LobeBlock block(10);
-    for (std::size_t i = 0; i < 64; ++i) {
-      auto readings = readings_of(model_of(lobe), random_normal(random, 89), 0.3, 0, 0.01, random);
-      if (i % 4 == 1) readings[0].weight = 0;
-      if (i % 4 == 2)
-        for (LobeReading& r : readings) r.weight = 0;
-      if (i % 4 == 3)
-        for (LobeReading& r : readings) r.x = 0;
-      block.put(i, readings);
-      block.start(i, i % 8 == 0 ? Vec3{0, 0, -0.1} : Vec3{0, 0, 0.3}, 0);
-    }
-    fit_block(lobe, block, 10);
-    for (std::size_t i = 0; i < 64; ++i) {
-      const Vec3 b = block.b(i);
-      EXPECT_TRUE(std::isfinite(b.x + b.y + b.z) && std::isfinite(block.cost[i]))
-          << name_of(lobe.family) << " pixel " << i;
     }
   }
 }
