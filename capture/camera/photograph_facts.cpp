@@ -33,6 +33,7 @@ enum Tag : std::uint16_t {  // TIFF 6.0, Exif 2.32, TIFF/EP, DNG 1.4
   kExif = 34665,
   kIso = 34855,
   kDateTimeOriginal = 36867,
+  kOffsetTimeOriginal = 36881,
   kImageNumber = 37393,
   kMakerNote = 37500,
   kSubSecTimeOriginal = 37521,
@@ -102,10 +103,19 @@ std::optional<double> seconds_of(std::string_view text) {
   return 86400.0 * static_cast<double>(days) + 3600.0 * *hour + 60.0 * *minute + *second;
 }
 
+/// "+05:30" in seconds.
+std::optional<double> zone_of(std::string_view text) {
+  if (text.size() != 6 || (text[0] != '+' && text[0] != '-') || text[3] != ':') return {};
+  const auto hours = digits(text.substr(1, 2)), minutes = digits(text.substr(4, 2));
+  if (!hours || !minutes || *hours > 14 || *minutes > 59) return {};
+  return (text[0] == '-' ? -60.0 : 60.0) * (60.0 * *hours + *minutes);
+}
+
 void read_time(const Directories& tags, PhotographFacts& facts) {
   const auto when = tags.text(kDateTimeOriginal);
   if (!when) return;
   facts.taken_s = seconds_of(*when);
+  if (const auto zone = tags.text(kOffsetTimeOriginal)) facts.zone_s = zone_of(*zone);
   auto fraction = tags.text(kSubSecTimeOriginal);
   if (!facts.taken_s || !fraction) return;
   fraction->erase(fraction->find_last_not_of(' ') + 1);

@@ -71,6 +71,16 @@ TEST(Schemas, Session1_4OfATiltedCloth) {
   EXPECT_TRUE(before->pose.is_level()) << "nobody said";
 }
 
+TEST(Schemas, Session1_5OfAnImport) {
+  const Result<Session> session = read_session(kSchemas / "weft.session-1.5");
+  ASSERT_TRUE(session) << session.error().message();
+  EXPECT_EQ(session->document["imported"]["by"], "numbers in names");
+  ASSERT_EQ(session->shots.size(), 4U);
+  EXPECT_EQ(session->shots[1].document["source"], "tray 7/satin_01.NEF");
+  ASSERT_NE(session->dark(), nullptr);
+  EXPECT_EQ(session->dark()->index, 0);
+}
+
 TEST(Schemas, Calibration1WithCameraResponseAndNearLights) {
   const Result<Calibration> calibration = read_calibration(kSchemas / "weft.calibration-1");
   ASSERT_TRUE(calibration) << calibration.error().message();

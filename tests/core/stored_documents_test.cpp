@@ -77,6 +77,7 @@ constexpr char kCalibrationReport[] = "weft.calibration-report";
 constexpr char kCalibrationCheck[] = "weft.calibration-check";
 constexpr char kSet[] = "weft.set";
 constexpr char kReflectance[] = "weft.reflectance";
+constexpr char kPhotographs[] = "weft.photographs";
 
 struct Format {
   std::string name;
@@ -97,7 +98,8 @@ const std::vector<Format> kFormats = {{"weft.session", session_again},
                                       {kCalibrationReport, document_again<kCalibrationReport>},
                                       {kCalibrationCheck, document_again<kCalibrationCheck>},
                                       {kSet, document_again<kSet>},
-                                      {kReflectance, document_again<kReflectance>}};
+                                      {kReflectance, document_again<kReflectance>},
+                                      {kPhotographs, document_again<kPhotographs>}};
 
 struct Stored {
   fs::path file;

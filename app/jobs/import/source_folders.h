@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+
+// What lies in the folders of a foreign archive, by names alone.
+
+namespace weft::app {
+
+/// A file that may be a frame.
+struct SourceFile {
+  std::filesystem::path file;
+  std::filesystem::path root;  ///< the folder that was named and that it lies below
+  bool is_developed = false;   ///< TIFF, PNG or EXR; else a raw
+};
+
+struct LeftOver {
+  std::filesystem::path file;
+  std::string why;
+};
+
+struct SourceFolders {
+  std::vector<SourceFile> frames;                    ///< by folder, then as people count
+  std::vector<std::filesystem::path> light_files;    ///< .lp of RTI
+  std::vector<std::filesystem::path> photo_folders;  ///< in the layout of the DiLiGenT benchmark
+  std::vector<std::filesystem::path> descriptions;   ///< import.toml and .json files
+  std::vector<LeftOver> left_over;                   ///< files that are none of these, sessions of weft
+};
+
+/// Whether this ending (".NEF") is that of a raw file.
+bool is_raw_name(const std::filesystem::path& file);
+
+/// Looks into the folders and those below them. Hidden files and links to folders are passed over; files of
+/// photographs under distant lights are no frames. kNoInput for a folder that cannot be listed.
+Result<SourceFolders> look_into(const std::vector<std::string>& folders);
+
+}  // namespace weft::app

@@ -1,0 +1,485 @@
+// SPDX-License-Identifier: Apache-2.0
+// Folders that other rigs left, as a person imports them.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "capture/raw/decode.h"
+#include "core/calibration.h"
+#include "core/files.h"
+#include "core/session.h"
+#include "simulator/camera/dng_writer.h"
+#include "tests/system/samples.h"
+#include "tests/system/workspace.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf, testing::ElementsAre, testing::HasSubstr, testing::Not;
+
+constexpr int kLeds = 10;
+constexpr double kMidnight = 3600.0 * 23;
+
+// A coarse weave, large enough for its light to fall off over the frame as on a real table.
+simulator::Scene coarse_scene() {
+  simulator::Scene scene = scene_named("golden", {264, 176});
+  scene.camera.mm_per_pixel = 0.8;
+  scene.geometry.warp_pitch_mm = scene.geometry.weft_pitch_mm = 12;
+  return scene;
+}
+
+/// One simulated session, whose frames the tests write under other names and times.
+struct Scanned {
+  Scanned() {
+    folder = fs::path(testing::TempDir()) / fmt::format("weft_import_{}.weft", getpid());
+    fs::remove_all(folder);
+    simulate(coarse_scene(), folder);
+    const Result<Session> session = read_session(folder);
+    EXPECT_TRUE(session) << session.error().message();
+    for (const Shot& shot : session->shots) {
+      Result<RawFrame> frame = capture::decode_raw(session->path_of(shot));
+      EXPECT_TRUE(frame) << frame.error().message();
+      if (shot.role != ShotRole::kRepeat) frames.emplace(shot.led, std::move(*frame));
+    }
+  }
+  ~Scanned() { fs::remove_all(folder); }
+
+  fs::path folder;
+  std::map<int, RawFrame> frames;  // by LED; 0 the dark one
+};
+
+class Import : public testing::Test {
+ protected:
+  static void SetUpTestSuite() { scanned_ = new Scanned; }
+  static void TearDownTestSuite() {
+    delete scanned_;
+    scanned_ = nullptr;
+  }
+
+  /// Writes the frame of a LED; without `second` the file names no time.
+  void put(const std::string& name, int led, std::optional<double> second = {},
+           const std::function<void(RawFrame&)>& change = {}) const {
+    const RawFrame& is = scanned_->frames.at(led);
+    RawFrame frame = {copy(is.counts), is.cfa, is.black, is.white, is.shot};
+    if (change) change(frame);
+    simulator::DngTags tags;
+    if (second) {
+      const int whole = static_cast<int>(kMidnight + *second);
+      tags.date_time_original = fmt::format("2026:01:{:02} {:02}:{:02}:{:02}", 30 + whole / 86400,
+                                            whole / 3600 % 24, whole / 60 % 60, whole % 60);
+    }
+    fs::create_directories((source_ / name).parent_path());
+    const Result<void> written = simulator::write_dng(source_ / name, frame, tags);
+    ASSERT_TRUE(written) << written.error().message();
+  }
+  static Image<std::uint16_t> copy(const Image<std::uint16_t>& from) {
+    Image<std::uint16_t> to(from.size());
+    for (int y = 0; y < from.height(); ++y)
+      for (int x = 0; x < from.width(); ++x) to(x, y) = from(x, y);
+    return to;
+  }
+  /// Frames of all LEDs in this order of names, `step` seconds apart; 0 is the dark one.
+  void put_all(const std::string& names, const std::vector<int>& leds, double step = 2,
+               double from = 0) const {
+    for (std::size_t i = 0; i < leds.size(); ++i)
+      put(fmt::format(fmt::runtime(names), i + 8), leds[i], from + step * static_cast<double>(i));
+  }
+  void put_by_number(const std::string& folder, const std::vector<int>& leds) const {
+    for (const int led : leds) put(fmt::format("{}/satin_{:02}.DNG", folder, led), led);
+  }
+  static std::vector<int> all_leds(bool with_dark = true) {
+    std::vector<int> leds;
+    for (int led = with_dark ? 0 : 1; led <= kLeds; ++led) leds.push_back(led);
+    return leds;
+  }
+
+  std::vector<std::string> words(const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {
+        "import", source_.string(), "--calibration", calibration_.string(), "-o", archive_.string(), "-q"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  Outcome import(std::vector<std::string> more = {}) const {
+    more.insert(more.end(), {"--yes", "--json"});
+    return run_weft(words(more));
+  }
+  /// Imports and expects that it goes well.
+  Json imported(const std::vector<std::string>& more = {}) const {
+    const Outcome run = import(more);
+    EXPECT_EQ(run.exit_code, 0) << run.error << run.output;
+    return run.json();
+  }
+  static void expect_sure(const Json& plan) {
+    for (const Json& frame : plan["sessions"][0]["frames"]) {
+      if (frame["led"] == 0) continue;
+      EXPECT_GT(frame["sure"].get<double>(), 1.6) << frame;
+    }
+  }
+  /// Imports and expects one refused session, whose error has these words.
+  Json refused(const std::vector<std::string>& more, const std::vector<std::string>& words) const {
+    const Outcome run = import(more);
+    EXPECT_EQ(run.exit_code, 65) << run.error << run.output;
+    Json plan = run.json();
+    EXPECT_EQ(plan["sessions"].size(), 1U);
+    EXPECT_EQ(plan["sessions"][0]["state"], "refused");
+    for (const std::string& word : words) EXPECT_THAT(plan["sessions"][0]["error"].dump(), HasSubstr(word));
+    EXPECT_FALSE(fs::exists(archive_)) << "nothing is made";
+    return plan;
+  }
+  /// What programs that are run from now on read.
+  void type(const std::string& text) const {
+    put_bytes(work_ / "typed", text);
+    const int file = ::open((work_ / "typed").c_str(), O_RDONLY | O_CLOEXEC);
+    ASSERT_GE(file, 0);
+    ASSERT_EQ(::dup2(file, STDIN_FILENO), STDIN_FILENO);
+    ::close(file);
+  }
+  Session session(const std::string& name) const {
+    Result<Session> session = read_session(archive_ / (name + ".weft"));
+    EXPECT_TRUE(session) << session.error().message();
+    return session ? std::move(*session) : Session();
+  }
+  /// Whether each shot holds the frame of the LED that it names.
+  void expect_right(const Session& session) const {
+    for (const Shot& shot : session.shots) {
+      const Result<RawFrame> frame = capture::decode_raw(session.path_of(shot));
+      ASSERT_TRUE(frame) << frame.error().message();
+      const RawFrame& wanted = scanned_->frames.at(shot.led);
+      int differing = 0;
+      for (int y = 0; y < wanted.counts.height(); ++y)
+        for (int x = 0; x < wanted.counts.width(); ++x)
+          differing += frame->counts(x, y) != wanted.counts(x, y);
+      EXPECT_EQ(differing, 0) << shot.file << " is not of LED " << shot.led;
+      EXPECT_EQ(shot.role, shot.led == 0 ? ShotRole::kDark : ShotRole::kLit);
+    }
+  }
+
+  static inline Scanned* scanned_ = nullptr;
+  Workspace work_;
+  const fs::path source_ = work_ / "left", archive_ = work_ / "archive";
+  fs::path calibration_ = scanned_->folder / "calibration";
+  const std::vector<std::string> by_number_ = {"--pattern", "{session}/{fabric}_{led}.{ext}"};
+};
+
+TEST_F(Import, MakesASessionOfNumbersInNamesThatIsSolvedAsIfScanned) {
+  put_by_number("tray 7", all_leds());
+  const Json plan = imported(by_number_);
+  ASSERT_EQ(plan["sessions"].size(), 1U);
+  EXPECT_EQ(plan["sessions"][0]["by"], "numbers in names");
+  EXPECT_THAT(plan["sessions"][0]["light"].get<std::string>(), HasSubstr("agrees"));
+  expect_sure(plan);
+
+  const Session made = session("tray-7");
+  EXPECT_EQ(made.fabric, "satin");
+  EXPECT_EQ(made.shots.size(), 11U);
+  EXPECT_EQ(made.document["schema"], "weft.session/1.5");
+  EXPECT_EQ(made.shots[3].document["source"], "tray 7/satin_03.DNG");
+  expect_right(made);
+  for (const fs::path& session : {archive_ / "tray-7.weft", scanned_->folder}) {
+    const Outcome solved =
+        run_weft({"solve", session.string(), "-q", "--no-previews", "-o", (work_ / session.stem()).string()});
+    ASSERT_EQ(solved.exit_code, 0) << solved.error;
+  }
+  const Json difference = run_weft({"compare", (work_ / "tray-7" / "normal.exr").string(),
+                                    (work_ / scanned_->folder.stem() / "normal.exr").string(), "--json"})
+                              .json();
+  EXPECT_EQ(difference["max_deg"], 0) << "the same photographs under the same LEDs";
+}
+
+TEST_F(Import, CountsNamesAsPeopleDoAndFindsTheDarkFrameByItsLevel) {
+  // DSC_8, DSC_9, DSC_10 ...; the dark one in their midst; pairs within one second.
+  put_all("roll/DSC_{}.dng", {1, 2, 3, 4, 0, 5, 6, 7, 8, 9, 10}, 0.5);
+  const Json plan = imported();
+  EXPECT_EQ(plan["sessions"][0]["by"], "times and names");
+  const Session made = session("roll");
+  EXPECT_EQ(made.shots[4].role, ShotRole::kDark);
+  EXPECT_EQ(made.shots[1].time, "2026-01-30T23:00:00.000") << "the camera's clock, which names no zone";
+  expect_right(made);
+}
+
+TEST_F(Import, RefusesNamesAgainstTimesUntilOneOfThemIsChosen) {
+  for (int led = 1; led <= kLeds; ++led) put(fmt::format("DSC_{:04}.dng", (led + 4) % kLeds), led, 3 * led);
+  const Json plan = refused({}, {"times and names do not agree", "--order time"});
+  const Json& opinions = plan["sessions"][0]["frames"][0]["opinions"];
+  EXPECT_EQ(opinions["time"], 1);
+  EXPECT_EQ(opinions["names"], 6);
+  EXPECT_EQ(opinions["light"], 1) << "the light was asked too";
+  const Outcome table = run_weft(words({"--dry-run"}));
+  EXPECT_EQ(table.exit_code, 65) << table.error;
+  EXPECT_THAT(table.output,
+              AllOf(HasSubstr("DSC_0005.dng"), HasSubstr("names"), HasSubstr("2026-01-30T23:00:03")));
+  EXPECT_EQ(imported({"--order", "time"})["imported"], 1);
+  expect_right(session("left"));
+}
+
+TEST_F(Import, RefusesAnOrderThatTheLightContradictsAndTakesTheLights) {
+  const std::vector<int> shuffled = {7, 2, 9, 4, 0, 1, 10, 3, 8, 5, 6};
+  for (std::size_t i = 0; i < shuffled.size(); ++i) put(fmt::format("x{}.dng", i), shuffled[i]);
+  refused({}, {"the light of the frames says other LEDs than names", "--order light"});
+  const Json plan = imported({"--order", "light"});
+  EXPECT_EQ(plan["sessions"][0]["by"], "light");
+  expect_sure(plan);
+  expect_right(session("left"));
+}
+
+TEST_F(Import, RefusesASessionThatLacksALedUntilItIsToldTo) {
+  put_by_number("tray", {0, 1, 2, 3, 5, 6, 7, 8, 9, 10});
+  refused(by_number_, {"frames are missing", "no frame of LED 4", "--missing"});
+  refused({}, {"no order tells which are missing"});
+  imported({"--order", "light", "--missing"});
+  const Session made = session("tray");
+  EXPECT_EQ(made.lit().size(), 9U);
+  expect_right(made);
+}
+
+TEST_F(Import, RefusesTwoFramesOfOneLed) {
+  put_by_number("tray", all_leds());
+  put("tray/satin_3.DNG", 3);
+  refused(by_number_, {"two frames are of LED 3", "satin_03.DNG", "satin_3.DNG"});
+}
+
+TEST_F(Import, RefusesLedsCountedFromZero) {
+  for (int led = 1; led <= kLeds; ++led) put(fmt::format("tray/satin_{}.DNG", led - 1), led);
+  refused(by_number_, {"satin_0.DNG says LED 0", "{index}"});
+  imported({"--pattern", "{session}/{fabric}_{index}.{ext}"});
+  expect_right(session("tray"));
+}
+
+TEST_F(Import, RefusesFramesOfTwoSettings) {
+  const auto expect = [&](const std::function<void(ShotMetadata&)>& change, const std::string& words) {
+    put("a/3.dng", 3, 6, [&](RawFrame& frame) { change(frame.shot); });
+    refused({}, {"not of one session", words, "3.dng"});
+  };
+  put_all("a/{}.dng", all_leds());
+  for (const auto& entry : fs::directory_iterator(source_ / "a"))
+    if (entry.path().stem() == "11") fs::remove(entry.path());  // LED 3
+  expect([](ShotMetadata& shot) { shot.iso = 400; }, "ISO");
+  expect([](ShotMetadata& shot) { shot.exposure_us *= 1.5; }, "exposure");
+  expect([](ShotMetadata& shot) { shot.f_number = 5.6; }, "f/");
+  expect([](ShotMetadata& shot) { shot.serial = "other"; }, "serial");
+  expect([](ShotMetadata& shot) { shot.model = "other"; }, "other");
+}
+
+TEST_F(Import, RefusesFramesOfAnotherBodyThanTheCalibrations) {
+  for (const int led : all_leds())
+    put(fmt::format("a/{}.dng", led), led, 2 * led,
+        [](RawFrame& frame) { frame.shot.model = "another body"; });
+  refused({}, {"calibration does not suit", "another body", "--calibration"});
+}
+
+TEST_F(Import, DoesNothingTheSecondTimeAndNeverTouchesTheSource) {
+  put_all("roll/DSC_{}.dng", all_leds());
+  const auto state = [&] {
+    std::map<std::string, std::string> all = contents_of(source_);
+    for (const auto& entry : fs::recursive_directory_iterator(source_)) {
+      all[entry.path().string()] +=
+          fmt::format(" {} {}", fs::last_write_time(entry.path()).time_since_epoch().count(),
+                      static_cast<int>(entry.status().permissions()));
+    }
+    return all;
+  };
+  const auto before = state();
+  for (const std::string link : {"hard", "copy", "symbolic"}) {
+    SCOPED_TRACE(link);
+    fs::remove_all(archive_);
+    EXPECT_EQ(imported({"--link", link})["imported"], 1);
+    const fs::path frame = archive_ / "roll.weft" / session("roll").shots[2].file;
+    EXPECT_EQ(fs::is_symlink(frame), link == "symbolic");
+    EXPECT_EQ(fs::equivalent(frame, source_ / "roll/DSC_10.dng"), link != "copy");
+    EXPECT_EQ(session("roll").shots[2].sha256, *sha256_of_file(source_ / "roll/DSC_10.dng"));
+    const auto there = contents_of(archive_);
+    const Json again = imported({"--link", link});
+    EXPECT_EQ(again["imported"], 0);
+    EXPECT_EQ(again["sessions"][0]["state"], "there");
+    EXPECT_EQ(contents_of(archive_), there);
+    const Outcome solved =
+        run_weft({"solve", (archive_ / "roll.weft").string(), "-q", "--quality", "preview"});
+    EXPECT_EQ(solved.exit_code, 0) << solved.error;
+  }
+  EXPECT_EQ(state(), before);
+}
+
+TEST_F(Import, RefusesANameThatAnotherSessionHas) {
+  put_all("roll/DSC_{}.dng", all_leds());
+  imported();
+  put("roll/DSC_9.dng", 1, 2, [](RawFrame& frame) { frame.counts(3, 3) = 700; });
+  const auto there = contents_of(archive_);
+  const Outcome run = import();
+  EXPECT_EQ(run.exit_code, 73) << run.error;
+  EXPECT_THAT(run.output, HasSubstr("another session of that name is there"));
+  EXPECT_EQ(contents_of(archive_), there);
+}
+
+TEST_F(Import, SplitsAFlatFolderAtGapsOfTimeAndImportsTheGoodBesideTheBad) {
+  put_all("flat/A{:02}.dng", all_leds(), 3, 0);
+  put_all("flat/B{:02}.dng", all_leds(), 3, 400);
+  put_all("flat/C{:02}.dng", all_leds(), 3, 800);
+  fs::resize_file(source_ / "flat/B12.dng", 4000);
+  put_bytes(source_ / "flat/B12.JPG", "\xff\xd8\xff");
+  put_bytes(source_ / "flat/notes.txt", "of the tray");
+  const Outcome run = import();
+  EXPECT_EQ(run.exit_code, 65) << run.error;
+  const Json plan = run.json();
+  ASSERT_EQ(plan["sessions"].size(), 3U);
+  EXPECT_EQ(plan["imported"], 2);
+  EXPECT_EQ(plan["sessions"][1]["state"], "refused");
+  EXPECT_THAT(plan["sessions"][1]["error"].dump(), HasSubstr("B12.dng"));
+  EXPECT_THAT(plan["left_over"].dump(), AllOf(HasSubstr("B12.JPG"), HasSubstr("notes.txt")));
+  for (const char* name : {"flat_01", "flat_03"}) expect_right(session(name));
+  EXPECT_FALSE(fs::exists(archive_ / "flat_02.weft"));
+}
+
+TEST_F(Import, TellsAFolderWithoutTimesThatItHoldsMoreThanOneSession) {
+  for (const int led : all_leds()) {
+    put(fmt::format("flat/A{:02}.dng", led), led);
+    put(fmt::format("flat/B{:02}.dng", led), led);
+  }
+  refused({}, {"two dark frames", "A00.dng", "B00.dng"});
+}
+
+TEST_F(Import, TakesWhatIsWrittenBesideThePhotographs) {
+  put_all("rolls/wool/{}.dng", all_leds());
+  put_bytes(source_ / "import.toml",
+            "tags = [\"autumn\"]\ncloth_height_mm = 0.5\ncomposition = \"80 % wool\"\n");
+  put_bytes(source_ / "rolls/wool.json", R"({"fabric": "herringbone", "barcode": "4006381333931"})");
+  imported();
+  const Session made = session("wool");
+  EXPECT_EQ(made.fabric, "herringbone");
+  EXPECT_EQ(made.cloth_height_mm, 0.5);
+  EXPECT_EQ(made.document["metadata"]["id"], "4006381333931");
+  EXPECT_EQ(made.document["metadata"]["tags"], Json::array({"autumn"}));
+  EXPECT_EQ(made.document["metadata"]["composition"], "80 % wool");
+  fs::remove_all(archive_);
+  put_bytes(source_ / "import.toml", "colour = \"red\"\n");
+  refused({}, {"import.toml: colour", "no such key"});
+}
+
+TEST_F(Import, MakesSessionsOfLinearTiffAndExrFrames) {
+  for (const std::string ending : {".tif", ".exr"}) {
+    SCOPED_TRACE(ending);
+    fs::remove_all(source_);
+    fs::remove_all(archive_);
+    const fs::path developed = work_ / ("developed" + ending + ".weft");
+    simulate_developed(coarse_scene(), developed, ending,
+                       ending == ".tif" ? SampleType::kUint16 : SampleType::kHalf);
+    fs::create_directories(source_ / "tray");
+    for (const auto& entry : fs::directory_iterator(developed / "raw"))
+      if (entry.path().extension() == ending)
+        fs::copy(entry.path(), source_ / "tray" / entry.path().filename());
+    refused({"--pattern", "{any}_led{led}.{ext}"}, {"nothing says the exposure", "import.toml"});
+    const Result<Session> was = read_session(developed);
+    ASSERT_TRUE(was) << was.error().message();
+    put_bytes(source_ / "tray/import.toml",
+              fmt::format("exposure_us = {}\niso = {}\n", was->shots[0].exposure_us, was->shots[0].iso));
+    calibration_ = developed / "calibration";
+    const Json plan = imported({"--pattern", "{any}_led{led}.{ext}"});
+    EXPECT_THAT(plan["sessions"][0]["light"].get<std::string>(), HasSubstr("agrees"));
+    const Outcome solved = run_weft({"solve", (archive_ / "tray.weft").string(), "-q", "--json"});
+    ASSERT_EQ(solved.exit_code, 0) << solved.error;
+    EXPECT_EQ(solved.json()["pixels"], 264 * 176);
+  }
+}
+
+TEST_F(Import, RefusesARingThatTwoAssignmentsFitAlikeAndShowsBoth) {
+  PhotographSample sample;
+  sample.size = {96, 64};
+  sample.lights = PhotographSample::six_lights();
+  for (DistantLight& light : sample.lights) light.irradiance_rgb = {1, 1, 1};
+  sample.write(work_ / "photographs");
+  fs::create_directories(source_ / "ring");
+  for (std::size_t k = 0; k < 6; ++k)
+    fs::copy(work_ / "photographs" / sample.name_of(k), source_ / "ring" / sample.name_of(k));
+  put_bytes(source_ / "import.toml", "exposure_us = 1e6\niso = 100\n");
+  Calibration ring;
+  ring.subject = {.rig = "ring", .camera_model = "", .camera_serial = "", .f_number = 8};
+  ring.camera = overhead_camera(sample.size, 500, 1);
+  ring.response = Response();
+  ring.lights = DistantLights{sample.lights};
+  calibration_ = work_ / "ring calibration";
+  const auto written = write_calibration(calibration_, ring);
+  ASSERT_TRUE(written) << written.error().message();
+
+  const Json plan = refused({"--order", "light"}, {"two assignments", "alike", "--order time or name"});
+  for (const Json& frame : plan["sessions"][0]["frames"]) {
+    EXPECT_TRUE(frame["opinions"]["light"].is_number_integer());
+    EXPECT_TRUE(frame["opinions"]["light, second"].is_number_integer());
+  }
+  const Json taken = imported({"--order", "name"});
+  EXPECT_THAT(taken["sessions"][0]["light"].get<std::string>(),
+              testing::AnyOf(HasSubstr("explains it as well"), HasSubstr("does not object")));
+}
+
+TEST_F(Import, MakesFoldersOfPhotographsUnderDistantLights) {
+  PhotographSample sample;
+  sample.write(source_ / "buddha");
+  fs::create_directories(source_ / "coin/images");
+  std::string lights = "6\n";
+  for (std::size_t k = 0; k < 6; ++k) {
+    fs::copy(source_ / "buddha" / sample.name_of(k), source_ / "coin/images" / sample.name_of(k));
+    const Vec3 l = sample.lights[k].direction;
+    lights += fmt::format("images/{} {} {} {}\n", sample.name_of(k), l.x, l.y, l.z);
+  }
+  put_bytes(source_ / "coin/coin.lp", lights);
+  const Json plan = imported();
+  EXPECT_EQ(plan["imported"], 2);
+  EXPECT_EQ(plan["left_over"], Json::array());
+  for (const std::string name : {"buddha", "coin"}) {
+    SCOPED_TRACE(name);
+    const auto solve = [&](const std::string& option, const fs::path& input, const std::string& to) {
+      const Outcome solved =
+          run_weft({"solve", option, input.string(), "-q", "--no-previews", "-o", (work_ / to).string()});
+      EXPECT_EQ(solved.exit_code, 0) << solved.error;
+      return bytes_of(work_ / to / "normal.exr").size();
+    };
+    solve("--photos", archive_ / (name + ".photos"), name + " imported");
+    solve(name == "coin" ? "--lp" : "--photos", name == "coin" ? source_ / "coin/coin.lp" : source_ / name,
+          name + " own");
+    const Json difference = run_weft({"compare", (work_ / (name + " imported") / "normal.exr").string(),
+                                      (work_ / (name + " own") / "normal.exr").string(), "--json"})
+                                .json();
+    EXPECT_EQ(difference["max_deg"], 0);
+  }
+  EXPECT_EQ(imported()["imported"], 0) << "the same once more";
+}
+
+TEST_F(Import, AsksBeforeItImports) {
+  put_all("roll/DSC_{}.dng", all_leds());
+  type("");
+  const Outcome unasked = run_weft(words({}));
+  EXPECT_EQ(unasked.exit_code, 64) << unasked.error;
+  EXPECT_THAT(unasked.error, AllOf(HasSubstr("nothing was imported"), HasSubstr("--yes")));
+  EXPECT_THAT(unasked.output, HasSubstr("DSC_8.dng"));
+  type("n\n");
+  EXPECT_EQ(run_weft(words({})).exit_code, 64);
+  EXPECT_EQ(run_weft(words({"--dry-run"})).exit_code, 0);
+  EXPECT_FALSE(fs::exists(archive_));
+  type("y\n");
+  const Outcome asked = run_weft(words({}));
+  EXPECT_EQ(asked.exit_code, 0) << asked.error;
+  EXPECT_THAT(asked.error, HasSubstr("import into " + archive_.string()));
+  expect_right(session("roll"));
+}
+
+TEST_F(Import, NamesWhatItCannotBegin) {
+  fs::create_directories(source_);
+  expect_refusal(work_, words({"--yes"}), 66, {"there are no photographs", source_.string()});
+  put_bytes(source_ / "a.txt", "x");
+  expect_refusal(work_, words({"--yes"}), 66, {"no file in it is a raw"});
+  expect_refusal(work_, words({"--yes", "--pattern", "{who}_{led}"}), 64, {"no word {who}"});
+  expect_refusal(work_, {"import", (work_ / "none").string(), "-o", archive_.string(), "--yes"}, 66,
+                 {"cannot list"});
+}
+
+}  // namespace
+}  // namespace weft::test
