@@ -262,8 +262,7 @@ TEST_F(Import, RefusesFramesOfTwoSettings) {
     refused({}, {"not of one session", words, "3.dng"});
   };
   put_all("a/{}.dng", all_leds());
-  for (const auto& entry : fs::directory_iterator(source_ / "a"))
-    if (entry.path().stem() == "11") fs::remove(entry.path());  // LED 3
+  fs::remove(source_ / "a/11.dng");  // of LED 3
   expect([](ShotMetadata& shot) { shot.iso = 400; }, "ISO");
   expect([](ShotMetadata& shot) { shot.exposure_us *= 1.5; }, "exposure");
   expect([](ShotMetadata& shot) { shot.f_number = 5.6; }, "f/");
@@ -345,7 +344,7 @@ TEST_F(Import, TellsAFolderWithoutTimesThatItHoldsMoreThanOneSession) {
     put(fmt::format("flat/A{:02}.dng", led), led);
     put(fmt::format("flat/B{:02}.dng", led), led);
   }
-  refused({}, {"two dark frames", "A00.dng", "B00.dng"});
+  refused({}, {"more frames than LEDs", "22 frames, 10 LEDs", "--gap"});
 }
 
 TEST_F(Import, TakesWhatIsWrittenBesideThePhotographs) {
@@ -440,7 +439,6 @@ TEST_F(Import, MakesFoldersOfPhotographsUnderDistantLights) {
       const Outcome solved =
           run_weft({"solve", option, input.string(), "-q", "--no-previews", "-o", (work_ / to).string()});
       EXPECT_EQ(solved.exit_code, 0) << solved.error;
-      return bytes_of(work_ / to / "normal.exr").size();
     };
     solve("--photos", archive_ / (name + ".photos"), name + " imported");
     solve(name == "coin" ? "--lp" : "--photos", name == "coin" ? source_ / "coin/coin.lp" : source_ / name,
@@ -448,7 +446,7 @@ TEST_F(Import, MakesFoldersOfPhotographsUnderDistantLights) {
     const Json difference = run_weft({"compare", (work_ / (name + " imported") / "normal.exr").string(),
                                       (work_ / (name + " own") / "normal.exr").string(), "--json"})
                                 .json();
-    EXPECT_EQ(difference["max_deg"], 0);
+    EXPECT_LT(difference["max_deg"].get<double>(), 1e-4) << "directions are written to the last digit";
   }
   EXPECT_EQ(imported()["imported"], 0) << "the same once more";
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "app/jobs/import/description.h"
@@ -67,9 +68,9 @@ Result<Calibration> calibration_for(const ImportPlace& place) {
   return calibration;
 }
 
-Result<ImportDescription> described(const SourceGroup& group, const SourceFolders& found) {
+Result<ImportDescription> described(const std::vector<fs::path>& files) {
   ImportDescription said;
-  for (const fs::path& file : descriptions_of(found.descriptions, group.root, group.folder, group.name)) {
+  for (const fs::path& file : files) {
     const Result<ImportDescription> more = read_description(file);
     if (!more) return more.error();
     said.take(*more);
@@ -101,7 +102,10 @@ class SessionPlanner {
     plan.session.fabric = group.fabric.empty() ? group.name : group.fabric;
     plan.session.rig = calibration_.subject.rig;
     plan.session.calibration_id = calibration_.id;
-    Result<void> done = fill(plan, std::move(group), is_numbered, from, to);
+    const std::vector<fs::path> descriptions =
+        descriptions_of(found_.descriptions, group.root, group.folder, group.name);
+    used_.insert(descriptions.begin(), descriptions.end());
+    Result<void> done = fill(plan, std::move(group), descriptions, is_numbered, from, to);
     if (done) return plan;
     if (done.error().kind == ErrorKind::kInterrupted) return std::move(done).error();
     plan.state = ImportState::kRefused;
@@ -110,11 +114,15 @@ class SessionPlanner {
     return plan;
   }
 
+  /// Whether a description spoke of any session.
+  bool has_used(const fs::path& file) const { return used_.contains(file); }
+
  private:
-  Result<void> fill(PlannedSession& plan, SourceGroup group, bool is_numbered, double from, double to) {
+  Result<void> fill(PlannedSession& plan, SourceGroup group, const std::vector<fs::path>& descriptions,
+                    bool is_numbered, double from, double to) {
     plan.frames = in_order(std::move(group.frames), options_.order);
     if (!group.unreadable.empty()) return group.unreadable.front();
-    const Result<ImportDescription> said = described(group, found_);
+    const Result<ImportDescription> said = described(descriptions);
     if (!said) return said.error();
     if (!said->fabric.empty()) plan.session.fabric = said->fabric;
     plan.session.cloth_height_mm = said->cloth_height_mm.value_or(place_.cloth_height_mm);
@@ -218,6 +226,7 @@ class SessionPlanner {
   const Calibration& calibration_;
   const SourceFolders& found_;
   const JobContext& context_;
+  std::set<fs::path> used_;
 };
 
 /// Hard links do not reach other disks: said before anything is made.
@@ -255,14 +264,17 @@ void refuse_twins(ImportPlan& plan) {
   }
 }
 
-Result<void> plan_sessions(const ImportOptions& options, const ImportPlace& place, SourceFolders& found,
-                           const JobContext& context, ImportPlan& plan) {
+Result<GroupingOptions> grouping_by(const ImportOptions& options) {
   GroupingOptions grouping = {{}, options.gap_s, 0};
-  if (!options.pattern.empty()) {
-    Result<NamePattern> pattern = NamePattern::parse(options.pattern);
-    if (!pattern) return std::move(pattern).error();
-    grouping.pattern = std::move(*pattern);
-  }
+  if (options.pattern.empty()) return grouping;
+  Result<NamePattern> pattern = NamePattern::parse(options.pattern);
+  if (!pattern) return std::move(pattern).error();
+  grouping.pattern = std::move(*pattern);
+  return grouping;
+}
+
+Result<void> plan_sessions(const ImportOptions& options, const ImportPlace& place, GroupingOptions grouping,
+                           SourceFolders& found, const JobContext& context, ImportPlan& plan) {
   if (found.frames.empty()) return {};
   const Result<Calibration> calibration = calibration_for(place);
   if (!calibration) return calibration.error();
@@ -284,6 +296,8 @@ Result<void> plan_sessions(const ImportOptions& options, const ImportPlace& plac
     plan.sessions.push_back(std::move(*session));
   }
   refuse_twins(plan);
+  for (const fs::path& file : found.descriptions)
+    if (!planner.has_used(file)) found.left_over.push_back({file, "it speaks of no session"});
   return {};
 }
 
@@ -318,6 +332,8 @@ std::optional<Error> ImportPlan::first_refusal() const {
 Result<ImportPlan> plan_import(const ImportOptions& options, const JobContext& context) {
   const Result<ImportPlace> place = place_of(options);
   if (!place) return place.error();
+  Result<GroupingOptions> grouping = grouping_by(options);
+  if (!grouping) return std::move(grouping).error();
   Result<SourceFolders> found = look_into(options.folders);
   if (!found) return std::move(found).error();
   ImportPlan plan;
@@ -329,7 +345,7 @@ Result<ImportPlan> plan_import(const ImportOptions& options, const JobContext& c
         found->left_over.empty() ? "the folder is empty" : "no file in it is a raw, TIFF or EXR frame",
         "name the folder of the raw files"};
   }
-  if (Result<void> ok = plan_sessions(options, *place, *found, context, plan); !ok)
+  if (Result<void> ok = plan_sessions(options, *place, *std::move(grouping), *found, context, plan); !ok)
     return std::move(ok).error();
   plan.photographs = plan_photographs(*found, plan.archive);
   plan.left_over = std::move(found->left_over);

@@ -25,7 +25,7 @@ class Decider {
       : frames_(frames), light_(light), model_(model), options_(options) {}
 
   LedDecision decided() {
-    if (find_dark() && check_numbers() && put_in_order() && ask_light()) warn();
+    if (check_most() && find_dark() && check_numbers() && put_in_order() && ask_light()) warn();
     return std::move(decision_);
   }
 
@@ -41,6 +41,16 @@ class Decider {
     decision_.leds.clear();
     decision_.refusal = Error{ErrorKind::kBadData, std::move(what), "", std::move(why), std::move(remedy)};
     return false;
+  }
+
+  bool refuse_more(std::size_t frames) {
+    return refuse("there are more frames than LEDs", fmt::format("{} frames, {} LEDs", frames, led_count()),
+                  "tell sessions apart by --gap SECONDS or {session} in --pattern");
+  }
+
+  bool check_most() {
+    const bool is_too_many = !is_by_number() && frames_.size() > model_.leds.size() + 1;
+    return !is_too_many || refuse_more(frames_.size());
   }
 
   bool find_dark() {
@@ -88,11 +98,7 @@ class Decider {
         first = f;
       }
     }
-    if (lit_.size() > model_.leds.size()) {
-      return refuse("there are more frames than LEDs",
-                    fmt::format("{} lit frames, {} LEDs", lit_.size(), led_count()),
-                    "tell sessions apart by --gap SECONDS or {session} in --pattern");
-    }
+    if (lit_.size() > model_.leds.size()) return refuse_more(lit_.size());
     return lit_.size() == model_.leds.size() || check_missing();
   }
 

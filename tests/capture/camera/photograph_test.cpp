@@ -161,6 +161,23 @@ TEST(PhotographFacts, DoNotBelieveATimeThatIsNone) {
   }
 }
 
+TEST(PhotographFacts, OfATimeWithAZoneAreWhatTheClockIsAhead) {
+  const auto zone_of = [](const std::string& zone) {
+    const std::uint32_t time_at = 8 + directory_bytes(2);
+    TiffBytes file(false);
+    file.directory({{36867, 2, 20, time_at}, {36881, 2, 7, time_at + 20}})
+        .text("2026:01:31 23:59:58")
+        .text(zone);
+    const PhotographFacts facts = facts_of(file.bytes());
+    EXPECT_EQ(facts.taken_s, 1769903998) << "by its own clock";
+    return facts.zone_s;
+  };
+  EXPECT_EQ(zone_of("+05:30"), 19800);
+  EXPECT_EQ(zone_of("-08:00"), -28800);
+  for (const char* none : {"      ", "+25:00", "+01:75", "+1:000", "Z00:00", "+-1:00"})
+    EXPECT_FALSE(zone_of(none)) << none;
+}
+
 TEST(PhotographFacts, OfEveryTruncationAreRead) {
   for (const bool big_endian : {false, true}) {
     const Bytes whole = nef(big_endian);
