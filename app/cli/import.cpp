@@ -49,9 +49,9 @@ void print_frames(const PlannedSession& session) {
     const SourceFrame& frame = session.frames[f];
     std::string line = fmt::format("  {:{}}  {:23}", frame.label, width, time_words(frame));
     if (!decision.leds.empty()) {
-      const bool is_dark = decision.leds[f] == 0;
+      const bool is_by_level = decision.leds[f] == 0 && frame.said.led != 0;
       line += fmt::format("  {:>4}  {:16}  {}", led_words(decision.leds[f]),
-                          is_dark ? "its level" : decision.by, sure_words(decision.sure[f]));
+                          is_by_level ? "its level" : decision.by, sure_words(decision.sure[f]));
     }
     for (const LedOpinion& opinion : decision.opinions)
       line += fmt::format("  {:>13}", led_words(opinion.leds[f]));

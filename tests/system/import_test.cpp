@@ -150,6 +150,7 @@ class Import : public testing::Test {
     EXPECT_TRUE(session) << session.error().message();
     return session ? std::move(*session) : Session();
   }
+  static Session session_of_scan() { return *read_session(scanned_->folder); }
   /// Whether each shot holds the frame of the LED that it names.
   void expect_right(const Session& session) const {
     for (const Shot& shot : session.shots) {
@@ -466,6 +467,21 @@ TEST_F(Import, AsksBeforeItImports) {
   const Outcome asked = run_weft(words({}));
   EXPECT_EQ(asked.exit_code, 0) << asked.error;
   EXPECT_THAT(asked.error, HasSubstr("import into " + archive_.string()));
+  expect_right(session("roll"));
+}
+
+TEST_F(Import, TakesCalibrationArchiveAndHeightOfARig) {
+  put_all("roll/DSC_{}.dng", all_leds());
+  const std::string name = session_of_scan().rig;
+  put_bytes(work_ / "rig.toml",
+            fmt::format("name = \"{}\"\n[scan]\ncalibration = \"{}\"\nsessions = \"archive\"\n"
+                        "cloth_height_mm = 0.25\n",
+                        name, calibration_.string()));
+  const Outcome run =
+      run_weft({"import", source_.string(), "--rig", (work_ / "rig.toml").string(), "--yes", "--json", "-q"});
+  EXPECT_EQ(run.exit_code, 0) << run.error << run.output;
+  EXPECT_EQ(session("roll").rig, name);
+  EXPECT_EQ(session("roll").cloth_height_mm, 0.25);
   expect_right(session("roll"));
 }
 
