@@ -32,9 +32,9 @@ constexpr int kLeds = 10;
 constexpr double kMidnight = 3600.0 * 23;
 
 // A coarse weave, large enough for its light to fall off over the frame as on a real table.
-simulator::Scene coarse_scene() {
-  simulator::Scene scene = scene_named("golden", {264, 176});
-  scene.camera.mm_per_pixel = 0.8;
+simulator::Scene coarse_scene(Size size = {264, 176}) {
+  simulator::Scene scene = scene_named("golden", size);
+  scene.camera.mm_per_pixel = 211.0 / size.width;
   scene.geometry.warp_pitch_mm = scene.geometry.weft_pitch_mm = 12;
   return scene;
 }
@@ -195,7 +195,8 @@ TEST_F(Import, MakesASessionOfNumbersInNamesThatIsSolvedAsIfScanned) {
   const Json difference = run_weft({"compare", (work_ / "tray-7" / "normal.exr").string(),
                                     (work_ / scanned_->folder.stem() / "normal.exr").string(), "--json"})
                               .json();
-  EXPECT_EQ(difference["max_deg"], 0) << "the same photographs under the same LEDs";
+  EXPECT_LT(difference["max_deg"].get<double>(), 1e-4)
+      << "only the exposure is rounded, as the files have it";
 }
 
 TEST_F(Import, CountsNamesAsPeopleDoAndFindsTheDarkFrameByItsLevel) {
@@ -266,9 +267,7 @@ TEST_F(Import, RefusesFramesOfTwoSettings) {
   fs::remove(source_ / "a/11.dng");  // of LED 3
   expect([](ShotMetadata& shot) { shot.iso = 400; }, "ISO");
   expect([](ShotMetadata& shot) { shot.exposure_us *= 1.5; }, "exposure");
-  expect([](ShotMetadata& shot) { shot.f_number = 5.6; }, "f/");
   expect([](ShotMetadata& shot) { shot.serial = "other"; }, "serial");
-  expect([](ShotMetadata& shot) { shot.model = "other"; }, "other");
 }
 
 TEST_F(Import, RefusesFramesOfAnotherBodyThanTheCalibrations) {
@@ -303,10 +302,10 @@ TEST_F(Import, DoesNothingTheSecondTimeAndNeverTouchesTheSource) {
     EXPECT_EQ(again["imported"], 0);
     EXPECT_EQ(again["sessions"][0]["state"], "there");
     EXPECT_EQ(contents_of(archive_), there);
-    const Outcome solved =
-        run_weft({"solve", (archive_ / "roll.weft").string(), "-q", "--quality", "preview"});
-    EXPECT_EQ(solved.exit_code, 0) << solved.error;
   }
+  const Outcome solved =
+      run_weft({"solve", (archive_ / "roll.weft").string(), "-q", "--quality", "preview", "--no-previews"});
+  EXPECT_EQ(solved.exit_code, 0) << "through symbolic links: " << solved.error;
   EXPECT_EQ(state(), before);
 }
 
@@ -371,7 +370,7 @@ TEST_F(Import, MakesSessionsOfLinearTiffAndExrFrames) {
     fs::remove_all(source_);
     fs::remove_all(archive_);
     const fs::path developed = work_ / ("developed" + ending + ".weft");
-    simulate_developed(coarse_scene(), developed, ending,
+    simulate_developed(coarse_scene({132, 88}), developed, ending,
                        ending == ".tif" ? SampleType::kUint16 : SampleType::kHalf);
     fs::create_directories(source_ / "tray");
     for (const auto& entry : fs::directory_iterator(developed / "raw"))
@@ -385,9 +384,10 @@ TEST_F(Import, MakesSessionsOfLinearTiffAndExrFrames) {
     calibration_ = developed / "calibration";
     const Json plan = imported({"--pattern", "{any}_led{led}.{ext}"});
     EXPECT_THAT(plan["sessions"][0]["light"].get<std::string>(), HasSubstr("agrees"));
-    const Outcome solved = run_weft({"solve", (archive_ / "tray.weft").string(), "-q", "--json"});
+    const Outcome solved =
+        run_weft({"solve", (archive_ / "tray.weft").string(), "-q", "--json", "--no-previews"});
     ASSERT_EQ(solved.exit_code, 0) << solved.error;
-    EXPECT_EQ(solved.json()["pixels"], 264 * 176);
+    EXPECT_EQ(solved.json()["pixels"], 132 * 88);
   }
 }
 
