@@ -28,6 +28,7 @@ Verb capture_verb();
 Verb doctor_verb();
 Verb copy_verb();
 Verb library_verb();
+Verb batch_verb();
 Verb demo_verb();
 Verb torture_verb();
 
