@@ -64,12 +64,12 @@ std::vector<Cause> causes_of(std::span<const Row> rows) {
   return causes;
 }
 
-// How much speaks against a calibration: sessions that became worse or whose lights do not fit, then how
-// badly left-out lights are predicted, then how far maps turned.
-auto suspicion(const ByCalibration& c) {
-  const double sessions = std::max(c.sessions, 1);
-  return std::tuple(std::max(c.worse, c.warned) / sessions, c.left_out.value_or(0),
-                    c.mean_turn_deg.value_or(0));
+// How much speaks against a calibration: sessions that became worse or whose lights do not fit, then left-out lights
+// that are predicted much worse than with the others, then how far maps turned.
+std::tuple<double, double, double> suspicion(const ByCalibration& c, double usual_left_out) {
+  const double sessions = std::max(c.sessions, 1), left_out = c.left_out.value_or(0);
+  return {std::max(c.worse, c.warned) / sessions, left_out > kStandsOut * usual_left_out ? left_out : 0,
+          c.mean_turn_deg.value_or(0)};
 }
 
 std::vector<ByCalibration> by_calibration(std::span<const Row> rows) {
@@ -98,8 +98,14 @@ std::vector<ByCalibration> by_calibration(std::span<const Row> rows) {
     if (of.compared > 0) of.all.mean_turn_deg = of.turned / of.compared;
     all.push_back(std::move(of.all));
   }
-  std::ranges::stable_sort(
-      all, [](const ByCalibration& a, const ByCalibration& b) { return suspicion(a) > suspicion(b); });
+  std::vector<double> left_out;
+  for (const ByCalibration& each : all) {
+    if (each.left_out) left_out.push_back(*each.left_out);
+  }
+  const double usual = left_out.empty() ? 0 : lower_quantile(std::move(left_out), 0.5);
+  std::ranges::stable_sort(all, [&](const ByCalibration& a, const ByCalibration& b) {
+    return suspicion(a, usual) > suspicion(b, usual);
+  });
   return all;
 }
 

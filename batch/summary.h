@@ -36,6 +36,9 @@ struct Cause {
   std::string example;  ///< the message of one
 };
 
+/// A calibration stands out whose left-out lights are off by this much more than is usual of the others.
+inline constexpr double kStandsOut = 1.5;
+
 /// Sessions that were solved by one calibration.
 struct ByCalibration {
   std::string calibration, rig;

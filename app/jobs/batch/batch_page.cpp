@@ -20,8 +20,6 @@ namespace fs = std::filesystem;
 using batch::Row;
 
 constexpr std::size_t kMostRows = 200;  // of a table on the page; report.json has all
-// A calibration stands out that is this much worse than the median of the others.
-constexpr double kStandsOut = 1.5;
 
 std::string name_in(const std::string& session) {
   return fs::path(session).stem().string();
@@ -146,7 +144,7 @@ std::optional<Verdict> suspect(const batch::Summary& summary) {
   const bool is_warned = 2 * first.warned >= first.sessions && first.warned > 0;
   bool stands_out = false;
   if (summary.calibrations.size() > 1 && first.left_out && summary.calibrations[1].left_out)
-    stands_out = *first.left_out > kStandsOut * *summary.calibrations[1].left_out;
+    stands_out = *first.left_out > batch::kStandsOut * *summary.calibrations[1].left_out;
   if (!is_worse && !is_warned && !stands_out) return {};
   std::vector<std::string> said;
   if (is_worse) said.push_back(fmt::format("{} of {} sessions became worse", first.worse, first.sessions));
