@@ -32,7 +32,7 @@ struct Product {
   friend bool operator==(const Product&, const Product&) = default;
 };
 
-/// A calibration that is used in place of the sessions' own.
+/// A calibration that is used in place of the own ones of a rig's sessions.
 struct NamedCalibration {
   std::string folder, id, rig;
 

@@ -346,7 +346,7 @@ Run add_plan(Options& options) {
       .above_zero();
   options
       .add("--calibration", &a->calibrations,
-           "Calibration folder in place of the sessions' own; one of each rig")
+           "Calibration folder in place of the own ones of the sessions of its rig; may be given again")
       .one_at_a_time();
   options.add("--then", &plan_options.product.then, "Made of each solve, by commas: maps, export:PRESET")
       .by_commas();

@@ -21,7 +21,7 @@ struct PlanBatchOptions {
   std::optional<double> least_change_deg = {};  ///< maps that would turn by less are left as they are
   batch::Product product;
   std::vector<std::filesystem::path>
-      calibrations;         ///< one a rig, in place of the sessions' own; none: their own
+      calibrations;         ///< in place of the own ones of the sessions of their rigs
   std::size_t sample = 50;  ///< sessions that are measured
   double task_seconds = 600;
   std::filesystem::path

@@ -69,14 +69,9 @@ class Calibrations {
 };
 
 // The calibration that is named for the rig of a session; none: its own.
-Result<std::optional<batch::NamedCalibration>> named_for(const Session& session,
-                                                         const batch::Header& header) {
-  if (header.calibrations.empty()) return std::optional<batch::NamedCalibration>();
+const batch::NamedCalibration* named_for(const Session& session, const batch::Header& header) {
   const auto found = std::ranges::find(header.calibrations, session.rig, &batch::NamedCalibration::rig);
-  if (found != header.calibrations.end()) return std::optional(*found);
-  return Error{ErrorKind::kBadData, "no calibration of its rig is named", session.folder.string(),
-               fmt::format("it was scanned by \"{}\"", session.rig),
-               "name one more --calibration, or leave it out"};
+  return found == header.calibrations.end() ? nullptr : &*found;
 }
 
 // How the current solve was made, in one text.
@@ -124,12 +119,11 @@ Result<void> look_into(const SurveyOptions& options, Calibrations& calibrations,
   const fs::path& folder = candidate.input.folder;
   const Result<Session> session = read_session(folder);
   if (!session) return session.error();
-  const Result<std::optional<batch::NamedCalibration>> named = named_for(*session, options.header);
-  if (!named) return named.error();
-  if (*named) candidate.input.calibration = (*named)->folder;
-  const std::string id = *named ? (*named)->id : session->calibration_id;
+  const batch::NamedCalibration* const named = named_for(*session, options.header);
+  if (named != nullptr) candidate.input.calibration = named->folder;
+  const std::string id = named != nullptr ? named->id : session->calibration_id;
   const Result<Calibration>& calibration =
-      calibrations.of(id, *named ? fs::path((*named)->folder) : session->calibration_folder());
+      calibrations.of(id, named != nullptr ? fs::path(named->folder) : session->calibration_folder());
   if (!calibration) return calibration.error();
   if (calibration->id != id) {
     return Error{ErrorKind::kBadData, "calibration is not the one of the session",
