@@ -169,7 +169,7 @@ void print_plan(const PlanBatchReport& report) {
   print(report.file.string());
 }
 
-Json json_of(const PlanBatchReport& report) {
+Json plan_json(const PlanBatchReport& report) {
   const batch::Header& header = report.plan.header;
   const PlanSums sums = sums_of(report.plan);
   Json levels = Json::array(), curve = Json::array(), left_out = Json::array();
@@ -224,7 +224,7 @@ Result<int> plan(const PlanArguments& a, const CommonArguments& common) {
   }();
   if (!report) return report.error();
   if (common.json) {
-    print_json(json_of(*report));
+    print_json(plan_json(*report));
   } else {
     print_plan(*report);
   }
