@@ -33,7 +33,7 @@ struct Change {
   double mean_deg = 0, median_deg = 0, p95_deg = 0, max_deg = 0;  ///< angles between old and new normals
   double albedo_rel = 0, albedo_bias_rel = 0;  ///< means of |new - old| / old and of (new - old) / old
   std::optional<BeforeAfter> sigma_deg = {};   ///< medians of the angle that sigma.exr predicts
-  BeforeAfter unsolved = {};                        ///< shares of pixels
+  BeforeAfter unsolved = {};                   ///< shares of pixels
   std::optional<BeforeAfter> left_out = {};    ///< rms of how left-out lights are predicted, shares
   std::optional<double> status_changed = {};   ///< share of pixels whose status speaks otherwise
   WorstWindow worst = {};

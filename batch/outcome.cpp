@@ -57,6 +57,7 @@ std::string line_of(const Outcome& o) {
     json["read_s"] = o.read_s;
     json["solve_s"] = o.solve_s;
     json["compare_s"] = o.compare_s;
+    json["expected_deg"] = o.expected_deg;
     json["sigma_deg"] = o.sigma_deg;
     json["sigma_p95_deg"] = o.sigma_p95_deg;
     json["unsolved"] = o.unsolved;
@@ -80,6 +81,7 @@ std::optional<Outcome> outcome_from_line(std::string_view line) {
   o.attempt = fields.integer("attempt");
   o.host = fields.text("host");
   o.seconds = fields.number("seconds");
+  o.node_seconds = fields.number("node_seconds");
   o.peak_bytes = static_cast<std::uint64_t>(std::max(0.0, fields.number("peak_bytes")));
   if (fields.has("error")) o.error = error_of_json(json["error"], "result");
   if (!fields.status()) return {};
@@ -90,6 +92,7 @@ std::optional<Outcome> outcome_from_line(std::string_view line) {
   o.read_s = fields.number("read_s");
   o.solve_s = fields.number("solve_s");
   o.compare_s = fields.number("compare_s");
+  o.expected_deg = fields.number("expected_deg");
   o.sigma_deg = fields.number("sigma_deg");
   o.sigma_p95_deg = fields.number("sigma_p95_deg");
   o.unsolved = fields.number("unsolved");

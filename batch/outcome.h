@@ -33,10 +33,12 @@ struct Outcome {
   std::string solve, folder;        ///< id, and where it is
   bool is_stored = false;           ///< `folder` is where it was sent to, which this machine may not see
   double seconds = 0, read_s = 0, solve_s = 0, compare_s = 0;  ///< wall
+  double node_seconds = 0;  ///< the same of a machine with all threads of the plan to itself
   std::uint64_t peak_bytes = 0;
   int attempt = 1;
   std::string host;
 
+  double expected_deg = 0;  ///< mean error that the solve expects of its normals; 0 where it was there
   double sigma_deg = 0, sigma_p95_deg = 0;  ///< that the solve says of its normals: median and p95
   double unsolved = 0;                      ///< share of pixels
   std::optional<double> left_out = {};      ///< rms of how left-out lights are predicted, a share

@@ -31,14 +31,14 @@ void count(const Row& row, Summary& summary) {
   if (row.is_missing()) ++summary.missing;
   if (!row.is_done()) return;
   const Outcome& outcome = *row.result;
-  summary.mean_deg += outcome.sigma_deg;
-  summary.predicted_deg += row.job->forecast.degrees;
   if (outcome.state == State::kThere) {
     ++summary.there;
     return;
   }
   ++summary.solved;
-  summary.seconds += outcome.seconds;
+  summary.mean_deg += outcome.expected_deg;
+  summary.predicted_deg += row.job->forecast.degrees;
+  summary.seconds += outcome.node_seconds;
   summary.predicted_seconds += row.job->forecast.seconds;
   summary.peak_bytes = std::max(summary.peak_bytes, outcome.peak_bytes);
 }
@@ -64,8 +64,8 @@ std::vector<Cause> causes_of(std::span<const Row> rows) {
   return causes;
 }
 
-// How much speaks against a calibration: sessions that became worse or whose lights do not fit, then left-out lights
-// that are predicted much worse than with the others, then how far maps turned.
+// How much speaks against a calibration: sessions that became worse or whose lights do not fit, then left-out
+// lights that are predicted much worse than with the others, then how far maps turned.
 std::tuple<double, double, double> suspicion(const ByCalibration& c, double usual_left_out) {
   const double sessions = std::max(c.sessions, 1), left_out = c.left_out.value_or(0);
   return {std::max(c.worse, c.warned) / sessions, left_out > kStandsOut * usual_left_out ? left_out : 0,
@@ -165,8 +165,7 @@ Summary summarize(std::span<const Row> rows) {
     if (regression_weight(*row.result->change) > 0) ++summary.worse;
     if (row.result->change->is_none()) ++summary.unchanged;
   }
-  const int done = summary.solved + summary.there;
-  if (done > 0) summary.mean_deg /= done, summary.predicted_deg /= done;
+  if (summary.solved > 0) summary.mean_deg /= summary.solved, summary.predicted_deg /= summary.solved;
   std::ranges::stable_sort(summary.changed, [&](std::size_t a, std::size_t b) {
     return is_graver(*rows[a].result->change, *rows[b].result->change);
   });

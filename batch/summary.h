@@ -52,7 +52,7 @@ struct ByCalibration {
 struct Summary {
   int solved = 0, there = 0, failed = 0, missing = 0;
   int second_attempts = 0;                    ///< sessions that were begun more than once
-  double seconds = 0, predicted_seconds = 0;  ///< of those solved
+  double seconds = 0, predicted_seconds = 0;  ///< of those solved, node-seconds
   double mean_deg = 0,
          predicted_deg = 0;  ///< of those solved: means of the medians of sigma, and as predicted
   std::uint64_t peak_bytes = 0;

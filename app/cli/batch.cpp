@@ -104,7 +104,8 @@ Result<void> add_sessions(const PlanArguments& a, const CommonArguments& common,
 }
 
 std::string hours_words(double hours) {
-  return hours < 0.1 ? fmt::format("{:.2g} minutes", 60 * hours) : fmt::format("{:.3g} hours", hours);
+  if (hours < 1.0 / 60) return fmt::format("{:.2g} seconds", 3600 * hours);
+  return hours < 1 ? fmt::format("{:.2g} minutes", 60 * hours) : fmt::format("{:.3g} hours", hours);
 }
 
 void print_left_out(const batch::Plan& plan) {
@@ -157,7 +158,7 @@ void print_plan(const PlanBatchReport& report) {
     print(fmt::format("  {:>9.3g} {:>9.3g}", spent.hours, spent.mean_deg));
   const PlanSums sums = sums_of(plan);
   print(fmt::format(
-      "{} sessions in {} tasks: {}, {:.3g} degrees, {:.3g} GB read, {:.3g} GB written, {} MB of memory",
+      "sessions {}, tasks {}: {}, {:.3g} degrees, {:.3g} GB read, {:.3g} GB written, {} MB of memory",
       header.sessions, header.tasks.size(), hours_words(sums.hours), sums.degrees, sums.read_gb,
       sums.write_gb, sums.memory_bytes >> 20));
   print(

@@ -7,6 +7,7 @@
 #include "bench/batch/archive.h"
 #include "bench/batch/parts.h"
 #include "core/files.h"
+#include "core/job.h"
 #include "core/parallel.h"
 #include "core/temporary_folder.h"
 

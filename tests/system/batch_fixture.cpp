@@ -19,7 +19,7 @@ fs::path simulated_session(int number) {
   const fs::path session = folder.path() / fmt::format("cloth-{}.weft", number);
   if (!fs::exists(session)) {
     simulator::Scene scene = scene_named("golden", {160, 128});
-    scene.seed += static_cast<std::uint64_t>(number);
+    scene.seed += number;
     scene.fabric = fmt::format("twill {}", number);
     simulate(scene, session);
     // A truth is what no archive has.

@@ -10,7 +10,9 @@
 #include <random>
 #include <thread>
 
+#include "core/image_io/image_io.h"
 #include "core/process.h"
+#include "core/solve.h"
 #include "tests/system/samples.h"
 
 namespace weft::test {

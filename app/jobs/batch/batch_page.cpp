@@ -46,11 +46,11 @@ report::Section done_section(const BatchState& state) {
           {"failed", std::to_string(s.failed)},
           {"missing", std::to_string(s.missing)},
           {"begun more than once", std::to_string(s.second_attempts)},
-          {"hours", fmt::format("{:.3g}", hours)},
-          {"hours predicted of these",
+          {"node-hours", fmt::format("{:.3g}", hours)},
+          {"node-hours predicted of these",
            predicted > 0 ? fmt::format("{:.3g} ({:+.0f} %)", predicted, 100 * (hours / predicted - 1)) : ""},
-          {"sigma of the normals, degrees: mean of medians", fmt::format("{:.3g}", s.mean_deg)},
-          {"mean error predicted, degrees", fmt::format("{:.3g}", s.predicted_deg)},
+          {"mean error expected, degrees", fmt::format("{:.3g}", s.mean_deg)},
+          {"mean error planned, degrees", fmt::format("{:.3g}", s.predicted_deg)},
           {"largest memory, MB", std::to_string(s.peak_bytes >> 20)},
           {"left out by the plan", std::to_string(header.left_out)}}};
   return section;

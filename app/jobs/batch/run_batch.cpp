@@ -296,6 +296,7 @@ class BatchRun {
     outcome->peak_bytes = end.peak_bytes;
     if (outcome->seconds == 0)
       outcome->seconds = std::chrono::duration<double>(Steady::now() - over.began).count();
+    outcome->node_seconds = outcome->seconds * threads() / std::max(1, plan_.header.threads);
     const SessionWork work = work_of(item);
     if (end.signal != 0 || end.code != 0) remove_folders(abandoned_of(work.session, work.solves));
     if (outcome->is_done() && !options_.store.empty()) {
@@ -334,13 +335,14 @@ class BatchRun {
     ++done_;
     seconds_to_do_ -= item.job.forecast.seconds;
     if (outcome.state == batch::State::kSolved) {
-      seconds_taken_ += outcome.seconds;
+      seconds_taken_ += outcome.node_seconds;
       seconds_foreseen_ += item.job.forecast.seconds;
     }
     tally(outcome);
     const double pace = seconds_foreseen_ > 0 ? seconds_taken_ / seconds_foreseen_ : 1;
     context_.progress("batch", static_cast<double>(done_) / static_cast<double>(items_.size()));
-    after_(outcome, std::max(0.0, seconds_to_do_) * pace / std::max(1, options_.jobs) / 3600);
+    const double share = static_cast<double>(plan_.header.threads) / (threads() * std::max(1, options_.jobs));
+    after_(outcome, std::max(0.0, seconds_to_do_) * pace * share / 3600);
     return {};
   }
 

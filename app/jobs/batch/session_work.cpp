@@ -125,6 +125,7 @@ void add_facts_of(const SolveReport& report, batch::Outcome& outcome) {
   outcome.folder = report.folder.string();
   outcome.read_s = report.seconds.read;
   outcome.solve_s = report.seconds.solve;
+  outcome.expected_deg = report.expected.total_deg;
   outcome.sigma_deg = number_in(facts.sigma_normal_deg, "median");
   outcome.sigma_p95_deg = number_in(facts.sigma_normal_deg, "p95");
   outcome.unsolved = static_cast<double>(facts.status.with(kNoSolution)) /

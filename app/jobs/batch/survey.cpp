@@ -142,7 +142,7 @@ Result<void> look_into(const SurveyOptions& options, Calibrations& calibrations,
   candidate.size = plan->size;
   candidate.traits = {session->fabric, id,
                       candidate.before.empty() ? "" : words_of_solve(folder / "solve" / candidate.before),
-                      static_cast<double>(plan->size.pixels()) * 1e-6,
+                      static_cast<double>(plan->size.pixels()) / 1e6,
                       static_cast<int>(plan->frames().size())};
   add_levels(*plan, options, candidate);
   return {};
