@@ -45,10 +45,11 @@ bool is_of_session(ErrorKind kind) {
 }
 
 std::string line_of(const Outcome& o) {
-  Json json = {{"schema", kSchema},    {"plan", o.plan},
-               {"session", o.session}, {"state", kStateNames[static_cast<std::size_t>(o.state)]},
-               {"attempt", o.attempt}, {"host", o.host},
-               {"seconds", o.seconds}, {"peak_bytes", o.peak_bytes}};
+  Json json = {{"schema", kSchema},         {"plan", o.plan},
+               {"session", o.session},      {"state", kStateNames[static_cast<std::size_t>(o.state)]},
+               {"attempt", o.attempt},      {"host", o.host},
+               {"seconds", o.seconds},      {"node_seconds", o.node_seconds},
+               {"peak_bytes", o.peak_bytes}};
   if (o.error) json["error"] = json_of(*o.error);
   if (o.is_done()) {
     json["solve"] = o.solve;
