@@ -40,7 +40,7 @@ void BatchTest::fill_archive(int sessions) {
 Json BatchTest::plan(const std::vector<std::string>& more) const {
   std::vector<std::string> arguments = {"batch",  "plan", archive().string(), "-o", plan_file().string(),
                                         "--json", "-q"};
-  if (std::ranges::find(more, "--sample") == more.end()) arguments.insert(arguments.end(), {"--sample", "1"});
+  if (std::ranges::find(more, "--sample") == more.end()) arguments.insert(arguments.end(), {"--sample", "0"});
   arguments.insert(arguments.end(), more.begin(), more.end());
   const Outcome outcome = run_weft(arguments);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.error;

@@ -23,7 +23,7 @@ class BatchTest : public testing::Test {
   std::filesystem::path session(int number) const;
   std::filesystem::path plan_file() const { return work_ / "night.jsonl"; }
 
-  /// Plans the archive; expects that to go well. `more` are further arguments.
+  /// Plans the archive, no session measured unless `more` says --sample; expects that to go well.
   Json plan(const std::vector<std::string>& more = {}) const;
   Outcome run(const std::vector<std::string>& more = {}, const RunOptions& options = {}) const;
   Outcome merge() const;
