@@ -238,11 +238,13 @@ std::string digest_of_session(Json document) {
 }
 
 void share_out(std::vector<Job>& jobs, double task_seconds) {
-  int task = -1;
+  int task = -1, sessions = 0;
   double seconds = 0;
   for (Job& job : jobs) {
-    if (task < 0 || seconds + job.forecast.seconds > task_seconds) ++task, seconds = 0;
+    const bool is_full = seconds + job.forecast.seconds > task_seconds || sessions == kMostOfTask;
+    if (task < 0 || (sessions > 0 && is_full)) ++task, seconds = 0, sessions = 0;
     seconds += job.forecast.seconds;
+    ++sessions;
     job.task = task;
   }
 }

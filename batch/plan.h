@@ -136,6 +136,9 @@ struct Plan {
 /// metadata), the current solve, and where copies lie.
 std::string digest_of_session(Json document);
 
+/// A task has at most so many sessions, where seconds are few or not known.
+inline constexpr int kMostOfTask = 100;
+
 /// Gives jobs to tasks of about so many seconds, in their order; a task has at least one.
 void share_out(std::vector<Job>& jobs, double task_seconds);
 

@@ -38,6 +38,15 @@ TEST(Plan, HasATaskOfAboutSoManySeconds) {
   EXPECT_THAT(tasks, testing::ElementsAre(0, 0, 1, 2, 3));
 }
 
+TEST(Plan, WhoseSecondsAreNotKnownHasTasksOfAHundredSessions) {
+  std::vector<Job> jobs;
+  for (int i = 0; i < 250; ++i) jobs.push_back(sample_job(i, 0));
+  share_out(jobs, 600);
+  EXPECT_EQ(jobs[99].task, 0);
+  EXPECT_EQ(jobs[100].task, 1);
+  EXPECT_EQ(jobs.back().task, 2);
+}
+
 TEST(Plan, SaysWhereTheLinesOfEachTaskLie) {
   Plan plan = sample_plan(7);
   const std::string text = text_of(plan);

@@ -185,6 +185,34 @@ TEST_F(BatchTest, MemoryThatRunsOutCostsTheSessionInHandAlone) {
   EXPECT_EQ(run({"-q"}).exit_code, 0);
 }
 
+TEST_F(BatchTest, ADiskThatFillsLosesNothing) {
+  fill_archive(2);
+  plan();
+  const Outcome outcome = run({"-q"}, {.largest_file_bytes = 16'000});
+  EXPECT_EQ(outcome.exit_code, 74) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("File too large"));
+  EXPECT_THAT(half_made(), IsEmpty());
+  const Json merged = merge().json();
+  EXPECT_EQ(merged["failed"], 0) << "it says nothing of the sessions";
+  EXPECT_EQ(merged["missing"], 2);
+  EXPECT_EQ(run({"-q"}).exit_code, 0);
+}
+
+TEST_F(BatchTest, TwoPlansOfOneArchiveAtOnceDoNoHarm) {
+  fill_archive(3);
+  plan();
+  const fs::path other = work_ / "other.jsonl";
+  ASSERT_EQ(
+      run_weft({"batch", "plan", archive().string(), "--sample", "0", "-q", "-o", other.string()}).exit_code,
+      0);
+  const auto first = begin_run(plan_file(), work_ / "log"), second = begin_run(other, work_ / "log2");
+  EXPECT_EQ(first->wait(60), 0) << bytes_of(work_ / "log");
+  EXPECT_EQ(second->wait(60), 0) << bytes_of(work_ / "log2");
+  for (int i = 0; i < 3; ++i) EXPECT_THAT(solves_of(session(i)), SizeIs(1)) << i;
+  EXPECT_THAT(half_made(), IsEmpty());
+  EXPECT_EQ(merge().exit_code, 0);
+}
+
 TEST_F(BatchTest, WhatIsThereIsLeftOut) {
   fill_archive(2);
   ASSERT_EQ(run_weft({"solve", session(0).string(), "-q"}).exit_code, 0);

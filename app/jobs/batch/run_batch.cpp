@@ -339,11 +339,20 @@ class BatchRun {
       seconds_foreseen_ += item.job.forecast.seconds;
     }
     tally(outcome);
-    const double pace = seconds_foreseen_ > 0 ? seconds_taken_ / seconds_foreseen_ : 1;
     context_.progress("batch", static_cast<double>(done_) / static_cast<double>(items_.size()));
-    const double share = static_cast<double>(plan_.header.threads) / (threads() * std::max(1, options_.jobs));
-    after_(outcome, std::max(0.0, seconds_to_do_) * pace * share / 3600);
+    after_(outcome, hours_left());
     return {};
+  }
+
+  // By the pace so far; where nothing was measured, as long as those that were done.
+  double hours_left() const {
+    const double share = static_cast<double>(plan_.header.threads) / (threads() * std::max(1, options_.jobs));
+    const auto left = static_cast<double>(items_.size()) - done_;
+    const double each_s = report_.solved > 0 ? seconds_taken_ / report_.solved : 0;
+    const double seconds = seconds_foreseen_ > 0
+                               ? std::max(0.0, seconds_to_do_) * seconds_taken_ / seconds_foreseen_
+                               : left * each_s;
+    return seconds * share / 3600;
   }
 
   void tally(const batch::Outcome& outcome) {
