@@ -15,11 +15,8 @@
 #include "app/jobs/export/export_json.h"
 #include "app/jobs/export/layers.h"
 #include "app/jobs/export/plan.h"
-#include "app/jobs/export/price.h"
-#include "app/jobs/material/build.h"
-#include "app/jobs/material/material_place.h"
+#include "app/jobs/export/prepare.h"
 #include "core/files.h"
-#include "core/text.h"
 
 namespace weft::app {
 namespace {
@@ -148,38 +145,11 @@ Result<void> make_all(std::vector<Work>& works, const MapFolder& folder, const E
 
 }  // namespace
 
-Result<ExportOptions> with_built_material(ExportOptions options, const JobContext& context) {
-  const std::string written = options.input.string();
-  const bool is_library = written.starts_with(kLibraryPrefix);
-  if (!is_library && (!written.ends_with(".toml") || !is_there(options.input))) return options;
-  const Result<MaterialPlace> place = find_material(written, fs::current_path());
-  if (!place) return place.error();
-  const fs::path base =
-      is_library ? fs::absolute(plain_name(written)) : fs::absolute(options.input).replace_extension();
-  BuildOptions build;
-  build.materials = {*place};
-  if (place->is_shipped()) build.output = base.string() + "-build";
-  const Result<BuildReport> built = build_materials(build, context);
-  if (!built) return built.error();
-  options.input = built->materials.front().folder;
-  options.material_base = base.string() + "-export";
-  return options;
-}
-
 Result<std::vector<ExportReport>> export_maps(const ExportOptions& asked, const JobContext& context) {
-  const Result<ExportOptions> with_folder = with_built_material(asked, context);
-  if (!with_folder) return with_folder.error();
-  const ExportOptions& options = *with_folder;
-  const Result<MapFolder> folder = open_map_folder(options.input, options.maps);
-  if (!folder) return folder.error();
-  Result<std::vector<PlannedExport>> plans = plan_exports(options, *folder);
-  if (!plans) return std::move(plans).error();
-  if (options.to_deg) {
-    if (Result<void> ok = choose_bits(options, *folder, *options.to_deg, *plans, context); !ok)
-      return std::move(ok).error();
-  }
+  const Result<PreparedExport> prepared = prepare_export(asked, context);
+  if (!prepared) return prepared.error();
   std::vector<Work> works;
-  for (const PlannedExport& plan : *plans) {
+  for (const PlannedExport& plan : prepared->plans) {
     Result<std::optional<Json>> earlier = earlier_export(plan.folder);
     if (!earlier) return std::move(earlier).error();
     Work work = {.plan = &plan, .partial = nullptr, .report = {.folder = plan.folder}};
@@ -189,7 +159,8 @@ Result<std::vector<ExportReport>> export_maps(const ExportOptions& asked, const 
     }
     works.push_back(std::move(work));
   }
-  if (Result<void> ok = make_all(works, *folder, options, context); !ok) return std::move(ok).error();
+  if (Result<void> ok = make_all(works, prepared->folder, prepared->options, context); !ok)
+    return std::move(ok).error();
   std::vector<ExportReport> reports;
   for (Work& work : works) reports.push_back(std::move(work.report));
   context.progress("encode", 1);

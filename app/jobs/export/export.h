@@ -27,7 +27,7 @@ struct ExportOptions {
   /// Empty: SESSION/export/<preset>, of a folder elsewhere FOLDER/export/<preset>, of a material's file
   /// NAME-export/<preset> beside it. Of several presets each has a folder of its name in it.
   std::filesystem::path output = {};
-  std::filesystem::path material_base = {};  ///< in place of the folder's own: with_built_material()
+  std::filesystem::path material_base = {};  ///< in place of the folder's own, of a material that was built
   std::string name = {};                     ///< of the cloth in file names; empty: as it is called
   int size_px = 0;                           ///< of the longer side; 0: as the preset has it
   bool is_dx10 = false;                      ///< DDS with DX10 headers alone
@@ -41,10 +41,6 @@ struct ExportReport {
   Json document = {};      ///< export.json
   double seconds = 0;      ///< 0 where it was there
 };
-
-/// The same with the folder of the built material, where the input is a material's file or name. Errors of
-/// build_materials().
-Result<ExportOptions> with_built_material(ExportOptions options, const JobContext& context);
 
 /// Packs the maps for each preset, writes its files and documents, measures what they lose by reading them
 /// back, and publishes each folder whole, with export.json (weft.export/1, docs/formats.md). Files that are

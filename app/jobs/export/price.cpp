@@ -12,6 +12,7 @@
 
 #include "app/jobs/export/export_json.h"
 #include "app/jobs/export/map_planes.h"
+#include "app/jobs/export/prepare.h"
 #include "app/jobs/export/texture_file.h"
 #include "core/temporary_folder.h"
 
@@ -202,25 +203,17 @@ Result<void> choose_bits(const ExportOptions& options, const MapFolder& folder, 
 }
 
 Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const JobContext& context) {
-  const Result<ExportOptions> with_folder = with_built_material(asked, context);
-  if (!with_folder) return with_folder.error();
-  const ExportOptions& options = *with_folder;
-  const Result<MapFolder> folder = open_map_folder(options.input, options.maps);
-  if (!folder) return folder.error();
-  Result<std::vector<PlannedExport>> plans = plan_exports(options, *folder);
-  if (!plans) return std::move(plans).error();
-  if (options.to_deg) {
-    if (Result<void> ok = choose_bits(options, *folder, *options.to_deg, *plans, context); !ok)
-      return std::move(ok).error();
-  }
-  MapPlanes maps(*folder, folder->size, context.threads);
-  if (Result<void> ok = maps.load(needed(*plans)); !ok) return std::move(ok).error();
-  const Piece piece = piece_of(maps, *folder);
+  const Result<PreparedExport> prepared = prepare_export(asked, context);
+  if (!prepared) return prepared.error();
+  const MapFolder& folder = prepared->folder;
+  MapPlanes maps(folder, folder.size, context.threads);
+  if (Result<void> ok = maps.load(needed(prepared->plans)); !ok) return std::move(ok).error();
+  const Piece piece = piece_of(maps, folder);
   Trials trials(piece);
   std::vector<ExportPrice> prices;
-  for (const PlannedExport& plan : *plans) {
+  for (const PlannedExport& plan : prepared->plans) {
     const double smaller =
-        static_cast<double>(plan.size.pixels()) / static_cast<double>(folder->size.pixels());
+        static_cast<double>(plan.size.pixels()) / static_cast<double>(folder.size.pixels());
     for (const PlannedFile& planned : plan.files) {
       if (context.stop.stop_requested()) return interrupted();
       Result<ExportPrice> price = trials.price(planned.file, plan.preset.roughness);
@@ -229,7 +222,7 @@ Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const
       price->file = planned.name;
       price->bytes *= smaller;
       price->seconds *= smaller;
-      price->is_chosen = options.to_deg && has_normals(planned.file);
+      price->is_chosen = prepared->options.to_deg && has_normals(planned.file);
       prices.push_back(std::move(*price));
     }
   }
