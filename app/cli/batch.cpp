@@ -21,6 +21,7 @@
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/jobs/batch/farm.h"
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/batch/plan_batch.h"
 #include "app/jobs/batch/run_batch.h"
@@ -43,6 +44,7 @@ struct PlanArguments {
 
 struct RunArguments {
   RunBatchOptions options;
+  std::optional<int> array_from;
   std::string memory;
 };
 
@@ -273,6 +275,11 @@ Result<int> run(const RunArguments& a, const CommonArguments& common) {
     if (!bytes) return no_amount("--memory", a.memory, "write 1500M or 2G");
     options.memory_bytes = static_cast<std::uint64_t>(*bytes);
   }
+  if (a.array_from) {
+    const Result<int> task = task_of_array(*a.array_from);
+    if (!task) return task.error();
+    options.task = *task;
+  }
   const auto after = [&](const batch::Outcome& outcome, double hours_left) {
     const bool is_bad = !outcome.is_done();
     if (common.quiet && !is_bad) return;
@@ -298,7 +305,7 @@ Result<int> run(const RunArguments& a, const CommonArguments& common) {
         report->solved, report->there, report->kept, report->failed, report->kept_failures,
         report->lost + report->not_begun, report->seconds));
   }
-  return code_of(*report);
+  return a.array_from ? after_own_task(code_of(*report)) : code_of(*report);
 }
 
 void add_choice_of_sessions(Options& options, PlanArguments& a) {
@@ -373,6 +380,13 @@ Run add_run(Options& options) {
       .in_range(1, 1024)
       .shows_default()
       .excludes(task);
+  options
+      .add("--array-from", &a->array_from,
+           "In an array of Slurm: the task that is so much more than its index. It is queued again where it "
+           "ends "
+           "with 75, up to three times")
+      .not_negative()
+      .excludes(task);
   options.add_flag("--retry-failed", &run_options.retry_failed, "Try sessions again that failed before");
   add_product(options, run_options.keep, run_options.half);
   options.add("--fetch", &run_options.fetch,
@@ -403,7 +417,8 @@ Verb batch_verb() {
   return {.name = "batch",
           .help = "Solve archives: plan, run, and see what changed",
           .verbs = {batch_plan_verb(), batch_run_verb(), batch_merge_verb(), batch_status_verb(),
-                    batch_commands_verb(), batch_accept_verb(), batch_prune_verb()}};
+                    batch_commands_verb(), batch_submit_verb(), batch_cancel_verb(), batch_accept_verb(),
+                    batch_prune_verb()}};
 }
 
 }  // namespace weft::app

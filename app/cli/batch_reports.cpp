@@ -16,6 +16,7 @@
 #include "app/cli/terminal.h"
 #include "app/jobs/batch/accept_batch.h"
 #include "app/jobs/batch/batch_page.h"
+#include "app/jobs/batch/farm.h"
 #include "app/jobs/batch/merge_batch.h"
 #include "core/process.h"
 
@@ -83,53 +84,25 @@ Result<int> status(const std::filesystem::path& plan, const CommonArguments& com
   const Result<BatchState> state = read_batch(plan);
   if (!state) return state.error();
   const batch::Summary& s = state->summary;
+  const Result<std::optional<batch::Queue>> queue = queue_of_batch(state->file);
+  if (!queue) note(queue.error().message());
+  const bool has_queue = queue && *queue;
   if (common.json) {
-    print_json({{"sessions", state->plan.header.sessions},
-                {"tasks", state->plan.header.tasks.size()},
-                {"solved", s.solved},
-                {"there", s.there},
-                {"failed", s.failed},
-                {"missing", s.missing},
-                {"missing_tasks", s.missing_tasks}});
+    Json document = {{"sessions", state->plan.header.sessions},
+                     {"tasks", state->plan.header.tasks.size()},
+                     {"solved", s.solved},
+                     {"there", s.there},
+                     {"failed", s.failed},
+                     {"missing", s.missing},
+                     {"missing_tasks", s.missing_tasks}};
+    if (has_queue) document["slurm"] = json_of(**queue);
+    print_json(document);
   } else {
     print_state(s);
+    if (has_queue) print_queue(**queue, s.missing_tasks);
     if (!s.missing_tasks.empty()) print(fmt::format("tasks to be run: {}", fmt::join(s.missing_tasks, ",")));
   }
   return s.is_whole() ? kDone : kDoneWithWarnings;
-}
-
-// Quoted for a shell where it must be.
-std::string shell_word(const std::string& text) {
-  constexpr const char* kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+=:,@%";
-  if (!text.empty() && text.find_first_not_of(kPlain) == std::string::npos) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
-Result<int> commands(const std::filesystem::path& plan, bool only_missing, const CommonArguments& common) {
-  std::vector<int> tasks;
-  if (only_missing) {
-    const Result<BatchState> state = read_batch(plan);
-    if (!state) return state.error();
-    tasks = state->summary.missing_tasks;
-  } else {
-    const Result<PlanFile> file = open_plan(plan);
-    if (!file) return file.error();
-    for (int task = 0; task < static_cast<int>(file->header.tasks.size()); ++task) tasks.push_back(task);
-  }
-  std::error_code failed;
-  const std::string program = program_beside("weft").string();
-  const std::string file = std::filesystem::absolute(plan, failed).lexically_normal().string();
-  Json lines = Json::array();
-  for (const int task : tasks) {
-    const std::string line =
-        fmt::format("{} batch run {} --task {} -q", shell_word(program), shell_word(file), task);
-    lines.push_back(line);
-    if (!common.json) print(line);
-  }
-  if (common.json) print_json({{"commands", std::move(lines)}});
-  return kDone;
 }
 
 Result<int> accept_solves(const AcceptBatchOptions& options, const CommonArguments& common) {
@@ -198,8 +171,9 @@ Run add_commands(Options& options) {
   const auto only_missing = std::make_shared<bool>(false);
   add_plan_file(options, *plan);
   options.add_flag("--missing", only_missing.get(), "Only tasks with a session that has no result yet");
-  return
-      [plan, only_missing](const CommonArguments& common) { return commands(*plan, *only_missing, common); };
+  return [plan, only_missing](const CommonArguments& common) {
+    return print_batch_commands(*plan, *only_missing, common);
+  };
 }
 
 Run add_batch_accept(Options& options) {
@@ -228,6 +202,32 @@ Run add_prune(Options& options) {
 }
 
 }  // namespace
+
+Result<int> print_batch_commands(const std::filesystem::path& plan, bool only_missing,
+                                 const CommonArguments& common) {
+  std::vector<int> tasks;
+  if (only_missing) {
+    const Result<BatchState> state = read_batch(plan);
+    if (!state) return state.error();
+    tasks = state->summary.missing_tasks;
+  } else {
+    const Result<PlanFile> file = open_plan(plan);
+    if (!file) return file.error();
+    for (int task = 0; task < static_cast<int>(file->header.tasks.size()); ++task) tasks.push_back(task);
+  }
+  std::error_code failed;
+  const std::string program = program_beside("weft").string();
+  const std::string file = std::filesystem::absolute(plan, failed).lexically_normal().string();
+  Json lines = Json::array();
+  for (const int task : tasks) {
+    const std::string line = fmt::format("{} batch run {} --task {} -q", batch::shell_word(program),
+                                         batch::shell_word(file), task);
+    lines.push_back(line);
+    if (!common.json) print(line);
+  }
+  if (common.json) print_json({{"commands", std::move(lines)}});
+  return kDone;
+}
 
 Verb batch_merge_verb() {
   return {"merge",
