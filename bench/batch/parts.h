@@ -39,5 +39,7 @@ Result<Rows> batch_plan(const BatchBenchOptions& options);
 Result<Rows> batch_merge(const BatchBenchOptions& options);
 /// `weft batch run` killed at random moments until all is done: what is published, half made and done twice.
 Result<Rows> batch_kills(const BatchBenchOptions& options);
+/// 200 small tasks here against their simulation, and simulations of a million sessions on 100 nodes.
+Result<Rows> batch_farm(const BatchBenchOptions& options);
 
 }  // namespace weft::bench
