@@ -31,7 +31,7 @@ std::string shell_line(const std::vector<std::string>& command) {
   return line;
 }
 
-Json json_of(const SubmitReport& report) {
+Json submitted_json(const SubmitReport& report) {
   Json arrays = Json::array();
   for (const SubmittedJob& each : report.arrays)
     arrays.push_back({{"job", each.job},
@@ -67,7 +67,7 @@ Result<int> submit_plan(const SubmitArguments& a, const CommonArguments& common)
   const Result<SubmitReport> report = submit_batch(a.options);
   if (!report) return report.error();
   if (common.json) {
-    print_json(json_of(*report));
+    print_json(submitted_json(*report));
   } else {
     print_submitted(*report, a.options.dry_run);
   }
@@ -115,7 +115,7 @@ Run add_cancel(Options& options) {
 
 }  // namespace
 
-Json json_of(const batch::Queue& queue) {
+Json json_of_queue(const batch::Queue& queue) {
   return {{"running", queue.count("RUNNING")},
           {"queued", queue.tasks.size()},
           {"jobs", queue.jobs()},

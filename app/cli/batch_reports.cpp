@@ -95,7 +95,7 @@ Result<int> status(const std::filesystem::path& plan, const CommonArguments& com
                      {"failed", s.failed},
                      {"missing", s.missing},
                      {"missing_tasks", s.missing_tasks}};
-    if (has_queue) document["slurm"] = json_of(**queue);
+    if (has_queue) document["slurm"] = json_of_queue(**queue);
     print_json(document);
   } else {
     print_state(s);
