@@ -3,7 +3,7 @@
 # check.sh BUILD: batches on a real Slurm of three nodes that run on this machine. A plan is submitted, found again,
 # a node goes down, a task is stopped and queued again, the controller is killed and started again, a disk fills. Each
 # session must end with one published solve of the bytes that this machine makes alone, none half made. Says so and
-# ends well where there is no Slurm.
+# ends well where there is no Slurm. WEFT_KEEP=1 leaves its folder in the system's temporary one.
 set -uo pipefail
 build=$(cd "$1" && pwd)
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -19,7 +19,7 @@ work=$(mktemp -d)
 weft=$build/bin/weft
 failures=0
 sessions=16
-trap 'cluster_stop; rm -rf "$work"' EXIT
+trap 'cluster_stop; [[ -n ${WEFT_KEEP:-} ]] || rm -rf "$work"' EXIT
 
 step() {
   printf '%4d s  %s\n' "$SECONDS" "$*" >&2
@@ -102,8 +102,11 @@ has_met_full_disk() {
   grep -qs 'No space left' "$work"/night.results/log/*.txt
 }
 
-tries_again() {
-  "$weft" batch status "$work/night.jsonl" --json -q 2>/dev/null | tr -d ' \n' | grep -q '"missing":[1-9]'
+# Something is missing, and nothing has failed.
+is_to_be_tried_again() {
+  local said
+  said=$("$weft" batch status "$work/night.jsonl" --json -q 2>/dev/null | tr -d ' \n')
+  [[ $said =~ \"missing\":[1-9] && $said =~ \"failed\":0 ]]
 }
 
 # Of the report of a plan.
@@ -152,13 +155,25 @@ stop_a_task() {
   step "job $job was stopped and queued itself again"
 }
 
+results() {
+  cat "$work"/night.results/task-*.jsonl 2>/dev/null | wc -l
+}
+
+has_results_beyond() {
+  (($(results) > $1))
+}
+
+# As a task ends, so that the controller forgets that it did.
 lose_the_controller() {
-  # What it was told in the last seconds is on disk by now.
-  sleep 5
+  local before
+  before=$(results)
+  cluster_wait 'a task that ends' has_results_beyond "$before" || give_up 'no task ends'
+  sleep 0.3
   controller_dies
   step 'the controller died'
   sleep 1
   controller_start
+  controller_back=$SECONDS
   cluster_wait 'a controller' squeue -h >/dev/null || give_up 'the controller does not come back'
   run "$weft" batch submit "$work/night.jsonl"
   holds 'the queue is as it was' grep -q 'are queued already' "$work/log/last.txt"
@@ -182,8 +197,10 @@ night() {
   stop_a_task
   lose_the_controller
   fill_the_disk
+  sleep $((controller_back + 13 > SECONDS ? controller_back + 13 - SECONDS : 0))
+  nodes_begin_anew
   CLUSTER_PATIENCE=180 cluster_wait 'the end of the batch' is_through night || give_up 'the batch does not end'
-  holds 'what met a full disk is missing and not failed' tries_again
+  holds 'what met a full disk is missing and not failed' is_to_be_tried_again
   run "$weft" batch submit "$work/night.jsonl"
   CLUSTER_PATIENCE=120 cluster_wait 'the end of the batch' is_through night || give_up 'the batch does not end'
   step 'the batch is through'

@@ -26,8 +26,8 @@ cluster_taken() {
   (exec 3<>"/dev/tcp/127.0.0.1/$1") 2>/dev/null
 }
 
-# MaxArraySize 5: indices 0 to 4, so that a plan of more tasks is split. cred_expire is what a task that was queued
-# again waits for: two minutes unless it is said.
+# MaxArraySize 5: indices 0 to 4, so that a plan of more tasks is split. cred_expire is how long a task waits that was
+# queued again: two minutes unless it is said.
 cluster_configuration() {
   local host user node
   host=$(uname -n) user=$(id -un)
@@ -39,7 +39,7 @@ SlurmctldPort=$1
 SlurmUser=$user
 SlurmdUser=$user
 AuthType=auth/none
-AuthInfo=cred_expire=4
+AuthInfo=cred_expire=5
 CredType=cred/none
 StateSaveLocation=$cluster/state
 SlurmdSpoolDir=$cluster/spool/%n
@@ -64,6 +64,8 @@ ReturnToService=2
 SlurmctldTimeout=30
 SlurmdTimeout=30
 KillWait=5
+BatchStartTimeout=1
+MessageTimeout=10
 MaxArraySize=${CLUSTER_ARRAY_SIZE:-5}
 MailProg=/bin/true
 END
@@ -87,6 +89,16 @@ controller_dies() {
 controller_start() {
   slurmctld -D >>"$cluster/log/controller.out" 2>&1 &
   controller_pid=$!
+}
+
+# A controller that was killed believes for minutes that tasks run which ended in its last seconds. A slurmd that begins
+# anew tells what it runs, and then they are queued again; what runs goes on. Not before BatchStartTimeout and
+# MessageTimeout have passed since the controller came back.
+nodes_begin_anew() {
+  local node
+  kill "${node_pids[@]}"
+  wait "${node_pids[@]}" 2>/dev/null
+  for node in 0 1 2; do node_start "$node"; done
 }
 
 nodes_start() {
