@@ -57,7 +57,7 @@ set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # What is started by name and linked by nobody.
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "systemd, udev, xdg-utils")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "avrdude, gphoto2")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "avrdude, gphoto2, rclone, slurm-client")
 set(CPACK_DEBIAN_PACKAGE_DESCRIPTION "photometric-stereo textile scanner
 weft turns photographs of a piece of cloth, each lit by one LED, into albedo,
 normal, height and roughness maps with their true size, and into materials

@@ -52,6 +52,12 @@ bool write_all(int fd, std::string_view bytes) {
   return true;
 }
 
+// Of this machine: two of them that share a disk may have processes of one number.
+std::string host_name() {
+  std::array<char, 256> name = {};
+  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
 fs::path parent_of(const fs::path& path) {
   return path.has_parent_path() ? path.parent_path() : fs::path(".");
 }
@@ -181,7 +187,8 @@ Result<void> publish_folder(const fs::path& folder, const fs::path& target) {
 
 PartialFolder::PartialFolder(const fs::path& target)
     : target_(absolute_folder(target)),
-      path_(parent_of(target_) / fmt::format(".{}.{}.partial", target_.filename().string(), ::getpid())) {
+      path_(parent_of(target_) /
+            fmt::format(".{}.{}.{}.partial", target_.filename().string(), host_name(), ::getpid())) {
   for (fs::path p = path_.parent_path(); !p.empty() && !is_there(p); p = p.parent_path()) made_.push_back(p);
 }
 

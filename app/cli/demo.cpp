@@ -148,7 +148,7 @@ void print_table(const simulator::Scene& scene, const Outcome& o) {
   print(fmt::format("  look at         {}", (o.solved.folder / "sheet.png").string()));
 }
 
-Json json_of(const Outcome& o) {
+Json outcome_json(const Outcome& o) {
   const SolveSeconds& s = o.solved.seconds;
   return {
       {"scanned", o.is_scanned},
@@ -187,7 +187,7 @@ Result<int> demo(DemoArguments arguments, const CommonArguments& common) {
   const Result<Outcome> outcome = scan_and_solve(arguments, *scene, session, common);
   if (!outcome) return outcome.error();
   if (common.json) {
-    print_json(json_of(*outcome));
+    print_json(outcome_json(*outcome));
   } else {
     print_table(*scene, *outcome);
   }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/cli/exit_code.h"
+#include "app/cli/library_place.h"
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
@@ -25,21 +26,15 @@ constexpr std::size_t kMostShown = 60;  // bytes of a text in a list
 using library::Catalogue;
 using library::Entry;
 
-// Where the verbs look.
-struct Place {
-  std::vector<std::string> folders;
-  fs::path catalogue;
-};
-
 struct FindArguments {
-  Place place;
+  LibraryPlace place;
   std::vector<std::string> words;
   library::Query query;
   std::optional<int> after;
 };
 
 struct TagArguments {
-  Place place;
+  LibraryPlace place;
   std::string session;
   std::vector<std::string> add, remove, set;
 };
@@ -49,52 +44,6 @@ struct PruneArguments {
   int keep = 1;
   bool yes = false;
 };
-
-fs::path folder_of_user(const char* variable, const char* below_home) {
-  const char* named = std::getenv(variable);
-  if (named != nullptr && *named == '/') return fs::path(named) / "weft";
-  const char* home = std::getenv("HOME");
-  return fs::path(home != nullptr && *home == '/' ? home : "/tmp") / below_home / "weft";
-}
-
-std::vector<fs::path> folders_of(const Place& place) {
-  std::vector<fs::path> folders;
-  for (const std::string& folder : place.folders) folders.push_back(absolute_folder(folder));
-  if (!folders.empty()) return folders;
-  const char* named = std::getenv("WEFT_LIBRARY");
-  std::string_view rest = named != nullptr ? named : "";
-  while (!rest.empty()) {
-    const std::string_view folder = rest.substr(0, rest.find(':'));
-    if (!folder.empty()) folders.push_back(absolute_folder(folder));
-    rest.remove_prefix(std::min(folder.size() + 1, rest.size()));
-  }
-  if (folders.empty()) folders.push_back(absolute_folder("."));
-  return folders;
-}
-
-// Of each choice of folders one of its own, in the user's cache.
-fs::path catalogue_of(const Place& place) {
-  if (!place.catalogue.empty()) return place.catalogue;
-  std::string all;
-  for (const fs::path& folder : folders_of(place)) all += folder.string() + "\n";
-  return folder_of_user("XDG_CACHE_HOME", ".cache") /
-         fmt::format("library-{}.sqlite", sha256_of(all).substr(0, 16));
-}
-
-Result<Catalogue> fresh_catalogue(const Place& place, const CommonArguments& common) {
-  Result<Catalogue> catalogue = Catalogue::open(catalogue_of(place));
-  if (!catalogue) return catalogue;
-  const std::vector<fs::path> folders = folders_of(place);
-  if (Result<void> ok = catalogue->keep_only(folders); !ok) return std::move(ok).error();
-  const Result<library::RefreshFacts> facts = [&] {
-    ProgressLine line(common.quiet);
-    return catalogue->refresh(folders, {common.threads, stop_on_signal(), line.callback()});
-  }();
-  if (!facts) return facts.error();
-  for (const fs::path& lost : facts->unreachable)
-    note(fmt::format("{} cannot be listed: its sessions are shown as they were", lost.string()));
-  return catalogue;
-}
 
 // A text on one line of a terminal, cut after so many bytes where it is longer.
 std::string in_line(std::string text, std::size_t most = std::string::npos) {
@@ -134,7 +83,7 @@ Result<int> find(const FindArguments& a, const CommonArguments& common) {
   return kDone;
 }
 
-Result<int> show(const Place& place, const std::string& session, const CommonArguments& common) {
+Result<int> show(const LibraryPlace& place, const std::string& session, const CommonArguments& common) {
   Result<Catalogue> catalogue = fresh_catalogue(place, common);
   if (!catalogue) return std::move(catalogue).error();
   const Result<Entry> entry = catalogue->find_one(session);
@@ -224,7 +173,7 @@ Result<int> take_back(bool again, const CommonArguments& common) {
   return print_change(*change, common);
 }
 
-Result<int> rebuild(const Place& place, const CommonArguments& common) {
+Result<int> rebuild(const LibraryPlace& place, const CommonArguments& common) {
   const fs::path file = catalogue_of(place);
   std::error_code error;
   for (const char* part : {"", "-wal", "-shm"}) {
@@ -281,17 +230,6 @@ Result<int> prune(const PruneArguments& a, const CommonArguments& common) {
   return kDone;
 }
 
-void add_place(Options& options, Place& place) {
-  options
-      .add("--in", &place.folders,
-           "Folder of sessions, with those below it; may be given again. Default: WEFT_LIBRARY (folders "
-           "parted "
-           "by colons), else the current folder")
-      .one_at_a_time();
-  options.add("--catalogue", &place.catalogue,
-              "SQLite file; default one for these folders in the user's cache");
-}
-
 void add_query(Options& options, FindArguments& a) {
   add_place(options, a.place);
   options.add(
@@ -346,7 +284,7 @@ Run add_redo(Options&) {
 }
 
 Run add_rebuild(Options& options) {
-  const auto a = std::make_shared<Place>();
+  const auto a = std::make_shared<LibraryPlace>();
   add_place(options, *a);
   return [a](const CommonArguments& common) { return rebuild(*a, common); };
 }

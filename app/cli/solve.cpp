@@ -186,8 +186,8 @@ Level add_level(Options& options, const Option& session, SolveArguments& a) {
   options
       .add(
           "--crops", &a.crops,
-          "With --explain: folder for what each level made of the same 512 x 256 pixels, LEVEL_relit.png and "
-          "LEVEL_normal.png")
+          "With --explain: folder for what each level made of the same 512 x 256 pixels, LEVEL_relit.png, "
+          "LEVEL_normal.png and LEVEL_normal.exr")
       .needs(explain);
   const Option within = options
                             .add("--within", &a.wish.within_seconds,

@@ -29,6 +29,7 @@ Verb doctor_verb();
 Verb copy_verb();
 Verb library_verb();
 Verb import_verb();
+Verb batch_verb();
 Verb demo_verb();
 Verb torture_verb();
 

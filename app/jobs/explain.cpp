@@ -39,10 +39,10 @@ struct Scratch {
   }
 };
 
-Result<void> keep_pictures(const fs::path& solve, const std::string& level, const fs::path& crops) {
+Result<void> keep_cut(const fs::path& solve, const std::string& level, const fs::path& crops) {
   if (crops.empty()) return {};
   if (Result<void> made = make_writable_folder(crops); !made) return made;
-  for (const char* name : {"relit.png", "normal.png"}) {
+  for (const char* name : {"relit.png", "normal.png", "normal.exr"}) {
     const fs::path kept = crops / fmt::format("{}_{}", level, name);
     std::error_code failed;
     fs::copy_file(solve / name, kept, fs::copy_options::overwrite_existing, failed);
@@ -65,7 +65,7 @@ Result<SolveReport> solve_cut(const Photographs& photographs, const std::string&
     one.output = scratch.path;
     Result<SolveReport> solved = solve_loaded(std::move(*part), one, context);
     if (!solved) return std::move(solved).error();
-    if (Result<void> kept = keep_pictures(solved->folder, level, crops); !kept) return kept.error();
+    if (Result<void> kept = keep_cut(solved->folder, level, crops); !kept) return kept.error();
     if (!quickest || solved->seconds.total < quickest->seconds.total) quickest = std::move(*solved);
     if (quickest->seconds.total > kLong_s) break;
   }

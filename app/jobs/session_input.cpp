@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <functional>
 
+#include "app/jobs/foreseen.h"
 #include "app/jobs/linear_image.h"
 #include "app/jobs/session_conditions.h"
 #include "app/jobs/session_frames.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "core/suits.h"
 #include "library/left_out.h"
 #include "pipeline/plane_weights.h"
 #include "pipeline/reference.h"
@@ -250,6 +252,27 @@ Json description_of(const SessionPlan& plan) {
   return description;
 }
 
+// The session, as far as it says itself what is solved.
+Result<SessionPlan> begin_plan(const SessionOptions& options) {
+  SessionPlan plan;
+  Result<Session> session = read_complete_session(options.folder);
+  if (!session) return std::move(session).error();
+  plan.session = std::move(*session);
+  leave_out_by_person(plan);
+  if (!options.accepted_moved.is_null()) plan.session.document["accepted_moved"] = options.accepted_moved;
+  tell_of_moved_rig(plan);
+  return plan;
+}
+
+// Lit shots and the dark one.
+Result<void> choose_first(const SessionOptions& options, SessionPlan& plan) {
+  Result<std::vector<Shot>> lit = choose_lit(plan.session, options.leds);
+  if (!lit) return std::move(lit).error();
+  plan.lit = std::move(*lit);
+  if (const Shot* dark = plan.session.dark()) plan.dark = *dark;
+  return {};
+}
+
 }  // namespace
 
 std::vector<Shot> SessionPlan::frames() const {
@@ -274,13 +297,9 @@ std::uint64_t memory_needed(const SessionPlan& plan, int threads) {
 }
 
 Result<SessionPlan> plan_session(const SessionOptions& options) {
-  SessionPlan plan;
-  Result<Session> session = read_complete_session(options.folder);
-  if (!session) return std::move(session).error();
-  plan.session = std::move(*session);
-  leave_out_by_person(plan);
-  if (!options.accepted_moved.is_null()) plan.session.document["accepted_moved"] = options.accepted_moved;
-  tell_of_moved_rig(plan);
+  Result<SessionPlan> begun = begin_plan(options);
+  if (!begun) return begun;
+  SessionPlan plan = std::move(*begun);
   const bool own = options.calibration.empty();
   Result<Calibration> calibration =
       read_calibration(own ? plan.session.calibration_folder() : options.calibration);
@@ -294,11 +313,7 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
                  "restore the session's calibration folder, or name another with --calibration"};
   }
 
-  Result<std::vector<Shot>> lit = choose_lit(plan.session, options.leds);
-  if (!lit) return std::move(lit).error();
-  plan.lit = std::move(*lit);
-  if (const Shot* dark = plan.session.dark()) plan.dark = *dark;
-
+  if (Result<void> chosen = choose_first(options, plan); !chosen) return std::move(chosen).error();
   FrameHeaders headers(
       plan.session, plan.calibration,
       "name the calibration of this rig with --calibration, or calibrate the rig as it is now");
@@ -310,6 +325,21 @@ Result<SessionPlan> plan_session(const SessionOptions& options) {
   for (const Shot& shot : plan.frames()) {
     if (Result<void> ok = headers.look_at(shot); !ok) return std::move(ok).error();
   }
+  plan.description = description_of(plan);
+  return plan;
+}
+
+Result<SessionPlan> plan_unopened(const SessionOptions& options, const Calibration& calibration) {
+  Result<SessionPlan> begun = begin_plan(options);
+  if (!begun) return begun;
+  SessionPlan plan = std::move(*begun);
+  plan.calibration = calibration;
+  if (Result<void> chosen = choose_first(options, plan); !chosen) return std::move(chosen).error();
+  if (Result<void> ok = suits(calibration, plan.session, {}); !ok) return std::move(ok).error();
+  plan.raw = !is_linear_image(plan.session.path_of(plan.lit.front()));
+  plan.size = calibration.camera->size;
+  choose_parallel(plan);
+  choose_more(plan);
   plan.description = description_of(plan);
   return plan;
 }

@@ -12,6 +12,7 @@
 
 #include "app/jobs/condition_map.h"
 #include "app/jobs/facts_json.h"
+#include "app/jobs/foreseen.h"
 #include "app/jobs/gloss_maps.h"
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/map_files.h"
@@ -415,6 +416,10 @@ Result<LoadedSession> load_poses(const SessionPlan& plan, const std::optional<Se
 }
 
 }  // namespace
+
+std::string id_of_solve(const SessionPlan& plan, const SolveOptions& options) {
+  return product_id(inputs_of(plan.description, options));
+}
 
 Result<SolveReport> solve_session(const SessionOptions& input, const SolveOptions& options,
                                   const JobContext& context) {

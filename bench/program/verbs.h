@@ -20,6 +20,7 @@ app::Verb photos_verb();
 app::Verb height_verb();
 app::Verb maps_verb();
 app::Verb export_verb();
+app::Verb batch_verb();
 app::Verb registration_verb();
 app::Verb transport_verb();
 app::Verb calibration_verb();

@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plans of many solves, and running them; batch_reports.cpp has what comes afterwards.
+#include "app/cli/batch.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <iostream>
+#include <iterator>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "app/cli/exit_code.h"
+#include "app/cli/library_place.h"
+#include "app/cli/options.h"
+#include "app/cli/terminal.h"
+#include "app/cli/verbs.h"
+#include "app/jobs/batch/farm.h"
+#include "app/jobs/batch/lean.h"
+#include "app/jobs/batch/plan_batch.h"
+#include "app/jobs/batch/run_batch.h"
+#include "app/jobs/batch/survey.h"
+#include "batch/session_list.h"
+#include "core/compression.h"
+
+namespace weft::app {
+namespace {
+
+struct PlanArguments {
+  PlanBatchOptions options;
+  std::string find, within;
+  LibraryPlace place;
+  library::Query query;
+  std::vector<std::string> calibrations;
+  int sample = 50;
+  double task_minutes = 10;
+};
+
+struct RunArguments {
+  RunBatchOptions options;
+  std::optional<int> array_from;
+  std::string memory;
+};
+
+// A number with the unit behind it, in the last unit of the list; none where it is something else.
+std::optional<double> with_unit(const std::string& text, const std::vector<std::pair<char, double>>& units) {
+  char* end = nullptr;
+  const double number = std::strtod(text.c_str(), &end);
+  if (end == text.c_str() || !(number > 0)) return {};
+  const std::string unit = end;
+  if (unit.size() != 1) return {};
+  const auto found = std::ranges::find(units, unit.front(), &std::pair<char, double>::first);
+  return found == units.end() ? std::nullopt : std::optional(number * found->second);
+}
+
+Error no_amount(const char* option, const std::string& text, const char* remedy) {
+  return {ErrorKind::kUsage, "an amount cannot be read", option,
+          "\"" + text + "\" has no unit or is no number", remedy};
+}
+
+std::string on_standard_input() {
+  return {std::istreambuf_iterator<char>(std::cin), std::istreambuf_iterator<char>()};
+}
+
+// Sessions of the library by what people say of them.
+Result<void> add_found(const PlanArguments& a, const CommonArguments& common,
+                       std::vector<std::string>& sessions) {
+  Result<library::Catalogue> catalogue = fresh_catalogue(a.place, common);
+  if (!catalogue) return std::move(catalogue).error();
+  library::Query query = a.query;
+  query.words = a.find;
+  query.limit = 1000;
+  do {
+    const Result<library::Page> page = catalogue->find(query);
+    if (!page) return page.error();
+    for (const library::Entry& entry : page->entries) sessions.push_back(entry.folder.string());
+    query.after = page->after;
+  } while (query.after);
+  std::ranges::sort(sessions);
+  return {};
+}
+
+Result<void> add_sessions(const PlanArguments& a, const CommonArguments& common, PlanBatchOptions& options) {
+  options.sessions.clear();
+  for (const std::string& each : a.options.sessions) {
+    if (each != "-") {
+      options.sessions.push_back(each);
+      continue;
+    }
+    for (std::string& read : batch::sessions_of_text(on_standard_input()))
+      options.sessions.push_back(std::move(read));
+    if (options.sessions.empty())
+      return Error{ErrorKind::kNoInput, "there is nothing to plan", "standard input", "it names no session",
+                   "write the folder of a session on each line"};
+  }
+  const bool searches = !a.find.empty() || !a.query.tag.empty() || !a.query.rig.empty() ||
+                        !a.query.calibration.empty() || !a.query.from.empty() || !a.query.before.empty();
+  if (!searches) return {};
+  return add_found(a, common, options.sessions);
+}
+
+std::string hours_words(double hours) {
+  if (hours < 1.0 / 60) return fmt::format("{:.2g} seconds", 3600 * hours);
+  return hours < 1 ? fmt::format("{:.2g} minutes", 60 * hours) : fmt::format("{:.3g} hours", hours);
+}
+
+void print_left_out(const batch::Plan& plan) {
+  const std::array words = {"have their solve already", "cannot be solved", "would turn by less than asked",
+                            "reach no such error at any level"};
+  for (std::size_t r = 0; r < batch::kReasonNames.size(); ++r) {
+    int count = 0;
+    double seconds = 0;
+    for (const batch::LeftOut& left : plan.left_out) {
+      if (static_cast<std::size_t>(left.reason) != r) continue;
+      ++count;
+      seconds += left.seconds;
+    }
+    if (count == 0) continue;
+    const bool saves = seconds > 0 && r != static_cast<std::size_t>(batch::Reason::kUnsolvable);
+    print(fmt::format("{} left out: they {}{}", count, words[r],
+                      saves ? ", " + hours_words(seconds / 3600) + " saved" : ""));
+  }
+  for (const batch::LeftOut& left : plan.left_out) {
+    if (left.reason == batch::Reason::kUnsolvable) note(left.said);
+  }
+}
+
+struct PlanSums {
+  double hours = 0, degrees = 0, read_gb = 0, write_gb = 0;
+  std::uint64_t memory_bytes = 0;
+};
+
+PlanSums sums_of(const batch::Plan& plan) {
+  PlanSums sums;
+  for (const batch::Job& job : plan.jobs) {
+    sums.hours += job.forecast.seconds / 3600;
+    sums.degrees += job.forecast.degrees / static_cast<double>(plan.jobs.size());
+    sums.read_gb += static_cast<double>(job.read_bytes) * 1e-9;
+    sums.write_gb += static_cast<double>(job.write_bytes) * 1e-9;
+    sums.memory_bytes = std::max(sums.memory_bytes, job.memory_bytes);
+  }
+  return sums;
+}
+
+void print_plan(const PlanBatchReport& report) {
+  const batch::Plan& plan = report.plan;
+  const batch::Header& header = plan.header;
+  print("level       node-hours of all   degrees  spread  planned");
+  for (const batch::LevelTotal& level : header.levels)
+    print(fmt::format("{:<10} {:>18.3g} {:>9.3g} {:>7.2g} {:>8}", level.quality, level.hours, level.mean_deg,
+                      level.spread_deg, level.sessions));
+  if (!header.curve.empty()) print("hours spent where they buy most, and the mean error in degrees:");
+  for (const batch::Spent& spent : header.curve)
+    print(fmt::format("  {:>9.3g} {:>9.3g}", spent.hours, spent.mean_deg));
+  const PlanSums sums = sums_of(plan);
+  print(fmt::format(
+      "sessions {}, tasks {}: {}, {:.3g} degrees, {:.3g} GB read, {:.3g} GB written, {} MB of memory",
+      header.sessions, header.tasks.size(), hours_words(sums.hours), sums.degrees, sums.read_gb,
+      sums.write_gb, sums.memory_bytes >> 20));
+  print(
+      fmt::format("  measured on {} of them in {:.3g} s, with {} threads; the rest of planning took {:.3g} s",
+                  header.sampled, header.sample_seconds, header.threads, report.seconds));
+  if (!header.product.then.empty())
+    print(fmt::format("  {} of each come on top of these hours", fmt::join(header.product.then, ", ")));
+  print_left_out(plan);
+  print(report.file.string());
+}
+
+Json plan_json(const PlanBatchReport& report) {
+  const batch::Header& header = report.plan.header;
+  const PlanSums sums = sums_of(report.plan);
+  Json levels = Json::array(), curve = Json::array(), left_out = Json::array();
+  for (const batch::LevelTotal& level : header.levels)
+    levels.push_back({{"quality", level.quality},
+                      {"hours", level.hours},
+                      {"mean_deg", level.mean_deg},
+                      {"spread_deg", level.spread_deg},
+                      {"sessions", level.sessions}});
+  for (const batch::Spent& spent : header.curve)
+    curve.push_back({{"hours", spent.hours}, {"mean_deg", spent.mean_deg}});
+  for (const batch::LeftOut& left : report.plan.left_out)
+    left_out.push_back({{"session", left.session},
+                        {"left_out", batch::kReasonNames[static_cast<std::size_t>(left.reason)]},
+                        {"said", left.said},
+                        {"seconds", left.seconds}});
+  return {{"plan", report.file.string()},
+          {"id", header.id},
+          {"sessions", header.sessions},
+          {"tasks", header.tasks.size()},
+          {"hours", sums.hours},
+          {"mean_deg", sums.degrees},
+          {"memory_bytes", sums.memory_bytes},
+          {"sampled", header.sampled},
+          {"sample_seconds", header.sample_seconds},
+          {"seconds", report.seconds},
+          {"levels", std::move(levels)},
+          {"curve", std::move(curve)},
+          {"left_out", std::move(left_out)}};
+}
+
+Result<int> plan(const PlanArguments& a, const CommonArguments& common) {
+  PlanBatchOptions options = a.options;
+  if (!a.within.empty()) {
+    const std::optional<double> seconds =
+        with_unit(a.within, {{'s', 1}, {'m', 60}, {'h', 3600}, {'d', 86400}});
+    if (!seconds) return no_amount("--within", a.within, "write 8h, 30m, 90s or 2d");
+    options.within_seconds = *seconds;
+  }
+  for (const std::string& each : options.product.then) {
+    if (each != "maps" && !(each.starts_with("export:") && each.size() > 7))
+      return Error{ErrorKind::kUsage, "nothing can be made of a solve so", "--then " + each, "",
+                   "name maps, or export:PRESET"};
+  }
+  options.sample = static_cast<std::size_t>(a.sample);
+  options.task_seconds = 60 * a.task_minutes;
+  options.calibrations.assign(a.calibrations.begin(), a.calibrations.end());
+  if (Result<void> ok = add_sessions(a, common, options); !ok) return std::move(ok).error();
+  const Result<PlanBatchReport> report = [&] {
+    ProgressLine line(common.quiet);
+    return plan_batch(options, {common.threads, stop_on_signal(), line.callback()});
+  }();
+  if (!report) return report.error();
+  if (common.json) {
+    print_json(plan_json(*report));
+  } else {
+    print_plan(*report);
+  }
+  return kDone;
+}
+
+std::string words_of(const batch::Outcome& outcome) {
+  const std::string name = std::filesystem::path(outcome.session).stem().string();
+  switch (outcome.state) {
+    case batch::State::kSolved:
+    case batch::State::kThere:
+      return fmt::format(
+          "{}: {}{}{}", name,
+          outcome.state == batch::State::kThere ? "is there already"
+                                                : fmt::format("solved in {:.2f} s", outcome.seconds),
+          outcome.change ? fmt::format(", turned by {:.3g} degrees", outcome.change->mean_deg) : "",
+          outcome.change && batch::regression_weight(*outcome.change) > 0
+              ? fmt::format(", worse: {}", fmt::join(batch::regressions(*outcome.change), "; "))
+              : "");
+    case batch::State::kFailed:
+      return fmt::format("{}: failed: {}", name, outcome.error->message());
+    case batch::State::kLost:
+      break;
+  }
+  return fmt::format("{}: no result: {}", name, outcome.error->message());
+}
+
+// One code for several errors of one kind, else `otherwise`.
+int code_of_all(const std::vector<ErrorKind>& kinds, int otherwise) {
+  const bool is_one = std::ranges::all_of(kinds, [&](ErrorKind kind) { return kind == kinds.front(); });
+  return is_one && !kinds.empty() ? exit_code_of(kinds.front()) : otherwise;
+}
+
+int code_of(const RunBatchReport& report) {
+  if (report.was_stopped) return kTryAgainError;
+  if (!report.losses.empty()) return code_of_all(report.losses, kTryAgainError);
+  if (!report.failures.empty()) return code_of_all(report.failures, kBadDataError);
+  return kDone;
+}
+
+Result<int> run(const RunArguments& a, const CommonArguments& common) {
+  RunBatchOptions options = a.options;
+  if (!a.memory.empty()) {
+    const std::optional<double> bytes = with_unit(a.memory, {{'M', 1 << 20}, {'G', 1 << 30}});
+    if (!bytes) return no_amount("--memory", a.memory, "write 1500M or 2G");
+    options.memory_bytes = static_cast<std::uint64_t>(*bytes);
+  }
+  if (a.array_from) {
+    const Result<int> task = task_of_array(*a.array_from);
+    if (!task) return task.error();
+    options.task = *task;
+  }
+  const auto after = [&](const batch::Outcome& outcome, double hours_left) {
+    const bool is_bad = !outcome.is_done();
+    if (common.quiet && !is_bad) return;
+    note(fmt::format("{}; {} left", words_of(outcome), hours_words(hours_left)));
+  };
+  const JobContext context = {common.threads, stop_on_signal()};
+  const Result<RunBatchReport> report = run_batch(options, context, after);
+  if (!report) return report.error();
+  if (common.json) {
+    print_json({{"kept", report->kept},
+                {"kept_failures", report->kept_failures},
+                {"solved", report->solved},
+                {"there", report->there},
+                {"failed", report->failed},
+                {"lost", report->lost},
+                {"not_begun", report->not_begun},
+                {"stopped", report->was_stopped},
+                {"seconds", report->seconds}});
+  } else {
+    print(fmt::format(
+        "{} solved, {} there already, {} done before, {} failed, {} failed before, {} to be run again; "
+        "{:.1f} s",
+        report->solved, report->there, report->kept, report->failed, report->kept_failures,
+        report->lost + report->not_begun, report->seconds));
+  }
+  return a.array_from ? after_own_task(code_of(*report)) : code_of(*report);
+}
+
+void add_choice_of_sessions(Options& options, PlanArguments& a) {
+  options.add("sessions", &a.options.sessions,
+              "Folders of sessions, or with sessions below them; - reads them from standard input, as weft "
+              "calibrate history --affected and weft library find print them");
+  options.add("--find", &a.find, "Also sessions of the library: words, each as the beginning of a word");
+  options.add("--tag", &a.query.tag, "Tag that those of the library have");
+  options.add("--rig", &a.query.rig, "Name of their rig");
+  options.add("--calibrated-by", &a.query.calibration, "Id of their calibration");
+  options.add("--from", &a.query.from, "Taken at or after this ISO time, or its beginning: 2026-11");
+  options.add("--before", &a.query.before, "Taken before it");
+  add_place(options, a.place);
+}
+
+void add_product(Options& options, std::vector<std::string>& keep, bool& half) {
+  options
+      .add("--keep", &keep,
+           "Maps of a solve that stay, by commas; default all: normal, albedo, sigma, residual, status")
+      .by_commas()
+      .one_of({kMapNames.begin(), kMapNames.end()});
+  options.add_flag("--half", &half, "Normals as half floats, true to 0.03 degrees");
+}
+
+Run add_plan(Options& options) {
+  const auto a = std::make_shared<PlanArguments>();
+  PlanBatchOptions& plan_options = a->options;
+  plan_options.plan = "batch.jsonl";
+  add_choice_of_sessions(options, *a);
+  const Option quality = options.add("--quality", &plan_options.quality, "Level of all of them")
+                             .one_of(level_names())
+                             .shows_default();
+  const Option to = options
+                        .add("--to", &plan_options.to_deg,
+                             "Of each the cheapest level expected to be so many degrees off at most")
+                        .above_zero()
+                        .excludes(quality);
+  options
+      .add("--within", &a->within,
+           "Node-hours for all of them, spent where a second buys most degrees: 8h, 30m, 90s, 2d")
+      .excludes(quality)
+      .excludes(to);
+  options
+      .add("--least-change", &plan_options.least_change_deg,
+           "Leave out sessions whose maps would turn by less than so many degrees, as measured on the sample")
+      .above_zero();
+  options
+      .add("--calibration", &a->calibrations,
+           "Calibration folder in place of the own ones of the sessions of its rig; may be given again")
+      .one_at_a_time();
+  options.add("--then", &plan_options.product.then, "Made of each solve, by commas: maps, export:PRESET")
+      .by_commas();
+  add_product(options, plan_options.product.keep, plan_options.product.half);
+  options.add("--compress", &plan_options.product.compression, "Of EXR files: none, zip, piz")
+      .one_of({kCompressionNames.begin(), kCompressionNames.end()});
+  options.add("--sample", &a->sample, "Sessions whose levels are measured")
+      .in_range(0, 100000)
+      .shows_default();
+  options.add("--task-minutes", &a->task_minutes, "Of a task").in_range(0.001, 10000.0).shows_default();
+  options.add("--output", &plan_options.output, "Folder for solves, where the archive cannot be written");
+  options.add("-o,--plan", &plan_options.plan, "File of the plan").shows_default();
+  return [a](const CommonArguments& common) { return plan(*a, common); };
+}
+
+Run add_run(Options& options) {
+  const auto a = std::make_shared<RunArguments>();
+  RunBatchOptions& run_options = a->options;
+  options.add("plan", &run_options.plan, "Plan of weft batch plan").required();
+  const Option task =
+      options.add("--task", &run_options.task, "One task of it, from 0; default all").not_negative();
+  options.add("--jobs", &run_options.jobs, "Sessions at a time, which share the threads")
+      .in_range(1, 1024)
+      .shows_default()
+      .excludes(task);
+  options
+      .add("--array-from", &a->array_from,
+           "In an array of Slurm: the task that is so much more than its index. It is queued again where it "
+           "ends "
+           "with 75, up to three times")
+      .not_negative()
+      .excludes(task);
+  options.add_flag("--retry-failed", &run_options.retry_failed, "Try sessions again that failed before");
+  add_product(options, run_options.keep, run_options.half);
+  options.add("--fetch", &run_options.fetch,
+              "Command that brings a session here before it is solved: 'rclone copy {src} {dst}'");
+  options.add(
+      "--store", &run_options.store,
+      "Command that takes a solve away: all but solve.json, then solve.json alone as {dst}/solve.json");
+  options.add("--scratch", &run_options.scratch,
+              "Folder for fetched sessions; default the system's temporary one");
+  options.add("--memory", &a->memory, "That a session may hold, else it is lost alone: 1500M, 2G");
+  return [a](const CommonArguments& common) { return run(*a, common); };
+}
+
+}  // namespace
+
+Verb batch_plan_verb() {
+  return {"plan", "Price many sessions by a sample of them, and write down what is to be solved", add_plan};
+}
+
+Verb batch_run_verb() {
+  return {
+      "run",
+      "Solve a plan, or one task of it, as far as it is not done. Exit code 75 where it is to be run again",
+      add_run};
+}
+
+Verb batch_verb() {
+  return {.name = "batch",
+          .help = "Solve archives: plan, run, and see what changed",
+          .verbs = {batch_plan_verb(), batch_run_verb(), batch_merge_verb(), batch_status_verb(),
+                    batch_commands_verb(), batch_submit_verb(), batch_cancel_verb(), batch_accept_verb(),
+                    batch_prune_verb()}};
+}
+
+}  // namespace weft::app

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/batch/merge_batch.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "app/jobs/batch/abandoned.h"
+#include "app/jobs/batch/batch_page.h"
+#include "app/jobs/batch/change_pictures.h"
+#include "core/files.h"
+#include "core/parallel.h"
+#include "core/solve.h"
+#include "core/solve_record.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kReportSchema = "weft.batch-report/1";
+
+fs::path solves_of(const batch::Plan& plan, const batch::Job& job) {
+  return batch::solve_parent(plan.header, job.session);
+}
+
+// A solve that nobody wrote down: its process was killed in between.
+std::optional<batch::Outcome> unwritten(const batch::Plan& plan, const batch::Job& job) {
+  const fs::path folder = solves_of(plan, job) / job.solve;
+  const fs::path document = folder / kSolveProduct.document;
+  if (!is_there(document)) return {};
+  const Result<Json> json = read_json(document, kSolveProduct.schema, 1);
+  if (!json) return {};
+  const Result<SolveFacts> facts = solve_facts_from_json(*json, document.string());
+  if (!facts) return {};
+  batch::Outcome outcome;
+  outcome.plan = plan.header.id;
+  outcome.session = job.session;
+  outcome.state = batch::State::kThere;
+  outcome.solve = job.solve;
+  outcome.folder = folder.string();
+  outcome.no_change = "its process was killed before it compared them: run the same command again";
+  if (facts->check) outcome.left_out = facts->check->all.rms;
+  for (const Verdict& warning : facts->warnings) outcome.warnings.push_back(warning.name);
+  return outcome;
+}
+
+void hold_against_folders(const batch::Plan& plan, batch::Row& row) {
+  if (row.is_done() && !row.result->is_stored &&
+      !is_there(fs::path(row.result->folder) / kSolveProduct.document)) {
+    row.lost = batch::Outcome{};
+    row.lost->error = {ErrorKind::kTryAgain, "its solve is gone", row.result->folder, "somebody removed it",
+                       "run the same command again"};
+    row.result.reset();
+  }
+  if (row.is_missing()) row.result = unwritten(plan, *row.job);
+}
+
+Result<void> write_pictures(const BatchState& state, const fs::path& folder, std::vector<DrawnChange>& drawn,
+                            const JobContext& context) {
+  for (const std::size_t index : state.summary.changed) {
+    if (drawn.size() == kMostDrawn || context.stop.stop_requested()) break;
+    const batch::Row& row = state.rows[index];
+    if (row.result->change->is_none() || row.result->is_stored) continue;
+    const fs::path before = fs::path(row.job->session) / "solve" / row.job->before;
+    Result<std::string> png = draw_change(before, row.result->folder, *row.job, *row.result->change);
+    // A solve that went since then leaves no picture, and its numbers stay.
+    if (!png) continue;
+    const std::string name = fmt::format("worst-{:02}.png", drawn.size() + 1);
+    if (Result<void> written = write_file(folder / name, *png); !written) return written;
+    drawn.push_back({row.job->session, name, std::move(*png)});
+    context.progress("draw", static_cast<double>(drawn.size()) / kMostDrawn);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<BatchState> read_batch(const fs::path& plan_file) {
+  Result<PlanFile> file = open_plan(plan_file);
+  if (!file) return std::move(file).error();
+  Result<batch::Plan> plan = read_plan(plan_file);
+  if (!plan) return std::move(plan).error();
+  const Result<std::map<std::string, batch::History>> histories = read_histories(*file, {});
+  if (!histories) return histories.error();
+  BatchState state;
+  state.file = std::move(*file);
+  state.plan = std::move(*plan);
+  state.rows = batch::rows_of(state.plan, *histories);
+  for (batch::Row& row : state.rows) hold_against_folders(state.plan, row);
+  state.summary = batch::summarize(state.rows);
+  return state;
+}
+
+Result<MergeReport> merge_batch(const fs::path& plan, const JobContext& context) {
+  Result<BatchState> state = read_batch(plan);
+  if (!state) return std::move(state).error();
+  MergeReport report;
+  for (const batch::Row& row : state->rows)
+    report.abandoned += remove_folders(abandoned_of(row.job->session, solves_of(state->plan, *row.job)));
+  report.folder = state->file.results() / "report";
+  if (Result<void> made = make_writable_folder(report.folder); !made) return std::move(made).error();
+  std::vector<DrawnChange> drawn;
+  if (Result<void> ok = write_pictures(*state, report.folder, drawn, context); !ok)
+    return std::move(ok).error();
+  Json document = {{"schema", kReportSchema}, {"plan", state->plan.header.id}};
+  document.update(batch::json_of(state->summary, state->rows));
+  Json left_out = Json::array(), pictures = Json::array();
+  for (const batch::LeftOut& left : state->plan.left_out)
+    left_out.push_back({{"session", left.session},
+                        {"left_out", batch::kReasonNames[static_cast<std::size_t>(left.reason)]},
+                        {"said", left.said},
+                        {"seconds", left.seconds}});
+  for (const DrawnChange& each : drawn) pictures.push_back({{"session", each.session}, {"file", each.file}});
+  document["left_out"] = std::move(left_out);
+  document["pictures"] = std::move(pictures);
+  document["abandoned"] = report.abandoned;
+  if (Result<void> ok = write_json(report.folder / "report.json", document); !ok)
+    return std::move(ok).error();
+  const std::string page = batch_page(*state, drawn);
+  if (Result<void> ok = write_file(report.folder / "report.html", page); !ok) return std::move(ok).error();
+  report.state = std::move(*state);
+  return report;
+}
+
+}  // namespace weft::app

@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "app/jobs/batch/plan_batch.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "app/jobs/batch/plan_file.h"
+#include "app/jobs/batch/sample.h"
+#include "app/jobs/batch/survey.h"
+#include "batch/choice.h"
+#include "batch/forecast.h"
+#include "core/error_kind.h"
+#include "core/files.h"
+#include "core/parallel.h"
+#include "core/solve_record.h"
+
+namespace weft::app {
+namespace {
+
+namespace fs = std::filesystem;
+using batch::Forecast;
+
+// The folder that holds all of them.
+fs::path archive_of(const std::vector<fs::path>& sessions) {
+  if (sessions.empty()) return {};
+  fs::path common = sessions.front().parent_path();
+  for (const fs::path& session : sessions) {
+    while (session.lexically_relative(common).empty() || *session.lexically_relative(common).begin() == "..")
+      common = common.parent_path();
+  }
+  return common;
+}
+
+// A batch under plan. Candidates that can be solved have a forecast a level.
+class Planning {
+ public:
+  Planning(const PlanBatchOptions& options, const JobContext& context)
+      : options_(options), context_(context) {}
+
+  Result<PlanBatchReport> plan() {
+    Stopwatch watch;
+    if (Result<void> ok = look(); !ok) return std::move(ok).error();
+    double seconds = watch.lap();
+    if (Result<void> ok = measure(); !ok) return std::move(ok).error();
+    plan_.header.sample_seconds = watch.lap();
+    if (Result<void> ok = decide(); !ok) return std::move(ok).error();
+    add_totals();
+    batch::share_out(plan_.jobs, options_.task_seconds);
+    const std::string text = batch::text_of(plan_);
+    if (const Result<bool> written = write_plan(options_.plan, text); !written) return written.error();
+    seconds += watch.lap();
+    return PlanBatchReport{std::move(plan_), absolute_folder(options_.plan), seconds};
+  }
+
+ private:
+  Result<void> look() {
+    Result<std::vector<fs::path>> sessions = sessions_below(options_.sessions);
+    if (!sessions) return std::move(sessions).error();
+    if (sessions->empty()) {
+      return Error{ErrorKind::kNoInput, "there is nothing to plan",
+                   options_.sessions.empty() ? "" : options_.sessions.front(), "no session lies there",
+                   "name folders of sessions, or folders that hold some"};
+    }
+    Result<std::vector<batch::NamedCalibration>> named = read_named(options_.calibrations);
+    if (!named) return std::move(named).error();
+    batch::Header& header = plan_.header;
+    header.archive = archive_of(*sessions).string();
+    header.output = options_.output.empty() ? "" : absolute_folder(options_.output).string();
+    header.product = options_.product;
+    header.calibrations = std::move(*named);
+    header.solver_version = kSolverVersion;
+    header.threads = resolved_threads(context_.threads);
+    Result<std::vector<Candidate>> found = survey(*sessions, {header, header.threads}, context_);
+    if (!found) return std::move(found).error();
+    for (Candidate& candidate : *found) {
+      if (candidate.error) {
+        leave_out(candidate, *candidate.error);
+      } else {
+        candidates_.push_back(std::move(candidate));
+      }
+    }
+    return check_named();
+  }
+
+  // A calibration that no session is of is named by mistake.
+  Result<void> check_named() const {
+    for (const batch::NamedCalibration& named : plan_.header.calibrations) {
+      const bool is_used = std::ranges::any_of(
+          candidates_, [&](const Candidate& each) { return each.traits.calibration == named.id; });
+      if (is_used) continue;
+      std::string why = fmt::format("no session can be solved by it; it is of rig \"{}\"", named.rig);
+      if (!plan_.left_out.empty()) why += "; " + plan_.left_out.front().said;
+      return Error{ErrorKind::kBadData, "calibration suits no session", named.folder, why,
+                   "name the calibration of these sessions' rig"};
+    }
+    return {};
+  }
+
+  void leave_out(const Candidate& candidate, const Error& error) {
+    plan_.left_out.push_back({candidate.input.folder.string(), batch::Reason::kUnsolvable,
+                              name_of(error.kind), error.message(), 0});
+  }
+
+  // Sessions that would be solved, whatever the level, are worth measuring.
+  Result<void> measure() {
+    std::vector<batch::Traits> traits, open;
+    std::vector<std::size_t> of_open;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      traits.push_back(candidates_[i].traits);
+      if (is_done(candidates_[i])) continue;
+      open.push_back(candidates_[i].traits);
+      of_open.push_back(i);
+    }
+    std::vector<batch::Measured> measured;
+    std::vector<std::size_t> unfit, sample = batch::choose_sample(open, options_.sample);
+    for (std::size_t& each : sample) each = of_open[each];
+    const JobContext silent = {context_.threads, context_.stop};
+    for (std::size_t k = 0; k < sample.size(); ++k) {
+      context_.progress("measure", static_cast<double>(k) / static_cast<double>(sample.size()));
+      Result<std::vector<Forecast>> levels =
+          measure_session(candidates_[sample[k]], options_.product, silent);
+      if (context_.stop.stop_requested()) return interrupted();
+      if (levels) {
+        measured.push_back({sample[k], std::move(*levels)});
+      } else if (levels.error().kind == ErrorKind::kTryAgain ||
+                 levels.error().kind == ErrorKind::kInputOutput) {
+        return std::move(levels).error();
+      } else {
+        leave_out(candidates_[sample[k]], levels.error());
+        unfit.push_back(sample[k]);
+      }
+    }
+    if (!sample.empty()) context_.progress("measure", 1);
+    plan_.header.sampled = static_cast<int>(measured.size());
+    forecasts_ = batch::carry_over(traits, measured);
+    if (forecasts_.empty())
+      forecasts_.assign(candidates_.size(), std::vector<Forecast>(level_names().size()));
+    for (auto i = unfit.rbegin(); i != unfit.rend(); ++i) {
+      candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(*i));
+      forecasts_.erase(forecasts_.begin() + static_cast<std::ptrdiff_t>(*i));
+    }
+    return {};
+  }
+
+  // Whether there is nothing to do at the level that was asked for.
+  bool is_done(const Candidate& candidate) const {
+    const std::vector<std::string> names = level_names();
+    const auto level = static_cast<std::size_t>(std::ranges::find(names, options_.quality) - names.begin());
+    const bool is_fixed = !options_.to_deg && !options_.within_seconds;
+    return is_fixed && level < names.size() && candidate.levels[level].is_there;
+  }
+
+  std::vector<batch::Option> options_of(std::size_t i) const {
+    std::vector<batch::Option> options;
+    for (std::size_t l = 0; l < forecasts_[i].size(); ++l)
+      options.push_back(
+          {candidates_[i].levels[l].is_there ? 0 : forecasts_[i][l].seconds, forecasts_[i][l].degrees});
+    return options;
+  }
+
+  Result<void> decide() {
+    const std::vector<std::string> names = level_names();
+    if (options_.within_seconds) return decide_by_hours();
+    const auto named = std::ranges::find(names, options_.quality);
+    if (named == names.end()) {
+      return Error{ErrorKind::kUsage, "no such level", options_.quality,
+                   fmt::format("{}", fmt::join(names, ", ")), "name one of them"};
+    }
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      if (!options_.to_deg) {
+        take(i, static_cast<std::size_t>(named - names.begin()));
+        continue;
+      }
+      const std::vector<batch::Option> options = options_of(i);
+      const std::optional<std::size_t> level = batch::cheapest_within(options, *options_.to_deg);
+      if (level) {
+        take(i, *level);
+        continue;
+      }
+      const auto closest = std::ranges::min_element(options, {}, &batch::Option::degrees);
+      plan_.left_out.push_back(
+          {candidates_[i].input.folder.string(), batch::Reason::kNotGoodEnough, "",
+           fmt::format("the closest level, {}, is expected to be off by {:.3g} degrees",
+                       names[static_cast<std::size_t>(closest - options.begin())], closest->degrees),
+           closest->seconds});
+    }
+    return {};
+  }
+
+  Result<void> decide_by_hours() {
+    if (plan_.header.sampled == 0 && !candidates_.empty()) {
+      return Error{ErrorKind::kUsage, "hours cannot be given out", "--sample 0", "no session was measured",
+                   "measure at least one"};
+    }
+    // What is left out for turning little costs nothing, so that its seconds go to others.
+    std::vector<std::vector<batch::Option>> options;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) options.push_back(options_of(i));
+    const Result<batch::Spending> spending = batch::spend(options, *options_.within_seconds);
+    if (!spending) return spending.error();
+    plan_.header.curve = spending->curve;
+    for (std::size_t i = 0; i < candidates_.size(); ++i) take(i, spending->chosen[i]);
+    return {};
+  }
+
+  // Plans a session at a level, unless there is nothing to be done for it.
+  void take(std::size_t i, std::size_t level) {
+    const Candidate& candidate = candidates_[i];
+    const Forecast& forecast = forecasts_[i][level];
+    const std::string session = candidate.input.folder.string();
+    const LevelOfSession& of_level = candidate.levels[level];
+    if (of_level.is_there) {
+      plan_.left_out.push_back({session, batch::Reason::kThere, "",
+                                fmt::format("solve {} is there", of_level.solve), forecast.seconds});
+      return;
+    }
+    if (options_.least_change_deg && forecast.turn_deg && *forecast.turn_deg < *options_.least_change_deg) {
+      plan_.left_out.push_back({session, batch::Reason::kTurnsLittle, "",
+                                fmt::format("its maps would turn by {:.3g} degrees{}", *forecast.turn_deg,
+                                            forecast.is_measured ? "" : ", as those of others solved alike"),
+                                forecast.seconds});
+      return;
+    }
+    batch::Job job;
+    job.session = session;
+    job.digest = candidate.digest;
+    job.quality = level_names()[level];
+    job.calibration = candidate.traits.calibration;
+    job.solve = of_level.solve;
+    job.before = candidate.before;
+    job.rig = candidate.rig;
+    job.fabric = candidate.traits.fabric;
+    job.megapixels = candidate.traits.megapixels;
+    job.forecast = forecast;
+    job.memory_bytes = of_level.memory_bytes;
+    job.read_bytes = candidate.read_bytes;
+    job.write_bytes = of_level.write_bytes;
+    plan_.jobs.push_back(std::move(job));
+  }
+
+  // Every level of all sessions, so that the price of each is known before one is paid.
+  void add_totals() {
+    const std::vector<std::string> names = level_names();
+    for (std::size_t l = 0; l < names.size(); ++l) {
+      batch::LevelTotal total;
+      total.quality = names[l];
+      double squares = 0;
+      for (const std::vector<Forecast>& levels : forecasts_) {
+        total.hours += levels[l].seconds / 3600;
+        total.mean_deg += levels[l].degrees;
+        squares += levels[l].degrees * levels[l].degrees;
+      }
+      const auto count = static_cast<double>(std::max<std::size_t>(1, forecasts_.size()));
+      total.mean_deg /= count;
+      total.spread_deg = std::sqrt(std::max(0.0, squares / count - total.mean_deg * total.mean_deg));
+      total.sessions = static_cast<int>(std::ranges::count(plan_.jobs, names[l], &batch::Job::quality));
+      plan_.header.levels.push_back(total);
+    }
+  }
+
+  const PlanBatchOptions& options_;
+  const JobContext& context_;
+  batch::Plan plan_;
+  std::vector<Candidate> candidates_;
+  std::vector<std::vector<Forecast>> forecasts_;
+};
+
+Result<void> check_plan_options(const PlanBatchOptions& options) {
+  const auto refused = [](const char* where, const char* why, const char* remedy) {
+    return Error{ErrorKind::kUsage, "batch cannot be planned so", where, why, remedy};
+  };
+  const bool has_then = !options.product.then.empty();
+  if (has_then && !options.product.is_whole())
+    return refused("--then", "maps and exports want all maps of a solve", "plan without --keep and --half");
+  if (has_then && !options.output.empty())
+    return refused("--then", "maps and exports are made in the session", "plan without --output");
+  const auto keeps = [&](const char* name) {
+    return options.product.keep.empty() ||
+           std::ranges::find(options.product.keep, name) != options.product.keep.end();
+  };
+  if (!keeps("normal") || !keeps("albedo"))
+    return refused("--keep", "solves are compared by their normals and albedo", "keep normal and albedo too");
+  const Result<bool> there = look_for(options.plan);
+  if (there && *there) {
+    return Error{ErrorKind::kCannotCreate, "there is a file of this name", options.plan.string(),
+                 "a plan never changes once it is written", "name another file with -o, or remove it"};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<PlanBatchReport> plan_batch(const PlanBatchOptions& options, const JobContext& context) {
+  if (Result<void> ok = check_plan_options(options); !ok) return std::move(ok).error();
+  return Planning(options, context).plan();
+}
+
+}  // namespace weft::app

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "batch/plan.h"
+#include "core/job.h"
+#include "core/result.h"
+
+namespace weft::app {
+
+struct PlanBatchOptions {
+  std::vector<std::string> sessions;            ///< folders of sessions, or with sessions below them
+  std::string quality = "standard";             ///< where neither of the next two is asked
+  std::optional<double> to_deg = {};            ///< of each session the cheapest level that is so close
+  std::optional<double> within_seconds = {};    ///< for all: spent where a second buys most degrees
+  std::optional<double> least_change_deg = {};  ///< maps that would turn by less are left as they are
+  batch::Product product;
+  std::vector<std::filesystem::path>
+      calibrations;         ///< in place of the own ones of the sessions of their rigs
+  std::size_t sample = 50;  ///< sessions that are measured
+  double task_seconds = 600;
+  std::filesystem::path
+      output;                  ///< where solves go, for archives that cannot be written; empty: each session
+  std::filesystem::path plan;  ///< the file to write
+};
+
+struct PlanBatchReport {
+  batch::Plan plan;
+  std::filesystem::path file;
+  double seconds = 0;  ///< of planning, the sample not among them
+};
+
+/// Looks at sessions without opening a photograph, measures a sample of them, carries that over to the
+/// others, chooses their levels, gives them to tasks, and writes the plan. Each session that is not solved is
+/// in it, with why: its solve is there, it cannot be solved, its maps would turn by little, no level is close
+/// enough.
+///
+/// Errors: kUsage where options do not go together or nothing fits; kNoInput where there is no session;
+/// kCannotCreate where the file is taken; kInterrupted.
+Result<PlanBatchReport> plan_batch(const PlanBatchOptions& options, const JobContext& context);
+
+}  // namespace weft::app

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/json_document.h"
+#include "core/result.h"
+
+// The plan of a batch as a document (weft.batch/1, docs/formats.md): JSON lines that never change once they
+// are written. The first line is the header, then comes a line a session, task by task, then a line for each
+// session that is left out. The header says where the lines of each task lie, so that a task reads its own
+// alone.
+
+namespace weft::batch {
+
+inline constexpr const char* kPlanSchema = "weft.batch/1";
+
+/// What becomes of each solve besides its level.
+struct Product {
+  std::vector<std::string> keep = {};  ///< maps that stay, by name: "normal"; none: all
+  bool half = false;                   ///< normals as half floats
+  std::string compression = "none";    ///< of EXR files
+  std::vector<std::string> then = {};  ///< made of it afterwards: "maps", "export:unreal"
+
+  bool is_whole() const { return keep.empty() && !half; }
+  friend bool operator==(const Product&, const Product&) = default;
+};
+
+/// A calibration that is used in place of the own ones of a rig's sessions.
+struct NamedCalibration {
+  std::string folder, id, rig;
+
+  friend bool operator==(const NamedCalibration&, const NamedCalibration&) = default;
+};
+
+/// What one solve is expected to give and to cost.
+struct Forecast {
+  double seconds = 0, seconds_spread = 0;  ///< spread: a standard deviation, 0 where it is not known
+  double degrees = 0, degrees_spread = 0;  ///< mean error of the normals
+  bool is_measured = false;                ///< on this very session; else carried over from others
+  std::optional<double> turn_deg = {};     ///< mean angle to the solve before
+
+  friend bool operator==(const Forecast&, const Forecast&) = default;
+};
+
+/// One session that is solved.
+struct Job {
+  std::string session;  ///< its folder
+  std::string digest;   ///< digest_of_session()
+  int task = 0;
+  std::string quality;      ///< level, "standard"
+  std::string calibration;  ///< id
+  std::string solve;        ///< id that its solve will have
+  std::string before;       ///< id of the current solve, which it is compared with; empty: there is none
+  std::string rig, fabric;
+  double megapixels = 0;
+  Forecast forecast;
+  std::uint64_t memory_bytes = 0, read_bytes = 0, write_bytes = 0;
+
+  friend bool operator==(const Job&, const Job&) = default;
+};
+
+/// Why a session is not solved.
+enum class Reason { kThere, kUnsolvable, kTurnsLittle, kNotGoodEnough };
+inline constexpr std::array kReasonNames = {"there", "unsolvable", "turns_little", "not_good_enough"};
+
+struct LeftOut {
+  std::string session;
+  Reason reason = Reason::kThere;
+  std::string kind = {};  ///< of an error: name_of(ErrorKind)
+  std::string said;       ///< one sentence
+  double seconds = 0;     ///< that are saved
+
+  friend bool operator==(const LeftOut&, const LeftOut&) = default;
+};
+
+/// All sessions at one level.
+struct LevelTotal {
+  std::string quality;
+  double hours = 0, mean_deg = 0, spread_deg = 0;
+  int sessions = 0;  ///< that the plan solves at it
+
+  friend bool operator==(const LevelTotal&, const LevelTotal&) = default;
+};
+
+/// Hours and the mean error that they buy.
+struct Spent {
+  double hours = 0, mean_deg = 0;
+
+  friend bool operator==(const Spent&, const Spent&) = default;
+};
+
+/// Where the lines of one task lie, and what they cost.
+struct TaskPlace {
+  std::uint64_t offset = 0, bytes = 0;  ///< from the end of the header's line
+  int sessions = 0;
+  double seconds = 0;
+  std::uint64_t memory_bytes = 0;  ///< of the largest
+
+  friend bool operator==(const TaskPlace&, const TaskPlace&) = default;
+};
+
+struct Header {
+  std::string id;       ///< 16 hexadecimal digits of the SHA-256 of all else
+  std::string archive;  ///< the folder that holds all sessions
+  std::string output;   ///< folder for solves beside the archive; empty: each in its session
+  Product product;
+  std::vector<NamedCalibration> calibrations;
+  int solver_version = 0;
+  int threads = 0;  ///< that the seconds hold for
+  int sampled = 0;  ///< sessions that were measured
+  double sample_seconds = 0;
+  std::vector<LevelTotal> levels;
+  std::vector<Spent> curve;  ///< where hours were given out
+  std::vector<TaskPlace> tasks;
+  int sessions = 0, left_out = 0;
+
+  friend bool operator==(const Header&, const Header&) = default;
+};
+
+struct Plan {
+  Header header;
+  std::vector<Job> jobs;  ///< by task
+  std::vector<LeftOut> left_out;
+
+  friend bool operator==(const Plan&, const Plan&) = default;
+};
+
+/// SHA-256 of what a solve depends on in session.json: all but what people say of the cloth (fabric,
+/// metadata), the current solve, and where copies lie.
+std::string digest_of_session(Json document);
+
+/// A task has at most so many sessions, where seconds are few or not known.
+inline constexpr int kMostOfTask = 100;
+
+/// Gives jobs to tasks of about so many seconds, in their order; a task has at least one.
+void share_out(std::vector<Job>& jobs, double task_seconds);
+
+/// The text of a plan whose jobs have their tasks, which rise from 0 by one; fills the header's id, tasks and
+/// counts.
+std::string text_of(Plan& plan);
+
+/// Reads the first line. kBadData, `where` being the file's name for messages: no plan, or one of a newer
+/// version.
+Result<Header> header_from_line(std::string_view line, const std::string& where);
+/// Reads lines of jobs.
+Result<std::vector<Job>> jobs_from_lines(std::string_view lines, const std::string& where);
+/// Reads all of it. kBadData also where lines are missing, or were changed since they were written.
+Result<Plan> plan_from_text(std::string_view text, const std::string& where);
+
+/// Where the solves of a session go: the parent of the folders by id.
+std::string solve_parent(const Header& header, const std::string& session);
+
+}  // namespace weft::batch

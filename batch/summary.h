@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "batch/outcome.h"
+#include "batch/plan.h"
+#include "core/json_document.h"
+
+// What a batch came to.
+
+namespace weft::batch {
+
+/// A session of the plan and what became of it. Neither solved nor failed: missing.
+struct Row {
+  const Job* job = nullptr;
+  std::optional<Outcome> result = {};  ///< of kSolved, kThere or kFailed
+  std::optional<Outcome> lost = {};    ///< why the last attempt after it was none
+  int attempts = 0;
+
+  bool is_done() const { return result && result->is_done(); }
+  bool has_failed() const { return result && result->state == State::kFailed; }
+  bool is_missing() const { return !result; }
+};
+
+/// Sessions that have one cause in common.
+struct Cause {
+  std::string kind;  ///< name_of(ErrorKind)
+  std::string what;
+  int sessions = 0;
+  std::string example;  ///< the message of one
+};
+
+/// A calibration stands out whose left-out lights are off by this much more than is usual of the others.
+inline constexpr double kStandsOut = 1.5;
+
+/// Sessions that were solved by one calibration.
+struct ByCalibration {
+  std::string calibration, rig;
+  int sessions = 0;
+  int worse = 0;   ///< that have regressions
+  int warned = 0;  ///< whose lights do not fit, or are exchanged, dead or of another gain
+  std::optional<double> mean_turn_deg = {};
+  std::optional<double> left_out = {};  ///< median rms of how left-out lights are predicted, a share
+};
+
+struct Summary {
+  int solved = 0, there = 0, failed = 0, missing = 0;
+  int second_attempts = 0;                    ///< sessions that were begun more than once
+  double seconds = 0, predicted_seconds = 0;  ///< of those solved, node-seconds
+  double mean_deg = 0,
+         predicted_deg = 0;  ///< of those solved: means of the medians of sigma, and as predicted
+  std::uint64_t peak_bytes = 0;
+  std::vector<Cause> causes;                ///< of failed and missing sessions, the most frequent first
+  std::vector<std::size_t> changed;         ///< rows that were compared, the gravest first (is_graver)
+  int worse = 0;                            ///< of them with regressions
+  int unchanged = 0;                        ///< of them without a changed pixel
+  std::vector<ByCalibration> calibrations;  ///< the most suspect first
+  std::vector<int> missing_tasks;           ///< with a missing session, rising
+
+  bool is_whole() const { return failed == 0 && missing == 0; }
+};
+
+/// The rows of a plan, by what its tasks have written.
+std::vector<Row> rows_of(const Plan& plan, const std::map<std::string, History>& histories);
+
+Summary summarize(std::span<const Row> rows);
+
+/// For programs; with the rows, a document a session.
+Json json_of(const Summary& summary, std::span<const Row> rows);
+
+}  // namespace weft::batch

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "bench/batch/archive.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/files.h"
+#include "core/json_document.h"
+#include "core/process.h"
+#include "simulator/simulate.h"
+
+namespace weft::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLongest_s = 4 * 3600;
+
+Result<void> simulate_own(const fs::path& folder, const simulator::Scene& scene) {
+  if (const auto made = simulator::simulate_session(scene, folder, {}); !made) return made.error();
+  std::error_code ignored;
+  fs::remove_all(folder / "truth", ignored);
+  return {};
+}
+
+// A session with the photographs of another.
+Result<void> link_to(const fs::path& own, const fs::path& folder, int number) {
+  std::error_code failed;
+  fs::create_directory(folder, failed);
+  for (const char* part : {"raw", "calibration"}) {
+    if (!failed) fs::create_directory_symlink(own / part, folder / part, failed);
+  }
+  if (failed) return cannot_write(folder, failed.value());
+  Result<Json> session = read_json(own / "session.json", "weft.session", 1);
+  if (!session) return std::move(session).error();
+  (*session)["metadata"] = {{"notes", fmt::format("roll {}", number)}};
+  return write_json(folder / "session.json", *session);
+}
+
+}  // namespace
+
+fs::path session_in(const fs::path& folder, int number) {
+  return folder / fmt::format("SESSION-{:05}.weft", number);
+}
+
+Result<void> make_archive(const fs::path& folder, const fs::path& scene_file, double megapixels, int sessions,
+                          int of_their_own) {
+  Result<simulator::Scene> scene = simulator::read_scene(scene_file);
+  if (!scene) return std::move(scene).error();
+  scene->camera.width = static_cast<int>(std::lround(std::sqrt(megapixels * 1e6 * 1.25) / 32)) * 32;
+  scene->camera.height = static_cast<int>(std::lround(megapixels * 1e6 / scene->camera.width / 2)) * 2;
+  const std::string fabric = scene->fabric;
+  if (Result<void> made = make_writable_folder(folder); !made) return made;
+  for (int i = 0; i < sessions; ++i) {
+    scene->fabric = fmt::format("{} {}", fabric, i % of_their_own);
+    const Result<void> made = i < of_their_own
+                                  ? simulate_own(session_in(folder, i), *scene)
+                                  : link_to(session_in(folder, i % of_their_own), session_in(folder, i), i);
+    if (!made) return made;
+    scene->seed += 1;
+  }
+  return {};
+}
+
+Result<int> run_program(const std::vector<std::string>& arguments, const fs::path& log) {
+  std::vector<std::string> command = {program_beside("weft").string()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  const Result<std::unique_ptr<ChildProcess>> child = ChildProcess::start(command, {}, log);
+  if (!child) return child.error();
+  const std::optional<int> code = (*child)->wait(kLongest_s);
+  if (code) return *code;
+  return Error{ErrorKind::kTryAgain, "weft did not end", command[0], fmt::format("within {} s", kLongest_s),
+               ""};
+}
+
+}  // namespace weft::bench

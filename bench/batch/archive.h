@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/result.h"
+
+namespace weft::bench {
+
+/// Simulates a few sessions of the scene at this size into `folder`, and fills it with others that share
+/// their photographs and calibration by links: SESSION-0000.weft and so on. Errors of simulating.
+Result<void> make_archive(const std::filesystem::path& folder, const std::filesystem::path& scene,
+                          double megapixels, int sessions, int of_their_own);
+
+/// The folder of one of them.
+std::filesystem::path session_in(const std::filesystem::path& folder, int number);
+
+/// Runs weft, its output into `log`, and returns its exit code. kNoInput.
+Result<int> run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log);
+
+}  // namespace weft::bench

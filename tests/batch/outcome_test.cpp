@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "batch/outcome.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace weft::batch {
+namespace {
+
+Outcome solved(const std::string& session) {
+  Outcome outcome;
+  outcome.plan = "p1";
+  outcome.session = session;
+  outcome.state = State::kSolved;
+  outcome.solve = "0123";
+  outcome.folder = session + "/solve/0123";
+  outcome.seconds = 5.25;
+  outcome.peak_bytes = 636'000'000;
+  outcome.host = "node1";
+  outcome.sigma_deg = 0.6;
+  outcome.left_out = 0.05;
+  outcome.warnings = {"LED_DEAD"};
+  Change change;
+  change.pixels = 100;
+  change.mean_deg = 0.5;
+  change.sigma_deg = {0.5, 0.6};
+  change.worst = {16, 32, 80, 1.5};
+  outcome.change = change;
+  return outcome;
+}
+
+Outcome ended(const std::string& session, State state, ErrorKind kind) {
+  Outcome outcome;
+  outcome.plan = "p1";
+  outcome.session = session;
+  outcome.state = state;
+  outcome.error = {kind, "what", "where", "why", "remedy"};
+  return outcome;
+}
+
+TEST(Outcome, IsReadAsItWasWritten) {
+  for (const Outcome& outcome : {solved("/a.weft"), ended("/b.weft", State::kFailed, ErrorKind::kBadData),
+                                 ended("/c.weft", State::kLost, ErrorKind::kTryAgain)}) {
+    const std::string line = line_of(outcome);
+    EXPECT_EQ(line.find('\n'), line.size() - 1);
+    const std::optional<Outcome> read = outcome_from_line(line);
+    ASSERT_TRUE(read) << line;
+    EXPECT_EQ(*read, outcome) << line_of(*read);
+  }
+  EXPECT_EQ(outcome_from_line(line_of(solved("/a.weft")))->change, solved("/a.weft").change);
+}
+
+TEST(Outcome, CutShortAtAnyByteIsNone) {
+  const std::string line = line_of(solved("/a.weft"));
+  for (std::size_t bytes = 0; bytes + 2 < line.size(); ++bytes)
+    EXPECT_FALSE(outcome_from_line(line.substr(0, bytes))) << bytes;
+}
+
+TEST(Histories, TakeTheLastResultAndPassOverWhatIsNone) {
+  const std::string lines = line_of(ended("/a.weft", State::kLost, ErrorKind::kTryAgain)) +
+                            line_of(solved("/a.weft")).substr(0, 40) + "\n" + line_of(solved("/a.weft")) +
+                            line_of(ended("/b.weft", State::kFailed, ErrorKind::kBadData)) +
+                            line_of(ended("/b.weft", State::kLost, ErrorKind::kTryAgain));
+  const auto histories = histories_of(lines, "p1");
+  ASSERT_EQ(histories.size(), 2U);
+  const History &a = histories.at("/a.weft"), &b = histories.at("/b.weft");
+  EXPECT_TRUE(a.result && a.result->is_done());
+  EXPECT_FALSE(a.lost);
+  EXPECT_EQ(a.attempts, 2);
+  EXPECT_EQ(b.result->state, State::kFailed) << "what is no result takes none back";
+  EXPECT_TRUE(b.lost);
+}
+
+TEST(Histories, PassOverTheLinesOfAnotherPlan) {
+  EXPECT_TRUE(histories_of(line_of(solved("/a.weft")), "p2").empty());
+}
+
+TEST(Failures, AreOfTheSessionAndNotOfTheHour) {
+  for (const ErrorKind kind : {ErrorKind::kBadData, ErrorKind::kNoInput, ErrorKind::kInternal})
+    EXPECT_TRUE(is_of_session(kind));
+  for (const ErrorKind kind :
+       {ErrorKind::kTryAgain, ErrorKind::kInterrupted, ErrorKind::kInputOutput, ErrorKind::kCannotCreate})
+    EXPECT_FALSE(is_of_session(kind));
+}
+
+}  // namespace
+}  // namespace weft::batch

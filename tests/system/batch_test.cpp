@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: Apache-2.0
+// Archives: planned, run, killed, run again, and what is said of them.
+#include "tests/system/batch_test.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <chrono>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "core/image_io/image_io.h"
+#include "core/process.h"
+#include "core/solve.h"
+#include "tests/system/samples.h"
+
+namespace weft::test {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// A run of the plan in a process of its own.
+std::unique_ptr<ChildProcess> begin_run(const fs::path& plan, const fs::path& log) {
+  auto started =
+      ChildProcess::start({WEFT_PROGRAM, "batch", "run", plan.string(), "--threads", "1"}, {}, log);
+  EXPECT_TRUE(started);
+  return std::move(*started);
+}
+
+TEST_F(BatchTest, ARunSolvesWhatIsPlannedOnceAndAsWeftSolveDoes) {
+  fill_archive(3);
+  const Json planned = plan({"--task-minutes", "0.001", "--sample", "1"});
+  EXPECT_EQ(planned["sessions"], 3);
+  EXPECT_EQ(planned["tasks"], 3) << "a task has one session at least";
+  EXPECT_EQ(planned["sampled"], 1);
+  EXPECT_EQ(planned["levels"].size(), 5U);
+  const Outcome outcome = run();
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+  EXPECT_EQ(outcome.json()["solved"], 3);
+  EXPECT_THAT(outcome.error, HasSubstr("cloth-0: solved in "));
+
+  ASSERT_EQ(run_weft({"solve", session(1).string(), "-q", "-o", (work_ / "alone").string()}).exit_code, 0);
+  ASSERT_THAT(solves_of(session(1)), SizeIs(1));
+  for (const char* map : kMaps)
+    EXPECT_EQ(bytes_of(session(1) / "solve" / solves_of(session(1)).front() / map),
+              bytes_of(work_ / "alone" / map))
+        << map;
+
+  const auto before = contents_of(archive());
+  const Outcome again = run();
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(again.json()["kept"], 3);
+  EXPECT_EQ(again.json()["solved"], 0);
+  EXPECT_EQ(contents_of(archive()), before);
+
+  const Outcome merged = merge();
+  EXPECT_EQ(merged.exit_code, 0) << merged.error;
+  EXPECT_EQ(merged.json()["solved"], 3);
+  EXPECT_GT(fs::file_size(work_ / "night.results" / "report" / "report.html"), 1000U);
+}
+
+TEST_F(BatchTest, ATaskSolvesItsOwnSessionsAlone) {
+  fill_archive(2);
+  plan({"--task-minutes", "0.001", "--sample", "1"});
+  const Outcome outcome = run({"--task", "1", "-q"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+  EXPECT_THAT(solves_of(session(0)), IsEmpty());
+  EXPECT_THAT(solves_of(session(1)), SizeIs(1));
+  const Outcome merged = merge();
+  EXPECT_EQ(merged.exit_code, 2) << "it is not whole";
+  EXPECT_EQ(merged.json()["missing_tasks"], Json({0}));
+  const Outcome status = run_weft({"batch", "status", plan_file().string()});
+  EXPECT_EQ(status.exit_code, 2);
+  EXPECT_THAT(status.output, HasSubstr("tasks to be run: 0"));
+  const Outcome commands = run_weft({"batch", "commands", plan_file().string(), "--missing"});
+  EXPECT_THAT(commands.output, HasSubstr("batch run " + plan_file().string() + " --task 0 -q\n"));
+  EXPECT_EQ(run({"--task", "2", "-q"}).exit_code, 64);
+}
+
+TEST_F(BatchTest, KilledAtRandomMomentsItEndsWithOneSolveASession) {
+  constexpr int kSessions = 4;
+  fill_archive(kSessions);
+  plan();
+  std::mt19937 random(20261126);
+  int kills = 0;
+  for (bool is_whole = false; !is_whole && kills < 40;) {
+    const auto child = begin_run(plan_file(), work_ / "log");
+    // Longer each time, so that a machine that is slow gets there too.
+    std::uniform_real_distribution<double> wait_s(0.2, 0.6 + 0.1 * kills);
+    const std::optional<int> code = child->wait(wait_s(random));
+    is_whole = code == 0;
+    if (code) continue;
+    child->signal(SIGKILL);
+    child->wait(5);
+    ++kills;
+  }
+  ASSERT_LT(kills, 40) << bytes_of(work_ / "log");
+  EXPECT_GT(kills, 0) << "nothing was killed";
+  const Outcome merged = merge();
+  EXPECT_EQ(merged.exit_code, 0) << merged.error;
+  EXPECT_THAT(half_made(), IsEmpty()) << "merge removes what the dead left";
+  for (int i = 0; i < kSessions; ++i) EXPECT_THAT(solves_of(session(i)), SizeIs(1)) << i;
+  const Json document = merged.json();
+  EXPECT_EQ(document["solved"].get<int>() + document["there"].get<int>(), kSessions);
+  EXPECT_EQ(document["failed"], 0) << "a kill is no result";
+}
+
+TEST_F(BatchTest, StoppedItEndsOrDropsTheSessionInHandAndAsksToBeRunAgain) {
+  fill_archive(4);
+  plan();
+  const auto child = begin_run(plan_file(), work_ / "log");
+  // Into the first sessions: a line a session is written when it ends.
+  for (int i = 0; i < 500 && bytes_of(work_ / "log").find("solved in") == std::string::npos; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  child->signal(SIGTERM);
+  EXPECT_EQ(child->wait(25), 75) << bytes_of(work_ / "log");
+  EXPECT_THAT(half_made(), IsEmpty());
+  const Outcome merged = merge();
+  EXPECT_EQ(merged.exit_code, 2);
+  EXPECT_EQ(merged.json()["failed"], 0);
+  EXPECT_GT(merged.json()["missing"], 0);
+  EXPECT_EQ(run({"-q"}).exit_code, 0);
+  EXPECT_EQ(merge().exit_code, 0);
+}
+
+TEST_F(BatchTest, AFailureIsRememberedUntilItIsToBeTriedAgain) {
+  fill_archive(3);
+  plan();
+  const fs::path raw = session(1) / "raw" / "03_led04.dng";
+  const std::string good = bytes_of(raw);
+  put_bytes(raw, good.substr(0, good.size() - 1000));
+  const Outcome outcome = run({"-q"});
+  EXPECT_EQ(outcome.exit_code, 65) << outcome.error;
+  EXPECT_EQ(outcome.json()["solved"], 2) << "the others are solved all the same";
+  EXPECT_THAT(outcome.error, HasSubstr("cloth-1: failed: "));
+  EXPECT_THAT(outcome.error, HasSubstr("03_led04.dng"));
+  put_bytes(raw, good);
+  const Outcome again = run({"-q"});
+  EXPECT_EQ(again.exit_code, 65);
+  EXPECT_EQ(again.json()["kept_failures"], 1);
+  EXPECT_THAT(solves_of(session(1)), IsEmpty());
+  EXPECT_EQ(merge().exit_code, 2);
+  EXPECT_EQ(report()["causes"].size(), 1U) << report()["causes"];
+  const Outcome retried = run({"-q", "--retry-failed"});
+  EXPECT_EQ(retried.exit_code, 0) << retried.error;
+  EXPECT_THAT(solves_of(session(1)), SizeIs(1));
+  EXPECT_EQ(merge().exit_code, 0);
+}
+
+TEST_F(BatchTest, ASessionThatWasChangedOrMovedIsRefusedByName) {
+  fill_archive(3);
+  plan();
+  edit_json(session(0) / "session.json", [](Json& json) { json["left_out"] = {1}; });
+  edit_json(session(1) / "session.json", [](Json& json) { json["metadata"] = {{"notes", "said since"}}; });
+  const Outcome changed = run({"-q"});
+  EXPECT_EQ(changed.exit_code, 65);
+  EXPECT_THAT(changed.error, HasSubstr("session was changed since the plan: " + session(0).string()));
+  EXPECT_EQ(changed.json()["solved"], 2) << "what people say changes no solve";
+}
+
+TEST_F(BatchTest, ASessionThatIsGoneIsRefusedByName) {
+  fill_archive(1);
+  plan();
+  fs::rename(session(0), archive() / "other.weft");
+  const Outcome moved = run({"-q"});
+  EXPECT_EQ(moved.exit_code, 66) << moved.error;
+  EXPECT_THAT(moved.error, HasSubstr("session is not where the plan has it: " + session(0).string()));
+}
+
+TEST_F(BatchTest, MemoryThatRunsOutCostsTheSessionInHandAlone) {
+  fill_archive(2);
+  simulate(scene_named("golden", {2000, 1500}), session(7));
+  plan();
+  const Outcome outcome = run({"-q", "--memory", "230M", "--threads", "1"});
+  EXPECT_EQ(outcome.exit_code, 75) << outcome.error;
+  EXPECT_EQ(outcome.json()["solved"], 2) << outcome.error;
+  EXPECT_EQ(outcome.json()["lost"], 1);
+  EXPECT_THAT(outcome.error, HasSubstr("cloth-7: no result: "));
+  EXPECT_THAT(half_made(), IsEmpty());
+  EXPECT_EQ(merge().json()["failed"], 0);
+  EXPECT_EQ(run({"-q"}).exit_code, 0);
+}
+
+TEST_F(BatchTest, ADiskThatFillsLosesNothing) {
+  fill_archive(2);
+  plan();
+  const Outcome outcome = run({"-q"}, {.largest_file_bytes = 16'000});
+  EXPECT_EQ(outcome.exit_code, 74) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("File too large"));
+  EXPECT_THAT(half_made(), IsEmpty());
+  const Json merged = merge().json();
+  EXPECT_EQ(merged["failed"], 0) << "it says nothing of the sessions";
+  EXPECT_EQ(merged["missing"], 2);
+  EXPECT_EQ(run({"-q"}).exit_code, 0);
+}
+
+TEST_F(BatchTest, TwoPlansOfOneArchiveAtOnceDoNoHarm) {
+  fill_archive(3);
+  plan();
+  const fs::path other = work_ / "other.jsonl";
+  ASSERT_EQ(
+      run_weft({"batch", "plan", archive().string(), "--sample", "0", "-q", "-o", other.string()}).exit_code,
+      0);
+  const auto first = begin_run(plan_file(), work_ / "log"), second = begin_run(other, work_ / "log2");
+  EXPECT_EQ(first->wait(60), 0) << bytes_of(work_ / "log");
+  EXPECT_EQ(second->wait(60), 0) << bytes_of(work_ / "log2");
+  for (int i = 0; i < 3; ++i) EXPECT_THAT(solves_of(session(i)), SizeIs(1)) << i;
+  EXPECT_THAT(half_made(), IsEmpty());
+  EXPECT_EQ(merge().exit_code, 0);
+}
+
+TEST_F(BatchTest, WhatIsThereIsLeftOut) {
+  fill_archive(2);
+  ASSERT_EQ(run_weft({"solve", session(0).string(), "-q"}).exit_code, 0);
+  const Json planned = plan({"--sample", "1"});
+  EXPECT_EQ(planned["sessions"], 1);
+  ASSERT_EQ(planned["left_out"].size(), 1U);
+  EXPECT_EQ(planned["left_out"][0]["left_out"], "there");
+  EXPECT_GT(planned["left_out"][0]["seconds"], 0);
+}
+
+TEST_F(BatchTest, WhatCannotBeSolvedIsNamedWithWhyBeforeAnythingIsSpent) {
+  fill_archive(4);
+  edit_json(session(0) / "session.json", [](Json& json) { json["state"] = "capturing"; });
+  fs::remove(session(1) / "raw" / "03_led04.dng");
+  edit_json(session(2) / "session.json", [](Json& json) { json["rig"] = "somebody else's"; });
+  const Json planned = plan();
+  EXPECT_EQ(planned["sessions"], 1);
+  std::string said;
+  for (const Json& left : planned["left_out"]) {
+    EXPECT_EQ(left["left_out"], "unsolvable");
+    said += left["said"].get<std::string>() + "\n";
+  }
+  EXPECT_THAT(said, HasSubstr("session is not complete"));
+  EXPECT_THAT(said, HasSubstr("03_led04.dng"));
+  EXPECT_THAT(said, HasSubstr("calibration does not suit the session"));
+}
+
+TEST_F(BatchTest, APlanNeverChangesAndOneOfAnotherVersionIsRefused) {
+  fill_archive(1);
+  plan();
+  expect_refusal(work_, {"batch", "plan", archive().string(), "-o", plan_file().string()}, 73,
+                 {"a plan never changes", plan_file().string()});
+  std::string text = bytes_of(plan_file());
+  text.replace(text.find("weft.batch/1"), 12, "weft.batch/2");
+  put_bytes(work_ / "newer.jsonl", text);
+  for (const char* verb : {"run", "merge", "status", "accept"}) {
+    SCOPED_TRACE(verb);
+    expect_refusal(work_, {"batch", verb, (work_ / "newer.jsonl").string(), "-q"}, 65,
+                   {"weft.batch/2", "weft.batch/1"});
+  }
+}
+
+TEST_F(BatchTest, AnArchiveThatCannotBeWrittenHasItsSolvesBeside) {
+  fill_archive(2);
+  const fs::path results = work_ / "solves";
+  const auto before = contents_of(archive());
+  plan({"--output", results.string(), "--keep", "normal,albedo", "--half", "--compress", "zip"});
+  ASSERT_EQ(run({"-q", "--jobs", "2"}).exit_code, 0);
+  EXPECT_EQ(contents_of(archive()), before) << "nothing of it is touched";
+  for (int i = 0; i < 2; ++i) {
+    const std::vector<Product> solves = list_solves(results / session(i).filename());
+    ASSERT_THAT(solves, SizeIs(1));
+    EXPECT_TRUE(fs::exists(solves[0].folder / "normal.exr"));
+    EXPECT_TRUE(fs::exists(solves[0].folder / "albedo.exr"));
+    EXPECT_FALSE(fs::exists(solves[0].folder / "sigma.exr"));
+    EXPECT_FALSE(fs::exists(solves[0].folder / "status.png"));
+    EXPECT_EQ(read_image_info(solves[0].folder / "normal.exr")->type, SampleType::kHalf);
+    const Json facts = Json::parse(bytes_of(solves[0].folder / "solve.json"));
+    EXPECT_EQ(facts["id"], solves[0].id);
+    EXPECT_NE(facts["made_from"], solves[0].id) << "it is not the whole solve, and so has another name";
+  }
+  EXPECT_EQ(merge().exit_code, 0);
+  EXPECT_EQ(run({"-q"}).json()["kept"], 2);
+}
+
+TEST_F(BatchTest, SaysWhatChangedAndMovesTheCurrentSolveWhenAsked) {
+  fill_archive(2);
+  for (int i = 0; i < 2; ++i)
+    ASSERT_EQ(run_weft({"solve", session(i).string(), "-q", "--quality", "fast"}).exit_code, 0);
+  const std::string old = solves_of(session(0)).front();
+  plan();
+  const Outcome ran = run();
+  ASSERT_EQ(ran.exit_code, 0) << ran.error;
+  EXPECT_THAT(ran.error, HasSubstr(", turned by "));
+  ASSERT_EQ(merge().exit_code, 0);
+  const Json document = report();
+  ASSERT_EQ(document["changed"].size(), 2U);
+  EXPECT_EQ(document["pictures"].size(), 2U);
+  const Json& row = document["sessions"][0];
+  const Outcome compared =
+      run_weft({"compare", row["folder"], (session(0) / "solve" / old).string(), "--json"});
+  ASSERT_EQ(compared.exit_code, 0) << compared.error;
+  Json change = compared.json();
+  change.erase("regressions");
+  EXPECT_EQ(change, row["change"]) << "weft compare of two solves says the same of one";
+  const Outcome normals = run_weft({"compare", row["folder"].get<std::string>() + "/normal.exr",
+                                    (session(0) / "solve" / old / "normal.exr").string(), "--json"});
+  EXPECT_EQ(normals.json()["mean_deg"], row["change"]["mean_deg"]);
+  EXPECT_EQ(normals.json()["p95_deg"], row["change"]["p95_deg"]);
+
+  const auto current = [&](int i) {
+    return Json::parse(bytes_of(session(i) / "session.json")).value("current_solve", Json());
+  };
+  EXPECT_TRUE(current(0).is_null()) << "nothing is replaced by itself";
+  const Outcome accepted = run_weft({"batch", "accept", plan_file().string(), "--with-worse", "--json"});
+  ASSERT_EQ(accepted.exit_code, 0) << accepted.error;
+  EXPECT_EQ(accepted.json()["moved"], 2);
+  EXPECT_EQ(current(0), row["solve"]);
+  EXPECT_THAT(solves_of(session(0)), SizeIs(2));
+  ASSERT_EQ(run_weft({"batch", "prune", plan_file().string(), "--keep", "0"}).exit_code, 0);
+  EXPECT_THAT(solves_of(session(0)), SizeIs(2)) << "without --yes nothing goes";
+  ASSERT_EQ(run_weft({"batch", "prune", plan_file().string(), "--keep", "0", "--yes"}).exit_code, 0);
+  EXPECT_THAT(solves_of(session(0)), testing::ElementsAre(row["solve"].get<std::string>()));
+  EXPECT_EQ(run({"-q"}).json()["kept"], 2) << "an accepted batch is still done";
+}
+
+TEST_F(BatchTest, LeavesOutSessionsWhoseMapsWouldTurnByLittle) {
+  fill_archive(2);
+  for (int i = 0; i < 2; ++i)
+    ASSERT_EQ(run_weft({"solve", session(i).string(), "-q", "--quality", "fast"}).exit_code, 0);
+  const Json planned = plan({"--sample", "1", "--least-change", "20"});
+  EXPECT_EQ(planned["sessions"], 0);
+  ASSERT_EQ(planned["left_out"].size(), 2U);
+  EXPECT_EQ(planned["left_out"][0]["left_out"], "turns_little");
+  EXPECT_THAT(planned["left_out"][0]["said"].get<std::string>(), HasSubstr("its maps would turn by "));
+  EXPECT_EQ(run({"-q"}).exit_code, 0) << "there is nothing to do";
+  EXPECT_EQ(merge().exit_code, 0);
+}
+
+TEST_F(BatchTest, SpendsHoursWhereTheyBuyMostDegrees) {
+  fill_archive(2);
+  const Json planned = plan({"--within", "1h", "--sample", "1"});
+  ASSERT_GT(planned["curve"].size(), 1U);
+  EXPECT_GT(planned["curve"].front()["mean_deg"], planned["curve"].back()["mean_deg"]);
+  EXPECT_LE(planned["hours"], 1.0);
+  EXPECT_NEAR(planned["mean_deg"].get<double>(), planned["curve"].back()["mean_deg"].get<double>(), 1e-9)
+      << "an hour is enough for the best of two small sessions";
+  expect_refusal(work_,
+                 {"batch", "plan", archive().string(), "-q", "--sample", "1", "--within", "0.001s", "-o",
+                  (work_ / "none.jsonl").string()},
+                 64, {"there is not that little to do", "allow more hours"});
+}
+
+TEST_F(BatchTest, BringsSessionsHereAndTakesSolvesAway) {
+  fill_archive(2);
+  plan();
+  const auto before = contents_of(archive());
+  const fs::path far = work_ / "far";
+  const std::string script = work_ / "put.sh";
+  put_bytes(script,
+            fmt::format("set -e\nto={}/$(basename \"$(dirname \"$(dirname \"$2\")\")\")\nmkdir -p \"$to\"\n"
+                        "echo \"$2\" >> {}/order\ncp -r \"$1\" \"$to\"\n",
+                        far.string(), work_.path().string()));
+  const Outcome outcome = run({"-q", "--fetch", "cp -r {src} {dst}", "--store",
+                               "sh " + script + " {src} {dst}", "--scratch", (work_ / "scratch").string()});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+  EXPECT_EQ(contents_of(archive()), before);
+  EXPECT_TRUE(fs::is_empty(work_ / "scratch"));
+  std::istringstream order(bytes_of(work_ / "order"));
+  std::string first, second;
+  std::getline(order, first);
+  std::getline(order, second);
+  EXPECT_EQ(second, first + "/solve.json") << "readers believe solve.json, which goes last";
+  EXPECT_EQ(run({"-q", "--fetch", "false", "--store", "false"}).json()["kept"], 2);
+  EXPECT_EQ(merge().exit_code, 0);
+  expect_refusal(work_, {"batch", "run", plan_file().string(), "--fetch", "true"}, 64,
+                 {"solves would lie in scratch"});
+}
+
+TEST_F(BatchTest, ReadsSessionsFromStandardInput) {
+  fill_archive(3);
+  put_bytes(work_ / "list",
+            "  Affected sessions\n  " + session(2).string() + "   2026-01-31T10:00:00Z  yes\n");
+  auto shell = ChildProcess::start({"/bin/sh", "-c",
+                                    fmt::format("{} batch plan - --sample 0 -o {} < {}", WEFT_PROGRAM,
+                                                plan_file().string(), (work_ / "list").string())},
+                                   {}, work_ / "log");
+  ASSERT_TRUE(shell);
+  ASSERT_EQ((*shell)->wait(60), 0) << bytes_of(work_ / "log");
+  ASSERT_EQ(run({"-q"}).exit_code, 0);
+  EXPECT_THAT(solves_of(session(0)), IsEmpty());
+  EXPECT_THAT(solves_of(session(2)), SizeIs(1));
+}
+
+TEST_F(BatchTest, MakesMapsAndExportsOfEachSolve) {
+  fill_archive(1);
+  plan({"--then", "maps,export:png16"});
+  const Outcome outcome = run({"-q"});
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
+  ASSERT_TRUE(fs::exists(session(0) / "maps"));
+  EXPECT_TRUE(fs::exists(session(0) / "export" / "png16"));
+}
+
+}  // namespace
+}  // namespace weft::test
