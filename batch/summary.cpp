@@ -56,7 +56,7 @@ std::vector<Cause> causes_of(std::span<const Row> rows) {
     cause.kind = kind;
     cause.what = what;
     ++cause.sessions;
-    if (cause.example.empty()) cause.example = error ? error->message() : row.job->session;
+    if (cause.example.empty()) cause.example = error ? error->message() : what + ": " + row.job->session;
   }
   std::vector<Cause> causes;
   for (auto& [name, cause] : by_name) causes.push_back(std::move(cause));

@@ -82,7 +82,7 @@ TEST_F(BatchTest, ATaskSolvesItsOwnSessionsAlone) {
 }
 
 TEST_F(BatchTest, KilledAtRandomMomentsItEndsWithOneSolveASession) {
-  constexpr int kSessions = 4;
+  constexpr int kSessions = 3;
   fill_archive(kSessions);
   plan();
   std::mt19937 random(20261126);
@@ -90,7 +90,7 @@ TEST_F(BatchTest, KilledAtRandomMomentsItEndsWithOneSolveASession) {
   for (bool is_whole = false; !is_whole && kills < 40;) {
     const auto child = begin_run(plan_file(), work_ / "log");
     // Longer each time, so that a machine that is slow gets there too.
-    std::uniform_real_distribution<double> wait_s(0.2, 0.6 + 0.1 * kills);
+    std::uniform_real_distribution<double> wait_s(0.2, 0.6 + 0.3 * kills);
     const std::optional<int> code = child->wait(wait_s(random));
     is_whole = code == 0;
     if (code) continue;
@@ -173,9 +173,9 @@ TEST_F(BatchTest, ASessionThatIsGoneIsRefusedByName) {
 
 TEST_F(BatchTest, MemoryThatRunsOutCostsTheSessionInHandAlone) {
   fill_archive(2);
-  simulate(scene_named("golden", {2000, 1500}), session(7));
+  simulate(scene_named("golden", {1600, 1200}), session(7));
   plan();
-  const Outcome outcome = run({"-q", "--memory", "230M", "--threads", "1"});
+  const Outcome outcome = run({"-q", "--memory", "200M", "--threads", "1"});
   EXPECT_EQ(outcome.exit_code, 75) << outcome.error;
   EXPECT_EQ(outcome.json()["solved"], 2) << outcome.error;
   EXPECT_EQ(outcome.json()["lost"], 1);
@@ -216,11 +216,10 @@ TEST_F(BatchTest, TwoPlansOfOneArchiveAtOnceDoNoHarm) {
 TEST_F(BatchTest, WhatIsThereIsLeftOut) {
   fill_archive(2);
   ASSERT_EQ(run_weft({"solve", session(0).string(), "-q"}).exit_code, 0);
-  const Json planned = plan({"--sample", "1"});
+  const Json planned = plan();
   EXPECT_EQ(planned["sessions"], 1);
   ASSERT_EQ(planned["left_out"].size(), 1U);
   EXPECT_EQ(planned["left_out"][0]["left_out"], "there");
-  EXPECT_GT(planned["left_out"][0]["seconds"], 0);
 }
 
 TEST_F(BatchTest, WhatCannotBeSolvedIsNamedWithWhyBeforeAnythingIsSpent) {
