@@ -78,6 +78,10 @@ constexpr char kCalibrationCheck[] = "weft.calibration-check";
 constexpr char kSet[] = "weft.set";
 constexpr char kReflectance[] = "weft.reflectance";
 constexpr char kPhotographs[] = "weft.photographs";
+constexpr char kBatchReport[] = "weft.batch-report";
+
+// Formats of lines, whose stored files tests/batch/stored_lines_test.cpp reads.
+const std::set<std::string> kOfLines = {"weft.batch/1", "weft.batch-result/1"};
 
 struct Format {
   std::string name;
@@ -99,7 +103,8 @@ const std::vector<Format> kFormats = {{"weft.session", session_again},
                                       {kCalibrationCheck, document_again<kCalibrationCheck>},
                                       {kSet, document_again<kSet>},
                                       {kReflectance, document_again<kReflectance>},
-                                      {kPhotographs, document_again<kPhotographs>}};
+                                      {kPhotographs, document_again<kPhotographs>},
+                                      {kBatchReport, document_again<kBatchReport>}};
 
 struct Stored {
   fs::path file;
@@ -201,7 +206,7 @@ TEST(StoredDocuments, OfANewerMajorVersionAreRefusedByTheVersionTheyNeed) {
 }
 
 TEST(StoredDocuments, AreThereForEveryVersionThatThePageOfFormatsNames) {
-  std::set<std::string> there;
+  std::set<std::string> there = kOfLines;
   for (const Stored& stored : stored_documents()) there.insert(stored.schema());
   const std::string page = bytes_of(kSource / "docs/formats.md");
   const std::regex schema(R"(`(weft\.[a-z-]+/\d+)(?:\.(\d+))?`)");

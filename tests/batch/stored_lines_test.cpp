@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// Formats of lines that are kept in testdata, of every version there ever was, by today's readers.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "batch/outcome.h"
+#include "batch/plan.h"
+#include "core/files.h"
+
+namespace weft::batch {
+namespace {
+
+const std::filesystem::path kSchemas = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas";
+
+std::string stored(const char* file) {
+  const Result<std::string> text = read_text(kSchemas / file);
+  EXPECT_TRUE(text) << file;
+  return text ? *text : "";
+}
+
+TEST(StoredLines, OfAPlanAreRead) {
+  const std::string text = stored("weft.batch-1/night.jsonl");
+  const Result<Plan> plan = plan_from_text(text, "night.jsonl");
+  ASSERT_TRUE(plan) << plan.error().message();
+  ASSERT_EQ(plan->jobs.size(), 1U);
+  EXPECT_EQ(plan->jobs[0].session, "/archive/twill.weft");
+  EXPECT_EQ(plan->header.tasks.size(), 1U);
+  Plan again = *plan;
+  EXPECT_EQ(text_of(again), text);
+}
+
+TEST(StoredLines, OfAPlanOfANewerMajorVersionAreRefused) {
+  std::string text = stored("weft.batch-1/night.jsonl");
+  const std::string schema = "weft.batch/1";
+  text.replace(text.find(schema), schema.size(), "weft.batch/2");
+  const Result<Plan> plan = plan_from_text(text, "night.jsonl");
+  ASSERT_FALSE(plan);
+  EXPECT_EQ(plan.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(plan.error().message(), testing::HasSubstr("weft.batch/2"));
+}
+
+TEST(StoredLines, OfResultsAreRead) {
+  const std::string text = stored("weft.batch-result-1/task-0.jsonl");
+  const Result<Plan> plan = plan_from_text(stored("weft.batch-1/night.jsonl"), "night.jsonl");
+  ASSERT_TRUE(plan) << plan.error().message();
+  const auto histories = histories_of(text, plan->header.id);
+  ASSERT_EQ(histories.size(), 1U);
+  const History& history = histories.begin()->second;
+  ASSERT_TRUE(history.result);
+  EXPECT_EQ(history.result->solve, plan->jobs[0].solve);
+  EXPECT_TRUE(history.result->change);
+  EXPECT_EQ(line_of(*history.result), text);
+}
+
+}  // namespace
+}  // namespace weft::batch
