@@ -184,10 +184,9 @@ Level add_level(Options& options, const Option& session, SolveArguments& a) {
       "--explain", &a.explain,
       "Solve nothing: predict, from sample tiles, each level's mean error in degrees and its seconds here");
   options
-      .add(
-          "--crops", &a.crops,
-          "With --explain: folder for what each level made of the same 512 x 256 pixels, LEVEL_relit.png, "
-          "LEVEL_normal.png and LEVEL_normal.exr")
+      .add("--crops", &a.crops,
+           "With --explain: folder for what each level made of the same 512 x 256 pixels, LEVEL_relit.png, "
+           "LEVEL_normal.png and LEVEL_normal.exr")
       .needs(explain);
   const Option within = options
                             .add("--within", &a.wish.within_seconds,
