@@ -58,8 +58,8 @@ inline constexpr double kWorthwhileGain = 0.05;
 /// of two runs, or one where it takes long. The error to expect is what sigma.exr says of the cut. That the
 /// height's transform of the reference level grows by a logarithm faster than the frame is left out, and so
 /// is holding a simulated session against its truth. Nothing is written beside the photographs. What each
-/// level made of the cut is kept in the folder `crops`, LEVEL_relit.png, LEVEL_normal.png and LEVEL_normal.exr,
-/// unless that is empty.
+/// level made of the cut is kept in the folder `crops`, LEVEL_relit.png, LEVEL_normal.png and
+/// LEVEL_normal.exr, unless that is empty.
 Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& options,
                                const std::filesystem::path& crops, const JobContext& context);
 Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,

@@ -24,8 +24,8 @@ struct GlossOptions {
 /// reference_deg: by the level reference. albedo_rel: mean of |A - B| / B of the level robust.
 /// alpha, along, f0: what was found, beside what is true where that has such numbers. said: measured, or why
 /// not. changes: whether alpha is said to change across the frame. fit_s: seconds of finding it on one
-/// thread. robust_us, glossy_us: microseconds a pixel of robust_method, and of it and the lobe, on one thread.
-/// kUsage where no cloth has the given name.
+/// thread. robust_us, glossy_us: microseconds a pixel of robust_method, and of it and the lobe, on one
+/// thread. kUsage where no cloth has the given name.
 Result<Rows> gloss_table(const GlossOptions& options);
 
 }  // namespace weft::bench

@@ -21,7 +21,7 @@ struct PhotographFacts {
   std::optional<std::uint32_t> image_number;
   /// DateTimeOriginal with SubSecTimeOriginal: seconds since 1970 if the camera's clock showed UTC.
   std::optional<double> taken_s;
-  double resolution_s = 1;  ///< steps of taken_s: 1 without sub-seconds
+  double resolution_s = 1;       ///< steps of taken_s: 1 without sub-seconds
   std::optional<double> zone_s;  ///< OffsetTimeOriginal: what the camera's clock is ahead of UTC
   double exposure_us = 0;
   double iso = 0;
