@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/descriptor.h"
+#include "core/partial_name.h"
 
 namespace weft {
 namespace {
@@ -50,12 +51,6 @@ bool write_all(int fd, std::string_view bytes) {
     bytes.remove_prefix(static_cast<std::size_t>(n));
   }
   return true;
-}
-
-// Of this machine: two of them that share a disk may have processes of one number.
-std::string host_name() {
-  std::array<char, 256> name = {};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
 fs::path parent_of(const fs::path& path) {
@@ -187,8 +182,7 @@ Result<void> publish_folder(const fs::path& folder, const fs::path& target) {
 
 PartialFolder::PartialFolder(const fs::path& target)
     : target_(absolute_folder(target)),
-      path_(parent_of(target_) /
-            fmt::format(".{}.{}.{}.partial", target_.filename().string(), host_name(), ::getpid())) {
+      path_(parent_of(target_) / partial_name(target_.filename().string())) {
   for (fs::path p = path_.parent_path(); !p.empty() && !is_there(p); p = p.parent_path()) made_.push_back(p);
 }
 

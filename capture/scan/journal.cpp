@@ -9,11 +9,11 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
-#include <csignal>
+#include <optional>
 
 #include "core/files.h"
 #include "core/iso_time.h"
+#include "core/partial_name.h"
 
 namespace weft::capture {
 namespace {
@@ -348,18 +348,12 @@ Result<void> Journal::finish(const std::vector<std::string>& warnings, const Jso
 }
 
 void remove_abandoned(const fs::path& folder) {
-  const std::string start = "." + folder.filename().string() + ".", end = ".partial";
+  const std::string start = "." + folder.filename().string() + ".";
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder.parent_path(), ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(start) || !name.ends_with(end) || name.size() <= start.size() + end.size())
-      continue;
-    pid_t owner = 0;
-    const char* const last = name.data() + name.size() - end.size();
-    const auto [stop, failed] = std::from_chars(name.data() + start.size(), last, owner);
-    if (failed == std::errc() && stop == last && owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) {
-      fs::remove_all(entry.path(), ignored);
-    }
+    if (!entry.path().filename().string().starts_with(start)) continue;
+    const std::optional<PartialMaker> maker = maker_of_partial(entry.path());
+    if (maker && maker->is_of_this_machine && !maker->runs) fs::remove_all(entry.path(), ignored);
   }
 }
 

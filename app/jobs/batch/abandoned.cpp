@@ -1,47 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/batch/abandoned.h"
 
-#include <fmt/format.h>
-#include <signal.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <array>
-#include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <optional>
-#include <string_view>
+
+#include "core/partial_name.h"
 
 namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kEnding = ".partial";
 constexpr auto kLongUnchanged = std::chrono::hours(24);
-
-// ".NAME.HOST.PID.partial" without its ending: the process that made it.
-struct Maker {
-  std::string_view name_and_host;
-  pid_t pid = 0;
-};
-
-std::optional<Maker> maker_of(std::string_view name) {
-  if (!name.starts_with('.') || !name.ends_with(kEnding)) return {};
-  name.remove_suffix(kEnding.size());
-  const std::size_t dot = name.rfind('.');
-  if (dot == 0 || dot == std::string_view::npos) return {};
-  Maker maker = {name.substr(0, dot), 0};
-  const std::string_view number = name.substr(dot + 1);
-  const auto [end, failed] = std::from_chars(number.data(), number.data() + number.size(), maker.pid);
-  if (failed != std::errc() || end != number.data() + number.size() || maker.pid <= 0) return {};
-  return maker;
-}
-
-bool runs(pid_t pid) {
-  return ::kill(pid, 0) == 0 || errno == EPERM;
-}
 
 bool is_long_unchanged(const fs::path& folder) {
   std::error_code failed;
@@ -57,21 +28,14 @@ bool is_long_unchanged(const fs::path& folder) {
 
 }  // namespace
 
-std::string name_of_this_host() {
-  std::array<char, 256> name = {};
-  return ::gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
-}
-
 std::vector<fs::path> abandoned_in(const fs::path& parent) {
-  const std::string here = "." + name_of_this_host();
   std::vector<fs::path> found;
   std::error_code failed;
   for (fs::directory_iterator entry(parent, failed), end; !failed && entry != end; entry.increment(failed)) {
-    const std::string name = entry->path().filename().string();
-    const std::optional<Maker> maker = maker_of(name);
+    const std::optional<PartialMaker> maker = maker_of_partial(entry->path());
     if (!maker) continue;
-    const bool is_own = maker->name_and_host.ends_with(here);
-    if (is_own ? !runs(maker->pid) : is_long_unchanged(entry->path())) found.push_back(entry->path());
+    const bool is_done = maker->is_of_this_machine ? !maker->runs : is_long_unchanged(entry->path());
+    if (is_done) found.push_back(entry->path());
   }
   std::ranges::sort(found);
   return found;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 #include <vector>
 
 namespace weft::app {
@@ -18,7 +17,5 @@ std::vector<std::filesystem::path> abandoned_of(const std::filesystem::path& ses
 
 /// Removes them; how many went.
 int remove_folders(const std::vector<std::filesystem::path>& folders);
-
-std::string name_of_this_host();
 
 }  // namespace weft::app

@@ -22,6 +22,7 @@
 #include "core/descriptor.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "core/partial_name.h"
 #include "core/solve.h"
 
 namespace weft::app {
@@ -325,7 +326,7 @@ class BatchRun {
   Result<void> finish(std::size_t index, batch::Outcome outcome) {
     Item& item = items_[index];
     outcome.attempt = item.attempt;
-    outcome.host = name_of_this_host();
+    outcome.host = machine_name();
     item.is_over = true;
     if (Result<void> ok = add_outcome(plan_, item.job.task, outcome); !ok) return ok;
     if (!item.fetched.empty()) {
