@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSessions = 10'000, kOwn = 10, kSample = 50;
+constexpr int kSessions = 10'000, kOwn = 10, kSample = 10;
 constexpr double kMegapixels = 0.05;
 
 int sessions_of(const BatchBenchOptions& options) {
