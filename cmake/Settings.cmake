@@ -31,8 +31,7 @@ endif()
 target_link_options(weft_settings INTERFACE -fuse-ld=lld)
 target_link_libraries(weft_settings INTERFACE fmt::fmt)  # in the precompiled headers, so alike in every target
 if(WEFT_FUZZERS)
-  # Tests run in the same tree. Watching each comparison would make them several times slower.
-  target_compile_options(weft_settings INTERFACE -fsanitize=fuzzer-no-link -fno-sanitize-coverage=trace-cmp)
+  target_compile_options(weft_settings INTERFACE -fsanitize=fuzzer-no-link)
 endif()
 if(WEFT_SANITIZE)
   target_compile_options(weft_settings INTERFACE
