@@ -100,6 +100,11 @@ test('the queue is the same in another browser: put first, cancelled, done again
   await Promise.all([ann.leave(), bob.leave()]);
 });
 
+/** A solve that takes ten times as long as others, so that a scan can begin meanwhile. */
+function longSolve() {
+  return rig.ask('jobs', {kind: 'solve', session, method: 'seed'});
+}
+
 /** How far a job is, as the page shows it. */
 async function shareShown(visitor, id) {
   const page = await visitor.open(`${rig.address}/jobs`);
@@ -110,7 +115,7 @@ test('another browser shows the share that the closed one showed, and a job that
   const folder = path.join(rig.folder, 'scans', `${session}.weft`);
   const entries = () => fs.readdirSync(folder, {recursive: true}).sort();
   const before = entries();
-  const {id} = await rig.ask('jobs', {kind: 'solve', session, method: 'lts'});
+  const {id} = await longSolve();
   const job = () => rig.ask(`jobs/${id}`);
   await until(async () => { const {phase, share} = await job(); return phase === 'solve' && share > 0; });
   await rig.inject('board unplug');
@@ -137,7 +142,7 @@ test('another browser shows the share that the closed one showed, and a job that
 
 test('a scan that begins during a solve loses no photograph, and the solve stands still meanwhile', async () => {
   const before = await rig.ask(`sessions/${session}`);
-  const {id} = await rig.ask('jobs', {kind: 'solve', session, method: 'lts'});
+  const {id} = await longSolve();
   await until(async () => (await rig.ask(`jobs/${id}`)).phase === 'solve');
   const {session: beside} = await rig.ask('scan', {fabric: 'beside a solve', cloth_height_mm: 0.8});
   const seen = [];
