@@ -22,8 +22,9 @@ using capture::ScanEvidence;
 using test::Lighting;
 using test::SimulatedCloth;
 
-constexpr int kSide = 480;   // photosites: scenes that are larger are seen from further away
-constexpr int kRepeat = -1;  // in the place of a LED: its shot is LED 1 once more
+constexpr int kSide = 480;      // photosites: scenes that are larger are seen from further away
+constexpr int kRepeat = -1;     // in the place of a LED: its shot is LED 1 once more
+constexpr int kDarkAgain = -2;  // the dark shot at the end
 
 simulator::Scene smaller(simulator::Scene scene) {
   const int less = std::max(1, scene.camera.width / kSide);
@@ -38,7 +39,7 @@ simulator::Scene smaller(simulator::Scene scene) {
 using Story = std::function<Lighting(int led)>;
 
 Lighting plain(int led) {
-  if (led == 0) return {};
+  if (led == 0 || led == kDarkAgain) return {};
   return {{{led == kRepeat ? 1 : led, 1.0}}, 0};
 }
 
@@ -78,8 +79,7 @@ class Stage {
     std::vector<int> leds(static_cast<std::size_t>(cloth_.leds()));
     std::iota(leds.begin(), leds.end(), 1);
     for (const auto& shot : capture::plan_shots({leds, true, {}}, {cloth_.scene_exposure_us(), 100, 8}, {})) {
-      const bool is_repeat = shot.role == ShotRole::kRepeat && shot.led > 0;
-      std::vector<double> light = seen(story(is_repeat ? kRepeat : shot.led), is_repeat);
+      std::vector<double> light = seen(story(told_as(shot)), shot.role == ShotRole::kRepeat);
       const capture::ShotVerdict verdict = evidence.judge(shot, light);
       if (shot.role == ShotRole::kLit && verdict.level) {
         told.least_level = std::min(told.least_level, *verdict.level);
@@ -107,17 +107,20 @@ class Stage {
     bool is_mended = false;
     for (int takes = 0; !missing.empty() && takes < 100; ++takes) {
       const auto& shot = plan[static_cast<std::size_t>(*missing.begin())];
-      const bool is_repeat = shot.role == ShotRole::kRepeat && shot.led > 0;
-      const bool is_wrong = !is_mended && shot.role != ShotRole::kDark && (is_repeat || shot.led >= from);
+      const bool is_repeat = shot.role == ShotRole::kRepeat;
+      const bool is_wrong = !is_mended && (is_repeat || shot.led >= from);
       const Story story = is_wrong ? with_light : plain;
-      std::vector<double> light = seen(story(is_repeat ? kRepeat : shot.led), is_repeat);
+      std::vector<double> light = seen(story(told_as(shot)), is_repeat);
       const capture::ShotVerdict verdict = evidence.judge(shot, light);
       if (verdict.finding != Finding::kAgrees) {
         is_mended = true;
-        for (const int index : verdict.accused) {
-          evidence.forget(index);
-          wrong.erase(index);
-          missing.insert(index);
+        for (const auto& accused : plan) {
+          if (accused.index == 0 ||
+              !(verdict.accuses_all || std::ranges::count(verdict.accused, accused.index)))
+            continue;
+          evidence.forget(accused.index);
+          wrong.erase(accused.index);
+          missing.insert(accused.index);
         }
         continue;
       }
@@ -129,6 +132,11 @@ class Stage {
   }
 
  private:
+  static int told_as(const capture::PlannedShot& shot) {
+    if (shot.role != ShotRole::kRepeat) return shot.led;
+    return shot.led == 0 ? kDarkAgain : kRepeat;
+  }
+
   std::vector<double> less_dark(std::vector<double> light, double times) const {
     for (std::size_t i = 0; i < light.size(); ++i) light[i] = times * (light[i] - dark_[i]);
     return light;
@@ -142,6 +150,8 @@ class Stage {
     for (const auto& [led, share] : lighting.leds)
       add(leds_[again][static_cast<std::size_t>(led - 1)], share);
     if (lighting.room > 0) add(room_, lighting.room);
+    std::ranges::replace_if(
+        sum, [](double v) { return v >= 1; }, std::numeric_limits<double>::quiet_NaN());
     return sum;
   }
 
@@ -176,7 +186,7 @@ std::string stays_lit(const Stage& stage) {
   for (int a = 1; a <= stage.leds(); ++a) {
     const Told told = stage.tell([=](int led) {
       Lighting light = plain(led);
-      if (led > a || led == kRepeat) light.leds[a] = 1;
+      if (led > a || led < 0) light.leds[a] = 1;
       return light;
     });
     named += told.sentence == fmt::format("LED {} stays lit", a);
@@ -198,7 +208,7 @@ Json row_of(const std::string& scene, const Stage& stage) {
       return stage
           .tell([=](int led) {
             Lighting lighting = plain(led);
-            if (led >= from || led == kRepeat) lighting.room = light;
+            if (led >= from || led < 0) lighting.room = light;
             return lighting;
           })
           .is_refused();
@@ -240,6 +250,7 @@ Json row_of(const std::string& scene, const Stage& stage) {
           {"stays_lit", stays_lit(stage)},
           {"room_30", with_room_light(0.3)},
           {"room_10", with_room_light(0.1)},
+          {"put_out_500", put_out(5)},
           {"put_out_100", put_out(1)},
           {"put_out_30", put_out(0.3)}};
 }

@@ -164,12 +164,13 @@ std::optional<Leds> level_start(const Light& light, const PatchLights& model) {
   return leds;
 }
 
-/// Downhill from `leds` until no step leads lower.
-Leds lowest_from(Leds leds, const std::vector<Leds>& symmetries, int count, Misfits& misfits) {
+/// Downhill from `leds` until no step leads lower, or it is stopped.
+Leds lowest_from(Leds leds, const std::vector<Leds>& symmetries, int count, Misfits& misfits,
+                 const std::stop_token& stop) {
   while (true) {
     Leds best = leds;
     const auto look_at = [&](const Leds& other) {
-      if (misfits.of(other) < misfits.of(best)) best = other;
+      if (!stop.stop_requested() && misfits.of(other) < misfits.of(best)) best = other;
     };
     for (const Leds& other : neighbours_of(leds, count)) look_at(other);
     for (const Leds& symmetry : symmetries) look_at(under(leds, symmetry));
@@ -262,17 +263,19 @@ double misfit_under(const std::vector<int>& leds, const std::vector<std::vector<
 
 std::optional<LightAssignment> assign_by_light(const std::vector<std::vector<double>>& light,
                                                const PatchLights& model,
-                                               const std::vector<std::vector<int>>& starts) {
+                                               const std::vector<std::vector<int>>& starts,
+                                               const std::stop_token& stop) {
   if (light.size() < kFewestToAssign || light.size() > model.leds.size()) return {};
   std::optional<Leds> level = level_start(light, model);
   if (!level) return {};
   const std::vector<Leds> symmetries = symmetries_of(model);
   const int count = static_cast<int>(model.leds.size());
   Misfits misfits(light, model);
-  Leds best = lowest_from(std::move(*level), symmetries, count, misfits);
+  Leds best = lowest_from(std::move(*level), symmetries, count, misfits, stop);
   for (const Leds& start : starts) {
-    if (misfits.of(start) < misfits.of(best)) best = lowest_from(start, symmetries, count, misfits);
+    if (misfits.of(start) < misfits.of(best)) best = lowest_from(start, symmetries, count, misfits, stop);
   }
+  if (stop.stop_requested()) return {};
   return described(best, misfits);
 }
 

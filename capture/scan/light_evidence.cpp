@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/statistics.h"
@@ -24,6 +25,7 @@ constexpr std::size_t kStoryStep = 5;        // every fifth patch is looked at: 
 constexpr std::size_t kGlanceStep = 25;      // of those every fifth, to see which stories are worth that
 constexpr double kWorthALook = 0.8;          // of the plan's misfit at that glance
 constexpr double kMostFull = 0.5;            // of a frame's patches, for it to be held against the others
+constexpr double kFarFromFull = 0.5;         // of full scale, as others let expect of a patch that is full
 constexpr double kFarBetter = 0.6;       // of the plan's misfit, at most, for another story to be believed
 constexpr double kBetterBy = 0.002;      // and by this at least
 constexpr double kAsGood = 1.25;         // of the least misfit: frames of such a story are in doubt as well
@@ -288,7 +290,7 @@ ShotVerdict ScanEvidence::judge_dark(const PlannedShot& shot, const std::vector<
 }
 
 /// The middle of what the patches gained, by how well that is known. A lamp that was switched on fills them
-/// all, so that none may be finite.
+/// all, so that none may be finite. So much as no first dark shot may have lit the others as well.
 ShotVerdict ScanEvidence::judge_dark_again(const std::vector<double>& light) const {
   if (!dark_) return {};
   std::vector<double> gained;
@@ -301,6 +303,15 @@ ShotVerdict ScanEvidence::judge_dark_again(const std::vector<double>& light) con
       gained.empty() ? 0 : kMedianNoise * median(gained) / std::sqrt(static_cast<double>(gained.size()));
   ShotVerdict verdict;
   if (std::abs(more) < std::max(kDarkNoise * noise, kDarkAlike)) return verdict;
+  if (more > kDarkTo) {
+    verdict.finding = Finding::kRoomLight;
+    verdict.sentence = fmt::format(
+        "the dark shot at the end is brighter than the first by {:.2g} percent of full scale: a lamp in the "
+        "room or a LED came on during the scan",
+        100 * more);
+    verdict.accuses_all = true;
+    return verdict;
+  }
   verdict.doubt = Finding::kRoomLight;
   verdict.warnings.push_back(
       fmt::format("the dark shot at the end is {} than the first by {:.2g} percent of full scale: the room's "
@@ -309,16 +320,18 @@ ShotVerdict ScanEvidence::judge_dark_again(const std::vector<double>& light) con
   return verdict;
 }
 
-double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
-  const auto of_flat_cloth = [&](int led, std::size_t i) {
-    return model_->leds[static_cast<std::size_t>(led - 1)][i].z;
-  };
-  std::vector<const Seen*> readable;
+std::vector<const ScanEvidence::Seen*> ScanEvidence::readable() const {
+  std::vector<const Seen*> frames;
   for (const auto& [index, seen] : lit_) {
-    if (is_readable(seen.light)) readable.push_back(&seen);
+    if (is_readable(seen.light)) frames.push_back(&seen);
   }
-  std::vector<double> levels;
-  for (std::size_t i = 0; i < light.size(); ++i) {
+  return frames;
+}
+
+std::vector<double> ScanEvidence::expected_of(int led, const std::vector<const Seen*>& readable) const {
+  const auto of_flat_cloth = [&](int of_led, std::size_t i) { return light_of(of_led, *model_)[i].z; };
+  std::vector<double> expected(light_of(led, *model_).size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
     std::vector<double> albedo;
     for (const Seen* seen : readable) {
       const double z = of_flat_cloth(seen->shot.led, i);
@@ -326,10 +339,46 @@ double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>
         albedo.push_back((seen->light[i] - (dark_ ? (*dark_)[i] : 0)) / z);
       }
     }
-    const double expected = median(std::move(albedo)) * of_flat_cloth(shot.led, i);
-    if (expected > 0 && std::isfinite(light[i])) levels.push_back(light[i] / expected);
+    if (!albedo.empty()) expected[i] = median(std::move(albedo)) * of_flat_cloth(led, i);
+  }
+  return expected;
+}
+
+double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
+  const std::vector<double> expected = expected_of(shot.led, readable());
+  std::vector<double> levels;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    if (expected[i] > 0 && std::isfinite(light[i])) levels.push_back(light[i] / expected[i]);
   }
   return levels.empty() ? 1 : median(std::move(levels));
+}
+
+bool ScanEvidence::is_too_full(const Seen& frame, const std::vector<const Seen*>& readable) const {
+  const std::vector<double> expected = expected_of(frame.shot.led, readable);
+  std::size_t too_full = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i)
+    too_full += std::isnan(frame.light[i]) && expected[i] < kFarFromFull;
+  return static_cast<double>(too_full) > kMostFull * static_cast<double>(expected.size());
+}
+
+/// Frames that are full, this one or one before, which those that are not let expect far from full.
+ShotVerdict ScanEvidence::judge_full(const PlannedShot& shot, const std::vector<double>& light) const {
+  ShotVerdict verdict;
+  std::vector<const Seen*> evidence = readable();
+  const Seen newest = {shot, light};
+  const bool is_newest_full = !is_readable(light);
+  if (is_newest_full && is_too_full(newest, evidence)) verdict.accused = {shot.index};
+  if (!is_newest_full) {
+    evidence.push_back(&newest);
+    for (const auto& [index, seen] : lit_) {
+      if (!is_readable(seen.light) && is_too_full(seen, evidence)) verdict.accused.push_back(index);
+    }
+    verdict.is_over = true;
+  }
+  if (verdict.accused.empty()) return {};
+  verdict.finding = Finding::kRoomLight;
+  verdict.sentence = "a photograph is full where the others are far from it: there is light beside the LEDs";
+  return verdict;
 }
 
 ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<double>& light) const {
@@ -341,6 +390,7 @@ ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<d
     return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
   }
   if (!model_ || lit_.empty()) return {};
+  if (const ShotVerdict full = judge_full(shot, light); full.finding != Finding::kAgrees) return full;
   if (!is_readable(light)) {
     ShotVerdict verdict;
     verdict.warnings.push_back(
@@ -450,6 +500,7 @@ ShotVerdict ScanEvidence::judge_again(const PlannedShot& shot, const std::vector
     verdict.finding = finding;
     verdict.sentence = std::move(sentence);
     verdict.accused = {shot.index};
+    verdict.accuses_all = is_repeat && finding == Finding::kChanged;
   };
   const double off = std::abs(*verdict.level - 1);
   if (*verdict.level < kDarkLevel) {

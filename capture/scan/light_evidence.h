@@ -44,6 +44,7 @@ struct ShotVerdict {
   std::optional<double> misfit;      ///< of LightFit, as planned
   Finding doubt = Finding::kAgrees;  ///< what a frame that is kept is warned of
   bool is_over = false;              ///< light that was wrong is right again: the newest frame is not accused
+  bool accuses_all = false;          ///< every frame since the dark shot, of whatever role
 
   /// Whether the same shots once more may come out right.
   bool may_pass() const {
@@ -58,8 +59,8 @@ struct ShotVerdict {
 ///   where it does not, forget() every shot that the verdict accuses.
 ///
 /// The dark shot is taken off what comes after it. Repeats and brackets are held against the lit frame of
-/// their LED, the dark shot at the end against the first: it is kept, and warned of. Where there is nothing
-/// to hold a frame against, it agrees.
+/// their LED, the dark shot at the end against the first. Frames that are full are held against what those
+/// that are not let expect of them. Where there is nothing to hold a frame against, it agrees.
 class ScanEvidence {
  public:
   /// Without a model only darkness, the repeat and the brackets are looked at. `solved`: the polariser's
@@ -81,6 +82,9 @@ class ScanEvidence {
   };
   const Seen* of_led(int led) const;
   std::vector<double> without_dark(const std::vector<double>& light) const;
+  std::vector<const Seen*> readable() const;
+  std::vector<double> expected_of(int led, const std::vector<const Seen*>& readable) const;
+  bool is_too_full(const Seen& frame, const std::vector<const Seen*>& readable) const;
   ShotVerdict judge_dark(const PlannedShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_dark_again(const std::vector<double>& light) const;
   ShotVerdict judge_lit(const PlannedShot& shot, const std::vector<double>& light) const;
@@ -88,6 +92,7 @@ class ScanEvidence {
   ShotVerdict judge_below(const std::vector<double>& light) const;
   ShotVerdict judge_again(const PlannedShot& shot, const std::vector<double>& light) const;
   double level_of(const PlannedShot& shot, const std::vector<double>& light) const;
+  ShotVerdict judge_full(const PlannedShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_pattern(const PlannedShot& shot, const std::vector<double>& light) const;
 
   PatchGrid grid_;

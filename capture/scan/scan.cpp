@@ -470,18 +470,29 @@ class Scan {
     return {error, std::move(take_again)};
   }
 
+  std::vector<int> accused_by(const ShotVerdict& verdict, const PlannedShot& shot) const {
+    if (!verdict.accuses_all) return verdict.accused;
+    std::vector<int> all;
+    for (const Shot& kept : journal_->session().shots) {
+      if (kept.role != ShotRole::kDark) all.push_back(kept.index);
+    }
+    all.push_back(shot.index);
+    return all;
+  }
+
   /// Takes what is accused out of the session, so that it is taken again, now or by the next scan.
   Kept refused(const PlannedShot& shot, const ShotVerdict& verdict, FramesSoFar& so_far) {
-    Kept kept = {Error{ErrorKind::kBadData, verdict.sentence, names_of(verdict.accused),
+    const std::vector<int> indices = accused_by(verdict, shot);
+    Kept kept = {Error{ErrorKind::kBadData, verdict.sentence, names_of(indices),
                        "the photograph does not agree with the calibrated light",
                        verdict.finding == Finding::kChanged
-                           ? "leave cloth, camera and light alone, and scan under another name with -o"
+                           ? "leave cloth, camera and light alone, then run the same command again"
                            : "mend the light, then run the same command again"},
                  {}};
     // What is taken again adds to a session and takes nothing out.
-    const Result<void> out = request_.again ? Result<void>() : journal_->discard(verdict.accused);
+    const Result<void> out = request_.again ? Result<void>() : journal_->discard(indices);
     if (!out) return {out.error(), {}};
-    for (const int index : verdict.accused) {
+    for (const int index : indices) {
       so_far.evidence->forget(index);
       const PlannedShot& accused = planned(index);
       report_.refused({index,
@@ -494,7 +505,7 @@ class Scan {
     report_.change(
         [&](ScanStatus& status) { status.frames = static_cast<int>(journal_->session().shots.size()); });
     if (!verdict.may_pass() || request_.again) return kept;
-    kept.take_again = verdict.accused;
+    kept.take_again = indices;
     if (verdict.is_over) kept.take_again.push_back(shot.index);
     return kept;
   }
@@ -558,34 +569,6 @@ class Scan {
 };
 
 }  // namespace
-
-const char* name_of(ScanPhase phase) {
-  switch (phase) {
-    case ScanPhase::kConnecting:
-      return "connecting";
-    case ScanPhase::kMetering:
-      return "metering";
-    case ScanPhase::kCooling:
-      return "cooling";
-    case ScanPhase::kExposing:
-      return "exposing";
-    case ScanPhase::kFetching:
-      return "fetching";
-    case ScanPhase::kRecovering:
-      return "recovering";
-    case ScanPhase::kPaused:
-      return "paused";
-    case ScanPhase::kFinishing:
-      return "finishing";
-    case ScanPhase::kComplete:
-      return "complete";
-    case ScanPhase::kCancelled:
-      return "cancelled";
-    case ScanPhase::kFailed:
-      return "failed";
-  }
-  return "failed";
-}
 
 Result<ScanOutcome> scan(const ScanRequest& request, Lamps& lamps, Camera& camera, const ScanEvents& events,
                          const ScanControl& control, const ScanOptions& options) {

@@ -207,19 +207,46 @@ TEST(LightEvidence, AccusesTheFramesOfALampThatIsOutAgain) {
   EXPECT_TRUE(t.verdict.is_over && t.verdict.may_pass()) << "so they are taken again at once";
 }
 
-TEST(LightEvidence, SpeaksOfLightThatCameBetweenTheTwoDarkShots) {
-  for (const double room : {0.0, 1e-3, -1e-3, 5e-3, 0.5}) {
-    const Told t = told(woven(), [&](int led) {
-      Lighting lighting = as_planned(led);
-      if (led == (room < 0 ? 0 : kDarkAgain)) lighting.room = std::abs(room);
-      return lighting;
-    });
+/// A session whose first or last dark shot has light of the room: below 0 it is the first.
+Told with_light_between(double room) {
+  return told(woven(), [room](int led) {
+    Lighting lighting = as_planned(led);
+    if (led == (room < 0 ? 0 : kDarkAgain)) lighting.room = std::abs(room);
+    return lighting;
+  });
+}
+
+TEST(LightEvidence, SpeaksOfLittleLightThatCameBetweenTheTwoDarkShots) {
+  for (const double room : {0.0, 1e-3, -1e-3, 5e-3}) {
+    const Told t = with_light_between(room);
     EXPECT_EQ(t.verdict.finding, Finding::kAgrees) << "it is kept: " << t.verdict.sentence;
     EXPECT_EQ(t.verdict.doubt, room == 0 ? Finding::kAgrees : Finding::kRoomLight) << room;
     ASSERT_EQ(t.warnings.size(), room == 0 ? 0U : 1U) << room;
     if (room == 0) continue;
     EXPECT_THAT(t.warnings.front(), HasSubstr(room < 0 ? "the dark shot at the end is darker"
                                                        : "the dark shot at the end is brighter"));
+  }
+}
+
+TEST(LightEvidence, AccusesAllFramesWhereALampIsOnAtTheEnd) {
+  for (const double room : {0.1, 0.5, 5.0}) {
+    const Told t = with_light_between(room);
+    EXPECT_EQ(t.verdict.finding, Finding::kRoomLight) << room;
+    EXPECT_TRUE(t.verdict.accuses_all) << room;
+    EXPECT_FALSE(t.verdict.may_pass()) << "somebody has to put it out";
+  }
+}
+
+TEST(LightEvidence, AccusesAFrameThatIsFullWhereTheOthersAreNot) {
+  for (const int from : {1, 3, 6}) {
+    const Told t = told(woven(), [from](int led) {
+      Lighting lighting = as_planned(led);
+      if (led == from || led == from + 1) lighting.room = 5;
+      return lighting;
+    });
+    EXPECT_EQ(t.verdict.finding, Finding::kRoomLight) << t.verdict.sentence;
+    EXPECT_THAT(t.verdict.accused, Contains(from));
+    EXPECT_EQ(t.verdict.is_over, from == 1) << "without a frame before it only those after it tell";
   }
 }
 
