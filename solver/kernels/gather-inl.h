@@ -220,6 +220,21 @@ struct InverseGains {
   }
 };
 
+// 1 / E of a light in one plane, whose normal faces it.
+template <std::size_t kPlanes>
+HWY_INLINE V inverse_irradiance(D d, const RowTask& task, const Columns& columns,
+                                const InverseGains<kPlanes>& inverse_gain, const RowLight& light,
+                                V inverse_shape, std::size_t p) {
+  V inverse_flux;
+  if constexpr (kPlanes == 1) {
+    inverse_flux =
+        alternate(d, columns.x, light.inverse_flux[task.channel[0]], light.inverse_flux[task.channel[1]]);
+  } else {
+    inverse_flux = hn::Set(d, light.inverse_flux[p]);
+  }
+  return hn::Mul(inverse_shape, hn::Mul(inverse_flux, inverse_gain.of_plane[p]));
+}
+
 // Over all lights.
 struct Extremes {
   V darkest, brightest, least_cosine;
@@ -261,14 +276,7 @@ HWY_INLINE bool gather(D d, const RowTask& task, const Scratch& scratch, const C
     V light_sum = hn::Zero(d), inverse_e = light_sum;
     for (std::size_t p = 0; p < kPlanes; ++p) {
       const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + columns.x);
-      V inverse_flux;
-      if constexpr (kPlanes == 1) {
-        inverse_flux =
-            alternate(d, columns.x, light.inverse_flux[task.channel[0]], light.inverse_flux[task.channel[1]]);
-      } else {
-        inverse_flux = hn::Set(d, light.inverse_flux[p]);
-      }
-      inverse_e = hn::Mul(here.inverse_shape, hn::Mul(inverse_flux, inverse_gain.of_plane[p]));
+      inverse_e = inverse_irradiance(d, task, columns, inverse_gain, light, here.inverse_shape, p);
       const V ratio = hn::Mul(r, inverse_e);
       if constexpr (kPlanes == 1) {
         light_sum = ratio;

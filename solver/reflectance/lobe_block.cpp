@@ -229,7 +229,7 @@ class LanesFit {
       const V fresnel = hn::MulAdd(hn::Sub(one, f0_), grazing, f0_);
       beneath = hn::Sub(one, fresnel);
       shine = lobe_.shine(p.frame, p.seen, to, toward(p.frame, load(light.half)),
-                          hn::Mul(fresnel, hn::Set(d_, light.lobe_share)));
+                          hn::Mul(fresnel, hn::LoadU(d_, light.lobe_share.data() + at_)));
     }
     const V cosine = hn::Max(to.normal, zero), lit = hn::IfThenElseZero(hn::Gt(to.normal, zero), beneath);
     const V straight = hn::NegMulAdd(bend_, hn::Sub(one, cosine), one);
@@ -445,7 +445,7 @@ void LobeBlock::put(std::size_t pixel, std::span<const LobeReading> readings) {
     Light& light = lights_[k];
     write_lanes(light.to_light, pixel, r.from.light);
     write_lanes(light.half, pixel, r.from.half);
-    light.lobe_share = static_cast<float>(r.from.lobe_share);
+    light.lobe_share[pixel] = static_cast<float>(r.from.lobe_share);
     light.grazing[pixel] = static_cast<float>(std::pow(1 - r.from.light_half, 5));
     light.root_weight[pixel] = static_cast<float>(std::sqrt(r.weight));
     light.reading[pixel] = r.weight > 0 ? static_cast<float>(r.x) : 0.0F;
@@ -474,7 +474,7 @@ void LobeBlock::copy(std::size_t pixel, const LobeBlock& other, std::size_t othe
     lane(into.grazing, from.grazing);
     lane(into.reading, from.reading);
     lane(into.root_weight, from.root_weight);
-    into.lobe_share = from.lobe_share;
+    lane(into.lobe_share, from.lobe_share);
   }
   lanes(view, other.view);
   lanes(start, other.start);
@@ -501,7 +501,7 @@ LobeReading LobeBlock::reading(std::size_t pixel, std::size_t light) const {
   r.from.view = read_lanes(view, pixel);
   r.from.half = read_lanes(of.half, pixel);
   r.from.light_half = dot(r.from.light, r.from.half);
-  r.from.lobe_share = of.lobe_share;
+  r.from.lobe_share = of.lobe_share[pixel];
   r.x = of.reading[pixel];
   r.weight = double{of.root_weight[pixel]} * of.root_weight[pixel];
   return r;

@@ -26,7 +26,7 @@ class LobeBlock {
     Lane grazing = {};  ///< (1 - l . h)^5
     Lane reading = {};
     Lane root_weight = {};  ///< one over sigma; 0 leaves the reading out
-    float lobe_share = 1;
+    Lane lobe_share = {};   ///< LitFrom::lobe_share; poses of one block may differ
   };
 
   explicit LobeBlock(std::size_t lights) : lights_(lights) {}

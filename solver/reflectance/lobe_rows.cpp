@@ -33,18 +33,10 @@ HWY_INLINE Vector3 unit_of(D d, Vector3 v) {
 template <std::size_t kPlanes>
 HWY_INLINE V reading_over_strength(D d, const RowTask& task, const Columns& columns, std::size_t k,
                                    V inverse_shape, const InverseGains<kPlanes>& inverse_gain, V& variance) {
-  const RowLight& light = task.lights[k];
   V value = hn::Zero(d);
   for (std::size_t p = 0; p < kPlanes; ++p) {
     const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + columns.x);
-    V inverse_flux;
-    if constexpr (kPlanes == 1) {
-      inverse_flux =
-          alternate(d, columns.x, light.inverse_flux[task.channel[0]], light.inverse_flux[task.channel[1]]);
-    } else {
-      inverse_flux = hn::Set(d, light.inverse_flux[p]);
-    }
-    const V inverse_e = hn::Mul(inverse_shape, hn::Mul(inverse_flux, inverse_gain.of_plane[p]));
+    const V inverse_e = inverse_irradiance(d, task, columns, inverse_gain, task.lights[k], inverse_shape, p);
     const V ratio = hn::Mul(r, inverse_e);
     if constexpr (kPlanes == 1) {
       value = ratio;
@@ -187,7 +179,7 @@ void LobeRows::read(int x, LobeBlock& block) const {
   task.camera_mm[2] = static_cast<float>(camera.z);
   const double shares[2] = {input_.lobe_share, kParallelLobeShare};
   for (std::size_t k = 0; k < block.lights().size(); ++k)
-    block.lights()[k].lobe_share = static_cast<float>(shares[k / lights_.size()]);
+    block.lights()[k].lobe_share.fill(static_cast<float>(shares[k / lights_.size()]));
   const int pixels = std::min(kRowGroup, input_.tile.width() - x);
   HWY_DYNAMIC_DISPATCH(gather_block_lanes)
   (task, static_cast<std::size_t>(x), static_cast<std::size_t>(pixels), block);
