@@ -32,7 +32,7 @@ std::string sure_words(const std::optional<double>& sure) {
 }
 
 std::string led_words(int led) {
-  return led < 0 ? "" : led == 0 ? "dark" : std::to_string(led);
+  return led == 0 ? "dark" : std::to_string(led);
 }
 
 // A line a frame: its LED where there is a decision, else what each opinion says.

@@ -11,7 +11,7 @@ namespace weft::app {
 /// or copied under the names of a session, the calibration, session.json with the digest of each frame. Files
 /// of the source are opened for reading alone. Refused and present ones are passed over. After an error,
 /// those before it are there, and the same import goes on. Reports the phase "import". Errors: kTryAgain (a
-/// frame changed since the plan, or while it was copied), kCannotCreate, kInputOutput, kInterrupted.
+/// photograph changed while it was copied), kCannotCreate, kInputOutput, kInterrupted.
 Result<void> run_import(const ImportPlan& plan, const JobContext& context);
 
 }  // namespace weft::app

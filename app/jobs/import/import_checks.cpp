@@ -21,7 +21,8 @@ namespace fs = std::filesystem;
 std::string difference(const SourceFrame& frame, const SourceFrame& first) {
   const ShotMetadata &is = frame.shot, &was = first.shot;
   if (frame.source.is_developed != first.source.is_developed) return "one is raw and the other developed";
-  if (is.model != was.model) return fmt::format("they are of a {} and a {}", was.model, is.model);
+  if (!is.model.empty() && !was.model.empty() && is.model != was.model)
+    return fmt::format("they are of a {} and a {}", was.model, is.model);
   if (!same_serial(is.serial, was.serial))
     return fmt::format("they are of the bodies with serial numbers {} and {}", was.serial, is.serial);
   if (frame.size != first.size) {
@@ -35,7 +36,8 @@ std::string difference(const SourceFrame& frame, const SourceFrame& first) {
        {"f/", was.f_number, is.f_number},
        {"focal length mm", was.focal_mm, is.focal_mm}}};
   for (const auto& [name, a, b] : settings)
-    if (!same_setting(a, b)) return fmt::format("they were taken at {} {:.6g} and {:.6g}", name, a, b);
+    if (a > 0 && b > 0 && !same_setting(a, b))
+      return fmt::format("they were taken at {} {:.6g} and {:.6g}", name, a, b);
   return "";
 }
 

@@ -165,8 +165,9 @@ class SessionPlanner {
       return {};
     };
     if (Result<void> ok = for_each_frame(plan.frames.size(), part, read_one); !ok) return ok;
-    plan.decision =
-        decide_leds(plan.frames, light, *model, {options_.order, is_numbered, options_.takes_missing});
+    plan.decision = decide_leds(plan.frames, light, *model,
+                                {options_.order, is_numbered, options_.takes_missing, context_.stop});
+    if (context_.stop.stop_requested()) return interrupted();
     plan.warnings = plan.decision.warnings;
     if (plan.decision.refusal) return *plan.decision.refusal;
     return {};
@@ -244,7 +245,9 @@ Result<void> check_disks(const ImportPlan& plan) {
   }
   for (const PlannedPhotographs& photographs : plan.photographs) {
     if (photographs.state != ImportState::kNew) continue;
-    for (const fs::path& file : photographs.photos.files)
+    std::vector<fs::path> files(photographs.photos.files.begin(), photographs.photos.files.end());
+    if (!photographs.photos.mask.empty()) files.emplace_back(photographs.photos.mask);
+    for (const fs::path& file : files)
       if (!are_on_one_disk(file, plan.archive)) return refuse(file);
   }
   return {};

@@ -13,7 +13,6 @@ namespace weft::app {
 namespace {
 
 constexpr double kDarkLevel = 0.1;  // of the median level: no LED lit, or one did not light
-constexpr int kUnsaid = -1;
 
 using Indices = std::vector<std::size_t>;
 
@@ -120,9 +119,9 @@ class Decider {
     return refuse("frames are missing", counts + missing, "look for the frames, or take --missing");
   }
 
-  /// LEDs in this order of frames; those of no lit frame are not counted.
+  /// LEDs in this order of all frames.
   std::vector<int> counted(const Indices& order) const {
-    std::vector<int> leds(frames_.size(), kUnsaid);
+    std::vector<int> leds(frames_.size());
     int led = 0;
     for (const std::size_t f : order) leds[f] = f == dark_ ? 0 : ++led;
     return leds;
@@ -202,7 +201,7 @@ class Decider {
     std::vector<std::vector<int>> starts;
     for (const LedOpinion& opinion : decision_.opinions) starts.push_back(of_lit(opinion.leds));
     const std::vector<std::vector<double>> light = lit_light();
-    decision_.light = capture::assign_by_light(light, model_, starts);
+    decision_.light = capture::assign_by_light(light, model_, starts, options_.stop);
     decision_.sure.resize(frames_.size());
     if (decision_.light) {
       decision_.opinions.push_back({"light", of_all(decision_.light->leds)});

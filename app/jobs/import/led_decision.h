@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,9 @@ enum class FrameOrder {
 };
 inline constexpr std::array<const char*, 4> kFrameOrderNames = {"auto", "time", "name", "light"};
 
-/// One opinion: LEDs by frame, 0 the dark one; -1 nothing is said of that frame.
+/// One opinion: LEDs by frame, 0 the dark one.
 struct LedOpinion {
-  std::string by;  ///< "time", "names", "light", "light, second"
+  std::string by;  ///< "numbers", "time", "names", "light", "light, second"
   std::vector<int> leds;
 };
 
@@ -48,6 +49,7 @@ struct DecisionOptions {
   FrameOrder order = FrameOrder::kAuto;
   bool is_numbered = false;    ///< names hold LEDs: every frame's `said.led`
   bool takes_missing = false;  ///< a session may lack LEDs
+  std::stop_token stop = {};   ///< the decision of one that is stopped means nothing
 };
 
 /// Decides. `light` is light_of() each frame on the model's grid. The dark frame is the one that names say

@@ -60,6 +60,10 @@ class Walk {
       found_.left_over.push_back({folder, "it is a session of weft already"});
       return {};
     }
+    if (fs::exists(folder / "photographs.json", ignored)) {
+      found_.left_over.push_back({folder, "it was imported already"});
+      return {};
+    }
     if (fs::exists(folder / "light_directions.txt", ignored) &&
         fs::exists(folder / "filenames.txt", ignored)) {
       found_.photo_folders.push_back(folder);

@@ -25,7 +25,6 @@ struct SourceFrame {
   /// EXIF DateTimeOriginal with sub-seconds: seconds since 1970 if the camera's clock showed UTC, and the
   /// true ones where the file names the zone.
   std::optional<double> taken_s;
-  double resolution_s = 1;  ///< of taken_s
   bool knows_zone = false;
 };
 
