@@ -50,7 +50,7 @@ class Gloss {
   GlossFacts facts;
 
   /// Solves with the lobes where they earn their place, elsewhere as `base`, which must outlive this, does.
-  /// Where all materials have a lobe it begins from the standard method's normals.
+  /// Where all materials have a lobe, and `base` wants no RGB, it begins from the standard method's normals.
   const solver::Method& over(const solver::Method& base);
 
  private:
