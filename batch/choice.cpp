@@ -26,7 +26,6 @@ std::vector<std::size_t> hull_of(const std::vector<Option>& options) {
   std::vector<std::size_t> hull;
   for (const std::size_t i : order) {
     if (!hull.empty() && !(options[i].degrees < options[hull.back()].degrees)) continue;
-    while (!hull.empty() && options[i].seconds <= options[hull.back()].seconds) hull.pop_back();
     while (hull.size() > 1 && gain(hull.back(), i) >= gain(hull[hull.size() - 2], hull.back()))
       hull.pop_back();
     hull.push_back(i);

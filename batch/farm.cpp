@@ -104,10 +104,6 @@ FarmLimits limits_from(std::string_view config) {
   return limits;
 }
 
-std::uint64_t asked_memory(std::uint64_t expected_bytes) {
-  return expected_bytes + expected_bytes / 4 + 200 * kMegabyte;
-}
-
 int asked_minutes(double expected_s, int expected_threads, int cores) {
   const double slower = std::max(1.0, static_cast<double>(expected_threads) / std::max(1, cores));
   const double most_minutes = 365.0 * 24 * 60;
@@ -120,7 +116,7 @@ std::vector<TaskArray> arrays_of(const Header& header, std::span<const int> task
   std::map<std::pair<int, std::uint64_t>, TaskArray> arrays;  // by chunk and class of memory
   for (const int task : tasks) {
     const TaskPlace& place = header.tasks[static_cast<std::size_t>(task)];
-    const std::uint64_t memory = asked_memory(place.memory_bytes);
+    const std::uint64_t memory = place.memory_bytes;
     const int chunk = task / most;
     TaskArray& array = arrays[{chunk, std::bit_ceil(std::max(memory, kSmallestClass))}];
     array.first = chunk * most;
@@ -155,7 +151,8 @@ std::vector<std::string> array_command(const Header& header, const TaskArray& ar
   words.push_back(fmt::format("--comment={}{}", kComment, array.first));
   words.push_back("--signal=B:TERM@60");
   words.push_back(fmt::format("--cpus-per-task={}", options.cores));
-  words.push_back(fmt::format("--time={}", array.minutes));
+  // Where nothing was measured the partition's own limit holds.
+  if (header.sampled > 0) words.push_back(fmt::format("--time={}", array.minutes));
   words.push_back("--output=" + without_fields(places.results) + "/log/%A_%a.txt");
   // `exec`: the signal goes to weft, and not to a shell that waits for it.
   add_own(options,

@@ -46,8 +46,6 @@ struct TaskArray {
   friend bool operator==(const TaskArray&, const TaskArray&) = default;
 };
 
-/// What is asked for a task whose largest session is expected to hold so much: a quarter more and 200 MB.
-std::uint64_t asked_memory(std::uint64_t expected_bytes);
 /// Twice what is expected of the task with so many cores, and five minutes.
 int asked_minutes(double expected_s, int expected_threads, int cores);
 

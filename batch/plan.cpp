@@ -147,8 +147,10 @@ std::vector<TaskPlace> tasks_from(JsonFields& header) {
                             &fields.list("seconds"), &fields.list("memory_bytes")};
   std::vector<TaskPlace> tasks(lists.front()->size());
   for (const Json* list : lists) {
-    const bool fits = list->size() == tasks.size() &&
-                      std::ranges::all_of(*list, [](const Json& v) { return v.is_number() && v >= 0; });
+    const double most = list == lists[2] ? 1e9 : 1e15;
+    const bool fits = list->size() == tasks.size() && std::ranges::all_of(*list, [most](const Json& v) {
+                        return v.is_number() && v >= 0 && v <= most;
+                      });
     if (fits) continue;
     header.reject("tasks", "has lists that do not belong together");
     return {};

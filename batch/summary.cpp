@@ -66,9 +66,9 @@ std::vector<Cause> causes_of(std::span<const Row> rows) {
 
 // How much speaks against a calibration: sessions that became worse or whose lights do not fit, then left-out
 // lights that are predicted much worse than with the others, then how far maps turned.
-std::tuple<double, double, double> suspicion(const ByCalibration& c, double usual_left_out) {
-  const double sessions = std::max(c.sessions, 1), left_out = c.left_out.value_or(0);
-  return {std::max(c.worse, c.warned) / sessions, left_out > kStandsOut * usual_left_out ? left_out : 0,
+std::tuple<double, double, double> suspicion(const ByCalibration& c) {
+  const double sessions = std::max(c.sessions, 1);
+  return {std::max(c.worse, c.warned) / sessions, c.usual_left_out ? *c.left_out : 0,
           c.mean_turn_deg.value_or(0)};
 }
 
@@ -103,9 +103,11 @@ std::vector<ByCalibration> by_calibration(std::span<const Row> rows) {
     if (each.left_out) left_out.push_back(*each.left_out);
   }
   const double usual = left_out.empty() ? 0 : lower_quantile(std::move(left_out), 0.5);
-  std::ranges::stable_sort(all, [&](const ByCalibration& a, const ByCalibration& b) {
-    return suspicion(a, usual) > suspicion(b, usual);
-  });
+  for (ByCalibration& each : all) {
+    if (each.left_out && *each.left_out > kStandsOut * usual) each.usual_left_out = usual;
+  }
+  std::ranges::stable_sort(
+      all, [](const ByCalibration& a, const ByCalibration& b) { return suspicion(a) > suspicion(b); });
   return all;
 }
 

@@ -46,15 +46,15 @@ struct ByCalibration {
   int worse = 0;   ///< that have regressions
   int warned = 0;  ///< whose lights do not fit, or are exchanged, dead or of another gain
   std::optional<double> mean_turn_deg = {};
-  std::optional<double> left_out = {};  ///< median rms of how left-out lights are predicted, a share
+  std::optional<double> left_out = {};        ///< median rms of how left-out lights are predicted, a share
+  std::optional<double> usual_left_out = {};  ///< the lower median of all calibrations, where this stands out
 };
 
 struct Summary {
   int solved = 0, there = 0, failed = 0, missing = 0;
   int second_attempts = 0;                    ///< sessions that were begun more than once
   double seconds = 0, predicted_seconds = 0;  ///< of those solved, node-seconds
-  double mean_deg = 0,
-         predicted_deg = 0;  ///< of those solved: means of the medians of sigma, and as predicted
+  double mean_deg = 0, predicted_deg = 0;  ///< of those solved: means of what solves expect, and as predicted
   std::uint64_t peak_bytes = 0;
   std::vector<Cause> causes;                ///< of failed and missing sessions, the most frequent first
   std::vector<std::size_t> changed;         ///< rows that were compared, the gravest first (is_graver)

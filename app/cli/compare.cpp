@@ -65,8 +65,11 @@ Result<int> compare_two_solves(const CompareArguments& a, const CommonArguments&
 
 Result<int> compare(const CompareArguments& a, const CommonArguments& common) {
   std::error_code ignored;
-  if (std::filesystem::is_directory(a.tested, ignored) && std::filesystem::is_directory(a.truth, ignored))
-    return compare_two_solves(a, common);
+  if (std::filesystem::is_directory(a.tested, ignored) && std::filesystem::is_directory(a.truth, ignored)) {
+    if (a.mask.empty() && a.kind == "normal") return compare_two_solves(a, common);
+    return Error{ErrorKind::kUsage, "solves cannot be compared so", "--mask, --kind",
+                 "of two folders all maps are compared, where both are solved", "leave these out"};
+  }
   if (a.kind == "albedo") return print_albedo(a, common.json);
   const Result<NormalComparison> c = compare_normals(a.tested, a.truth, a.mask);
   if (!c) return c.error();

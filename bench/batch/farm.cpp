@@ -145,7 +145,7 @@ FarmModel million() {
   return model;
 }
 
-constexpr double kAll = 354e6 + 452e6, kLean = 354e6 + 106e6;
+constexpr double kAll = 354e6 + 710e6, kLean = 354e6 + 106e6;
 
 std::vector<std::pair<std::string, FarmModel>> farms() {
   std::vector<std::pair<std::string, FarmModel>> all;

@@ -42,7 +42,8 @@ app::Run add_batch(app::Options& options) {
 }  // namespace
 
 app::Verb batch_verb() {
-  return {"batch", "Batches: against one process, plans and reports of 10 000 sessions, kills", add_batch};
+  return {"batch", "Batches: against one process, plans and reports of 10 000 sessions, kills, a farm",
+          add_batch};
 }
 
 }  // namespace weft::bench

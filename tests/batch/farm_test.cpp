@@ -23,6 +23,7 @@ Header header_of(const std::vector<std::uint64_t>& megabytes) {
   Header header;
   header.id = "0123456789abcdef";
   header.threads = 2;
+  header.sampled = 1;
   for (const std::uint64_t each : megabytes) header.tasks.push_back({0, 0, 40, 600, each * kMB});
   header.sessions = 40 * static_cast<int>(megabytes.size());
   return header;
@@ -68,13 +69,13 @@ TEST(Farm, SendsTasksThatAreAskedForAlone) {
 }
 
 TEST(Farm, AsksOfLargeSessionsAloneTheMemoryOfLargeSessions) {
-  const Header header = header_of({600, 4000, 600, 4100});
+  const Header header = header_of({600, 4200, 600, 4300});
   const std::vector<TaskArray> arrays = arrays_of(header, all_of(header), 2, {});
   ASSERT_THAT(arrays, SizeIs(2));
   EXPECT_THAT(arrays[0].tasks, ElementsAre(0, 2));
-  EXPECT_EQ(arrays[0].memory_bytes, 950 * kMB) << "a quarter more, and 200 MB";
+  EXPECT_EQ(arrays[0].memory_bytes, 600 * kMB) << "which has room already";
   EXPECT_THAT(arrays[1].tasks, ElementsAre(1, 3));
-  EXPECT_EQ(arrays[1].memory_bytes, 5325 * kMB);
+  EXPECT_EQ(arrays[1].memory_bytes, 4300 * kMB);
 }
 
 TEST(Farm, GivesATaskTwiceItsTimeByTheCoresThatItHas) {
@@ -96,7 +97,7 @@ TEST(Farm, SubmitsAnArrayThatIsSignalledQueuedAgainAndFound) {
   EXPECT_EQ(words.front(), "sbatch");
   for (const char* word :
        {"--parsable", "--job-name=weft-0123456789abcdef", "--array=0-2%2", "--requeue", "--open-mode=append",
-        "--signal=B:TERM@60", "--mem=950M", "--cpus-per-task=1", "--time=45", "--dependency=afterany:7:8",
+        "--signal=B:TERM@60", "--mem=600M", "--cpus-per-task=1", "--time=45", "--dependency=afterany:7:8",
         "--partition=long", "--account=cloth", "--qos=low", "--nice=100", "--comment=tasks from 0",
         "--output=/n/50%% of it.results/log/%A_%a.txt"})
     EXPECT_THAT(words, Contains(word));

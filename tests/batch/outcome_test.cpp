@@ -20,6 +20,15 @@ Outcome solved(const std::string& session) {
   outcome.peak_bytes = 636'000'000;
   outcome.host = "node1";
   outcome.sigma_deg = 0.6;
+  outcome.sigma_p95_deg = 1.6;
+  outcome.expected_deg = 0.7;
+  outcome.unsolved = 0.01;
+  outcome.node_seconds = 11;
+  outcome.read_s = 1.5;
+  outcome.solve_s = 2.5;
+  outcome.compare_s = 0.5;
+  outcome.is_stored = true;
+  outcome.made = {"/a/maps/1"};
   outcome.left_out = 0.05;
   outcome.warnings = {"LED_DEAD"};
   Change change;
@@ -49,7 +58,15 @@ TEST(Outcome, IsReadAsItWasWritten) {
     ASSERT_TRUE(read) << line;
     EXPECT_EQ(*read, outcome) << line_of(*read);
   }
-  EXPECT_EQ(outcome_from_line(line_of(solved("/a.weft")))->change, solved("/a.weft").change);
+  const Outcome wrote = solved("/a.weft"), read = *outcome_from_line(line_of(wrote));
+  EXPECT_EQ(read.change, wrote.change);
+  EXPECT_EQ(read.sigma_p95_deg, wrote.sigma_p95_deg);
+  EXPECT_EQ(read.expected_deg, wrote.expected_deg);
+  EXPECT_EQ(read.unsolved, wrote.unsolved);
+  EXPECT_EQ(read.node_seconds, wrote.node_seconds);
+  EXPECT_EQ(read.read_s + read.solve_s + read.compare_s, wrote.read_s + wrote.solve_s + wrote.compare_s);
+  EXPECT_EQ(read.is_stored, wrote.is_stored);
+  EXPECT_EQ(read.made, wrote.made);
 }
 
 TEST(Outcome, CutShortAtAnyByteIsNone) {

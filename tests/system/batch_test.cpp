@@ -90,7 +90,7 @@ TEST_F(BatchTest, KilledAtRandomMomentsItEndsWithOneSolveASession) {
   for (bool is_whole = false; !is_whole && kills < 40;) {
     const auto child = begin_run(plan_file(), work_ / "log");
     // Longer each time, so that a machine that is slow gets there too.
-    std::uniform_real_distribution<double> wait_s(0.2, 0.6 + 0.3 * kills);
+    std::uniform_real_distribution<double> wait_s(0.02, 0.1 + 0.3 * kills);
     const std::optional<int> code = child->wait(wait_s(random));
     is_whole = code == 0;
     if (code) continue;

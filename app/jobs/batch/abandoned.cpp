@@ -42,8 +42,12 @@ std::vector<fs::path> abandoned_in(const fs::path& parent) {
 }
 
 std::vector<fs::path> abandoned_of(const fs::path& session, const fs::path& solves) {
-  std::vector<fs::path> found;
-  for (const fs::path& parent : {solves, session / "maps", session / "rectified"}) {
+  std::vector<fs::path> found, parents = {solves, session / "maps"};
+  std::error_code failed;
+  for (fs::directory_iterator preset(session / "export", failed), end; !failed && preset != end;
+       preset.increment(failed))
+    parents.push_back(preset->path());
+  for (const fs::path& parent : parents) {
     const std::vector<fs::path> here = abandoned_in(parent);
     found.insert(found.end(), here.begin(), here.end());
   }

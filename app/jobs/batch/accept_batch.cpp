@@ -58,7 +58,7 @@ Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
     accepted.why = "it is the current one already";
     return accepted;
   }
-  if (!row.job->before.empty() && current != row.job->before) {
+  if (current != row.job->before) {
     accepted.why = fmt::format("its current solve is {} since the plan", current);
     return accepted;
   }

@@ -142,17 +142,15 @@ std::optional<Verdict> suspect(const batch::Summary& summary) {
   const batch::ByCalibration& first = summary.calibrations.front();
   const bool is_worse = 2 * first.worse >= first.sessions && first.worse > 0;
   const bool is_warned = 2 * first.warned >= first.sessions && first.warned > 0;
-  bool stands_out = false;
-  if (summary.calibrations.size() > 1 && first.left_out && summary.calibrations[1].left_out)
-    stands_out = *first.left_out > batch::kStandsOut * *summary.calibrations[1].left_out;
+  const bool stands_out = first.usual_left_out.has_value();
   if (!is_worse && !is_warned && !stands_out) return {};
   std::vector<std::string> said;
   if (is_worse) said.push_back(fmt::format("{} of {} sessions became worse", first.worse, first.sessions));
   if (is_warned)
     said.push_back(fmt::format("the lights of {} of {} do not fit", first.warned, first.sessions));
   if (stands_out)
-    said.push_back(fmt::format("left-out lights are {:.2g} percent off, with the next calibration {:.2g}",
-                               100 * *first.left_out, 100 * *summary.calibrations[1].left_out));
+    said.push_back(fmt::format("left-out lights are {:.2g} percent off, as a rule {:.2g}",
+                               100 * *first.left_out, 100 * *first.usual_left_out));
   return Verdict{
       "CALIBRATION_SUSPECT",
       fmt::format("calibration {:.12} of rig {}: {}", first.calibration, first.rig, fmt::join(said, ", ")),

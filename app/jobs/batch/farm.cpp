@@ -106,8 +106,7 @@ class Submission {
     if (Result<void> made = make_writable_folder(state_.file.results() / kLogs); !made) return made;
     const batch::FarmLimits limits = batch::limits_from(*config);
     for (batch::TaskArray& array : batch::arrays_of(header_, tasks, options_.farm.cores, limits)) {
-      std::vector<std::string> after;
-      if (options_.farm.at_once > 0 && !jobs_.empty()) after.push_back(jobs_.back());
+      const std::vector<std::string> after = options_.farm.at_once > 0 ? jobs_ : std::vector<std::string>();
       SubmittedJob job = {"", array, batch::array_command(header_, array, options_.farm, places_, after)};
       if (Result<void> ok = send(job); !ok) return ok;
       if (!job.job.empty()) jobs_.push_back(job.job);

@@ -22,6 +22,10 @@ namespace fs = std::filesystem;
 
 constexpr const char* kReportSchema = "weft.batch-report/1";
 
+std::string picture_name(std::size_t number) {
+  return fmt::format("worst-{:02}.png", number);
+}
+
 fs::path solves_of(const batch::Plan& plan, const batch::Job& job) {
   return batch::solve_parent(plan.header, job.session);
 }
@@ -60,6 +64,10 @@ void hold_against_folders(const batch::Plan& plan, batch::Row& row) {
 
 Result<void> write_pictures(const BatchState& state, const fs::path& folder, std::vector<DrawnChange>& drawn,
                             const JobContext& context) {
+  for (std::size_t i = 1; i <= kMostDrawn; ++i) {
+    std::error_code ignored;
+    fs::remove(folder / picture_name(i), ignored);  // of an earlier report
+  }
   for (const std::size_t index : state.summary.changed) {
     if (drawn.size() == kMostDrawn || context.stop.stop_requested()) break;
     const batch::Row& row = state.rows[index];
@@ -68,7 +76,7 @@ Result<void> write_pictures(const BatchState& state, const fs::path& folder, std
     Result<std::string> png = draw_change(before, row.result->folder, *row.job, *row.result->change);
     // A solve that went since then leaves no picture, and its numbers stay.
     if (!png) continue;
-    const std::string name = fmt::format("worst-{:02}.png", drawn.size() + 1);
+    const std::string name = picture_name(drawn.size() + 1);
     if (Result<void> written = write_file(folder / name, *png); !written) return written;
     drawn.push_back({row.job->session, name, std::move(*png)});
     context.progress("draw", static_cast<double>(drawn.size()) / kMostDrawn);

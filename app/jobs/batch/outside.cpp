@@ -8,7 +8,9 @@
 
 #include <cerrno>
 #include <csignal>
+#include <system_error>
 
+#include "batch/farm.h"
 #include "core/files.h"
 #include "core/solve.h"
 
@@ -17,10 +19,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string quoted(const std::string& text) {
-  std::string all = "'";
-  for (const char c : text) all += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return all + "'";
+// Links to all files of a folder but one.
+std::error_code link_all_but(const std::string& one, const fs::path& folder, const fs::path& to) {
+  std::error_code failed;
+  fs::create_directory(to, failed);
+  for (fs::recursive_directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    const fs::path into = to / fs::relative(entry->path(), folder, failed);
+    if (failed || entry->path() == folder / one) continue;
+    if (entry->is_directory(failed)) {
+      fs::create_directory(into, failed);
+    } else {
+      fs::create_hard_link(entry->path(), into, failed);
+    }
+    if (failed) break;
+  }
+  return failed;
 }
 
 }  // namespace
@@ -29,9 +43,9 @@ std::string filled(const std::string& command, const std::string& src, const std
   std::string text;
   for (std::size_t i = 0; i < command.size();) {
     if (command.compare(i, 5, "{src}") == 0) {
-      text += quoted(src), i += 5;
+      text += batch::shell_word(src), i += 5;
     } else if (command.compare(i, 5, "{dst}") == 0) {
-      text += quoted(dst), i += 5;
+      text += batch::shell_word(dst), i += 5;
     } else {
       text += command[i++];
     }
@@ -61,17 +75,13 @@ std::string run_outside(const std::string& command, const std::string& src, cons
 }
 
 std::string store_outside(const std::string& command, const fs::path& solve, const std::string& dst) {
-  const fs::path document = solve / kSolveProduct.document;
-  const fs::path aside =
-      solve.parent_path() / ("." + solve.filename().string() + "." + kSolveProduct.document);
-  std::error_code failed;
-  fs::rename(document, aside, failed);
-  if (failed) return failed.message();
-  std::string why = run_outside(command, solve.string(), dst);
-  fs::rename(aside, document, failed);
+  // The command may be killed: what it sends lies beside the solve, which stays whole.
+  const PartialFolder aside(solve);
+  if (const std::error_code failed = link_all_but(kSolveProduct.document, solve, aside.path()))
+    return failed.message();
+  std::string why = run_outside(command, aside.path().string(), dst);
   if (!why.empty()) return why;
-  if (failed) return failed.message();
-  return run_outside(command, document.string(), dst + "/" + kSolveProduct.document);
+  return run_outside(command, (solve / kSolveProduct.document).string(), dst + "/" + kSolveProduct.document);
 }
 
 }  // namespace weft::app

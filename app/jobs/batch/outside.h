@@ -14,7 +14,8 @@ std::string filled(const std::string& command, const std::string& src, const std
 /// Runs it by the shell, its output to standard error. Empty where it ended with 0, else why not.
 std::string run_outside(const std::string& command, const std::string& src, const std::string& dst);
 
-/// Sends the folder of a solve: first all but solve.json, which readers believe, then that file alone.
+/// Sends the folder of a solve: first all but solve.json, which readers believe, as links in a folder beside
+/// it that goes again, then that file alone.
 std::string store_outside(const std::string& command, const std::filesystem::path& solve,
                           const std::string& dst);
 

@@ -154,16 +154,28 @@ class Planning {
     return is_fixed && level < names.size() && candidate.levels[level].is_there;
   }
 
+  bool turns_little(const Forecast& forecast) const {
+    return options_.least_change_deg && forecast.turn_deg && *forecast.turn_deg < *options_.least_change_deg;
+  }
+
+  // What is there, or is left out for turning little, costs nothing.
+  bool is_free(std::size_t i, std::size_t level) const {
+    return candidates_[i].levels[level].is_there || turns_little(forecasts_[i][level]);
+  }
+
   std::vector<batch::Option> options_of(std::size_t i) const {
     std::vector<batch::Option> options;
     for (std::size_t l = 0; l < forecasts_[i].size(); ++l)
-      options.push_back(
-          {candidates_[i].levels[l].is_there ? 0 : forecasts_[i][l].seconds, forecasts_[i][l].degrees});
+      options.push_back({is_free(i, l) ? 0 : forecasts_[i][l].seconds, forecasts_[i][l].degrees});
     return options;
   }
 
   Result<void> decide() {
     const std::vector<std::string> names = level_names();
+    if ((options_.within_seconds || options_.to_deg) && plan_.header.sampled == 0 && !candidates_.empty()) {
+      return Error{ErrorKind::kUsage, "levels cannot be chosen", "--within, --to", "no session was measured",
+                   "measure at least one with --sample, or name a level with --quality"};
+    }
     if (options_.within_seconds) return decide_by_hours();
     const auto named = std::ranges::find(names, options_.quality);
     if (named == names.end()) {
@@ -192,11 +204,6 @@ class Planning {
   }
 
   Result<void> decide_by_hours() {
-    if (plan_.header.sampled == 0 && !candidates_.empty()) {
-      return Error{ErrorKind::kUsage, "hours cannot be given out", "--sample 0", "no session was measured",
-                   "measure at least one"};
-    }
-    // What is left out for turning little costs nothing, so that its seconds go to others.
     std::vector<std::vector<batch::Option>> options;
     for (std::size_t i = 0; i < candidates_.size(); ++i) options.push_back(options_of(i));
     const Result<batch::Spending> spending = batch::spend(options, *options_.within_seconds);
@@ -217,7 +224,7 @@ class Planning {
                                 fmt::format("solve {} is there", of_level.solve), forecast.seconds});
       return;
     }
-    if (options_.least_change_deg && forecast.turn_deg && *forecast.turn_deg < *options_.least_change_deg) {
+    if (turns_little(forecast)) {
       plan_.left_out.push_back({session, batch::Reason::kTurnsLittle, "",
                                 fmt::format("its maps would turn by {:.3g} degrees{}", *forecast.turn_deg,
                                             forecast.is_measured ? "" : ", as those of others solved alike"),

@@ -25,6 +25,11 @@ constexpr std::size_t kLargestHeader = std::size_t{64} << 20;
 Result<std::string> read_part(const fs::path& file, std::uint64_t offset, std::uint64_t bytes) {
   const Descriptor in(file, O_RDONLY);
   if (!in) return cannot_read(file, errno);
+  const off_t size = ::lseek(in.get(), 0, SEEK_END);
+  if (size < 0) return cannot_read(file, errno);
+  const std::uint64_t there =
+      static_cast<std::uint64_t>(size) - std::min(static_cast<std::uint64_t>(size), offset);
+  bytes = std::min(bytes, there);
   std::string text(bytes, '\0');
   std::size_t read = 0;
   while (read < bytes) {

@@ -432,6 +432,12 @@ Result<RunBatchReport> run_batch(const RunBatchOptions& options, const JobContex
   Result<PlanFile> plan = open_plan(options.plan);
   if (!plan) return std::move(plan).error();
   if (Result<void> ok = check_options(options, plan->header); !ok) return std::move(ok).error();
+  if (plan->header.solver_version != kSolverVersion) {
+    return Error{ErrorKind::kBadData, "plan cannot be used", options.plan.string(),
+                 fmt::format("it is of version {} of the solver, and this is {}", plan->header.solver_version,
+                             kSolverVersion),
+                 "make it again with weft batch plan"};
+  }
   return BatchRun(options, std::move(*plan), context, after).run();
 }
 

@@ -11,6 +11,7 @@
 #include "app/jobs/export/export.h"
 #include "app/jobs/maps/maps.h"
 #include "app/jobs/solve.h"
+#include "core/calibration.h"
 #include "core/files.h"
 #include "core/session.h"
 #include "core/solve_record.h"
@@ -20,9 +21,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether the session is still what was planned, and the calibration that it is solved by.
+// The calibration that it is solved by, in place of its own; refuses what is not as planned.
 Result<fs::path> check_session(const SessionWork& work) {
   const fs::path& folder = work.session;
+  if (folder == work.job.session && !is_there(work.header->archive)) {
+    return Error{ErrorKind::kTryAgain, "archive is not there", work.header->archive,
+                 "this machine does not see it", "mount it, then run the same command again"};
+  }
   if (!is_there(folder / "session.json")) {
     return Error{ErrorKind::kNoInput, "session is not where the plan has it", folder.string(),
                  "there is no session.json", "bring it back, or plan again"};
@@ -35,15 +40,13 @@ Result<fs::path> check_session(const SessionWork& work) {
   }
   const auto& named = work.header->calibrations;
   const auto found = std::ranges::find(named, work.job.calibration, &batch::NamedCalibration::id);
-  return found == named.end() ? fs::path() : fs::path(found->folder);
-}
-
-Result<void> check_calibration_is_as_planned(const SolveReport& report, const SessionWork& work) {
-  const Json used = report.facts.input.is_object() ? report.facts.input.value("calibration", Json()) : Json();
-  if (used == work.job.calibration) return {};
-  return Error{ErrorKind::kBadData, "calibration was changed since the plan", work.session.string(),
-               fmt::format("it was solved by {}, the plan names {:.12}", used.dump().substr(0, 14),
-                           work.job.calibration),
+  const fs::path own = found == named.end() ? fs::path() : fs::path(found->folder);
+  const fs::path used = own.empty() ? session->calibration_folder() : own;
+  const Result<Calibration> calibration = read_calibration(used);
+  if (!calibration) return calibration.error();
+  if (calibration->id == work.job.calibration) return own;
+  return Error{ErrorKind::kBadData, "calibration was changed since the plan", used.string(),
+               fmt::format("its id is {:.12}, the plan names {:.12}", calibration->id, work.job.calibration),
                "plan again"};
 }
 
@@ -178,8 +181,6 @@ batch::Outcome work_on_session(const SessionWork& work, const JobContext& contex
   const Result<SolveReport> report = work.product.is_whole() ? solve_whole(input, options, work, context)
                                                              : solve_lean(input, options, work, context);
   if (!report) return ended_by(work, report.error());
-  if (Result<void> ok = check_calibration_is_as_planned(*report, work); !ok)
-    return ended_by(work, std::move(ok).error());
   batch::Outcome outcome;
   outcome.plan = work.header->id;
   outcome.session = work.job.session;

@@ -32,8 +32,9 @@ class MapRows {
 
 /// Compares the solve in `after` with that in `before`: normals as compare_normals() does, albedo as
 /// compare_albedo(), status where both have it, and what both solve.json say. The worst window is the square
-/// of 80 pixels, on a grid of 16, with the largest mean angle. Bands of rows are read at a time: 4 bytes a
-/// pixel are held. kBadData where sizes differ or no pixel has a normal in both; errors of reading.
+/// of 80 pixels, on a grid of 16, with the largest mean angle. Bands of rows are read at a time: 8 bytes a
+/// pixel are held, 16 while status is compared, and compressed maps whole. kBadData where sizes differ or no
+/// pixel has a normal in both; errors of reading.
 Result<batch::Change> compare_solves(const std::filesystem::path& before, const std::filesystem::path& after,
                                      int threads);
 

@@ -52,7 +52,7 @@ Result<std::vector<std::filesystem::path>> sessions_below(const std::vector<std:
 Result<std::vector<Candidate>> survey(const std::vector<std::filesystem::path>& sessions,
                                       const SurveyOptions& options, const JobContext& context);
 
-/// Reads named calibrations. kBadData where two are of one rig; errors of read_calibration().
+/// Reads named calibrations. kUsage where two are of one rig; errors of read_calibration().
 Result<std::vector<batch::NamedCalibration>> read_named(const std::vector<std::filesystem::path>& folders);
 
 }  // namespace weft::app
