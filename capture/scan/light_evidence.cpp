@@ -97,8 +97,8 @@ const std::vector<Vec3>& light_of(int led, const PatchLights& model) {
   return model.leds[static_cast<std::size_t>(led - 1)];
 }
 
-double misfit_in(const FrameLights& lights, const Readings& readings, const PatchLights& model,
-                 std::size_t step = kStoryStep) {
+PatchFit fit_of(const FrameLights& lights, const Readings& readings, const PatchLights& model,
+                std::size_t step = kStoryStep) {
   std::vector<std::vector<Vec3>> sums;
   sums.reserve(lights.size());
   std::vector<const std::vector<Vec3>*> incident;
@@ -110,7 +110,12 @@ double misfit_in(const FrameLights& lights, const Readings& readings, const Patc
     for (std::size_t i = 0; i < led.size(); ++i) sums.back()[i] = led[i] + light.times * (*light.more)[i];
     incident.back() = &sums.back();
   }
-  return fit_light(readings, incident, step).misfit;
+  return fit_light(readings, incident, step);
+}
+
+double misfit_in(const FrameLights& lights, const Readings& readings, const PatchLights& model,
+                 std::size_t step = kStoryStep) {
+  return fit_of(lights, readings, model, step).misfit;
 }
 
 /// Another LED lights in the place of a frame's, or two LEDs are exchanged.
@@ -328,56 +333,59 @@ std::vector<const ScanEvidence::Seen*> ScanEvidence::readable() const {
   return frames;
 }
 
-std::vector<double> ScanEvidence::expected_of(int led, const std::vector<const Seen*>& readable) const {
-  const auto of_flat_cloth = [&](int of_led, std::size_t i) { return light_of(of_led, *model_)[i].z; };
-  std::vector<double> expected(light_of(led, *model_).size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < expected.size(); ++i) {
+double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
+  const auto of_flat_cloth = [&](int led, std::size_t i) { return light_of(led, *model_)[i].z; };
+  const std::vector<const Seen*> frames = readable();
+  std::vector<double> levels;
+  for (std::size_t i = 0; i < light.size(); ++i) {
     std::vector<double> albedo;
-    for (const Seen* seen : readable) {
+    for (const Seen* seen : frames) {
       const double z = of_flat_cloth(seen->shot.led, i);
       if (std::isfinite(seen->light[i]) && z > 0) {
         albedo.push_back((seen->light[i] - (dark_ ? (*dark_)[i] : 0)) / z);
       }
     }
-    if (!albedo.empty()) expected[i] = median(std::move(albedo)) * of_flat_cloth(led, i);
-  }
-  return expected;
-}
-
-double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
-  const std::vector<double> expected = expected_of(shot.led, readable());
-  std::vector<double> levels;
-  for (std::size_t i = 0; i < light.size(); ++i) {
-    if (expected[i] > 0 && std::isfinite(light[i])) levels.push_back(light[i] / expected[i]);
+    const double expected = median(std::move(albedo)) * of_flat_cloth(shot.led, i);
+    if (expected > 0 && std::isfinite(light[i])) levels.push_back(light[i] / expected);
   }
   return levels.empty() ? 1 : median(std::move(levels));
 }
 
-bool ScanEvidence::is_too_full(const Seen& frame, const std::vector<const Seen*>& readable) const {
-  const std::vector<double> expected = expected_of(frame.shot.led, readable);
-  std::size_t too_full = 0;
-  for (std::size_t i = 0; i < expected.size(); ++i)
-    too_full += std::isnan(frame.light[i]) && expected[i] < kFarFromFull;
-  return static_cast<double>(too_full) > kMostFull * static_cast<double>(expected.size());
+std::vector<int> ScanEvidence::too_full(const std::vector<Seen>& full,
+                                        const std::vector<Seen>& others) const {
+  Readings readings;
+  std::vector<const std::vector<Vec3>*> incident;
+  for (const Seen& other : others) {
+    readings.push_back(&other.light);
+    incident.push_back(&light_of(other.shot.led, *model_));
+  }
+  std::vector<int> shots;
+  for (const Seen& frame : full) {
+    const std::vector<double> expected =
+        expected_light(readings, incident, light_of(frame.shot.led, *model_));
+    std::size_t patches = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i)
+      patches += std::isnan(frame.light[i]) && expected[i] < kFarFromFull;
+    if (static_cast<double>(patches) > kMostFull * static_cast<double>(expected.size()))
+      shots.push_back(frame.shot.index);
+  }
+  return shots;
 }
 
-/// Frames that are full, this one or one before, which those that are not let expect far from full.
+/// Frames that are full, this one or some before, which those that are not let expect far from full.
 ShotVerdict ScanEvidence::judge_full(const PlannedShot& shot, const std::vector<double>& light) const {
+  std::vector<Seen> full, others;
+  for (const auto& [index, seen] : lit_)
+    (is_readable(seen.light) ? others : full).push_back({seen.shot, without_dark(seen.light)});
+  const bool is_full = !is_readable(light);
+  (is_full ? full : others).push_back({shot, without_dark(light)});
   ShotVerdict verdict;
-  std::vector<const Seen*> evidence = readable();
-  const Seen newest = {shot, light};
-  const bool is_newest_full = !is_readable(light);
-  if (is_newest_full && is_too_full(newest, evidence)) verdict.accused = {shot.index};
-  if (!is_newest_full) {
-    evidence.push_back(&newest);
-    for (const auto& [index, seen] : lit_) {
-      if (!is_readable(seen.light) && is_too_full(seen, evidence)) verdict.accused.push_back(index);
-    }
-    verdict.is_over = true;
-  }
-  if (verdict.accused.empty()) return {};
+  if (full.empty()) return verdict;
+  verdict.accused = too_full(full, others);
+  if (verdict.accused.empty()) return verdict;
   verdict.finding = Finding::kRoomLight;
   verdict.sentence = "a photograph is full where the others are far from it: there is light beside the LEDs";
+  verdict.is_over = !is_full;
   return verdict;
 }
 
@@ -401,10 +409,6 @@ ShotVerdict ScanEvidence::judge_lit(const PlannedShot& shot, const std::vector<d
   }
   const double level = level_of(shot, own);
   if (level < kDarkLevel) return found(Finding::kDark, fmt::format("LED {} is dark", shot.led));
-  if (level < kDimLevel) {
-    return found(Finding::kDim,
-                 fmt::format("LED {} gives {:.0f} percent of the light it should", shot.led, 100 * level));
-  }
   ShotVerdict verdict = judge_pattern(shot, light);
   verdict.level = level;
   if (verdict.finding == Finding::kAgrees && level < kDimWarns) {
@@ -433,8 +437,19 @@ ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vect
     planned.push_back({seen.shot.led, nullptr, 0});
   }
   ShotVerdict verdict;
-  const double misfit_as_planned = misfit_in(planned, readings, *model_);
+  const PatchFit as_planned = fit_of(planned, readings, *model_);
+  const double misfit_as_planned = as_planned.misfit;
   verdict.misfit = misfit_as_planned;
+  const auto dimmest = std::ranges::min_element(as_planned.gain);
+  if (const double share = *dimmest / median(as_planned.gain); share < kDimLevel) {
+    const PlannedShot& dim = frames[static_cast<std::size_t>(dimmest - as_planned.gain.begin())].shot;
+    return {Finding::kDim,
+            fmt::format("LED {} gives {:.0f} percent of the light it should", dim.led, 100 * share),
+            {dim.index},
+            {},
+            {},
+            misfit_as_planned};
+  }
   if (misfit_as_planned < kSuspiciousMisfit) return verdict;
   const std::vector<Believed> believed = believed_stories(planned, readings, *model_, misfit_as_planned);
   if (believed.empty()) return verdict;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/light_field.h"
 #include "core/statistics.h"
@@ -11,7 +12,8 @@ namespace weft::capture {
 namespace {
 
 constexpr int kRounds = 3;
-constexpr double kStill = 0.02;   // residual over the mean below which a reading has its full weight
+constexpr std::size_t kLeastFrames = 4;  // a patch has three unknowns
+constexpr double kStill = 0.02;          // residual over the mean below which a reading has its full weight
 constexpr double kLittle = 0.05;  // of the mean: a prediction below says nothing of a frame's brightness
 constexpr double kFarthest = 1;   // residual over the mean that counts: highlights have no limit
 constexpr double kRidge = 1e-6;   // of the trace: directions in one plane leave a component open
@@ -28,6 +30,8 @@ struct Patch {
   std::vector<double> reading;
   std::vector<Vec3> incident;
   double mean = 0;
+
+  bool is_fittable() const { return frames.size() >= kLeastFrames && mean > 0; }
 
   /// Albedo times normal by iterated weights towards least absolute deviations.
   Vec3 fitted(const std::vector<double>& gain) const {
@@ -114,7 +118,7 @@ PatchFit fit_light(const std::vector<const std::vector<double>*>& light,
   std::vector<Patch> patches;
   for (std::size_t i = 0; i < light.front()->size(); i += step) {
     Patch patch = patch_of(i, light, incident);
-    if (patch.frames.size() >= 4 && patch.mean > 0) patches.push_back(std::move(patch));
+    if (patch.is_fittable()) patches.push_back(std::move(patch));
   }
   PatchFit fit = {0, std::vector<double>(frames, 1)};
   for (int round = 0; round < kRounds; ++round) {
@@ -140,6 +144,19 @@ PatchFit fit_light(const std::vector<const std::vector<double>*>& light,
     for (double& gain : fit.gain) gain *= std::exp(-log_sum / static_cast<double>(frames));
   }
   return fit;
+}
+
+std::vector<double> expected_light(const std::vector<const std::vector<double>*>& light,
+                                   const std::vector<const std::vector<Vec3>*>& incident,
+                                   const std::vector<Vec3>& of) {
+  const std::vector<double> even(light.size(), 1);
+  std::vector<double> expected(of.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    if (light.size() < kLeastFrames) break;
+    const Patch patch = patch_of(i, light, incident);
+    if (patch.is_fittable()) expected[i] = std::max(0.0, dot(of[i], patch.fitted(even)));
+  }
+  return expected;
 }
 
 }  // namespace weft::capture

@@ -37,4 +37,10 @@ struct PatchFit {
 PatchFit fit_light(const std::vector<const std::vector<double>*>& light,
                    const std::vector<const std::vector<Vec3>*>& incident, std::size_t step = 1);
 
+/// What such frames let expect by patch under another light, `of`, by the albedo and normal of each patch
+/// alone; NaN where fewer than four of them can be read.
+std::vector<double> expected_light(const std::vector<const std::vector<double>*>& light,
+                                   const std::vector<const std::vector<Vec3>*>& incident,
+                                   const std::vector<Vec3>& of);
+
 }  // namespace weft::capture
