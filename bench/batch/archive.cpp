@@ -18,13 +18,6 @@ namespace fs = std::filesystem;
 
 constexpr double kLongest_s = 4 * 3600;
 
-Result<void> simulate_own(const fs::path& folder, const simulator::Scene& scene) {
-  if (const auto made = simulator::simulate_session(scene, folder, {}); !made) return made.error();
-  std::error_code ignored;
-  fs::remove_all(folder / "truth", ignored);
-  return {};
-}
-
 // A session with the photographs of another.
 Result<void> link_to(const fs::path& own, const fs::path& folder, int number) {
   std::error_code failed;
@@ -41,6 +34,18 @@ Result<void> link_to(const fs::path& own, const fs::path& folder, int number) {
 
 }  // namespace
 
+Result<void> simulate_own(const fs::path& folder, const simulator::Scene& scene) {
+  if (const auto made = simulator::simulate_session(scene, folder, {}); !made) return made.error();
+  std::error_code ignored;
+  fs::remove_all(folder / "truth", ignored);
+  return {};
+}
+
+void set_size(simulator::CameraSettings& camera, double megapixels) {
+  camera.width = static_cast<int>(std::lround(std::sqrt(megapixels * 1e6 * 1.25) / 32)) * 32;
+  camera.height = static_cast<int>(std::lround(megapixels * 1e6 / camera.width / 2)) * 2;
+}
+
 fs::path session_in(const fs::path& folder, int number) {
   return folder / fmt::format("SESSION-{:05}.weft", number);
 }
@@ -49,8 +54,7 @@ Result<void> make_archive(const fs::path& folder, const fs::path& scene_file, do
                           int of_their_own) {
   Result<simulator::Scene> scene = simulator::read_scene(scene_file);
   if (!scene) return std::move(scene).error();
-  scene->camera.width = static_cast<int>(std::lround(std::sqrt(megapixels * 1e6 * 1.25) / 32)) * 32;
-  scene->camera.height = static_cast<int>(std::lround(megapixels * 1e6 / scene->camera.width / 2)) * 2;
+  set_size(scene->camera, megapixels);
   const std::string fabric = scene->fabric;
   if (Result<void> made = make_writable_folder(folder); !made) return made;
   for (int i = 0; i < sessions; ++i) {
@@ -73,6 +77,12 @@ Result<int> run_program(const std::vector<std::string>& arguments, const fs::pat
   if (code) return *code;
   return Error{ErrorKind::kTryAgain, "weft did not end", command[0], fmt::format("within {} s", kLongest_s),
                ""};
+}
+
+Error ended_with(const std::string& verb, int code, const fs::path& log) {
+  const Result<std::string> said = read_text(log);
+  return {ErrorKind::kInternal, fmt::format("weft batch {} ended with {}", verb, code), log.string(),
+          said ? said->substr(0, 2000) : "", ""};
 }
 
 }  // namespace weft::bench

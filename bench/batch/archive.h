@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/result.h"
+#include "simulator/scene/scene.h"
 
 namespace weft::bench {
 
@@ -14,10 +15,19 @@ namespace weft::bench {
 Result<void> make_archive(const std::filesystem::path& folder, const std::filesystem::path& scene,
                           double megapixels, int sessions, int of_their_own);
 
+/// Of five to four.
+void set_size(simulator::CameraSettings& camera, double megapixels);
+
+/// Simulates one without its truth. Errors of simulating.
+Result<void> simulate_own(const std::filesystem::path& folder, const simulator::Scene& scene);
+
 /// The folder of one of them.
 std::filesystem::path session_in(const std::filesystem::path& folder, int number);
 
 /// Runs weft, its output into `log`, and returns its exit code. kNoInput.
 Result<int> run_program(const std::vector<std::string>& arguments, const std::filesystem::path& log);
+
+/// That `weft batch VERB` ended with this code, and what it said.
+Error ended_with(const std::string& verb, int code, const std::filesystem::path& log);
 
 }  // namespace weft::bench

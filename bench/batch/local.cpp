@@ -16,12 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error ended_with(const char* verb, int code, const fs::path& log) {
-  const Result<std::string> said = read_text(log);
-  return {ErrorKind::kInternal, fmt::format("weft batch {} ended with {}", verb, code), log.string(),
-          said ? said->substr(0, 2000) : "", ""};
-}
-
 // One process that solves them one after the other with all threads.
 Result<double> solve_in_turn(const fs::path& archive, const fs::path& output, int sessions, int threads) {
   Stopwatch watch;

@@ -9,6 +9,7 @@ std::span<const BatchPart> batch_parts() {
       {"plan", "a plan of 10 000 sessions", batch_plan},
       {"merge", "a report of 10 000 results", batch_merge},
       {"kills", "a batch that is killed at random moments", batch_kills},
+      {"rigs", "40 sessions by three rigs, one calibrated wrongly", batch_rigs},
       {"farm", "a million sessions on 100 nodes, simulated, and the simulation against 200 tasks here",
        batch_farm},
   };

@@ -39,6 +39,9 @@ Result<Rows> batch_plan(const BatchBenchOptions& options);
 Result<Rows> batch_merge(const BatchBenchOptions& options);
 /// `weft batch run` killed at random moments until all is done: what is published, half made and done twice.
 Result<Rows> batch_kills(const BatchBenchOptions& options);
+/// 40 sessions of 1 megapixel by three rigs of mixed bodies, one of whose calibrations has two LEDs in the
+/// wrong place, by how far: what the report says of calibrations.
+Result<Rows> batch_rigs(const BatchBenchOptions& options);
 /// 200 small tasks here against their simulation, and simulations of a million sessions on 100 nodes.
 Result<Rows> batch_farm(const BatchBenchOptions& options);
 
