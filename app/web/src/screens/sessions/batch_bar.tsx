@@ -2,11 +2,13 @@
 // What can be done with all chosen sessions at once: tags, and jobs for each.
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError, type Schemas} from '../../api/client';
+import {go} from '../../state/address';
 import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
 import {counted} from '../../ui/say';
+import {keepChosen} from '../batches/plan';
 import {queueJob} from '../jobs/state';
 import {qualities, type Quality} from '../jobs/ladder';
 import {change} from './edits';
@@ -56,6 +58,11 @@ export function BatchBar({chosen, onAll, onNone, onChanged}: BatchBarProps) {
     setQueued(await each((session) => queueJob(request(session.name))));
   };
 
+  const plan = () => {
+    keepChosen(chosen.map(({name}) => name));
+    go('/batches?plan=chosen');
+  };
+
   return (
     <section class="batch" aria-label="Chosen sessions">
       <div class="row">
@@ -73,6 +80,7 @@ export function BatchBar({chosen, onAll, onNone, onChanged}: BatchBarProps) {
         <Button kind="main" isDisabled={isBusy} onClick={() => void queue((session) => ({kind: 'solve', session, quality}))}>Solve</Button>
         <Button isDisabled={isBusy} onClick={() => void queue((session) => ({kind: 'price', session}))}>Price</Button>
         <Button isDisabled={isBusy} onClick={() => void queue((session) => ({kind: 'rectify', session}))}>Rectify</Button>
+        <Button onClick={plan}>Plan a night...</Button>
       </div>
       {queued > 0 && <p role="status"><a href="/jobs">{counted(queued, 'job')} queued</a></p>}
       {failures.map(({name, error}) => <Complaint key={name} error={{...error, what: `${name}: ${error.what}`}} />)}
