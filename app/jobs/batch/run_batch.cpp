@@ -153,6 +153,7 @@ class BatchRun {
 
   Result<void> work_through() {
     give_way();
+    context_.progress("batch", 0);
     while (true) {
       if (!is_stopped()) {
         if (Result<void> ok = start_what_can_be(); !ok) return ok;
