@@ -20,6 +20,10 @@ Error unfit_batch(const std::string& field, const std::string& rule) {
   return {ErrorKind::kUsage, "job cannot be read", field, rule, "see POST jobs in openapi.json"};
 }
 
+Error no_place() {
+  return {ErrorKind::kNoInput, "there is no place for plans", "", "", "start weft serve"};
+}
+
 Result<std::vector<fs::path>> folders_named(const Json& names, const JobPlaces& places) {
   if (!names.is_array() || names.empty() || names.size() > kMostNamed)
     return unfit_batch("sessions", "must be a list of 1 to 2000 names; find takes more");
@@ -60,8 +64,7 @@ Result<void> add_batch_plan(JobSpec& spec, const JobPlaces& places) {
   const Result<std::string> name = text_or_none(spec.wants, "name");
   if (!name) return name.error();
   if (spec.wants.contains("name") && name->empty()) return unfit_batch("name", "must not be empty");
-  if (places.batches.empty())
-    return Error{ErrorKind::kNoInput, "there is no place for plans", "", "", "start weft serve"};
+  if (places.batches.empty()) return no_place();
   Result<std::vector<fs::path>> folders = spec.wants.contains("find")
                                               ? folders_found(spec.wants["find"], places)
                                               : folders_named(spec.wants["sessions"], places);
@@ -82,6 +85,7 @@ Result<void> add_batch_plan(JobSpec& spec, const JobPlaces& places) {
 Result<void> add_batch_run(JobSpec& spec, const JobPlaces& places) {
   const Result<std::string> name = text_or_none(spec.wants, "batch");
   if (!name) return name.error();
+  if (places.batches.empty()) return no_place();
   const Result<fs::path> folder = find_batch(places.batches, *name);
   if (!folder) return folder.error();
   const Result<PlanFile> plan = open_plan(plan_of_batch(places.batches, *name));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 #include <map>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "app/server/api/api.h"
 #include "app/server/api/batch_place.h"
 #include "app/server/api/descriptions.h"
+#include "app/server/api/scan_body.h"
 #include "app/server/api/viewed.h"
 #include "core/files.h"
 #include "library/session_name.h"

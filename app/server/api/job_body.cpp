@@ -98,7 +98,8 @@ JobKind batch_plan_kind() {
            number("to_deg", "--to", 1e-6, 180),
            {"within_s", "--within", Holds::kSeconds, false, 1, 1e9},
            number("least_change_deg", "--least-change", 1e-6, 180),
-           count("sample", "--sample", 0, 100000)}};
+           count("sample", "--sample", 0, 100000),
+           {"calibration", "--calibration", Holds::kFolder}}};
 }
 
 JobKind batch_run_kind() {

@@ -107,7 +107,13 @@ TEST_F(JobBody, PlansABatchOfNamedOrFoundSessions) {
   EXPECT_EQ(read_text(batches() / "autumn" / "sessions.txt").value(), "/scans/satin.weft\n");
   EXPECT_EQ(read(R"({"kind": "batch_plan", "sessions": ["satin"], "name": "autumn"})").error().kind,
             ErrorKind::kCannotCreate);
-  EXPECT_EQ(read(R"({"kind": "batch_plan", "sessions": ["satin"]})")->of, "0002");
+  const Result<JobSpec> corrected =
+      read(R"({"kind": "batch_plan", "sessions": ["satin"], "calibration": "calibrations/may"})");
+  ASSERT_TRUE(corrected) << corrected.error().message();
+  EXPECT_EQ(corrected->of, "0002");
+  EXPECT_EQ(corrected->needs, (Words{path("calibrations/may")}));
+  EXPECT_EQ((Words(corrected->arguments.begin() + 2, corrected->arguments.begin() + 4)),
+            (Words{"--calibration", path("calibrations/may")}));
 }
 
 TEST_F(JobBody, RefusesABatchThatCannotBePlannedAndBeginsNone) {
