@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // An archive solved again from the page: planned with its price, run, looked at, accepted.
 import assert from 'node:assert/strict';
+import fs from 'node:fs';
 import {after, before, test} from 'node:test';
 import {Archive} from './support/archive.mjs';
 import {launch, picture, violations, visit} from './support/browser.mjs';
+import {until} from './support/rig.mjs';
 
 const scene = (seed) => `
 fabric = "cloth ${seed}"
@@ -114,5 +116,28 @@ test('what a search finds is planned, what is solved already is left out, and a 
   assert.deepEqual(await violations(page), []);
   await page.getByRole('link', {name: '0001'}).click();
   await page.getByRole('heading', {name: 'What changed'}).waitFor();
+  await page.getByRole('button', {name: 'Forget...'}).click();
+  await page.getByRole('button', {name: 'Forget it'}).click();
+  await page.getByRole('link', {name: '0001'}).waitFor({state: 'detached'});
+  assert.deepEqual((await archive.ask('batches')).batches.map(({name}) => name), ['0002']);
+  await visitor.leave();
+});
+
+test('a run that is cancelled leaves nothing half made, keeps what was solved, and goes on', async () => {
+  const {id} = await archive.ask('jobs', {kind: 'batch_plan', sessions: ['linen', 'wool'], quality: 'robust', sample: 0, name: 'again'});
+  await until(async () => (await archive.ask(`jobs/${id}`)).state === 'done');
+  const visitor = await visit(browser, archive);
+  const page = await visitor.open(`${archive.address}/batches/again`);
+  await page.getByRole('button', {name: 'Run', exact: true}).click();
+  await until(async () => (await archive.ask('jobs?limit=1')).jobs[0].phase === 'batch');
+  await page.getByRole('button', {name: /^Cancel/}).click();
+  await page.getByText('cancelled', {exact: false}).first().waitFor();
+  const {done} = await archive.ask('batches/again');
+  assert.ok(done.missing > 0 && done.failed === 0, JSON.stringify(done));
+  const left = fs.readdirSync(archive.sessions, {recursive: true}).filter((name) => name.includes('partial'));
+  assert.deepEqual(left, [], 'half made');
+  await page.getByText(`${done.solved} solved, 0 failed, ${done.missing} to be solved`).waitFor();
+  await page.getByRole('button', {name: 'Run', exact: true}).click();
+  await page.getByText('2 solved, 0 failed, 0 to be solved').waitFor({timeout: working_ms});
   await visitor.leave();
 });

@@ -5929,7 +5929,7 @@ export interface components {
             output?: string;
             /** @description A calibration: folder below that of the rig file; of calibrate_*, and of check */
             from?: string;
-            /** @description Of solve: a calibration in place of the session's, folder below that of the rig file */
+            /** @description Of solve: a calibration in place of the session's; of batch_plan: in place of those of the sessions of its rig; folder below that of the rig file */
             calibration?: string;
             /** @description Of check and calibrate_update, in place of session: a set of that part, folder below that of the rig file */
             moved?: string;

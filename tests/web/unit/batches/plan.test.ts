@@ -12,6 +12,12 @@ test('a level, hours or degrees are asked for, and never two of them', () => {
   });
 });
 
+test('sessions that a move spoiled are planned by the corrected calibration', () => {
+  expect(requestOf({sessions: ['a'], calibration: 'calibrations/may'}, firstWish)).toEqual({
+    kind: 'batch_plan', sessions: ['a'], calibration: 'calibrations/may', quality: 'standard', sample: 50,
+  });
+});
+
 test('what cannot be asked for is said in a sentence', () => {
   for (const [wish, word] of [
     [{aim: 'hours', hours: ''}, /Hours/], [{aim: 'hours', hours: '-1'}, /Hours/], [{aim: 'degrees', degrees: 'few'}, /Degrees/],
@@ -29,6 +35,7 @@ test('a search in the address is what is planned', () => {
   expect(scopeInWords(found!)).toBe('all sessions by with warnings, query red wool');
   expect(scopeInWords({find: {}})).toBe('all sessions of the library');
   expect(scopeInWords(scope)).toBe('2 chosen sessions');
+  expect(scopeInWords({sessions: ['a'], calibration: 'calibrations/may'})).toBe('1 chosen session by calibrations/may');
 });
 
 test('only what was measured stands in the plot', () => {

@@ -7,7 +7,7 @@ import {filtersIn, questionOf} from '../sessions/filters';
 export type Plan = NonNullable<Schemas['OneBatch']['plan']>;
 
 /** Sessions that are chosen, or all that a search finds. */
-export type Scope = {sessions: string[]} | {find: Record<string, string>};
+export type Scope = {sessions: string[]; calibration?: string} | {find: Record<string, string>};
 
 export const aims = ['level', 'hours', 'degrees'] as const;
 export type Aim = (typeof aims)[number];
@@ -24,22 +24,18 @@ export interface Wish {
 
 export const firstWish: Wish = {aim: 'level', quality: 'standard', hours: '8', degrees: '1', leastChange: '', sample: '50'};
 
-const chosenKey = 'weft-plan';
-
-/** Keeps a selection for the plan's form, for as long as this tab is open: an address has no room for it. */
-export function keepChosen(sessions: readonly string[]): void {
-  sessionStorage.setItem(chosenKey, JSON.stringify(sessions));
-}
+/** Where a selection is kept for the form, for as long as the tab is open: an address has no room for it. */
+export const chosenKey = 'weft-plan';
 
 /** What the address says is to be planned; null: nothing. */
 export function scopeIn(query: URLSearchParams): Scope | null {
   const plan = query.get('plan');
-  if (plan === 'chosen') return {sessions: JSON.parse(sessionStorage.getItem(chosenKey) ?? '[]')};
+  if (plan === 'chosen') return JSON.parse(sessionStorage.getItem(chosenKey) ?? '{"sessions": []}');
   return plan === null ? null : {find: questionOf(filtersIn(query))};
 }
 
 export function scopeInWords(scope: Scope): string {
-  if ('sessions' in scope) return counted(scope.sessions.length, 'chosen session');
+  if ('sessions' in scope) return `${counted(scope.sessions.length, 'chosen session')}${scope.calibration ? ` by ${scope.calibration}` : ''}`;
   const words = Object.entries(scope.find).map(([key, value]) => (key === 'warned' ? 'with warnings' : `${key} ${value}`));
   return words.length ? `all sessions by ${words.join(', ')}` : 'all sessions of the library';
 }

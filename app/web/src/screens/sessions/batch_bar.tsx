@@ -2,13 +2,12 @@
 // What can be done with all chosen sessions at once: tags, and jobs for each.
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError, type Schemas} from '../../api/client';
-import {go} from '../../state/address';
 import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
 import {counted} from '../../ui/say';
-import {keepChosen} from '../batches/plan';
+import {planChosen} from '../batches/choose';
 import {queueJob} from '../jobs/state';
 import {qualities, type Quality} from '../jobs/ladder';
 import {change} from './edits';
@@ -58,10 +57,7 @@ export function BatchBar({chosen, onAll, onNone, onChanged}: BatchBarProps) {
     setQueued(await each((session) => queueJob(request(session.name))));
   };
 
-  const plan = () => {
-    keepChosen(chosen.map(({name}) => name));
-    go('/batches?plan=chosen');
-  };
+  const plan = () => planChosen(chosen.map(({name}) => name));
 
   return (
     <section class="batch" aria-label="Chosen sessions">
