@@ -166,6 +166,28 @@ TEST_F(Batches, OfAnotherVersionOrDamagedAreSaidToBe) {
   EXPECT_EQ(post(std::string(kBatches) + "/odd/accept", "{}").status, 422);
 }
 
+TEST_F(Batches, OfAnArchiveAreAnsweredInShort) {
+  constexpr int kMany = 10000;
+  batch::Plan plan = batch::sample_plan(kMany);
+  for (int i = 0; i < kMany; ++i)
+    plan.left_out.push_back({"/archive/there.weft", batch::Reason::kThere, "", "its solve is there", 1});
+  ASSERT_TRUE(begin_batch(places(), "large", {"/archive/a.weft"}));
+  ASSERT_TRUE(write_plan(plan_of_batch(places(), "large"), batch::text_of(plan)));
+  for (const char* path : {"", "/large", "/large/report"}) {
+    const auto began = std::chrono::steady_clock::now();
+    const Answer answer = get(path);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
+    ASSERT_EQ(answer.status, 200) << path;
+    EXPECT_LT(answer.body.size(), 200'000U) << path;
+    EXPECT_LT(took.count(), 20) << path;
+    RecordProperty(fmt::format("ms{}", path), static_cast<int>(1000 * took.count()));
+  }
+  const Json one = get("/large").json();
+  EXPECT_EQ(one["plan"]["jobs"].size(), 200U);
+  EXPECT_EQ(one["plan"]["reasons"][0]["sessions"], kMany);
+  EXPECT_EQ(one["done"]["missing"], kMany);
+}
+
 TEST_F(Batches, WithoutAPlanWaitForTheirJob) {
   ASSERT_TRUE(begin_batch(places(), "early", {"/archive/a.weft"}));
   const Json one = get("/early").json();
