@@ -23,11 +23,13 @@
 #include "app/cli/verbs.h"
 #include "app/jobs/batch/farm.h"
 #include "app/jobs/batch/lean.h"
+#include "app/jobs/batch/merge_batch.h"
 #include "app/jobs/batch/plan_batch.h"
 #include "app/jobs/batch/run_batch.h"
 #include "app/jobs/batch/survey.h"
 #include "batch/session_list.h"
 #include "core/compression.h"
+#include "core/files.h"
 
 namespace weft::app {
 namespace {
@@ -35,6 +37,7 @@ namespace {
 struct PlanArguments {
   PlanBatchOptions options;
   std::string find, within;
+  std::filesystem::path list;
   LibraryPlace place;
   library::Query query;
   std::vector<std::string> calibrations;
@@ -46,6 +49,7 @@ struct RunArguments {
   RunBatchOptions options;
   std::optional<int> array_from;
   std::string memory;
+  bool merge = false;
 };
 
 // A number with the unit behind it, in the last unit of the list; none where it is something else.
@@ -97,6 +101,14 @@ Result<void> add_sessions(const PlanArguments& a, const CommonArguments& common,
       options.sessions.push_back(std::move(read));
     if (options.sessions.empty())
       return Error{ErrorKind::kNoInput, "there is nothing to plan", "standard input", "it names no session",
+                   "write the folder of a session on each line"};
+  }
+  if (!a.list.empty()) {
+    const Result<std::string> text = read_text(a.list);
+    if (!text) return text.error();
+    for (std::string& read : batch::sessions_of_text(*text)) options.sessions.push_back(std::move(read));
+    if (options.sessions.empty())
+      return Error{ErrorKind::kNoInput, "there is nothing to plan", a.list.string(), "it names no session",
                    "write the folder of a session on each line"};
   }
   const bool searches = !a.find.empty() || !a.query.tag.empty() || !a.query.rig.empty() ||
@@ -268,6 +280,32 @@ int code_of(const RunBatchReport& report) {
   return kDone;
 }
 
+void print_run(const RunBatchReport& report, const std::optional<MergeReport>& merged,
+               const CommonArguments& common) {
+  if (common.json) {
+    Json document = {{"kept", report.kept},           {"kept_failures", report.kept_failures},
+                     {"solved", report.solved},       {"there", report.there},
+                     {"failed", report.failed},       {"lost", report.lost},
+                     {"not_begun", report.not_begun}, {"stopped", report.was_stopped},
+                     {"seconds", report.seconds}};
+    if (merged) {
+      const batch::Summary& s = merged->state.summary;
+      document["report"] = {{"folder", merged->folder.string()},
+                            {"failed", s.failed},
+                            {"missing", s.missing},
+                            {"changed", s.changed.size()},
+                            {"worse", s.worse}};
+    }
+    return print_json(document);
+  }
+  print(fmt::format(
+      "{} solved, {} there already, {} done before, {} failed, {} failed before, {} to be run again; "
+      "{:.1f} s",
+      report.solved, report.there, report.kept, report.failed, report.kept_failures,
+      report.lost + report.not_begun, report.seconds));
+  if (merged) print("look at " + (merged->folder / "report.html").string());
+}
+
 Result<int> run(const RunArguments& a, const CommonArguments& common) {
   RunBatchOptions options = a.options;
   if (!a.memory.empty()) {
@@ -285,26 +323,19 @@ Result<int> run(const RunArguments& a, const CommonArguments& common) {
     if (common.quiet && !is_bad) return;
     note(fmt::format("{}; {} left", words_of(outcome), hours_words(hours_left)));
   };
-  const JobContext context = {common.threads, stop_on_signal()};
+  // Each session is a line of its own for people; programs hear of shares too.
+  ProgressLine line(true);
+  const JobContext context = {common.threads, stop_on_signal(), line.callback()};
   const Result<RunBatchReport> report = run_batch(options, context, after);
   if (!report) return report.error();
-  if (common.json) {
-    print_json({{"kept", report->kept},
-                {"kept_failures", report->kept_failures},
-                {"solved", report->solved},
-                {"there", report->there},
-                {"failed", report->failed},
-                {"lost", report->lost},
-                {"not_begun", report->not_begun},
-                {"stopped", report->was_stopped},
-                {"seconds", report->seconds}});
-  } else {
-    print(fmt::format(
-        "{} solved, {} there already, {} done before, {} failed, {} failed before, {} to be run again; "
-        "{:.1f} s",
-        report->solved, report->there, report->kept, report->failed, report->kept_failures,
-        report->lost + report->not_begun, report->seconds));
+  std::optional<MergeReport> merged;
+  if (a.merge && !report->was_stopped) {
+    Result<MergeReport> made = merge_batch(options.plan, context);
+    if (!made) return std::move(made).error();
+    merged = std::move(*made);
   }
+  print_run(*report, merged, common);
+  if (merged) return merged->state.summary.is_whole() ? kDone : kDoneWithWarnings;
   return a.array_from ? after_own_task(code_of(*report)) : code_of(*report);
 }
 
@@ -312,6 +343,7 @@ void add_choice_of_sessions(Options& options, PlanArguments& a) {
   options.add("sessions", &a.options.sessions,
               "Folders of sessions, or with sessions below them; - reads them from standard input, as weft "
               "calibrate history --affected and weft library find print them");
+  options.add("--list", &a.list, "File that names sessions, as - reads it");
   options.add("--find", &a.find, "Also sessions of the library: words, each as the beginning of a word");
   options.add("--tag", &a.query.tag, "Tag that those of the library have");
   options.add("--rig", &a.query.rig, "Name of their rig");
@@ -386,6 +418,12 @@ Run add_run(Options& options) {
            "ends "
            "with 75, up to three times")
       .not_negative()
+      .excludes(task);
+  options
+      .add_flag(
+          "--merge", &a->merge,
+          "Write the report afterwards, as weft batch merge does, and end with its exit code: 2 where a "
+          "session failed or is missing. Not where it was stopped")
       .excludes(task);
   options.add_flag("--retry-failed", &run_options.retry_failed, "Try sessions again that failed before");
   add_product(options, run_options.keep, run_options.half);

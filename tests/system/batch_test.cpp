@@ -7,6 +7,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <fstream>
 #include <random>
 #include <thread>
 
@@ -29,6 +30,21 @@ std::unique_ptr<ChildProcess> begin_run(const fs::path& plan, const fs::path& lo
       ChildProcess::start({WEFT_PROGRAM, "batch", "run", plan.string(), "--threads", "1"}, {}, log);
   EXPECT_TRUE(started);
   return std::move(*started);
+}
+
+TEST_F(BatchTest, AListIsPlannedAndARunThatMergesEndsAsMergeDoes) {
+  fill_archive(2);
+  std::ofstream(work_ / "list.txt") << session(0).string() << "\n" << session(1).string() << "\n";
+  const Outcome planned = run_weft({"batch", "plan", "--list", (work_ / "list.txt").string(), "--quality",
+                                    "fast", "--sample", "0", "-o", plan_file().string(), "--json", "-q"});
+  ASSERT_EQ(planned.exit_code, 0) << planned.error;
+  EXPECT_EQ(planned.json()["sessions"], 2);
+  fs::remove_all(session(1));
+  const Outcome outcome = run({"--merge"});
+  EXPECT_EQ(outcome.exit_code, 2) << "one failed, and the report says so: " << outcome.error;
+  EXPECT_EQ(outcome.json()["report"]["failed"], 1);
+  EXPECT_TRUE(fs::exists(fs::path(outcome.json()["report"]["folder"].get<std::string>()) / "report.html"));
+  EXPECT_EQ(run_weft({"batch", "plan", "--list", (work_ / "none.txt").string(), "-q"}).exit_code, 66);
 }
 
 TEST_F(BatchTest, ARunSolvesWhatIsPlannedOnceAndAsWeftSolveDoes) {

@@ -145,6 +145,7 @@ class BatchRun {
     // With other maps kept than planned it is another solve.
     if (plan_.header.product.is_whole()) job.solve = lean_id(job.solve, product_);
     seconds_to_do_ += job.forecast.seconds;
+    seconds_in_all_ += job.forecast.seconds;
     item.job = std::move(job);
     item.is_here = options_.fetch.empty();
     items_.push_back(std::move(item));
@@ -152,6 +153,7 @@ class BatchRun {
 
   Result<void> work_through() {
     give_way();
+    context_.progress("batch", 0);
     while (true) {
       if (!is_stopped()) {
         if (Result<void> ok = start_what_can_be(); !ok) return ok;
@@ -340,9 +342,15 @@ class BatchRun {
       seconds_foreseen_ += item.job.forecast.seconds;
     }
     tally(outcome);
-    context_.progress("batch", static_cast<double>(done_) / static_cast<double>(items_.size()));
+    context_.progress("batch", share_done());
     after_(outcome, hours_left());
     return {};
+  }
+
+  // Of the seconds that were foreseen; where nothing was measured, of the sessions.
+  double share_done() const {
+    const double of_sessions = static_cast<double>(done_) / static_cast<double>(items_.size());
+    return seconds_in_all_ > 0 ? std::clamp(1 - seconds_to_do_ / seconds_in_all_, 0.0, 1.0) : of_sessions;
   }
 
   // By the pace so far; where nothing was measured, as long as those that were done.
@@ -400,7 +408,7 @@ class BatchRun {
   std::vector<Active> active_;
   std::size_t next_fetch_ = 0, next_solve_ = 0;
   int done_ = 0;
-  double seconds_to_do_ = 0, seconds_taken_ = 0, seconds_foreseen_ = 0;
+  double seconds_in_all_ = 0, seconds_to_do_ = 0, seconds_taken_ = 0, seconds_foreseen_ = 0;
   std::optional<Steady::time_point> stop_asked_at_;
   RunBatchReport report_;
 };

@@ -45,12 +45,12 @@ Result<Json> command_in(const RigParts& parts, const Call& call) {
 
 std::vector<Route> api_routes(const RigParts& parts) {
   std::vector<Resource> resources = {
-      server_resource(parts),  login_resource(parts),    rig_resource(parts),
-      scan_resource(parts),    sessions_resource(parts), frames_resource(parts),
-      jobs_resource(parts),    library_resource(parts),  events_resource(parts),
-      control_resource(parts), devices_resource(parts),  calibrations_resource(parts),
-      solves_resource(parts),  maps_resource(parts),     virtual_rig_resource(parts),
-      exports_resource(parts), materials_resource(parts)};
+      server_resource(parts),  login_resource(parts),     rig_resource(parts),
+      scan_resource(parts),    sessions_resource(parts),  frames_resource(parts),
+      jobs_resource(parts),    library_resource(parts),   events_resource(parts),
+      control_resource(parts), devices_resource(parts),   calibrations_resource(parts),
+      solves_resource(parts),  maps_resource(parts),      virtual_rig_resource(parts),
+      exports_resource(parts), materials_resource(parts), batches_resource(parts)};
   std::vector<Route> routes;
   Reply description = json_reply(whole_description(resources));
   description.keeping = Keeping::kAskAgain;

@@ -66,6 +66,7 @@ Resource solves_resource(const RigParts& parts);
 Resource exports_resource(const RigParts& parts);
 Resource materials_resource(const RigParts& parts);
 Resource jobs_resource(const RigParts& parts);
+Resource batches_resource(const RigParts& parts);
 Resource library_resource(const RigParts& parts);
 Resource events_resource(const RigParts& parts);
 

@@ -5,6 +5,7 @@ namespace weft::app {
 
 /// The texts of openapi.json and of each resource's part of it, RESOURCE.openapi.json: {"paths", "schemas"}.
 const char* common_description();
+const char* batches_description();
 const char* calibrations_description();
 const char* control_description();
 const char* devices_description();

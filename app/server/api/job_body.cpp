@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <initializer_list>
 #include <span>
 #include <string_view>
@@ -13,6 +14,7 @@
 
 #include "app/jobs/maps/recipe.h"
 #include "app/jobs/planned_cloth.h"
+#include "app/server/api/batch_body.h"
 #include "app/server/api/library_materials.h"
 #include "core/files.h"
 #include "library/session_files.h"
@@ -37,14 +39,17 @@ Error unfit(const std::string& field, const std::string& rule) {
 enum class Holds {
   kWord,
   kNumber,
-  kFlag,      // true: the option
-  kWords,     // a list, which becomes words by commas
-  kRecipe,    // {"steps": [...]}, which becomes its text
-  kSession,   // the name of one
-  kMaterial,  // the key of one of the library
-  kBuild,     // likewise, of which the newest build or that of `set` is meant
-  kFolder,    // one that is there, below the rig's
-  kNewFolder  // one that is not there yet
+  kFlag,       // true: the option
+  kWords,      // a list, which becomes words by commas
+  kRecipe,     // {"steps": [...]}, which becomes its text
+  kSession,    // the name of one
+  kMaterial,   // the key of one of the library
+  kBuild,      // likewise, of which the newest build or that of `set` is meant
+  kFolder,     // one that is there, below the rig's
+  kNewFolder,  // one that is not there yet
+  kCount,      // a whole number
+  kSeconds,    // a number, which becomes 3600s
+  kOfBatch     // what batch_body.h reads
 };
 
 // A field of the body that becomes an argument of the verb.
@@ -75,6 +80,34 @@ JobField word(const char* field, const char* option, std::vector<std::string_vie
 }
 JobField number(const char* field, const char* option, double least, double most) {
   return {field, option, Holds::kNumber, false, least, most};
+}
+
+JobField count(const char* field, const char* option, double least, double most) {
+  return {field, option, Holds::kCount, false, least, most};
+}
+
+const std::vector<std::string_view> kLevels = {"preview", "fast", "standard", "robust", "reference"};
+
+JobKind batch_plan_kind() {
+  return {"batch_plan",
+          {"batch", "plan"},
+          {{"sessions", "", Holds::kOfBatch},
+           {"find", "", Holds::kOfBatch},
+           {"name", "", Holds::kOfBatch},
+           word("quality", "--quality", kLevels),
+           number("to_deg", "--to", 1e-6, 180),
+           {"within_s", "--within", Holds::kSeconds, false, 1, 1e9},
+           number("least_change_deg", "--least-change", 1e-6, 180),
+           count("sample", "--sample", 0, 100000),
+           {"calibration", "--calibration", Holds::kFolder}}};
+}
+
+JobKind batch_run_kind() {
+  return {"batch_run",
+          {"batch", "run", "--merge"},
+          {{"batch", "", Holds::kOfBatch, true},
+           count("at_once", "--jobs", 1, 64),
+           {"retry_failed", "--retry-failed", Holds::kFlag}}};
 }
 
 std::vector<std::string_view> plan_cloths() {
@@ -119,7 +152,7 @@ const std::vector<JobKind>& job_kinds() {
       {"solve",
        {"solve"},
        {kSession,
-        word("quality", "--quality", {"preview", "fast", "standard", "robust", "reference"}),
+        word("quality", "--quality", kLevels),
         word("method", "--method"),
         number("within_s", "--within", 1e-3, 1e9),
         number("to_deg", "--to", 1e-6, 180),
@@ -173,7 +206,9 @@ const std::vector<JobKind>& job_kinds() {
       {"calibrate_patches", {"calibrate", "patches"}, {kSession, kOutput, kFrom}},
       {"calibrate_update",
        {"calibrate", "update"},
-       {{"session", "", Holds::kSession}, {"moved", "", Holds::kFolder}, kOutput, kFrom}}};
+       {{"session", "", Holds::kSession}, {"moved", "", Holds::kFolder}, kOutput, kFrom}},
+      batch_plan_kind(),
+      batch_run_kind()};
   return kinds;
 }
 
@@ -230,8 +265,14 @@ Result<fs::path> new_folder_below(const fs::path& root, const Json& body, const 
 
 Result<std::string> number_in(const Json& value, const JobField& field) {
   const double amount = value.is_number() ? value.get<double>() : field.least - 1;
-  if (amount >= field.least && amount <= field.most) return fmt::format("{}", amount);
-  return unfit(field.field, fmt::format("must be a number from {} to {}", field.least, field.most));
+  const bool is_whole = field.holds == Holds::kCount;
+  const bool fits =
+      amount >= field.least && amount <= field.most && (!is_whole || amount == std::floor(amount));
+  if (!fits)
+    return unfit(field.field, fmt::format("must be a {}number from {} to {}", is_whole ? "whole " : "",
+                                          field.least, field.most));
+  if (is_whole) return fmt::format("{:.0f}", amount);
+  return fmt::format("{}{}", amount, field.holds == Holds::kSeconds ? "s" : "");
 }
 
 Result<std::string> words_in(const Json& value, const JobField& field) {
@@ -276,7 +317,8 @@ Result<std::string> material_in(const Json& body, const JobField& field, const J
 // What the field becomes; what the job needs of it is added to its needs.
 Result<std::string> argument_of(const Json& body, const JobField& field, const JobPlaces& places,
                                 JobSpec& spec) {
-  if (field.holds == Holds::kNumber) return number_in(body[field.field], field);
+  if (field.holds == Holds::kNumber || field.holds == Holds::kCount || field.holds == Holds::kSeconds)
+    return number_in(body[field.field], field);
   if (field.holds == Holds::kWords) return words_in(body[field.field], field);
   if (field.holds == Holds::kRecipe) return recipe_in(body[field.field], field);
   if (field.holds == Holds::kWord) {
@@ -310,6 +352,7 @@ Result<void> add_field(const Json& body, const JobField& field, const JobPlaces&
     return {};
   }
   if (*field.unless != '\0' && body.contains(field.unless)) return {};
+  if (field.holds == Holds::kOfBatch) return {};
   if (field.holds == Holds::kFlag) {
     const Json& flag = body[field.field];
     if (!flag.is_boolean()) return unfit(field.field, "must be true or false");
@@ -333,6 +376,10 @@ Result<void> check_together(const std::string& kind, const Json& body) {
   if (kind.starts_with("export") && named("session") + named("material") != 1)
     return unfit("session", "either it or material must be named");
   if (named("recipe") + named("steps") > 1) return unfit("recipe", "either it or steps may be named");
+  if (kind == "batch_plan" && named("sessions") + named("find") != 1)
+    return unfit("sessions", "either it or find must be named");
+  if (kind == "batch_plan" && named("quality") + named("to_deg") + named("within_s") > 1)
+    return unfit("quality", "either it or to_deg or within_s may be named");
   if (kind == "rig_plan" && named("cloth") + named("roughness") > 1)
     return unfit("cloth", "either it or roughness may be named");
   if (kind == "rig_plan" && named("f0") > named("roughness"))
@@ -358,6 +405,8 @@ Result<void> add_places(JobSpec& spec, const JobPlaces& places) {
     spec.needs.push_back(places.rig_file.string());
     add({places.rig_file.string()});
   }
+  if (spec.kind == "batch_plan") return add_batch_plan(spec, places);
+  if (spec.kind == "batch_run") return add_batch_run(spec, places);
   return {};
 }
 

@@ -3,7 +3,9 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
+#include <vector>
 
 #include "app/jobs/material/material_place.h"
 #include "app/server/jobs/job.h"
@@ -25,6 +27,12 @@ struct JobPlaces {
   std::function<Result<MaterialPlace>(const std::string& key)> material = {};
   /// The folder of what was built of one; without an id of the newest build. kNoInput.
   std::function<Result<std::filesystem::path>(const std::string& key, const std::string& id)> build = {};
+  /// The folder of a session by its name, whether or not it can be read. kUsage, kNoInput.
+  std::function<Result<std::filesystem::path>(const std::string& name)> session_folder = {};
+  /// Folders of the sessions that the words of a search find (session_query.h). kUsage.
+  std::function<Result<std::vector<std::filesystem::path>>(const std::map<std::string, std::string>& asked)>
+      sessions_found = {};
+  std::filesystem::path batches = {};  ///< where plans lie (batch_place.h); empty: nowhere
 };
 
 /// The folder that a field of a body names, below another one where no link leads out of it. kUsage,

@@ -6,16 +6,35 @@
 #include <utility>
 
 #include "app/server/api/api.h"
+#include "app/server/api/batch_place.h"
 #include "app/server/api/descriptions.h"
 #include "app/server/api/job_body.h"
 #include "app/server/api/library_materials.h"
 #include "app/server/api/scan_body.h"
+#include "app/server/api/session_query.h"
 #include "library/session_name.h"
 
 namespace weft::app {
 namespace {
 
 constexpr int kMostJobs = 1000;
+constexpr int kPageOfSessions = 1000;
+
+// Of all pages.
+Result<std::vector<std::filesystem::path>> all_folders(LibraryService& library,
+                                                       const std::map<std::string, std::string>& asked) {
+  Result<library::Query> query = session_query(asked);
+  if (!query) return std::move(query).error();
+  query->limit = kPageOfSessions;
+  std::vector<std::filesystem::path> folders;
+  do {
+    const Result<library::Page> page = library.find(*query);
+    if (!page) return page.error();
+    for (const library::Entry& entry : page->entries) folders.push_back(entry.folder);
+    query->after = page->after;
+  } while (query->after);
+  return folders;
+}
 
 JobPlaces places_of(const RigParts& parts) {
   const auto session = [&parts](const std::string& name) -> Result<std::filesystem::path> {
@@ -29,8 +48,14 @@ JobPlaces places_of(const RigParts& parts) {
     if (!found) return found.error();
     return found->folder;
   };
-  return {session,  rig.file.parent_path(), rig.name, rig.scan.sessions, rig.scan.copy,
-          rig.file, library_material,       build};
+  JobPlaces places = {session,  rig.file.parent_path(), rig.name, rig.scan.sessions, rig.scan.copy,
+                      rig.file, library_material,       build};
+  places.session_folder = [&parts](const std::string& name) { return parts.library.folder_of(name); };
+  places.sessions_found = [&parts](const std::map<std::string, std::string>& asked) {
+    return all_folders(parts.library, asked);
+  };
+  places.batches = parts.state / kBatchFolder;
+  return places;
 }
 
 Result<Reply> add_job(const RigParts& parts, const Call& call) {
@@ -40,6 +65,9 @@ Result<Reply> add_job(const RigParts& parts, const Call& call) {
   if (!spec) return std::move(spec).error();
   spec->by = parts.controls.name_of(call.control);
   const Result<JobStatus> job = parts.jobs.add(*spec);
+  // The batch that was begun for it is another's, or nobody's.
+  const bool has_begun = spec->kind == "batch_plan" && (!job || job->spec.of != spec->of);
+  if (has_begun) remove_batch(parts.state / kBatchFolder, spec->of);
   if (!job) return job.error();
   return json_reply(json_of(*job), kAccepted);
 }
@@ -55,6 +83,13 @@ Result<int> number_of(const Call& call, const char* key, int otherwise) {
   return number;
 }
 
+// What a plan leaves out may be ten thousand sessions, and is asked for with the batch.
+Json job_as_told(const JobStatus& job) {
+  Json json = json_of(job);
+  if (job.spec.kind == "batch_plan" && job.result.is_object()) json["result"].erase("left_out");
+  return json;
+}
+
 // Newest first; `after` is the id that ended the page before.
 Result<Reply> list_jobs(const RigParts& parts, const Call& call) {
   const Result<int> limit = number_of(call, "limit", 100);
@@ -64,7 +99,7 @@ Result<Reply> list_jobs(const RigParts& parts, const Call& call) {
     std::erase_if(all, [&](const JobStatus& job) { return job.id >= after->second; });
   const std::size_t count = std::min(all.size(), static_cast<std::size_t>(std::min(*limit, kMostJobs)));
   Json jobs = Json::array();
-  for (std::size_t i = 0; i < count; ++i) jobs.push_back(json_of(all[i]));
+  for (std::size_t i = 0; i < count; ++i) jobs.push_back(job_as_told(all[i]));
   return json_reply(
       {{"jobs", std::move(jobs)}, {"after", count < all.size() ? Json(all[count - 1].id) : Json()}});
 }
@@ -72,7 +107,7 @@ Result<Reply> list_jobs(const RigParts& parts, const Call& call) {
 Result<Reply> one_job(const RigParts& parts, const Call& call) {
   const Result<JobStatus> job = parts.jobs.find(call.segments.at(0));
   if (!job) return job.error();
-  return json_reply(json_of(*job));
+  return json_reply(job_as_told(*job));
 }
 
 Result<Reply> forget_job(const RigParts& parts, const Call& call) {

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
-#include <array>
-#include <charconv>
 #include <chrono>
 #include <utility>
 
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
 #include "app/server/api/session_choice.h"
+#include "app/server/api/session_query.h"
 #include "library/current.h"
 #include "library/left_out.h"
 #include "library/metadata.h"
@@ -41,49 +40,6 @@ Json to_json(const Shot& shot, const std::string& name) {
           {"warnings", library::warnings_of(shot)}};
 }
 
-Error no_query(const std::string& key, const std::string& rule) {
-  return {ErrorKind::kUsage, "sessions cannot be searched so", key, rule, "see GET sessions in openapi.json"};
-}
-
-Result<std::int64_t> count_in(const std::string& key, const std::string& text) {
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc() && end == text.data() + text.size() && number > 0) return number;
-  return no_query(key, "must be a number from 1");
-}
-
-Result<library::Query> query_of(const Call& call) {
-  library::Query query;
-  const std::array<std::pair<const char*, std::string*>, 8> texts = {{{"query", &query.words},
-                                                                      {"id", &query.id},
-                                                                      {"tag", &query.tag},
-                                                                      {"state", &query.state},
-                                                                      {"rig", &query.rig},
-                                                                      {"calibration", &query.calibration},
-                                                                      {"from", &query.from},
-                                                                      {"to", &query.before}}};
-  for (const auto& [key, value] : call.query) {
-    const auto text = std::ranges::find(texts, key, [](const auto& each) { return std::string(each.first); });
-    if (text != texts.end()) {
-      *text->second = value;
-      continue;
-    }
-    if (key == "warned") {
-      if (value != "true" && value != "false") return no_query(key, "must be true or false");
-      query.warned = value == "true";
-      continue;
-    }
-    if (key != "limit" && key != "after") return no_query(key.substr(0, 40), "there is no such filter");
-    const Result<std::int64_t> number = count_in(key, value);
-    if (!number) return number.error();
-    if (key == "after") query.after = *number;
-    if (key == "limit") query.limit = static_cast<int>(std::min<std::int64_t>(*number, 1000));
-  }
-  // Nothing in a time follows this sign: all that begins with what is said is within.
-  if (!query.before.empty()) query.before += '~';
-  return query;
-}
-
 /// The cloth relit by its current solve, else the first lit photograph: a path that names its bytes.
 Json thumbnail_of(const library::Entry& entry) {
   const std::string path = "/api/v1/sessions/" + entry.name;
@@ -94,7 +50,7 @@ Json thumbnail_of(const library::Entry& entry) {
 }
 
 Result<Reply> find_sessions(const RigParts& parts, const Call& call) {
-  const Result<library::Query> query = query_of(call);
+  const Result<library::Query> query = session_query(call.query);
   if (!query) return query.error();
   const Result<library::Page> page = parts.library.find(*query);
   if (!page) return page.error();

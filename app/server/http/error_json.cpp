@@ -12,7 +12,7 @@ namespace weft::app {
 namespace {
 
 /// What is said, and the word for it. Clients rely on the words.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 51> kCodes = {{
+constexpr std::array<std::pair<std::string_view, std::string_view>, 53> kCodes = {{
     {"the token is missing or wrong", "not_logged_in"},
     {"the token is wrong", "wrong_token"},
     {"this token may only look", "may_only_look"},
@@ -57,6 +57,8 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 51> kCodes =
     {"no set is worked on", "no_set"},
     {"the set is being photographed", "rig_busy"},
     {"the set has all that is needed", "set_complete"},
+    {"there is no such batch", "no_such_batch"},
+    {"there is a batch of this name", "batch_exists"},
     {"there is no such job", "no_such_job"},
     {"job cannot be cancelled", "job_ended"},
     {"job cannot be retried", "job_not_ended"},

@@ -14,6 +14,9 @@ namespace weft::app {
 /// with it. The folder is there where an argument names a file in it.
 inline constexpr const char* kJobFiles = "{files}";
 
+/// Of what a job wants: the seconds that it is planned to take. Its share is then one of seconds.
+inline constexpr const char* kPlannedSeconds = "planned_s";
+
 /// What a job is to do: a verb of weft with its arguments, as a process of its own.
 struct JobSpec {
   std::string kind;  ///< "solve", "rectify", "calibrate lights", ...

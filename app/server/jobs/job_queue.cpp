@@ -233,12 +233,18 @@ void JobQueue::hold(bool is_held) {
   if (is_held_ == is_held) return;
   is_held_ = is_held;
   if (child_) {
-    child_->signal(is_held ? SIGSTOP : SIGCONT);
+    signal_all(is_held ? SIGSTOP : SIGCONT);
     JobStatus& job = jobs_[running_];
     job.is_held = is_held;
     options_.changed(job);
   }
   woken_.notify_all();
+}
+
+// To the running job with the processes that it started: they are a group, once setsid has made it.
+void JobQueue::signal_all(int number) const {
+  child_->signal(number);
+  ::kill(-child_->pid(), number);
 }
 
 void JobQueue::work(const std::stop_token& stop) {
@@ -290,8 +296,13 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
                       "it was there when the job was asked for", "bring it back, then retry"});
   }
   // setpriv: the job ends when this process is killed.
-  std::vector<std::string> command = {"/usr/bin/setpriv", "--pdeathsig", "KILL",
-                                      "/usr/bin/nice",    "-n",          std::to_string(options_.niceness)};
+  std::vector<std::string> command = {"/usr/bin/setsid",
+                                      "/usr/bin/setpriv",
+                                      "--pdeathsig",
+                                      "KILL",
+                                      "/usr/bin/nice",
+                                      "-n",
+                                      std::to_string(options_.niceness)};
   if (options_.memory_bytes > 0) {
     command.insert(command.end(), {"/usr/bin/prlimit", fmt::format("--data={}", options_.memory_bytes)});
   }
@@ -310,9 +321,9 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   options_.changed(job);
   child_ = std::move(*started);
   running_ = id;
-  if (is_held_) child_->signal(SIGSTOP);
+  if (is_held_) signal_all(SIGSTOP);
 
-  const std::optional<double> expected_s = expected_seconds(job.spec);
+  std::optional<double> expected_s = expected_seconds(job.spec);
   auto looked = std::chrono::steady_clock::now();
   bool was_held = is_held_;
   job.seconds = 0;
@@ -320,7 +331,7 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   std::optional<std::chrono::steady_clock::time_point> told;  // to end
   while (child_->runs()) {
     if ((is_cancelled_ || stop.stop_requested()) && !told) {
-      child_->signal(SIGCONT);
+      signal_all(SIGCONT);
       child_->signal(SIGTERM);
       told = std::chrono::steady_clock::now();
     }
@@ -333,7 +344,9 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
     was_held = is_held_;
     follow(id, read, expected_s);
   }
-  follow(id, read, {});
+  ::kill(-child_->pid(), SIGKILL);  // what it has started ends with it
+  expected_s.reset();
+  follow(id, read, expected_s);
   job.exit_code = child_->wait(0);
   child_.reset();
   running_.clear();
@@ -349,6 +362,8 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
 // By the newest price of its session, else by the newest job that is done and differs in nothing but what it
 // worked on.
 std::optional<double> JobQueue::expected_seconds(const JobSpec& spec) const {
+  if (const Json planned = spec.wants.value(kPlannedSeconds, Json()); planned.is_number())
+    return planned.get<double>();
   if (const std::optional<double> priced = priced_seconds(spec)) return priced;
   const auto same = [](const std::string& a, const std::string& b) {
     return a == b || (a.starts_with('/') && b.starts_with('/'));
@@ -380,13 +395,17 @@ std::optional<double> JobQueue::priced_seconds(const JobSpec& spec) const {
 }
 
 // Reads what the verb has said since, and counts down what is left.
-void JobQueue::follow(const std::string& id, std::size_t& read, std::optional<double> expected_s) {
+void JobQueue::follow(const std::string& id, std::size_t& read, std::optional<double>& expected_s) {
   JobStatus& job = jobs_[id];
+  const double share_before = job.share;
   const std::string said = bytes_from(file_of(id, ".log"), read);
   const std::size_t whole = said.rfind('\n') + 1;
   read += whole;
   std::istringstream lines(said.substr(0, whole));
   for (std::string line; std::getline(lines, line);) hear(job, line);
+  // What is planned beforehand has one phase, whose share is one of seconds.
+  if (expected_s && job.spec.wants.contains(kPlannedSeconds) && job.share > share_before)
+    expected_s = job.seconds / job.share;
   const double left_s = expected_s.value_or(0) - job.seconds;
   const bool is_told = whole > 0 || (job.left_s && *job.left_s - left_s >= kCountdown_s);
   if (!is_told) return;

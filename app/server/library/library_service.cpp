@@ -128,13 +128,18 @@ Result<std::vector<std::pair<std::string, int>>> LibraryService::tags() {
 }
 
 Result<Session> LibraryService::session(const std::string& name) {
-  const Result<std::filesystem::path> folder = library::session_folder(home_, name);
+  const Result<std::filesystem::path> folder = folder_of(name);
   if (!folder) return folder.error();
-  if (is_there(*folder / "session.json")) return read_session(*folder);
+  return read_session(*folder);
+}
+
+Result<std::filesystem::path> LibraryService::folder_of(const std::string& name) {
+  Result<std::filesystem::path> folder = library::session_folder(home_, name);
+  if (!folder || is_there(*folder / "session.json")) return folder;
   const std::lock_guard lock(asked_mutex_);
   const Result<library::Entry> entry = asked_.find_one(name);
   if (!entry) return entry.error().kind == ErrorKind::kNoInput ? no_session(name) : entry.error();
-  return read_session(entry->folder);
+  return entry->folder;
 }
 
 std::vector<std::filesystem::path> LibraryService::silent() const {

@@ -36,6 +36,8 @@ class LibraryService {
   /// A session by its name, as its session.json is now. kUsage for what is no name and for one that several
   /// archives have, kNoInput where there is none, errors of read_session().
   Result<Session> session(const std::string& name);
+  /// Its folder, whether or not its session.json can be read. The other errors of session().
+  Result<std::filesystem::path> folder_of(const std::string& name);
   /// Archives whose disk does not answer: what was known of them stays.
   std::vector<std::filesystem::path> silent() const;
   /// The session that is written now: each question is answered as it is at that moment.

@@ -65,9 +65,9 @@ TEST_F(Page, IsAskedForAgainByItsTagAndItsAssetsNever) {
 
 TEST_F(Page, IsThereAtTheAddressOfEachScreen) {
   const std::string page = get("/").body;
-  for (const char* path :
-       {"/desk", "/sessions/2026-11-21_wool.2_001", "/viewer/a%20b/d043ba17c8aaa1fc",
-        "/viewer/a/maps/d043ba17", "/material/a/maps/d043ba17", "/calibrate", "/jobs", "/doctor", "/tour"}) {
+  for (const char* path : {"/desk", "/sessions/2026-11-21_wool.2_001", "/viewer/a%20b/d043ba17c8aaa1fc",
+                           "/viewer/a/maps/d043ba17", "/material/a/maps/d043ba17", "/calibrate", "/batches",
+                           "/batches/0001", "/jobs", "/doctor", "/tour"}) {
     EXPECT_EQ(get(path).body, page) << path;
   }
   for (const char* path : {"/nothing", "/desks", "/viewer/a/b/c", "/api/v1/desk", "/api", "/desk.js"}) {

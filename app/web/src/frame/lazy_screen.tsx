@@ -13,6 +13,7 @@ const screens: Record<string, Load> = {
   viewer: () => import('../screens/viewer/screen'),
   material: () => import('../screens/material/screen'),
   calibrate: () => import('../screens/calibrate/screen'),
+  batches: () => import('../screens/batches/screen'),
   jobs: () => import('../screens/jobs/screen'),
   doctor: () => import('../screens/doctor/screen'),
   tour: () => import('../screens/tour/screen'),

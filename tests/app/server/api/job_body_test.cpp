@@ -4,10 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "app/jobs/planned_cloth.h"
+#include "core/files.h"
 #include "core/temporary_folder.h"
 
 namespace weft::app {
@@ -36,14 +39,23 @@ class JobBody : public testing::Test {
     const auto build = [](const std::string& key, const std::string& id) -> Result<fs::path> {
       return fs::path("/materials") / key / (id.empty() ? "newest" : id);
     };
-    return read_job_body(Json::parse(body),
-                         {session, folder_, "north", "/scans", "/copies", rig_file_, material, build});
+    JobPlaces places = {session, folder_, "north", "/scans", "/copies", rig_file_, material, build};
+    places.session_folder = session;
+    places.sessions_found =
+        [](const std::map<std::string, std::string>& asked) -> Result<std::vector<fs::path>> {
+      if (asked.contains("query")) return std::vector<fs::path>{"/scans/b.weft", "/scans/a.weft"};
+      return std::vector<fs::path>{};
+    };
+    places.batches = batches();
+    return read_job_body(Json::parse(body), places);
   }
   std::vector<std::string> arguments(const std::string& body) const {
     const Result<JobSpec> spec = read(body);
     return spec ? spec->arguments : std::vector<std::string>{spec.error().message()};
   }
   std::string path(const char* name) const { return (folder_ / name).string(); }
+
+  fs::path batches() const { return scratch_.path() / "batches"; }
 
   const TemporaryFolder scratch_;
   const fs::path folder_ = scratch_.path() / "rig";
@@ -79,6 +91,57 @@ TEST_F(JobBody, BecomesAVerbWithItsArguments) {
   EXPECT_EQ(lights->needs, (Words{path("photographs"), path("calibrations/may")}));
   EXPECT_EQ(lights->of, "photographs");
   EXPECT_EQ(lights->request_id, "a");
+}
+
+TEST_F(JobBody, PlansABatchOfNamedOrFoundSessions) {
+  const auto place = [&](const char* name) { return (batches() / name).string(); };
+  EXPECT_EQ(arguments(R"({"kind": "batch_plan", "find": {"query": "wool"}, "within_s": 28800, "sample": 3})"),
+            (Words{"batch", "plan", "--within", "28800s", "--sample", "3", "--list",
+                   place("0001/sessions.txt"), "--plan", place("0001/plan.jsonl")}));
+  EXPECT_EQ(read_text(batches() / "0001" / "sessions.txt").value(), "/scans/a.weft\n/scans/b.weft\n");
+  const Result<JobSpec> named =
+      read(R"({"kind": "batch_plan", "sessions": ["satin", "satin"], "name": "autumn", "to_deg": 0.5})");
+  ASSERT_TRUE(named) << named.error().message();
+  EXPECT_EQ(named->of, "autumn");
+  EXPECT_EQ(named->wants["sessions"], 1) << "their number, and no list that every answer repeats";
+  EXPECT_EQ(read_text(batches() / "autumn" / "sessions.txt").value(), "/scans/satin.weft\n");
+  EXPECT_EQ(read(R"({"kind": "batch_plan", "sessions": ["satin"], "name": "autumn"})").error().kind,
+            ErrorKind::kCannotCreate);
+  const Result<JobSpec> corrected =
+      read(R"({"kind": "batch_plan", "sessions": ["satin"], "calibration": "calibrations/may"})");
+  ASSERT_TRUE(corrected) << corrected.error().message();
+  EXPECT_EQ(corrected->of, "0002");
+  EXPECT_EQ(corrected->needs, (Words{path("calibrations/may")}));
+  EXPECT_EQ((Words(corrected->arguments.begin() + 2, corrected->arguments.begin() + 4)),
+            (Words{"--calibration", path("calibrations/may")}));
+}
+
+TEST_F(JobBody, RefusesABatchThatCannotBePlannedAndBeginsNone) {
+  const auto kind_of = [&](const char* body) {
+    const Result<JobSpec> spec = read(body);
+    return spec ? std::optional<ErrorKind>() : spec.error().kind;
+  };
+  for (const char* wrong :
+       {R"({"kind": "batch_plan"})", R"({"kind": "batch_plan", "sessions": []})",
+        R"({"kind": "batch_plan", "sessions": "satin"})", R"({"kind": "batch_plan", "sessions": [7]})",
+        R"({"kind": "batch_plan", "find": "wool"})", R"({"kind": "batch_plan", "find": {"limit": "3"}})",
+        R"({"kind": "batch_plan", "find": {"query": 3}})",
+        R"({"kind": "batch_plan", "sessions": ["satin"], "find": {"query": "a"}})",
+        R"({"kind": "batch_plan", "sessions": ["satin"], "quality": "best"})",
+        R"({"kind": "batch_plan", "sessions": ["satin"], "quality": "fast", "to_deg": 1})",
+        R"({"kind": "batch_plan", "sessions": ["satin"], "within_s": 0})",
+        R"({"kind": "batch_plan", "sessions": ["satin"], "sample": 2.5})",
+        R"({"kind": "batch_plan", "sessions": ["satin"], "least_change_deg": -1})",
+        R"({"kind": "batch_plan", "sessions": ["satin"], "name": "../out"})",
+        R"({"kind": "batch_plan", "sessions": ["satin"], "name": ""})",
+        R"({"kind": "batch_plan", "sessions": ["satin"], "output": "/tmp"})", R"({"kind": "batch_run"})",
+        R"({"kind": "batch_run", "batch": 1})", R"({"kind": "batch_run", "batch": "a", "at_once": 0})"})
+    EXPECT_EQ(kind_of(wrong), ErrorKind::kUsage) << wrong;
+  for (const char* none :
+       {R"({"kind": "batch_plan", "sessions": ["satin", "velvet"]})", R"({"kind": "batch_plan", "find": {}})",
+        R"({"kind": "batch_run", "batch": "none"})", R"({"kind": "batch_run", "batch": "../none"})"})
+    EXPECT_EQ(kind_of(none), ErrorKind::kNoInput) << none;
+  EXPECT_TRUE(!fs::exists(batches()) || fs::is_empty(batches()));
 }
 
 TEST_F(JobBody, PlansLightsForTheRigOfTheDaemonAndNoOther) {

@@ -11,11 +11,13 @@
 #include <thread>
 #include <vector>
 
+#include "app/server/api/batch_place.h"
 #include "app/server/http/error_json.h"
 #include "core/files.h"
 #include "tests/app/server/api/json_schema.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
+#include "tests/batch/sample_plan.h"
 #include "virtual_rig/control_socket.h"
 
 namespace weft::app {
@@ -274,6 +276,32 @@ TEST_F(OpenApi, DescribesJobs) {
   EXPECT_EQ(conforming("DELETE", job, here).json()["state"], "failed");
   EXPECT_EQ(conforming("DELETE", job, here).status, 404) << "it is forgotten";
   EXPECT_EQ(conforming("GET", job, here).status, 404);
+}
+
+TEST_F(OpenApi, DescribesBatches) {
+  const std::string batches = "/api/v1/batches", one = batches + "/{name}", here = batches + "/night";
+  EXPECT_EQ(conforming("GET", batches, batches).json()["batches"], Json::array());
+  for (const char* below : {"", "/report"})
+    EXPECT_EQ(conforming("GET", one + below, here + below).status, 404) << below;
+  const std::filesystem::path places = scripted_.rig.daemon.state / kBatchFolder;
+  ASSERT_TRUE(begin_batch(places, "night", {"/archive/a.weft"}));
+  EXPECT_EQ(conforming("GET", one, here).json()["plan"], Json()) << "it is not made";
+  batch::Plan plan = batch::sample_plan(2);
+  plan.left_out.push_back({"/archive/b.weft", batch::Reason::kThere, "", "it is there", 9});
+  ASSERT_TRUE(write_file(plan_of_batch(places, "night"), batch::text_of(plan)));
+  EXPECT_EQ(conforming("GET", batches, batches).json()["batches"].size(), 1U);
+  EXPECT_EQ(conforming("GET", one, here).json()["plan"]["jobs"].size(), 2U);
+  EXPECT_EQ(conforming("GET", one + "/report", here + "/report").json()["missing"], 2);
+  const std::string file = one + "/files/{file}", page = here + "/files/report.html";
+  EXPECT_EQ(conforming("GET", file, page).status, 404);
+  std::filesystem::create_directories(report_of_batch(places, "night"));
+  ASSERT_TRUE(write_file(report_of_batch(places, "night") / "report.html", "<h1>Night</h1>"));
+  EXPECT_EQ(ask(port_, "GET", page).status, 200);
+  const std::string accept = one + "/accept", accept_here = here + "/accept";
+  EXPECT_EQ(conforming("POST", accept, accept_here, R"({"dry_run": true})").json()["left"], 2);
+  EXPECT_EQ(conforming("POST", accept, accept_here, R"({"all": true})").status, 400);
+  EXPECT_EQ(conforming("DELETE", one, here).status, 200);
+  EXPECT_EQ(conforming("DELETE", one, here).status, 404);
 }
 
 TEST_F(OpenApi, DescribesTheLibrary) {

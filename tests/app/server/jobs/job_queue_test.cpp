@@ -139,6 +139,44 @@ TEST_F(Jobs, CountDownWithoutAWordAndNotWhileTheyAreHeld) {
   ended(id);
 }
 
+TEST_F(Jobs, AreHeldWithTheProcessesThatTheyStarted) {
+  const fs::path out = file("lines");
+  const std::string id =
+      add(std::string(kBegin) + "(while :; do echo . >>" + out.string() + "; sleep 0.01; done) & wait");
+  running(id);
+  const auto bytes = [&] {
+    std::error_code none;
+    const auto size = fs::file_size(out, none);
+    return none ? std::uintmax_t{0} : size;
+  };
+  for (int i = 0; i < 500 && bytes() == 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  queue_->hold(true);
+  std::this_thread::sleep_for(std::chrono::milliseconds(50));  // of a line that was on its way
+  const std::uintmax_t held = bytes();
+  EXPECT_GT(held, 0U);
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  EXPECT_EQ(bytes(), held);
+  queue_->hold(false);
+  for (int i = 0; i < 500 && bytes() == held; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_GT(bytes(), held);
+  ASSERT_TRUE(queue_->cancel(id));
+  ended(id);
+  const std::uintmax_t at_end = bytes();
+  std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  EXPECT_EQ(bytes(), at_end) << "what it started ends with it";
+}
+
+TEST_F(Jobs, ThatArePlannedTakeWhatTheirPaceSays) {
+  JobSpec spec = {"batch_run", "night", {"-c", std::string(kBegin) + " sleep 1"}, "Ann", ""};
+  spec.wants = {{kPlannedSeconds, 1000}};
+  const Result<JobStatus> job = queue_->add(spec);
+  ASSERT_TRUE(job) << job.error().message();
+  const double left_s = running(job->id).left_s.value_or(-1);
+  EXPECT_GE(left_s, 0);
+  EXPECT_LT(left_s, 3) << "a quarter was done within a moment: 1000 s are not what the pace says";
+  ended(job->id);
+}
+
 TEST_F(Jobs, SayWhatIsGoneThatTheyWorkOn) {
   std::filesystem::create_directories(file("satin.weft"));
   queue_->hold(true);

@@ -57,8 +57,9 @@ export class Archive {
     this.address = await firstLine(this.#daemon);
   }
 
-  async ask(call) {
-    return (await fetch(`${this.address}/api/v1/${call}`)).json();
+  async ask(call, body) {
+    const posted = {method: 'POST', headers: {'Content-Type': 'application/json'}, body: JSON.stringify(body)};
+    return (await fetch(`${this.address}/api/v1/${call}`, body === undefined ? {} : posted)).json();
   }
 
   async restart() {

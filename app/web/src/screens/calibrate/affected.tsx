@@ -7,6 +7,7 @@ import {Complaint} from '../../ui/complaint';
 import {counted, degrees} from '../../ui/say';
 import {Table} from '../../ui/table';
 import {timeOf} from '../../ui/words';
+import {planChosen} from '../batches/choose';
 import {queueJob} from '../jobs/state';
 import type {Affected} from './history';
 
@@ -55,6 +56,7 @@ export function AffectedSessions({sessions, calibration}: AffectedSessionsProps)
         <Button kind="main" isDisabled={chosen.size === 0} onClick={() => void solve()}>
           Solve {counted(chosen.size, 'session')} again
         </Button>
+        <Button isDisabled={chosen.size === 0} onClick={() => planChosen([...chosen], calibration)}>Plan a night...</Button>
         {queued > 0 && <span role="status"><a href="/jobs">{counted(queued, 'job')} queued</a></span>}
       </div>
       <Complaint error={complaint} />

@@ -37,7 +37,7 @@ export function JobRow({job, canGoFirst = false, onLog}: JobRowProps) {
       <div class="actions row">
         {canGoFirst && <Button onClick={on(putFirst)} label={`Put ${job.id} first`}>First</Button>}
         {hasEnded(job)
-          ? <Button onClick={on(retry)} label={`Do ${job.id} again`}>Again</Button>
+          ? canBeDoneAgain(job) && <Button onClick={on(retry)} label={`Do ${job.id} again`}>Again</Button>
           : <Button onClick={on(cancel)} label={`Cancel ${job.id}`}>Cancel</Button>}
         <Button kind="quiet" onClick={() => onLog(job)} label={`Log of ${job.id}`}>Log</Button>
         {hasEnded(job) && <Button kind="quiet" onClick={on(forget)} label={`Forget ${job.id}`}>Forget</Button>}
@@ -52,6 +52,7 @@ function Subject({job}: {job: Job}) {
   const solve = ['solve', 'torture'].includes(job.kind) && job.state === 'done' ? textIn(job.result, 'id') : '';
   const isOfMaps = ['maps', 'finish'].includes(job.kind) && job.state === 'done';
   if (job.kind === 'rig_plan') return <a href="/calibrate">{job.of}</a>;
+  if (job.kind.startsWith('batch_')) return <a href={`/batches/${job.of}`}>{job.of}</a>;
   if (job.of.includes('/')) return <span>{job.of}</span>;
   return (
     <>
@@ -61,6 +62,11 @@ function Subject({job}: {job: Job}) {
       {job.kind === 'price' && job.state === 'done' && <> <a href={`/jobs?price=${job.of}`}>Levels</a></>}
     </>
   );
+}
+
+/** A plan that is made never changes. */
+function canBeDoneAgain({kind, state}: Job): boolean {
+  return kind !== 'batch_plan' || state !== 'done';
 }
 
 function Times({job}: {job: Job}) {

@@ -20,6 +20,8 @@ const titles: Record<string, string> = {
   export: 'Export',
   export_price: 'Price of an export',
   material: 'Built material',
+  batch_plan: 'Plan of a batch',
+  batch_run: 'Batch',
   copy: 'Second copy',
   torture: 'Torture scene',
   rig_plan: 'Which light to add',
@@ -39,11 +41,12 @@ export function titleOf(kind: string): string {
 
 /** What was asked of it beside its kind: the level, a limit, another calibration. */
 export function wishOf({wants}: Job): string {
-  const {quality, method, within_s, to_deg, calibration, cloth, preview, recipe, presets} = wants;
+  const {quality, method, within_s, to_deg, calibration, cloth, preview, recipe, presets, sessions} = wants;
   return [
     quality ?? method ?? cloth,
     within_s === undefined ? undefined : `within ${within_s} s`,
     to_deg === undefined ? undefined : `to ${to_deg}°`,
+    sessions === undefined ? undefined : `${sessions} sessions`,
     recipe,
     Array.isArray(presets) ? presets.join(', ') : undefined,
     preview ? 'preview' : undefined,

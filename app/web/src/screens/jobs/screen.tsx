@@ -19,7 +19,7 @@ export default function JobsScreen() {
   const {running, waiting, ended} = queue.value;
   return (
     <div class="page jobs">
-      <h1>Jobs</h1>
+      <div class="row"><h1>Jobs</h1> <a href="/batches">Batches</a></div>
       <Complaint error={complaint.value} />
       {session && <Price session={session} />}
       {session && <div><Button kind="quiet" onClick={() => amend({price: null})}>Only the jobs</Button></div>}

@@ -7,6 +7,7 @@ import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
 import {counted} from '../../ui/say';
+import {planChosen} from '../batches/choose';
 import {queueJob} from '../jobs/state';
 import {qualities, type Quality} from '../jobs/ladder';
 import {change} from './edits';
@@ -56,6 +57,8 @@ export function BatchBar({chosen, onAll, onNone, onChanged}: BatchBarProps) {
     setQueued(await each((session) => queueJob(request(session.name))));
   };
 
+  const plan = () => planChosen(chosen.map(({name}) => name));
+
   return (
     <section class="batch" aria-label="Chosen sessions">
       <div class="row">
@@ -73,6 +76,7 @@ export function BatchBar({chosen, onAll, onNone, onChanged}: BatchBarProps) {
         <Button kind="main" isDisabled={isBusy} onClick={() => void queue((session) => ({kind: 'solve', session, quality}))}>Solve</Button>
         <Button isDisabled={isBusy} onClick={() => void queue((session) => ({kind: 'price', session}))}>Price</Button>
         <Button isDisabled={isBusy} onClick={() => void queue((session) => ({kind: 'rectify', session}))}>Rectify</Button>
+        <Button onClick={plan}>Plan a night...</Button>
       </div>
       {queued > 0 && <p role="status"><a href="/jobs">{counted(queued, 'job')} queued</a></p>}
       {failures.map(({name, error}) => <Complaint key={name} error={{...error, what: `${name}: ${error.what}`}} />)}

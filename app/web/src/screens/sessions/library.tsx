@@ -57,6 +57,7 @@ export function Library() {
       <div class="row head">
         <h1>Library</h1>
         <span class="dim" role="status">{isKnown && counted(total, 'session')}</span>
+        {total > 0 && <a href={`/batches?plan=found&${asked}`}>Plan a night...</a>}
         <LastWord onStep={again} />
       </div>
       <FilterBar filters={filters} onChange={(changed: Filters) => amend(addressOf(changed))} />
