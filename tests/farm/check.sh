@@ -45,7 +45,7 @@ run() {
   "$@" >"$work/log/last.txt" 2>&1 || give_up "$* ended with $?: $(cat "$work/log/last.txt")"
 }
 
-# Two cloths and links to them, and what this machine alone makes of the two.
+# Two cloths with a solve and links to them, and what this machine alone makes of the two.
 make_archive() {
   local i
   for i in 0 1; do
@@ -53,6 +53,7 @@ make_archive() {
       "$here/../../testdata/scenes/golden.toml" >"$work/scene.toml"
     run "$weft" simulate "$work/scene.toml" -o "$work/cloth-$i.weft" -q
     rm -rf "$work/cloth-$i.weft/truth"
+    run "$weft" solve "$work/cloth-$i.weft" --quality fast -q
   done
   mkdir "$work/archive"
   for ((i = 0; i < sessions; ++i)); do cp -al "$work/cloth-$((i % 2)).weft" "$work/archive/cloth-$i.weft"; done
@@ -114,17 +115,17 @@ count_of() {
   tr -d ' \n' <"$work/$1.results/report/report.json" | sed -n "s/.*\"$2\":\([0-9]*\).*/\1/p"
 }
 
-# One published solve, and the bytes of this machine.
+# One published solve beside the one before, and the bytes of this machine.
 is_solved_once() {
-  local solves
-  solves=("$1"/solve/*)
-  ((${#solves[@]} == 1)) && [[ -f ${solves[0]}/solve.json ]]
+  local solves documents
+  solves=("$1"/solve/*) documents=("$1"/solve/*/solve.json)
+  ((${#solves[@]} == 2 && ${#documents[@]} == 2))
 }
 
 same_bytes() {
-  local alone=("$2"/solve/*) file
-  for file in "${alone[0]}"/{*.exr,status.png,solve.json}; do
-    cmp "$file" "$1/solve/$(basename "${alone[0]}")/$(basename "$file")" || return 1
+  local file
+  for file in "$2"/solve/*/{*.exr,status.png,solve.json}; do
+    cmp "$file" "$1${file#"$2"}" || return 1
   done
 }
 
@@ -231,6 +232,8 @@ look_at_night() {
   holds 'every session is solved' test "$(($(count_of night solved) + $(count_of night there)))" = "$sessions"
   holds 'none is missing' test "$(count_of night missing)" = 0
   holds 'none has failed' test "$(count_of night failed)" = 0
+  holds 'every session is held against its solve before' \
+    test "$(tr -d ' \n' <"$work/night.results/report/report.json" | grep -o '"change":{' | wc -l)" = "$sessions"
   for ((i = 0; i < sessions; ++i)); do
     holds "session $i has one published solve" is_solved_once "$work/archive/cloth-$i.weft"
     holds "session $i has the bytes of this machine" same_bytes "$work/archive/cloth-$i.weft" "$work/cloth-$((i % 2)).weft"
