@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "app/jobs/batch/batch_page.h"
+#include "app/jobs/batch/merge_batch.h"
 #include "bench/batch/archive.h"
 #include "bench/batch/parts.h"
 #include "core/calibration.h"
@@ -99,37 +101,34 @@ Calibration misplaced(Calibration calibration, double by_mm) {
   return calibration;
 }
 
-Result<Json> report_of(const fs::path& folder, const fs::path& archive, int threads) {
+// Plans and solves the archive into `folder`, and reads what came of it.
+Result<app::MergeReport> solve_all(const fs::path& folder, const fs::path& archive, int threads) {
   const fs::path plan = folder / "plan.jsonl", log = folder / "log";
   const std::string cores = std::to_string(threads);
   for (const std::vector<std::string>& arguments :
        {std::vector<std::string>{"batch", "plan", archive.string(), "-o", plan.string(), "--sample", "0",
                                  "--output", (folder / "solves").string(), "-q"},
-        {"batch", "run", plan.string(), "-q", "--threads", cores},
-        {"batch", "merge", plan.string(), "-q"}}) {
+        {"batch", "run", plan.string(), "-q", "--threads", cores}}) {
     const Result<int> code = run_program(arguments, log);
     if (!code) return code.error();
     if (*code != 0) return ended_with(arguments[1], *code, log);
   }
-  return read_json(folder / "plan.results" / "report" / "report.json", "weft.batch-report", 1);
+  return app::merge_batch(plan, {});
 }
 
-Json row_of(double moved_mm, const Json& report) {
-  const Json& first = report["calibrations"][0];
-  double others = 0;
-  for (const Json& each : report["calibrations"]) {
-    if (each["rig"] != rigs()[kWrong].name) others = std::max(others, each.value("left_out", 0.0));
+Json row_of(double moved_mm, const app::BatchState& state) {
+  double wrong = 0, others = 0;
+  for (const batch::ByCalibration& each : state.summary.calibrations) {
+    double& left_out = each.rig == rigs()[kWrong].name ? wrong : others;
+    left_out = std::max(left_out, each.left_out.value_or(0));
   }
-  const auto wrong = std::ranges::find_if(
-      report["calibrations"], [](const Json& each) { return each["rig"] == rigs()[kWrong].name; });
-  const bool is_suspect =
-      !report["verdicts"].empty() && report["verdicts"][0]["name"] == "CALIBRATION_SUSPECT";
+  const std::vector<Verdict> verdicts = app::verdicts_of(state);
   return {{"moved_mm", moved_mm},
-          {"sessions", report["sessions"].size()},
-          {"left_out_percent", 100 * wrong->value("left_out", 0.0)},
+          {"sessions", state.rows.size()},
+          {"left_out_percent", 100 * wrong},
           {"others_percent", 100 * others},
-          {"first", first["rig"]},
-          {"suspect", is_suspect}};
+          {"first", state.summary.calibrations.front().rig},
+          {"suspect", !verdicts.empty() && verdicts.front().name == "CALIBRATION_SUSPECT"}};
 }
 
 }  // namespace
@@ -150,9 +149,9 @@ Result<Rows> batch_rigs(const BatchBenchOptions& options) {
     }
     const fs::path own = folder.path() / fmt::format("{:.0f}", moved_mm);
     if (Result<void> made = make_writable_folder(own); !made) return made.error();
-    const Result<Json> report = report_of(own, archive, resolved_threads(options.threads));
-    if (!report) return report.error();
-    rows.push_back(row_of(moved_mm, *report));
+    const Result<app::MergeReport> merged = solve_all(own, archive, resolved_threads(options.threads));
+    if (!merged) return merged.error();
+    rows.push_back(row_of(moved_mm, merged->state));
   }
   return rows;
 }

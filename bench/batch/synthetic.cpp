@@ -97,7 +97,7 @@ Result<Rows> batch_merge(const BatchBenchOptions& options) {
     plan.jobs.push_back(std::move(job));
   }
   batch::share_out(plan.jobs, 600);
-  if (const Result<bool> written = app::write_plan(file, batch::text_of(plan)); !written)
+  if (const Result<void> written = app::write_plan(file, batch::text_of(plan)); !written)
     return written.error();
   const Result<app::PlanFile> opened = app::open_plan(file);
   if (!opened) return opened.error();

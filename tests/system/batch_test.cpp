@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "core/image_io/image_io.h"
+#include "core/partial_name.h"
 #include "core/process.h"
 #include "core/solve.h"
 #include "tests/system/samples.h"
@@ -376,6 +377,9 @@ TEST_F(BatchTest, BringsSessionsHereAndTakesSolvesAway) {
             fmt::format("set -e\nto={}/$(basename \"$(dirname \"$(dirname \"$2\")\")\")\nmkdir -p \"$to\"\n"
                         "echo \"$2\" >> {}/order\ncp -r \"$1\" \"$to\"\n",
                         far.string(), work_.path().string()));
+  const fs::path of_the_dead =
+      work_ / "scratch" / fmt::format(".weft-batch-1.{}.99999999.partial", machine_name());
+  fs::create_directories(of_the_dead / "0");
   const Outcome outcome = run({"-q", "--fetch", "cp -r {src} {dst}", "--store",
                                "sh " + script + " {src} {dst}", "--scratch", (work_ / "scratch").string()});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.error;

@@ -4,14 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <mutex>
 #include <utility>
 
 #include "app/jobs/batch/abandoned.h"
 #include "app/jobs/batch/batch_page.h"
 #include "app/jobs/batch/change_pictures.h"
 #include "core/files.h"
-#include "core/parallel.h"
 #include "core/solve.h"
 #include "core/solve_record.h"
 

@@ -51,7 +51,7 @@ class Planning {
     add_totals();
     batch::share_out(plan_.jobs, options_.task_seconds);
     const std::string text = batch::text_of(plan_);
-    if (const Result<bool> written = write_plan(options_.plan, text); !written) return written.error();
+    if (const Result<void> written = write_plan(options_.plan, text); !written) return written.error();
     seconds += watch.lap();
     return PlanBatchReport{std::move(plan_), absolute_folder(options_.plan), seconds};
   }

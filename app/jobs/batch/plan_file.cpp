@@ -100,19 +100,18 @@ Result<batch::Plan> read_plan(const fs::path& file) {
   return batch::plan_from_text(*text, file.string());
 }
 
-Result<bool> write_plan(const fs::path& file, const std::string& text) {
+Result<void> write_plan(const fs::path& file, const std::string& text) {
   const Result<bool> there = look_for(file);
   if (!there) return there.error();
   if (*there) {
     const Result<std::string> before = read_text(file, kLargestPlan);
-    if (before && *before == text) return true;
+    if (before && *before == text) return {};
     return Error{ErrorKind::kCannotCreate, "there is a file of this name", file.string(),
                  "a plan never changes once it is written", "name another file with -o, or remove it"};
   }
   if (Result<void> made = make_writable_folder(absolute_folder(file).parent_path()); !made)
     return made.error();
-  if (Result<void> written = write_file(file, text); !written) return written.error();
-  return false;
+  return write_file(file, text);
 }
 
 Result<std::map<std::string, batch::History>> read_histories(const PlanFile& plan,

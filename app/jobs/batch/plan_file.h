@@ -30,9 +30,8 @@ Result<PlanFile> open_plan(const std::filesystem::path& file);
 Result<std::vector<batch::Job>> read_task(const PlanFile& plan, int task);
 /// Reads all of it, checked against its id.
 Result<batch::Plan> read_plan(const std::filesystem::path& file);
-/// Writes a plan that is not there. A plan never changes: kCannotCreate where another is there, and true
-/// where the same is.
-Result<bool> write_plan(const std::filesystem::path& file, const std::string& text);
+/// Writes a plan, or finds the same there. A plan never changes: kCannotCreate where another is there.
+Result<void> write_plan(const std::filesystem::path& file, const std::string& text);
 
 /// What tasks have written so far, by session; of all tasks where none is named.
 Result<std::map<std::string, batch::History>> read_histories(const PlanFile& plan,

@@ -32,6 +32,7 @@ namespace fs = std::filesystem;
 using Steady = std::chrono::steady_clock;
 
 constexpr int kPoll_ms = 100;
+constexpr const char* kScratch = "weft-batch-";
 constexpr double kMostToFinish_s = 20;   // Slurm's KillWait is 30
 constexpr double kShareOfMemory = 0.25;  // that a session read ahead may take
 
@@ -78,7 +79,7 @@ class BatchRun {
     if (!options.keep.empty()) product_.keep = options.keep;
     product_.half = product_.half || options.half;
     scratch_ = (options.scratch.empty() ? fs::temp_directory_path() : absolute_folder(options.scratch)) /
-               fmt::format("weft-batch-{}-{}", plan_.header.id, ::getpid());
+               partial_name(kScratch + plan_.header.id);
   }
   ~BatchRun() {
     active_.clear();
@@ -92,6 +93,7 @@ class BatchRun {
     Stopwatch watch;
     if (Result<void> ok = choose_items(); !ok) return std::move(ok).error();
     if (!items_.empty()) {
+      if (!options_.fetch.empty()) clear_scratch();
       if (Result<void> ok = make_writable_folder(plan_.results()); !ok) return std::move(ok).error();
       if (Result<void> ok = work_through(); !ok) return std::move(ok).error();
     }
@@ -102,6 +104,15 @@ class BatchRun {
  private:
   bool is_stopped() const { return context_.stop.stop_requested(); }
   int threads() const { return std::max(1, resolved_threads(context_.threads) / std::max(1, options_.jobs)); }
+
+  // What runs that were killed have fetched.
+  void clear_scratch() const {
+    std::vector<fs::path> left = abandoned_in(scratch_.parent_path());
+    std::erase_if(left, [](const fs::path& folder) {
+      return !folder.filename().string().starts_with("." + std::string(kScratch));
+    });
+    remove_folders(left);
+  }
 
   // Whether a result of before still holds.
   bool holds(const batch::Outcome& result) const {
