@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <utility>
 
@@ -22,10 +23,11 @@ namespace fs = std::filesystem;
 using pipeline::Photographs;
 
 constexpr Size kCut = {512, 256};
+constexpr Size kLargeCut = {1024, 1024};  // of which pictures and files are timed too
 
 // The middle of a frame, on whole cells of the colour filter.
-Rect timed_area(Size size) {
-  const Size cut = {std::min(size.width, kCut.width), std::min(size.height, kCut.height)};
+Rect timed_area(Size size, Size most = kCut) {
+  const Size cut = {std::min(size.width, most.width), std::min(size.height, most.height)};
   const int x0 = (size.width - cut.width) / 2 / 2 * 2, y0 = (size.height - cut.height) / 2 / 2 * 2;
   return {x0, y0, x0 + cut.width, y0 + cut.height};
 }
@@ -51,40 +53,90 @@ Result<void> keep_cut(const fs::path& solve, const std::string& level, const fs:
   return {};
 }
 
+Result<SolveReport> solve_area(const Photographs& photographs, Rect area, const std::string& level,
+                               const SolveOptions& options, const fs::path& crops,
+                               const JobContext& context) {
+  const Scratch scratch;
+  Result<Photographs> part = cut(photographs, area);
+  if (!part) return std::move(part).error();
+  SolveOptions one = options;
+  one.method = level;
+  one.output = scratch.path;
+  Result<SolveReport> solved = solve_loaded(std::move(*part), one, context);
+  if (!solved) return solved;
+  if (Result<void> kept = keep_cut(solved->folder, level, crops); !kept) return kept.error();
+  return solved;
+}
+
 // What the level makes of the middle of the frame: the quicker of two solves unless the first is long.
 Result<SolveReport> solve_cut(const Photographs& photographs, const std::string& level,
                               const SolveOptions& options, const fs::path& crops, const JobContext& context) {
   constexpr double kLong_s = 0.5;
   std::optional<SolveReport> quickest;
   for (int run = 0; run < 2; ++run) {
-    const Scratch scratch;
-    Result<Photographs> part = cut(photographs, timed_area(photographs.size));
-    if (!part) return std::move(part).error();
-    SolveOptions one = options;
-    one.method = level;
-    one.output = scratch.path;
-    Result<SolveReport> solved = solve_loaded(std::move(*part), one, context);
-    if (!solved) return std::move(solved).error();
-    if (Result<void> kept = keep_cut(solved->folder, level, crops); !kept) return kept.error();
+    Result<SolveReport> solved =
+        solve_area(photographs, timed_area(photographs.size), level, options, crops, context);
+    if (!solved) return solved;
     if (!quickest || solved->seconds.total < quickest->seconds.total) quickest = std::move(*solved);
     if (quickest->seconds.total > kLong_s) break;
   }
   return std::move(*quickest);
 }
 
+// Seconds that grow with the pixels of the maps.
+struct Growing {
+  double at_cut = 0, a_pixel = 0;
+  double pixels_of_cut = 0;
+
+  double at(double pixels) const { return std::max(0.0, at_cut + a_pixel * (pixels - pixels_of_cut)); }
+};
+
+// What files and pictures take is the same at all levels, and mostly not of the pixels: two cuts tell.
+struct SharedSeconds {
+  Growing write, pictures, sync;
+};
+
+Result<SharedSeconds> shared_seconds(const Photographs& photographs, const SolveOptions& options,
+                                     const JobContext& context) {
+  std::array<SolveSeconds, 2> quickest;
+  std::array<double, 2> pixels = {};
+  for (const std::size_t i : {0U, 1U}) {
+    const Rect area = timed_area(photographs.size, i == 0 ? kLargeCut : kCut);
+    pixels[i] = static_cast<double>(Size{area.width(), area.height()}.pixels());
+    for (int run = 0; run < 2; ++run) {
+      const Result<SolveReport> solved =
+          solve_area(photographs, area, solver::method_of(solver::Level::kFast).name, options, {}, context);
+      if (!solved) return solved.error();
+      SolveSeconds& best = quickest[i];
+      if (run == 0) best = solved->seconds;
+      best.write = std::min(best.write, solved->seconds.write);
+      best.pictures = std::min(best.pictures, solved->seconds.pictures);
+      best.sync = std::min(best.sync, solved->seconds.sync);
+    }
+  }
+  const auto growing = [&](double SolveSeconds::*part) {
+    const double more = quickest[0].*part - quickest[1].*part;
+    // A frame that is no larger than the cut is its own measure.
+    const double a_pixel = pixels[0] > pixels[1] ? std::max(0.0, more) / (pixels[0] - pixels[1]) : 0;
+    return Growing{quickest[0].*part, a_pixel, pixels[0]};
+  };
+  return SharedSeconds{growing(&SolveSeconds::write), growing(&SolveSeconds::pictures),
+                       growing(&SolveSeconds::sync)};
+}
+
 // Of the whole frame, from those of its cut.
-LevelSeconds scaled(const SolveSeconds& cut, Size frame, bool is_half) {
+LevelSeconds scaled(const SolveSeconds& cut, const SharedSeconds& shared, Size frame, bool is_half) {
   const Rect area = timed_area(frame);
-  const auto pixels = static_cast<double>(Size{area.width(), area.height()}.pixels());
-  const double whole = static_cast<double>(frame.pixels()) / pixels;
-  const int longest = is_half ? 2 * report::kPreviewSide : report::kPreviewSide;
-  const double shrunk = std::min(1.0, static_cast<double>(longest) / std::max(frame.width, frame.height));
+  const auto in_cut = static_cast<double>(Size{area.width(), area.height()}.pixels());
+  const auto pixels = static_cast<double>(frame.pixels()), of_maps = is_half ? pixels / 4 : pixels;
+  const Size maps = is_half ? Size{frame.width / 2, frame.height / 2} : frame;
+  const double square = report::Downsampler(maps, 1).square();
   LevelSeconds seconds;
-  seconds.solve = whole * cut.solve;
-  seconds.write = whole * cut.write;
-  seconds.pictures = std::max(1.0, whole * shrunk * shrunk) * cut.pictures;
+  seconds.solve = pixels / in_cut * cut.solve;
+  seconds.write = shared.write.at(of_maps);
+  seconds.pictures = shared.pictures.at(of_maps / (square * square));
   seconds.report = cut.report;
-  seconds.sync = whole * cut.sync;
+  seconds.sync = shared.sync.at(of_maps);
   return seconds;
 }
 
@@ -156,6 +208,8 @@ Result<Ladder> price(const Photographs& photographs, double read, double prepare
                      const fs::path& crops, const JobContext& context) {
   const JobContext silent = {context.threads, context.stop};
   context.progress("explain", 0);
+  const Result<SharedSeconds> shared = shared_seconds(photographs, options, silent);
+  if (!shared) return shared.error();
   Ladder ladder;
   std::string stages;
   std::vector<std::string> gloss;
@@ -166,7 +220,7 @@ Result<Ladder> price(const Photographs& photographs, double read, double prepare
     const bool is_half = level.extent == solver::Extent::kHalfSize;
     const Result<SolveReport> cut = solve_cut(photographs, level.name, options, crops, silent);
     if (!cut) return cut.error();
-    LevelSeconds seconds = scaled(cut->seconds, photographs.size, is_half);
+    LevelSeconds seconds = scaled(cut->seconds, *shared, photographs.size, is_half);
     seconds.read = read;
     seconds.prepare = is_half ? 0 : prepare;
     ladder.levels.push_back({*level.level, cut->expected, seconds, ""});

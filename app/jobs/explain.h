@@ -21,15 +21,15 @@
 namespace weft::app {
 
 /// Wall seconds of one level on the whole frame, by the phases of a solve. What is not measured on the frame
-/// itself is that of solving the cut below, by its pixels to those of the frame.
+/// itself is told by solving cuts of it.
 struct LevelSeconds {
   double read = 0;      ///< measured: the photographs were read
   double prepare = 0;   ///< measured: shots registered to each other; a preview does without
-  double solve = 0;     ///< of the cut
-  double write = 0;     ///< of the cut, its maps written to the system's temporary folder
-  double pictures = 0;  ///< of the cut, up to the size that previews have
+  double solve = 0;     ///< of the cut below, by its pixels to those of the frame
+  double write = 0;     ///< by two cuts, 1024 x 1024 and 512 x 256: so much for each pixel more than in them
+  double pictures = 0;  ///< likewise, up to the size that previews have
   double report = 0;    ///< of the cut, as it is: it looks at samples
-  double sync = 0;      ///< of the cut
+  double sync = 0;      ///< by two cuts, in the system's temporary folder
 
   double total() const { return read + prepare + solve + write + pictures + report + sync; }
 };
