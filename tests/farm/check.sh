@@ -245,7 +245,7 @@ $(count_of night second_attempts) begun more than once, $(count_of night abandon
 
 # What is cancelled stays cancelled, and a run on this machine goes on with it.
 cancel_another() {
-  plan quick fast "$work"/archive/cloth-{0,1,2,3}.weft
+  plan quick robust "$work"/archive/cloth-{0,1,2,3}.weft
   run "$weft" batch submit "$work/quick.jsonl" --at-once 1
   cluster_wait 'a running task' eval '[[ -n $(queued quick %i R) ]]' || give_up 'no task runs'
   run "$weft" batch cancel "$work/quick.jsonl"
