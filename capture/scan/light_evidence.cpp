@@ -18,7 +18,7 @@ constexpr double kLitFrom = 0.005;           // of full scale: the brightest pat
 constexpr double kDarkTo = 0.02;             // of full scale: light in the dark shot that stops a scan
 constexpr double kDarkWarns = 0.004;         // that is only spoken of
 constexpr double kDarkLevel = 0.1;           // of the brightness that other LEDs let expect: did not light
-constexpr double kDimLevel = 0.35;           // gave too little
+constexpr double kDimLevel = 0.35;           // of the brightness fitted to the others: gave too little
 constexpr double kDimWarns = 0.6;            // is only spoken of: glossy cloth may look so
 constexpr double kSuspiciousMisfit = 0.002;  // below it the plan is believed without trying other stories
 constexpr std::size_t kStoryStep = 5;        // every fifth patch is looked at: 48 columns have no factor 5
@@ -325,17 +325,12 @@ ShotVerdict ScanEvidence::judge_dark_again(const std::vector<double>& light) con
   return verdict;
 }
 
-std::vector<const ScanEvidence::Seen*> ScanEvidence::readable() const {
+double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
+  const auto of_flat_cloth = [&](int led, std::size_t i) { return light_of(led, *model_)[i].z; };
   std::vector<const Seen*> frames;
   for (const auto& [index, seen] : lit_) {
     if (is_readable(seen.light)) frames.push_back(&seen);
   }
-  return frames;
-}
-
-double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>& light) const {
-  const auto of_flat_cloth = [&](int led, std::size_t i) { return light_of(led, *model_)[i].z; };
-  const std::vector<const Seen*> frames = readable();
   std::vector<double> levels;
   for (std::size_t i = 0; i < light.size(); ++i) {
     std::vector<double> albedo;

@@ -82,7 +82,6 @@ class ScanEvidence {
   };
   const Seen* of_led(int led) const;
   std::vector<double> without_dark(const std::vector<double>& light) const;
-  std::vector<const Seen*> readable() const;
   /// Indices of those frames that are full where the others let expect far less. Dark shots are taken off.
   std::vector<int> too_full(const std::vector<Seen>& full, const std::vector<Seen>& others) const;
   ShotVerdict judge_dark(const PlannedShot& shot, const std::vector<double>& light) const;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <functional>
 #include <future>
 #include <map>
 #include <new>
@@ -415,7 +416,10 @@ class Scan {
   Result<void> take_again(const Kept& kept, std::deque<PlannedShot>& queue) {
     if (kept.take_again.empty()) return *kept.error;
     report_.phase(ScanPhase::kRecovering, kept.error->message());
-    for (const int index : kept.take_again) {
+    // In the order of the plan: a repeat is held against its first frame.
+    std::vector<int> again = kept.take_again;
+    std::ranges::sort(again, std::greater{});
+    for (const int index : again) {
       if (++times_wrong_[index] >= kTimesWrong) return *kept.error;
       ++frames_wrong_;
       queue.push_front(planned(index));

@@ -176,6 +176,23 @@ TEST(ScanFaults, ALampInTheRoomEndsTheScanAtItsFirstShots) {
   EXPECT_LE(bench.rig.takes(), 2);
 }
 
+TEST(ScanFaults, LightThatPassesAtTheRepeatHasAllFramesTakenAgainInTheirOrder) {
+  constexpr int kRepeatTake = 12;  // after the dark shot and ten LEDs
+  ScanBench bench;
+  bench.rig.on_take = [&](int take) { bench.rig.room = take == kRepeatTake ? 0.3 : 0; };
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  // The dark shot at the end was on its way already.
+  EXPECT_EQ(bench.rig.takes(), kRepeatTake + 1 + 11);
+  int last = 0;
+  for (const Shot& shot : outcome->session.shots) {
+    if (shot.led == 0) continue;
+    const int number = shot.document.at("image_number").get<int>();
+    EXPECT_GT(number, last) << shot.file << ": the repeat is held against its first frame";
+    last = number;
+  }
+}
+
 TEST(ScanFaults, EachRefusedFrameIsToldWithTheCodeOfItsFinding) {
   using Told = std::vector<std::pair<int, std::string>>;  // index and code
   const auto told = [](const std::function<void(ScanBench&)>& damage) {
