@@ -1,1 +1,0 @@
-import{q as e}from"./index-DQrJSxTF.js";import{c as n}from"./plan-YkN1np6f.js";function r(o,s){sessionStorage.setItem(n,JSON.stringify({sessions:o,calibration:s})),e("/batches?plan=chosen")}export{r as p};
