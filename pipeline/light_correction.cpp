@@ -116,8 +116,9 @@ Result<void> LightCorrection::gather_bounces(Rect block, const solver::Normals& 
     sent.emplace_back(worker.radiosity.plane(p));
     arriving.push_back(arriving_.plane(p).crop(in_slab(block)));
   }
-  return solver::gather_by_slices(*relief_, block, normals, {worker.radiosity_area, sent},
-                                  {options_.directions, options_.reach_px, planes_.count == 1}, arriving);
+  return solver::gather_by_slices(
+      *relief_, block, normals, {worker.radiosity_area, sent},
+      {options_.directions, options_.steps, options_.reach_px, planes_.count == 1}, arriving);
 }
 
 Result<void> LightCorrection::trace_block(Rect block, Worker& worker) {

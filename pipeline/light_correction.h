@@ -32,6 +32,7 @@ struct LightStages {
 struct LightCorrectionOptions {
   LightStages stages;
   int directions = 12;  ///< in which a pixel looks for light from the cloth
+  int steps = 16;       ///< as of solver::SliceSettings
   int reach_px = 64;    ///< how far it looks
 };
 

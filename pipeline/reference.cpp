@@ -65,6 +65,11 @@ class FrameKeeper {
   double turned_deg_ = 0;
 };
 
+// Of the round after two, degrees; `before` is 0 where there was no round before the last.
+double expected_turn(double before, double last) {
+  return before > last ? last * last / before : last;
+}
+
 // One round: a frame, its relief, what its light does to readings, and a solve of what is left of them.
 class Round {
  public:
@@ -99,10 +104,10 @@ class Round {
     return choice;
   }
 
-  Result<double> solve(const solver::Method& method, const TileOptions& tile, const BandSink& sink,
-                       BandOptions options) {
+  Result<double> solve(const solver::Method& method, const TileOptions& tile, bool is_last,
+                       const BandSink& sink, BandOptions options) {
     Stopwatch watch;
-    LightCorrection correction = correct(facts.stages);
+    LightCorrection correction = correct(facts.stages, is_last);
     reach_is_capped = correction.shadow_reach_is_capped();
     options.correction = &correction;
     Result<double> waited = solve_bands(photographs_, method, tile, context_, sink, options);
@@ -128,9 +133,10 @@ class Round {
   bool reach_is_capped = false;
 
  private:
-  LightCorrection correct(const LightStages& stages) const {
-    return {
-        photographs_, solved, relief_, {stages, options_.directions, options_.reach_px}, context_.threads};
+  LightCorrection correct(const LightStages& stages, bool is_last = true) const {
+    const int directions = is_last ? options_.directions : options_.early_directions;
+    const int steps = is_last ? options_.steps : options_.early_steps;
+    return {photographs_, solved, relief_, {stages, directions, steps, options_.reach_px}, context_.threads};
   }
 
   const Photographs& photographs_;
@@ -189,12 +195,14 @@ class Reference {
         return {};
       }
       FrameKeeper next(photographs_, &round->solved);
-      const Result<double> solved = round->solve(gloss_->over(*method_), tile_, std::ref(next), {});
+      const Result<double> solved =
+          round->solve(gloss_->over(*method_), tile_, /*is_last=*/false, std::ref(next), {});
       if (!solved) return solved.error();
       ReferenceRound& now = round->facts;
       now.turned_deg = next.mean_turn_deg();
-      settled = now.turned_deg < options_.settled_deg;
-      now.is_refused = !settled && !facts.rounds.empty() && now.turned_deg >= facts.rounds.back().turned_deg;
+      const double before = facts.rounds.empty() ? 0 : facts.rounds.back().turned_deg;
+      settled = expected_turn(before, now.turned_deg) < options_.settled_deg;
+      now.is_refused = !settled && before > 0 && now.turned_deg >= before;
       facts.rounds.push_back(now);
       if (now.is_refused) return {};
       last_ = std::move(round);
@@ -212,7 +220,7 @@ class Reference {
     }
     last_method_ = &gloss_->over(*method_);
     const Result<double> waited =
-        last_ ? last_->solve(*last_method_, tile_, sink, bands)
+        last_ ? last_->solve(*last_method_, tile_, /*is_last=*/true, sink, bands)
               : solve_bands(photographs_, *last_method_, tile_, context_, sink, bands);
     if (!waited) return waited.error();
     facts.waited_seconds = *waited;

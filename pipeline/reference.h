@@ -20,8 +20,12 @@ namespace weft::pipeline {
 
 struct ReferenceOptions {
   int most_rounds = 4;
-  double settled_deg = 0.03;  ///< mean turn of the normals in a round, below which one more round is the last
-  int directions = 12;        ///< in which a pixel looks for light from the cloth
+  /// Mean turn of the normals that a round is expected to make, below which that round is the last: as much
+  /// less than the round before as that made less than the one before it.
+  double settled_deg = 0.03;
+  int directions = 12;                        ///< in which a pixel looks for light from the cloth
+  int steps = 16;                             ///< as of solver::SliceSettings
+  int early_directions = 6, early_steps = 8;  ///< before the last round
   int reach_px = 64;
   bool force_stages = false;  ///< whatever gates and left-out light say: for measurements
 };

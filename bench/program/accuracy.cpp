@@ -14,6 +14,7 @@
 #include "bench/accuracy/chain.h"
 #include "bench/accuracy/coverage.h"
 #include "bench/accuracy/gloss.h"
+#include "bench/accuracy/levels.h"
 #include "bench/accuracy/page.h"
 #include "bench/program/rows.h"
 #include "bench/program/verbs.h"
@@ -31,6 +32,7 @@ struct AccuracyArguments {
   bool sigma = false;
   bool chain = false;
   bool gloss = false;
+  double megapixels = 0;  ///< of whole frames; 0: not these
   std::vector<std::string> parts;
   std::filesystem::path docs;  ///< folder with accuracy.md; empty: no page
 };
@@ -49,6 +51,7 @@ Result<Rows> measure(const AccuracyArguments& a, int threads) {
   if (a.chain)
     return chain_table(
         {.name = options.scene, .levels = options.methods, .seed = options.seed, .threads = threads});
+  if (a.megapixels > 0) return level_speed({a.megapixels, options.methods, threads});
   if (a.docs.empty()) return accuracy_table(options);
   AccuracyFigures figures;
   if (!a.parts.empty()) {
@@ -84,6 +87,10 @@ app::Run add_accuracy(app::Options& options) {
                        "Instead: the lobe of glossy cloths, found and solved with; --scene is a cloth of it"),
       options.add_flag("--chain", &a->chain,
                        "Instead: whole sessions by the product's own steps, from captures to maps"),
+      options
+          .add("--megapixels", &a->megapixels,
+               "Instead: what levels take on frames of so many million pixels, held in memory")
+          .in_range(0.3, 200.0),
       options.add("--docs", &a->docs,
                   "All of it, into this folder: the figures of accuracy.md, its plots, accuracy.json")};
   for (std::size_t i = 0; i < instead.size(); ++i) {

@@ -124,9 +124,9 @@ namespace {
 
 HWY_EXPORT(gather_slices);
 
-constexpr int kFewestDirections = 4, kMostDirections = 64;
-// From a point to the next: half a pixel, or this part of its distance.
-constexpr double kLeastStep_px = 0.5, kGrowth = 1.0 / 16;
+// Of directions, and of steps.
+constexpr int kFewest = 4, kMost = 64;
+constexpr double kLeastStep_px = 0.5;
 
 // To the nearest pixel a whole number of steps away.
 std::ptrdiff_t snapped(double at, int step) {
@@ -145,7 +145,7 @@ std::vector<slices::Direction> directions_of(const SliceSettings& settings, std:
     direction.y = static_cast<float>(s);
     double before = 0;
     for (double at = kLeastStep_px; at <= settings.reach_px;
-         before = at, at += std::max(kLeastStep_px, kGrowth * at)) {
+         before = at, at += std::max(kLeastStep_px, at / settings.steps)) {
       const double middle = (before + at) / 2;
       direction.steps.push_back({point_between(c * at, -s * at, height_stride), static_cast<float>(1 / at),
                                  snapped(-s * middle, snap) * radiosity_stride + snapped(c * middle, snap)});
@@ -166,12 +166,13 @@ void read_normals(const Normals& normals, int row, int width, Image<float>& into
 
 Result<void> check(const Relief& relief, Rect tile, const Normals& normals, const RadiosityPlanes& radiosity,
                    const SliceSettings& settings, std::span<const View<float>> arriving) {
-  if (settings.directions < kFewestDirections || settings.directions > kMostDirections ||
-      settings.reach_px < 1) {
-    return bad_transport("slices",
-                         fmt::format("{} directions to {} pixels", settings.directions, settings.reach_px),
-                         fmt::format("ask for from {} to {} directions and at least 1 pixel",
-                                     kFewestDirections, kMostDirections));
+  const auto is_count = [](int count) { return count >= kFewest && count <= kMost; };
+  if (!is_count(settings.directions) || !is_count(settings.steps) || settings.reach_px < 1) {
+    return bad_transport(
+        "slices",
+        fmt::format("{} directions to {} pixels by steps of one over {}", settings.directions,
+                    settings.reach_px, settings.steps),
+        fmt::format("ask for from {} to {} directions and steps and at least 1 pixel", kFewest, kMost));
   }
   if (!holds_pixels(relief.pixels(), tile)) {
     return bad_transport("tile", "it is not inside the picture", "ask for a tile inside the picture");

@@ -16,6 +16,7 @@ struct SliceSettings {
   /// 0.005 with 16. It is too low by 0.001: what lies between two points is not seen. 32 rays a pixel err by
   /// 0.010. 64 rays err by 0.006 and take 18 times as long as 16 directions.
   int directions = 12;
+  int steps = 16;  ///< points lie one over this of their distance apart, and at least half a pixel; 4 to 64
   int reach_px = 64;  ///< on the table; what is farther away is not met. At least two periods of the yarns.
   /// The readings are of a Bayer mosaic: the light of a point is read at the nearest pixel of the same place
   /// in the 2 x 2 cell as the pixel that it arrives at, so that both have one colour.
@@ -51,9 +52,10 @@ Rect area_of_slices(Rect tile, int reach_px);
 /// integral that of openness (Jimenez et al. 2016); here it is of the true radiosity and without screen
 /// space.
 ///
-/// Points are half a pixel apart near the pixel and a 16th of their distance farther out, their heights
-/// between four pixels, their radiosity that of the nearest pixel (of a mosaic: of one colour) half a step
-/// nearer. All pixels look in the same directions: no noise, and the same bytes for any tiles and threads.
+/// Points are half a pixel apart near the pixel and farther out in proportion to their distance, their
+/// heights between four pixels, their radiosity that of the nearest pixel (of a mosaic: of one colour) half a
+/// step nearer. All pixels look in the same directions: no noise, and the same bytes for any tiles and
+/// threads.
 ///
 /// `arriving[k](x - tile.x0, y - tile.y0)` is u_k. A normal that is not finite or does not look up counts as
 /// (0, 0, 1). Beyond the relief's border there is nothing: u is too low within the reach of the border.

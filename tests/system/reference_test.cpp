@@ -138,6 +138,22 @@ TEST_F(ReferenceLevel, RefusesARoundThatTurnsNormalsMoreThanTheOneBefore) {
   EXPECT_EQ(refused, 1) << "albedo is taken for five times what it is";
 }
 
+TEST_F(ReferenceLevel, LooksCoarselyUntilTheLastRoundAndTakesNoneThatWouldTurnNothing) {
+  photograph(scene_named("plain_family", kSize));
+  const pipeline::Photographs taken = photographs();
+  const auto error_and_rounds = [&](const pipeline::ReferenceOptions& options) {
+    Solved solved(kSize);
+    const auto facts =
+        pipeline::solve_reference(taken, pipeline::kSolveTile, options, {.threads = 2}, std::ref(solved));
+    EXPECT_TRUE(facts) << facts.error().message();
+    return std::pair(mean_angle_deg(solved.normal, truth_), facts->rounds.size());
+  };
+  const auto [by_all, all] = error_and_rounds({.settled_deg = 0, .early_directions = 12, .early_steps = 16});
+  const auto [error, rounds] = error_and_rounds({});
+  EXPECT_LT(rounds, all);
+  EXPECT_LT(error, 1.01 * by_all);
+}
+
 TEST_F(ReferenceLevel, AsksForTheMemoryOfItsFrames) {
   photograph(scene_named("flat", kSize));
   app::SessionPlan plan = *app::plan_session({.folder = session_, .calibration = {}, .leds = {}});

@@ -93,6 +93,10 @@ TEST(Slices, AgreeWithManyRaysOnAWeave) {
   const double by_slices = error_of(gathered_by_slices(cloth, tile, 1, {.reach_px = 30}, of));
   EXPECT_LT(by_slices, 0.012);
   EXPECT_LT(by_slices, by_rays) << "of 32 rays";
+  const SliceSettings coarse = {.directions = 6, .steps = 8, .reach_px = 30};
+  const double by_few = error_of(gathered_by_slices(cloth, tile, 1, coarse, of));
+  EXPECT_GT(by_few, by_slices);
+  EXPECT_LT(by_few, 0.015);
 }
 
 TEST(Slices, OfAMosaicGatherFromPhotositesOfOneColour) {
@@ -143,7 +147,7 @@ TEST(Slices, RefuseWhatDoesNotFit) {
   };
   EXPECT_EQ(why(area, {.reach_px = 10}), "done");
   EXPECT_EQ(why(area, {.directions = 3, .reach_px = 10}),
-            "ask for from 4 to 64 directions and at least 1 pixel");
+            "ask for from 4 to 64 directions and steps and at least 1 pixel");
   EXPECT_EQ(why(tile, {.reach_px = 10}), "give what columns -11 to 31 and rows -11 to 31 send back");
   std::fill_n(sent.plane().row(11), area.width(), std::numeric_limits<float>::quiet_NaN());
   EXPECT_EQ(why(area, {.reach_px = 10}), "replace readings that cannot be used");
