@@ -89,7 +89,8 @@ Result<GlossSamples> sample_gloss(const Photographs& photographs, const solver::
     while (end < tiles.size() && tiles[end].y0 == tiles[begin].y0) ++end;
     if (correction != nullptr) {
       const Rect rows = {0, tiles[begin].y0, photographs.size.width, tiles[begin].y1};
-      if (Result<void> ok = correction->prepare(rows); !ok) return std::move(ok).error();
+      const std::span<const Rect> row = {tiles.data() + begin, end - begin};
+      if (Result<void> ok = correction->prepare_only(rows, row); !ok) return std::move(ok).error();
     }
     parallel_for(end - begin, threads, [&](std::size_t i, int worker) {
       samplers[static_cast<std::size_t>(worker)].take(tiles[begin + i], by_tile[begin + i]);

@@ -208,7 +208,9 @@ Result<solver::LeftOut> leave_out_lights(const Photographs& photographs, const S
       const int y0 = static_cast<int>(row) * solver::kBlock;
       const Rect rows = {0, y0, photographs.size.width,
                          std::min(y0 + solver::kBlock, photographs.size.height)};
-      if (Result<void> ok = variant.correction->prepare(rows); !ok) return std::move(ok).error();
+      std::vector<Rect> tiles;
+      for (std::size_t i = begin; i < end; ++i) tiles.push_back(patches[i].pixels);
+      if (Result<void> ok = variant.correction->prepare_only(rows, tiles); !ok) return std::move(ok).error();
     }
     parallel_for(end - begin, context.threads, [&](std::size_t i, int worker) {
       judges[static_cast<std::size_t>(worker)].judge(patches[begin + i].pixels, first[begin + i], left_out);

@@ -25,6 +25,16 @@ Rect rows_of(Rect area, int first, int count) {
   return {area.x0, first, area.x1, std::min(first + count, area.y1)};
 }
 
+// The least rectangle that holds all of at least one tile.
+Rect around(const std::vector<Rect>& tiles) {
+  Rect all = tiles.front();
+  for (const Rect& tile : tiles) {
+    all = {std::min(all.x0, tile.x0), std::min(all.y0, tile.y0), std::max(all.x1, tile.x1),
+           std::max(all.y1, tile.y1)};
+  }
+  return all;
+}
+
 }  // namespace
 
 // What one thread needs.
@@ -102,50 +112,79 @@ void LightCorrection::read_radiosity_row(Rect tile, int y, std::span<const View<
   }
 }
 
-Result<void> LightCorrection::find_shadows(Rect block, const solver::Normals& normals) {
+Result<void> LightCorrection::find_shadows(Rect tile, const solver::Normals& normals) {
   std::vector<View<std::uint32_t>> words;
-  for (int w = 0; w < visible_.planes(); ++w) words.push_back(visible_.plane(w).crop(in_slab(block)));
-  return solver::march_to_lights(*relief_, block, normals, directions_, shadow_reach_.reach_px, words);
+  for (int w = 0; w < visible_.planes(); ++w) words.push_back(visible_.plane(w).crop(in_slab(tile)));
+  return solver::march_to_lights(*relief_, tile, normals, directions_, shadow_reach_.reach_px, words);
 }
 
-Result<void> LightCorrection::gather_bounces(Rect block, const solver::Normals& normals, Worker& worker) {
-  read_radiosity(solver::area_of_slices(block, options_.reach_px), worker);
+Result<void> LightCorrection::gather_bounces(Rect tile, const solver::Normals& normals, Worker& worker) {
   std::vector<View<const float>> sent;
   std::vector<View<float>> arriving;
   for (int p = 0; p < arriving_.planes(); ++p) {
     sent.emplace_back(worker.radiosity.plane(p));
-    arriving.push_back(arriving_.plane(p).crop(in_slab(block)));
+    arriving.push_back(arriving_.plane(p).crop(in_slab(tile)));
   }
   return solver::gather_by_slices(
-      *relief_, block, normals, {worker.radiosity_area, sent},
+      *relief_, tile, normals, {worker.radiosity_area, sent},
       {options_.directions, options_.steps, options_.reach_px, planes_.count == 1}, arriving);
 }
 
-Result<void> LightCorrection::trace_block(Rect block, Worker& worker) {
-  const solver::Normals normals = {solved_->normal.plane(0).crop(block), solved_->normal.plane(1).crop(block),
-                                   solved_->normal.plane(2).crop(block)};
-  if (options_.stages.shadows) {
-    if (Result<void> ok = find_shadows(block, normals); !ok) return ok;
+// What is to be traced of a block.
+std::vector<Rect> LightCorrection::tiles_in(Rect block) const {
+  if (tiles_.empty()) return {block};
+  std::vector<Rect> inside;
+  for (const Rect& tile : tiles_) {
+    const Rect part = {std::max(tile.x0, block.x0), tile.y0, std::min(tile.x1, block.x1), tile.y1};
+    if (part.x0 < part.x1) inside.push_back(part);
   }
-  return options_.stages.interreflection ? gather_bounces(block, normals, worker) : Result<void>();
+  return inside;
+}
+
+Result<void> LightCorrection::trace_block(Rect block, Worker& worker) {
+  const std::vector<Rect> tiles = tiles_in(block);
+  if (options_.stages.interreflection && !tiles.empty())
+    read_radiosity(solver::area_of_slices(around(tiles), options_.reach_px), worker);
+  for (const Rect& tile : tiles) {
+    const auto normal = [&](int axis) { return solved_->normal.plane(axis).crop(tile); };
+    const solver::Normals normals = {normal(0), normal(1), normal(2)};
+    if (options_.stages.shadows) {
+      if (Result<void> ok = find_shadows(tile, normals); !ok) return ok;
+    }
+    if (options_.stages.interreflection) {
+      if (Result<void> ok = gather_bounces(tile, normals, worker); !ok) return ok;
+    }
+  }
+  return {};
 }
 
 Result<void> LightCorrection::prepare(Rect rows) {
-  if (rows.y0 >= slab_.y0 && rows.y1 <= slab_.y1 && slab_.height() > 0) return {};
-  Stopwatch watch;
+  const bool is_there = rows.y0 >= slab_.y0 && rows.y1 <= slab_.y1 && slab_.height() > 0 && tiles_.empty();
+  if (is_there) return {};
   const Size size = photographs_->size;
   slab_ = {0, rows.y0, size.width, std::min(std::max(rows.y0 + kSlabRows, rows.y1), size.height)};
-  const Size slab = {size.width, slab_.height()};
-  if (arriving_.size() != slab) {
-    if (options_.stages.interreflection)
-      arriving_ = Image<float>(slab, static_cast<int>(photographs_->count()) * planes_.count);
-    if (options_.stages.shadows) {
-      visible_ = Image<std::uint32_t>(slab, solver::visibility_words(photographs_->count()));
-    }
-  }
+  tiles_.clear();
+  return trace();
+}
+
+Result<void> LightCorrection::prepare_only(Rect rows, std::span<const Rect> tiles) {
+  if (rows == slab_ && std::ranges::equal(tiles, tiles_)) return {};
+  slab_ = rows;
+  tiles_.assign(tiles.begin(), tiles.end());
+  return tiles.empty() ? Result<void>() : trace();
+}
+
+// The slab, or its tiles.
+Result<void> LightCorrection::trace() {
+  Stopwatch watch;
+  const Size slab = {slab_.width(), slab_.height()};
+  if (options_.stages.interreflection && arriving_.size() != slab)
+    arriving_ = Image<float>(slab, static_cast<int>(photographs_->count()) * planes_.count);
+  if (options_.stages.shadows && visible_.size() != slab)
+    visible_ = Image<std::uint32_t>(slab, solver::visibility_words(photographs_->count()));
   std::vector<Rect> blocks;
-  for (int x = 0; x < size.width; x += kBlockColumns) {
-    blocks.push_back({x, slab_.y0, std::min(x + kBlockColumns, size.width), slab_.y1});
+  for (int x = 0; x < slab_.x1; x += kBlockColumns) {
+    blocks.push_back({x, slab_.y0, std::min(x + kBlockColumns, slab_.x1), slab_.y1});
   }
   std::vector<Worker> workers;
   for (int i = 0; i < threads_; ++i) {

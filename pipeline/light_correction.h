@@ -52,8 +52,11 @@ class LightCorrection {
   LightCorrection(const Photographs& photographs, const SolvedFrame& solved, const solver::Relief& relief,
                   const LightCorrectionOptions& options, int threads);
 
-  /// Traces light for these rows, which begin where those of the last call ended or inside them.
+  /// Traces light for these rows, and for those of the slab that follow. Rows of the last slab are there.
   Result<void> prepare(Rect rows);
+  /// Traces light for these tiles alone, all inside `rows`: what samples take of a frame. They begin on
+  /// multiples of kRowGroup.
+  Result<void> prepare_only(Rect rows, std::span<const Rect> tiles);
   /// From now on only these of the stages that are traced correct readings.
   void apply_only(const LightStages& stages) { applied_ = stages; }
   /// Corrects readings [k * planes + p] of a tile inside the prepared rows: subtract_bounces(), then
@@ -64,19 +67,21 @@ class LightCorrection {
 
   int shadow_reach_px() const { return shadow_reach_.reach_px; }
   bool shadow_reach_is_capped() const { return shadow_reach_.is_capped; }
-  double seconds() const { return seconds_; }  ///< wall time of prepare()
+  double seconds() const { return seconds_; }  ///< wall time of tracing
 
  private:
   struct Worker;
+  Result<void> trace();
   Result<void> trace_block(Rect block, Worker& worker);
-  Result<void> find_shadows(Rect block, const solver::Normals& normals);
-  Result<void> gather_bounces(Rect block, const solver::Normals& normals, Worker& worker);
+  std::vector<Rect> tiles_in(Rect block) const;
+  Result<void> find_shadows(Rect tile, const solver::Normals& normals);
+  Result<void> gather_bounces(Rect tile, const solver::Normals& normals, Worker& worker);
   void read_radiosity(Rect area, Worker& worker) const;
   void read_radiosity_row(Rect tile, int y, std::span<const View<const float>> readings,
                           Worker& worker) const;
   template <typename Use>
   void for_each_color(int plane, int y, int x0, int x1, const Use& use) const;
-  Rect in_slab(Rect block) const { return {block.x0, block.y0 - slab_.y0, block.x1, block.y1 - slab_.y0}; }
+  Rect in_slab(Rect tile) const { return {tile.x0, tile.y0 - slab_.y0, tile.x1, tile.y1 - slab_.y0}; }
   bool sees(int x, int y, std::size_t k) const;
 
   const Photographs* photographs_;
@@ -91,6 +96,7 @@ class LightCorrection {
   solver::ShadowReach shadow_reach_;
   double seconds_ = 0;
   Rect slab_;
+  std::vector<Rect> tiles_;       ///< of the slab that are traced; empty: all of it
   Image<float> arriving_;         ///< [k * planes + p] of the slab
   Image<std::uint32_t> visible_;  ///< words of bits, of the slab
 };
