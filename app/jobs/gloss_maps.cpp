@@ -57,8 +57,9 @@ std::array<Values, kKinds> values_of(const pipeline::GlossFacts& facts) {
     if (!lobe.shines()) continue;
     for (std::size_t across = 0; across < 2; ++across) {
       const double yarn = has_yarn(lobe) ? degrees(lobe.axis) + (across > 0 ? 90 : 0) : 0;
-      values[1 + 2 * l + across] = values_of(
-          lobe.alpha, has_yarn(lobe) ? lobe.alpha * lobe.along : lobe.alpha, of_half_turn(yarn), lobe.f0);
+      const double alpha = solver::alpha_of_one(lobe);
+      values[1 + 2 * l + across] =
+          values_of(alpha, has_yarn(lobe) ? alpha * lobe.along : alpha, of_half_turn(yarn), lobe.f0);
     }
   }
   return values;

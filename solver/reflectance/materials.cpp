@@ -153,6 +153,7 @@ bool may_be_two(const MeasuredLobe& one) {
 std::vector<MeasuredLobe> measure_materials(const LobeSamples& samples, const std::vector<Vec3>& start,
                                             int threads) {
   std::vector<MeasuredLobe> one = {measure_lobe(samples, start, threads)};
+  if (auto two = measure_two_lobes(samples, start, one.front(), threads)) one.front() = std::move(*two);
   if (!may_be_two(one.front())) return one;
   const LobeSamples few = samples.first(kSplitPixels);
   const std::vector<Vec3> few_start(start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels()));

@@ -79,6 +79,20 @@ TEST_F(GlossMaps, HaveTheLobeWhereItWasUsedAndTypedValuesElsewhere) {
   EXPECT_TRUE(has("reflectance.png"));
 }
 
+TEST_F(GlossMaps, OfTwoLobesInAPixelHaveTheAlphaThatOneNeeds) {
+  pipeline::GlossFacts facts = satin();
+  facts.lobes.resize(1);
+  facts.lobes[0].lobe = {
+      .family = solver::LobeFamily::kTwoGgx, .alpha = 0.15, .f0 = 0.05, .broad = 0.5, .broad_share = 0.4};
+  ASSERT_TRUE(write_gloss_maps(folder_.path(), facts, AlbedoScale::kAbsolute, Compression::kNone, {}, false));
+  const Result<LoadedImage> roughness = read_image(folder_.path() / "roughness.exr");
+  ASSERT_TRUE(roughness) << roughness.error().message();
+  const double one = 1 / (0.6 / 0.15 + 0.4 / 0.5);
+  EXPECT_NEAR(roughness->channel("alpha")(1, 0), one, 1e-4);
+  EXPECT_NEAR(roughness->channel("alpha_along")(1, 0), one, 1e-4);
+  EXPECT_NEAR(roughness->channel("roughness")(1, 0), std::sqrt(one), 3e-4);
+}
+
 TEST_F(GlossMaps, OfARelativeAlbedoSayNothingOfF0) {
   ASSERT_TRUE(
       write_gloss_maps(folder_.path(), satin(), AlbedoScale::kRelative, Compression::kNone, {}, false));
@@ -108,6 +122,24 @@ TEST(ReflectanceWords, AreOfBothMaterials) {
             "ggx, roughness 0.160, f0 0.060; solved with it: 100 percent of the frame");
   EXPECT_THAT(reflectance_section(document), testing::HasSubstr("two materials"));
   EXPECT_EQ(reflectance_said(document), Json({{"used", true}, {"says", reflectance_words(summary)}}));
+}
+
+TEST(ReflectanceWords, AreOfTwoLobesInAPixel) {
+  pipeline::GlossFacts facts = satin();
+  facts.lobes.resize(1);
+  facts.lobes[0].lobe = {
+      .family = solver::LobeFamily::kTwoGgx, .alpha = 0.15, .f0 = 0.05, .broad = 0.5, .broad_share = 0.4};
+  facts.lobes[0].sigma_broad = 0.02;
+  facts.lobes[0].sigma_share = 0.01;
+  const Json document = reflectance_document(facts, AlbedoScale::kAbsolute);
+  const Json& cluster = document["clusters"][0];
+  EXPECT_EQ(cluster["family"], "two-ggx");
+  EXPECT_EQ(cluster["alpha_broad"], 0.5);
+  EXPECT_EQ(cluster["broad_share"], 0.4);
+  EXPECT_NEAR(cluster["sigma"]["alpha_broad"].get<double>(), 0.01, 1e-12);
+  EXPECT_EQ(cluster["sigma"]["broad_share"], 0.01);
+  EXPECT_EQ(lobes_in_words(reflectance_summary(document)),
+            "two-ggx, roughness 0.150 and, for 40 percent of it, 0.500, f0 0.050");
 }
 
 TEST(ReflectanceWords, SayWhereRoughnessChanges) {
