@@ -11,6 +11,7 @@
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/solve_record.h"
+#include "core/status_blend.h"
 #include "core/temporary_folder.h"
 #include "core/vec.h"
 
@@ -77,6 +78,28 @@ TEST_F(GlossMaps, HaveTheLobeWhereItWasUsedAndTypedValuesElsewhere) {
     EXPECT_NEAR(specular->channel("f0")(x, 0), pixel.f0, 0.05 * kHalfFloat) << x;
   }
   EXPECT_TRUE(has("reflectance.png"));
+}
+
+TEST_F(GlossMaps, OfAPixelOfBothMaterialsLieBetweenThem) {
+  const std::array<std::uint16_t, 2> pixels = {static_cast<std::uint16_t>(kGlossy | status_of_blend(2)),
+                                               static_cast<std::uint16_t>(kGlossy | status_of_blend(5))};
+  Image<std::uint16_t> status({2, 1});
+  for (int x = 0; x < 2; ++x) status(x, 0) = pixels[static_cast<std::size_t>(x)];
+  Result<ImageWriter> writer =
+      ImageWriter::open(folder_.path() / "status.png", {2, 1}, {"Y"}, {.type = SampleType::kUint16});
+  ASSERT_TRUE(writer && writer->write_rows(View<const std::uint16_t>(status.plane())) && writer->finish());
+  ASSERT_TRUE(
+      write_gloss_maps(folder_.path(), satin(), AlbedoScale::kAbsolute, Compression::kNone, {}, false));
+  const Result<LoadedImage> roughness = read_image(folder_.path() / "roughness.exr"),
+                            specular = read_image(folder_.path() / "specular.exr");
+  ASSERT_TRUE(roughness && specular);
+  for (int x = 0; x < 2; ++x) {
+    const double second = x == 0 ? 0.25 : 0.625;
+    EXPECT_NEAR(roughness->channel("alpha")(x, 0), 1 / ((1 - second) / 0.4 + second / 0.16), 5e-4) << x;
+    EXPECT_NEAR(roughness->channel("alpha_along")(x, 0), 1 / ((1 - second) / 0.1 + second / 0.16), 5e-4) << x;
+    EXPECT_NEAR(roughness->channel("yarn_deg")(x, 0), 120, 0.1) << x;
+    EXPECT_NEAR(specular->channel("f0")(x, 0), (1 - second) * 0.05 + second * 0.06, 5e-5) << x;
+  }
 }
 
 TEST_F(GlossMaps, OfTwoLobesInAPixelHaveTheAlphaThatOneNeeds) {

@@ -4,9 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "simulator/reflectance/reflectance.h"
 #include "solver/reflectance/materials.h"
-#include "tests/solver/reflectance/pixels.h"
+#include "tests/solver/reflectance/simulated.h"
 
 // Cloths with a sharp and a broad lobe in every point. Their truth is the simulator's.
 
@@ -17,18 +16,6 @@ constexpr std::size_t kTwoTonePixels = 400;
 
 simulator::MixedGgx mixed(double sharp, double broad, double share, double f0) {
   return {.alpha = sharp, .second_alpha = broad, .second_share = share, .f0 = {f0, f0, f0}};
-}
-
-// What the simulator reflects of light and view in the frame of the normal.
-PixelModel simulated(const simulator::Reflectance& model) {
-  return [model](Vec3 n, double albedo, double, const LitFrom& from) {
-    const Vec3 x = normalized(Vec3{1, 0, 0} - n.x * n), y = cross(n, x);
-    const auto local = [&](Vec3 d) { return Vec3{dot(d, x), dot(d, y), dot(d, n)}; };
-    const double cosine = dot(n, from.light);
-    if (!(cosine > 0)) return 0.0;
-    return kPi * cosine *
-           simulator::evaluate(model, {albedo, albedo, albedo}, local(from.light), local(from.view))[1];
-  };
 }
 
 double mean_albedo_error(const MeasuredLobe& found, const PixelTruth& cloth) {
