@@ -15,6 +15,7 @@
 #include "app/jobs/pictures.h"
 #include "core/image_io/image_io.h"
 #include "core/solve_record.h"
+#include "core/status_blend.h"
 #include "report/downsampler.h"
 #include "report/preview.h"
 
@@ -48,6 +49,19 @@ std::size_t kind_of(unsigned status) {
   if ((status & kGlossy) == 0) return 0;
   return ((status & kSecondLobe) != 0 ? 3U : 1U) + ((status & kYarnAcross) != 0 ? 1U : 0U);
 }
+// The same yarn of the other material.
+std::size_t other_kind(std::size_t kind) {
+  return kind < 3 ? kind + 2 : kind - 2;
+}
+
+// What stands for a pixel that is `other` to a part: f0 is the mean of both, alpha what one lobe needs to
+// look like both (alpha_of_one()), the azimuth that of the greater part if it has one.
+Values mixed(const Values& most, const Values& other, double part) {
+  const auto mean = [&](std::size_t i) { return (1 - part) * most[i] + part * other[i]; };
+  const auto harmonic = [&](std::size_t i) { return 1 / ((1 - part) / most[i] + part / other[i]); };
+  const bool has_yarn = most[1] != most[2];
+  return values_of(harmonic(1), harmonic(2), double{has_yarn ? most[3] : other[3]}, mean(4));
+}
 
 std::array<Values, kKinds> values_of(const pipeline::GlossFacts& facts) {
   std::array<Values, kKinds> values;
@@ -57,8 +71,9 @@ std::array<Values, kKinds> values_of(const pipeline::GlossFacts& facts) {
     if (!lobe.shines()) continue;
     for (std::size_t across = 0; across < 2; ++across) {
       const double yarn = has_yarn(lobe) ? degrees(lobe.axis) + (across > 0 ? 90 : 0) : 0;
-      values[1 + 2 * l + across] = values_of(
-          lobe.alpha, has_yarn(lobe) ? lobe.alpha * lobe.along : lobe.alpha, of_half_turn(yarn), lobe.f0);
+      const double alpha = solver::alpha_of_one(lobe);
+      values[1 + 2 * l + across] =
+          values_of(alpha, has_yarn(lobe) ? alpha * lobe.along : alpha, of_half_turn(yarn), lobe.f0);
     }
   }
   return values;
@@ -68,6 +83,18 @@ std::array<Values, kKinds> values_of(const pipeline::GlossFacts& facts) {
 struct PictureKinds {
   std::vector<report::LobeKey> keys;
   std::vector<std::size_t> kinds;  // by key
+
+  // What a pixel shows of a key.
+  float share_of(std::size_t key, std::size_t kind, unsigned eighths) const {
+    const auto is_of = [&](std::size_t each) {
+      // A lobe without a yarn has one key for both.
+      const std::size_t same = keys[key].azimuth_deg ? each : each - (each + 1) % 2;
+      return each > 0 && same == kinds[key];
+    };
+    const float other = static_cast<float>(eighths) / static_cast<float>(kBlendParts);
+    if (is_of(kind)) return 1 - other;
+    return other > 0 && is_of(other_kind(kind)) ? other : 0.0F;
+  }
 };
 
 PictureKinds picture_kinds(const pipeline::GlossFacts& facts) {
@@ -120,10 +147,15 @@ Result<void> write_gloss_maps(const fs::path& folder, const pipeline::GlossFacts
   for (int y = 0; y < size.height; ++y) {
     const float* levels = status->planes.plane(0).row(y);
     for (int x = 0; x < size.width; ++x) {
-      const std::size_t kind = kind_of(static_cast<unsigned>(std::lround(65535 * levels[x])));
-      for (std::size_t p = 0; p < kValues; ++p) row(x, 0, static_cast<int>(p)) = values[kind][p];
+      const auto bits = static_cast<unsigned>(std::lround(65535 * levels[x]));
+      const std::size_t kind = kind_of(bits);
+      const unsigned eighths = kind > 0 ? blend_of(bits) : 0;
+      const Values here = eighths > 0 ? mixed(values[kind], values[other_kind(kind)],
+                                              static_cast<double>(eighths) / kBlendParts)
+                                      : values[kind];
+      for (std::size_t p = 0; p < kValues; ++p) row(x, 0, static_cast<int>(p)) = here[p];
       for (int k = 0; k < keys; ++k)
-        share(x, 0, k) = kind == pictured.kinds[static_cast<std::size_t>(k)] ? 1.0F : 0.0F;
+        share(x, 0, k) = pictured.share_of(static_cast<std::size_t>(k), kind, eighths);
     }
     if (Result<void> ok = roughness->write_rows(all.first(kRoughnessChannels)); !ok) return ok;
     if (specular) {

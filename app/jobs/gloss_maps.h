@@ -18,7 +18,8 @@ inline constexpr double kTypedF0 = 0.04, kTypedAlpha = 1;
 /// Writes what a measured lobe says by pixel, beside the status.png of `folder`, which tells where it holds:
 ///   roughness.exr    roughness (the root of alpha; of two, of their geometric mean), alpha (across the
 ///   yarn),
-///                    alpha_along, yarn_deg (azimuth from the x axis of the rig, 0 where there is none)
+///                    alpha_along, yarn_deg (azimuth from the x axis of the rig, 0 where there is none); of
+///                    two lobes in a pixel alpha_of_one()
 ///   specular.exr     f0, of an absolute albedo alone: that of a relative one has its unknown scale
 ///   reflectance.png  where which lobe holds and how yarns lie; only if `previews`
 /// Pixels without GLOSSY have typed values. Nothing is written where no lobe was measured or none is used.

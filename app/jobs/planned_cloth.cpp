@@ -38,8 +38,8 @@ Error not_a_lobe(const std::filesystem::path& file, std::string why) {
 }
 
 std::optional<LobeFamily> family_called(const std::string& name) {
-  for (const LobeFamily family :
-       {LobeFamily::kGgx, LobeFamily::kAnisotropicGgx, LobeFamily::kBeckmann, LobeFamily::kCloth}) {
+  for (const LobeFamily family : {LobeFamily::kGgx, LobeFamily::kAnisotropicGgx, LobeFamily::kBeckmann,
+                                  LobeFamily::kCloth, LobeFamily::kTwoGgx}) {
     if (name == name_of(family)) return family;
   }
   return {};
@@ -55,10 +55,15 @@ Result<Lobe> lobe_of(const Json& cluster, const std::filesystem::path& file, dou
   const double along = fields.optional_number("alpha_along").value_or(lobe.alpha);
   lobe.axis = radians(fields.optional_number("axis_deg").value_or(0));
   lobe.bend = fields.optional_number("bend").value_or(0);
+  if (family == LobeFamily::kTwoGgx) {
+    lobe.broad = fields.number("alpha_broad");
+    lobe.broad_share = fields.number("broad_share");
+  }
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   if (!family) return not_a_lobe(file, "a lobe of the family \"" + name + "\" is not planned for");
   if (!(lobe.alpha >= 0.02 && lobe.alpha <= 1 && along >= 0.001 && along <= 20 && lobe.f0 >= 0 &&
-        lobe.f0 <= 0.6))
+        lobe.f0 <= 0.6 && lobe.broad >= 0.02 && lobe.broad <= 1 && lobe.broad_share >= 0 &&
+        lobe.broad_share <= 1))
     return not_a_lobe(file, "its roughness or f0 is none that a cloth has");
   lobe.family = *family;
   lobe.along = along / lobe.alpha;

@@ -68,6 +68,10 @@ void add_lobe(const solver::Lobe& lobe, Json& into) {
     into["alpha_along"] = lobe.alpha * lobe.along;
     into["axis_deg"] = degrees(lobe.axis);
   }
+  if (lobe.family == solver::LobeFamily::kTwoGgx) {
+    into["alpha_broad"] = lobe.broad;
+    into["broad_share"] = lobe.broad_share;
+  }
   into["f0"] = lobe.f0;
   if (lobe.bend != 0) into["bend"] = lobe.bend;
 }
@@ -109,6 +113,10 @@ Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
     sigma["alpha_along"] = lobe.lobe.alpha * lobe.lobe.along * std::hypot(lobe.sigma_alpha, lobe.sigma_along);
     sigma["axis_deg"] = degrees(lobe.sigma_axis);
     cluster["weft_share"] = lobe.weft_share;
+  }
+  if (lobe.lobe.family == solver::LobeFamily::kTwoGgx) {
+    sigma["alpha_broad"] = lobe.lobe.broad * lobe.sigma_broad;
+    sigma["broad_share"] = lobe.sigma_share;
   }
   if (scale == AlbedoScale::kRelative) {
     cluster["f0_over_albedo"] = lobe.lobe.f0 / lobe.median_albedo;
@@ -152,6 +160,9 @@ std::string lobe_words(const Json& cluster) {
                                   cluster["alpha"].get<double>());
   if (cluster.contains("alpha_along"))
     words += fmt::format(" across the yarn and {:.3f} along it", cluster["alpha_along"].get<double>());
+  if (cluster.contains("alpha_broad"))
+    words += fmt::format(" and, for {:.0f} percent of it, {:.3f}", 100 * cluster["broad_share"].get<double>(),
+                         cluster["alpha_broad"].get<double>());
   if (cluster.contains("f0")) words += fmt::format(", f0 {:.3f}", cluster["f0"].get<double>());
   return words;
 }
@@ -185,7 +196,7 @@ Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) 
   Json clusters = Json::array();
   for (const MeasuredLobe& lobe : facts.lobes)
     clusters.push_back(cluster_of(lobe, scale, facts.of_film_pair));
-  Json document = {{"schema", "weft.reflectance/1.1"},
+  Json document = {{"schema", "weft.reflectance/1.2"},
                    {"albedo_scale", name_of(scale)},
                    {"share", facts.share},
                    {"clusters", std::move(clusters)}};
@@ -196,7 +207,8 @@ Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) 
 Json reflectance_summary(const Json& document) {
   const auto summary_of = [](const Json& cluster) {
     Json summary = {{"said", cluster["said"]}};
-    for (const char* key : {"family", "alpha", "alpha_along", "f0", "f0_over_albedo"}) {
+    for (const char* key :
+         {"family", "alpha", "alpha_along", "alpha_broad", "broad_share", "f0", "f0_over_albedo"}) {
       if (cluster.contains(key)) summary[key] = cluster[key];
     }
     return summary;

@@ -364,6 +364,10 @@ Json cloth_json(const NamedCloth& named) {
     json["alpha_along"] = cloth.lobe.alpha * cloth.lobe.along;
     json["weft_share"] = cloth.weft_share;
   }
+  if (cloth.lobe.family == solver::LobeFamily::kTwoGgx) {
+    json["alpha_broad"] = cloth.lobe.broad;
+    json["broad_share"] = cloth.lobe.broad_share;
+  }
   json[strength_key(cloth.lobe)] = cloth.lobe.f0;
   return json;
 }

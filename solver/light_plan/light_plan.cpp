@@ -82,8 +82,9 @@ const std::vector<Film>& films(bool has_polarisers) {
 Lobe moved(Lobe lobe, Eigen::Index parameter, double step) {
   if (parameter == kAlphaAt) lobe.alpha *= std::exp(step);
   if (parameter == kF0At) lobe.f0 += step;
-  if (parameter == kAlongAt) lobe.along *= std::exp(step);
-  if (parameter == kAxisAt) lobe.axis += step;
+  const bool has_two = lobe.family == LobeFamily::kTwoGgx;
+  if (parameter == kAlongAt) (has_two ? lobe.broad : lobe.along) *= std::exp(step);
+  if (parameter == kAxisAt) (has_two ? lobe.broad_share : lobe.axis) += step;
   if (parameter == kBendAt) lobe.bend += step;
   return lobe;
 }
@@ -335,11 +336,12 @@ class Scan {
     }
     sigma.alpha = lobe.alpha * root(kAlphaAt);
     sigma.f0 = root(kF0At);
-    sigma.axis_deg = degrees(root(kAxisAt));
+    const bool has_yarn = lobe.family == LobeFamily::kAnisotropicGgx;
+    sigma.axis_deg = has_yarn ? degrees(root(kAxisAt)) : kNever;
     const double along =
         std::sqrt(std::max(c(kAlphaAt, kAlphaAt) + c(kAlongAt, kAlongAt) + 2 * c(kAlphaAt, kAlongAt), 0.0));
     sigma.alpha_along =
-        std::isfinite(root(kAlongAt) + root(kAlphaAt)) ? lobe.alpha * lobe.along * along : kNever;
+        has_yarn && std::isfinite(root(kAlongAt) + root(kAlphaAt)) ? lobe.alpha * lobe.along * along : kNever;
     sigma.correlation = c(kAlphaAt, kF0At) / std::sqrt(c(kAlphaAt, kAlphaAt) * c(kF0At, kF0At));
     sigma.is_observable = kSure * sigma.alpha <= kAlphaAgrees && kSure * sigma.f0 <= kF0Agrees * lobe.f0 &&
                           sigma.correlation > kTailOnly;

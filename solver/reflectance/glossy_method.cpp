@@ -6,10 +6,13 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
+#include "core/status_blend.h"
 #include "solver/in_double/pixelwise.h"
+#include "solver/reflectance/blend.h"
 #include "solver/reflectance/lobe_block.h"
 #include "solver/reflectance/lobe_rows.h"
 #include "solver/reflectance/measured_lobe.h"
@@ -44,6 +47,17 @@ struct Group {
   LobeBlock block;
   std::array<Pixel, LobeBlock::kPixels> pixels;
   std::size_t count = 0;
+};
+
+// What was solved of a pixel.
+struct SolvedPixel {
+  Pixel at;
+  Vec3 b;
+  double yarn = 0;  // from the lobe's axis
+  Blend by;
+  double residual = 0;  // rms of reading less model
+  unsigned how = 0;     // bits beside kGlossy
+  BlendVariances variances;
 };
 
 // One tile.
@@ -108,7 +122,8 @@ class GlossyTile {
     for (std::size_t i = 0; i < group.count; ++i) {
       if (group.block.used[i] < kLeastReadings) continue;
       is_done[i] = next_stage == kStages || is_explained(group.block, i);
-      if (is_done[i]) continue;
+      if (next_stage == kStages && !is_explained(group.block, i)) is_done[i] = !write_blended(group, i);
+      if (is_done[i] || next_stage == kStages) continue;
       if (!again_[next_stage]) again_[next_stage] = std::make_unique<Group>(rows_.count());
       Group& next = *again_[next_stage];
       next.add(group.pixels[i], group.block, i);
@@ -132,7 +147,7 @@ class GlossyTile {
     group.count = 0;
   }
 
-  void write(const Group& group, const std::array<bool, LobeBlock::kPixels>& is_done) const {
+  void write(const Group& group, const std::array<bool, LobeBlock::kPixels>& is_done) {
     for (std::size_t l = 0; l < lobes_.size(); ++l) {
       const auto by_lobe = [&](std::size_t i) {
         return is_done[i] && group.block.lobe[i] == static_cast<float>(l) &&
@@ -144,55 +159,100 @@ class GlossyTile {
       BlockVariances variances;
       write_variances(lobes_[l].lobe, lobes_[l].one_sigma_off, group.block, group.count, variances);
       for (std::size_t i = 0; i < group.count; ++i) {
-        if (by_lobe(i)) write_pixel(group, i, variances);
+        if (by_lobe(i)) write_pixel(solved_by(l, group, i, variances));
       }
     }
   }
 
-  void write_pixel(const Group& group, std::size_t i, const BlockVariances& v) const {
-    const int x = group.pixels[i].x, y = group.pixels[i].y;
-    const Vec3 b = group.block.b(i);
-    const double rho = length(b);
-    const Vec3 n = (1 / rho) * b;
+  SolvedPixel solved_by(std::size_t lobe, const Group& group, std::size_t i, const BlockVariances& v) {
+    const bool is_across = group.block.across[i] > 0;
+    for (std::size_t k = 0; input_.planes > 1 && k < readings_.size(); ++k)
+      readings_[k] = group.block.reading(i, k);
+    return {group.pixels[i],
+            group.block.b(i),
+            is_across ? kPi / 2 : 0,
+            {lobes_[lobe].lobe, {}, 0},
+            group.block.residual[i],
+            (is_across ? unsigned{kYarnAcross} : 0U) | (lobe > 0 ? unsigned{kSecondLobe} : 0U),
+            {v.along_of_readings[i], v.across_of_readings[i], v.along_of_lobe[i], v.across_of_lobe[i]}};
+  }
+
+  // A pixel that neither of two materials explains, as of both; whether that does.
+  bool write_blended(const Group& group, std::size_t i) {
+    const LobeBlock& block = group.block;
+    if (lobes_.size() < 2 || block.used[i] < kLeastReadings + 1 || !(length(block.b(i)) > 0)) return false;
+    for (std::size_t k = 0; k < readings_.size(); ++k) readings_[k] = block.reading(i, k);
+    const Lobe &first = lobes_[0].lobe, &second = lobes_[1].lobe;
+    std::optional<BlendFit> best;
+    double yarn = 0;
+    for (const double each : {0.0, kPi / 2}) {
+      if (each > 0 && first.family != LobeFamily::kAnisotropicGgx &&
+          second.family != LobeFamily::kAnisotropicGgx)
+        continue;
+      const BlendFit fit = fit_blend(first, second, readings_, block.b(i), each);
+      if (best && !(fit.fit.cost < best->fit.cost)) continue;
+      best = fit;
+      yarn = each;
+    }
+    const Vec3 b = best->fit.b;
+    if (best->second_parts % kBlendParts == 0 || !(length(b) > 0)) return false;
+    if (!(best->fit.cost <= kBlendCosts * double{block.cost[i]})) return false;
+    SolvedPixel pixel = {group.pixels[i], b, yarn, {first, second, 0}, 0, 0, {}};
+    pixel.by.second_share = best->second_share;
+    pixel.how = status_of_blend(best->second_parts) | (yarn > 0 ? unsigned{kYarnAcross} : 0U);
+    double squares = 0;
+    for (const LobeReading& r : readings_) {
+      const double residual = r.x - modelled(pixel.by, b, r.from, yarn);
+      squares += r.weight > 0 ? residual * residual : 0;
+    }
+    pixel.residual = std::sqrt(squares / block.used[i]);
+    pixel.variances =
+        variances_of(pixel.by, lobes_[0].one_sigma_off, lobes_[1].one_sigma_off, readings_, b, yarn);
+    write_pixel(pixel);
+    return true;
+  }
+
+  // Of RGB with its readings in readings_.
+  void write_pixel(const SolvedPixel& pixel) const {
+    const int x = pixel.at.x, y = pixel.at.y;
+    const BlendVariances& v = pixel.variances;
+    const double rho = length(pixel.b);
+    const Vec3 n = (1 / rho) * pixel.b;
     output_.normal[0](x, y) = static_cast<float>(n.x);
     output_.normal[1](x, y) = static_cast<float>(n.y);
     output_.normal[2](x, y) = static_cast<float>(n.z);
-    const double sigma = degrees(root_of_sum(v.across_of_readings[i], v.across_of_lobe[i])) / rho;
+    const double sigma = degrees(root_of_sum(v.across_of_readings, v.across_of_lobes)) / rho;
     output_.sigma_normal_deg(x, y) = static_cast<float>(std::min(sigma, double{kUnknownAngleDeg}));
-    output_.residual(x, y) = finite(group.block.residual[i] / rho);
+    output_.residual(x, y) = finite(pixel.residual / rho);
     // What the lobe explains is no misfit any more.
-    unsigned solved = kGlossy;
-    if (group.block.across[i] > 0) solved |= kYarnAcross;
-    if (group.block.lobe[i] > 0) solved |= kSecondLobe;
-    output_.status(x, y) = static_cast<std::uint16_t>((output_.status(x, y) & ~unsigned{kSpecular}) | solved);
+    const unsigned before = output_.status(x, y) & ~unsigned{kSpecular};
+    output_.status(x, y) = static_cast<std::uint16_t>(before | kGlossy | pixel.how);
     for (std::size_t p = 0; p < static_cast<std::size_t>(input_.planes); ++p) {
-      const double share = input_.planes == 1 ? 1 : plane_share(group, i, p);
+      const double share = input_.planes == 1 ? 1 : plane_share(pixel, p);
       output_.albedo[p](x, y) = finite(rho * share);
       // A highlight has the colour of the light: what is wrong with it is as much in all channels.
       output_.sigma_albedo[p](x, y) =
-          finite(root_of_sum(v.along_of_readings[i] * share * share, v.along_of_lobe[i]));
+          finite(root_of_sum(v.along_of_readings * share * share, v.along_of_lobes));
     }
   }
 
   // Albedo of one plane of RGB over that of the weighted sum: what its readings leave once the lobe, which
   // has the colour of the light, is taken off.
-  double plane_share(const Group& group, std::size_t i, std::size_t plane) const {
-    const Lobe& lobe = lobes_[static_cast<std::size_t>(group.block.lobe[i])].lobe;
-    const int x = group.pixels[i].x, y = group.pixels[i].y;
-    const Vec3 b = group.block.b(i), n = normalized(b);
-    const double yarn = group.block.across[i] > 0 ? kPi / 2 : 0;
+  double plane_share(const SolvedPixel& pixel, std::size_t plane) const {
+    const Vec3 n = normalized(pixel.b);
     double of_plane = 0, of_all = 0;
     for (std::size_t k = 0; k < readings_.size(); ++k) {
-      const LobeReading r = group.block.reading(i, k);
+      const LobeReading& r = readings_[k];
       if (r.weight == 0) continue;
       const std::size_t lights = input_.field->count(), i_of_state = 3 * (k % lights) + plane;
-      const double strength =
-          input_.field->at(k % lights, static_cast<int>(plane), input_.tile.x0 + x, input_.tile.y0 + y)
-              .strength;
+      const double strength = input_.field
+                                  ->at(k % lights, static_cast<int>(plane), input_.tile.x0 + pixel.at.x,
+                                       input_.tile.y0 + pixel.at.y)
+                                  .strength;
       const auto& state = k < lights ? input_.readings : input_.parallel;
-      const double reading = state[i_of_state](x, y) / strength;
-      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(lobe, n, r.from, yarn);
-      const double diffuse = modelled(lobe, b, r.from, yarn) - shine;
+      const double reading = state[i_of_state](pixel.at.x, pixel.at.y) / strength;
+      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(pixel.by, n, r.from, pixel.yarn);
+      const double diffuse = modelled(pixel.by, pixel.b, r.from, pixel.yarn) - shine;
       of_plane += r.weight * diffuse * (reading - shine);
       of_all += r.weight * diffuse * diffuse;
     }
@@ -226,11 +286,12 @@ class Glossy : public Method {
     LobeReader reader(input, sight_);
     std::vector<LobeReading> readings(reader.count());
     reader.read(x, y, readings);
-    const double yarn = (output.status(x, y) & kYarnAcross) != 0 ? kPi / 2 : 0;
+    const unsigned status = output.status(x, y);
+    const double yarn = (status & kYarnAcross) != 0 ? kPi / 2 : 0;
     const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
-    const Lobe& lobe = lobes_[(output.status(x, y) & kSecondLobe) != 0 ? 1 : 0].lobe;
+    const Blend lobes = {lobes_.front().lobe, lobes_.back().lobe, second_share_of(status)};
     const Vec3 n = {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
-    return modelled(lobe, spoken * n, LitFrom(light, readings.front().from.view, lobe_share), yarn);
+    return modelled(lobes, spoken * n, LitFrom(light, readings.front().from.view, lobe_share), yarn);
   }
 
  private:

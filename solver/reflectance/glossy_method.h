@@ -20,8 +20,9 @@ struct KnownLobe {
 /// where the base left it and, where that does not explain its readings, from other normals. Such a pixel has
 /// the bit GLOSSY, by the second lobe SECOND_LOBE, where its yarn lies across the axis YARN_ACROSS, and the
 /// bits of the base, but for SPECULAR. Pixels that Lambert's law costs least, where it is among the lobes,
-/// stay as the base left them. Its sigmas are those of the readings and of what is open of its lobe, to first
-/// order. At most two lobes. `base` must outlive it.
+/// stay as the base left them. A pixel that neither of two lobes explains is solved as a blend of both
+/// (blend.h), where that explains it; status_blend.h says their shares. Its sigmas are those of the readings
+/// and of what is open of its lobe, to first order. At most two lobes. `base` must outlive it.
 std::unique_ptr<Method> glossy_method(const Method& base, std::vector<KnownLobe> lobes, Sight sight);
 
 /// A pixel's cost over the degrees of freedom of its readings, from which other normals are tried.

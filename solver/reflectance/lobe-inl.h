@@ -245,6 +245,37 @@ class LobeLanes {
   V across2_, along2_, inverse_alpha_, inverse_across2_, inverse_along2_, inverse_product_, cloth_norm_;
 };
 
+template <>
+class LobeLanes<LobeFamily::kTwoGgx> {
+ public:
+  using Part = LobeLanes<LobeFamily::kGgx>;
+  using Shine = Part::Shine;
+  struct Seen {
+    Part::Seen sharp, broad;
+  };
+
+  LobeLanes(D d, const Lobe& lobe)
+      : sharp_(d, lobe.sharp_part()),
+        broad_(d, lobe.broad_part()),
+        sharp_share_(number(d, 1 - lobe.broad_share)),
+        broad_share_(number(d, lobe.broad_share)) {}
+
+  HWY_INLINE Seen seen(const Frame& f, Vector3 to_camera) const {
+    return {sharp_.seen(f, to_camera), broad_.seen(f, to_camera)};
+  }
+
+  HWY_INLINE Shine shine(const Frame& f, const Seen& view, const Toward& light, const Toward& half,
+                         V strength) const {
+    const Shine a = sharp_.shine(f, view.sharp, light, half, hn::Mul(sharp_share_, strength)),
+                b = broad_.shine(f, view.broad, light, half, hn::Mul(broad_share_, strength));
+    return {hn::Add(a.value, b.value), hn::Add(a.by_along, b.by_along), hn::Add(a.by_across, b.by_across)};
+  }
+
+ private:
+  Part sharp_, broad_;
+  V sharp_share_, broad_share_;
+};
+
 }  // namespace HWY_NAMESPACE
 }  // namespace weft::solver
 HWY_AFTER_NAMESPACE();

@@ -9,8 +9,8 @@
 namespace weft::solver {
 namespace {
 
-constexpr std::array<const char*, 5> kFamilyNames = {"lambert", "ggx", "anisotropic-ggx", "beckmann",
-                                                     "cloth"};
+constexpr std::array<const char*, 6> kFamilyNames = {"lambert",  "ggx",   "anisotropic-ggx",
+                                                     "beckmann", "cloth", "two-ggx"};
 // Cosines of light and view count as this where they are less.
 constexpr double kLeastCosine = 1e-6;
 // Step of the derivative of a lobe by its normal.
@@ -102,6 +102,8 @@ double specular(const Lobe& lobe, Vec3 n, const LitFrom& from, double yarn) {
       return f * beckmann(lobe.alpha, c);
     case LobeFamily::kCloth:
       return f * cloth(lobe.alpha, c);
+    case LobeFamily::kTwoGgx:
+      return f * ((1 - lobe.broad_share) * ggx(lobe.alpha, c) + lobe.broad_share * ggx(lobe.broad, c));
   }
   return 0;
 }
@@ -129,8 +131,20 @@ double relative_facets(const Lobe& lobe, double equal_angle) {
       const double s2 = std::max(1 - c2, 1e-12);
       return 1 + 4 * std::exp(-c2 / (s2 * a2)) / square(s2);
     }
+    case LobeFamily::kTwoGgx: {
+      const double sharp_peak = (1 - lobe.broad_share) / a2,
+                   broad_peak = lobe.broad_share / square(lobe.broad);
+      const double sharp = sharp_peak * relative_facets(lobe.sharp_part(), equal_angle),
+                   broad = broad_peak * relative_facets(lobe.broad_part(), equal_angle);
+      return (sharp + broad) / (sharp_peak + broad_peak);
+    }
   }
   return 0;
+}
+
+double alpha_of_one(const Lobe& lobe) {
+  if (lobe.family != LobeFamily::kTwoGgx) return lobe.alpha;
+  return 1 / ((1 - lobe.broad_share) / lobe.alpha + lobe.broad_share / lobe.broad);
 }
 
 double modelled(const Lobe& lobe, Vec3 b, const LitFrom& from, double yarn) {

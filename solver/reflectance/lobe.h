@@ -14,6 +14,7 @@ enum class LobeFamily {
   kAnisotropicGgx,  ///< Heitz 2014: `alpha` across the yarn, `along` times as much along it
   kBeckmann,        ///< Walter et al. 2007, eq. 25
   kCloth,           ///< Ashikhmin and Premoze 2007, normed as seed 000 eq. 22 and 23
+  kTwoGgx,          ///< GGX twice in every point, sharp and broad: a finish on rough fibres
 };
 const char* name_of(LobeFamily family);
 
@@ -30,8 +31,13 @@ struct Lobe {
   double along = 1;  ///< alpha along the yarn over that across it, 0.05 to 20
   double axis = 0;   ///< azimuth of the warp, radians from the x axis of the rig; weft lies across it
   double bend = 0;   ///< how much the diffuse part falls short of Lambert's law at grazing light
+  double broad = 1;  ///< of two lobes alpha of the broad one, `alpha` is that of the sharp one; 0.02 to 1
+  double broad_share = 0;  ///< of the facets, which are of the broad one; 0 to 1
 
   bool shines() const { return family != LobeFamily::kLambert; }
+  /// One of two lobes by itself, as if all facets were its own.
+  Lobe sharp_part() const { return {.family = LobeFamily::kGgx, .alpha = alpha, .f0 = f0, .bend = bend}; }
+  Lobe broad_part() const { return {.family = LobeFamily::kGgx, .alpha = broad, .f0 = f0, .bend = bend}; }
   friend bool operator==(const Lobe&, const Lobe&) = default;
 };
 
@@ -54,6 +60,10 @@ double specular(const Lobe& lobe, Vec3 normal, const LitFrom& from, double yarn)
 double equal_angle(const Lobe& lobe, Vec3 normal, Vec3 half, double yarn);
 /// The density of facets at such an angle over that at 0, where the lobe has its peak.
 double relative_facets(const Lobe& lobe, double equal_angle);
+
+/// The alpha that one lobe of GGX needs to look like this one, across the yarn where there is one: of two
+/// lobes the harmonic mean, each with its share. f0 stays.
+double alpha_of_one(const Lobe& lobe);
 
 /// x and its derivative by b = rho n.
 struct ModelledReading {

@@ -373,6 +373,8 @@ void for_family(LobeFamily family, const Work& work) {
       return work.template operator()<LobeFamily::kBeckmann>();
     case LobeFamily::kCloth:
       return work.template operator()<LobeFamily::kCloth>();
+    case LobeFamily::kTwoGgx:
+      return work.template operator()<LobeFamily::kTwoGgx>();
   }
 }
 

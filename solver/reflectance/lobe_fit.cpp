@@ -26,17 +26,25 @@ constexpr double kSettled = 1e-6;  // of the cost: a round that wins less is the
 constexpr double kLeastVariance = 1e-14;
 
 Shared values_of(const Lobe& lobe) {
+  if (lobe.family == LobeFamily::kTwoGgx)
+    return {std::log(lobe.alpha), lobe.f0, std::log(lobe.broad), lobe.broad_share, lobe.bend};
   return {std::log(lobe.alpha), lobe.f0, std::log(lobe.along), lobe.axis, lobe.bend};
 }
 
 // Within the ranges of Lobe.
 Lobe lobe_of(LobeFamily family, const Shared& v) {
-  return {family,
-          std::exp(std::clamp(v[0], std::log(0.02), 0.0)),
-          std::clamp(v[1], 0.0, 0.6),
-          std::exp(std::clamp(v[2], std::log(0.05), std::log(20.0))),
-          v[3],
-          std::clamp(v[4], -0.5, 1.0)};
+  Lobe lobe = {.family = family,
+               .alpha = std::exp(std::clamp(v[0], std::log(0.02), 0.0)),
+               .f0 = std::clamp(v[1], 0.0, 0.6),
+               .bend = std::clamp(v[4], -0.5, 1.0)};
+  if (family == LobeFamily::kTwoGgx) {
+    lobe.broad = std::exp(std::clamp(v[2], std::log(0.02), 0.0));
+    lobe.broad_share = std::clamp(v[3], 0.0, 1.0);
+  } else {
+    lobe.along = std::exp(std::clamp(v[2], std::log(0.05), std::log(20.0)));
+    lobe.axis = v[3];
+  }
+  return lobe;
 }
 
 // The largest change of a round.
@@ -228,10 +236,11 @@ void LobeSamples::fit_pixels(const Lobe& lobe, std::span<const double> yarn, int
 LobeParameters parameters_of(LobeFamily family) {
   LobeParameters fitted = {};
   const bool has_lobe = family != LobeFamily::kLambert, has_yarn = family == LobeFamily::kAnisotropicGgx;
+  const bool has_two = family == LobeFamily::kTwoGgx;
   fitted[static_cast<std::size_t>(LobeParameter::kLogAlpha)] = has_lobe;
   fitted[static_cast<std::size_t>(LobeParameter::kF0)] = has_lobe;
-  fitted[static_cast<std::size_t>(LobeParameter::kLogAlong)] = has_yarn;
-  fitted[static_cast<std::size_t>(LobeParameter::kAxis)] = has_yarn;
+  fitted[static_cast<std::size_t>(LobeParameter::kLogAlong)] = has_yarn || has_two;
+  fitted[static_cast<std::size_t>(LobeParameter::kAxis)] = has_yarn || has_two;
   return fitted;
 }
 

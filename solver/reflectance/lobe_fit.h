@@ -42,13 +42,23 @@ class LobeSamples {
   std::vector<LobeBlock> blocks_;      // the same for the vector kernel
 };
 
-/// What all pixels share, in the order of a covariance.
-enum class LobeParameter { kLogAlpha, kF0, kLogAlong, kAxis, kBend };
+/// What all pixels share, in the order of a covariance. A yarn's values and those of a broad lobe stand in
+/// one place: no family has both.
+enum class LobeParameter {
+  kLogAlpha,
+  kF0,
+  kLogAlong,
+  kAxis,
+  kBend,
+  kLogBroad = kLogAlong,
+  kBroadShare = kAxis
+};
 inline constexpr std::size_t kLobeParameters = 5;
 using LobeParameters = std::array<bool, kLobeParameters>;  ///< which are fitted
 using LobeCovariance = std::array<std::array<double, kLobeParameters>, kLobeParameters>;
 
-/// Those of a family: alpha and f0 where it has a lobe, `along` and `axis` where it has a yarn.
+/// Those of a family: alpha and f0 where it has a lobe, `along` and `axis` where it has a yarn, `broad` and
+/// `broad_share` where it has two lobes.
 LobeParameters parameters_of(LobeFamily family);
 
 /// A lobe with one of its values a little larger, and by how much: what slopes are taken from.

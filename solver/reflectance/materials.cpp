@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/statistics.h"
+#include "solver/reflectance/blend.h"
 
 namespace weft::solver {
 namespace {
@@ -23,7 +24,14 @@ const Lobe kBroad = {.family = LobeFamily::kGgx, .alpha = 0.45, .f0 = 0.05};
 // Pixels that may still change sides once it is settled.
 constexpr double kSettledShare = 0.01;
 
-using Sides = std::vector<std::uint8_t>;  // 0 or 1, by pixel
+// Where materials fade into each other at most so many pixels are left to neither: those that are worst
+// explained, by a cost over their degrees of freedom from kMixedFrom on.
+constexpr double kMostMixed = 0.35, kMixedFrom = 2;
+// Of these so many must be blends of both.
+constexpr double kLeastBlends = 0.7;
+
+using Sides = std::vector<std::uint8_t>;  // 0 or 1, or kNeither, by pixel
+constexpr std::uint8_t kNeither = 2;
 
 // Of the families that were tried the one that fits best; Lambert's law where it fits.
 const LobeCandidate& best_of(const MeasuredLobe& measured) {
@@ -60,6 +68,7 @@ struct Split {
   std::array<Lobe, 2> lobes;
   Sides sides;
   double cost = std::numeric_limits<double>::infinity();
+  std::vector<double> costs = {};  // by pixel
 };
 
 class Splitter {
@@ -72,17 +81,43 @@ class Splitter {
   // Each pixel goes where it costs less.
   Split assigned(const std::array<Lobe, 2>& lobes) const {
     const std::vector<double> a = fitted(lobes[0]).cost, b = fitted(lobes[1]).cost;
-    Split split = {lobes, Sides(a.size()), 0};
+    Split split = {lobes, Sides(a.size()), 0, std::vector<double>(a.size())};
     for (std::size_t i = 0; i < a.size(); ++i) {
       split.sides[i] = b[i] < a[i] ? 1 : 0;
-      split.cost += std::min(a[i], b[i]);
+      split.costs[i] = std::min(a[i], b[i]);
+      split.cost += split.costs[i];
     }
     return split;
   }
 
+  // The pixels that are worst explained are on neither side.
+  void trim(Split& split) const {
+    std::vector<double> misfits(split.costs.size());
+    for (std::size_t i = 0; i < misfits.size(); ++i) misfits[i] = misfit(i, split.costs[i]);
+    const double from = std::max(quantile(misfits, 1 - kMostMixed), kMixedFrom);
+    for (std::size_t i = 0; i < misfits.size(); ++i) {
+      if (misfits[i] > from) split.sides[i] = kNeither;
+    }
+  }
+
+  // Whether most of the pixels on neither side are of both.
+  bool are_blends(const Sides& sides, const Lobe& first, const Lobe& second) const {
+    const LobeFit a = fitted(first), b = fitted(second);
+    double mixed = 0, blends = 0;
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      if (sides[i] != kNeither) continue;
+      const LobeFit& nearer = b.cost[i] < a.cost[i] ? b : a;
+      const BlendFit blend = fit_blend(first, second, samples_.of(i), nearer.b[i], nearer.yarn[i]);
+      mixed += 1;
+      blends +=
+          misfit(i, blend.fit.cost) < kMixedFrom || blend.fit.cost <= kBlendCosts * nearer.cost[i] ? 1 : 0;
+    }
+    return blends >= kLeastBlends * mixed;
+  }
+
   // Lobes and sides in turn, from a first guess, until hardly a pixel changes its side. None where it is
   // promising no longer.
-  std::optional<Split> grown(Split split, double cost_of_all) const {
+  std::optional<Split> grown(Split split, double cost_of_all, bool trims = false) const {
     for (int round = 0; round < kMostRounds; ++round) {
       std::array<Lobe, 2> lobes;
       for (std::uint8_t side = 0; side < 2; ++side) {
@@ -91,6 +126,7 @@ class Splitter {
         lobes[side] = lobe_of(group, split.lobes[side]);
       }
       Split next = assigned(lobes);
+      if (trims) trim(next);
       std::size_t moved = 0;
       for (std::size_t i = 0; i < next.sides.size(); ++i) moved += next.sides[i] != split.sides[i] ? 1U : 0U;
       split = std::move(next);
@@ -111,6 +147,10 @@ class Splitter {
     LobeSamples samples;
     std::vector<Vec3> start;
   };
+
+  double misfit(std::size_t pixel, double cost) const {
+    return 2 * cost / std::max(1, used_of(samples_.of(pixel)) - 3);
+  }
 
   Group of(const Sides& sides, std::uint8_t side) const {
     Group group = {LobeSamples(samples_.lights(), samples_.states()), {}};
@@ -143,6 +183,20 @@ class Splitter {
   int threads_;
 };
 
+// Both materials, the first measured; none where one of them is not explained.
+std::optional<std::vector<MeasuredLobe>> both_explained(const Splitter& all, const Sides& sides) {
+  std::array<MeasuredLobe, 2> two = {all.measured(sides, 0), {}};
+  if (!is_explained(two[0])) return std::nullopt;
+  two[1] = all.measured(sides, 1);
+  if (!is_explained(two[1])) return std::nullopt;
+  const std::ptrdiff_t of_first = std::ranges::count(sides, 0), of_second = std::ranges::count(sides, 1);
+  const bool second_first =
+      two[0].is_measured() == two[1].is_measured() ? of_second > of_first : two[1].is_measured();
+  if (second_first) std::swap(two[0], two[1]);
+  if (!two[0].is_measured()) return std::nullopt;
+  return std::vector<MeasuredLobe>(two.begin(), two.end());
+}
+
 }  // namespace
 
 bool may_be_two(const MeasuredLobe& one) {
@@ -153,6 +207,7 @@ bool may_be_two(const MeasuredLobe& one) {
 std::vector<MeasuredLobe> measure_materials(const LobeSamples& samples, const std::vector<Vec3>& start,
                                             int threads) {
   std::vector<MeasuredLobe> one = {measure_lobe(samples, start, threads)};
+  if (auto two = measure_two_lobes(samples, start, one.front(), threads)) one.front() = std::move(*two);
   if (!may_be_two(one.front())) return one;
   const LobeSamples few = samples.first(kSplitPixels);
   const std::vector<Vec3> few_start(start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels()));
@@ -173,17 +228,17 @@ std::vector<MeasuredLobe> measure_materials(const LobeSamples& samples, const st
   if (!best) return one;
   // What the trial pixels told must hold for all.
   const Splitter all(samples, start, threads);
-  const Sides sides = all.assigned(best->lobes).sides;
-  std::array<MeasuredLobe, 2> two = {all.measured(sides, 0), {}};
-  if (!is_explained(two[0])) return one;
-  two[1] = all.measured(sides, 1);
-  if (!is_explained(two[1])) return one;
-  const auto of_second = static_cast<std::size_t>(std::ranges::count(sides, 1));
-  const bool second_first =
-      two[0].is_measured() == two[1].is_measured() ? 2 * of_second > sides.size() : two[1].is_measured();
-  if (second_first) std::swap(two[0], two[1]);
-  if (!two[0].is_measured()) return one;
-  return {std::move(two[0]), std::move(two[1])};
+  if (auto two = both_explained(all, all.assigned(best->lobes).sides)) return std::move(*two);
+  // Where they fade into each other pixels of both spoil either.
+  trial.trim(*best);
+  const std::optional<Split> soft = trial.grown(*best, cost_of_all, true);
+  if (!soft) return one;
+  Split whole = all.assigned(soft->lobes);
+  all.trim(whole);
+  const Sides& sides = whole.sides;
+  std::optional<std::vector<MeasuredLobe>> two = both_explained(all, sides);
+  if (!two || !all.are_blends(sides, (*two)[0].lobe, (*two)[1].lobe)) return one;
+  return std::move(*two);
 }
 
 }  // namespace weft::solver

@@ -21,6 +21,12 @@ constexpr std::size_t kTrialPixels = 1000;
 constexpr std::array<double, 4> kStartAlphas = {0.08, 0.2, 0.45, 0.8};
 constexpr std::array<double, 2> kStartAcross = {0.2, 0.5};
 constexpr double kStartF0 = 0.03, kStartAlong = 0.3;
+// Alpha of a sharp and of a broad lobe, over that of one, and f0 of both.
+constexpr std::array<std::array<double, 2>, 3> kStartTwo = {{{0.8, 2}, {0.7, 4}, {0.9, 3}}};
+constexpr double kStartTwoF0 = 1.4, kStartShare = 0.4;
+constexpr std::size_t kStartPixels = 300;
+// Where GGX costs so many times what another family does two lobes of it are not what is missing.
+constexpr double kFarFromGgx = 3;
 constexpr int kRounds = 15;
 constexpr int kMostRestarts = 4, kYarnRounds = 3;
 constexpr double kMovedShare = 0.002;  // pixels that still find another valley
@@ -86,6 +92,26 @@ class Trial {
     return restarted(std::move(*best), parameters_of(LobeFamily::kAnisotropicGgx));
   }
 
+  // Two lobes, from where the best one leaves the pixels; `first` pixels decide among starts.
+  LobeFit two(const Lobe& one, const LobeSamples& first) const {
+    LobeFit settled = fit_lobe(samples_, unfitted(one, start_), {.rounds = 0, .threads = threads_});
+    try_other_starts(samples_, threads_, settled);
+    const LobeParameters fitted = parameters_of(LobeFamily::kTwoGgx);
+    const std::vector<Vec3> first_b(settled.b.begin(),
+                                    settled.b.begin() + static_cast<std::ptrdiff_t>(first.pixels()));
+    std::optional<LobeFit> best;
+    for (const auto& [sharper, broader] : kStartTwo) {
+      const Lobe start = {.family = LobeFamily::kTwoGgx,
+                          .alpha = std::max(sharper * one.alpha, 0.02),
+                          .f0 = kStartTwoF0 * one.f0,
+                          .broad = std::min(broader * one.alpha, 1.0),
+                          .broad_share = kStartShare};
+      LobeFit fit = fit_lobe(first, unfitted(start, first_b), options(fitted));
+      if (!best || fit.total() < best->total()) best = std::move(fit);
+    }
+    return canonical(restarted(fit_lobe(samples_, unfitted(best->lobe, settled.b), options(fitted)), fitted));
+  }
+
   // The same family with a diffuse part that may bend.
   LobeFit bent(const LobeFit& straight) const {
     const LobeParameters fitted = with_bend(parameters_of(straight.lobe.family));
@@ -129,9 +155,14 @@ class Trial {
     return fit;
   }
 
-  // The same lobe, rougher across than along and its axis within 90 degrees around x.
+  // The same lobe, rougher across than along and its axis within 90 degrees around x; of two the sharp one
+  // first.
   static LobeFit canonical(LobeFit fit) {
     Lobe& lobe = fit.lobe;
+    if (lobe.family == LobeFamily::kTwoGgx && lobe.alpha > lobe.broad) {
+      std::swap(lobe.alpha, lobe.broad);
+      lobe.broad_share = 1 - lobe.broad_share;
+    }
     if (lobe.along > 1) {
       lobe.alpha *= lobe.along;
       lobe.along = 1 / lobe.along;
@@ -183,8 +214,9 @@ void set_covariance(const LobeCovariance& covariance, MeasuredLobe& measured) {
   measured.covariance = covariance;
   measured.sigma_alpha = sigma_of(covariance, LobeParameter::kLogAlpha);
   measured.sigma_f0 = sigma_of(covariance, LobeParameter::kF0);
-  measured.sigma_along = sigma_of(covariance, LobeParameter::kLogAlong);
-  measured.sigma_axis = sigma_of(covariance, LobeParameter::kAxis);
+  const bool has_two = measured.lobe.family == LobeFamily::kTwoGgx;
+  (has_two ? measured.sigma_broad : measured.sigma_along) = sigma_of(covariance, LobeParameter::kLogAlong);
+  (has_two ? measured.sigma_share : measured.sigma_axis) = sigma_of(covariance, LobeParameter::kAxis);
 }
 
 // `rivals`: the same family with or without the bend, whichever was not taken, and other families that
@@ -206,6 +238,9 @@ void write_sigmas(const std::vector<Lobe>& rivals, MeasuredLobe& measured) {
     widen(LobeParameter::kLogAlpha, std::abs(std::log(lobe.alpha / rival.alpha)) / 2);
     widen(LobeParameter::kF0, std::abs(lobe.f0 - rival.f0) / 2);
     widen(LobeParameter::kLogAlong, std::abs(std::log(lobe.along / rival.along)) / 2);
+    if (lobe.family != LobeFamily::kTwoGgx) continue;
+    widen(LobeParameter::kLogBroad, std::abs(std::log(lobe.broad / rival.broad)) / 2);
+    widen(LobeParameter::kBroadShare, std::abs(lobe.broad_share - rival.broad_share) / 2);
   }
   set_covariance(covariance, measured);
   const double product = measured.sigma_alpha * measured.sigma_f0;
@@ -297,6 +332,29 @@ bool add_rivals(const std::vector<Family>& families, const LobeFit& best, double
 
 bool is_certain(const MeasuredLobe& measured) {
   return measured.sigma_alpha < kMostSigmaAlpha && measured.sigma_f0 < kMostSigmaF0 * measured.lobe.f0;
+}
+
+// Two lobes, and each of them told.
+bool is_certain_of_two(const MeasuredLobe& measured) {
+  const Lobe& lobe = measured.lobe;
+  const double lesser = std::min(lobe.broad_share, 1 - lobe.broad_share);
+  return is_certain(measured) && measured.sigma_broad < kMostSigmaAlpha &&
+         measured.sigma_share < kMostSigmaShare * lesser;
+}
+
+// Of the family that was taken; where none was, of all.
+double least_chi2(const MeasuredLobe& one) {
+  const LobeCandidate* least = &one.candidates.front();
+  for (const LobeCandidate& each : one.candidates) {
+    if (one.is_measured() && each.lobe.family != one.lobe.family) continue;
+    if (each.chi2 < least->chi2) least = &each;
+  }
+  return least->chi2;
+}
+
+bool are_two(const Lobe& lobe) {
+  return lobe.broad_share > kLeastShare && lobe.broad_share < 1 - kLeastShare &&
+         lobe.broad > kLeastBroader * lobe.alpha && lobe.broad < kMostAlpha;
 }
 
 MeasuredLobe refused(LobeRefusal why, MeasuredLobe measured) {
@@ -413,6 +471,38 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   measured.lobe = measured.fit.lobe;
   write_sigmas(rivals, measured);
   if (!is_certain(measured)) return refused(LobeRefusal::kUncertain, std::move(measured));
+  describe(samples, bends, measured);
+  return measured;
+}
+
+std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const std::vector<Vec3>& start,
+                                              const MeasuredLobe& one, int threads) {
+  if (one.refusal == LobeRefusal::kTooFewPixels || one.refusal == LobeRefusal::kLambertFits) return {};
+  const double lambert_chi2 = one.candidates.front().chi2;
+  const LobeCandidate& ggx = one.candidates[1];
+  const double least = least_chi2(one);
+  if (ggx.chi2 > kFarFromGgx * least) return {};
+  const LobeSamples few = samples.first(kTrialPixels);
+  const Trial trial(few, {start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels())}, threads);
+  const LobeFit straight = trial.two(ggx.lobe, samples.first(kStartPixels));
+  if (!(straight.chi2 < (1 - kTwoWin) * least)) return {};
+  const LobeFit bent = trial.bent(straight);
+  const bool bends = bent.total() < (1 - kBendWins) * straight.total();
+  const LobeFit& best = bends ? bent : straight;
+  if (refusal_of(best, lambert_chi2) != LobeRefusal::kNone || !are_two(best.lobe)) return {};
+  if (!bends && !agrees(best.lobe, bent.lobe)) return {};
+  LobeFit refined = Trial(samples, start, threads).refined(best.lobe);
+  if (refusal_of(refined, lambert_chi2) != LobeRefusal::kNone || !are_two(refined.lobe)) return {};
+  if (one.is_measured() && !(refined.total() < (1 - kTwoWin) * one.fit.total())) return {};
+  MeasuredLobe measured;
+  measured.refusal = LobeRefusal::kNone;
+  measured.candidates = one.candidates;
+  measured.candidates.push_back({straight.lobe, straight.chi2});
+  measured.candidates.push_back({bent.lobe, bent.chi2});
+  measured.lobe = refined.lobe;
+  measured.fit = std::move(refined);
+  write_sigmas({bends ? straight.lobe : bent.lobe}, measured);
+  if (!is_certain_of_two(measured)) return {};
   describe(samples, bends, measured);
   return measured;
 }

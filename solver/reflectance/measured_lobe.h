@@ -45,6 +45,7 @@ struct MeasuredLobe {
   Lobe lobe;    ///< Lambert's where it is refused
   LobeFit fit;  ///< of `lobe`; empty where it is refused
   double sigma_alpha = 0, sigma_f0 = 0, sigma_along = 0, sigma_axis = 0;  ///< alpha: relative; axis: radians
+  double sigma_broad = 0, sigma_share = 0;  ///< of two lobes: relative, and of the share
   /// Of all of the parameters: the sigmas are the roots of its diagonal.
   LobeCovariance covariance = {};
   double correlation = 0;  ///< of log alpha and f0
@@ -78,14 +79,23 @@ inline constexpr double kAlphaAgrees = 0.05, kF0Agrees = 0.25;
 inline constexpr double kLightDrift = 0.005;
 /// A yarn's lobe that is rounder than this is GGX.
 inline constexpr double kMostAlong = 0.9;
-/// What another family must cost less to be preferred to GGX: it has more to turn, or is rarer.
-inline constexpr double kOtherWins = 0.10, kYarnWins = 0.15, kBendWins = 0.10;
+/// What another family must cost less to be preferred to GGX: it has more to turn, or is rarer. Two lobes:
+/// less than the cheapest of one.
+inline constexpr double kOtherWins = 0.10, kYarnWins = 0.15, kBendWins = 0.10, kTwoWin = 0.04;
+/// Two lobes are two where each has so many of the facets and the broad one is so many times as rough; sigma
+/// of the share is at most such a part of the lesser one.
+inline constexpr double kLeastShare = 0.1, kLeastBroader = 1.5, kMostSigmaShare = 0.25;
 
 /// The lobe that the pixels share, if they tell one. `start`: b by pixel, as a solve by Lambert's law left
 /// it. All families are fitted in turn, each from several roughnesses, each pixel from several normals:
 /// of dark cloth a pixel has two valleys, dark and mirroring or bright and tilted. Where Lambert's law fits
 /// no other is tried.
 MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads);
+
+/// Two lobes in every point, where they save clearly more than what `one` has tried and both are told; `one`
+/// is what measure_lobe() made of the same pixels.
+std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const std::vector<Vec3>& start,
+                                              const MeasuredLobe& one, int threads);
 
 /// Sigmas with those that errors of the lights make, whose covariance is in the order of LobeByLights.
 void add_light_errors(std::span<const double> covariance, MeasuredLobe& measured);

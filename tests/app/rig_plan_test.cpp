@@ -134,6 +134,15 @@ TEST_F(RigPlan, TakesTheLobeThatASolveFound) {
   EXPECT_NEAR(other.at("f0").get<double>(), 0.05, 1e-12);
 }
 
+TEST_F(RigPlan, TakesTwoLobesThatASolveFound) {
+  const std::string file = source_file("testdata/schemas/weft.reflectance-1.2/reflectance.json").string();
+  const Json plan = this->plan(three_leds(), {"--reflectance", file, "--albedo", "0.06"});
+  const Json found = Json::parse(test::bytes_of(file)).at("clusters").at(0);
+  ASSERT_EQ(found.at("family"), "two-ggx");
+  for (const char* key : {"family", "alpha", "alpha_broad", "broad_share", "f0"})
+    EXPECT_EQ(plan.at("cloth").at(key), found.at(key)) << key;
+}
+
 TEST_F(RigPlan, ReadsTheCalibrationThatARigFileNames) {
   const std::string file = rig_file("[scan]\ncalibration = \"" + ten_leds() + "\"\n");
   const Json plan = this->plan(file);

@@ -21,6 +21,7 @@ struct Cloth {
   solver::Lobe lobe = {};  ///< seen from straight above; Lambert's: matt
   double lobe_share = 1;   ///< that reaches the readings: films change it
   std::function<bool(int x, int y)> is_matt = [](int, int) { return false; };     ///< there without the lobe
+  std::function<double(int x, int y)> matt_share = [](int, int) { return 0.0; };  ///< of a pixel, else
   std::function<double(int x, int y)> roughening = [](int, int) { return 1.0; };  ///< alpha is times it
   std::function<double(int x, int y)> yarn = [](int, int) { return 0.0; };  ///< from the lobe's axis, radians
 };

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/solve_record.h"
+#include "core/status_blend.h"
 #include "pipeline/frame.h"
 #include "tests/pipeline/cloth.h"
 
@@ -116,6 +117,47 @@ TEST(Gloss, OfAPrintOnMattClothIsUsedWhereThePrintIs) {
   }
   EXPECT_GT(static_cast<double>(right) / static_cast<double>(kSize.pixels()), 0.97);
   EXPECT_LT(mean_error_deg(maps), 0.3) << "by standard " << mean_error_deg(by_standard);
+}
+
+// A print that fades into matt cloth over eight pixels, as the lens or the ink has it.
+TEST(Gloss, OfAPrintThatFadesIsSolvedAsBothMaterials) {
+  const auto matt_share = [](int x, int) {
+    const double at = std::abs(std::remainder(x + 0.5, 64.0));  // 0 to 32: from matt to print
+    return std::clamp((at - 12) / 8, 0.0, 1.0);
+  };
+  const Cloth cloth = {
+      .normal = dented, .albedo = {0.1, 0.08, 0.06}, .lobe = kSilk, .matt_share = matt_share};
+  WholeMaps maps(kSize);
+  const FrameFacts facts = solve(mosaics(kSize, cloth), "robust", maps);
+  ASSERT_TRUE(facts.gloss && facts.gloss->is_measured());
+  ASSERT_EQ(facts.gloss->lobes.size(), 2U);
+  const bool is_second_matt = facts.gloss->lobes[1].refusal == solver::LobeRefusal::kLambertFits;
+  ASSERT_TRUE(is_second_matt);
+  double turned = 0, astray = 0, off = 0, blended = 0, count = 0, blended_beside = 0;
+  for (int y = 0; y < kSize.height; ++y) {
+    for (int x = 0; x < kSize.width; ++x) {
+      const bool is_blend = (maps.status(x, y) & kGlossy) != 0 && blend_of(maps.status(x, y)) > 0;
+      const double matt = matt_share(x, y);
+      if (matt == 0 || matt == 1) {
+        blended_beside += is_blend ? 1 : 0;
+        continue;
+      }
+      // What is nearly of one material is solved as of that.
+      if (matt < 0.1 || matt > 0.9) continue;
+      ++count;
+      turned += angle_deg(maps.normal_at(x, y), dented(x, y));
+      astray += std::abs(maps.albedo(x, y, 1) / 0.08 - 1);
+      if (!is_blend) continue;
+      ++blended;
+      off += std::abs(second_share_of(maps.status(x, y)) - matt);
+    }
+  }
+  EXPECT_LT(turned / count, 0.05) << "degrees over " << count << " pixels of both";
+  EXPECT_LT(astray / count, 0.01) << "share of the albedo";
+  EXPECT_GT(blended / count, 0.95);
+  // All shares lie between two that a map holds.
+  EXPECT_LT(off / blended, 0.07) << "of the share";
+  EXPECT_LT(blended_beside, 0.001 * static_cast<double>(kSize.pixels()));
 }
 
 // Velvet's albedo is lost in its sheen by Lambert's law, and through crossed films it is not.

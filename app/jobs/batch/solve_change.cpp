@@ -19,6 +19,7 @@
 #include "core/parallel.h"
 #include "core/solve.h"
 #include "core/solve_record.h"
+#include "core/status_blend.h"
 #include "core/vec.h"
 
 namespace weft::app {
@@ -173,7 +174,7 @@ Result<std::optional<double>> changed_status(const fs::path& before, const fs::p
   if (!b) return b.error();
   if (a->info.size != b->info.size) return std::optional<double>();
   const auto spoken = [](float value) {
-    return static_cast<unsigned>(std::lround(65535 * value)) & ~kHowSolved;
+    return static_cast<unsigned>(std::lround(65535 * value)) & ~(kHowSolved | kBlendBits);
   };
   std::int64_t differ = 0;
   for (int y = 0; y < a->info.size.height; ++y) {

@@ -15,6 +15,7 @@
 #include "core/json_document.h"
 #include "core/parallel.h"
 #include "core/solve_record.h"
+#include "core/status_blend.h"
 
 namespace weft::app {
 namespace {
@@ -64,7 +65,7 @@ Image<float> shares_of(const Image<float>& bits) {
     for (int x = 0; x < bits.width(); ++x) {
       const auto status = static_cast<unsigned>(bits(x, y));
       for (int bit = 0; bit < kFlagBits; ++bit) shares(x, y, bit) = static_cast<float>((status >> bit) & 1U);
-      shares(x, y, kFlagBits) = (status & ~kHowSolved) != 0 ? 1.0F : 0.0F;
+      shares(x, y, kFlagBits) = (status & ~(kHowSolved | kBlendBits)) != 0 ? 1.0F : 0.0F;
     }
   }
   return shares;

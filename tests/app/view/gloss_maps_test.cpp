@@ -11,6 +11,7 @@
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/solve_record.h"
+#include "core/status_blend.h"
 #include "core/temporary_folder.h"
 #include "core/vec.h"
 
@@ -79,6 +80,42 @@ TEST_F(GlossMaps, HaveTheLobeWhereItWasUsedAndTypedValuesElsewhere) {
   EXPECT_TRUE(has("reflectance.png"));
 }
 
+TEST_F(GlossMaps, OfAPixelOfBothMaterialsLieBetweenThem) {
+  const std::array<std::uint16_t, 2> pixels = {static_cast<std::uint16_t>(kGlossy | status_of_blend(2)),
+                                               static_cast<std::uint16_t>(kGlossy | status_of_blend(5))};
+  Image<std::uint16_t> status({2, 1});
+  for (int x = 0; x < 2; ++x) status(x, 0) = pixels[static_cast<std::size_t>(x)];
+  Result<ImageWriter> writer =
+      ImageWriter::open(folder_.path() / "status.png", {2, 1}, {"Y"}, {.type = SampleType::kUint16});
+  ASSERT_TRUE(writer && writer->write_rows(View<const std::uint16_t>(status.plane())) && writer->finish());
+  ASSERT_TRUE(
+      write_gloss_maps(folder_.path(), satin(), AlbedoScale::kAbsolute, Compression::kNone, {}, false));
+  const Result<LoadedImage> roughness = read_image(folder_.path() / "roughness.exr"),
+                            specular = read_image(folder_.path() / "specular.exr");
+  ASSERT_TRUE(roughness && specular);
+  for (int x = 0; x < 2; ++x) {
+    const double second = x == 0 ? 0.25 : 0.625;
+    EXPECT_NEAR(roughness->channel("alpha")(x, 0), 1 / ((1 - second) / 0.4 + second / 0.16), 5e-4) << x;
+    EXPECT_NEAR(roughness->channel("alpha_along")(x, 0), 1 / ((1 - second) / 0.1 + second / 0.16), 5e-4) << x;
+    EXPECT_NEAR(roughness->channel("yarn_deg")(x, 0), 120, 0.1) << x;
+    EXPECT_NEAR(specular->channel("f0")(x, 0), (1 - second) * 0.05 + second * 0.06, 5e-5) << x;
+  }
+}
+
+TEST_F(GlossMaps, OfTwoLobesInAPixelHaveTheAlphaThatOneNeeds) {
+  pipeline::GlossFacts facts = satin();
+  facts.lobes.resize(1);
+  facts.lobes[0].lobe = {
+      .family = solver::LobeFamily::kTwoGgx, .alpha = 0.15, .f0 = 0.05, .broad = 0.5, .broad_share = 0.4};
+  ASSERT_TRUE(write_gloss_maps(folder_.path(), facts, AlbedoScale::kAbsolute, Compression::kNone, {}, false));
+  const Result<LoadedImage> roughness = read_image(folder_.path() / "roughness.exr");
+  ASSERT_TRUE(roughness) << roughness.error().message();
+  const double one = 1 / (0.6 / 0.15 + 0.4 / 0.5);
+  EXPECT_NEAR(roughness->channel("alpha")(1, 0), one, 1e-4);
+  EXPECT_NEAR(roughness->channel("alpha_along")(1, 0), one, 1e-4);
+  EXPECT_NEAR(roughness->channel("roughness")(1, 0), std::sqrt(one), 3e-4);
+}
+
 TEST_F(GlossMaps, OfARelativeAlbedoSayNothingOfF0) {
   ASSERT_TRUE(
       write_gloss_maps(folder_.path(), satin(), AlbedoScale::kRelative, Compression::kNone, {}, false));
@@ -108,6 +145,24 @@ TEST(ReflectanceWords, AreOfBothMaterials) {
             "ggx, roughness 0.160, f0 0.060; solved with it: 100 percent of the frame");
   EXPECT_THAT(reflectance_section(document), testing::HasSubstr("two materials"));
   EXPECT_EQ(reflectance_said(document), Json({{"used", true}, {"says", reflectance_words(summary)}}));
+}
+
+TEST(ReflectanceWords, AreOfTwoLobesInAPixel) {
+  pipeline::GlossFacts facts = satin();
+  facts.lobes.resize(1);
+  facts.lobes[0].lobe = {
+      .family = solver::LobeFamily::kTwoGgx, .alpha = 0.15, .f0 = 0.05, .broad = 0.5, .broad_share = 0.4};
+  facts.lobes[0].sigma_broad = 0.02;
+  facts.lobes[0].sigma_share = 0.01;
+  const Json document = reflectance_document(facts, AlbedoScale::kAbsolute);
+  const Json& cluster = document["clusters"][0];
+  EXPECT_EQ(cluster["family"], "two-ggx");
+  EXPECT_EQ(cluster["alpha_broad"], 0.5);
+  EXPECT_EQ(cluster["broad_share"], 0.4);
+  EXPECT_NEAR(cluster["sigma"]["alpha_broad"].get<double>(), 0.01, 1e-12);
+  EXPECT_EQ(cluster["sigma"]["broad_share"], 0.01);
+  EXPECT_EQ(lobes_in_words(reflectance_summary(document)),
+            "two-ggx, roughness 0.150 and, for 40 percent of it, 0.500, f0 0.050");
 }
 
 TEST(ReflectanceWords, SayWhereRoughnessChanges) {

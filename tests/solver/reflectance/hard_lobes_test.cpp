@@ -222,7 +222,8 @@ TEST(HardLobe, BelowItsHorizonReflectsNothingAndHasFiniteSlopes) {
   for (const Lobe& lobe :
        {ggx(0.02, 0.04), ggx(1, 0),
         Lobe{.family = LobeFamily::kAnisotropicGgx, .alpha = 0.4, .f0 = 0.05, .along = 0.3},
-        Lobe{.family = LobeFamily::kBeckmann, .alpha = 0.1, .f0 = 0.04}}) {
+        Lobe{.family = LobeFamily::kBeckmann, .alpha = 0.1, .f0 = 0.04},
+        Lobe{.family = LobeFamily::kTwoGgx, .alpha = 0.02, .f0 = 0.05, .broad = 1, .broad_share = 0.5}}) {
     for (int degree = 0; degree < 180; ++degree) {
       const Vec3 n = {std::sin(radians(degree)), 0, std::cos(radians(degree))};
       const ModelledReading m = modelled_with_derivative(lobe, 0.3 * n, from, 0);

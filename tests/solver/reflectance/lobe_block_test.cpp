@@ -18,13 +18,14 @@ namespace {
 
 constexpr std::size_t kBlockPixels = LobeBlock::kPixels;
 
-const std::array<Lobe, 6> kBlockLobes = {
+const std::array<Lobe, 7> kBlockLobes = {
     Lobe{.family = LobeFamily::kLambert, .bend = 0.2},
     Lobe{.family = LobeFamily::kGgx, .alpha = 0.3, .f0 = 0.04},
     Lobe{.family = LobeFamily::kGgx, .alpha = 0.15, .f0 = 0.05, .bend = 0.1},
     Lobe{.family = LobeFamily::kAnisotropicGgx, .alpha = 0.45, .f0 = 0.05, .along = 0.35, .axis = 0.4},
     Lobe{.family = LobeFamily::kBeckmann, .alpha = 0.3, .f0 = 0.04},
-    Lobe{.family = LobeFamily::kCloth, .alpha = 0.4, .f0 = 0.05}};
+    Lobe{.family = LobeFamily::kCloth, .alpha = 0.4, .f0 = 0.05},
+    Lobe{.family = LobeFamily::kTwoGgx, .alpha = 0.15, .f0 = 0.05, .broad = 0.5, .broad_share = 0.4}};
 
 struct YarnFit {
   PixelFit fit;
@@ -130,6 +131,8 @@ TEST(LobeBlock, KnowsTheVariancesOfAPixelAsDoubleDoes) {
     off.alpha *= 1.03;
     off.f0 *= 1.05;
     off.axis += 0.02;
+    off.broad *= 1.05;
+    off.broad_share += 0.02;
     const std::vector<Lobe> one_sigma_off = {off};
     BlockVariances variances;
     write_variances(lobe, one_sigma_off, *block, kBlockPixels, variances);
@@ -207,13 +210,15 @@ TEST(LobeBlock, KeepsWhatCostsLess) {
 }
 
 TEST(LobeBlock, FitsNoNumberThatIsNone) {
-  const std::array<Lobe, 6> extremes = {
+  const std::array<Lobe, 8> extremes = {
       Lobe{.family = LobeFamily::kGgx, .alpha = 0.02, .f0 = 0.6},
       Lobe{.family = LobeFamily::kGgx, .alpha = 1, .f0 = 0},
       Lobe{.family = LobeFamily::kAnisotropicGgx, .alpha = 0.02, .f0 = 0.6, .along = 20},
       Lobe{.family = LobeFamily::kAnisotropicGgx, .alpha = 0.02, .f0 = 0.6, .along = 0.05},
       Lobe{.family = LobeFamily::kBeckmann, .alpha = 0.02, .f0 = 0.1},
-      Lobe{.family = LobeFamily::kCloth, .alpha = 1, .f0 = 0.6}};
+      Lobe{.family = LobeFamily::kCloth, .alpha = 1, .f0 = 0.6},
+      Lobe{.family = LobeFamily::kTwoGgx, .alpha = 0.02, .f0 = 0.6, .broad = 1, .broad_share = 1},
+      Lobe{.family = LobeFamily::kTwoGgx, .alpha = 0.02, .f0 = 0.6, .broad = 0.02, .broad_share = 0}};
   Random random(4);
   for (const Lobe& lobe : extremes) {
     LobeBlock block(10);

@@ -12,13 +12,14 @@
 namespace weft::solver {
 namespace {
 
-const std::array<Lobe, 6> kLobes = {
+const std::array<Lobe, 7> kLobes = {
     Lobe{.family = LobeFamily::kLambert, .bend = 0.2},
     Lobe{.family = LobeFamily::kGgx, .alpha = 0.3, .f0 = 0.04},
     Lobe{.family = LobeFamily::kGgx, .alpha = 0.15, .f0 = 0.05, .bend = 0.1},
     Lobe{.family = LobeFamily::kAnisotropicGgx, .alpha = 0.45, .f0 = 0.05, .along = 0.35, .axis = 0.4},
     Lobe{.family = LobeFamily::kBeckmann, .alpha = 0.3, .f0 = 0.04},
-    Lobe{.family = LobeFamily::kCloth, .alpha = 0.4, .f0 = 0.05}};
+    Lobe{.family = LobeFamily::kCloth, .alpha = 0.4, .f0 = 0.05},
+    Lobe{.family = LobeFamily::kTwoGgx, .alpha = 0.15, .f0 = 0.05, .broad = 0.5, .broad_share = 0.4}};
 
 TEST(Lobe, DerivativeIsThatOfTheReading) {
   Random random(1);
@@ -50,13 +51,15 @@ TEST(Lobe, IsWhatTheSimulatorReflects) {
     Lobe lobe;
     Reflectance model;
   };
-  const std::array<Pair, 3> pairs = {
+  const std::array<Pair, 4> pairs = {
       {{{.family = LobeFamily::kGgx, .alpha = 0.3, .f0 = 0.04},
         Ggx{.alpha = 0.3, .f0 = grey(0.04), .beneath = Beneath::kBalanced}},
        {{.family = LobeFamily::kAnisotropicGgx, .alpha = 0.45, .f0 = 0.05, .along = 0.35},
         AnisotropicGgx{.alpha = 0.45, .anisotropy = 0.65, .f0 = grey(0.05)}},
        {{.family = LobeFamily::kBeckmann, .alpha = 0.3, .f0 = 0.04},
-        Beckmann{.alpha = 0.3, .f0 = grey(0.04), .beneath = Beneath::kBalanced}}}};
+        Beckmann{.alpha = 0.3, .f0 = grey(0.04), .beneath = Beneath::kBalanced}},
+       {{.family = LobeFamily::kTwoGgx, .alpha = 0.15, .f0 = 0.05, .broad = 0.5, .broad_share = 0.4},
+        MixedGgx{.alpha = 0.15, .second_alpha = 0.5, .second_share = 0.4, .f0 = grey(0.05)}}}};
   for (const Pair& pair : pairs) {
     for (const Vec3& l : ten_directions()) {
       for (const Vec3 v : {Vec3{0, 0, 1}, normalized({0.3, 0.1, 1})}) {

@@ -60,6 +60,35 @@ TEST(Materials, AreTwoLobesWhereEachHalfHasItsOwn) {
   EXPECT_NEAR(found[1].lobe.f0, 0.06, 0.2 * 0.06);
 }
 
+// Every third pixel is of both.
+TEST(Materials, ThatFadeIntoEachOtherAreTold) {
+  PixelTruth cloth = both(model_of(kLustrous), model_of(kMatt), {.albedo = 0.1});
+  Random random(14);
+  for (std::size_t i = 0; i < kOfEach; ++i) {
+    const Vec3 n = random_normal(random, 25);
+    const double matt = random.uniform();
+    const PixelModel faded = [&](Vec3 normal, double albedo, double yarn, const LitFrom& from) {
+      return (1 - matt) * model_of(kLustrous)(normal, albedo, yarn, from) +
+             matt * model_of(kMatt)(normal, albedo, yarn, from);
+    };
+    cloth.samples.add(readings_of(faded, n, 0.1, 0, 0.003, random));
+    cloth.start.push_back(lambert_fit(cloth.samples.of(cloth.samples.pixels() - 1)));
+  }
+  // As they lie all over a frame.
+  PixelTruth mixed;
+  for (std::size_t i = 0; i < 3 * kOfEach; ++i) {
+    const std::size_t from = i % 3 == 2 ? 2 * kOfEach + i / 3 : 2 * (i / 3) + i % 3;
+    mixed.samples.add(cloth.samples.of(from));
+    mixed.start.push_back(cloth.start[from]);
+  }
+  const std::vector<MeasuredLobe> found = measure_materials(mixed.samples, mixed.start, 0);
+  ASSERT_EQ(found.size(), 2U) << "one lobe: " << name_of(found.front().refusal);
+  ASSERT_TRUE(found[0].is_measured());
+  EXPECT_NEAR(found[0].lobe.alpha, 0.2, 0.01);
+  EXPECT_NEAR(found[0].lobe.f0, 0.05, 0.004);
+  EXPECT_EQ(found[1].refusal, LobeRefusal::kLambertFits) << name_of(found[1].refusal);
+}
+
 TEST(Materials, AreNotMadeOfWhatNoLobeExplains) {
   // Light between yarns: a share of what the darkest side of a pixel gets.
   const PixelModel model = [](Vec3 n, double albedo, double yarn, const LitFrom& from) {
