@@ -142,7 +142,9 @@ class GlossyTile {
       for (std::size_t i = 0; i < group.count; ++i) any = any || by_lobe(i);
       if (!lobes_[l].lobe.shines() || !any) continue;
       BlockVariances variances;
-      write_variances(lobes_[l].lobe, lobes_[l].one_sigma_off, group.block, group.count, variances);
+      std::vector<Lobe> off = lobes_[l].one_sigma_off;
+      if (lobes_[l].lobe.is_tinted()) off.push_back(lobes_[l].tint_off);
+      write_variances(lobes_[l].lobe, off, group.block, group.count, variances);
       for (std::size_t i = 0; i < group.count; ++i) {
         if (by_lobe(i)) write_pixel(group, i, variances);
       }
@@ -165,26 +167,30 @@ class GlossyTile {
     if (group.block.across[i] > 0) solved |= kYarnAcross;
     if (group.block.lobe[i] > 0) solved |= kSecondLobe;
     output_.status(x, y) = static_cast<std::uint16_t>((output_.status(x, y) & ~unsigned{kSpecular}) | solved);
+    const KnownLobe& known = lobes_[static_cast<std::size_t>(group.block.lobe[i])];
     for (std::size_t p = 0; p < static_cast<std::size_t>(input_.planes); ++p) {
-      const double share = input_.planes == 1 ? 1 : plane_share(group, i, p);
+      const double share = input_.planes == 1 ? 1 : plane_share(known.lobe, group, i, p);
+      // What is wrong with a highlight is as much in all channels, but for its tint.
+      const double tint = input_.planes == 1 ? 1 : known.lobe.tint[p];
+      double of_lobe = v.along_of_lobe[i] * tint * tint;
+      if (input_.planes != 1 && known.lobe.is_tinted())
+        of_lobe += std::pow(rho * (plane_share(known.tint_off, group, i, p) - share), 2);
       output_.albedo[p](x, y) = finite(rho * share);
-      // A highlight has the colour of the light: what is wrong with it is as much in all channels.
-      output_.sigma_albedo[p](x, y) =
-          finite(root_of_sum(v.along_of_readings[i] * share * share, v.along_of_lobe[i]));
+      output_.sigma_albedo[p](x, y) = finite(root_of_sum(v.along_of_readings[i] * share * share, of_lobe));
     }
   }
 
   // Albedo of one plane of RGB over that of the weighted sum: what its readings leave once the lobe, which
-  // has the colour of the light, is taken off.
-  double plane_share(const Group& group, std::size_t i, std::size_t plane) const {
-    const Lobe& lobe = lobes_[static_cast<std::size_t>(group.block.lobe[i])].lobe;
+  // has the tint of its f0, is taken off.
+  double plane_share(const Lobe& lobe, const Group& group, std::size_t i, std::size_t plane) const {
     const int x = group.pixels[i].x, y = group.pixels[i].y;
     const Vec3 b = group.block.b(i), n = normalized(b);
     const double yarn = group.block.across[i] > 0 ? kPi / 2 : 0;
     double of_plane = 0, of_all = 0;
     for (std::size_t k = 0; k < readings_.size(); ++k) {
-      const LobeReading r = group.block.reading(i, k);
+      LobeReading r = group.block.reading(i, k);
       if (r.weight == 0) continue;
+      r.from.channel = static_cast<int>(plane);
       const std::size_t lights = input_.field->count(), i_of_state = 3 * (k % lights) + plane;
       const double strength =
           input_.field->at(k % lights, static_cast<int>(plane), input_.tile.x0 + x, input_.tile.y0 + y)
@@ -230,7 +236,9 @@ class Glossy : public Method {
     const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
     const Lobe& lobe = lobes_[(output.status(x, y) & kSecondLobe) != 0 ? 1 : 0].lobe;
     const Vec3 n = {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
-    return modelled(lobe, spoken * n, LitFrom(light, readings.front().from.view, lobe_share), yarn);
+    LitFrom from(light, readings.front().from.view, lobe_share);
+    from.channel = input.planes == 1 ? readings.front().from.channel : 1;
+    return modelled(lobe, spoken * n, from, yarn);
   }
 
  private:

@@ -40,6 +40,12 @@ struct LobePoint {
   double lobe = 0;      ///< relative_facets()
 };
 
+/// What the channels say of f0, each for itself.
+struct LobeTint {
+  std::array<double, 3> f0 = {}, sigma = {};            ///< of red, green and blue
+  std::array<double, 3> tint = {}, sigma_of_tint = {};  ///< over their weighted mean, as Lobe::tint
+};
+
 struct MeasuredLobe {
   LobeRefusal refusal = LobeRefusal::kTooFewPixels;
   Lobe lobe;    ///< Lambert's where it is refused
@@ -57,6 +63,7 @@ struct MeasuredLobe {
   double median_albedo = 0;             ///< of the pixels, as `lobe` leaves it
   std::vector<LobePart> parts;          ///< of a frame of one material (pipeline::measure_gloss)
   std::array<double, 2> half_deg = {};  ///< angles of normals to half-vectors: 2nd and 98th percentile
+  std::optional<LobeTint> tint;         ///< where `lobe` has one (solver/reflectance/lobe_tint.h)
 
   bool is_measured() const { return refusal == LobeRefusal::kNone; }
 };
@@ -85,7 +92,9 @@ inline constexpr double kOtherWins = 0.10, kYarnWins = 0.15, kBendWins = 0.10;
 /// it. All families are fitted in turn, each from several roughnesses, each pixel from several normals:
 /// of dark cloth a pixel has two valleys, dark and mirroring or bright and tilted. Where Lambert's law fits
 /// no other is tried.
-MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads);
+/// `tint` is held: Lobe::tint.
+MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads,
+                          const std::array<double, 3>& tint = {1, 1, 1});
 
 /// Sigmas with those that errors of the lights make, whose covariance is in the order of LobeByLights.
 void add_light_errors(std::span<const double> covariance, MeasuredLobe& measured);
