@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "app/jobs/gloss_maps.h"
@@ -100,7 +102,20 @@ void add_parts(const std::vector<solver::LobePart>& parts, Json& cluster) {
       solver::name_of_part(smoothest.part), roughest.alpha, solver::name_of_part(roughest.part));
 }
 
-Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
+// Of R, G and B: what a neutral lobe does not say.
+void add_tint(const MeasuredLobe& lobe, const pipeline::F0OfChannels& channels, AlbedoScale scale,
+              Json& cluster, Json& sigma) {
+  std::array<double, 3> tint = {};
+  for (std::size_t c = 0; c < 3; ++c) tint[c] = channels.f0[c] / lobe.lobe.f0;
+  cluster["tint"] = tint;
+  sigma["tint"] = lobe.tint->sigma_of_tint;
+  if (scale == AlbedoScale::kRelative) return;
+  cluster["f0_rgb"] = channels.f0;
+  sigma["f0_rgb"] = channels.sigma;
+}
+
+Json measured_cluster(const MeasuredLobe& lobe, const std::optional<pipeline::F0OfChannels>& channels,
+                      AlbedoScale scale) {
   Json cluster = {{"observable", true}};
   add_lobe(lobe.lobe, cluster);
   const bool has_yarn = lobe.lobe.family == solver::LobeFamily::kAnisotropicGgx;
@@ -116,6 +131,7 @@ Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
     sigma["f0_over_albedo"] = lobe.sigma_f0 / lobe.median_albedo;
     sigma.erase("f0");
   }
+  if (channels) add_tint(lobe, *channels, scale, cluster, sigma);
   cluster["sigma"] = std::move(sigma);
   cluster["correlation"] = lobe.correlation;
   cluster["family_undecided"] = lobe.is_family_undecided;
@@ -130,10 +146,11 @@ Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
   return cluster;
 }
 
-Json cluster_of(const MeasuredLobe& lobe, AlbedoScale scale, bool of_film_pair) {
+Json cluster_of(const MeasuredLobe& lobe, const std::optional<pipeline::F0OfChannels>& channels,
+                AlbedoScale scale, bool of_film_pair) {
   Json cluster;
   if (lobe.is_measured()) {
-    cluster = measured_cluster(lobe, scale);
+    cluster = measured_cluster(lobe, channels, scale);
   } else {
     const auto& [why, remedy] = kReasons.at(lobe.refusal);
     cluster = {{"observable", false},
@@ -153,6 +170,14 @@ std::string lobe_words(const Json& cluster) {
   if (cluster.contains("alpha_along"))
     words += fmt::format(" across the yarn and {:.3f} along it", cluster["alpha_along"].get<double>());
   if (cluster.contains("f0")) words += fmt::format(", f0 {:.3f}", cluster["f0"].get<double>());
+  if (cluster.contains("f0_rgb")) {
+    const auto f0 = cluster["f0_rgb"].get<std::array<double, 3>>();
+    words += fmt::format(" ({:.3f} red, {:.3f} green, {:.3f} blue)", f0[0], f0[1], f0[2]);
+  } else if (cluster.contains("tint")) {
+    const auto tint = cluster["tint"].get<std::array<double, 3>>();
+    words += fmt::format(", of red, green and blue {:.2f}, {:.2f} and {:.2f} times that", tint[0], tint[1],
+                         tint[2]);
+  }
   return words;
 }
 
@@ -183,9 +208,14 @@ std::string cluster_section(const Json& cluster) {
 
 Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) {
   Json clusters = Json::array();
-  for (const MeasuredLobe& lobe : facts.lobes)
-    clusters.push_back(cluster_of(lobe, scale, facts.of_film_pair));
-  Json document = {{"schema", "weft.reflectance/1.1"},
+  bool has_tint = false;
+  for (std::size_t l = 0; l < facts.lobes.size(); ++l) {
+    std::optional<pipeline::F0OfChannels> channels;
+    if (l < facts.f0_of_channels.size()) channels = facts.f0_of_channels[l];
+    has_tint = has_tint || channels;
+    clusters.push_back(cluster_of(facts.lobes[l], channels, scale, facts.of_film_pair));
+  }
+  Json document = {{"schema", has_tint ? "weft.reflectance/1.2" : "weft.reflectance/1.1"},
                    {"albedo_scale", name_of(scale)},
                    {"share", facts.share},
                    {"clusters", std::move(clusters)}};
@@ -196,7 +226,7 @@ Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) 
 Json reflectance_summary(const Json& document) {
   const auto summary_of = [](const Json& cluster) {
     Json summary = {{"said", cluster["said"]}};
-    for (const char* key : {"family", "alpha", "alpha_along", "f0", "f0_over_albedo"}) {
+    for (const char* key : {"family", "alpha", "alpha_along", "f0", "f0_over_albedo", "f0_rgb", "tint"}) {
       if (cluster.contains(key)) summary[key] = cluster[key];
     }
     return summary;

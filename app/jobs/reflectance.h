@@ -11,12 +11,12 @@
 
 namespace weft::app {
 
-/// reflectance.json, schema weft.reflectance/1.1 (docs/formats.md). Where the scale of the albedo is relative
+/// reflectance.json, schema weft.reflectance/1.1, with a tint 1.2 (docs/formats.md). Where the scale of the albedo is relative
 /// so is f0, and what is said is f0 over the albedo.
 Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale);
 
 /// What solve.json says of it: `said`, `share`, and of a measured lobe `family`, `alpha`, `alpha_along`,
-/// `f0` or `f0_over_albedo`.
+/// `f0` or `f0_over_albedo`, and with a tint `tint` and `f0_rgb`.
 Json reflectance_summary(const Json& document);
 
 /// The lobes of a summary in words; empty where none is measured.
