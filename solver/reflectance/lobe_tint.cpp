@@ -20,6 +20,10 @@ constexpr std::size_t kMostTintPixels = 1500, kMostJudgedPixels = 400;
 constexpr int kLeastTintReadings = 4;
 constexpr int kTintRounds = 4, kJudgeSteps = 5;
 constexpr double kSettledTint = 0.003;
+// Of a tinted lobe: where two materials mirror in two colours one that fits neither is better than none.
+constexpr double kMostTintedChi2 = 4;
+// Of the shares of two channels that follow the second of two lobes.
+constexpr double kSplitByChannel = 0.5;
 // Standard errors of what the tint must win on left-out light.
 constexpr double kWinsBy = 3;
 
@@ -337,8 +341,7 @@ class TintSearch {
     bool any = false;
     // With tints some pixels change sides.
     for (int pass = 0; pass < (is_mosaic_ ? 2 : 1); ++pass) {
-      const std::array<LobeFit, 2> fits = {settled_with(all_, lobes[0].lobe, options_.threads),
-                                           settled_with(all_, lobes[1].lobe, options_.threads)};
+      const std::array<LobeFit, 2> fits = fits_of(lobes);
       any = false;
       for (std::size_t side = 0; side < 2; ++side) {
         if (!lobes[side].is_measured()) continue;
@@ -359,9 +362,27 @@ class TintSearch {
     return measure_materials(all_.channels.of[1], start, options_.threads);
   }
 
+  // Two lobes that are those of two channels rather than of two materials.
+  bool is_split_by_channel(const std::vector<MeasuredLobe>& lobes) const {
+    const std::array<LobeFit, 2> fits = fits_of(lobes);
+    std::array<double, 3> second = {};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::vector<std::size_t>& of = all_.channels.pixel[c];
+      const auto count =
+          std::ranges::count_if(of, [&](std::size_t i) { return fits[1].cost[i] < fits[0].cost[i]; });
+      second[c] = static_cast<double>(count) / static_cast<double>(of.size());
+    }
+    const auto [least, most] = std::ranges::minmax_element(second);
+    return *most - *least > kSplitByChannel;
+  }
+
   bool is_mosaic() const { return is_mosaic_; }
 
  private:
+  std::array<LobeFit, 2> fits_of(const std::vector<MeasuredLobe>& two) const {
+    return {settled_with(all_, two[0].lobe, options_.threads),
+            settled_with(all_, two[1].lobe, options_.threads)};
+  }
   double weighted(const std::array<double, 3>& f0) const {
     return std::inner_product(f0.begin(), f0.end(), options_.weights.begin(), 0.0);
   }
@@ -386,7 +407,7 @@ class TintSearch {
                                        const MeasuredLobe& grey) const {
     MeasuredLobe found = grey;
     if (is_mosaic_) found = measure_lobe(material.samples, material.start, options_.threads, held.tint);
-    if (!found.is_measured()) return {};
+    if (!found.is_measured() || found.fit.chi2 > kMostTintedChi2) return {};
     const bool bends = found.lobe.bend != 0;
     found.lobe.tint = found.fit.lobe.tint = held.tint;
     const std::optional<Channels> channels = fitted_channels(found.fit, material.channels, options_.threads);
@@ -461,7 +482,8 @@ void find_tints(const LobeSamples& samples, const std::vector<Vec3>& start, cons
   }
   const TintSearch search({samples, start, channels}, options);
   std::vector<MeasuredLobe> found;
-  if (search.is_mosaic() && (!first.is_measured() || lobes.size() > 1)) {
+  if (search.is_mosaic() &&
+      (!first.is_measured() || (lobes.size() > 1 && search.is_split_by_channel(lobes)))) {
     std::vector<MeasuredLobe> of_green = search.of_green();
     // Two of green are those of all.
     if (of_green.front().is_measured() && (of_green.size() == 1 || !first.is_measured()))

@@ -168,7 +168,7 @@ inline DyedCloth white_cloth(std::uint64_t seed) {
 /// The same with golden ones.
 inline DyedCloth golden_cloth(std::uint64_t seed) {
   DyedCloth cloth = white_cloth(seed);
-  cloth.model = seed % 2 == 0 ? ggx(kGold) : satin(kGold);
+  cloth.model = cloth.weft = seed % 2 == 0 ? ggx(kGold) : satin(kGold);
   cloth.albedo = kDarkYarn;
   cloth.taken = seed % 4 == 0 ? Taken::kAsRgb : Taken::kAsMosaic;
   cloth.pixels = 650;
