@@ -22,7 +22,9 @@ struct Surface {
   Image<float> sigma_deg;       ///< of the normal, degrees (rms angle); 180 where there is none
   Image<std::uint16_t> status;  ///< core/solve_record.h
   Image<float> opacity;         ///< 0 hole to 1 cloth; empty: not measured
-  Image<float> lobe;            ///< 4 planes: alpha across and along, yarn azimuth in degrees, f0; or empty
+  /// 4 planes: alpha across and along, yarn azimuth in degrees, f0; 7 where highlights have colours: f0 of R,
+  /// G and B after it, which is the largest of them; or empty.
+  Image<float> lobe;
 
   Size size() const { return slope.size(); }
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -28,6 +29,11 @@ Result<std::vector<solver::MeasuredLobe>> measure_gloss(const Photographs& photo
                                                         const solver::Method& base,
                                                         LightCorrection* correction, int threads);
 
+/// f0 of R, G and B.
+struct F0OfChannels {
+  std::array<double, 3> f0 = {}, sigma = {};
+};
+
 /// What solving with lobes came to.
 struct GlossFacts {
   std::vector<solver::MeasuredLobe> lobes;  ///< one or two; of a refused one Lambert's law holds
@@ -35,6 +41,8 @@ struct GlossFacts {
   double seconds = 0;                       ///< that looking for them took, whatever the frame's size
   bool of_film_pair = false;                ///< they were sought in crossed and parallel photographs
   bool of_second_pose = false;              ///< and in a second pose of the cloth
+  /// Of each lobe with a tint its f0 in the channels of the albedo that is written.
+  std::vector<std::optional<F0OfChannels>> f0_of_channels = {};
 
   bool is_measured() const { return lobes.front().is_measured(); }
 };

@@ -39,13 +39,17 @@ class Sampler {
     if (correction_ != nullptr) corrected_.apply(*correction_, input);
     const SampleMaps maps = solve_sample(input, base_);
     solver::LobeReader reader(input, sight_);
-    std::vector<solver::LobeReading> readings(reader.count());
+    std::vector<solver::LobeReading> readings(reader.count()), of_plane(reader.count());
     for (int y = 0; y < tile.height(); y += step_) {
       for (int x = 0; x < tile.width(); x += step_) {
         if (maps.status(x, y) & (kNoSolution | kDark)) continue;
         reader.read(x, y, readings);
         if (solver::used_of(readings) < solver::kLeastLobeReadings) continue;
         samples.readings.insert(samples.readings.end(), readings.begin(), readings.end());
+        for (std::size_t p = 0; p < samples.planes.size() && input.planes == 3; ++p) {
+          reader.read_plane(x, y, static_cast<int>(p), readings, of_plane);
+          samples.planes[p].insert(samples.planes[p].end(), of_plane.begin(), of_plane.end());
+        }
         samples.start.push_back(static_cast<double>(maps.albedo(x, y)) *
                                 Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)});
         samples.part.push_back(part_of(tile.x0 + x, tile.y0 + y));
@@ -70,6 +74,10 @@ class Sampler {
 void append(const GlossSamples& from, std::size_t pixel, GlossSamples& to) {
   const std::span<const solver::LobeReading> readings = from.of(pixel);
   to.readings.insert(to.readings.end(), readings.begin(), readings.end());
+  for (std::size_t p = 0; p < to.planes.size() && !from.planes[p].empty(); ++p) {
+    const std::span<const solver::LobeReading> of_plane = from.of_plane(p, pixel);
+    to.planes[p].insert(to.planes[p].end(), of_plane.begin(), of_plane.end());
+  }
   to.start.push_back(from.start[pixel]);
   to.part.push_back(from.part[pixel]);
 }
@@ -112,19 +120,24 @@ GlossSamples by_leds(const GlossSamples& samples, std::span<const int> leds) {
   GlossSamples chosen = {.leds = {leds.begin(), leds.end()},
                          .states = samples.states,
                          .readings = {},
+                         .planes = {},
                          .start = samples.start,
                          .part = samples.part};
-  for (std::size_t i = 0; i < samples.pixels(); ++i) {
-    const std::span<const solver::LobeReading> all = samples.of(i);
+  const auto add = [&](std::span<const solver::LobeReading> all, std::vector<solver::LobeReading>& into) {
     for (std::size_t state = 0; state < samples.states; ++state) {
       const auto of_state = all.subspan(state * samples.leds.size(), samples.leds.size());
       for (const int led : leds) {
         const auto found = std::ranges::find(samples.leds, led) - samples.leds.begin();
         const bool is_there = found < static_cast<std::ptrdiff_t>(of_state.size());
-        chosen.readings.push_back(of_state[is_there ? static_cast<std::size_t>(found) : 0]);
-        if (!is_there) chosen.readings.back().weight = 0;
+        into.push_back(of_state[is_there ? static_cast<std::size_t>(found) : 0]);
+        if (!is_there) into.back().weight = 0;
       }
     }
+  };
+  for (std::size_t i = 0; i < samples.pixels(); ++i) {
+    add(samples.of(i), chosen.readings);
+    for (std::size_t p = 0; p < chosen.planes.size() && !samples.planes[p].empty(); ++p)
+      add(samples.of_plane(p, i), chosen.planes[p]);
   }
   return chosen;
 }

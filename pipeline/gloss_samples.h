@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -26,13 +27,18 @@ struct GlossSamples {
   std::vector<int> leds;                      ///< of the readings of a state, in their order
   std::size_t states = 1;                     ///< of films
   std::vector<solver::LobeReading> readings;  ///< as many of each pixel: all of one state after the other's
-  std::vector<Vec3> start;                    ///< albedo times normal
-  std::vector<std::size_t> part;              ///< quarter of the frame, row by row
+  std::array<std::vector<solver::LobeReading>, 3> planes;  ///< of RGB those of each channel; else empty
+  std::vector<Vec3> start;                                 ///< albedo times normal
+  std::vector<std::size_t> part;                           ///< quarter of the frame, row by row
 
   std::size_t pixels() const { return start.size(); }
+  std::size_t each() const { return readings.size() / start.size(); }
   std::span<const solver::LobeReading> of(std::size_t pixel) const {
-    const std::size_t each = readings.size() / start.size();
-    return {readings.data() + pixel * each, each};
+    return {readings.data() + pixel * each(), each()};
+  }
+  /// Of one channel of RGB.
+  std::span<const solver::LobeReading> of_plane(std::size_t plane, std::size_t pixel) const {
+    return {planes[plane].data() + pixel * each(), each()};
   }
 };
 

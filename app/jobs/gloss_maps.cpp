@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -24,13 +25,26 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Roughness, alpha, alpha along the yarn, azimuth of the yarn, f0.
-constexpr std::size_t kValues = 5, kRoughnessChannels = 4;
+// Roughness, alpha, alpha along the yarn, azimuth of the yarn, f0 and that of R, G, B.
+constexpr std::size_t kValues = 8, kRoughnessChannels = 4;
 using Values = std::array<float, kValues>;
 
-Values values_of(double alpha, double along, double yarn_deg, double f0) {
-  return {static_cast<float>(std::sqrt(std::sqrt(alpha * along))), static_cast<float>(alpha),
-          static_cast<float>(along), static_cast<float>(yarn_deg), static_cast<float>(f0)};
+Values values_of(double alpha, double along, double yarn_deg, const std::array<double, 3>& f0) {
+  Values values = {static_cast<float>(std::sqrt(std::sqrt(alpha * along))), static_cast<float>(alpha),
+                   static_cast<float>(along), static_cast<float>(yarn_deg),
+                   static_cast<float>(*std::ranges::max_element(f0))};
+  for (std::size_t c = 0; c < 3; ++c) values[5 + c] = static_cast<float>(f0[c]);
+  return values;
+}
+
+std::array<double, 3> f0_of(const pipeline::GlossFacts& facts, std::size_t lobe) {
+  const bool is_tinted = lobe < facts.f0_of_channels.size() && facts.f0_of_channels[lobe];
+  const double f0 = facts.lobes[lobe].lobe.f0;
+  return is_tinted ? facts.f0_of_channels[lobe]->f0 : std::array<double, 3>{f0, f0, f0};
+}
+
+bool has_tint(const pipeline::GlossFacts& facts) {
+  return std::ranges::any_of(facts.f0_of_channels, [](const auto& f0) { return f0.has_value(); });
 }
 
 // An azimuth from 0 to 180, as a yarn has no head.
@@ -57,15 +71,16 @@ std::size_t other_kind(std::size_t kind) {
 // What stands for a pixel that is `other` to a part: f0 is the mean of both, alpha what one lobe needs to
 // look like both (alpha_of_one()), the azimuth that of the greater part if it has one.
 Values mixed(const Values& most, const Values& other, double part) {
-  const auto mean = [&](std::size_t i) { return (1 - part) * most[i] + part * other[i]; };
+  const auto mean = [&](std::size_t i) -> double { return (1 - part) * most[i] + part * other[i]; };
   const auto harmonic = [&](std::size_t i) { return 1 / ((1 - part) / most[i] + part / other[i]); };
   const bool has_yarn = most[1] != most[2];
-  return values_of(harmonic(1), harmonic(2), double{has_yarn ? most[3] : other[3]}, mean(4));
+  return values_of(harmonic(1), harmonic(2), double{has_yarn ? most[3] : other[3]},
+                   {mean(5), mean(6), mean(7)});
 }
 
 std::array<Values, kKinds> values_of(const pipeline::GlossFacts& facts) {
   std::array<Values, kKinds> values;
-  values.fill(values_of(kTypedAlpha, kTypedAlpha, 0, kTypedF0));
+  values.fill(values_of(kTypedAlpha, kTypedAlpha, 0, {kTypedF0, kTypedF0, kTypedF0}));
   for (std::size_t l = 0; l < facts.lobes.size(); ++l) {
     const solver::Lobe& lobe = facts.lobes[l].lobe;
     if (!lobe.shines()) continue;
@@ -73,7 +88,7 @@ std::array<Values, kKinds> values_of(const pipeline::GlossFacts& facts) {
       const double yarn = has_yarn(lobe) ? degrees(lobe.axis) + (across > 0 ? 90 : 0) : 0;
       const double alpha = solver::alpha_of_one(lobe);
       values[1 + 2 * l + across] =
-          values_of(alpha, has_yarn(lobe) ? alpha * lobe.along : alpha, of_half_turn(yarn), lobe.f0);
+          values_of(alpha, has_yarn(lobe) ? alpha * lobe.along : alpha, of_half_turn(yarn), f0_of(facts, l));
     }
   }
   return values;
@@ -129,8 +144,11 @@ Result<void> write_gloss_maps(const fs::path& folder, const pipeline::GlossFacts
       folder / "roughness.exr", size, {"roughness", "alpha", "alpha_along", "yarn_deg"}, options);
   if (!roughness) return std::move(roughness).error();
   std::optional<ImageWriter> specular;
+  const std::size_t f0_channels = has_tint(facts) ? 4 : 1;
   if (scale == AlbedoScale::kAbsolute) {
-    Result<ImageWriter> opened = ImageWriter::open(folder / "specular.exr", size, {"f0"}, options);
+    const std::vector<std::string> channels =
+        f0_channels == 1 ? std::vector<std::string>{"f0"} : std::vector<std::string>{"f0", "R", "G", "B"};
+    Result<ImageWriter> opened = ImageWriter::open(folder / "specular.exr", size, channels, options);
     if (!opened) return std::move(opened).error();
     specular.emplace(std::move(*opened));
   }
@@ -159,7 +177,8 @@ Result<void> write_gloss_maps(const fs::path& folder, const pipeline::GlossFacts
     }
     if (Result<void> ok = roughness->write_rows(all.first(kRoughnessChannels)); !ok) return ok;
     if (specular) {
-      if (Result<void> ok = specular->write_rows(all.subspan(kRoughnessChannels)); !ok) return ok;
+      if (Result<void> ok = specular->write_rows(all.subspan(kRoughnessChannels, f0_channels)); !ok)
+        return ok;
     }
     shares.add_rows(shown);
   }

@@ -20,7 +20,8 @@ inline constexpr double kTypedF0 = 0.04, kTypedAlpha = 1;
 ///   yarn),
 ///                    alpha_along, yarn_deg (azimuth from the x axis of the rig, 0 where there is none); of
 ///                    two lobes in a pixel alpha_of_one()
-///   specular.exr     f0, of an absolute albedo alone: that of a relative one has its unknown scale
+///   specular.exr     f0, of an absolute albedo alone: that of a relative one has its unknown scale; where a
+///                    lobe has a tint also R, G, B, of which f0 is then the largest
 ///   reflectance.png  where which lobe holds and how yarns lie; only if `previews`
 /// Pixels without GLOSSY have typed values. Nothing is written where no lobe was measured or none is used.
 /// Errors: of files; kTryAgain where memory is short.

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "app/jobs/gloss_maps.h"
@@ -104,7 +106,20 @@ void add_parts(const std::vector<solver::LobePart>& parts, Json& cluster) {
       solver::name_of_part(smoothest.part), roughest.alpha, solver::name_of_part(roughest.part));
 }
 
-Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
+// Of R, G and B: what a neutral lobe does not say.
+void add_tint(const MeasuredLobe& lobe, const pipeline::F0OfChannels& channels, AlbedoScale scale,
+              Json& cluster, Json& sigma) {
+  std::array<double, 3> tint = {};
+  for (std::size_t c = 0; c < 3; ++c) tint[c] = channels.f0[c] / lobe.lobe.f0;
+  cluster["tint"] = tint;
+  sigma["tint"] = lobe.tint->sigma_of_tint;
+  if (scale == AlbedoScale::kRelative) return;
+  cluster["f0_rgb"] = channels.f0;
+  sigma["f0_rgb"] = channels.sigma;
+}
+
+Json measured_cluster(const MeasuredLobe& lobe, const std::optional<pipeline::F0OfChannels>& channels,
+                      AlbedoScale scale) {
   Json cluster = {{"observable", true}};
   add_lobe(lobe.lobe, cluster);
   const bool has_yarn = lobe.lobe.family == solver::LobeFamily::kAnisotropicGgx;
@@ -124,6 +139,7 @@ Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
     sigma["f0_over_albedo"] = lobe.sigma_f0 / lobe.median_albedo;
     sigma.erase("f0");
   }
+  if (channels) add_tint(lobe, *channels, scale, cluster, sigma);
   cluster["sigma"] = std::move(sigma);
   cluster["correlation"] = lobe.correlation;
   cluster["family_undecided"] = lobe.is_family_undecided;
@@ -138,10 +154,11 @@ Json measured_cluster(const MeasuredLobe& lobe, AlbedoScale scale) {
   return cluster;
 }
 
-Json cluster_of(const MeasuredLobe& lobe, AlbedoScale scale, bool of_film_pair) {
+Json cluster_of(const MeasuredLobe& lobe, const std::optional<pipeline::F0OfChannels>& channels,
+                AlbedoScale scale, bool of_film_pair) {
   Json cluster;
   if (lobe.is_measured()) {
-    cluster = measured_cluster(lobe, scale);
+    cluster = measured_cluster(lobe, channels, scale);
   } else {
     const auto& [why, remedy] = kReasons.at(lobe.refusal);
     cluster = {{"observable", false},
@@ -164,6 +181,14 @@ std::string lobe_words(const Json& cluster) {
     words += fmt::format(" and, for {:.0f} percent of it, {:.3f}", 100 * cluster["broad_share"].get<double>(),
                          cluster["alpha_broad"].get<double>());
   if (cluster.contains("f0")) words += fmt::format(", f0 {:.3f}", cluster["f0"].get<double>());
+  if (cluster.contains("f0_rgb")) {
+    const auto f0 = cluster["f0_rgb"].get<std::array<double, 3>>();
+    words += fmt::format(" ({:.3f} red, {:.3f} green, {:.3f} blue)", f0[0], f0[1], f0[2]);
+  } else if (cluster.contains("tint")) {
+    const auto tint = cluster["tint"].get<std::array<double, 3>>();
+    words += fmt::format(", of red, green and blue {:.2f}, {:.2f} and {:.2f} times that", tint[0], tint[1],
+                         tint[2]);
+  }
   return words;
 }
 
@@ -194,8 +219,11 @@ std::string cluster_section(const Json& cluster) {
 
 Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) {
   Json clusters = Json::array();
-  for (const MeasuredLobe& lobe : facts.lobes)
-    clusters.push_back(cluster_of(lobe, scale, facts.of_film_pair));
+  for (std::size_t l = 0; l < facts.lobes.size(); ++l) {
+    std::optional<pipeline::F0OfChannels> channels;
+    if (l < facts.f0_of_channels.size()) channels = facts.f0_of_channels[l];
+    clusters.push_back(cluster_of(facts.lobes[l], channels, scale, facts.of_film_pair));
+  }
   Json document = {{"schema", "weft.reflectance/1.2"},
                    {"albedo_scale", name_of(scale)},
                    {"share", facts.share},
@@ -207,8 +235,8 @@ Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale) 
 Json reflectance_summary(const Json& document) {
   const auto summary_of = [](const Json& cluster) {
     Json summary = {{"said", cluster["said"]}};
-    for (const char* key :
-         {"family", "alpha", "alpha_along", "alpha_broad", "broad_share", "f0", "f0_over_albedo"}) {
+    for (const char* key : {"family", "alpha", "alpha_along", "alpha_broad", "broad_share", "f0",
+                            "f0_over_albedo", "f0_rgb", "tint"}) {
       if (cluster.contains(key)) summary[key] = cluster[key];
     }
     return summary;

@@ -16,7 +16,7 @@ namespace weft::app {
 Json reflectance_document(const pipeline::GlossFacts& facts, AlbedoScale scale);
 
 /// What solve.json says of it: `said`, `share`, and of a measured lobe `family`, `alpha`, `alpha_along`,
-/// `alpha_broad` and `broad_share`, `f0` or `f0_over_albedo`.
+/// `alpha_broad` and `broad_share`, `f0` or `f0_over_albedo`, and with a tint `tint` and `f0_rgb`.
 Json reflectance_summary(const Json& document);
 
 /// The lobes of a summary in words; empty where none is measured.

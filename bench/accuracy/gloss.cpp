@@ -29,6 +29,7 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 struct TrueLobe {
   double alpha = kNone, along = kNone, f0 = kNone;
+  std::optional<Rgb> f0_rgb = {};  ///< where it is not grey
 };
 
 /// A material, and what the solver should find of it; without numbers where its truth is another model.
@@ -40,6 +41,7 @@ struct GlossyCloth {
   std::function<void(Scene&)> change = {};  ///< what else is not as it should be
   bool is_level = false;                    ///< without relief, and one row for all families
   bool is_calibrated_wrong = false;         ///< see put_off()
+  std::optional<Rgb> dye = {};              ///< the albedo, where it is not grey
   ClothPose second_pose = {};               ///< unless level, the cloth once more as it lies so
 };
 
@@ -63,6 +65,11 @@ void vary_within_yarns(Scene& scene) {
   }
   scene.material.print.albedo = std::move(ink);
   scene.material.print.placement.mm_per_sample = 0.1;
+}
+
+// As solver::Lobe::f0 has it.
+double mean_of(const Rgb& f0) {
+  return solver::kLuminance[0] * f0[0] + solver::kLuminance[1] * f0[1] + solver::kLuminance[2] * f0[2];
 }
 
 Ggx ggx(double alpha) {
@@ -100,6 +107,34 @@ std::vector<GlossyCloth> cloths_with_more_light() {
        .is_level = true,
        .second_pose = {20, 0}},
       {"level ggx 0.60, pair", ggx(0.60), 0.4, {0.60, kNone, 0.04}, with_films, true},
+  };
+}
+
+// Highlights with a colour of their own, and white ones on cloth that has one.
+std::vector<GlossyCloth> cloths_with_colours() {
+  const Rgb gold = {0.10, 0.08, 0.04}, dark = {0.06, 0.05, 0.03}, red = {0.5, 0.12, 0.05};
+  const auto satin = [](const Rgb& f0) { return AnisotropicGgx{.alpha = 0.35, .anisotropy = 0.6, .f0 = f0}; };
+  const TrueLobe of_ggx = {0.30, kNone, mean_of(gold), gold}, of_satin = {0.35, 0.14, mean_of(gold), gold};
+  const Ggx golden = {.alpha = 0.30, .f0 = gold, .beneath = Beneath::kBalanced};
+  return {
+      {.name = "tinted ggx 0.30", .reflectance = golden, .albedo = 0, .truth = of_ggx, .dye = red},
+      {.name = "dark tinted ggx 0.30", .reflectance = golden, .albedo = 0, .truth = of_ggx, .dye = dark},
+      {.name = "dark tinted satin", .reflectance = satin(gold), .albedo = 0, .truth = of_satin, .dye = dark},
+      {.name = "red ggx 0.30",
+       .reflectance = ggx(0.30),
+       .albedo = 0,
+       .truth = {0.30, kNone, 0.04},
+       .dye = red},
+      {.name = "red satin",
+       .reflectance = satin(grey(0.05)),
+       .albedo = 0,
+       .truth = {0.35, 0.14, 0.05},
+       .dye = red},
+      {.name = "red cotton",
+       .reflectance = MultipleScattering{.gloss = 0.2},
+       .albedo = 0,
+       .truth = {},
+       .dye = red},
   };
 }
 
@@ -150,8 +185,8 @@ std::vector<GlossyCloth> cloths() {
       {"wool", preset("wool")->reflectance, 0.3, {}},
       {"velvet", preset("velvet")->reflectance, 0.04, {}},
   };
-  const std::vector<GlossyCloth> more = cloths_with_more_light();
-  all.insert(all.end(), more.begin(), more.end());
+  for (const std::vector<GlossyCloth>& more : {cloths_with_more_light(), cloths_with_colours()})
+    all.insert(all.end(), more.begin(), more.end());
   return all;
 }
 
@@ -160,7 +195,7 @@ AccuracyScene scene_of(AccuracyScene scene, const GlossyCloth& cloth) {
   scene.scene.effects.reflectance = true;
   scene.scene.material = {};
   scene.scene.material.reflectance = cloth.reflectance;
-  scene.scene.material.albedo = grey(cloth.albedo);
+  scene.scene.material.albedo = cloth.dye.value_or(grey(cloth.albedo));
   if (cloth.is_level) {
     scene.name = cloth.name;
     scene.scene.geometry = {};
@@ -285,6 +320,10 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
               {"true_along", or_null(cloth.truth.along)},
               {"f0", found.is_measured() ? Json(lobe.f0) : Json()},
               {"true_f0", or_null(cloth.truth.f0)},
+              {"f0_rgb", found.tint ? Json(found.tint->f0) : Json()},
+              {"true_f0_rgb", cloth.truth.f0_rgb ? Json(*cloth.truth.f0_rgb) : Json()},
+              {"albedo_rel_rgb_before", (*before)["albedo_rel_rgb"]},
+              {"albedo_rel_rgb", (*after)["albedo_rel_rgb"]},
               {"changes", solver::change_across(found.parts).has_value()},
               {"fit_s", fit_s},
               {"robust_us", *base_us},

@@ -72,9 +72,11 @@ class Errors {
           over_bound2_ += std::pow(angle / static_cast<double>(bounds(x, y)), 2);
           ++bounded_;
         }
-        const double real = patch.albedo(x, y, cfa.channel_at(x, y));
+        const int channel = cfa.channel_at(x, y);
+        const double real = patch.albedo(x, y, channel);
         const double error = (static_cast<double>(maps.albedo_at(x, y, cfa)) - real) / real;
         albedo_error_ += std::abs(error);
+        error_of_channel_[static_cast<std::size_t>(channel)].add(0, std::abs(error));
         leak_.add(patch.openness(x, y), error);
       }
     }
@@ -87,6 +89,8 @@ class Errors {
             {"p95_deg", angles.p95_deg},
             {"ratio_to_bound", bounded_ > 0 ? std::sqrt(over_bound2_ / bounded_) : 0.0},
             {"albedo_mean_rel", albedo_error_ / static_cast<double>(angles.pixels)},
+            {"albedo_rel_rgb",
+             {error_of_channel_[0].mean_y(), error_of_channel_[1].mean_y(), error_of_channel_[2].mean_y()}},
             {"albedo_bias_rel", leak_.mean_y()},
             {"leak", leak_.slope()}};
   }
@@ -95,6 +99,7 @@ class Errors {
   std::vector<float> angles_;
   double over_bound2_ = 0, bounded_ = 0, albedo_error_ = 0;
   Slope leak_;
+  std::array<Slope, 3> error_of_channel_;
 };
 
 constexpr double kLong_s = 0.5;  // a solve whose overhead does not count

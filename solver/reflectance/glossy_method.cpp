@@ -53,12 +53,19 @@ struct Group {
 struct SolvedPixel {
   Pixel at;
   Vec3 b;
-  double yarn = 0;  // from the lobe's axis
-  Blend by;
+  double yarn = 0;      // from the lobe's axis
+  Blend by, tint_off;   // the second with tints one sigma off
   double residual = 0;  // rms of reading less model
   unsigned how = 0;     // bits beside kGlossy
   BlendVariances variances;
 };
+
+const Lobe& off_tint(const KnownLobe& known) {
+  return known.lobe.is_tinted() ? known.tint_off : known.lobe;
+}
+double tint_of(const Blend& blend, std::size_t plane) {
+  return (1 - blend.second_share) * blend.first.tint[plane] + blend.second_share * blend.second.tint[plane];
+}
 
 // One tile.
 class GlossyTile {
@@ -157,7 +164,9 @@ class GlossyTile {
       for (std::size_t i = 0; i < group.count; ++i) any = any || by_lobe(i);
       if (!lobes_[l].lobe.shines() || !any) continue;
       BlockVariances variances;
-      write_variances(lobes_[l].lobe, lobes_[l].one_sigma_off, group.block, group.count, variances);
+      std::vector<Lobe> off = lobes_[l].one_sigma_off;
+      if (lobes_[l].lobe.is_tinted()) off.push_back(lobes_[l].tint_off);
+      write_variances(lobes_[l].lobe, off, group.block, group.count, variances);
       for (std::size_t i = 0; i < group.count; ++i) {
         if (by_lobe(i)) write_pixel(solved_by(l, group, i, variances));
       }
@@ -172,6 +181,7 @@ class GlossyTile {
             group.block.b(i),
             is_across ? kPi / 2 : 0,
             {lobes_[lobe].lobe, {}, 0},
+            {off_tint(lobes_[lobe]), {}, 0},
             group.block.residual[i],
             (is_across ? unsigned{kYarnAcross} : 0U) | (lobe > 0 ? unsigned{kSecondLobe} : 0U),
             {v.along_of_readings[i], v.across_of_readings[i], v.along_of_lobe[i], v.across_of_lobe[i]}};
@@ -197,8 +207,14 @@ class GlossyTile {
     const Vec3 b = best->fit.b;
     if (best->second_parts % kBlendParts == 0 || !(length(b) > 0)) return false;
     if (!(best->fit.cost <= kBlendCosts * double{block.cost[i]})) return false;
-    SolvedPixel pixel = {group.pixels[i], b, yarn, {first, second, 0}, 0, 0, {}};
-    pixel.by.second_share = best->second_share;
+    SolvedPixel pixel = {group.pixels[i],
+                         b,
+                         yarn,
+                         {first, second, best->second_share},
+                         {off_tint(lobes_[0]), off_tint(lobes_[1]), best->second_share},
+                         0,
+                         0,
+                         {}};
     pixel.how = status_of_blend(best->second_parts) | (yarn > 0 ? unsigned{kYarnAcross} : 0U);
     double squares = 0;
     for (const LobeReading& r : readings_) {
@@ -227,23 +243,31 @@ class GlossyTile {
     // What the lobe explains is no misfit any more.
     const unsigned before = output_.status(x, y) & ~unsigned{kSpecular};
     output_.status(x, y) = static_cast<std::uint16_t>(before | kGlossy | pixel.how);
+    const bool is_tinted = pixel.by.first.is_tinted() || pixel.by.second.is_tinted();
     for (std::size_t p = 0; p < static_cast<std::size_t>(input_.planes); ++p) {
-      const double share = input_.planes == 1 ? 1 : plane_share(pixel, p);
+      if (input_.planes == 1) {
+        output_.albedo[p](x, y) = finite(rho);
+        output_.sigma_albedo[p](x, y) = finite(root_of_sum(v.along_of_readings, v.along_of_lobes));
+        continue;
+      }
+      const double share = plane_share(pixel, pixel.by, p), tint = tint_of(pixel.by, p);
+      // What is wrong with a highlight is as much in all channels, but for its tint.
+      double of_lobes = v.along_of_lobes * tint * tint;
+      if (is_tinted) of_lobes += std::pow(rho * (plane_share(pixel, pixel.tint_off, p) - share), 2);
       output_.albedo[p](x, y) = finite(rho * share);
-      // A highlight has the colour of the light: what is wrong with it is as much in all channels.
-      output_.sigma_albedo[p](x, y) =
-          finite(root_of_sum(v.along_of_readings * share * share, v.along_of_lobes));
+      output_.sigma_albedo[p](x, y) = finite(root_of_sum(v.along_of_readings * share * share, of_lobes));
     }
   }
 
   // Albedo of one plane of RGB over that of the weighted sum: what its readings leave once the lobe, which
-  // has the colour of the light, is taken off.
-  double plane_share(const SolvedPixel& pixel, std::size_t plane) const {
+  // has the tint of its f0, is taken off.
+  double plane_share(const SolvedPixel& pixel, const Blend& by, std::size_t plane) const {
     const Vec3 n = normalized(pixel.b);
     double of_plane = 0, of_all = 0;
     for (std::size_t k = 0; k < readings_.size(); ++k) {
-      const LobeReading& r = readings_[k];
+      LobeReading r = readings_[k];
       if (r.weight == 0) continue;
+      r.from.channel = static_cast<int>(plane);
       const std::size_t lights = input_.field->count(), i_of_state = 3 * (k % lights) + plane;
       const double strength = input_.field
                                   ->at(k % lights, static_cast<int>(plane), input_.tile.x0 + pixel.at.x,
@@ -251,8 +275,8 @@ class GlossyTile {
                                   .strength;
       const auto& state = k < lights ? input_.readings : input_.parallel;
       const double reading = state[i_of_state](pixel.at.x, pixel.at.y) / strength;
-      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(pixel.by, n, r.from, pixel.yarn);
-      const double diffuse = modelled(pixel.by, pixel.b, r.from, pixel.yarn) - shine;
+      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(by, n, r.from, pixel.yarn);
+      const double diffuse = modelled(by, pixel.b, r.from, pixel.yarn) - shine;
       of_plane += r.weight * diffuse * (reading - shine);
       of_all += r.weight * diffuse * diffuse;
     }
@@ -291,7 +315,9 @@ class Glossy : public Method {
     const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
     const Blend lobes = {lobes_.front().lobe, lobes_.back().lobe, second_share_of(status)};
     const Vec3 n = {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
-    return modelled(lobes, spoken * n, LitFrom(light, readings.front().from.view, lobe_share), yarn);
+    LitFrom from(light, readings.front().from.view, lobe_share);
+    from.channel = input.planes == 1 ? readings.front().from.channel : 1;
+    return modelled(lobes, spoken * n, from, yarn);
   }
 
  private:

@@ -14,6 +14,7 @@ namespace weft::solver {
 struct KnownLobe {
   Lobe lobe;
   std::vector<Lobe> one_sigma_off = {};  ///< of solver/reflectance/lobe_fit.h; empty: nothing is open
+  Lobe tint_off = {};  ///< with another tint, one sigma off in all channels; counts where `lobe` is tinted
 };
 
 /// `base`, and each pixel that it solves again with lobes that are known, whichever costs it least: from

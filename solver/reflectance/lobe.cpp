@@ -87,10 +87,14 @@ LitFrom::LitFrom(Vec3 to_light, Vec3 to_camera, double share_of_lobe)
       light_half(dot(light, half)),
       lobe_share(share_of_lobe) {}
 
+double f0_of(const Lobe& lobe, int channel) {
+  return channel < 0 ? lobe.f0 : std::min(lobe.f0 * lobe.tint[static_cast<std::size_t>(channel)], 1.0);
+}
+
 double specular(const Lobe& lobe, Vec3 n, const LitFrom& from, double yarn) {
   const Cosines c = {std::max(dot(n, from.light), kLeastCosine), std::max(dot(n, from.view), kLeastCosine),
                      dot(n, from.half)};
-  const double f = from.lobe_share * kPi * fresnel(lobe.f0, from.light_half);
+  const double f = from.lobe_share * kPi * fresnel(f0_of(lobe, from.channel), from.light_half);
   switch (lobe.family) {
     case LobeFamily::kLambert:
       return 0;
@@ -152,7 +156,7 @@ double modelled(const Lobe& lobe, Vec3 b, const LitFrom& from, double yarn) {
   const Vec3 n = (1 / std::max(rho, 1e-12)) * b;
   const double cosine = dot(n, from.light);
   if (!(cosine > 0)) return 0;
-  const double beneath = lobe.shines() ? 1 - fresnel(lobe.f0, from.light_half) : 1;
+  const double beneath = lobe.shines() ? 1 - fresnel(f0_of(lobe, from.channel), from.light_half) : 1;
   const double diffuse = rho * beneath * (1 - lobe.bend * (1 - cosine));
   return cosine * (diffuse + (lobe.shines() ? specular(lobe, n, from, yarn) : 0));
 }
@@ -162,7 +166,7 @@ ModelledReading modelled_with_derivative(const Lobe& lobe, Vec3 b, const LitFrom
   const Vec3 n = (1 / rho) * b;
   const double cosine = dot(n, from.light);
   if (!(cosine > 0)) return {};
-  const double beneath = lobe.shines() ? 1 - fresnel(lobe.f0, from.light_half) : 1;
+  const double beneath = lobe.shines() ? 1 - fresnel(f0_of(lobe, from.channel), from.light_half) : 1;
   const double straight = 1 - lobe.bend * (1 - cosine);
   ModelledReading reading;
   reading.x = cosine * rho * beneath * straight;

@@ -87,7 +87,7 @@ class LanesFit {
         last_(last),
         lobe_(d, lobe),
         bend_(number(d, lobe.bend)),
-        f0_(number(d, lobe.f0)),
+        f0_(f0_lanes(d, lobe, block, at)),
         cosine_(std::cos(lobe.axis)),
         sine_(std::sin(lobe.axis)),
         block_(block),
@@ -188,6 +188,14 @@ class LanesFit {
     M active;
   };
 
+  static HWY_INLINE V f0_lanes(D d, const Lobe& lobe, const LobeBlock& block, std::size_t at) {
+    V f0 = number(d, lobe.f0);
+    if (!lobe.is_tinted()) return f0;
+    const V channel = hn::LoadU(d, block.channel.data() + at);
+    for (int c = 0; c < 3; ++c)
+      f0 = hn::IfThenElse(hn::Eq(channel, number(d, c + 1)), number(d, f0_of(lobe, c)), f0);
+    return f0;
+  }
   HWY_INLINE Vector3 load(const LobeBlock::Lanes3& v) const {
     return {hn::LoadU(d_, v.x.data() + at_), hn::LoadU(d_, v.y.data() + at_),
             hn::LoadU(d_, v.z.data() + at_)};
@@ -454,6 +462,7 @@ void LobeBlock::put(std::size_t pixel, std::span<const LobeReading> readings) {
   }
   used[pixel] = static_cast<float>(used_of(readings));
   write_lanes(view, pixel, readings.front().from.view);
+  channel[pixel] = static_cast<float>(readings.front().from.channel + 1);
   cost[pixel] = std::numeric_limits<float>::infinity();
 }
 
@@ -481,8 +490,8 @@ void LobeBlock::copy(std::size_t pixel, const LobeBlock& other, std::size_t othe
   lanes(view, other.view);
   lanes(start, other.start);
   lanes(solved, other.solved);
-  for (const auto member :
-       {&LobeBlock::used, &LobeBlock::cost, &LobeBlock::lobe, &LobeBlock::across, &LobeBlock::residual})
+  for (const auto member : {&LobeBlock::channel, &LobeBlock::used, &LobeBlock::cost, &LobeBlock::lobe,
+                            &LobeBlock::across, &LobeBlock::residual})
     lane(this->*member, other.*member);
   for (std::size_t i = 0; i < normal_matrix.size(); ++i) lane(normal_matrix[i], other.normal_matrix[i]);
 }
@@ -504,6 +513,7 @@ LobeReading LobeBlock::reading(std::size_t pixel, std::size_t light) const {
   r.from.half = read_lanes(of.half, pixel);
   r.from.light_half = dot(r.from.light, r.from.half);
   r.from.lobe_share = of.lobe_share[pixel];
+  r.from.channel = static_cast<int>(channel[pixel]) - 1;
   r.x = of.reading[pixel];
   r.weight = double{of.root_weight[pixel]} * of.root_weight[pixel];
   return r;

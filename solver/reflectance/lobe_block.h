@@ -49,6 +49,7 @@ class LobeBlock {
   std::vector<Light>& lights() { return lights_; }
 
   Lanes3 view;
+  Lane channel = {};   ///< LitFrom::channel, plus one
   Lane used = {};      ///< how many readings have a weight
   Lanes3 start;        ///< b
   Lanes3 solved;       ///< b; nothing yet where `cost` is infinite

@@ -46,8 +46,8 @@ class Slope {
     slopes.by_errors[0] = m.x;
     const std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
     for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      const LitFrom turned(normalized(r.from.light + kLightTurn * axes[axis]), r.from.view,
-                           r.from.lobe_share);
+      LitFrom turned(normalized(r.from.light + kLightTurn * axes[axis]), r.from.view, r.from.lobe_share);
+      turned.channel = r.from.channel;
       slopes.by_errors[1 + axis] = (modelled(fit_.lobe, b, turned, yarn) - m.x) / kLightTurn;
     }
     return slopes;

@@ -32,12 +32,13 @@ Shared values_of(const Lobe& lobe) {
 }
 
 // Within the ranges of Lobe.
-Lobe lobe_of(LobeFamily family, const Shared& v) {
-  Lobe lobe = {.family = family,
+Lobe lobe_of(const Lobe& like, const Shared& v) {
+  Lobe lobe = {.family = like.family,
                .alpha = std::exp(std::clamp(v[0], std::log(0.02), 0.0)),
                .f0 = std::clamp(v[1], 0.0, 0.6),
-               .bend = std::clamp(v[4], -0.5, 1.0)};
-  if (family == LobeFamily::kTwoGgx) {
+               .bend = std::clamp(v[4], -0.5, 1.0),
+               .tint = like.tint};
+  if (like.family == LobeFamily::kTwoGgx) {
     lobe.broad = std::exp(std::clamp(v[2], std::log(0.02), 0.0));
     lobe.broad_share = std::clamp(v[3], 0.0, 1.0);
   } else {
@@ -161,7 +162,7 @@ class SharedFit {
         change[p] = std::isfinite(change[p]) ? std::clamp(change[p], -most, most) : 0;
       }
       LobeFit next = fit;
-      next.lobe = lobe_of(fit.lobe.family, values_of(fit.lobe) + change);
+      next.lobe = lobe_of(fit.lobe, values_of(fit.lobe) + change);
       next = settled(std::move(next), kStepsARound);
       if (next.total() < fit.total()) return next;
     }
@@ -248,7 +249,7 @@ NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter) {
   const double by = parameter == LobeParameter::kF0 ? 1e-4 : 1e-3;
   Shared there = values_of(lobe);
   there[static_cast<Eigen::Index>(parameter)] += by;
-  return {lobe_of(lobe.family, there), by};
+  return {lobe_of(lobe, there), by};
 }
 
 std::vector<Lobe> one_sigma_off(const Lobe& lobe, const LobeCovariance& covariance) {
@@ -262,8 +263,7 @@ std::vector<Lobe> one_sigma_off(const Lobe& lobe, const LobeCovariance& covarian
   for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
     const double variance = principal.eigenvalues()[i];
     if (!(variance > kLeastVariance)) continue;
-    off.push_back(
-        lobe_of(lobe.family, values_of(lobe) + std::sqrt(variance) * principal.eigenvectors().col(i)));
+    off.push_back(lobe_of(lobe, values_of(lobe) + std::sqrt(variance) * principal.eigenvectors().col(i)));
   }
   return off;
 }

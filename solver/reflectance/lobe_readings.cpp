@@ -39,6 +39,22 @@ void LobeReader::read(int x, int y, std::span<LobeReading> readings) {
     read_state(x, y, input_.parallel, kParallelLobeShare, readings.subspan(lights));
 }
 
+void LobeReader::read_plane(int x, int y, int plane, std::span<const LobeReading> mixed,
+                            std::span<LobeReading> readings) const {
+  const std::size_t lights = input_.field->count();
+  for (std::size_t k = 0; k < readings.size(); ++k) {
+    const auto& state = k < lights ? input_.readings : input_.parallel;
+    const double strength =
+        input_.field->at(k % lights, plane, input_.tile.x0 + x, input_.tile.y0 + y).strength;
+    const double value =
+        state[k % lights * 3 + static_cast<std::size_t>(plane)](x, y) / std::max(strength, 1e-30);
+    readings[k] = {mixed[k].from, value, 0};
+    readings[k].from.channel = plane;
+    if (mixed[k].weight == 0 || !std::isfinite(value)) continue;
+    readings[k].weight = 1 / std::pow(kLobeModelShare * std::max(value, kLeastModelled), 2);
+  }
+}
+
 void LobeReader::read_state(int x, int y, std::span<const View<const float>> state, double lobe_share,
                             std::span<LobeReading> readings) {
   const int px = input_.tile.x0 + x, py = input_.tile.y0 + y;
@@ -63,6 +79,7 @@ void LobeReader::read_state(int x, int y, std::span<const View<const float>> sta
     }
     LobeReading& r = readings[k];
     r = {LitFrom(direction, view, lobe_share), value, 0};
+    if (planes == 1) r.from.channel = input_.cfa.channel_at(px, py);
     if (!is_lit || !std::isfinite(value)) continue;
     r.weight = 1 / (variance + std::pow(kLobeModelShare * std::max(value, kLeastModelled), 2));
     bright_.push_back(value);

@@ -180,6 +180,8 @@ void LobeRows::read(int x, LobeBlock& block) const {
   const double shares[2] = {input_.lobe_share, kParallelLobeShare};
   for (std::size_t k = 0; k < block.lights().size(); ++k)
     block.lights()[k].lobe_share.fill(static_cast<float>(shares[k / lights_.size()]));
+  for (std::size_t i = 0; i < LobeBlock::kPixels && input_.planes == 1; ++i)
+    block.channel[i] = static_cast<float>(tasks_.front().channel[(static_cast<std::size_t>(x) + i) % 2] + 1);
   const int pixels = std::min(kRowGroup, input_.tile.width() - x);
   HWY_DYNAMIC_DISPATCH(gather_block_lanes)
   (task, static_cast<std::size_t>(x), static_cast<std::size_t>(pixels), block);

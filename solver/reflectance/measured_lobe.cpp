@@ -39,10 +39,6 @@ LobeParameters with_bend(LobeParameters fitted) {
   return fitted;
 }
 
-LobeFit unfitted(const Lobe& lobe, const std::vector<Vec3>& b) {
-  return {lobe, b, std::vector<double>(b.size(), 0.0), {}, 0, {}};
-}
-
 bool has_yarn(const Lobe& lobe) {
   return lobe.family == LobeFamily::kAnisotropicGgx;
 }
@@ -60,17 +56,17 @@ void keep_cheaper(const LobeFit& other, LobeFit& fit) {
 // The families in turn over some pixels of one material.
 class Trial {
  public:
-  Trial(const LobeSamples& samples, std::vector<Vec3> start, int threads)
-      : samples_(samples), start_(std::move(start)), threads_(threads) {}
+  Trial(const LobeSamples& samples, std::vector<Vec3> start, const std::array<double, 3>& tint, int threads)
+      : samples_(samples), start_(std::move(start)), tint_(tint), threads_(threads) {}
 
-  LobeFit lambert() const { return fit_lobe(samples_, unfitted({}, start_), {.threads = threads_}); }
+  LobeFit lambert() const { return fit_lobe(samples_, unfitted({}), {.threads = threads_}); }
 
   LobeFit isotropic(LobeFamily family) const {
     const LobeParameters fitted = parameters_of(family);
     std::optional<LobeFit> best;
     for (const double alpha : kStartAlphas) {
-      LobeFit fit = fit_lobe(samples_, unfitted({.family = family, .alpha = alpha, .f0 = kStartF0}, start_),
-                             options(fitted));
+      LobeFit fit =
+          fit_lobe(samples_, unfitted({.family = family, .alpha = alpha, .f0 = kStartF0}), options(fitted));
       if (!best || fit.total() < best->total()) best = std::move(fit);
     }
     return restarted(std::move(*best), fitted);
@@ -84,8 +80,7 @@ class Trial {
                                            .alpha = alpha,
                                            .f0 = kStartF0,
                                            .along = kStartAlong,
-                                           .axis = axis},
-                                          start_));
+                                           .axis = axis}));
         if (!best || fit.total() < best->total()) best = std::move(fit);
       }
     }
@@ -122,7 +117,7 @@ class Trial {
   LobeFit refined(const Lobe& lobe) const {
     LobeParameters fitted = parameters_of(lobe.family);
     if (lobe.bend != 0) fitted = with_bend(fitted);
-    LobeFit fit = unfitted(lobe, start_);
+    LobeFit fit = unfitted(lobe);
     if (has_yarn(lobe)) fit = with_better_yarns(samples_, std::move(fit), threads_);
     return canonical(restarted(fit_lobe(samples_, std::move(fit), options(fitted)), fitted));
   }
@@ -176,8 +171,15 @@ class Trial {
     return fit;
   }
 
+  LobeFit unfitted(const Lobe& lobe) const { return unfitted(lobe, start_); }
+  LobeFit unfitted(Lobe lobe, const std::vector<Vec3>& start) const {
+    lobe.tint = tint_;
+    return {lobe, start, std::vector<double>(start.size(), 0.0), {}, 0, {}};
+  }
+
   const LobeSamples& samples_;
   std::vector<Vec3> start_;
+  std::array<double, 3> tint_;
   int threads_;
 };
 
@@ -439,11 +441,13 @@ LobeFit with_better_yarns(const LobeSamples& samples, LobeFit fit, int threads) 
   return fit;
 }
 
-MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads) {
+MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads,
+                          const std::array<double, 3>& tint) {
   MeasuredLobe measured;
   if (pixels_with_enough(samples) < kLeastLobePixels) return measured;
   const LobeSamples few = samples.first(kTrialPixels);
-  const Trial trial(few, {start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels())}, threads);
+  const Trial trial(few, {start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels())}, tint,
+                    threads);
   const double lambert_chi2 = trial.lambert().chi2;
   measured.candidates.push_back({{}, lambert_chi2});
   measured.refusal = LobeRefusal::kLambertFits;
@@ -463,7 +467,7 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
 
   std::vector<Lobe> rivals = {bends ? straight.lobe : bent.lobe};
   measured.is_family_undecided = add_rivals(families, straight, lambert_chi2, rivals);
-  LobeFit refined = Trial(samples, start, threads).refined(best.lobe);
+  LobeFit refined = Trial(samples, start, tint, threads).refined(best.lobe);
   // What the trial pixels told may not hold for all.
   measured.refusal = refusal_of(refined, lambert_chi2);
   if (!measured.is_measured()) return measured;
@@ -483,7 +487,8 @@ std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const 
   const double least = least_chi2(one);
   if (ggx.chi2 > kFarFromGgx * least) return {};
   const LobeSamples few = samples.first(kTrialPixels);
-  const Trial trial(few, {start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels())}, threads);
+  const Trial trial(few, {start.begin(), start.begin() + static_cast<std::ptrdiff_t>(few.pixels())},
+                    ggx.lobe.tint, threads);
   const LobeFit straight = trial.two(ggx.lobe, samples.first(kStartPixels));
   if (!(straight.chi2 < (1 - kTwoWin) * least)) return {};
   const LobeFit bent = trial.bent(straight);
@@ -491,7 +496,7 @@ std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const 
   const LobeFit& best = bends ? bent : straight;
   if (refusal_of(best, lambert_chi2) != LobeRefusal::kNone || !are_two(best.lobe)) return {};
   if (!bends && !agrees(best.lobe, bent.lobe)) return {};
-  LobeFit refined = Trial(samples, start, threads).refined(best.lobe);
+  LobeFit refined = Trial(samples, start, ggx.lobe.tint, threads).refined(best.lobe);
   if (refusal_of(refined, lambert_chi2) != LobeRefusal::kNone || !are_two(refined.lobe)) return {};
   if (one.is_measured() && !(refined.total() < (1 - kTwoWin) * one.fit.total())) return {};
   MeasuredLobe measured;

@@ -40,6 +40,12 @@ struct LobePoint {
   double lobe = 0;      ///< relative_facets()
 };
 
+/// What the channels say of f0, each for itself.
+struct LobeTint {
+  std::array<double, 3> f0 = {}, sigma = {};            ///< of red, green and blue
+  std::array<double, 3> tint = {}, sigma_of_tint = {};  ///< over their weighted mean, as Lobe::tint
+};
+
 struct MeasuredLobe {
   LobeRefusal refusal = LobeRefusal::kTooFewPixels;
   Lobe lobe;    ///< Lambert's where it is refused
@@ -58,6 +64,7 @@ struct MeasuredLobe {
   double median_albedo = 0;             ///< of the pixels, as `lobe` leaves it
   std::vector<LobePart> parts;          ///< of a frame of one material (pipeline::measure_gloss)
   std::array<double, 2> half_deg = {};  ///< angles of normals to half-vectors: 2nd and 98th percentile
+  std::optional<LobeTint> tint;         ///< where `lobe` has one (solver/reflectance/lobe_tint.h)
 
   bool is_measured() const { return refusal == LobeRefusal::kNone; }
 };
@@ -90,7 +97,9 @@ inline constexpr double kLeastShare = 0.1, kLeastBroader = 1.5, kMostSigmaShare 
 /// it. All families are fitted in turn, each from several roughnesses, each pixel from several normals:
 /// of dark cloth a pixel has two valleys, dark and mirroring or bright and tilted. Where Lambert's law fits
 /// no other is tried.
-MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads);
+/// `tint` is held: Lobe::tint.
+MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& start, int threads,
+                          const std::array<double, 3>& tint = {1, 1, 1});
 
 /// Two lobes in every point, where they save clearly more than what `one` has tried and both are told; `one`
 /// is what measure_lobe() made of the same pixels.

@@ -24,7 +24,8 @@ double reading_of(const Cloth& cloth, const DistantLight& light, int c, int x, i
   const auto channel = static_cast<std::size_t>(c);
   solver::Lobe lobe = cloth.is_matt(x, y) ? solver::Lobe{} : cloth.lobe;
   lobe.alpha *= cloth.roughening(x, y);
-  const solver::LitFrom from(light.direction, {0, 0, 1}, cloth.lobe_share);
+  solver::LitFrom from(light.direction, {0, 0, 1}, cloth.lobe_share);
+  from.channel = c;
   const Vec3 b = cloth.albedo[channel] * cloth.normal(x, y);
   const double matt = cloth.matt_share(x, y);
   return light.irradiance_rgb[channel] * ((1 - matt) * solver::modelled(lobe, b, from, cloth.yarn(x, y)) +

@@ -72,6 +72,34 @@ TEST(Gloss, OfDevelopedPhotographsLeavesEachChannelItsAlbedo) {
   }
 }
 
+// A highlight that is white or golden, on a cloth whose dye has another colour.
+TEST(Gloss, OfAColourOfItsOwnLeavesEachChannelItsAlbedo) {
+  const std::array<double, 3> gold = {0.1, 0.08, 0.04};
+  Cloth cloth = {.normal = dented, .albedo = {0.06, 0.1, 0.2}, .lobe = kSilk};
+  cloth.lobe.f0 = 0.2126 * gold[0] + 0.7152 * gold[1] + 0.0722 * gold[2];
+  for (std::size_t c = 0; c < 3; ++c) cloth.lobe.tint[c] = gold[c] / cloth.lobe.f0;
+  for (const bool is_mosaic : {true, false}) {
+    WholeMaps maps(kSize);
+    const FrameFacts facts =
+        solve(is_mosaic ? mosaics(kSize, cloth) : developed(kSize, cloth), "robust", maps);
+    ASSERT_TRUE(facts.gloss && facts.gloss->is_measured()) << is_mosaic;
+    ASSERT_EQ(facts.gloss->f0_of_channels.size(), 1U);
+    ASSERT_TRUE(facts.gloss->f0_of_channels[0]) << is_mosaic;
+    EXPECT_EQ(facts.gloss->share, 1) << is_mosaic;
+    EXPECT_LT(mean_error_deg(maps), 0.3) << is_mosaic;
+    for (std::size_t c = 0; c < 3; ++c) {
+      EXPECT_NEAR(facts.gloss->f0_of_channels[0]->f0[c], gold[c], 0.03 * gold[c]) << "channel " << c;
+      EXPECT_NEAR(maps.albedo(100, 80, static_cast<int>(c)), cloth.albedo[c], 0.02 * cloth.albedo[c])
+          << "channel " << c << (is_mosaic ? " of mosaics" : " of RGB");
+    }
+  }
+  cloth.lobe.tint = {1, 1, 1};
+  WholeMaps maps(kSize);
+  const FrameFacts white = solve(mosaics(kSize, cloth), "robust", maps);
+  ASSERT_TRUE(white.gloss && white.gloss->is_measured());
+  EXPECT_FALSE(white.gloss->f0_of_channels[0]);
+}
+
 TEST(Gloss, OfCrossedYarnsSaysOfEachPixelWhichItIs) {
   const auto is_weft = [](int x, int y) { return (x / 8 + y / 8) % 2 == 1; };
   const Cloth cloth = {.normal = dented,

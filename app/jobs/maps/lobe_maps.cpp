@@ -59,6 +59,18 @@ Image<float> on_scale(GlossScale scale, const Image<float>& alpha) {
   return values;
 }
 
+// f0 of R, G and B over the largest of them.
+Image<float> tint_of(const Image<float>& lobe) {
+  Image<float> tint(lobe.size(), 3);
+  for (int y = 0; y < lobe.height(); ++y) {
+    for (int x = 0; x < lobe.width(); ++x) {
+      const float most = lobe(x, y, 3);
+      for (int c = 0; c < 3; ++c) tint(x, y, c) = most > 0 ? std::min(lobe(x, y, 4 + c) / most, 1.0F) : 1.0F;
+    }
+  }
+  return tint;
+}
+
 // Pixels that were solved with a lobe; the others have typed values.
 double measured_share(const material::Surface& surface) {
   std::int64_t glossy = 0;
@@ -99,7 +111,19 @@ Result<void> make_roughness(MapWork& work) {
   }
   specular.file = "specular.exr";
   specular.channels = {"f0"};
-  return draw_map(work, std::move(specular), {work.surface.lobe.plane(3)});
+  const bool is_tinted = work.surface.lobe.planes() > 4;
+  if (is_tinted) specular.channels = {"f0", "R", "G", "B"};
+  if (Result<void> ok = draw_map(work, std::move(specular), {work.surface.lobe.plane(3)}); !ok || !is_tinted)
+    return ok;
+  const Image<float> tint = tint_of(work.surface.lobe);
+  return write_map(work,
+                   {.name = "specular_tint",
+                    .file = "specular_tint.exr",
+                    .unit = "share",
+                    .channels = {"R", "G", "B"},
+                    .source = MapSource::kMeasured,
+                    .more = {{"measured_share", share}}},
+                   planes_of(tint));
 }
 
 Result<void> make_gloss(MapWork& work) {

@@ -31,6 +31,7 @@ const float kLeastUp = static_cast<float>(std::cos(radians(89.0)));
 
 const std::vector<std::string> kNormalChannels = {"X", "Y", "Z"};
 const std::vector<std::string> kColourChannels = {"R", "G", "B"};
+const std::vector<std::string> kTintedChannels = {"f0", "R", "G", "B"};
 const std::vector<std::string> kLobeChannels = {"roughness", "alpha", "alpha_along", "yarn_deg"};
 
 Image<float> slopes_of(const Image<float>& normal, const Image<std::uint16_t>& status) {
@@ -87,18 +88,24 @@ Result<void> read_lobe(const fs::path& folder, RectifiedSurface& into) {
   const Result<Image<float>> roughness = read_planes(folder / "roughness.exr", kLobeChannels, size);
   if (!roughness) return roughness.error();
   Image<float> f0(size);
-  into.has_f0 = is_there(folder / "specular.exr");
+  const fs::path file = folder / "specular.exr";
+  into.has_f0 = is_there(file);
   if (into.has_f0) {
-    Result<Image<float>> specular = read_planes(folder / "specular.exr", {"f0"}, size);
+    const Result<ImageFileInfo> info = read_image_info(file);
+    if (!info) return info.error();
+    const bool is_tinted = std::ranges::find(info->channels, "R") != info->channels.end();
+    Result<Image<float>> specular =
+        read_planes(file, is_tinted ? kTintedChannels : std::vector<std::string>{"f0"}, size);
     if (!specular) return std::move(specular).error();
     f0 = std::move(*specular);
   }
-  into.surface.lobe = Image<float>(size, 4);
+  into.surface.lobe = Image<float>(size, 3 + f0.planes());
   for (int y = 0; y < size.height; ++y) {
     for (int p = 0; p < 3; ++p)
       std::copy_n(roughness->plane(p + 1).row(y), size.width, into.surface.lobe.plane(p).row(y));
     if (!into.has_f0) std::fill_n(f0.plane().row(y), size.width, static_cast<float>(kTypedF0));
-    std::copy_n(f0.plane().row(y), size.width, into.surface.lobe.plane(3).row(y));
+    for (int p = 0; p < f0.planes(); ++p)
+      std::copy_n(f0.plane(p).row(y), size.width, into.surface.lobe.plane(3 + p).row(y));
   }
   return {};
 }
@@ -199,7 +206,10 @@ Result<void> write_surface(const fs::path& folder, const RectifiedSurface& recti
   if (Result<void> ok = write("roughness.exr", kHalf, "", planes_of(roughness), kLobeChannels); !ok)
     return ok;
   if (!rectified.has_f0) return {};
-  return write("specular.exr", kHalf, "share", {surface.lobe.plane(3)}, {"f0"});
+  std::vector<View<const float>> f0 = planes_of(surface.lobe);
+  f0.erase(f0.begin(), f0.begin() + 3);
+  return write("specular.exr", kHalf, "share", f0,
+               f0.size() == 1 ? std::vector<std::string>{"f0"} : kTintedChannels);
 }
 
 }  // namespace weft::app

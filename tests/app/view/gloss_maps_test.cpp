@@ -116,6 +116,49 @@ TEST_F(GlossMaps, OfTwoLobesInAPixelHaveTheAlphaThatOneNeeds) {
   EXPECT_NEAR(roughness->channel("roughness")(1, 0), std::sqrt(one), 3e-4);
 }
 
+// Golden warp: f0 is the largest of its three.
+pipeline::GlossFacts lurex() {
+  pipeline::GlossFacts facts = satin();
+  facts.lobes[0].tint = solver::LobeTint{
+      .f0 = {0.1, 0.08, 0.04}, .sigma = {0.002, 0.001, 0.001}, .sigma_of_tint = {0.1, 0.1, 0.1}};
+  facts.f0_of_channels = {pipeline::F0OfChannels{{0.1, 0.08, 0.04}, {0.002, 0.001, 0.001}}, std::nullopt};
+  return facts;
+}
+
+TEST_F(GlossMaps, OfATintHaveF0OfEachChannel) {
+  ASSERT_TRUE(
+      write_gloss_maps(folder_.path(), lurex(), AlbedoScale::kAbsolute, Compression::kNone, {}, false));
+  const Result<LoadedImage> specular = read_image(folder_.path() / "specular.exr");
+  ASSERT_TRUE(specular) << specular.error().message();
+  constexpr std::array<std::array<double, 4>, 4> kExpected = {{{kTypedF0, kTypedF0, kTypedF0, kTypedF0},
+                                                               {0.1, 0.1, 0.08, 0.04},
+                                                               {0.1, 0.1, 0.08, 0.04},
+                                                               {0.06, 0.06, 0.06, 0.06}}};
+  const std::array<const char*, 4> channels = {"f0", "R", "G", "B"};
+  for (int x = 0; x < kCount; ++x) {
+    for (std::size_t c = 0; c < channels.size(); ++c)
+      EXPECT_NEAR(specular->channel(channels[c])(x, 0), kExpected[static_cast<std::size_t>(x)][c], 1e-4)
+          << channels[c] << " of pixel " << x;
+  }
+}
+
+TEST_F(GlossMaps, OfATintAreInReflectanceJsonAndInWords) {
+  const Json document = reflectance_document(lurex(), AlbedoScale::kAbsolute);
+  EXPECT_EQ(document["schema"], "weft.reflectance/1.2");
+  const Json& golden = document["clusters"][0];
+  EXPECT_EQ(golden["f0_rgb"], Json({0.1, 0.08, 0.04}));
+  EXPECT_EQ(golden["sigma"]["f0_rgb"], Json({0.002, 0.001, 0.001}));
+  EXPECT_NEAR(golden["tint"][0].get<double>(), 2, 1e-12);
+  EXPECT_FALSE(document["clusters"][1].contains("tint"));
+  EXPECT_THAT(reflectance_words(reflectance_summary(document)),
+              testing::HasSubstr("f0 0.050 (0.100 red, 0.080 green, 0.040 blue); ggx"));
+  const Json relative = reflectance_document(lurex(), AlbedoScale::kRelative);
+  EXPECT_FALSE(relative["clusters"][0].contains("f0_rgb"));
+  EXPECT_THAT(reflectance_words(reflectance_summary(relative)),
+              testing::HasSubstr("of red, green and blue 2.00, 1.60 and 0.80 times"));
+  EXPECT_FALSE(reflectance_document(satin(), AlbedoScale::kAbsolute)["clusters"][0].contains("tint"));
+}
+
 TEST_F(GlossMaps, OfARelativeAlbedoSayNothingOfF0) {
   ASSERT_TRUE(
       write_gloss_maps(folder_.path(), satin(), AlbedoScale::kRelative, Compression::kNone, {}, false));
