@@ -14,7 +14,8 @@ namespace weft::bench {
 namespace {
 
 // Of a weave and a material each.
-constexpr const char* kCloths[] = {"smooth lambert", "plain white", "deep lambert", "plain dark-satin"};
+const std::vector<std::string> kCloths = {"smooth lambert", "plain white", "deep lambert",
+                                          "plain dark-satin"};
 
 Result<std::vector<const solver::MethodName*>> levels_of(const std::vector<std::string>& names) {
   if (names.empty()) return levels_of({"standard", "robust", "reference"});
@@ -62,7 +63,8 @@ Result<Rows> level_speed(const LevelSpeedOptions& options) {
   const Result<std::vector<const solver::MethodName*>> levels = levels_of(options.methods);
   if (!levels) return levels.error();
   Rows rows;
-  for (const char* cloth : kCloths) {
+  const std::vector<std::string> cloths = options.scene.empty() ? kCloths : std::vector{options.scene};
+  for (const std::string& cloth : cloths) {
     const Result<Patch> frame = frame_of_cloth(cloth, size, threads);
     if (!frame) return frame.error();
     for (const solver::MethodName* level : *levels) {

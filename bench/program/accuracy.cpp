@@ -51,7 +51,7 @@ Result<Rows> measure(const AccuracyArguments& a, int threads) {
   if (a.chain)
     return chain_table(
         {.name = options.scene, .levels = options.methods, .seed = options.seed, .threads = threads});
-  if (a.megapixels > 0) return level_speed({a.megapixels, options.methods, threads});
+  if (a.megapixels > 0) return level_speed({a.megapixels, options.scene, options.methods, threads});
   if (a.docs.empty()) return accuracy_table(options);
   AccuracyFigures figures;
   if (!a.parts.empty()) {
