@@ -35,7 +35,8 @@ class LightField {
     Vec3 direction;       ///< l: unit, from the cloth to the light
     double strength = 0;  ///< e: reading of a white surface that faces the light; 0 behind the LED
   };
-  /// Light k (from 0) as channel c (0 red, 1 green, 2 blue) sees it at a pixel.
+  /// Light k (from 0) as channel c (0 red, 1 green, 2 blue) sees it at a pixel, or at a point of the grid up
+  /// to the first right of the frame or below it.
   Light at(std::size_t k, int c, int x, int y) const;
 
   /// A stretch of grid line blended down to a pixel row: the value at the left end of each cell and its

@@ -132,6 +132,18 @@ TEST(LightField, RowsForTheKernelsHoldWhatEveryPixelHoldsOfAnyStretch) {
   }
 }
 
+TEST(LightField, OfTheLastPointOfTheGridBesideTheFrameIsThatOfThePoint) {
+  const NearLights lights = ring(4);
+  const Result<LightField> field = LightField::make(lights, kCamera, kSize, 2);
+  ASSERT_TRUE(field) << field.error().message();
+  for (const auto& [x, y] : {std::pair(656, 0), std::pair(0, 496), std::pair(656, 496)}) {
+    const Vec3 to_led = lights.leds[2].position_mm - point_on_plane(kCamera, x, y, 2);
+    const LightField::Light light = field->at(2, 1, x, y);
+    EXPECT_LT(angle_deg(light.direction, to_led), 1e-5) << "degrees at (" << x << ", " << y << ")";
+    EXPECT_TRUE(std::isfinite(light.strength)) << light.strength;
+  }
+}
+
 TEST(LightField, OfASinglePixelOrLineWithGainIsFinite) {
   for (const Size size : {Size{1, 1}, Size{1, 100}, Size{100, 1}}) {
     const std::string said = said_by_child([&] {
