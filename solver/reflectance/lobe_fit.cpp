@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -21,7 +20,6 @@ using SharedMatrix = Eigen::Matrix<double, kLobeParameters, kLobeParameters>;
 constexpr std::size_t kChunk = 64;
 constexpr int kMostTries = 7;
 constexpr int kStepsARound = 2;
-constexpr double kSettled = 1e-6;  // of the cost: a round that wins less is the last
 // Of a principal axis: what is less is an error of rounding.
 constexpr double kLeastVariance = 1e-14;
 
@@ -96,6 +94,21 @@ void add_pixel(const LobeSamples& samples, const LobeFit& fit, const LobeParamet
   }
 }
 
+Reduced reduced(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted, int threads) {
+  const std::size_t pixels = samples.pixels();
+  std::vector<Reduced> parts((pixels + kChunk - 1) / kChunk);
+  parallel_for(parts.size(), threads, [&](std::size_t chunk, int) {
+    for (std::size_t i = chunk * kChunk; i < std::min(pixels, (chunk + 1) * kChunk); ++i)
+      add_pixel(samples, fit, fitted, i, parts[chunk]);
+  });
+  Reduced all;
+  for (const Reduced& part : parts) {
+    all.matrix += part.matrix;
+    all.gradient += part.gradient;
+  }
+  return all;
+}
+
 class SharedFit {
  public:
   SharedFit(const LobeSamples& samples, const LobeFitOptions& options)
@@ -105,17 +118,16 @@ class SharedFit {
     fit = settled(std::move(fit), options_.first_steps);
     double damping = 1e-3;
     for (int round = 0; round < options_.rounds; ++round) {
-      const Reduced sums = reduced(fit);
+      const Reduced sums = reduced(samples_, fit, options_.fitted, options_.threads);
       const std::optional<LobeFit> better = step(fit, sums, damping);
       if (!better) break;
-      const bool is_last = fit.total() - better->total() < kSettled * fit.total();
+      const bool is_last = fit.total() - better->total() < options_.settled * fit.total();
       fit = *better;
       damping = std::max(damping / 6, 1e-7);
       if (is_last) break;
     }
     const auto freedom = static_cast<double>(samples_.used()) - 3 * static_cast<double>(samples_.pixels());
     fit.chi2 = freedom > 0 ? 2 * fit.total() / freedom : 0;
-    write_covariance(fit);
     return fit;
   }
 
@@ -127,24 +139,6 @@ class SharedFit {
     fit.cost.resize(samples_.pixels());
     samples_.fit_pixels(fit.lobe, fit.yarn, steps, options_.threads, fit.b, fit.cost);
     return fit;
-  }
-
-  void for_chunks(const std::function<void(std::size_t)>& of_pixel) const {
-    const std::size_t pixels = samples_.pixels();
-    parallel_for((pixels + kChunk - 1) / kChunk, options_.threads, [&](std::size_t chunk, int) {
-      for (std::size_t i = chunk * kChunk; i < std::min(pixels, (chunk + 1) * kChunk); ++i) of_pixel(i);
-    });
-  }
-
-  Reduced reduced(const LobeFit& fit) const {
-    std::vector<Reduced> parts((samples_.pixels() + kChunk - 1) / kChunk);
-    for_chunks([&](std::size_t i) { add_pixel(samples_, fit, options_.fitted, i, parts[i / kChunk]); });
-    Reduced all;
-    for (const Reduced& part : parts) {
-      all.matrix += part.matrix;
-      all.gradient += part.gradient;
-    }
-    return all;
   }
 
   // The next values, damped until the cost falls; none where it never does.
@@ -167,30 +161,6 @@ class SharedFit {
       if (next.total() < fit.total()) return next;
     }
     return {};
-  }
-
-  void write_covariance(LobeFit& fit) const {
-    std::vector<Eigen::Index> free;
-    for (Eigen::Index p = 0; p < static_cast<Eigen::Index>(kLobeParameters); ++p) {
-      if (is_fitted(p)) free.push_back(p);
-    }
-    for (auto& row : fit.covariance) row.fill(0);
-    if (free.empty()) return;
-    const SharedMatrix matrix = reduced(fit).matrix;
-    const auto n = static_cast<Eigen::Index>(free.size());
-    Eigen::MatrixXd part(n, n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j)
-        part(i, j) = matrix(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(j)]);
-    }
-    const Eigen::MatrixXd inverse =
-        std::max(fit.chi2, 1.0) * part.completeOrthogonalDecomposition().pseudoInverse();
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index j = 0; j < n; ++j) {
-        fit.covariance[static_cast<std::size_t>(free[static_cast<std::size_t>(i)])]
-                      [static_cast<std::size_t>(free[static_cast<std::size_t>(j)])] = inverse(i, j);
-      }
-    }
   }
 
   const LobeSamples& samples_;
@@ -245,6 +215,12 @@ LobeParameters parameters_of(LobeFamily family) {
   return fitted;
 }
 
+LobeParameters parameters_of(const Lobe& lobe, bool bends) {
+  LobeParameters fitted = parameters_of(lobe.family);
+  fitted[static_cast<std::size_t>(LobeParameter::kBend)] = bends;
+  return fitted;
+}
+
 NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter) {
   const double by = parameter == LobeParameter::kF0 ? 1e-4 : 1e-3;
   Shared there = values_of(lobe);
@@ -274,6 +250,26 @@ double LobeFit::total() const {
 
 LobeFit fit_lobe(const LobeSamples& samples, LobeFit start, const LobeFitOptions& options) {
   return SharedFit(samples, options).run(std::move(start));
+}
+
+LobeCovariance covariance_of(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted,
+                             int threads) {
+  std::vector<Eigen::Index> free;
+  for (std::size_t p = 0; p < kLobeParameters; ++p) {
+    if (fitted[p]) free.push_back(static_cast<Eigen::Index>(p));
+  }
+  LobeCovariance covariance = {};
+  if (free.empty()) return covariance;
+  const Eigen::MatrixXd part = reduced(samples, fit, fitted, threads).matrix(free, free);
+  const Eigen::MatrixXd inverse =
+      std::max(fit.chi2, 1.0) * part.completeOrthogonalDecomposition().pseudoInverse();
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    for (std::size_t j = 0; j < free.size(); ++j) {
+      covariance[static_cast<std::size_t>(free[i])][static_cast<std::size_t>(free[j])] =
+          inverse(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+    }
+  }
+  return covariance;
 }
 
 }  // namespace weft::solver

@@ -60,6 +60,8 @@ using LobeCovariance = std::array<std::array<double, kLobeParameters>, kLobePara
 /// Those of a family: alpha and f0 where it has a lobe, `along` and `axis` where it has a yarn, `broad` and
 /// `broad_share` where it has two lobes.
 LobeParameters parameters_of(LobeFamily family);
+/// Of the family of a lobe, and its bend where the diffuse part `bends`.
+LobeParameters parameters_of(const Lobe& lobe, bool bends);
 
 /// A lobe with one of its values a little larger, and by how much: what slopes are taken from.
 struct NudgedLobe {
@@ -78,22 +80,25 @@ struct LobeFit {
   std::vector<double> yarn;  ///< by pixel: 0 or pi / 2, from the axis
   std::vector<double> cost;  ///< by pixel
   double chi2 = 0;           ///< twice the cost over the degrees of freedom that pixels leave
-  /// Of the fitted parameters, in their order; of a chi2 over 1 as large as the residuals say.
-  LobeCovariance covariance = {};
 
   double total() const;
 };
 
 struct LobeFitOptions {
   LobeParameters fitted = {};
-  int rounds = 10;      ///< of the shared parameters; 0: pixels alone
-  int first_steps = 5;  ///< of each pixel, before the first round
-  int threads = 0;      ///< the result does not depend on them
+  int rounds = 10;        ///< of the shared parameters; 0: pixels alone
+  double settled = 1e-6;  ///< of the cost: a round that wins less is the last
+  int first_steps = 5;    ///< of each pixel, before the first round
+  int threads = 0;        ///< the result does not depend on them
 };
 
 /// From `start`, whose b and yarn are one a pixel. Each pixel's b by Gauss-Newton for given shared values,
 /// these by Levenberg and Marquardt on what the pixels leave of the normal equations. Parameters stay within
 /// Lobe's ranges. The cost never rises.
 LobeFit fit_lobe(const LobeSamples& samples, LobeFit start, const LobeFitOptions& options);
+
+/// Of the fitted parameters of a fit, zero elsewhere; of a chi2 over 1 as large as the residuals say.
+LobeCovariance covariance_of(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted,
+                             int threads);
 
 }  // namespace weft::solver

@@ -26,7 +26,7 @@ std::vector<LobePart> measure_parts(const LobeSamples& samples, const LobeFit& f
   if (samples.pixels() == 0) return parts;
   for (std::size_t p = 0; p < kFrameParts; ++p) {
     LobeSamples of_part(samples.of(0).size());
-    LobeFit there = {fit.lobe, {}, {}, {}, 0, {}};
+    LobeFit there = {fit.lobe, {}, {}, {}, 0};
     for (std::size_t i = 0; i < samples.pixels(); ++i) {
       if (part[i] != p) continue;
       of_part.add(samples.of(i));
@@ -35,7 +35,8 @@ std::vector<LobePart> measure_parts(const LobeSamples& samples, const LobeFit& f
     }
     if (of_part.pixels() < kLeastPartPixels) continue;
     there = fit_lobe(of_part, std::move(there), {.fitted = alpha_alone, .threads = threads});
-    const double formal = std::sqrt(std::max(there.covariance[kAlphaAt][kAlphaAt], 0.0));
+    const LobeCovariance covariance = covariance_of(of_part, there, alpha_alone, threads);
+    const double formal = std::sqrt(std::max(covariance[kAlphaAt][kAlphaAt], 0.0));
     parts.push_back({p, there.lobe.alpha, std::hypot(formal, sigma_alpha), of_part.pixels()});
   }
   return parts;

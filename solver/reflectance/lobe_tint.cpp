@@ -22,6 +22,9 @@ constexpr int kTintRounds = 4, kJudgeSteps = 5;
 constexpr double kSettledTint = 0.003;
 // Of a tinted lobe: where two materials mirror in two colours one that fits neither is better than none.
 constexpr double kMostTintedChi2 = 4;
+// Pixels of green that tell whether it is worth more, the chi2 from which it is anyway, and what it must win.
+constexpr std::size_t kGreenPixels = 1000;
+constexpr double kNearlyFits = 3, kGreenWins = 0.9;
 // Of the shares of two channels that follow the second of two lobes.
 constexpr double kSplitByChannel = 0.5;
 // Standard errors of what the tint must win on left-out light.
@@ -39,12 +42,6 @@ struct Channel {
   LobeFit fit;  // its lobe without a tint
 };
 using Channels = std::array<Channel, 3>;
-
-LobeParameters form_of(const Lobe& lobe, bool bends) {
-  LobeParameters fitted = parameters_of(lobe.family);
-  fitted[static_cast<std::size_t>(LobeParameter::kBend)] = bends;
-  return fitted;
-}
 
 // Of the readings of one channel the albedo, where the normal is known.
 double albedo_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, double yarn) {
@@ -293,7 +290,7 @@ Material part_of(const Material& all, const std::vector<std::size_t>& numbers) {
 
 LobeFit settled_with(const Material& material, const Lobe& lobe, int threads) {
   const std::vector<double> along(material.start.size(), 0.0);
-  LobeFit fit = with_better_yarns(material.samples, {lobe, material.start, along, {}, 0, {}}, threads);
+  LobeFit fit = with_better_yarns(material.samples, {lobe, material.start, along, {}, 0}, threads);
   try_other_starts(material.samples, threads, fit);
   return fit;
 }
@@ -317,7 +314,7 @@ class TintSearch {
       fit.lobe.tint = tint->tint;
       fit = with_better_yarns(material.samples, std::move(fit), options_.threads);
       fit = fit_lobe(material.samples, std::move(fit),
-                     {.fitted = form_of(fit.lobe, bends), .threads = options_.threads});
+                     {.fitted = parameters_of(fit.lobe, bends), .threads = options_.threads});
       const std::array<double, 3> before = tint->tint;
       tint = measure_tint(fit, bends, material.channels, options_);
       double moved = 0;
@@ -355,11 +352,22 @@ class TintSearch {
     return lobes;
   }
 
-  // What green alone says, where the channels of a mosaic may have kept each other from one lobe.
+  // Whether the channels of a mosaic may have kept each other from one lobe: where the best one for all fits
+  // nearly, green alone must follow it better.
+  bool may_shine_in_green(const MeasuredLobe& of_all) const {
+    const LobeCandidate& best = *std::ranges::min_element(of_all.candidates, {}, &LobeCandidate::chi2);
+    if (best.chi2 > kNearlyFits) return true;
+    const Material few = green(kGreenPixels);
+    const LobeFit fit =
+        fit_lobe(few.samples, settled_with(few, best.lobe, options_.threads),
+                 {.fitted = parameters_of(best.lobe, best.lobe.bend != 0), .threads = options_.threads});
+    return fit.chi2 < kGreenWins * best.chi2;
+  }
+
+  // What green alone says.
   std::vector<MeasuredLobe> of_green() const {
-    std::vector<Vec3> start;
-    for (const std::size_t number : all_.channels.pixel[1]) start.push_back(all_.start[number]);
-    return measure_materials(all_.channels.of[1], start, options_.threads);
+    const Material all = green(all_.start.size());
+    return measure_materials(all.samples, all.start, options_.threads);
   }
 
   // Two lobes that are those of two channels rather than of two materials.
@@ -379,6 +387,14 @@ class TintSearch {
   bool is_mosaic() const { return is_mosaic_; }
 
  private:
+  // At most so many pixels of green.
+  Material green(std::size_t count) const {
+    const LobeSamples& of = all_.channels.of[1];
+    Material some = {of.first(count), {}, ChannelSamples(of.lights(), of.states())};
+    for (std::size_t i = 0; i < some.samples.pixels(); ++i)
+      some.start.push_back(all_.start[all_.channels.pixel[1][i]]);
+    return some;
+  }
   std::array<LobeFit, 2> fits_of(const std::vector<MeasuredLobe>& two) const {
     return {settled_with(all_, two[0].lobe, options_.threads),
             settled_with(all_, two[1].lobe, options_.threads)};
@@ -392,7 +408,7 @@ class TintSearch {
 
   std::pair<Material, LobeFit> side_of(const std::array<LobeFit, 2>& fits, std::size_t side) const {
     std::vector<std::size_t> numbers;
-    LobeFit fit = {fits[side].lobe, {}, {}, {}, 0, {}};
+    LobeFit fit = {fits[side].lobe, {}, {}, {}, 0};
     for (std::size_t i = 0; i < all_.start.size(); ++i) {
       if ((fits[1].cost[i] < fits[0].cost[i]) != (side == 1)) continue;
       numbers.push_back(i);
@@ -412,7 +428,7 @@ class TintSearch {
     found.lobe.tint = found.fit.lobe.tint = held.tint;
     const std::optional<Channels> channels = fitted_channels(found.fit, material.channels, options_.threads);
     if (!channels) return {};
-    LobeTint tint = tint_of(*channels, form_of(found.lobe, bends), options_);
+    LobeTint tint = tint_of(*channels, parameters_of(found.lobe, bends), options_);
     if (!is_off(tint) || !predicts_better(*channels, found.lobe, options_.threads)) return {};
     tint.tint = held.tint;
     tint.f0 = f0_by_channel(found.lobe);
@@ -463,7 +479,7 @@ std::optional<LobeTint> measure_tint(const LobeFit& fit, bool bends, const Chann
                                      const TintOptions& options) {
   const std::optional<Channels> channels = fitted_channels(fit, samples, options.threads);
   if (!channels) return {};
-  return tint_of(*channels, form_of(fit.lobe, bends), options);
+  return tint_of(*channels, parameters_of(fit.lobe, bends), options);
 }
 
 bool is_off(const LobeTint& tint) {
@@ -482,8 +498,8 @@ void find_tints(const LobeSamples& samples, const std::vector<Vec3>& start, cons
   }
   const TintSearch search({samples, start, channels}, options);
   std::vector<MeasuredLobe> found;
-  if (search.is_mosaic() &&
-      (!first.is_measured() || (lobes.size() > 1 && search.is_split_by_channel(lobes)))) {
+  if (search.is_mosaic() && (first.is_measured() ? lobes.size() > 1 && search.is_split_by_channel(lobes)
+                                                 : search.may_shine_in_green(first))) {
     std::vector<MeasuredLobe> of_green = search.of_green();
     // Two of green are those of all.
     if (of_green.front().is_measured() && (of_green.size() == 1 || !first.is_measured()))

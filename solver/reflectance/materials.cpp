@@ -23,6 +23,8 @@ const Lobe kSharp = {.family = LobeFamily::kGgx, .alpha = 0.15, .f0 = 0.05};
 const Lobe kBroad = {.family = LobeFamily::kGgx, .alpha = 0.45, .f0 = 0.05};
 // Pixels that may still change sides once it is settled.
 constexpr double kSettledShare = 0.01;
+// Of the cost: what a round of a fit must win that only tells sides.
+constexpr double kSettledCost = 1e-3;
 
 // Where materials fade into each other at most so many pixels are left to neither: those that are worst
 // explained, by a cost over their degrees of freedom from kMixedFrom on.
@@ -51,7 +53,7 @@ bool is_explained(const MeasuredLobe& measured) {
 // Pixels where a lobe leaves them: of both yarns and of all starts the cheapest.
 LobeFit settled(const LobeSamples& samples, const std::vector<Vec3>& start, const Lobe& lobe, int threads) {
   LobeFit fit =
-      with_better_yarns(samples, {lobe, start, std::vector<double>(start.size(), 0.0), {}, 0, {}}, threads);
+      with_better_yarns(samples, {lobe, start, std::vector<double>(start.size(), 0.0), {}, 0}, threads);
   try_other_starts(samples, threads, fit);
   return fit;
 }
@@ -171,8 +173,9 @@ class Splitter {
     std::optional<LobeFit> best;
     for (const Lobe& first : {near, kSharp, kBroad}) {
       if (!first.shines()) continue;
-      LobeFit fit = fit_lobe(group.samples, settled(group.samples, group.start, first, threads_),
-                             {.fitted = parameters_of(first.family), .threads = threads_});
+      LobeFit fit =
+          fit_lobe(group.samples, settled(group.samples, group.start, first, threads_),
+                   {.fitted = parameters_of(first.family), .settled = kSettledCost, .threads = threads_});
       if (!best || fit.total() < best->total()) best = std::move(fit);
     }
     return best->lobe;

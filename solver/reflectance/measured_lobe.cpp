@@ -28,16 +28,13 @@ constexpr std::size_t kStartPixels = 300;
 // Where GGX costs so many times what another family does two lobes of it are not what is missing.
 constexpr double kFarFromGgx = 3;
 constexpr int kRounds = 15;
+// Of the cost: what a round of a fit must win that only decides where to begin.
+constexpr double kToChoose = 1e-3;
 constexpr int kMostRestarts = 4, kYarnRounds = 3;
 constexpr double kMovedShare = 0.002;  // pixels that still find another valley
 constexpr double kMovedCost = 0.5;     // what a pixel must win to count as moved
 constexpr double kUndecided = 0.05;    // of the cost
 constexpr int kStartSteps = 5;
-
-LobeParameters with_bend(LobeParameters fitted) {
-  fitted[static_cast<std::size_t>(LobeParameter::kBend)] = true;
-  return fitted;
-}
 
 bool has_yarn(const Lobe& lobe) {
   return lobe.family == LobeFamily::kAnisotropicGgx;
@@ -101,7 +98,7 @@ class Trial {
                           .f0 = kStartTwoF0 * one.f0,
                           .broad = std::min(broader * one.alpha, 1.0),
                           .broad_share = kStartShare};
-      LobeFit fit = fit_lobe(first, unfitted(start, first_b), options(fitted));
+      LobeFit fit = fit_lobe(first, unfitted(start, first_b), options(fitted, kToChoose));
       if (!best || fit.total() < best->total()) best = std::move(fit);
     }
     return canonical(restarted(fit_lobe(samples_, unfitted(best->lobe, settled.b), options(fitted)), fitted));
@@ -109,29 +106,29 @@ class Trial {
 
   // The same family with a diffuse part that may bend.
   LobeFit bent(const LobeFit& straight) const {
-    const LobeParameters fitted = with_bend(parameters_of(straight.lobe.family));
+    const LobeParameters fitted = parameters_of(straight.lobe, true);
     return restarted(fit_lobe(samples_, straight, options(fitted)), fitted);
   }
 
   // A lobe that was found on other pixels of the material, from where they begin.
   LobeFit refined(const Lobe& lobe) const {
-    LobeParameters fitted = parameters_of(lobe.family);
-    if (lobe.bend != 0) fitted = with_bend(fitted);
+    const LobeParameters fitted = parameters_of(lobe, lobe.bend != 0);
     LobeFit fit = unfitted(lobe);
     if (has_yarn(lobe)) fit = with_better_yarns(samples_, std::move(fit), threads_);
     return canonical(restarted(fit_lobe(samples_, std::move(fit), options(fitted)), fitted));
   }
 
  private:
-  LobeFitOptions options(LobeParameters fitted) const {
-    return {.fitted = fitted, .rounds = kRounds, .threads = threads_};
+  LobeFitOptions options(LobeParameters fitted, double settled = LobeFitOptions().settled) const {
+    return {.fitted = fitted, .rounds = kRounds, .settled = settled, .threads = threads_};
   }
 
   // Each pixel's yarn is the one of the two that costs it less.
   LobeFit with_yarns(LobeFit fit) const {
     for (int round = 0; round < kYarnRounds; ++round) {
       fit = with_better_yarns(samples_, std::move(fit), threads_);
-      fit = fit_lobe(samples_, std::move(fit), options(parameters_of(LobeFamily::kAnisotropicGgx)));
+      fit =
+          fit_lobe(samples_, std::move(fit), options(parameters_of(LobeFamily::kAnisotropicGgx), kToChoose));
     }
     return fit;
   }
@@ -174,7 +171,7 @@ class Trial {
   LobeFit unfitted(const Lobe& lobe) const { return unfitted(lobe, start_); }
   LobeFit unfitted(Lobe lobe, const std::vector<Vec3>& start) const {
     lobe.tint = tint_;
-    return {lobe, start, std::vector<double>(start.size(), 0.0), {}, 0, {}};
+    return {lobe, start, std::vector<double>(start.size(), 0.0), {}, 0};
   }
 
   const LobeSamples& samples_;
@@ -223,8 +220,7 @@ void set_covariance(const LobeCovariance& covariance, MeasuredLobe& measured) {
 
 // `rivals`: the same family with or without the bend, whichever was not taken, and other families that
 // explain the readings as well. Half of what they differ by is the least sigma; correlations are the fit's.
-void write_sigmas(const std::vector<Lobe>& rivals, MeasuredLobe& measured) {
-  LobeCovariance covariance = measured.fit.covariance;
+void write_sigmas(LobeCovariance covariance, const std::vector<Lobe>& rivals, MeasuredLobe& measured) {
   const Lobe& lobe = measured.lobe;
   const auto widen = [&](LobeParameter parameter, double least) {
     const double formal = sigma_of(covariance, parameter);
@@ -367,9 +363,7 @@ MeasuredLobe refused(LobeRefusal why, MeasuredLobe measured) {
 }
 
 // What is said of a lobe beside its values.
-void describe(const LobeSamples& samples, bool bends, MeasuredLobe& measured) {
-  LobeParameters fitted = parameters_of(measured.lobe.family);
-  if (bends) fitted = with_bend(fitted);
+void describe(const LobeSamples& samples, const LobeParameters& fitted, MeasuredLobe& measured) {
   measured.by_lights = LobeByLights(samples, measured.fit, fitted);
   add_drift(measured);
   measured.half_deg = half_angles(samples, measured.fit);
@@ -473,9 +467,10 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   if (!measured.is_measured()) return measured;
   measured.fit = std::move(refined);
   measured.lobe = measured.fit.lobe;
-  write_sigmas(rivals, measured);
+  const LobeParameters fitted = parameters_of(measured.lobe, bends);
+  write_sigmas(covariance_of(samples, measured.fit, fitted, threads), rivals, measured);
   if (!is_certain(measured)) return refused(LobeRefusal::kUncertain, std::move(measured));
-  describe(samples, bends, measured);
+  describe(samples, fitted, measured);
   return measured;
 }
 
@@ -506,9 +501,11 @@ std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const 
   measured.candidates.push_back({bent.lobe, bent.chi2});
   measured.lobe = refined.lobe;
   measured.fit = std::move(refined);
-  write_sigmas({bends ? straight.lobe : bent.lobe}, measured);
+  const LobeParameters fitted = parameters_of(measured.lobe, bends);
+  write_sigmas(covariance_of(samples, measured.fit, fitted, threads), {bends ? straight.lobe : bent.lobe},
+               measured);
   if (!is_certain_of_two(measured)) return {};
-  describe(samples, bends, measured);
+  describe(samples, fitted, measured);
   return measured;
 }
 

@@ -17,7 +17,7 @@ constexpr std::size_t kFew = 300;
 const Lobe kSteel = {.family = LobeFamily::kGgx, .alpha = 0.25, .f0 = 0.05};
 
 LobeFit fitted_to(const PixelTruth& cloth) {
-  const LobeFit start = {kSteel, cloth.b, cloth.yarn, {}, 0, {}};
+  const LobeFit start = {kSteel, cloth.b, cloth.yarn, {}, 0};
   return fit_lobe(cloth.samples, start, {.fitted = parameters_of(kSteel.family), .rounds = 20, .threads = 1});
 }
 

@@ -40,7 +40,7 @@ Quarters quarters_of(const Lobe& lobe, const std::array<double, kFrameParts>& fa
     quarters.cloth.yarn.push_back(0);
     quarters.part.push_back(i % kFrameParts);
   }
-  quarters.fit = fit_lobe(quarters.cloth.samples, {lobe, quarters.cloth.b, quarters.cloth.yarn, {}, 0, {}},
+  quarters.fit = fit_lobe(quarters.cloth.samples, {lobe, quarters.cloth.b, quarters.cloth.yarn, {}, 0},
                           {.fitted = parameters_of(lobe.family), .threads = 1});
   return quarters;
 }
