@@ -112,6 +112,20 @@ double modelled(const Blend& blend, Vec3 b, const LitFrom& from, double yarn) {
   return (1 - blend.second_share) * first + blend.second_share * second;
 }
 
+std::optional<double> albedo_beneath(const Blend& blend, std::span<const LobeReading> readings, Vec3 normal,
+                                     double yarn) {
+  double of_readings = 0, of_all = 0;
+  for (const LobeReading& r : readings) {
+    if (r.weight == 0) continue;
+    const double shine = std::max(0.0, dot(normal, r.from.light)) * specular(blend, normal, r.from, yarn);
+    const double diffuse = modelled(blend, normal, r.from, yarn) - shine;
+    of_readings += r.weight * diffuse * (r.x - shine);
+    of_all += r.weight * diffuse * diffuse;
+  }
+  if (!(of_all > 0)) return {};
+  return of_readings / of_all;
+}
+
 BlendFit fit_blend(const Lobe& first, const Lobe& second, std::span<const LobeReading> readings, Vec3 start,
                    double yarn) {
   const Joint joint = joint_fit({first, second, 0.5}, readings, start, yarn);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "core/status_blend.h"
@@ -21,6 +22,11 @@ struct Blend {
 /// As of one lobe.
 double specular(const Blend& blend, Vec3 normal, const LitFrom& from, double yarn);
 double modelled(const Blend& blend, Vec3 b, const LitFrom& from, double yarn);
+
+/// The albedo that readings leave once what shines is taken off them, where the normal is known, by least
+/// squares; none where no reading is lit.
+std::optional<double> albedo_beneath(const Blend& blend, std::span<const LobeReading> readings, Vec3 normal,
+                                     double yarn);
 
 /// A blend costs at most this of what the better of the two materials does: it has a share to turn.
 inline constexpr double kBlendCosts = 0.5;

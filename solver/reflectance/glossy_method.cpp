@@ -229,7 +229,7 @@ class GlossyTile {
   }
 
   // Of RGB with its readings in readings_.
-  void write_pixel(const SolvedPixel& pixel) const {
+  void write_pixel(const SolvedPixel& pixel) {
     const int x = pixel.at.x, y = pixel.at.y;
     const BlendVariances& v = pixel.variances;
     const double rho = length(pixel.b);
@@ -261,26 +261,20 @@ class GlossyTile {
 
   // Albedo of one plane of RGB over that of the weighted sum: what its readings leave once the lobe, which
   // has the tint of its f0, is taken off.
-  double plane_share(const SolvedPixel& pixel, const Blend& by, std::size_t plane) const {
-    const Vec3 n = normalized(pixel.b);
-    double of_plane = 0, of_all = 0;
-    for (std::size_t k = 0; k < readings_.size(); ++k) {
-      LobeReading r = readings_[k];
-      if (r.weight == 0) continue;
-      r.from.channel = static_cast<int>(plane);
+  double plane_share(const SolvedPixel& pixel, const Blend& by, std::size_t plane) {
+    of_plane_ = readings_;
+    for (std::size_t k = 0; k < of_plane_.size(); ++k) {
       const std::size_t lights = input_.field->count(), i_of_state = 3 * (k % lights) + plane;
       const double strength = input_.field
                                   ->at(k % lights, static_cast<int>(plane), input_.tile.x0 + pixel.at.x,
                                        input_.tile.y0 + pixel.at.y)
                                   .strength;
       const auto& state = k < lights ? input_.readings : input_.parallel;
-      const double reading = state[i_of_state](pixel.at.x, pixel.at.y) / strength;
-      const double shine = std::max(0.0, dot(n, r.from.light)) * specular(by, n, r.from, pixel.yarn);
-      const double diffuse = modelled(by, pixel.b, r.from, pixel.yarn) - shine;
-      of_plane += r.weight * diffuse * (reading - shine);
-      of_all += r.weight * diffuse * diffuse;
+      of_plane_[k].x = state[i_of_state](pixel.at.x, pixel.at.y) / strength;
+      of_plane_[k].from.channel = static_cast<int>(plane);
     }
-    return of_all > 0 ? std::max(0.0, of_plane / of_all) : 1;
+    const std::optional<double> albedo = albedo_beneath(by, of_plane_, normalized(pixel.b), pixel.yarn);
+    return albedo ? std::max(0.0, *albedo / length(pixel.b)) : 1;
   }
 
   const std::vector<KnownLobe>& lobes_;
@@ -289,7 +283,7 @@ class GlossyTile {
   LobeRows rows_;
   Group row_;
   std::array<std::unique_ptr<Group>, kStages> again_;  // pixels that other starts are tried on
-  std::vector<LobeReading> readings_;
+  std::vector<LobeReading> readings_, of_plane_;
 };
 
 class Glossy : public Method {

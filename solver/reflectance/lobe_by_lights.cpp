@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/reflectance/reading_slopes.h"
+
 namespace weft::solver {
 namespace {
 
@@ -12,16 +14,8 @@ constexpr std::size_t kMostPixels = 1000;
 // Step of a light's direction that slopes are taken from.
 constexpr double kLightTurn = 1e-5;
 
-using Values = Eigen::Matrix<double, kLobeParameters, 1>;
-using ValuesMatrix = Eigen::Matrix<double, kLobeParameters, kLobeParameters>;
-
-// Slopes of one reading.
-struct Slopes {
-  double weight = 0;
-  Vec3 by_b;
-  Values by_values = Values::Zero();
-  std::array<double, LobeByLights::kErrors> by_errors = {};
-};
+constexpr int kValues = kLobeParameters;
+using Slopes = ReadingSlopes<kValues>;
 
 class Slope {
  public:
@@ -43,13 +37,7 @@ class Slope {
       slopes.by_values[static_cast<Eigen::Index>(p)] =
           (modelled(nudged_[p].lobe, b, r.from, yarn) - m.x) / nudged_[p].by;
     }
-    slopes.by_errors[0] = m.x;
-    const std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      LitFrom turned(normalized(r.from.light + kLightTurn * axes[axis]), r.from.view, r.from.lobe_share);
-      turned.channel = r.from.channel;
-      slopes.by_errors[1 + axis] = (modelled(fit_.lobe, b, turned, yarn) - m.x) / kLightTurn;
-    }
+    slopes.by_errors = slopes_by_errors(fit_.lobe, r, b, yarn, m.x);
     return slopes;
   }
 
@@ -61,42 +49,39 @@ class Slope {
 
 }  // namespace
 
+std::array<double, LobeByLights::kErrors> slopes_by_errors(const Lobe& lobe, const LobeReading& reading,
+                                                           Vec3 b, double yarn, double of_model) {
+  std::array<double, LobeByLights::kErrors> slopes = {of_model};
+  const std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+  const LitFrom& from = reading.from;
+  for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+    LitFrom turned(normalized(from.light + kLightTurn * axes[axis]), from.view, from.lobe_share);
+    turned.channel = from.channel;
+    slopes[1 + axis] = (modelled(lobe, b, turned, yarn) - of_model) / kLightTurn;
+  }
+  return slopes;
+}
+
 LobeByLights::LobeByLights(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted) {
   const std::size_t pixels = samples.pixels(), lights = samples.lights();
   const std::size_t readings_of_pixel = lights * samples.states();
   const Slope slope(fit, fitted);
-  ValuesMatrix information = ValuesMatrix::Zero();
-  Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(kLobeParameters),
-                                                static_cast<Eigen::Index>(kErrors * lights));
+  Eigen::Matrix<double, kValues, kValues> information = Eigen::Matrix<double, kValues, kValues>::Zero();
+  Eigen::MatrixXd mixed = Eigen::MatrixXd::Zero(kValues, static_cast<Eigen::Index>(kErrors * lights));
   std::vector<Slopes> slopes(readings_of_pixel);
   const std::size_t count = std::min(pixels, kMostPixels);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pixel = i * pixels / count;
     const auto readings = samples.of(pixel);
-    PixelSystem system;
-    std::array<Vec3, kLobeParameters> by_both = {};
-    for (std::size_t k = 0; k < readings_of_pixel; ++k) {
-      slopes[k] = {};
-      if (readings[k].weight == 0) continue;
-      slopes[k] = slope.of(readings[k], pixel);
-      const Slopes& s = slopes[k];
-      system.add(s.by_b, s.weight, 0);
-      for (std::size_t p = 0; p < kLobeParameters; ++p)
-        by_both[p] = by_both[p] + (s.weight * s.by_values[static_cast<Eigen::Index>(p)]) * s.by_b;
-    }
-    system.regularise();
-    for (Vec3& each : by_both) each = system.solved(each);
+    for (std::size_t k = 0; k < readings_of_pixel; ++k)
+      slopes[k] = readings[k].weight > 0 ? slope.of(readings[k], pixel) : Slopes();
+    take_out_pixel(std::span(slopes));
     for (std::size_t k = 0; k < readings_of_pixel; ++k) {
       const Slopes& s = slopes[k];
-      if (s.weight == 0) continue;
-      // What the pixel's own normal and albedo do not take up.
-      Values left = s.by_values;
-      for (std::size_t p = 0; p < kLobeParameters; ++p)
-        left[static_cast<Eigen::Index>(p)] -= dot(by_both[p], s.by_b);
-      information += s.weight * left * left.transpose();
+      information += s.weight * s.by_values * s.by_values.transpose();
       for (std::size_t e = 0; e < kErrors; ++e)
         mixed.col(static_cast<Eigen::Index>(kErrors * (k % lights) + e)) +=
-            (s.weight * s.by_errors[e]) * left;
+            (s.weight * s.by_errors[e]) * s.by_values;
     }
   }
   const Eigen::MatrixXd change =
@@ -114,7 +99,7 @@ LobeCovariance LobeByLights::covariance_of(std::span<const double> errors) const
   Eigen::MatrixXd change(static_cast<Eigen::Index>(kLobeParameters), n);
   for (std::size_t p = 0; p < kLobeParameters; ++p)
     change.row(static_cast<Eigen::Index>(p)) = Eigen::Map<const Eigen::RowVectorXd>(change_[p].data(), n);
-  const ValuesMatrix values = change * of_errors * change.transpose();
+  const Eigen::Matrix<double, kValues, kValues> values = change * of_errors * change.transpose();
   LobeCovariance covariance;
   for (std::size_t p = 0; p < kLobeParameters; ++p) {
     for (std::size_t q = 0; q < kLobeParameters; ++q)

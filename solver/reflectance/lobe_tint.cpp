@@ -8,8 +8,10 @@
 #include <optional>
 #include <utility>
 
+#include "solver/reflectance/blend.h"
 #include "solver/reflectance/lobe_by_lights.h"
 #include "solver/reflectance/materials.h"
+#include "solver/reflectance/reading_slopes.h"
 
 namespace weft::solver {
 namespace {
@@ -33,7 +35,9 @@ constexpr double kWinsBy = 3;
 // Values of the form, as LobeParameter has them but for f0, and then three f0.
 constexpr std::array<LobeParameter, 4> kForm = {LobeParameter::kLogAlpha, LobeParameter::kLogAlong,
                                                 LobeParameter::kAxis, LobeParameter::kBend};
-constexpr std::size_t kTintValues = kForm.size() + 3;
+// Of the albedo of all channels where a channel seems to have none.
+constexpr double kLeastChannel = 1e-3;
+constexpr int kTintValues = static_cast<int>(kForm.size()) + 3;
 using TintVector = Eigen::Matrix<double, kTintValues, 1>;
 using TintMatrix = Eigen::Matrix<double, kTintValues, kTintValues>;
 
@@ -42,21 +46,6 @@ struct Channel {
   LobeFit fit;  // its lobe without a tint
 };
 using Channels = std::array<Channel, 3>;
-
-// Of the readings of one channel the albedo, where the normal is known.
-double albedo_of(const Lobe& lobe, std::span<const LobeReading> readings, Vec3 b, double yarn) {
-  const Vec3 n = normalized(b);
-  double of_channel = 0, of_all = 0;
-  for (const LobeReading& r : readings) {
-    if (r.weight == 0) continue;
-    const double shine = std::max(0.0, dot(n, r.from.light)) * specular(lobe, n, r.from, yarn);
-    const double diffuse = modelled(lobe, n, r.from, yarn) - shine;
-    of_channel += r.weight * diffuse * (r.x - shine);
-    of_all += r.weight * diffuse * diffuse;
-  }
-  const double albedo = of_all > 0 ? of_channel / of_all : 0;
-  return albedo > 0 ? albedo : 1e-3 * length(b);
-}
 
 // Evenly taken from all that have readings, each where `fit` has it.
 Channel channel_of(const LobeFit& fit, const ChannelSamples& all, std::size_t c) {
@@ -76,7 +65,8 @@ Channel channel_of(const LobeFit& fit, const ChannelSamples& all, std::size_t c)
     const Vec3 b = fit.b[number];
     const double yarn = fit.yarn[number];
     channel.samples.add(of.of(at));
-    channel.fit.b.push_back(albedo_of(lobe, of.of(at), b, yarn) * normalized(b));
+    const std::optional<double> albedo = albedo_beneath({lobe, {}, 0}, of.of(at), normalized(b), yarn);
+    channel.fit.b.push_back(albedo.value_or(0) > 0 ? *albedo * normalized(b) : kLeastChannel * b);
     channel.fit.yarn.push_back(yarn);
   }
   return channel;
@@ -100,10 +90,9 @@ class TintEquations {
  public:
   TintEquations(const Channels& channels, const LobeParameters& form)
       : form_(form), lights_(channels.front().samples.lights()) {
-    constexpr auto kAll = static_cast<Eigen::Index>(kTintValues);
     const auto lights = static_cast<Eigen::Index>(lights_);
-    mixed_ = Eigen::MatrixXd::Zero(kAll, static_cast<Eigen::Index>(LobeByLights::kErrors) * lights);
-    for (Eigen::MatrixXd& colour : coloured_) colour = Eigen::MatrixXd::Zero(kAll, lights);
+    mixed_ = Eigen::MatrixXd::Zero(kTintValues, static_cast<Eigen::Index>(LobeByLights::kErrors) * lights);
+    for (Eigen::MatrixXd& colour : coloured_) colour = Eigen::MatrixXd::Zero(kTintValues, lights);
     double cost = 0, freedom = 0;
     for (std::size_t c = 0; c < channels.size(); ++c) {
       const Channel& channel = channels[c];
@@ -137,15 +126,9 @@ class TintEquations {
   }
 
  private:
-  struct Slopes {
-    double weight = 0;
-    Vec3 by_b;
-    TintVector by_values = TintVector::Zero();
-    std::array<double, LobeByLights::kErrors> by_errors = {};
-  };
+  using Slopes = ReadingSlopes<kTintValues>;
 
   Slopes slopes_of(const Channel& channel, std::size_t c, const LobeReading& r, std::size_t pixel) const {
-    constexpr double kTintTurn = 1e-5;
     const Lobe& lobe = channel.fit.lobe;
     const Vec3 b = channel.fit.b[pixel];
     const double yarn = channel.fit.yarn[pixel];
@@ -162,43 +145,25 @@ class TintEquations {
         s.by_values[static_cast<Eigen::Index>(p)] = slope_by(kForm[p]);
     }
     s.by_values[static_cast<Eigen::Index>(kForm.size() + c)] = slope_by(LobeParameter::kF0);
-    s.by_errors[0] = m.x;
-    const std::array<Vec3, 3> axes = {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
-    for (std::size_t axis = 0; axis < axes.size(); ++axis) {
-      const LitFrom turned(normalized(r.from.light + kTintTurn * axes[axis]), r.from.view, r.from.lobe_share);
-      s.by_errors[1 + axis] = (modelled(lobe, b, turned, yarn) - m.x) / kTintTurn;
-    }
+    s.by_errors = slopes_by_errors(lobe, r, b, yarn, m.x);
     return s;
   }
 
   void add(const Channel& channel, std::size_t c, std::size_t pixel) {
     const auto readings = channel.samples.of(pixel);
     std::vector<Slopes> slopes(readings.size());
-    PixelSystem system;
-    std::array<Vec3, kTintValues> by_both = {};
     for (std::size_t k = 0; k < readings.size(); ++k) {
-      if (readings[k].weight == 0) continue;
-      slopes[k] = slopes_of(channel, c, readings[k], pixel);
-      const Slopes& s = slopes[k];
-      system.add(s.by_b, s.weight, 0);
-      for (std::size_t p = 0; p < kTintValues; ++p)
-        by_both[p] = by_both[p] + (s.weight * s.by_values[static_cast<Eigen::Index>(p)]) * s.by_b;
+      if (readings[k].weight > 0) slopes[k] = slopes_of(channel, c, readings[k], pixel);
     }
-    system.regularise();
-    for (Vec3& each : by_both) each = system.solved(each);
+    take_out_pixel(std::span(slopes));
     for (std::size_t k = 0; k < readings.size(); ++k) {
       const Slopes& s = slopes[k];
-      if (s.weight == 0) continue;
-      // What the pixel's own normal and albedo do not take up.
-      TintVector left = s.by_values;
-      for (std::size_t p = 0; p < kTintValues; ++p)
-        left[static_cast<Eigen::Index>(p)] -= dot(by_both[p], s.by_b);
-      information_ += s.weight * left * left.transpose();
+      information_ += s.weight * s.by_values * s.by_values.transpose();
       const std::size_t light = k % lights_;
       for (std::size_t e = 0; e < LobeByLights::kErrors; ++e)
         mixed_.col(static_cast<Eigen::Index>(LobeByLights::kErrors * light + e)) +=
-            (s.weight * s.by_errors[e]) * left;
-      coloured_[c].col(static_cast<Eigen::Index>(light)) += (s.weight * s.by_errors[0]) * left;
+            (s.weight * s.by_errors[e]) * s.by_values;
+      coloured_[c].col(static_cast<Eigen::Index>(light)) += (s.weight * s.by_errors[0]) * s.by_values;
     }
   }
 
