@@ -2,6 +2,7 @@
 #include "pipeline/gloss_samples.h"
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "core/parallel.h"
@@ -21,12 +22,19 @@ namespace {
 // A prime: pixel i times it meets every pixel once.
 constexpr std::size_t kFarApart = 2654435761U;
 
+// The rows of a tile that pixels are taken of.
+std::vector<Rect> taken_rows(Rect tile, int step) {
+  std::vector<Rect> rows;
+  for (int y = tile.y0; y < tile.y1; y += step) rows.push_back({tile.x0, y, tile.x1, y + 1});
+  return rows;
+}
+
 // Takes pixels of one sample tile after another; one a worker.
 class Sampler {
  public:
   Sampler(const Photographs& photographs, const solver::Method& base, const LightCorrection* correction,
           int step)
-      : reader_(photographs, {.width = solver::kSampleTile, .height = solver::kSampleTile}),
+      : reader_(photographs, {.width = solver::kSampleTile, .height = 1}),
         base_(base),
         correction_(correction),
         step_(step),
@@ -34,30 +42,32 @@ class Sampler {
         sight_(sight_of(photographs)) {}
 
   void take(Rect tile, GlossSamples& samples) {
-    solver::TileInput input = reader_.read(tile);
+    for (const Rect& row : taken_rows(tile, step_)) take_row(row, samples);
+  }
+
+ private:
+  void take_row(Rect row, GlossSamples& samples) {
+    solver::TileInput input = reader_.read(row);
     // Light from the cloth itself is taken off, and shadows are marked.
     if (correction_ != nullptr) corrected_.apply(*correction_, input);
     const SampleMaps maps = solve_sample(input, base_);
     solver::LobeReader reader(input, sight_);
     std::vector<solver::LobeReading> readings(reader.count()), of_plane(reader.count());
-    for (int y = 0; y < tile.height(); y += step_) {
-      for (int x = 0; x < tile.width(); x += step_) {
-        if (maps.status(x, y) & (kNoSolution | kDark)) continue;
-        reader.read(x, y, readings);
-        if (solver::used_of(readings) < solver::kLeastLobeReadings) continue;
-        samples.readings.insert(samples.readings.end(), readings.begin(), readings.end());
-        for (std::size_t p = 0; p < samples.planes.size() && input.planes == 3; ++p) {
-          reader.read_plane(x, y, static_cast<int>(p), readings, of_plane);
-          samples.planes[p].insert(samples.planes[p].end(), of_plane.begin(), of_plane.end());
-        }
-        samples.start.push_back(static_cast<double>(maps.albedo(x, y)) *
-                                Vec3{maps.normal(x, y, 0), maps.normal(x, y, 1), maps.normal(x, y, 2)});
-        samples.part.push_back(part_of(tile.x0 + x, tile.y0 + y));
+    for (int x = 0; x < row.width(); x += step_) {
+      if (maps.status(x, 0) & (kNoSolution | kDark)) continue;
+      reader.read(x, 0, readings);
+      if (solver::used_of(readings) < solver::kLeastLobeReadings) continue;
+      samples.readings.insert(samples.readings.end(), readings.begin(), readings.end());
+      for (std::size_t p = 0; p < samples.planes.size() && input.planes == 3; ++p) {
+        reader.read_plane(x, 0, static_cast<int>(p), readings, of_plane);
+        samples.planes[p].insert(samples.planes[p].end(), of_plane.begin(), of_plane.end());
       }
+      samples.start.push_back(static_cast<double>(maps.albedo(x, 0)) *
+                              Vec3{maps.normal(x, 0, 0), maps.normal(x, 0, 1), maps.normal(x, 0, 2)});
+      samples.part.push_back(part_of(row.x0 + x, row.y0));
     }
   }
 
- private:
   std::size_t part_of(int x, int y) const {
     return (2 * y < frame_.height ? 0U : 2U) + (2 * x < frame_.width ? 0U : 1U);
   }
@@ -97,8 +107,10 @@ Result<GlossSamples> sample_gloss(const Photographs& photographs, const solver::
     while (end < tiles.size() && tiles[end].y0 == tiles[begin].y0) ++end;
     if (correction != nullptr) {
       const Rect rows = {0, tiles[begin].y0, photographs.size.width, tiles[begin].y1};
-      const std::span<const Rect> row = {tiles.data() + begin, end - begin};
-      if (Result<void> ok = correction->prepare_only(rows, row); !ok) return std::move(ok).error();
+      std::vector<Rect> taken;
+      for (std::size_t i = begin; i < end; ++i)
+        std::ranges::copy(taken_rows(tiles[i], step), std::back_inserter(taken));
+      if (Result<void> ok = correction->prepare_only(rows, taken); !ok) return std::move(ok).error();
     }
     parallel_for(end - begin, threads, [&](std::size_t i, int worker) {
       samplers[static_cast<std::size_t>(worker)].take(tiles[begin + i], by_tile[begin + i]);
