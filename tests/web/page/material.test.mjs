@@ -34,6 +34,16 @@ material = "library:dirt/dust"
 alpha = 0.5
 mask = 0.4
 `;
+/** All that it sends back is its highlight. */
+const golden = `
+schema = "weft.material/1"
+[surface]
+albedo = [0, 0, 0]
+roughness = 0.9
+specular = 6
+specular_tint = [1, 0.6, 0.2]
+sheen = [0, 0, 0]
+`;
 const making_ms = 60_000;
 
 let browser, archive, set;
@@ -43,6 +53,7 @@ before(async () => {
   await archive.make('maps', 'weave', '--maps', 'height,occlusion,roughness');
   await archive.add('swatch', swatch);
   archive.write('.local/share/weft/materials/dusty.toml', dusty);
+  archive.write('.local/share/weft/materials/golden.toml', golden);
   await archive.serve();
   [set] = (await archive.ask('sessions/weave/maps')).sets;
   browser = await launch();
@@ -259,5 +270,31 @@ test('a material shows its layers and the files behind them, is built and looked
   await page.getByRole('list', {name: /^Layers/}).getByText('off').waitFor();
   const {generations} = await archive.ask('materials/clean');
   assert.deepEqual(generations.slice(1), ['library:dusty', 'library:cloth/wool']);
+  await visitor.leave();
+});
+
+/** Of each channel the mean of a picture, in linear light. */
+function meansOf(shot) {
+  const linear = (byte) => (byte <= 10 ? byte / 255 / 12.92 : ((byte / 255 + 0.055) / 1.055) ** 2.4);
+  const sums = [0, 0, 0];
+  for (let at = 0; at < shot.data.length; at += 4) for (let c = 0; c < 3; c++) sums[c] += linear(shot.data[at + c]);
+  return sums.map((sum) => sum / (shot.data.length / 4));
+}
+
+test('the highlights of a material have their colour', async () => {
+  const visitor = await visit(browser, archive, {width: 1000, height: 640});
+  const page = await visitor.open(`${archive.address}/material`);
+  await page.getByRole('list', {name: 'Materials'}).getByRole('link', {name: 'golden'}).click();
+  await page.getByRole('button', {name: 'Build'}).click();
+  await page.getByRole('button', {name: 'Look at it'}).click({timeout: making_ms});
+  await page.waitForURL(/material\/golden\/builds\/[0-9a-f]+/);
+  await page.goto(`${page.url().split('?')[0]}?shape=plane&surroundings=0`);
+  await page.getByText('Colour of highlights').waitFor();
+  await drawn(page);
+  const box = await page.locator('.material canvas').boundingBox();
+  const clip = {x: box.x + box.width / 2 - 60, y: box.y + box.height / 2 - 40, width: 120, height: 80};
+  const [r, g, b] = meansOf(PNG.sync.read(await page.screenshot({clip})));
+  assert.ok(r > 0.02, `red ${r}`);
+  assert.ok(Math.abs(g / r - 0.6) < 0.03 && Math.abs(b / r - 0.2) < 0.03, `green ${g / r}, blue ${b / r} of red`);
   await visitor.leave();
 });

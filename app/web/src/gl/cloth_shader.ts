@@ -2,14 +2,17 @@
 // A cloth as a material: on a ball or flat, under one distant lamp within even surroundings. The lamp is as strong as
 // that of the viewer: white cloth that faces it is 1. Equations as in glTF 2.0, appendix B, and KHR_materials_sheen.
 
-/** `scalars` are occlusion, roughness, opacity, f0; `sheens` colour and roughness. What is not mapped is typed. */
+/**
+ * `scalars` are occlusion, roughness, opacity, f0; `sheens` colour and roughness; `tints` f0 of each channel over f0.
+ * What is not mapped is typed.
+ */
 export const CLOTH = `#version 300 es
 precision highp float;
-uniform sampler2D normal, color, scalars, sheens, shares;
+uniform sampler2D normal, color, scalars, sheens, tints, shares;
 uniform vec2 canvas, cloth_mm, cells;
-uniform float px_per_mm, radius_mm, slant, gain, brightness, surroundings, metallic, step, mapped_color;
+uniform float px_per_mm, radius_mm, slant, gain, brightness, surroundings, metallic, step, mapped_color, mapped_tint;
 uniform bool is_endless;
-uniform vec3 light, typed_color;
+uniform vec3 light, typed_color, typed_tint;
 uniform vec4 typed, mapped, typed_sheen, mapped_sheen;
 out vec4 value;
 const float PI = 3.14159265;
@@ -53,7 +56,8 @@ void main() {
   float squared = min(pow(roughness, 4.0) + 2.0 * (1.0 - mean * mean) / (mean * (3.0 - mean * mean)), 1.0);
   vec3 h = normalize(light + vec3(0.0, 0.0, 1.0));
   float nl = max(dot(n, light), 1e-4), nv = clamp(n.z, 0.02, 1.0), nh = clamp(dot(n, h), 0.0, 1.0);
-  vec3 f0 = mix(vec3(scalar.a), albedo, metallic), fresnel = f0 + (1.0 - f0) * pow(1.0 - h.z, 5.0);
+  vec3 shine = scalar.a * mix(typed_tint, texture(tints, uv).rgb, mapped_tint);
+  vec3 f0 = mix(shine, albedo, metallic), fresnel = f0 + (1.0 - f0) * pow(1.0 - h.z, 5.0);
   vec3 matt = albedo * (1.0 - metallic);
   vec3 from = texture(shares, vec2(nv, pow(squared, 0.25))).rgb;
   float soft_seen = texture(shares, vec2(nv, soft.a)).b, soft_lit = texture(shares, vec2(nl, soft.a)).b;

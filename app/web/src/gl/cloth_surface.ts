@@ -14,7 +14,8 @@ import type {Size} from './view';
 const MOST_SIDE = 2048;
 const AT_ONCE = 4;
 
-type Target = 'normal' | 'color' | 'scalars' | 'sheens';
+const TARGETS = ['normal', 'color', 'scalars', 'sheens', 'tints'] as const;
+type Target = (typeof TARGETS)[number];
 
 /** A layer of the maps, and where in the textures it goes. */
 export interface ClothLayer {
@@ -57,6 +58,8 @@ export interface ClothLook {
   /** Occlusion, roughness, opacity, f0 where they are numbers, and which of them are maps (1). */
   typed: Four;
   mapped: Four;
+  /** The same of f0 in each channel over f0. */
+  typed_tint: Vector | null;
   typed_sheen: Four;
   mapped_sheen: Four;
   step: 1 | 2;
@@ -133,7 +136,7 @@ export class ClothSurface {
     const {width, height} = look.canvas;
     this.show(Math.ceil(width / look.step), Math.ceil(height / look.step));
     shade.use();
-    const units: [string, WebGLTexture][] = (['normal', 'color', 'scalars', 'sheens'] as const).map((name) => [name, this.textures.get(name) ?? this.empty]);
+    const units: [string, WebGLTexture][] = TARGETS.map((name) => [name, this.textures.get(name) ?? this.empty]);
     [...units, ['shares', this.shares] as const].forEach(([name, texture], unit) => {
       gl.activeTexture(gl.TEXTURE0 + unit);
       gl.bindTexture(gl.TEXTURE_2D, texture);
@@ -148,11 +151,12 @@ export class ClothSurface {
     const numbers = {
       px_per_mm: look.px_per_mm, radius_mm: look.radius_mm, slant: (look.slant_deg * Math.PI) / 180, gain: look.gain,
       brightness: 2 ** look.exposure, surroundings: look.surroundings, metallic: look.metallic, step: look.step,
-      mapped_color: look.typed_color ? 0 : 1,
+      mapped_color: look.typed_color ? 0 : 1, mapped_tint: look.typed_tint ? 0 : 1,
     };
     for (const [name, number] of Object.entries(numbers)) gl.uniform1f(shade.at(name), number);
     gl.uniform3f(shade.at('light'), ...look.light);
     gl.uniform3f(shade.at('typed_color'), ...(look.typed_color ?? look.light));
+    gl.uniform3f(shade.at('typed_tint'), ...(look.typed_tint ?? look.light));
     for (const name of ['typed', 'mapped', 'typed_sheen', 'mapped_sheen'] as const) gl.uniform4f(shade.at(name), ...look[name]);
     gl.uniform4f(shade.at('rect'), -1, -1, 2, 2);
     gl.drawArrays(gl.TRIANGLE_STRIP, 0, 4);

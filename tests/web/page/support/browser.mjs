@@ -82,6 +82,8 @@ async function serveFrom(context, folder, rig) {
 
 /** What axe finds wrong with what is shown: rule and element. */
 export async function violations(page) {
+  // A screen has a heading: until then it is still fetched.
+  await page.locator('h1').first().waitFor({state: 'attached'});
   await page.evaluate(axe);
   const result = await page.evaluate(() => window.axe.run(document, {resultTypes: ['violations']}));
   return result.violations.flatMap(({id, nodes}) => nodes.map((node) => `${id}: ${node.target.join(' ')}: ${node.failureSummary}`));

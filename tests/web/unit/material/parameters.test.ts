@@ -44,3 +44,15 @@ test('a map is shaded by its texture, a number by itself, and what is typed goes
   expect(look.mapped).toEqual([0, 0, 0, 1]);
   expect(look.typed_sheen).toEqual([0.5, 0.5, 0.5, 0.5]);
 });
+
+test('highlights have the colour of their map, of their number, or none', () => {
+  const tint = {name: 'specular_tint', file: 'specular_tint.exr', unit: 'share', source: 'measured', mean: 0.7};
+  const tinted = {maps: [...maps.maps, tint]};
+  const layers = layersOf([{name: 'specular'}, {name: 'specular_tint'}]);
+  expect(layers.map(({layer, target}) => [layer, target])).toEqual([['specular', 'scalars'], ['specular_tint', 'tints']]);
+  expect(shadedBy(parametersOf(tinted), layers, {}).typed_tint).toBeNull();
+  expect(brief(tinted)['specular_tint']).toEqual(['measured', 0.7, false]);
+  const built = {...maps, parameters: {specular_tint: {value: [1, 0.8, 0.3], source: 'assumed'}}};
+  expect(shadedBy(parametersOf(built), layersOf([]), {}).typed_tint).toEqual([1, 0.8, 0.3]);
+  expect(shadedBy(parametersOf(maps), layersOf([]), {}).typed_tint).toEqual([1, 1, 1]);
+});

@@ -35,6 +35,7 @@ const kinds: readonly Kind[] = [
   {name: 'height', says: 'Height', otherwise: null},
   {name: 'roughness', says: 'Roughness', otherwise: 0.7, ends: [0.05, 1]},
   {name: 'f0', says: 'Reflectance head-on', otherwise: 0.04, ends: [0, 0.2]},
+  {name: 'specular_tint', says: 'Colour of highlights', otherwise: null},
   {name: 'sheen', says: 'Sheen', otherwise: 0, ends: [0, 1]},
   {name: 'sheen_roughness', says: 'Roughness of the sheen', otherwise: 0.5, ends: [0.1, 1]},
   {name: 'occlusion', says: 'Occlusion', otherwise: 1},
@@ -97,6 +98,7 @@ export function layersOf(layers: readonly {name: string}[]): ClothLayer[] {
     {layer: 'roughness', kind: 'scalar', target: 'scalars', channel: 1},
     {layer: 'opacity', kind: 'scalar', target: 'scalars', channel: 2},
     {layer: 'specular', kind: 'scalar', target: 'scalars', channel: 3},
+    {layer: 'specular_tint', kind: 'color', target: 'tints'},
     {layer: 'sheen', kind: 'color', target: 'sheens'},
     {layer: 'sheen_roughness', kind: 'scalar', target: 'sheens', channel: 3},
   ];
@@ -111,9 +113,10 @@ export function shadedBy(parameters: readonly Parameter[], layers: readonly Clot
   const isMap = (layer: string) => (layers.some((each) => each.layer === layer) ? 1 : 0);
   const rgbOf = (name: string) => (typed[name] === undefined ? parameters.find((each) => each.name === name)?.rgb : null);
   const sheen = rgbOf('sheen') ?? [value('sheen'), value('sheen'), value('sheen')];
-  const grey: [number, number, number] = [0.5, 0.5, 0.5];
+  const grey: [number, number, number] = [0.5, 0.5, 0.5], white: [number, number, number] = [1, 1, 1];
   return {
     typed_color: isMap('albedo') ? null : (rgbOf('albedo') ?? grey),
+    typed_tint: isMap('specular_tint') ? null : (rgbOf('specular_tint') ?? white),
     typed: [value('occlusion'), value('roughness'), value('opacity'), value('f0')] as Four,
     mapped: [isMap('occlusion'), isMap('roughness'), isMap('opacity'), isMap('specular')] as Four,
     typed_sheen: [...sheen, value('sheen_roughness')] as Four,

@@ -1,1 +1,0 @@
-import{q as e}from"./index-CB7Cwj52.js";import{c as n}from"./plan-BssyCdMk.js";function r(o,s){sessionStorage.setItem(n,JSON.stringify({sessions:o,calibration:s})),e("/batches?plan=chosen")}export{r as p};
