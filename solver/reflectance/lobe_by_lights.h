@@ -35,4 +35,8 @@ class LobeByLights {
   std::array<std::vector<double>, kLobeParameters> change_;
 };
 
+/// Slopes of one reading by the errors of its light, where the lobe makes `of_model` of it.
+std::array<double, LobeByLights::kErrors> slopes_by_errors(const Lobe& lobe, const LobeReading& reading,
+                                                           Vec3 b, double yarn, double of_model);
+
 }  // namespace weft::solver

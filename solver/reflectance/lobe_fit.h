@@ -92,6 +92,9 @@ struct LobeFitOptions {
   int threads = 0;        ///< the result does not depend on them
 };
 
+/// Of fits that only decide where to begin, or which pixels go together.
+inline constexpr double kCoarselySettled = 1e-3;
+
 /// From `start`, whose b and yarn are one a pixel. Each pixel's b by Gauss-Newton for given shared values,
 /// these by Levenberg and Marquardt on what the pixels leave of the normal equations. Parameters stay within
 /// Lobe's ranges. The cost never rises.

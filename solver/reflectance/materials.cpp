@@ -23,8 +23,6 @@ const Lobe kSharp = {.family = LobeFamily::kGgx, .alpha = 0.15, .f0 = 0.05};
 const Lobe kBroad = {.family = LobeFamily::kGgx, .alpha = 0.45, .f0 = 0.05};
 // Pixels that may still change sides once it is settled.
 constexpr double kSettledShare = 0.01;
-// Of the cost: what a round of a fit must win that only tells sides.
-constexpr double kSettledCost = 1e-3;
 
 // Where materials fade into each other at most so many pixels are left to neither: those that are worst
 // explained, by a cost over their degrees of freedom from kMixedFrom on.
@@ -175,7 +173,7 @@ class Splitter {
       if (!first.shines()) continue;
       LobeFit fit =
           fit_lobe(group.samples, settled(group.samples, group.start, first, threads_),
-                   {.fitted = parameters_of(first.family), .settled = kSettledCost, .threads = threads_});
+                   {.fitted = parameters_of(first.family), .settled = kCoarselySettled, .threads = threads_});
       if (!best || fit.total() < best->total()) best = std::move(fit);
     }
     return best->lobe;

@@ -28,8 +28,6 @@ constexpr std::size_t kStartPixels = 300;
 // Where GGX costs so many times what another family does two lobes of it are not what is missing.
 constexpr double kFarFromGgx = 3;
 constexpr int kRounds = 15;
-// Of the cost: what a round of a fit must win that only decides where to begin.
-constexpr double kToChoose = 1e-3;
 constexpr int kMostRestarts = 4, kYarnRounds = 3;
 constexpr double kMovedShare = 0.002;  // pixels that still find another valley
 constexpr double kMovedCost = 0.5;     // what a pixel must win to count as moved
@@ -98,7 +96,7 @@ class Trial {
                           .f0 = kStartTwoF0 * one.f0,
                           .broad = std::min(broader * one.alpha, 1.0),
                           .broad_share = kStartShare};
-      LobeFit fit = fit_lobe(first, unfitted(start, first_b), options(fitted, kToChoose));
+      LobeFit fit = fit_lobe(first, unfitted(start, first_b), options(fitted, kCoarselySettled));
       if (!best || fit.total() < best->total()) best = std::move(fit);
     }
     return canonical(restarted(fit_lobe(samples_, unfitted(best->lobe, settled.b), options(fitted)), fitted));
@@ -127,8 +125,8 @@ class Trial {
   LobeFit with_yarns(LobeFit fit) const {
     for (int round = 0; round < kYarnRounds; ++round) {
       fit = with_better_yarns(samples_, std::move(fit), threads_);
-      fit =
-          fit_lobe(samples_, std::move(fit), options(parameters_of(LobeFamily::kAnisotropicGgx), kToChoose));
+      fit = fit_lobe(samples_, std::move(fit),
+                     options(parameters_of(LobeFamily::kAnisotropicGgx), kCoarselySettled));
     }
     return fit;
   }

@@ -22,10 +22,6 @@ struct ReadingSlopes {
   std::array<double, LobeByLights::kErrors> by_errors = {};
 };
 
-/// Of a reading that the lobe makes `modelled` of.
-std::array<double, LobeByLights::kErrors> slopes_by_errors(const Lobe& lobe, const LobeReading& reading,
-                                                           Vec3 b, double yarn, double modelled);
-
 /// Leaves of the slopes by shared values what the pixel's own normal and albedo do not take up.
 template <int kValues>
 void take_out_pixel(std::span<ReadingSlopes<kValues>> readings) {

@@ -58,7 +58,7 @@ export interface ClothLook {
   /** Occlusion, roughness, opacity, f0 where they are numbers, and which of them are maps (1). */
   typed: Four;
   mapped: Four;
-  /** The same of f0 in each channel over f0. */
+  /** f0 of each channel over f0 where it is the same everywhere; null: it is a map. */
   typed_tint: Vector | null;
   typed_sheen: Four;
   mapped_sheen: Four;
