@@ -80,19 +80,30 @@ is_through() {
   queue=$(squeue -h -n "weft-$id,weft-$id-merge" 2>/dev/null) && [[ -z $queue ]]
 }
 
-# A task of the plan `night` that runs and has not ended its session: job, node and process.
+# A task of the plan `night` in the midst of its session: job, node and process, and the fork of it that solves, which
+# is stopped where it is, so that it does not end before something befalls it.
 find_running() {
   local pid variables
   for pid in $(pgrep -f "^[^ ]*weft-work batch run $work/night.jsonl --array-from"); do
     variables=$(tr '\0' '\n' <"/proc/$pid/environ" 2>/dev/null) || continue
-    # A session is solved by a fork of the process that Slurm started.
     [[ $(ps -o comm= -p "$(parent_of "$pid")") == slurmstepd ]] || continue
     running_job=$(sed -n 's/^SLURM_JOB_ID=//p' <<<"$variables")
     running_node=$(sed -n 's/^SLURMD_NODENAME=node//p' <<<"$variables")
     running_pid=$pid
-    pgrep -P "$pid" >/dev/null && return 0
+    running_fork=$(pgrep -P "$pid") && kill -STOP "$running_fork" && is_stopped "$running_fork" && return 0
   done
   return 1
+}
+
+is_stopped() {
+  sleep 0.02
+  [[ $(ps -o stat= -p "$1") == T* ]]
+}
+
+is_asked_to_end() {
+  local pending
+  pending=$(sed -n 's/^ShdPnd:[[:space:]]*//p' "/proc/$1/status" 2>/dev/null)
+  ((0x${pending:-0} >> 14 & 1))
 }
 
 has_restarted() {
@@ -168,6 +179,8 @@ stop_a_task() {
   cluster_wait 'a running task' find_running || give_up 'no task runs'
   local job=$running_job
   scancel --signal=TERM --batch "$job"
+  cluster_wait "the fork of job $job to be asked to end" is_asked_to_end "$running_fork" || give_up 'a task is not stopped'
+  kill -CONT "$running_fork"
   cluster_wait "job $job to be queued again" has_restarted "$job" || give_up 'a stopped task is not queued again'
   step "job $job was stopped and queued itself again"
 }
@@ -197,7 +210,14 @@ lose_the_controller() {
   holds 'the queue is as it was' grep -q 'are queued already' "$work/log/last.txt"
 }
 
+has_none_running() {
+  local reasons
+  reasons=$(queued night %r) && ! grep -qv '^JobHeld' <<<"$reasons"
+}
+
+# No task runs when it fills, so that those which meet it have solved nothing yet.
 fill_the_disk() {
+  cluster_wait 'what was released' has_none_running || give_up 'what was released does not end'
   touch "$work/full"
   release 1
   cluster_wait 'a task that meets a full disk' has_met_full_disk || give_up 'no task met the full disk'
@@ -215,9 +235,9 @@ night() {
   lose_a_node
   stop_a_task
   lose_the_controller
-  fill_the_disk
   sleep $((controller_back + 13 > SECONDS ? controller_back + 13 - SECONDS : 0))
   nodes_begin_anew
+  fill_the_disk
   release "$sessions"
   CLUSTER_PATIENCE=180 cluster_wait 'the end of the batch' is_through night || give_up 'the batch does not end'
   holds 'what met a full disk is missing and not failed' is_to_be_tried_again
@@ -232,8 +252,8 @@ look_at_night() {
   holds 'every session is solved' test "$(($(count_of night solved) + $(count_of night there)))" = "$sessions"
   holds 'none is missing' test "$(count_of night missing)" = 0
   holds 'none has failed' test "$(count_of night failed)" = 0
-  holds 'every session is held against its solve before' \
-    test "$(tr -d ' \n' <"$work/night.results/report/report.json" | grep -o '"change":{' | wc -l)" = "$sessions"
+  holds 'every solve is held against the one before' \
+    test "$(tr -d ' \n' <"$work/night.results/report/report.json" | grep -o '"change":{' | wc -l)" -ge "$(count_of night solved)"
   for ((i = 0; i < sessions; ++i)); do
     holds "session $i has one published solve" is_solved_once "$work/archive/cloth-$i.weft"
     holds "session $i has the bytes of this machine" same_bytes "$work/archive/cloth-$i.weft" "$work/cloth-$((i % 2)).weft"
