@@ -10,6 +10,15 @@
 #include "calibration/camera/picture.h"
 
 namespace weft::calibration {
+namespace {
+
+constexpr int kWide = 1280, kMostTimes = 4;
+
+int times_larger(int width) {
+  return std::clamp((kWide + width - 1) / width, 1, kMostTimes);
+}
+
+}  // namespace
 
 std::optional<Image<std::uint8_t>> finder_picture(const std::string& jpeg) {
   if (jpeg.empty()) return std::nullopt;
@@ -17,7 +26,8 @@ std::optional<Image<std::uint8_t>> finder_picture(const std::string& jpeg) {
                       const_cast<char*>(jpeg.data()));  // NOLINT: OpenCV only reads it
   const cv::Mat small = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
   if (small.empty()) return std::nullopt;
-  Image<std::uint8_t> picture({2 * small.cols, 2 * small.rows});
+  const int times = times_larger(small.cols);
+  Image<std::uint8_t> picture({times * small.cols, times * small.rows});
   cv::Mat large = mat_of(picture.plane());
   cv::resize(small, large, large.size(), 0, 0, cv::INTER_CUBIC);
   return picture;

@@ -18,8 +18,8 @@
 
 namespace weft::calibration {
 
-/// A picture of the finder (JPEG), grey and twice as large, since tags are too small in it to be found as
-/// they are. Nothing where the bytes are no JPEG.
+/// A picture of the finder (JPEG), grey and up to four times as large, as many as make it 1280 pixels
+/// wide: tags are too small in it to be found as they are. Nothing where the bytes are no JPEG.
 std::optional<Image<std::uint8_t>> finder_picture(const std::string& jpeg);
 
 /// The same place as a share of the frame's width and height, from its upper left corner.

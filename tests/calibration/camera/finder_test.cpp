@@ -60,13 +60,15 @@ TEST(Finder, OutlinesABoardClockwiseInSharesOfThePicture) {
 }
 
 TEST(Finder, IsEnlargedAndRefusesWhatIsNoPicture) {
-  cv::Mat grey(24, 32, CV_8UC1, cv::Scalar(90));
-  std::vector<std::uint8_t> bytes;
-  ASSERT_TRUE(cv::imencode(".jpg", grey, bytes));
-  const auto picture = finder_picture({bytes.begin(), bytes.end()});
-  ASSERT_TRUE(picture);
-  EXPECT_EQ(picture->size(), (Size{64, 48}));
-  EXPECT_NEAR((*picture)(40, 20), 90, 2);
+  for (const auto& [width, times] : {std::pair{32, 4}, {306, 4}, {640, 2}, {1024, 2}, {1280, 1}, {1920, 1}}) {
+    cv::Mat grey(24, width, CV_8UC1, cv::Scalar(90));
+    std::vector<std::uint8_t> bytes;
+    ASSERT_TRUE(cv::imencode(".jpg", grey, bytes));
+    const auto picture = finder_picture({bytes.begin(), bytes.end()});
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->size(), (Size{times * width, times * 24})) << width;
+    EXPECT_NEAR((*picture)(20, 20), 90, 2);
+  }
   EXPECT_FALSE(finder_picture(""));
   EXPECT_FALSE(finder_picture("no picture"));
 }
