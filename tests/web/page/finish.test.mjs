@@ -125,6 +125,7 @@ test('a recipe is seen as a preview, and all maps are made of it', async () => {
   await page.getByRole('button', {name: '2 × 2'}).click();
   await page.waitForURL(/repeat=2/);
   await page.locator('canvas[data-ready=true]').waitFor();
+  await page.locator('.seam rect').nth(3).waitFor({state: 'attached'});
   assert.equal(await page.locator('.seam rect').count(), 4);
   await page.keyboard.press('t');
   await page.locator('.seam rect').nth(8).waitFor({state: 'attached'});
@@ -148,6 +149,7 @@ test('a tile is seen twice a side, with what is found of its seam', async () => 
   await page.getByRole('link', {name: 'Look at the preview'}).click();
   await page.waitForURL(/viewer\/weave\/maps\/[0-9a-f]+\?.*repeat=2/);
   await page.locator('canvas[data-ready=true]').waitFor();
+  await page.locator('.seam rect').nth(3).waitFor({state: 'attached'});
   assert.equal(await page.locator('.seam rect').count(), 4);
   await visitor.leave();
 });
