@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/jobs/batch/follow_ups.h"
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/batch/solve_change.h"
-#include "app/jobs/export/export.h"
-#include "app/jobs/maps/maps.h"
 #include "app/jobs/solve.h"
 #include "core/calibration.h"
 #include "core/files.h"
@@ -83,39 +82,6 @@ Result<SolveReport> solve_lean(const SessionOptions& input, SolveOptions options
   return report;
 }
 
-// Maps and exports of the solve.
-Result<std::vector<std::string>> make_more(const SessionWork& work, const std::string& solve,
-                                           const fs::path& calibration, const JobContext& context) {
-  std::vector<std::string> made;
-  fs::path maps;
-  const JobContext silent = {context.threads, context.stop};
-  for (const std::string& each : work.product.then) {
-    if (each == "maps") {
-      MapsOptions options;
-      options.session = work.session;
-      options.solve = solve;
-      options.calibration = calibration;
-      options.compression = compression_of(work.product);
-      for (const DerivedMap& map : derived_maps()) options.maps.emplace_back(map.name);
-      const Result<MapsReport> report = make_maps(options, silent);
-      if (!report) return report.error();
-      maps = report->folder;
-      made.push_back(maps.string());
-      continue;
-    }
-    const std::string preset = each.substr(each.find(':') + 1);
-    const fs::path input = maps.empty() ? work.solves / solve : maps;
-    ExportOptions options;
-    options.input = input;
-    options.presets = {preset};
-    options.output = work.session / "export" / preset / (maps.empty() ? solve : maps.filename().string());
-    const Result<std::vector<ExportReport>> reports = export_maps(options, silent);
-    if (!reports) return reports.error();
-    for (const ExportReport& report : *reports) made.push_back(report.folder.string());
-  }
-  return made;
-}
-
 double number_in(const Json& json, const char* key) {
   const Json value = json.is_object() ? json.value(key, Json()) : Json();
   return value.is_number() ? value.get<double>() : 0;
@@ -185,7 +151,8 @@ batch::Outcome work_on_session(const SessionWork& work, const JobContext& contex
   outcome.plan = work.header->id;
   outcome.session = work.job.session;
   add_facts_of(*report, outcome);
-  Result<std::vector<std::string>> made = make_more(work, outcome.solve, *calibration, context);
+  const SolveOfSession solved = {work.session, work.solves / outcome.solve, *calibration};
+  Result<std::vector<std::string>> made = make_follow_ups(solved, work.product, context);
   if (!made) return ended_by(work, std::move(made).error());
   outcome.made = std::move(*made);
   compare_with_before(work, context, outcome);
