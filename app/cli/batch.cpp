@@ -179,7 +179,8 @@ void print_plan(const PlanBatchReport& report) {
       fmt::format("  measured on {} of them in {:.3g} s, with {} threads; the rest of planning took {:.3g} s",
                   header.sampled, header.sample_seconds, header.threads, report.seconds));
   if (!header.product.then.empty())
-    print(fmt::format("  {} of each come on top of these hours", fmt::join(header.product.then, ", ")));
+    print(fmt::format("  {} of each {} these hours", fmt::join(header.product.then, ", "),
+                      header.sampled > 0 ? "are among" : "come on top of"));
   print_left_out(plan);
   print(report.file.string());
 }
@@ -207,6 +208,8 @@ Json plan_json(const PlanBatchReport& report) {
           {"tasks", header.tasks.size()},
           {"hours", sums.hours},
           {"mean_deg", sums.degrees},
+          {"read_gb", sums.read_gb},
+          {"write_gb", sums.write_gb},
           {"memory_bytes", sums.memory_bytes},
           {"sampled", header.sampled},
           {"sample_seconds", header.sample_seconds},

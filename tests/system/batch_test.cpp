@@ -411,13 +411,47 @@ TEST_F(BatchTest, ReadsSessionsFromStandardInput) {
   EXPECT_THAT(solves_of(session(2)), SizeIs(1));
 }
 
-TEST_F(BatchTest, MakesMapsAndExportsOfEachSolve) {
-  fill_archive(1);
-  plan({"--then", "maps,export:png16"});
+std::uint64_t bytes_below(const fs::path& folder) {
+  std::uint64_t bytes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    bytes += entry.is_regular_file() ? entry.file_size() : 0;
+  return bytes;
+}
+
+TEST_F(BatchTest, MapsAndExportsOfEachSolveAreInThePriceAndMade) {
+  fill_archive(2);
+  const auto before = contents_of(archive());
+  const Json bare = plan({"--sample", "1"});
+  fs::remove(plan_file());
+  const Json planned = plan({"--sample", "1", "--then", "maps,export:png16"});
+  EXPECT_EQ(contents_of(archive()), before) << "what was tried is gone";
+  const double more_s = 3600 * (planned["hours"].get<double>() - bare["hours"].get<double>());
+  EXPECT_GT(more_s, 0.2) << "maps take longer than a small cloth's solve";
+
   const Outcome outcome = run({"-q"});
   ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
-  ASSERT_TRUE(fs::exists(session(0) / "maps"));
-  EXPECT_TRUE(fs::exists(session(0) / "export" / "png16"));
+  double made_gb = 0;
+  for (const int i : {0, 1}) {
+    ASSERT_TRUE(fs::exists(session(i) / "export" / "png16"));
+    for (const char* folder : {"rectified", "maps", "export"})
+      made_gb += 1e-9 * static_cast<double>(bytes_below(session(i) / folder));
+  }
+  const double foreseen_gb = planned["write_gb"].get<double>() - bare["write_gb"].get<double>();
+  EXPECT_NEAR(foreseen_gb, made_gb, 0.1 * made_gb);
+}
+
+TEST_F(BatchTest, AnExportThatCannotBeMadeIsSaidBeforeTheNight) {
+  fill_archive(1);
+  const auto planned = [&](const char* then) {
+    return run_weft({"batch", "plan", archive().string(), "--then", then, "-o", plan_file().string(), "-q"});
+  };
+  const Outcome unknown = planned("export:nonsuch");
+  EXPECT_EQ(unknown.exit_code, 66);
+  EXPECT_THAT(unknown.error, HasSubstr("there is no such preset: nonsuch"));
+  const Outcome lacking = planned("export:unreal");
+  EXPECT_EQ(lacking.exit_code, 65);
+  EXPECT_THAT(lacking.error, HasSubstr("occlusion comes from the map occlusion, which these maps lack"));
+  EXPECT_FALSE(fs::exists(plan_file()));
 }
 
 }  // namespace

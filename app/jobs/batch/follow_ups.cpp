@@ -1,13 +1,79 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/batch/follow_ups.h"
 
+#include <set>
+#include <system_error>
+#include <utility>
+
 #include "app/jobs/batch/lean.h"
 #include "app/jobs/export/export.h"
 #include "app/jobs/maps/maps.h"
+#include "app/jobs/solve.h"
+#include "core/files.h"
+#include "core/session.h"
+#include "core/temporary_folder.h"
 
 namespace weft::app {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+// A session of its own whose photographs and calibration are those of another.
+Result<void> link_session(const fs::path& session, const fs::path& copy) {
+  const std::set<fs::path> products = {"solve", "rectified", "maps", "export"};
+  std::error_code failed;
+  fs::create_directory(copy, failed);
+  for (fs::directory_iterator entry(session, failed), end; !failed && entry != end; entry.increment(failed)) {
+    const fs::path name = entry->path().filename();
+    if (products.contains(name)) continue;
+    if (name == "session.json") {
+      fs::copy_file(entry->path(), copy / name, failed);
+    } else {
+      fs::create_symlink(entry->path(), copy / name, failed);
+    }
+    if (failed) break;
+  }
+  if (failed) return cannot_write(copy, failed.value());
+  return {};
+}
+
+std::uint64_t bytes_below(const fs::path& folder) {
+  std::uint64_t bytes = 0;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator entry(folder, failed), end; !failed && entry != end;
+       entry.increment(failed)) {
+    std::error_code ignored;
+    if (entry->is_regular_file(ignored)) bytes += entry->file_size(ignored);
+  }
+  return bytes;
+}
+
+Result<FollowUpPrice> try_follow_ups(const Candidate& candidate, const batch::Product& product,
+                                     const fs::path& aside, const JobContext& context) {
+  const Result<Session> session = read_session(candidate.input.folder);
+  if (!session) return session.error();
+  SessionOptions input = candidate.input;
+  input.folder = aside / candidate.input.folder.filename();
+  if (input.calibration.empty()) input.calibration = session->calibration_folder();
+  if (Result<void> ok = link_session(candidate.input.folder, input.folder); !ok) return std::move(ok).error();
+  SolveOptions quick;
+  quick.method = "fast";
+  quick.compression = compression_of(product);
+  const Result<SolveReport> solved = solve_session(input, quick, context);
+  if (!solved) return solved.error();
+  FollowUpPrice price = {.megapixels = candidate.traits.megapixels};
+  const std::uint64_t before = bytes_below(input.folder);
+  Stopwatch watch;
+  const auto made = make_follow_ups({input.folder, solved->folder, input.calibration}, product, context);
+  if (!made) return made.error();
+  price.seconds = watch.lap();
+  price.memory_bytes = peak_memory_bytes();
+  price.write_bytes = bytes_below(input.folder) - before;
+  return price;
+}
+
+}  // namespace
 
 Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const batch::Product& product,
                                                  const JobContext& context) {
@@ -39,6 +105,22 @@ Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const
     for (const ExportReport& report : *reports) made.push_back(report.folder.string());
   }
   return made;
+}
+
+FollowUpPrice FollowUpPrice::of(double other_megapixels) const {
+  const double times = megapixels > 0 ? other_megapixels / megapixels : 0;
+  const auto scaled = [&](std::uint64_t bytes) { return static_cast<std::uint64_t>(times * double(bytes)); };
+  return {other_megapixels, times * seconds, scaled(memory_bytes), scaled(write_bytes)};
+}
+
+Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const batch::Product& product,
+                                       const JobContext& context) {
+  const TemporaryFolder aside;
+  Result<FollowUpPrice> price = try_follow_ups(candidate, product, aside.path(), context);
+  if (price) return price;
+  Error error = std::move(price).error();
+  if (error.where.starts_with(aside.path().string())) error.where = candidate.input.folder.string();
+  return error;
 }
 
 }  // namespace weft::app

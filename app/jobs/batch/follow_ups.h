@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "app/jobs/batch/survey.h"
 #include "batch/plan.h"
 #include "core/job.h"
 #include "core/result.h"
@@ -22,5 +24,21 @@ struct SolveOfSession {
 /// export_maps().
 Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const batch::Product& product,
                                                  const JobContext& context);
+
+/// What follow-ups take of a solve of the whole frame, whichever level made it.
+struct FollowUpPrice {
+  double megapixels = 0, seconds = 0;
+  std::uint64_t memory_bytes = 0;  ///< that this process had at most so far
+  std::uint64_t write_bytes = 0;
+
+  /// By pixels.
+  FollowUpPrice of(double other_megapixels) const;
+};
+
+/// Makes them of a quick solve, of links to the session's files in the system's temporary folder, and takes
+/// all of it away again. Errors of solve_session() and of make_follow_ups(), in which `where` is the session
+/// and not the copy.
+Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const batch::Product& product,
+                                       const JobContext& context);
 
 }  // namespace weft::app

@@ -8,11 +8,14 @@
 #include <cmath>
 #include <utility>
 
+#include "app/jobs/batch/follow_ups.h"
 #include "app/jobs/batch/plan_file.h"
 #include "app/jobs/batch/sample.h"
 #include "app/jobs/batch/survey.h"
+#include "app/jobs/export/preset_files.h"
 #include "batch/choice.h"
 #include "batch/forecast.h"
+#include "batch/outcome.h"
 #include "core/error_kind.h"
 #include "core/files.h"
 #include "core/parallel.h"
@@ -126,6 +129,7 @@ class Planning {
       if (context_.stop.stop_requested()) return interrupted();
       if (levels) {
         measured.push_back({sample[k], std::move(*levels)});
+        if (Result<void> ok = measure_follow_ups(candidates_[sample[k]]); !ok) return ok;
       } else if (levels.error().kind == ErrorKind::kTryAgain ||
                  levels.error().kind == ErrorKind::kInputOutput) {
         return std::move(levels).error();
@@ -135,6 +139,7 @@ class Planning {
       }
     }
     if (!sample.empty()) context_.progress("measure", 1);
+    if (follow_ups_.empty() && refused_) return *refused_;
     plan_.header.sampled = static_cast<int>(measured.size());
     forecasts_ = batch::carry_over(traits, measured);
     if (forecasts_.empty())
@@ -143,7 +148,54 @@ class Planning {
       candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(*i));
       forecasts_.erase(forecasts_.begin() + static_cast<std::ptrdiff_t>(*i));
     }
+    add_follow_ups();
     return {};
+  }
+
+  // What is made of a solve takes its time by pixels, whatever the cloth: one session of each size tells. An
+  // error where it is none of the session's, or nothing can be made of the first few.
+  Result<void> measure_follow_ups(const Candidate& candidate) {
+    if (options_.product.then.empty()) return {};
+    constexpr double kAlike = 1.25;
+    constexpr int kMostRefusals = 3;
+    const double megapixels = candidate.traits.megapixels;
+    const FollowUpPrice* const near = nearest_follow_up(megapixels);
+    if (near != nullptr && size_ratio(*near, megapixels) < kAlike) return {};
+    Result<FollowUpPrice> price =
+        price_follow_ups(candidate, options_.product, {context_.threads, context_.stop});
+    if (price) {
+      follow_ups_.push_back(*price);
+      return {};
+    }
+    refused_ = std::move(price).error();
+    const bool is_of_all = ++refusals_ == kMostRefusals && follow_ups_.empty();
+    if (is_of_all || !batch::is_of_session(refused_->kind)) return *refused_;
+    return {};
+  }
+
+  static double size_ratio(const FollowUpPrice& price, double megapixels) {
+    return std::max(price.megapixels, megapixels) / std::min(price.megapixels, megapixels);
+  }
+
+  const FollowUpPrice* nearest_follow_up(double megapixels) const {
+    const auto nearest = std::ranges::min_element(
+        follow_ups_, {}, [&](const FollowUpPrice& each) { return size_ratio(each, megapixels); });
+    return nearest == follow_ups_.end() ? nullptr : &*nearest;
+  }
+
+  // Of a session at a level; nothing where none was measured.
+  FollowUpPrice follow_up_of(std::size_t i, std::size_t level) const {
+    const double megapixels = candidates_[i].traits.megapixels;
+    const FollowUpPrice* const nearest = nearest_follow_up(megapixels);
+    return nearest == nullptr ? FollowUpPrice()
+                              : nearest->of(megapixels * candidates_[i].levels[level].pixels_share);
+  }
+
+  void add_follow_ups() {
+    for (std::size_t i = 0; i < forecasts_.size(); ++i) {
+      for (std::size_t l = 0; l < forecasts_[i].size(); ++l)
+        forecasts_[i][l].seconds += follow_up_of(i, l).seconds;
+    }
   }
 
   // Whether there is nothing to do at the level that was asked for.
@@ -242,9 +294,10 @@ class Planning {
     job.fabric = candidate.traits.fabric;
     job.megapixels = candidate.traits.megapixels;
     job.forecast = forecast;
-    job.memory_bytes = of_level.memory_bytes;
+    const FollowUpPrice follows = follow_up_of(i, level);
+    job.memory_bytes = std::max(of_level.memory_bytes, with_room(follows.memory_bytes));
     job.read_bytes = candidate.read_bytes;
-    job.write_bytes = of_level.write_bytes;
+    job.write_bytes = of_level.write_bytes + follows.write_bytes;
     plan_.jobs.push_back(std::move(job));
   }
 
@@ -273,6 +326,9 @@ class Planning {
   batch::Plan plan_;
   std::vector<Candidate> candidates_;
   std::vector<std::vector<Forecast>> forecasts_;
+  std::vector<FollowUpPrice> follow_ups_;  // of sizes that differ
+  std::optional<Error> refused_;           // why follow-ups of a session could not be made
+  int refusals_ = 0;
 };
 
 Result<void> check_plan_options(const PlanBatchOptions& options) {
@@ -284,6 +340,10 @@ Result<void> check_plan_options(const PlanBatchOptions& options) {
     return refused("--then", "maps and exports want all maps of a solve", "plan without --keep and --half");
   if (has_then && !options.output.empty())
     return refused("--then", "maps and exports are made in the session", "plan without --output");
+  for (const std::string& each : options.product.then) {
+    if (!each.starts_with("export:")) continue;
+    if (auto preset = read_preset(each.substr(each.find(':') + 1)); !preset) return std::move(preset).error();
+  }
   const auto keeps = [&](const char* name) {
     return options.product.keep.empty() ||
            std::ranges::find(options.product.keep, name) != options.product.keep.end();

@@ -39,11 +39,6 @@ double map_bytes(const batch::Product& product) {
   return bytes;
 }
 
-// What a task asks a farm for: a quarter more than is counted, and the program itself.
-std::uint64_t with_room(std::uint64_t bytes) {
-  return bytes + bytes / 4 + (std::uint64_t{200} << 20);
-}
-
 // Each calibration is read once, by the first that asks.
 class Calibrations {
  public:
@@ -108,9 +103,9 @@ void add_levels(SessionPlan& plan, const SurveyOptions& options, Candidate& cand
     level.solve = lean_id(id_of_solve(plan, solve), product);
     level.is_there = is_there(parent / level.solve / kSolveProduct.document);
     level.memory_bytes = with_room(memory_needed(plan, resolved_threads(options.threads)));
-    const double share = method.extent == solver::Extent::kHalfSize ? 0.25 : 1;
-    level.write_bytes =
-        static_cast<std::uint64_t>(share * map_bytes(product) * static_cast<double>(plan.size.pixels()));
+    level.pixels_share = method.extent == solver::Extent::kHalfSize ? 0.25 : 1;
+    level.write_bytes = static_cast<std::uint64_t>(level.pixels_share * map_bytes(product) *
+                                                   static_cast<double>(plan.size.pixels()));
     candidate.levels.push_back(std::move(level));
   }
 }
@@ -170,6 +165,10 @@ Result<void> walk(const fs::path& folder, std::vector<fs::path>& found) {
 }
 
 }  // namespace
+
+std::uint64_t with_room(std::uint64_t bytes) {
+  return bytes + bytes / 4 + (std::uint64_t{200} << 20);
+}
 
 std::vector<std::string> level_names() {
   std::vector<std::string> names;

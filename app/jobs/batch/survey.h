@@ -20,8 +20,9 @@ namespace weft::app {
 
 /// One level that a session could be solved at.
 struct LevelOfSession {
-  std::string solve;      ///< id that the solve would have
-  bool is_there = false;  ///< it is complete already
+  std::string solve;        ///< id that the solve would have
+  bool is_there = false;    ///< it is complete already
+  double pixels_share = 1;  ///< pixels of its maps over those of the frame
   std::uint64_t memory_bytes = 0, write_bytes = 0;
 };
 
@@ -34,6 +35,9 @@ struct Candidate {
   std::vector<LevelOfSession> levels;  ///< in the order of level_names()
   std::uint64_t read_bytes = 0;
 };
+
+/// What a task asks a farm for: a quarter more than is counted, and the program itself.
+std::uint64_t with_room(std::uint64_t bytes);
 
 /// The levels, from the cheapest.
 std::vector<std::string> level_names();
