@@ -9,6 +9,7 @@
 #include "app/jobs/export/export.h"
 #include "app/jobs/maps/maps.h"
 #include "app/jobs/solve.h"
+#include "batch/outcome.h"
 #include "core/files.h"
 #include "core/session.h"
 #include "core/temporary_folder.h"
@@ -119,7 +120,11 @@ Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const batch::
   Result<FollowUpPrice> price = try_follow_ups(candidate, product, aside.path(), context);
   if (price) return price;
   Error error = std::move(price).error();
-  if (error.where.starts_with(aside.path().string())) error.where = candidate.input.folder.string();
+  const std::string copy = aside.path().string(), disk = aside.path().parent_path().string();
+  if (batch::is_of_session(error.kind) && error.where.starts_with(copy))
+    error.where = candidate.input.folder.string();
+  if (error.kind == ErrorKind::kInputOutput && error.where.starts_with(disk))
+    error.remedy = "point TMPDIR to a larger disk, or plan without --then";
   return error;
 }
 

@@ -37,7 +37,7 @@ struct FollowUpPrice {
 
 /// Makes them of a quick solve, of links to the session's files in the system's temporary folder, and takes
 /// all of it away again. Errors of solve_session() and of make_follow_ups(), in which `where` is the session
-/// and not the copy.
+/// and not the copy; that of a full disk names the temporary folder.
 Result<FollowUpPrice> price_follow_ups(const Candidate& candidate, const batch::Product& product,
                                        const JobContext& context);
 

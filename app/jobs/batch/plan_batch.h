@@ -35,13 +35,14 @@ struct PlanBatchReport {
   double seconds = 0;  ///< of planning, the sample not among them
 };
 
-/// Looks at sessions without opening a photograph, measures a sample of them, carries that over to the
-/// others, chooses their levels, gives them to tasks, and writes the plan. Each session that is not solved is
-/// in it, with why: its solve is there, it cannot be solved, its maps would turn by little, no level is close
-/// enough.
+/// Looks at sessions without opening a photograph, measures a sample of them, and what follows a solve on one
+/// of each size, carries that over to the others, chooses their levels, gives them to tasks, and writes the
+/// plan. Each session that is not solved is in it, with why: its solve is there, it cannot be solved, its
+/// maps would turn by little, no level is close enough.
 ///
-/// Errors: kUsage where options do not go together or nothing fits; kNoInput where there is no session;
-/// kCannotCreate where the file is taken; kInterrupted.
+/// Errors: those of what cannot follow a solve, before a session is planned; kUsage where options do not go
+/// together or nothing fits; kNoInput where there is no session; kCannotCreate where the file is taken;
+/// kInterrupted.
 Result<PlanBatchReport> plan_batch(const PlanBatchOptions& options, const JobContext& context);
 
 }  // namespace weft::app
