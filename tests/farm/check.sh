@@ -86,11 +86,14 @@ find_running() {
   local pid variables
   for pid in $(pgrep -f "^[^ ]*weft-work batch run $work/night.jsonl --array-from"); do
     variables=$(tr '\0' '\n' <"/proc/$pid/environ" 2>/dev/null) || continue
+    # Of the two that look alike the one that Slurm started: the other is its fork.
     [[ $(ps -o comm= -p "$(parent_of "$pid")") == slurmstepd ]] || continue
     running_job=$(sed -n 's/^SLURM_JOB_ID=//p' <<<"$variables")
     running_node=$(sed -n 's/^SLURMD_NODENAME=node//p' <<<"$variables")
     running_pid=$pid
-    running_fork=$(pgrep -P "$pid") && kill -STOP "$running_fork" && is_stopped "$running_fork" && return 0
+    running_fork=$(pgrep -P "$pid") && kill -STOP "$running_fork" || continue
+    is_stopped "$running_fork" && return 0
+    kill -CONT "$running_fork" 2>/dev/null
   done
   return 1
 }

@@ -15,6 +15,7 @@
 #include "core/partial_name.h"
 #include "core/process.h"
 #include "core/solve.h"
+#include "library/session_files.h"
 #include "tests/system/samples.h"
 
 namespace weft::test {
@@ -411,13 +412,6 @@ TEST_F(BatchTest, ReadsSessionsFromStandardInput) {
   EXPECT_THAT(solves_of(session(2)), SizeIs(1));
 }
 
-std::uint64_t bytes_below(const fs::path& folder) {
-  std::uint64_t bytes = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(folder))
-    bytes += entry.is_regular_file() ? entry.file_size() : 0;
-  return bytes;
-}
-
 TEST_F(BatchTest, MapsAndExportsOfEachSolveAreInThePriceAndMade) {
   fill_archive(2);
   const auto before = contents_of(archive());
@@ -434,7 +428,7 @@ TEST_F(BatchTest, MapsAndExportsOfEachSolveAreInThePriceAndMade) {
   for (const int i : {0, 1}) {
     ASSERT_TRUE(fs::exists(session(i) / "export" / "png16"));
     for (const char* folder : {"rectified", "maps", "export"})
-      made_gb += 1e-9 * static_cast<double>(bytes_below(session(i) / folder));
+      made_gb += 1e-9 * static_cast<double>(library::bytes_below(session(i) / folder));
   }
   const double foreseen_gb = planned["write_gb"].get<double>() - bare["write_gb"].get<double>();
   EXPECT_NEAR(foreseen_gb, made_gb, 0.1 * made_gb);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/batch/follow_ups.h"
 
+#include <fstream>
 #include <set>
 #include <system_error>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "core/files.h"
 #include "core/session.h"
 #include "core/temporary_folder.h"
+#include "library/session_files.h"
 
 namespace weft::app {
 
@@ -39,15 +41,9 @@ Result<void> link_session(const fs::path& session, const fs::path& copy) {
   return {};
 }
 
-std::uint64_t bytes_below(const fs::path& folder) {
-  std::uint64_t bytes = 0;
-  std::error_code failed;
-  for (fs::recursive_directory_iterator entry(folder, failed), end; !failed && entry != end;
-       entry.increment(failed)) {
-    std::error_code ignored;
-    if (entry->is_regular_file(ignored)) bytes += entry->file_size(ignored);
-  }
-  return bytes;
+// What the process had before counts no more, where the kernel lets it forget.
+void forget_peak_memory() {
+  std::ofstream("/proc/self/clear_refs") << 5;
 }
 
 Result<FollowUpPrice> try_follow_ups(const Candidate& candidate, const batch::Product& product,
@@ -64,13 +60,14 @@ Result<FollowUpPrice> try_follow_ups(const Candidate& candidate, const batch::Pr
   const Result<SolveReport> solved = solve_session(input, quick, context);
   if (!solved) return solved.error();
   FollowUpPrice price = {.megapixels = candidate.traits.megapixels};
-  const std::uint64_t before = bytes_below(input.folder);
+  const std::uint64_t before = library::bytes_below(input.folder);
+  forget_peak_memory();
   Stopwatch watch;
   const auto made = make_follow_ups({input.folder, solved->folder, input.calibration}, product, context);
   if (!made) return made.error();
   price.seconds = watch.lap();
   price.memory_bytes = peak_memory_bytes();
-  price.write_bytes = bytes_below(input.folder) - before;
+  price.write_bytes = library::bytes_below(input.folder) - before;
   return price;
 }
 

@@ -28,7 +28,7 @@ Result<std::vector<std::string>> make_follow_ups(const SolveOfSession& of, const
 /// What follow-ups take of a solve of the whole frame, whichever level made it.
 struct FollowUpPrice {
   double megapixels = 0, seconds = 0;
-  std::uint64_t memory_bytes = 0;  ///< that this process had at most so far
+  std::uint64_t memory_bytes = 0;  ///< that this process had at most meanwhile
   std::uint64_t write_bytes = 0;
 
   /// By pixels.
