@@ -143,23 +143,33 @@ same_bytes() {
   done
 }
 
-# What is queued and not running waits for release(), however quick this machine is.
+# What is queued waits for release(), however quick this machine is. A controller writes its queue down every five
+# seconds; one that dies before would know neither what was held nor, in the end, what was submitted.
 hold() {
   run scontrol hold "jobname=weft-$(id_of night)"
+  sleep 0.5
+  touch "$work/held"
+  cluster_wait 'the queue to be written down' is_written_down || give_up 'the queue is not written down'
 }
 
-# release COUNT: so many of the arrays that are held.
+is_written_down() {
+  [[ $cluster/state/job_state -nt $work/held ]]
+}
+
+# release COUNT: so many of the arrays that are held. Where tasks of one have ended, scontrol calls that a failure.
 release() {
   local array
   for array in $(queued night '%F %r' PD | sed -n 's/ JobHeld[A-Za-z]*$//p' | sort -nu | head -n "$1"); do
-    run scontrol release "$array"
+    scontrol release "$array" >"$work/log/released.txt" 2>&1
   done
 }
 
 submit_twice() {
+  run scontrol update partitionname=night state=down
   run "$weft" batch submit "$work/night.jsonl" --json
   cp "$work/log/last.txt" "$work/log/submitted.txt"
   hold
+  run scontrol update partitionname=night state=up
   holds '24 tasks are five arrays where indices end at 4' \
     test "$(grep -o '"--job-name=weft-[0-9a-f]*"' "$work/log/submitted.txt" | wc -l)" = 5
   run "$weft" batch submit "$work/night.jsonl"
@@ -215,7 +225,7 @@ lose_the_controller() {
 
 has_none_running() {
   local reasons
-  reasons=$(queued night %r) && ! grep -qv '^JobHeld' <<<"$reasons"
+  reasons=$(queued night %r) && [[ -n $reasons ]] && ! grep -qv '^JobHeld' <<<"$reasons"
 }
 
 # No task runs when it fills, so that those which meet it have solved nothing yet.
