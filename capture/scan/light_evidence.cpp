@@ -28,7 +28,6 @@ constexpr double kMostFull = 0.5;            // of a frame's patches, for it to 
 constexpr double kFarFromFull = 0.5;         // of full scale, as others let expect of a patch that is full
 constexpr double kFarBetter = 0.6;       // of the plan's misfit, at most, for another story to be believed
 constexpr double kBetterBy = 0.002;      // and by this at least
-constexpr double kAsGood = 1.25;         // of the least misfit: frames of such a story are in doubt as well
 constexpr double kDriftWarns = 0.005;    // of a repeat's brightness
 constexpr double kRepeatLevel = 0.08;    // beyond it a repeat is not the same light
 constexpr double kRepeatPattern = 0.05;  // scatter of a repeat over its first, beyond noise
@@ -171,35 +170,25 @@ std::vector<Story> stories_beside(const FrameLights& planned, const PatchLights&
   return stories;
 }
 
-/// A story that leaves far less than the plan.
-struct Believed {
-  Story story;
-  double misfit = 0;
-};
-
-std::vector<Believed> believed_stories(const FrameLights& planned, const Readings& readings,
-                                       const PatchLights& model, double misfit_as_planned) {
-  const double least = std::min(kFarBetter * misfit_as_planned, misfit_as_planned - kBetterBy);
+/// The story that leaves the least, where that is far less than the plan leaves.
+std::optional<Story> believed_story(const FrameLights& planned, const Readings& readings,
+                                    const PatchLights& model, double misfit_as_planned) {
+  if (misfit_as_planned < kSuspiciousMisfit) return {};
   const double worth = kWorthALook * misfit_in(planned, readings, model, kGlanceStep);
-  std::vector<Believed> believed;
+  double least = std::min(kFarBetter * misfit_as_planned, misfit_as_planned - kBetterBy);
+  std::optional<Story> believed;
   for (Story& story : stories_beside(planned, model)) {
     if (misfit_in(story.lights, readings, model, kGlanceStep) >= worth) continue;
     const double misfit = misfit_in(story.lights, readings, model);
-    if (misfit < least) believed.push_back({std::move(story), misfit});
+    if (misfit >= least) continue;
+    least = misfit;
+    believed = std::move(story);
   }
   return believed;
 }
 
 bool comes_and_goes(const Story& story) {
   return story.finding == Finding::kRoomLight || story.finding == Finding::kStaysLit;
-}
-
-/// Whether a story of light that comes and goes is as likely as the best one, which is of such light too:
-/// only the frames that it begins and ends with are told apart by little.
-bool is_as_good(const Believed& story, const Believed& best) {
-  if (story.misfit <= best.misfit) return true;
-  return comes_and_goes(best.story) && story.story.sentence == best.story.sentence &&
-         story.misfit <= kAsGood * best.misfit;
 }
 
 }  // namespace
@@ -236,10 +225,13 @@ void ScanEvidence::accept(const PlannedShot& shot, std::vector<double> light) {
     dark_ = std::move(light);
   else if (shot.role == ShotRole::kLit && shot.polariser == solved_)
     lit_[shot.index] = {shot, std::move(light)};
+  else if (shot.role == ShotRole::kLit)
+    other_[shot.led] = shot.index;
 }
 
 void ScanEvidence::forget(int index) {
   lit_.erase(index);
+  std::erase_if(other_, [index](const auto& each) { return each.second == index; });
 }
 
 const ScanEvidence::Seen* ScanEvidence::of_led(int led) const {
@@ -346,28 +338,24 @@ double ScanEvidence::level_of(const PlannedShot& shot, const std::vector<double>
   return levels.empty() ? 1 : median(std::move(levels));
 }
 
-std::vector<int> ScanEvidence::too_full(const std::vector<Seen>& full,
-                                        const std::vector<Seen>& others) const {
+bool ScanEvidence::is_one_too_full(const std::vector<Seen>& full, const std::vector<Seen>& others) const {
   Readings readings;
   std::vector<const std::vector<Vec3>*> incident;
   for (const Seen& other : others) {
     readings.push_back(&other.light);
     incident.push_back(&light_of(other.shot.led, *model_));
   }
-  std::vector<int> shots;
-  for (const Seen& frame : full) {
+  return std::ranges::any_of(full, [&](const Seen& frame) {
     const std::vector<double> expected =
         expected_light(readings, incident, light_of(frame.shot.led, *model_));
     std::size_t patches = 0;
     for (std::size_t i = 0; i < expected.size(); ++i)
       patches += std::isnan(frame.light[i]) && expected[i] < kFarFromFull;
-    if (static_cast<double>(patches) > kMostFull * static_cast<double>(expected.size()))
-      shots.push_back(frame.shot.index);
-  }
-  return shots;
+    return static_cast<double>(patches) > kMostFull * static_cast<double>(expected.size());
+  });
 }
 
-/// Frames that are full, this one or some before, which those that are not let expect far from full.
+/// A frame that is full, this one or one before, which those that are not let expect far from full.
 ShotVerdict ScanEvidence::judge_full(const PlannedShot& shot, const std::vector<double>& light) const {
   std::vector<Seen> full, others;
   for (const auto& [index, seen] : lit_)
@@ -375,11 +363,10 @@ ShotVerdict ScanEvidence::judge_full(const PlannedShot& shot, const std::vector<
   const bool is_full = !is_readable(light);
   (is_full ? full : others).push_back({shot, without_dark(light)});
   ShotVerdict verdict;
-  if (full.empty()) return verdict;
-  verdict.accused = too_full(full, others);
-  if (verdict.accused.empty()) return verdict;
+  if (!is_one_too_full(full, others)) return verdict;
   verdict.finding = Finding::kRoomLight;
   verdict.sentence = "a photograph is full where the others are far from it: there is light beside the LEDs";
+  verdict.accuses_all = true;
   verdict.is_over = !is_full;
   return verdict;
 }
@@ -433,35 +420,31 @@ ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vect
   }
   ShotVerdict verdict;
   const PatchFit as_planned = fit_of(planned, readings, *model_);
-  const double misfit_as_planned = as_planned.misfit;
-  verdict.misfit = misfit_as_planned;
+  verdict.misfit = as_planned.misfit;
+  if (const auto story = believed_story(planned, readings, *model_, as_planned.misfit)) {
+    verdict.finding = story->finding;
+    verdict.sentence = story->sentence;
+    for (std::size_t f = 0; f < frames.size(); ++f)
+      if (story->lights[f] != planned[f]) verdict.accused.push_back(frames[f].shot.index);
+    verdict.accuses_all = comes_and_goes(*story);
+    verdict.is_over = verdict.accuses_all && story->lights.back() == planned.back();
+    return verdict;
+  }
   const auto dimmest = std::ranges::min_element(as_planned.gain);
   if (const double share = *dimmest / median(as_planned.gain); share < kDimLevel) {
     const PlannedShot& dim = frames[static_cast<std::size_t>(dimmest - as_planned.gain.begin())].shot;
-    return {Finding::kDim,
-            fmt::format("LED {} gives {:.0f} percent of the light it should", dim.led, 100 * share),
-            {dim.index},
-            {},
-            {},
-            misfit_as_planned};
+    verdict.finding = Finding::kDim;
+    verdict.sentence =
+        fmt::format("LED {} gives {:.0f} percent of the light it should", dim.led, 100 * share);
+    verdict.accused = {dim.index};
+    verdict.accuses_all = dim.index != shot.index;
   }
-  if (misfit_as_planned < kSuspiciousMisfit) return verdict;
-  const std::vector<Believed> believed = believed_stories(planned, readings, *model_, misfit_as_planned);
-  if (believed.empty()) return verdict;
-  const auto best = std::ranges::min_element(believed, {}, &Believed::misfit);
-  verdict = {best->story.finding, best->story.sentence, {}, {}, {}, misfit_as_planned};
-  for (std::size_t f = 0; f < frames.size(); ++f) {
-    const bool is_in_doubt = std::ranges::any_of(believed, [&](const Believed& each) {
-      return each.story.lights[f] != planned[f] && is_as_good(each, *best);
-    });
-    if (is_in_doubt) verdict.accused.push_back(frames[f].shot.index);
-  }
-  verdict.is_over = comes_and_goes(best->story) && best->story.lights.back() == planned.back();
   return verdict;
 }
 
 /// Gloss comes and goes with the polariser, unevenly, but the light still falls from its own side: over the
-/// frame of another LED this one is more uneven than over that of its own.
+/// frame of another LED this one is more uneven than over that of its own. Where it is the other way round,
+/// the frame that the other LED has in this state may show this one.
 ShotVerdict ScanEvidence::judge_other_state(const PlannedShot& shot, const std::vector<double>& light) const {
   const std::vector<double> own = without_dark(light);
   const auto refuse = [&](Finding finding, std::string sentence) {
@@ -482,6 +465,8 @@ ShotVerdict ScanEvidence::judge_other_state(const PlannedShot& shot, const std::
     verdict = refuse(
         Finding::kOther,
         fmt::format("LED {} lights where LED {} should: are their wires swapped?", seen.shot.led, shot.led));
+    const auto of_that_led = other_.find(seen.shot.led);
+    if (of_that_led != other_.end()) verdict.accused.push_back(of_that_led->second);
   }
   return verdict;
 }

@@ -43,8 +43,10 @@ struct ShotVerdict {
   std::optional<double> level;
   std::optional<double> misfit;      ///< of LightFit, as planned
   Finding doubt = Finding::kAgrees;  ///< what a frame that is kept is warned of
-  bool is_over = false;              ///< light that was wrong is right again: the newest frame is not accused
-  bool accuses_all = false;          ///< every frame since the dark shot, of whatever role
+  /// Every frame since the dark shot, of whatever role and the newest as well: light that may come and go is
+  /// no better known than that.
+  bool accuses_all = false;
+  bool is_over = false;  ///< the newest frame has the right light again
 
   /// Whether the same shots once more may come out right.
   bool may_pass() const {
@@ -82,8 +84,8 @@ class ScanEvidence {
   };
   const Seen* of_led(int led) const;
   std::vector<double> without_dark(const std::vector<double>& light) const;
-  /// Indices of those frames that are full where the others let expect far less. Dark shots are taken off.
-  std::vector<int> too_full(const std::vector<Seen>& full, const std::vector<Seen>& others) const;
+  /// Whether a frame is full where the others let expect far less. Dark shots are taken off.
+  bool is_one_too_full(const std::vector<Seen>& full, const std::vector<Seen>& others) const;
   ShotVerdict judge_dark(const PlannedShot& shot, const std::vector<double>& light) const;
   ShotVerdict judge_dark_again(const std::vector<double>& light) const;
   ShotVerdict judge_lit(const PlannedShot& shot, const std::vector<double>& light) const;
@@ -98,7 +100,8 @@ class ScanEvidence {
   std::optional<PatchLights> model_;
   Polariser solved_;
   std::optional<std::vector<double>> dark_;
-  std::map<int, Seen> lit_;  ///< kept frames of role lit by index, the dark shot taken off
+  std::map<int, Seen> lit_;   ///< kept frames of role lit by index, the dark shot taken off
+  std::map<int, int> other_;  ///< by LED, the index of its kept frame in the other state
 };
 
 }  // namespace weft::capture

@@ -510,7 +510,6 @@ class Scan {
         [&](ScanStatus& status) { status.frames = static_cast<int>(journal_->session().shots.size()); });
     if (!verdict.may_pass() || request_.again) return kept;
     kept.take_again = indices;
-    if (verdict.is_over) kept.take_again.push_back(shot.index);
     return kept;
   }
 

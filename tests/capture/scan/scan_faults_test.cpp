@@ -176,6 +176,22 @@ TEST(ScanFaults, ALampInTheRoomEndsTheScanAtItsFirstShots) {
   EXPECT_LE(bench.rig.takes(), 2);
 }
 
+TEST(ScanFaults, ALampThatComesOnMeanwhileAndIsPutOutLeavesNoFrameOfItsLight) {
+  for (const double room : {0.2, 0.35, 0.6, 1.0}) {
+    for (const int take : {3, 5, 8}) {
+      ScanBench bench;
+      bench.rig.room = room;
+      bench.rig.room_from = take;
+      const Result<ScanOutcome> failed = bench.scan();
+      ASSERT_FALSE(failed) << room << " from take " << take;
+      bench.rig.room = 0;
+      const Result<ScanOutcome> resumed = bench.scan();
+      ASSERT_TRUE(resumed) << resumed.error().message();
+      EXPECT_EQ(bench.objection(), "") << room << " from take " << take;
+    }
+  }
+}
+
 TEST(ScanFaults, LightThatPassesAtTheRepeatHasAllFramesTakenAgainInTheirOrder) {
   constexpr int kRepeatTake = 12;  // after the dark shot and ten LEDs
   ScanBench bench;
