@@ -39,6 +39,7 @@ constexpr std::int64_t kUsualPixels = 16'500'000;  // of a camera that no calibr
 struct Kept {
   std::optional<Error> error;   ///< it is not in the session
   std::vector<int> take_again;  ///< these shots, if the error may pass
+  bool was_light_right = true;  ///< of the shots until now, the one taken meanwhile among them
 };
 
 /// What the frames so far say of the next one. While a frame is on its way, its thread owns this and brings
@@ -397,6 +398,10 @@ class Scan {
       if (on_its_way.valid()) {
         Arrived before = on_its_way.get();
         so_far_ = std::move(before.so_far);
+        if (photograph && !before.kept.was_light_right) {
+          queue.push_front(shot);
+          photograph.reset();
+        }
         if (before.kept.error && !fault) {
           if (Result<void> ok = take_again(before.kept, queue); !ok) fault = ok.error();
         }
@@ -510,6 +515,7 @@ class Scan {
         [&](ScanStatus& status) { status.frames = static_cast<int>(journal_->session().shots.size()); });
     if (!verdict.may_pass() || request_.again) return kept;
     kept.take_again = indices;
+    kept.was_light_right = !verdict.accuses_all;
     return kept;
   }
 
