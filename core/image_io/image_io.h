@@ -32,11 +32,13 @@ using ImageAttributes = std::map<std::string, std::string>;
 /// pixels a metre (pHYs), TIFF and EXR pixels an inch to seven digits; TIFF none of less than one an inch.
 using PixelPitch = std::array<double, 2>;
 
-/// What a file says of its colours.
+/// What a file says of its colours. Their transfer function is told by the chunks sRGB, gAMA and iCCP of a
+/// PNG, the ICC profile of a TIFF, the chromaticities of an EXR.
 enum class ColorSpace {
-  kData,  ///< they are none, or nothing is said
-  kSrgb,  ///< with the transfer function of IEC 61966-2-1: the chunk sRGB of a PNG; TIFF and EXR say none
-  kLinearColor  ///< linear Rec.709: the chromaticities of an EXR; PNG and TIFF have no word for it
+  kData,         ///< they are none, or nothing is said
+  kSrgb,         ///< that of IEC 61966-2-1, which PNG and TIFF are written with
+  kLinearColor,  ///< none: linear Rec.709, written as chromaticities of an EXR; no word in PNG and TIFF
+  kOther         ///< another one; not written
 };
 
 /// What an image file holds, without its pixels.

@@ -7,8 +7,10 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/files.h"
+#include "core/image_io/color_profile.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/oiio.h"
 
@@ -87,7 +89,7 @@ ImageAttributes attributes_of(const OIIO::ImageSpec& spec, const std::string& fo
     const std::string name = each.name().string();
     const std::string prefix = name.substr(0, name.find(':'));
     const bool about_the_file = prefix == "oiio" || prefix == format || name == "compression" ||
-                                name == "planarconfig" || name == "ResolutionUnit";
+                                name == "planarconfig" || name == "ResolutionUnit" || prefix == "ICCProfile";
     if (each.type() == OIIO::TypeString && !about_the_file) attributes[name] = each.get_string();
   }
   if (format == "openexr") return attributes;
@@ -113,26 +115,46 @@ PixelPitch pitch_of(const OIIO::ImageSpec& spec, const std::string& format) {
   return is_one ? pitch : PixelPitch();
 }
 
-/// Whether a chunk of this name stands before the pixels of a PNG.
-bool has_png_chunk(const fs::path& file, std::string_view wanted) {
+std::uint32_t big_endian(const char* bytes) {
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i) number = number << 8 | static_cast<unsigned char>(bytes[i]);
+  return number;
+}
+
+/// The first four bytes of a chunk that stands before the pixels of a PNG, 0 where it has less; nothing where
+/// there is no such chunk.
+std::optional<std::uint32_t> png_chunk(const fs::path& file, std::string_view wanted) {
   std::ifstream in(file, std::ios::binary);
   in.seekg(8);
-  std::array<char, 8> head = {};
+  std::array<char, 12> head = {};
   while (in.read(head.data(), head.size())) {
     const std::string_view name(head.data() + 4, 4);
-    if (name == wanted || name == "IDAT" || name == "IEND") return name == wanted;
-    std::uint32_t bytes = 0;
-    for (std::size_t i = 0; i < 4; ++i) bytes = bytes << 8 | static_cast<unsigned char>(head[i]);
-    in.seekg(std::streamoff{bytes} + 4, std::ios::cur);
+    const std::uint32_t bytes = big_endian(head.data());
+    if (name == wanted) return bytes < 4 ? 0 : big_endian(head.data() + 8);
+    if (name == "IDAT" || name == "IEND") break;
+    in.seekg(std::streamoff{bytes}, std::ios::cur);
   }
-  return false;
+  return std::nullopt;
+}
+
+ColorSpace color_of_png(const fs::path& file) {
+  if (png_chunk(file, "sRGB")) return ColorSpace::kSrgb;
+  const std::uint32_t encoding = png_chunk(file, "gAMA").value_or(0);  // of light, in 100000ths
+  return encoding == 0 ? ColorSpace::kData : color_of_gamma(1e5 / encoding);
 }
 
 /// OpenImageIO takes every EXR for linear colour and every PNG for sRGB: here it counts what the file says.
 ColorSpace color_of(const OIIO::ImageSpec& spec, const std::string& format, const fs::path& file) {
-  if (format == "jpeg" || (format == "png" && has_png_chunk(file, "sRGB"))) return ColorSpace::kSrgb;
-  const bool is_linear = format == "openexr" && spec.find_attribute("chromaticities") != nullptr;
-  return is_linear ? ColorSpace::kLinearColor : ColorSpace::kData;
+  if (format == "jpeg") return ColorSpace::kSrgb;
+  if (format == "openexr") {
+    return spec.find_attribute("chromaticities") != nullptr ? ColorSpace::kLinearColor : ColorSpace::kData;
+  }
+  if (const OIIO::ParamValue* profile = spec.find_attribute("ICCProfile")) {
+    const auto* bytes = static_cast<const std::uint8_t*>(profile->data());
+    const ColorSpace color = color_of_profile({bytes, static_cast<std::size_t>(profile->datasize())});
+    if (color != ColorSpace::kData) return color;
+  }
+  return format == "png" ? color_of_png(file) : ColorSpace::kData;
 }
 
 /// How often larger than its file the pixels of an EXR can be, with room above what a constant image gives.

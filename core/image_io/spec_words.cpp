@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
+
+#include "core/image_io/color_profile.h"
 
 namespace weft {
 namespace {
@@ -33,6 +36,11 @@ void add_density(OIIO::ImageSpec& spec, const std::string& format, PixelPitch pi
 // brighten.
 void add_color(OIIO::ImageSpec& spec, const std::string& format, ColorSpace color) {
   if (color == ColorSpace::kSrgb) spec.attribute("oiio:ColorSpace", "sRGB");
+  if (color == ColorSpace::kSrgb && format == "tiff" && spec.nchannels >= 3) {
+    const std::vector<std::uint8_t> profile = srgb_profile();
+    spec.attribute("ICCProfile", OIIO::TypeDesc(OIIO::TypeDesc::UINT8, static_cast<int>(profile.size())),
+                   profile.data());
+  }
   if (color == ColorSpace::kLinearColor && format == "openexr")
     spec.attribute("chromaticities", OIIO::TypeDesc(OIIO::TypeDesc::FLOAT, 8), kRec709.data());
 }

@@ -74,6 +74,28 @@ Level next_level(const Level& fine, std::size_t channels) {
   return level;
 }
 
+void put_own(std::span<const PlaneLevels> own, std::size_t number, std::size_t channels, Level& level) {
+  for (const PlaneLevels& each : own) {
+    const Image<float>& from = each.levels[number - 1];
+    std::size_t at = each.plane;
+    for (int y = 0; y < level.size.height; ++y) {
+      for (int x = 0; x < level.size.width; ++x, at += channels) level.samples[at] = from(x, y);
+    }
+  }
+}
+
+bool are_whole(std::span<const PlaneLevels> own, Size size, std::size_t channels) {
+  for (const PlaneLevels& each : own) {
+    Size level = size;
+    for (std::size_t i = 0; level != Size{1, 1}; ++i) {
+      level = {std::max(1, level.width / 2), std::max(1, level.height / 2)};
+      if (i == each.levels.size() || each.levels[i].size() != level) return false;
+    }
+    if (each.plane >= channels) return false;
+  }
+  return true;
+}
+
 OIIO::ImageSpec spec_of_texture(Size size, const std::vector<std::string>& channels,
                                 const TiledTextureOptions& options) {
   OIIO::ImageSpec spec(size.width, size.height, static_cast<int>(channels.size()),
@@ -107,9 +129,11 @@ Result<void> write_tiled_texture(const fs::path& file, std::span<const View<cons
                                  const TiledTextureOptions& options) {
   prepare_oiio();
   const bool is_float = options.type == SampleType::kHalf || options.type == SampleType::kFloat;
-  if (planes.empty() || planes.size() != channels.size() || planes[0].empty() || !is_float) {
+  if (planes.empty() || planes.size() != channels.size() || planes[0].empty() || !is_float ||
+      !are_whole(options.own_levels, planes[0].size(), planes.size())) {
     return Error{ErrorKind::kUsage, "cannot write such a texture", file.string(),
-                 "it has no planes, or samples that are neither half nor float", "choose half or float"};
+                 "it has no planes, levels of other sizes, or samples that are neither half nor float",
+                 "choose half or float"};
   }
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput sink(bytes);
@@ -118,6 +142,7 @@ Result<void> write_tiled_texture(const fs::path& file, std::span<const View<cons
   if (!output->set_ioproxy(&sink)) return refused(file, output->geterror());
   const std::string name = file.string();
   Level level = first_level(planes);
+  std::size_t number = 0;
   OIIO::ImageOutput::OpenMode mode = OIIO::ImageOutput::Create;
   while (true) {
     const OIIO::ImageSpec spec = spec_of_texture(level.size, channels, options);
@@ -125,6 +150,7 @@ Result<void> write_tiled_texture(const fs::path& file, std::span<const View<cons
     if (!output->write_image(OIIO::TypeFloat, level.samples.data())) return refused(file, output->geterror());
     if (level.size == Size{1, 1}) break;
     level = next_level(level, planes.size());
+    put_own(options.own_levels, ++number, planes.size(), level);
     mode = OIIO::ImageOutput::AppendMIPLevel;
   }
   if (!output->close()) return refused(file, output->geterror());

@@ -2,10 +2,15 @@
 // What files say of the size of their pixels and of their colours, by their bytes and by the reader.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "core/image_io/color_profile.h"
 #include "core/image_io/image_io.h"
 #include "core/image_io/tiled_texture.h"
 #include "tests/core/image_io/scratch_folder.h"
@@ -104,11 +109,72 @@ TEST(ColorSpaceOfAFile, IsSaidOfColoursAndNeverAsAGamma) {
     write(folder / "a.exr", {.type = SampleType::kHalf, .color = color});
     const bool has_primaries = bytes_of(folder / "a.exr").find("chromaticities") != std::string::npos;
     EXPECT_EQ(has_primaries, color == ColorSpace::kLinearColor);
-    const auto png_info = read_image_info(folder / "a.png"), exr_info = read_image_info(folder / "a.exr");
-    ASSERT_TRUE(png_info && exr_info);
+    write(folder / "a.tif", {.type = SampleType::kUint16, .color = color});
+    const bool has_profile = bytes_of(folder / "a.tif").find("acsp") != std::string::npos;
+    EXPECT_EQ(has_profile, color == ColorSpace::kSrgb);
+    const auto png_info = read_image_info(folder / "a.png"), exr_info = read_image_info(folder / "a.exr"),
+               tiff_info = read_image_info(folder / "a.tif");
+    ASSERT_TRUE(png_info && exr_info && tiff_info);
+    EXPECT_EQ(tiff_info->color, color == ColorSpace::kSrgb ? color : ColorSpace::kData);
     EXPECT_EQ(png_info->color, color == ColorSpace::kSrgb ? color : ColorSpace::kData);
     EXPECT_EQ(exr_info->color, color == ColorSpace::kLinearColor ? color : ColorSpace::kData);
   }
+}
+
+std::string big_endian(std::uint32_t value) {
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xFFU);
+  return bytes;
+}
+
+// CRC-32 of ISO 3309, as PNG has it.
+std::uint32_t crc_of(const std::string& bytes) {
+  std::uint32_t crc = 0xFFFFFFFFU;
+  for (const char c : bytes) {
+    crc ^= static_cast<unsigned char>(c);
+    for (int bit = 0; bit < 8; ++bit) crc = crc >> 1 ^ ((crc & 1U) != 0 ? 0xEDB88320U : 0U);
+  }
+  return ~crc;
+}
+
+TEST(ColorSpaceOfAFile, FollowsTheGammaOfAPng) {
+  const ScratchFolder folder;
+  write(folder / "a.png", {.type = SampleType::kUint8});
+  const std::string plain = bytes_of(folder / "a.png");
+  for (const auto& [gamma, color] :
+       {std::pair{100000U, ColorSpace::kLinearColor}, std::pair{45455U, ColorSpace::kSrgb},
+        std::pair{55556U, ColorSpace::kOther}}) {
+    const std::string chunk = "gAMA" + big_endian(gamma);
+    constexpr std::size_t kAfterHeader = 33;
+    std::string png = plain;
+    png.insert(kAfterHeader, big_endian(4) + chunk + big_endian(crc_of(chunk)));
+    std::ofstream(folder / "g.png", std::ios::binary) << png;
+    const auto info = read_image_info(folder / "g.png");
+    ASSERT_TRUE(info) << info.error().message();
+    EXPECT_EQ(info->color, color) << gamma;
+  }
+}
+
+TEST(ColorProfile, IsToldByItsCurve) {
+  const std::vector<std::uint8_t> srgb = srgb_profile();
+  EXPECT_EQ(color_of_profile(srgb), ColorSpace::kSrgb);
+  // All curves as a power: form 0 of a parametric curve, its number in 65536ths.
+  const auto with_gamma = [&](double gamma) {
+    std::vector<std::uint8_t> profile = srgb;
+    const std::string word = "para", number = big_endian(static_cast<std::uint32_t>(gamma * 65536));
+    for (auto at = profile.begin();
+         (at = std::search(at, profile.end(), word.begin(), word.end())) != profile.end(); ++at) {
+      at[8] = at[9] = 0;
+      std::copy(number.begin(), number.end(), at + 12);
+    }
+    return profile;
+  };
+  EXPECT_EQ(color_of_profile(with_gamma(1)), ColorSpace::kLinearColor);
+  EXPECT_EQ(color_of_profile(with_gamma(2.2)), ColorSpace::kSrgb);
+  EXPECT_EQ(color_of_profile(with_gamma(1.8)), ColorSpace::kOther);
+  for (std::size_t bytes = 0; bytes < srgb.size(); ++bytes)
+    color_of_profile({srgb.data(), bytes});  // is read within its end
+  EXPECT_EQ(color_of_profile({srgb.data(), 200}), ColorSpace::kData) << "cut";
 }
 
 TEST(TiledTexture, IsTheSameBytesTwiceAndHoldsItsPixels) {
