@@ -70,12 +70,7 @@ std::vector<Product> list_products(const ProductKind& kind, const fs::path& pare
 }
 
 Result<Product> find_product(const ProductKind& kind, const fs::path& parent, const std::string& id) {
-  if (id.empty()) {
-    const std::vector<Product> all = list_products(kind, parent);
-    if (!all.empty()) return all.back();
-    return no_product(kind, parent, fmt::format("no folder there holds a {}", kind.document));
-  }
-  const bool is_name = fs::path(id).filename() == id && !id.starts_with('.');
+  const bool is_name = !id.empty() && fs::path(id).filename() == id && !id.starts_with('.');
   if (is_name && is_there(parent / id / kind.document)) return Product{kind, id, parent / id};
   return no_product(kind, parent / id, fmt::format("it holds no {}", kind.document));
 }

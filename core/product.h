@@ -53,8 +53,8 @@ Result<void> begin(const PartialFolder& partial, std::uint64_t bytes);
 /// The complete products of this kind below `parent`, the oldest first, of two alike by name.
 std::vector<Product> list_products(const ProductKind& kind, const std::filesystem::path& parent);
 
-/// The one of list_products() that has this id; without an id the newest. kNoInput where there is none.
+/// The one of list_products() that has this id. kNoInput where there is none.
 Result<Product> find_product(const ProductKind& kind, const std::filesystem::path& parent,
-                             const std::string& id = "");
+                             const std::string& id);
 
 }  // namespace weft

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 namespace weft {
@@ -21,6 +22,14 @@ Result<SolveError> error_from_json(const Json& json, const std::string& where) {
   return error;
 }
 
+Result<SolvePrice> price_from_json(const Json& json, const std::string& where) {
+  JsonFields fields(json, where);
+  SolvePrice price = {fields.number("seconds"), fields.number("mean_deg"), fields.number("solved"), {}};
+  if (fields.has("parts_s")) price.parts_s = json["parts_s"];
+  if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
+  return price;
+}
+
 // Documents of early versions do not have every bit.
 Result<StatusCounts> status_from_json(const Json& json, const std::string& where) {
   JsonFields fields(json, where);
@@ -30,6 +39,29 @@ Result<StatusCounts> status_from_json(const Json& json, const std::string& where
   }
   if (Result<void> ok = fields.status(); !ok) return std::move(ok).error();
   return counts;
+}
+
+// What not every solve has.
+Result<void> read_optional(const Json& document, const std::string& where, SolveFacts& facts) {
+  const JsonFields fields(document, where);
+  if (fields.has("error")) {
+    const Result<SolveError> error = error_from_json(document["error"], where + ": error");
+    if (!error) return error.error();
+    facts.error = *error;
+  }
+  for (const auto& [price, name] :
+       {std::pair{&facts.foretold, "foretold"}, std::pair{&facts.taken, "taken"}}) {
+    if (!fields.has(name)) continue;
+    Result<SolvePrice> read = price_from_json(document[name], where + ": " + name);
+    if (!read) return std::move(read).error();
+    *price = std::move(*read);
+  }
+  if (fields.has("check")) {
+    Result<LeftOutFacts> check = left_out_facts_from_json(document["check"], where + ": check");
+    if (!check) return std::move(check).error();
+    facts.check = std::move(*check);
+  }
+  return {};
 }
 
 std::vector<std::string> pictures_of(JsonFields& fields) {
@@ -76,6 +108,16 @@ Json json_of(const SolveError& error) {
           {"max_deg", error.max_deg}};
 }
 
+Json json_of(const SolvePrice& price) {
+  Json json = {{"seconds", price.seconds}, {"mean_deg", price.mean_deg}, {"solved", price.solved}};
+  if (!price.parts_s.is_null()) json["parts_s"] = price.parts_s;
+  return json;
+}
+
+double deg_of_whole(double mean_deg, double solved) {
+  return solved * mean_deg + (1 - solved) * (180 / std::numbers::pi);
+}
+
 Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string& where) {
   JsonFields fields(document, where);
   SolveFacts facts;
@@ -102,16 +144,7 @@ Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string
   Result<std::vector<Verdict>> verdicts = verdicts_from_json(warnings, where + ": warnings");
   if (!verdicts) return std::move(verdicts).error();
   facts.warnings = std::move(*verdicts);
-  if (fields.has("error")) {
-    const Result<SolveError> error = error_from_json(document["error"], where + ": error");
-    if (!error) return error.error();
-    facts.error = *error;
-  }
-  if (fields.has("check")) {
-    Result<LeftOutFacts> check = left_out_facts_from_json(document["check"], where + ": check");
-    if (!check) return std::move(check).error();
-    facts.check = std::move(*check);
-  }
+  if (Result<void> ok = read_optional(document, where, facts); !ok) return std::move(ok).error();
   for (const auto& [part, name] : {std::pair{&facts.input, "input"},
                                    {&facts.solved_by, "solved_by"},
                                    {&facts.conditions, "conditions"},
@@ -128,7 +161,7 @@ Result<SolveFacts> solve_facts_from_json(const Json& document, const std::string
 }
 
 Json json_of(const SolveFacts& facts) {
-  Json json = {{"schema", fmt::format("{}/1", kSolveProduct.schema)},
+  Json json = {{"schema", fmt::format("{}/{}", kSolveProduct.schema, facts.taken ? "1.1" : "1")},
                {"id", facts.id},
                {"solver_version", facts.solver_version},
                {"method", facts.method},
@@ -153,7 +186,9 @@ Json json_of(const SolveFacts& facts) {
                {"gates", facts.gates},
                {"reference", facts.reference},
                {"reflectance", facts.reflectance},
-               {"error", facts.error ? json_of(*facts.error) : Json()}};
+               {"error", facts.error ? json_of(*facts.error) : Json()},
+               {"foretold", facts.foretold ? json_of(*facts.foretold) : Json()},
+               {"taken", facts.taken ? json_of(*facts.taken) : Json()}};
   for (auto field = json.begin(); field != json.end();) {
     field = field->is_null() ? json.erase(field) : std::next(field);
   }

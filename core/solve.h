@@ -25,8 +25,9 @@ namespace weft {
 inline constexpr ProductKind kSolveProduct = {"weft.solve", "solve.json", "solve",
                                               "solve the session first with weft solve"};
 
-/// The complete solve of a session that has this id; without an id the newest. kNoInput where there is none.
-Result<Product> find_solve(const std::filesystem::path& session, const std::string& id = "");
+/// The complete solve of a session that has this id; kNoInput where there is none. Which of them is current
+/// says library/current.h.
+Result<Product> find_solve(const std::filesystem::path& session, const std::string& id);
 
 /// The complete solves of a session, the oldest first.
 std::vector<Product> list_solves(const std::filesystem::path& session);
@@ -49,6 +50,25 @@ struct SolveError {
 };
 Json json_of(const SolveError& error);
 
+/// What a solve gives and takes: as it was foretold, or as it came.
+struct SolvePrice {
+  double seconds = 0;   ///< wall, until solve.json is written
+  double mean_deg = 0;  ///< that normals are expected to be off, where there is one
+  double solved = 0;    ///< share of the cloth that has a normal
+  Json parts_s;         ///< seconds by phase, for people; null where they are not known
+
+  friend bool operator==(const SolvePrice&, const SolvePrice&) = default;
+};
+Json json_of(const SolvePrice& price);
+
+/// Cloth of which less has a normal is not called solved.
+inline constexpr double kLeastSolved = 0.5;
+
+/// Mean error over all of a cloth of which the share `solved` is off by `mean_deg`. Where there is no normal
+/// nothing is known, and straight up is one radian from a direction that may be any of the hemisphere, on the
+/// mean.
+double deg_of_whole(double mean_deg, double solved);
+
 /// What solve.json says of a solve.
 struct SolveFacts {
   std::string id;
@@ -62,9 +82,11 @@ struct SolveFacts {
   std::int64_t pixels = 0;  ///< with a solution
   StatusCounts status;
   std::vector<Verdict> warnings;
-  std::vector<std::string> pictures;  ///< files in its folder
-  std::optional<LeftOutFacts> check;  ///< where a light could be left out
-  std::optional<SolveError> error;    ///< where there is a truth
+  std::vector<std::string> pictures;   ///< files in its folder
+  std::optional<LeftOutFacts> check;   ///< where a light could be left out
+  std::optional<SolveError> error;     ///< where there is a truth
+  std::optional<SolvePrice> foretold;  ///< where a price was asked before
+  std::optional<SolvePrice> taken;     ///< none in documents of early versions
 
   // Kept for people and passed on to the report; no program looks into them. Null where there is none.
   Json input;                                ///< all that the id depends on besides method and compression

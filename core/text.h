@@ -11,8 +11,14 @@ namespace weft {
 /// nearest known name is the one to suggest for an unknown one.
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// With a dash for all that a file's name cannot hold everywhere: letters, digits, '.', '_' and '-' stay.
+/// With a dash for each character that a file's name cannot hold everywhere: letters and digits of any script
+/// with their marks, '.', '_' and '-' stay; blanks, punctuation, symbols, control and format characters and
+/// what is no UTF-8 do not.
 std::string plain_name(std::string text);
+
+/// A name for the file of what people call `text`: plain, without a dash or dot at its ends and two dashes
+/// side by side, at most `most_bytes` long in whole characters; `otherwise` where nothing is left.
+std::string file_name_of(std::string_view text, std::string_view otherwise, std::size_t most_bytes = 120);
 
 /// As text or as the value of an attribute in HTML and SVG.
 std::string escape_markup(std::string_view text);

@@ -5,6 +5,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 #include "core/json_document.h"
 
@@ -25,6 +26,15 @@ std::string upper_case(std::string_view text) {
     if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
   }
   return upper;
+}
+
+/// Eight hexadecimal digits of a text (FNV-1a of 32 bits).
+std::string digits_of(std::string_view text) {
+  std::uint32_t hash = 2166136261U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  std::string digits;
+  for (int shift = 28; shift >= 0; shift -= 4) digits += "0123456789abcdef"[hash >> shift & 15U];
+  return digits;
 }
 
 /// CON, LPT9: names of devices under Windows, with any extension.
@@ -82,7 +92,9 @@ std::string identifier_of(std::string_view name) {
       c = '_';
     }
   }
-  if (!has_any) return "cloth";
+  if (!has_any) identifier = "cloth";
+  if (std::ranges::any_of(name, [](char c) { return static_cast<unsigned char>(c) >= 0x80; }))
+    identifier += "_" + digits_of(name);
   return is_digit(identifier.front()) ? "_" + identifier : identifier;
 }
 

@@ -38,7 +38,8 @@ bool is_plain_text(std::string_view text);
 Result<void> check_material(const TexturedMaterial& material);
 
 /// Letters, digits and "_" of `name`, "_" for every other character, with "_" before a digit; "cloth" where
-/// no letter or digit is left. A name of a node in MaterialX and of a prim in USD.
+/// no letter or digit is left. Names beyond ASCII, which lose letters so, end in "_" and eight digits that
+/// tell them apart. A name of a node in MaterialX and of a prim in USD.
 std::string identifier_of(std::string_view name);
 
 /// The shortest text that reads back as the same double ("0.1", "1e-07"), whatever the locale; "0" for -0.

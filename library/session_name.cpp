@@ -62,8 +62,9 @@ bool is_session_name(const std::string& name) {
 
 Result<std::filesystem::path> session_folder(const std::filesystem::path& sessions, const std::string& name) {
   if (!is_session_name(name)) {
-    return Error{ErrorKind::kUsage, "this is no name of a session", name.substr(0, kMostBytes), "",
-                 "use at most 100 letters, digits, '.', '_' and '-', beginning with a letter, digit or '_'"};
+    return Error{
+        ErrorKind::kUsage, "this is no name of a session", name.substr(0, kMostBytes), "",
+        "use at most 100 bytes of letters, digits, '.', '_' and '-', beginning with a letter, digit or '_'"};
   }
   std::filesystem::path folder = sessions / (name + ".weft");
   std::error_code error;
@@ -80,8 +81,8 @@ Result<std::string> next_session_name(const std::string& name_template, const st
                                       std::chrono::system_clock::time_point now) {
   std::map<std::string, std::string> values = {{"date", local_time(now, "%Y-%m-%d")},
                                                {"time", local_time(now, "%H%M%S")},
-                                               {"fabric", plain_name(fabric).substr(0, kMostNameBytes)},
-                                               {"rig", plain_name(rig).substr(0, kMostNameBytes)}};
+                                               {"fabric", file_name_of(fabric, "cloth", kMostNameBytes)},
+                                               {"rig", file_name_of(rig, "rig", kMostNameBytes)}};
   const bool counts = name_template.find("{count}") != std::string::npos;
   for (int count = 1; count <= kMostCount; ++count) {
     values["count"] = fmt::format("{:03}", count);

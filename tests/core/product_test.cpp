@@ -81,10 +81,10 @@ TEST_F(Products, AreNotBegunWithoutRoom) {
   EXPECT_THAT(begun.error().message(), HasSubstr("MB are needed"));
 }
 
-TEST_F(Products, AreListedByAgeAndTheNewestIsMeantWhereNoneIsNamed) {
+TEST_F(Products, AreListedByAgeAndFoundByTheirIdAlone) {
   const Product old_one = product_of(kMaps, {{"session", "a"}}, parent_, {});
   const Product new_one = product_of(kMaps, {{"session", "b"}}, parent_, {});
-  const auto none = find_product(kMaps, parent_);
+  const auto none = find_product(kMaps, parent_, "");
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().kind, ErrorKind::kNoInput);
   complete(new_one, 10);
@@ -94,7 +94,8 @@ TEST_F(Products, AreListedByAgeAndTheNewestIsMeantWhereNoneIsNamed) {
   const auto all = list_products(kMaps, parent_);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[0].id, old_one.id);
-  EXPECT_EQ(find_product(kMaps, parent_)->id, new_one.id);
+  EXPECT_EQ(all[1].id, new_one.id);
+  EXPECT_FALSE(find_product(kMaps, parent_, ""));
   EXPECT_EQ(find_product(kMaps, parent_, old_one.id)->folder, old_one.folder);
   EXPECT_FALSE(find_product(kMaps, parent_, "../" + old_one.id)) << "an id is a name, not a path";
 }

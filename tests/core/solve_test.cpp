@@ -109,6 +109,30 @@ TEST(SolveFacts, WithAFieldOfTheWrongKindAreRefusedByItsName) {
   }
 }
 
+TEST(SolveFacts, KeepWhatWasForetoldBesideWhatWasTaken) {
+  const std::filesystem::path file =
+      std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas/weft.solve-1.1/solve.json";
+  const Result<Json> document = read_json(file, "weft.solve", 1);
+  ASSERT_TRUE(document) << document.error().message();
+  const Result<SolveFacts> facts = solve_facts_from_json(*document);
+  ASSERT_TRUE(facts) << facts.error().message();
+  ASSERT_TRUE(facts->foretold && facts->taken);
+  EXPECT_EQ(facts->foretold->seconds, 1.25);
+  EXPECT_EQ(facts->taken->solved, 1);
+  EXPECT_EQ(json_of(*facts), *document);
+  Json wrong = *document;
+  wrong["foretold"].erase("solved");
+  const Result<SolveFacts> refused = solve_facts_from_json(wrong);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message(), HasSubstr("foretold"));
+}
+
+TEST(SolveFacts, OfAClothThatIsPartlySolvedCountARadianWhereThereIsNoNormal) {
+  EXPECT_DOUBLE_EQ(deg_of_whole(0.77, 1), 0.77);
+  EXPECT_NEAR(deg_of_whole(0.248, 0.1), 0.0248 + 0.9 * 57.29578, 1e-5);
+  EXPECT_NEAR(deg_of_whole(0, 0), 57.29578, 1e-5) << "an error of nothing is none";
+}
+
 TEST(SolveFacts, OfStoredSolvesAreRead) {
   const std::filesystem::path data = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata";
   const Result<Json> first = read_json(data / "schemas/weft.solve-1/solve.json", "weft.solve", 1);
@@ -119,7 +143,7 @@ TEST(SolveFacts, OfStoredSolvesAreRead) {
   EXPECT_FALSE(early->is_rec709);
   EXPECT_TRUE(early->error);
 
-  const Result<Product> solve = find_solve(data / "golden/satin.weft");
+  const Result<Product> solve = find_solve(data / "golden/satin.weft", "7cf91e8f08f74f49");
   ASSERT_TRUE(solve) << solve.error().message();
   const Result<Json> document = read_json(solve->folder / solve->kind.document, solve->kind.schema, 1);
   ASSERT_TRUE(document) << document.error().message();

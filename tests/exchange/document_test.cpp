@@ -33,7 +33,10 @@ TEST(PortablePath, IsWhatEverySystemCanHold) {
 TEST(Identifier, IsOneOfMaterialXAndUsd) {
   EXPECT_EQ(identifier_of("Twill 2/1"), "Twill_2_1");
   EXPECT_EQ(identifier_of("2/1"), "_2_1");
-  EXPECT_EQ(identifier_of("\xc3\xa4"), "cloth");
+  EXPECT_EQ(identifier_of("\xe7\xb6\xbf").substr(0, 6), "cloth_");
+  EXPECT_NE(identifier_of("\xe7\xb6\xbf"), identifier_of("\xe7\xb5\xb9")) << "cotton and silk in Japanese";
+  EXPECT_NE(identifier_of("Gr\xc3\xbcn"), identifier_of("Gr\xc3\xb6n"));
+  EXPECT_EQ(identifier_of("Gr\xc3\xbcn").find_first_not_of("Gr_n0123456789abcdef"), std::string::npos);
   EXPECT_EQ(identifier_of(""), "cloth");
 }
 

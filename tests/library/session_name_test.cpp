@@ -47,9 +47,17 @@ TEST_F(SessionName, IsNeverThatOfASessionThatIsThere) {
 
 TEST_F(SessionName, HoldsNothingOfAFabricThatAPathWouldRead) {
   EXPECT_EQ(next("{fabric}", "../../etc/passwd"), "etc-passwd");
-  EXPECT_EQ(next("{fabric}", "blue/red 50%\n"), "blue-red-50--");
-  EXPECT_EQ(next("x_{fabric}", "Jacquard grün"), "x_Jacquard-gr--n");
+  EXPECT_EQ(next("{fabric}", "blue/red 50%\n"), "blue-red-50");
   EXPECT_EQ(next("{fabric}", std::string(300, 'a')), std::string(40, 'a'));
+}
+
+TEST_F(SessionName, KeepsLettersOfEveryScript) {
+  EXPECT_EQ(next("x_{fabric}_{count}", "Grüner Loden 🧶"), "x_Grüner-Loden_001");
+  EXPECT_EQ(next("{fabric}", "綿"), "綿");
+  EXPECT_EQ(next("{fabric}", "絹"), "絹");
+  EXPECT_EQ(next("{fabric}_{count}", "🧶"), "cloth_001");
+  const std::string cut = next("{fabric}", "綿綿綿綿綿綿綿綿綿綿綿綿綿綿");
+  EXPECT_EQ(cut.size(), 39U) << "40 bytes hold 13 whole characters of three: " << cut;
 }
 
 TEST_F(SessionName, SaysWhatATemplateMayHold) {
@@ -59,10 +67,12 @@ TEST_F(SessionName, SaysWhatATemplateMayHold) {
 }
 
 TEST_F(SessionName, IsOneSegmentOfAPath) {
-  for (const char* good : {"a", "_a", "A-1.b_c", "0"}) EXPECT_TRUE(is_session_name(good)) << good;
+  for (const char* good : {"a", "_a", "A-1.b_c", "0", "ä", "x_Gr--ner-Loden-----_001", "綿_001"})
+    EXPECT_TRUE(is_session_name(good)) << good;
   for (const std::string& bad :
        {std::string(), std::string("."), std::string(".."), std::string("a/b"), std::string("-a"),
-        std::string("a b"), std::string("a\0b", 3), std::string("ä"), std::string(101, 'a')}) {
+        std::string("a b"), std::string("a\0b", 3), std::string("a\xe2\x80\xae_b"), std::string("\xc3"),
+        std::string(101, 'a')}) {
     EXPECT_FALSE(is_session_name(bad)) << bad;
     EXPECT_FALSE(session_folder(sessions_, bad)) << bad;
   }
