@@ -36,10 +36,12 @@ class Layout {
     }
   }
   Eigen::Index unknowns() const { return 3 * shots_; }
-  // Displacements (x, y) of all shots in a tile from all parameters.
+  // Shots whose parameters are solved together.
+  Eigen::Index group() const { return shots_ > kMostTogether ? 1 : std::max<Eigen::Index>(shots_, 1); }
+  // Displacements (x, y) of a group's shots in a tile from its parameters.
   MatrixXd jacobian(std::size_t tile) const {
-    MatrixXd j = MatrixXd::Zero(2 * shots_, unknowns());
-    for (Eigen::Index k = 0; k < shots_; ++k) {
+    MatrixXd j = MatrixXd::Zero(2 * group(), 3 * group());
+    for (Eigen::Index k = 0; k < group(); ++k) {
       j(2 * k, 3 * k) = j(2 * k + 1, 3 * k + 1) = 1;
       j(2 * k, 3 * k + 2) = y_[tile] / corner_px_;
       j(2 * k + 1, 3 * k + 2) = -x_[tile] / corner_px_;
@@ -70,43 +72,58 @@ class Layout {
   std::vector<double> x_, y_;
 };
 
-// The systems of all tiles as one in the parameters.
-struct Whole {
+// The systems of all tiles as one in the parameters of a group.
+struct Group {
   MatrixXd information, noise, scatter;  // scatter: covariance of `score`
   VectorXd score;
+};
+struct Whole {
+  std::vector<Group> groups;
+  double information = 0, scatter = 0;  // traces
   double chi2 = 0, freedom = 0, floor = 0;
 };
 
 Whole gather(const std::vector<TileSystem>& systems, const Layout& layout) {
-  const Eigen::Index n = layout.unknowns();
-  Whole w = {MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), VectorXd::Zero(n)};
+  const Eigen::Index n = 3 * layout.group(), displacements = 2 * layout.group();
+  Whole w;
+  w.groups.assign(static_cast<std::size_t>(layout.unknowns() / n),
+                  {MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), MatrixXd::Zero(n, n), VectorXd::Zero(n)});
   double squares = 0;
   for (std::size_t t = 0; t < systems.size(); ++t) {
     const TileSystem& s = systems[t];
+    if (s.points == 0) continue;
     const MatrixXd j = layout.jacobian(t);
-    w.information += j.transpose() * s.information.selfadjointView<Eigen::Lower>() * j;
-    w.noise += j.transpose() * s.noise.selfadjointView<Eigen::Lower>() * j;
-    for (const VectorXd& block : s.block_scores) {
-      const VectorXd score = j.transpose() * block;
-      w.score += score;
-      w.scatter += score * score.transpose();
+    for (std::size_t g = 0; g < w.groups.size(); ++g) {
+      Group& group = w.groups[g];
+      const GroupInformation& known = s.groups[g];
+      group.information += j.transpose() * known.information.selfadjointView<Eigen::Lower>() * j;
+      group.noise += j.transpose() * known.noise.selfadjointView<Eigen::Lower>() * j;
+      for (const VectorXd& block : s.block_scores) {
+        const VectorXd score =
+            j.transpose() * block.segment(static_cast<Eigen::Index>(g) * displacements, displacements);
+        group.score += score;
+        group.scatter += score * score.transpose();
+      }
     }
     w.chi2 += s.chi2;
     w.freedom += s.freedom;
     squares += s.squares;
+  }
+  for (const Group& group : w.groups) {
+    w.information += group.information.trace();
+    w.scatter += group.scatter.trace();
   }
   w.floor = w.freedom > 0 ? squares / w.freedom : 0;
   return w;
 }
 
 // What is left of the information once the energy that noise lends to gradients is taken off, in the
-// directions that stand out of it.
-MatrixXd signal_of(const Whole& w) {
-  const Eigen::Index n = w.noise.rows();
-  const double size = w.information.trace() / static_cast<double>(n);
+// directions that stand out of it. `size`: of the information of a parameter, on average.
+MatrixXd signal_of(const Group& group, double size) {
+  const Eigen::Index n = group.noise.rows();
   if (!(size > 0)) return MatrixXd::Zero(n, n);
-  const MatrixXd noise = w.noise + 1e-6 * size * MatrixXd::Identity(n, n);
-  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(w.information, noise);
+  const MatrixXd noise = group.noise + 1e-6 * size * MatrixXd::Identity(n, n);
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(group.information, noise);
   const VectorXd signal =
       modes.eigenvalues().unaryExpr([](double v) { return v > 1 + kLeastSignal ? v - 1 : 0.0; });
   const MatrixXd basis = noise * modes.eigenvectors();
@@ -115,21 +132,27 @@ MatrixXd signal_of(const Whole& w) {
 
 struct Step {
   VectorXd parameters;
-  MatrixXd covariance;
+  std::vector<MatrixXd> covariances;  // by group
 };
 
 // Ridge regression towards no shift, whose error is scatter of the score and what the ridge holds back.
 Step step_from(const VectorXd& parameters, const Whole& w) {
-  const Eigen::Index n = parameters.size();
   const double prior2 = kUnknownShift_px * kUnknownShift_px;
-  const MatrixXd identity = MatrixXd::Identity(n, n), signal = signal_of(w);
-  const double trace = w.information.trace();
-  const double variance_of_score = trace > 0 ? w.scatter.trace() / trace : 1;
-  const double ridge = std::max(variance_of_score / prior2, 1e-9 * trace + 1e-300);
-  const MatrixXd gain = (signal + ridge * identity).ldlt().solve(identity);
-  const MatrixXd held_back = gain * signal - identity;
-  return {parameters + gain * (w.score - ridge * parameters),
-          gain * w.scatter * gain.transpose() + prior2 * held_back * held_back.transpose()};
+  const double variance_of_score = w.information > 0 ? w.scatter / w.information : 1;
+  const double ridge = std::max(variance_of_score / prior2, 1e-9 * w.information + 1e-300);
+  const double size = w.information / static_cast<double>(parameters.size());
+  Step step = {parameters, {}};
+  for (std::size_t g = 0; g < w.groups.size(); ++g) {
+    const Group& group = w.groups[g];
+    const Eigen::Index n = group.score.size(), first = static_cast<Eigen::Index>(g) * n;
+    const MatrixXd identity = MatrixXd::Identity(n, n), signal = signal_of(group, size);
+    const MatrixXd gain = (signal + ridge * identity).ldlt().solve(identity);
+    const MatrixXd held_back = gain * signal - identity;
+    step.parameters.segment(first, n) += gain * (group.score - ridge * parameters.segment(first, n));
+    step.covariances.emplace_back(gain * group.scatter * gain.transpose() +
+                                  prior2 * held_back * held_back.transpose());
+  }
+  return step;
 }
 
 // Takes the mean of all shots off each component.
@@ -138,6 +161,7 @@ void centre(VectorXd& parameters) {
   const Eigen::Vector3d mean = shots.rowwise().mean();
   shots.colwise() -= mean;
 }
+// That of shots which are known against each other alone. One that is solved by itself is known against all.
 MatrixXd centred(const MatrixXd& covariance) {
   const Eigen::Index n = covariance.rows(), shots = n / 3;
   MatrixXd q = MatrixXd::Identity(n, n);
@@ -178,7 +202,7 @@ double spread_px(const VectorXd& parameters, const Layout& layout) {
 }
 
 // `spread_px` is what the shots' own spread adds to the error of each.
-std::vector<ShotRegistration> describe(const VectorXd& parameters, const MatrixXd& covariance,
+std::vector<ShotRegistration> describe(const VectorXd& parameters, const std::vector<MatrixXd>& covariances,
                                        const std::vector<TileSystem>& systems, const Layout& layout,
                                        double spread_px) {
   std::vector<ShotRegistration> shots;
@@ -190,12 +214,14 @@ std::vector<ShotRegistration> describe(const VectorXd& parameters, const MatrixX
   }
   const double model_px = kModelShift_px + (readings > 0 ? kModelShiftOfShadow_px * shadowed / readings : 0);
   for (Eigen::Index k = 0; 3 * k < parameters.size(); ++k) {
+    const Eigen::Index at = k % layout.group();
+    const MatrixXd& covariance = covariances[static_cast<std::size_t>(k / layout.group())];
     ShotRegistration s;
     s.shift = layout.shift(parameters, k);
     double variance = model_px * model_px + spread_px * spread_px, cost2 = 0, points = 0;
     for (std::size_t t = 0; t < layout.tiles(); ++t) {
-      const MatrixXd j = layout.jacobian(t).block(2 * k, 3 * k, 2, 3);
-      variance += (j * covariance.block(3 * k, 3 * k, 3, 3) * j.transpose()).trace() / 2 / tiles;
+      const MatrixXd j = layout.jacobian(t).block(2 * at, 3 * at, 2, 3);
+      variance += (j * covariance.block(3 * at, 3 * at, 3, 3) * j.transpose()).trace() / 2 / tiles;
       const ClothShift::Displacement d = layout.at(s.shift, t);
       const Eigen::Vector2d v(d.x, d.y);
       cost2 += std::max(0.0, v.dot(systems[t].cost[static_cast<std::size_t>(k)] * v));
@@ -224,7 +250,7 @@ Registration register_shots(std::span<const TileInput> tiles, Size frame, int th
     parallel_for(tiles.size(), threads, [&](std::size_t t, int) {
       std::vector<ClothShift::Displacement> shifts;
       for (Eigen::Index k = 0; k < shots; ++k) shifts.push_back(layout.at(layout.shift(parameters, k), t));
-      systems[t] = tile_system(tiles[t], shifts, scale);
+      systems[t] = tile_system(tiles[t], shifts, scale, static_cast<std::size_t>(layout.group()));
     });
     const Whole whole = gather(systems, layout);
     misfit = whole.floor;
@@ -244,7 +270,8 @@ Registration register_shots(std::span<const TileInput> tiles, Size frame, int th
   measure_from_median(parameters);
   result.explained = first_misfit > 0 ? 1 - misfit / first_misfit : 0;
   const bool is_movement = result.explained > kExplainedByMovement;
-  result.shots = describe(parameters, centred(step.covariance), systems, layout,
+  if (step.covariances.size() == 1) step.covariances.front() = centred(step.covariances.front());
+  result.shots = describe(parameters, step.covariances, systems, layout,
                           is_movement ? 0 : spread_px(parameters, layout));
   return result;
 }

@@ -44,6 +44,10 @@ inline constexpr double kModelShiftOfShadow_px = 0.7;
 /// smooth and plain cloth that was shaken in every shot 0.50 to 0.76.
 inline constexpr double kExplainedByMovement = 0.7;
 
+/// Of more shots, each is solved by itself against b as all of them have it, so that the work grows with
+/// their number: what one says of another by way of b is then a tenth of what it says of itself, and less.
+inline constexpr int kMostTogether = 32;
+
 /// Measures shift and turn of every shot on tiles of one frame (solver/sample_tiles.h): what aligns, in the
 /// least-squares sense, each shot's green readings over strength with b . l_k of the b = rho n that explains
 /// all of them. Gauss-Newton on shifts with b eliminated at every point (variable projection; Golub and

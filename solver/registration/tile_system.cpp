@@ -77,7 +77,8 @@ Fit fit(std::vector<Row>& rows, const ResidualScale& scale) {
   return f;
 }
 
-void add_point(const std::vector<Row>& rows, const Fit& f, TileSystem& s, Eigen::VectorXd& score) {
+void add_point(const std::vector<Row>& rows, const Fit& f, Eigen::Index group, TileSystem& s,
+               Eigen::VectorXd& score) {
   const double rho = f.b.norm();
   const Vector3d n = f.b / rho;
   Eigen::Matrix<double, 3, 2> slope = Eigen::Matrix<double, 3, 2>::Zero();
@@ -98,11 +99,14 @@ void add_point(const std::vector<Row>& rows, const Fit& f, TileSystem& s, Eigen:
     const double variance = a.variance + kModelError * kModelError * rho * rho;
     s.chi2 += std::min(a.weight * residual * residual, residual * residual / variance);
     s.squares += a.weight * variance * residual * residual;
-    for (std::size_t j = 0; j <= i; ++j) {
+    const Eigen::Index first = a.shot / group * group;
+    GroupInformation& known = s.groups[static_cast<std::size_t>(a.shot / group)];
+    for (std::size_t j = i + 1; j-- > 0 && rows[j].shot >= first;) {
       const Row& c = rows[j];
       const double w = (i == j ? a.weight : 0) - a.weight * c.weight * la.dot(c.l);
-      s.information.block<2, 2>(2 * a.shot, 2 * c.shot) += w * ga * (slope.transpose() * c.l).transpose();
-      s.noise.block<2, 2>(2 * a.shot, 2 * c.shot) += w * na.dot(c.l) * Matrix2d::Identity();
+      const Eigen::Index at = 2 * (a.shot - first), with = 2 * (c.shot - first);
+      known.information.block<2, 2>(at, with) += w * ga * (slope.transpose() * c.l).transpose();
+      known.noise.block<2, 2>(at, with) += w * na.dot(c.l) * Matrix2d::Identity();
     }
     const Vector3d turn = a.weight / rho * (la - n.dot(la) * n);
     s.cost[static_cast<std::size_t>(a.shot)] +=
@@ -115,13 +119,14 @@ void add_point(const std::vector<Row>& rows, const Fit& f, TileSystem& s, Eigen:
 }  // namespace
 
 TileSystem tile_system(const TileInput& tile, std::span<const ClothShift::Displacement> shifts,
-                       const ResidualScale& scale) {
+                       const ResidualScale& scale, std::size_t group) {
   const std::size_t shots = shifts.size();
-  const auto n = static_cast<Eigen::Index>(2 * shots);
+  const auto n = static_cast<Eigen::Index>(2 * shots), of_group = static_cast<Eigen::Index>(2 * group);
   const auto planes = static_cast<std::size_t>(tile.planes);
-  TileSystem s = {Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n),
-                  std::vector<Eigen::VectorXd>(kBlocksASide * kBlocksASide, Eigen::VectorXd::Zero(n)),
-                  std::vector<Matrix2d>(shots, Matrix2d::Zero())};
+  TileSystem s = {
+      {shots / group, {Eigen::MatrixXd::Zero(of_group, of_group), Eigen::MatrixXd::Zero(of_group, of_group)}},
+      std::vector<Eigen::VectorXd>(kBlocksASide * kBlocksASide, Eigen::VectorXd::Zero(n)),
+      std::vector<Matrix2d>(shots, Matrix2d::Zero())};
   const PointGrid grid({tile.tile.width(), tile.tile.height()});
   std::vector<SmoothShot> smoothed;
   for (std::size_t k = 0; k < shots && grid.count() > 0; ++k) {
@@ -156,7 +161,7 @@ TileSystem tile_system(const TileInput& tile, std::span<const ClothShift::Displa
     const Fit f = fit(rows, scale);
     if (!f.solved) continue;
     const int block = row * kBlocksASide / grid.rows * kBlocksASide + column * kBlocksASide / grid.columns;
-    add_point(rows, f, s, s.block_scores[static_cast<std::size_t>(block)]);
+    add_point(rows, f, static_cast<Eigen::Index>(group), s, s.block_scores[static_cast<std::size_t>(block)]);
   }
   return s;
 }

@@ -15,12 +15,17 @@ struct ResidualScale {
   double chi2 = 0;   ///< mean square over the expected variance; 0 where nothing is known yet
 };
 
+/// What one tile says of a group of G shots. Both are 2 G x 2 G and hold their lower triangle.
+struct GroupInformation {
+  Eigen::MatrixXd information;
+  Eigen::MatrixXd noise;  ///< what noise in the gradients adds to it on average
+};
+
 /// The normal equations of one tile for displacements (x, y) of K shots, b eliminated at every point:
-/// information * step = score. Matrices hold their lower triangle.
+/// information * step = score.
 struct TileSystem {
-  Eigen::MatrixXd information;  ///< 2 K x 2 K
-  Eigen::MatrixXd noise;        ///< what noise in the gradients adds to it on average
-  std::vector<Eigen::VectorXd> block_scores;
+  std::vector<GroupInformation> groups;       ///< of consecutive shots, all of one size
+  std::vector<Eigen::VectorXd> block_scores;  ///< 2 K each
   std::vector<Eigen::Matrix2d> cost;  ///< by shot: d . cost d = summed square angle, rad, of normals for d
   double points = 0;
   double readings = 0, shadowed = 0;  ///< usable readings at points, and those left out as in shadow
@@ -29,8 +34,9 @@ struct TileSystem {
   double freedom = 0;                 ///< residuals less the three unknowns of each point
 };
 
-/// At the shots as seen through `shifts`.
+/// At the shots as seen through `shifts`. What shots of different groups say of each other by way of b is
+/// left out: `group` shots are together, and divide their number.
 TileSystem tile_system(const TileInput& tile, std::span<const ClothShift::Displacement> shifts,
-                       const ResidualScale& scale);
+                       const ResidualScale& scale, std::size_t group);
 
 }  // namespace weft::solver

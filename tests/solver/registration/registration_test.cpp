@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <ctime>
 #include <functional>
 #include <vector>
 
@@ -15,7 +17,6 @@
 namespace weft::solver {
 namespace {
 
-constexpr Size kShotSize = {384, 256};
 const NoiseModel kNoise = {4e-5, 1e-9, 0};
 
 // Cloth in closed form: height slopes and albedo at a point in pixels from the frame's centre.
@@ -33,28 +34,39 @@ test::Truth truth_of(const Cloth& c, double x, double y) {
   return {n, {rho, rho, rho}};
 }
 
-// Ten shots of it under ten distant LEDs, each with the cloth elsewhere, and what is measured.
+// The ten LEDs of a rig, or a dome: each light a golden angle from the one before, down to 65 degrees.
+DistantLights distant_lights(int count) {
+  DistantLights distant;
+  for (const NearLight& led : test::ten_leds().leds) {
+    if (distant.lights.size() == static_cast<std::size_t>(count) || count > 10) break;
+    distant.lights.push_back({normalized(led.position_mm), {0.5, 1, 0.7}});
+  }
+  for (int k = 0; k < count && count > 10; ++k) {
+    const double z = 1 - 0.58 * (k + 0.5) / count, r = std::sqrt(1 - z * z), turn = 2.39996 * k;
+    distant.lights.push_back({{r * std::cos(turn), r * std::sin(turn), z}, {0.5, 1, 0.7}});
+  }
+  return distant;
+}
+
+// Shots of it under distant lights, each with the cloth elsewhere, and what is measured.
 struct Scan {
   std::vector<ClothShift> shifts;
   NoiseModel noise = kNoise;
   int planes = 1;
   int lights = 10;
+  Size size = {384, 256};
+  double* cpu_s = nullptr;  // that register_shots() took, on one thread
 
   Registration of(const Cloth& cloth, int threads = 1) const {
-    DistantLights distant;
-    for (const NearLight& led : test::ten_leds().leds) {
-      if (distant.lights.size() == static_cast<std::size_t>(lights)) break;
-      distant.lights.push_back({normalized(led.position_mm), {0.5, 1, 0.7}});
-    }
-    const LightField field = *LightField::make(distant, std::nullopt, kShotSize, 0);
+    const LightField field = *LightField::make(distant_lights(lights), std::nullopt, size, 0);
     const CfaPattern cfa;
     test::Random random(11);
-    Image<float> readings(kShotSize, lights * planes);
+    Image<float> readings(size, lights * planes);
     for (int k = 0; k < lights; ++k) {
       const ClothShift shift = shifts.empty() ? ClothShift() : shifts[static_cast<std::size_t>(k)];
-      for (int y = 0; y < kShotSize.height; ++y) {
-        for (int x = 0; x < kShotSize.width; ++x) {
-          const double px = x - kShotSize.width / 2.0, py = y - kShotSize.height / 2.0;
+      for (int y = 0; y < size.height; ++y) {
+        for (int x = 0; x < size.width; ++x) {
+          const double px = x - size.width / 2.0, py = y - size.height / 2.0;
           const ClothShift::Displacement d = shift.at(px, py);
           const test::Truth t = truth_of(cloth, px - d.x, py - d.y);
           for (int p = 0; p < planes; ++p) {
@@ -69,15 +81,18 @@ struct Scan {
     }
     std::vector<std::vector<View<const float>>> views;
     std::vector<TileInput> tiles;
-    for (const Rect& tile : sample_tiles(kShotSize)) {
+    for (const Rect& tile : sample_tiles(size)) {
       views.emplace_back();
       for (int i = 0; i < readings.planes(); ++i) views.back().push_back(readings.plane(i).crop(tile));
     }
     for (std::size_t i = 0; i < views.size(); ++i) {
-      tiles.push_back({sample_tiles(kShotSize)[i], planes, cfa, views[i], &field,
+      tiles.push_back({sample_tiles(size)[i], planes, cfa, views[i], &field,
                        planes == 1 ? std::optional(noise) : std::nullopt});
     }
-    return register_shots(tiles, kShotSize, threads);
+    const std::clock_t begin = std::clock();
+    Registration found = register_shots(tiles, size, threads);
+    if (cpu_s != nullptr) *cpu_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    return found;
   }
 };
 
@@ -156,6 +171,66 @@ TEST(Registration, GrowsItsCostWithTheShiftAndPricesHalfAPixelByItsSlopes) {
   const double half = Scan{one_moved({0.5, 0, 0})}.of({}).shots[6].cost_deg;
   const double quarter = Scan{one_moved({0.25, 0, 0})}.of({}).shots[6].cost_deg;
   EXPECT_NEAR(half / quarter, 2, 0.2) << half << " and " << quarter << " degrees";
+}
+
+// A dome in which one shot, or every third, was taken after the cloth was touched.
+TEST(Registration, FindsAThirdOfAPixelInOneOrAThirdOfFortyShots) {
+  for (const int every : {40, 3}) {
+    std::vector<ClothShift> truth(40);
+    for (std::size_t k = 2; k < truth.size(); k += static_cast<std::size_t>(every))
+      truth[k] = {0.3, -0.2, 1e-3};
+    Scan scan{truth};
+    scan.lights = 40;
+    scan.size = {256, 256};
+    const Registration found = scan.of({});
+    EXPECT_TRUE(found.found);
+    EXPECT_LT(worst_px(found, truth), 0.05) << "every " << every;
+    for (std::size_t k = 0; k < truth.size(); ++k) {
+      EXPECT_EQ(found.shots[k].significant, !(truth[k] == ClothShift())) << k << " of every " << every;
+      EXPECT_LT(found.shots[k].sigma_px, 0.1) << k;
+    }
+  }
+}
+
+TEST(Registration, LeavesFortyShotsThatHaveNotMovedAndTheirErrorCoversWhatItFinds) {
+  Scan scan;
+  scan.lights = 40;
+  scan.size = {256, 256};
+  double square = 0, variance = 0;
+  for (const ShotRegistration& s : scan.of({}).shots) {
+    EXPECT_FALSE(s.significant) << s.shift.dx_px << ", " << s.shift.dy_px;
+    square += s.shift.dx_px * s.shift.dx_px + s.shift.dy_px * s.shift.dy_px;
+    variance += 2 * s.sigma_px * s.sigma_px;
+  }
+  EXPECT_LT(square, 4 * variance);
+}
+
+// Both ways of solving, over the count at which one gives way to the other.
+TEST(Registration, SaysTheSameOfOneShotMoreThanAreSolvedTogether) {
+  std::array<ShotRegistration, 2> moved;
+  for (const int more : {0, 1}) {
+    Scan scan{std::vector<ClothShift>(static_cast<std::size_t>(kMostTogether + more))};
+    scan.lights = kMostTogether + more;
+    scan.size = {256, 256};
+    scan.shifts[7] = {0.4, -0.3, 0};
+    moved[static_cast<std::size_t>(more)] = scan.of({}).shots[7];
+  }
+  EXPECT_NEAR(moved[0].shift.dx_px, moved[1].shift.dx_px, 0.02);
+  EXPECT_NEAR(moved[0].shift.dy_px, moved[1].shift.dy_px, 0.02);
+  EXPECT_NEAR(moved[0].sigma_px / moved[1].sigma_px, 1, 0.2);
+  EXPECT_NEAR(moved[0].cost_deg / moved[1].cost_deg, 1, 0.2);
+}
+
+TEST(Registration, TakesAsMuchMoreTimeAsThereAreMoreLights) {
+  std::array<double, 2> took_s = {};
+  for (const int times : {1, 4}) {
+    Scan scan;
+    scan.lights = 50 * times;
+    scan.size = {176, 176};
+    scan.cpu_s = &took_s[times == 4];
+    scan.of({});
+  }
+  EXPECT_LT(took_s[1] / took_s[0], 10) << took_s[0] << " s for 50 lights, " << took_s[1] << " s for 200";
 }
 
 TEST(Registration, GivesTheSameNumbersForAnyThreads) {
