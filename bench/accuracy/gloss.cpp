@@ -287,11 +287,11 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
 
   const pipeline::Photographs& photographs = bounded.patches.front().photographs;
   const auto base = solver::robust_method();
-  Result<std::vector<solver::MeasuredLobe>> measured = Error{};
+  Result<pipeline::MeasuredGloss> measured = Error{};
   const double fit_s =
       least_seconds(1, [&] { measured = pipeline::measure_gloss(photographs, *base, nullptr, 1); });
   if (!measured) return std::move(measured).error();
-  const solver::MeasuredLobe& found = measured->front();
+  const solver::MeasuredLobe& found = measured->lobes.front();
   const solver::Lobe& lobe = found.lobe;
   const bool has_yarn = lobe.family == solver::LobeFamily::kAnisotropicGgx;
   const Result<double> base_us = pixel_us(bounded.patches.front(), *base);
@@ -300,8 +300,9 @@ Result<Json> row_of(const AccuracyScene& scene, const GlossyCloth& cloth, int th
   if (found.is_measured()) {
     // Of one material, which begins where the standard method leaves it.
     const auto beneath = solver::standard_method();
-    const auto glossy = solver::glossy_method(
-        *beneath, {{lobe, solver::one_sigma_off(lobe, found.covariance)}}, pipeline::sight_of(photographs));
+    const auto glossy =
+        solver::glossy_method(*beneath, {{lobe, solver::one_sigma_off(lobe, found.covariance)}},
+                              pipeline::sight_of(photographs), measured->unit);
     const Result<double> timed = pixel_us(bounded.patches.front(), *glossy);
     if (!timed) return timed.error();
     glossy_us = *timed;

@@ -32,7 +32,7 @@ double root_of_sum(double a, double b) {
 // A pixel of a tile that is being solved.
 struct Pixel {
   int x = 0, y = 0;
-  double albedo = 0;  // as the base left it
+  double albedo = 0;  // as the base left it, in the unit
 };
 
 // Pixels of a tile, wherever they lie, side by side for the vector kernel.
@@ -49,7 +49,7 @@ struct Group {
   std::size_t count = 0;
 };
 
-// What was solved of a pixel.
+// What was solved of a pixel, in the unit.
 struct SolvedPixel {
   Pixel at;
   Vec3 b;
@@ -70,9 +70,14 @@ double tint_of(const Blend& blend, std::size_t plane) {
 // One tile.
 class GlossyTile {
  public:
-  GlossyTile(const std::vector<KnownLobe>& lobes, Sight sight, const TileInput& input,
+  GlossyTile(const std::vector<KnownLobe>& lobes, Sight sight, double unit, const TileInput& input,
              const TileOutput& output)
-      : lobes_(lobes), input_(input), output_(output), rows_(input, sight), row_(rows_.count()) {
+      : lobes_(lobes),
+        unit_(unit),
+        input_(input),
+        output_(output),
+        rows_(input, sight, unit),
+        row_(rows_.count()) {
     readings_.resize(rows_.count());
   }
 
@@ -95,10 +100,10 @@ class GlossyTile {
   }
   // Of RGB that of the weighted sum.
   double albedo_of(int x, int y) const {
-    if (input_.planes == 1) return output_.albedo[0](x, y);
+    if (input_.planes == 1) return output_.albedo[0](x, y) / unit_;
     double albedo = 0;
     for (std::size_t p = 0; p < 3; ++p) albedo += input_.plane_weights[p] * output_.albedo[p](x, y);
-    return albedo;
+    return albedo / unit_;
   }
 
   void solve_row_group(int x, int y) {
@@ -246,16 +251,17 @@ class GlossyTile {
     const bool is_tinted = pixel.by.first.is_tinted() || pixel.by.second.is_tinted();
     for (std::size_t p = 0; p < static_cast<std::size_t>(input_.planes); ++p) {
       if (input_.planes == 1) {
-        output_.albedo[p](x, y) = finite(rho);
-        output_.sigma_albedo[p](x, y) = finite(root_of_sum(v.along_of_readings, v.along_of_lobes));
+        output_.albedo[p](x, y) = finite(unit_ * rho);
+        output_.sigma_albedo[p](x, y) = finite(unit_ * root_of_sum(v.along_of_readings, v.along_of_lobes));
         continue;
       }
       const double share = plane_share(pixel, pixel.by, p), tint = tint_of(pixel.by, p);
       // What is wrong with a highlight is as much in all channels, but for its tint.
       double of_lobes = v.along_of_lobes * tint * tint;
       if (is_tinted) of_lobes += std::pow(rho * (plane_share(pixel, pixel.tint_off, p) - share), 2);
-      output_.albedo[p](x, y) = finite(rho * share);
-      output_.sigma_albedo[p](x, y) = finite(root_of_sum(v.along_of_readings * share * share, of_lobes));
+      output_.albedo[p](x, y) = finite(unit_ * rho * share);
+      output_.sigma_albedo[p](x, y) =
+          finite(unit_ * root_of_sum(v.along_of_readings * share * share, of_lobes));
     }
   }
 
@@ -270,7 +276,7 @@ class GlossyTile {
                                        input_.tile.y0 + pixel.at.y)
                                   .strength;
       const auto& state = k < lights ? input_.readings : input_.parallel;
-      of_plane_[k].x = state[i_of_state](pixel.at.x, pixel.at.y) / strength;
+      of_plane_[k].x = state[i_of_state](pixel.at.x, pixel.at.y) / (unit_ * strength);
       of_plane_[k].from.channel = static_cast<int>(plane);
     }
     const std::optional<double> albedo = albedo_beneath(by, of_plane_, normalized(pixel.b), pixel.yarn);
@@ -278,6 +284,7 @@ class GlossyTile {
   }
 
   const std::vector<KnownLobe>& lobes_;
+  double unit_;
   const TileInput& input_;
   const TileOutput& output_;
   LobeRows rows_;
@@ -288,12 +295,12 @@ class GlossyTile {
 
 class Glossy : public Method {
  public:
-  Glossy(const Method& base, std::vector<KnownLobe> lobes, Sight sight)
-      : base_(base), lobes_(std::move(lobes)), sight_(sight) {}
+  Glossy(const Method& base, std::vector<KnownLobe> lobes, Sight sight, double unit)
+      : base_(base), lobes_(std::move(lobes)), sight_(sight), unit_(unit) {}
 
   void solve(const TileInput& input, const TileOutput& output) const override {
     base_.solve(input, output);
-    GlossyTile(lobes_, sight_, input, output).solve();
+    GlossyTile(lobes_, sight_, unit_, input, output).solve();
   }
 
   bool wants_rgb() const override { return base_.wants_rgb(); }
@@ -306,24 +313,26 @@ class Glossy : public Method {
     reader.read(x, y, readings);
     const unsigned status = output.status(x, y);
     const double yarn = (status & kYarnAcross) != 0 ? kPi / 2 : 0;
-    const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y);
+    const double spoken = output.albedo[input.planes == 1 ? 0 : 1](x, y) / unit_;
     const Blend lobes = {lobes_.front().lobe, lobes_.back().lobe, second_share_of(status)};
     const Vec3 n = {output.normal[0](x, y), output.normal[1](x, y), output.normal[2](x, y)};
     LitFrom from(light, readings.front().from.view, lobe_share);
     from.channel = input.planes == 1 ? readings.front().from.channel : 1;
-    return modelled(lobes, spoken * n, from, yarn);
+    return unit_ * modelled(lobes, spoken * n, from, yarn);
   }
 
  private:
   const Method& base_;
   std::vector<KnownLobe> lobes_;
   Sight sight_;
+  double unit_;
 };
 
 }  // namespace
 
-std::unique_ptr<Method> glossy_method(const Method& base, std::vector<KnownLobe> lobes, Sight sight) {
-  return std::make_unique<Glossy>(base, std::move(lobes), sight);
+std::unique_ptr<Method> glossy_method(const Method& base, std::vector<KnownLobe> lobes, Sight sight,
+                                      double unit) {
+  return std::make_unique<Glossy>(base, std::move(lobes), sight, unit);
 }
 
 }  // namespace weft::solver

@@ -24,7 +24,9 @@ struct KnownLobe {
 /// stay as the base left them. A pixel that neither of two lobes explains is solved as a blend of both
 /// (blend.h), where that explains it; status_blend.h says their shares. Its sigmas are those of the readings
 /// and of what is open of its lobe, to first order. At most two lobes. `base` must outlive it.
-std::unique_ptr<Method> glossy_method(const Method& base, std::vector<KnownLobe> lobes, Sight sight);
+/// Readings are fitted over `unit`, as the lobes were; albedo is written as the base has it.
+std::unique_ptr<Method> glossy_method(const Method& base, std::vector<KnownLobe> lobes, Sight sight,
+                                      double unit = 1);
 
 /// A pixel's cost over the degrees of freedom of its readings, from which other normals are tried.
 inline constexpr double kTryOthersFrom = 2;

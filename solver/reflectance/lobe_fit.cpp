@@ -177,7 +177,7 @@ void LobeSamples::add(std::span<const LobeReading> pixel) {
 }
 
 LobeSamples LobeSamples::first(std::size_t count) const {
-  LobeSamples few(lights_, states());
+  LobeSamples few(lights_, states(), scale_);
   for (std::size_t i = 0; i < std::min(count, pixels()); ++i) few.add(of(i));
   return few;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/albedo_scale.h"
 #include "core/vec.h"
 #include "solver/reflectance/lobe.h"
 #include "solver/reflectance/lobe_block.h"
@@ -19,12 +20,13 @@ namespace weft::solver {
 /// Pixels of one material, each with all lights, once or in two states of films: first all of the one.
 class LobeSamples {
  public:
-  explicit LobeSamples(std::size_t lights, std::size_t states = 1)
-      : lights_(lights), each_(lights * states) {}
+  explicit LobeSamples(std::size_t lights, std::size_t states = 1, AlbedoScale scale = AlbedoScale::kAbsolute)
+      : lights_(lights), each_(lights * states), scale_(scale) {}
   void add(std::span<const LobeReading> pixel);
 
   std::size_t lights() const { return lights_; }
   std::size_t states() const { return each_ / lights_; }
+  AlbedoScale scale() const { return scale_; }  ///< of the readings, and of what is fitted to them
   std::size_t pixels() const { return readings_.size() / each_; }
   std::span<const LobeReading> of(std::size_t pixel) const {
     return {readings_.data() + pixel * each_, each_};
@@ -37,7 +39,8 @@ class LobeSamples {
                   std::span<double> cost) const;
 
  private:
-  std::size_t lights_, each_;          // each_: readings of a pixel
+  std::size_t lights_, each_;  // each_: readings of a pixel
+  AlbedoScale scale_;
   std::vector<LobeReading> readings_;  // [pixel * each_ + state * lights_ + light]
   std::vector<LobeBlock> blocks_;      // the same for the vector kernel
 };

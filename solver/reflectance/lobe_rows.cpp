@@ -29,14 +29,16 @@ HWY_INLINE Vector3 unit_of(D d, Vector3 v) {
   return scaled(v, hn::Div(hn::Set(d, 1.0F), hn::Sqrt(dot(v, v))));
 }
 
-// A reading over its strength; the sum of planes each with its weight.
+// A reading over its strength, times `per_unit`; the sum of planes each with its weight.
 template <std::size_t kPlanes>
 HWY_INLINE V reading_over_strength(D d, const RowTask& task, const Columns& columns, std::size_t k,
-                                   V inverse_shape, const InverseGains<kPlanes>& inverse_gain, V& variance) {
+                                   V inverse_shape, V per_unit, const InverseGains<kPlanes>& inverse_gain,
+                                   V& variance) {
   V value = hn::Zero(d);
   for (std::size_t p = 0; p < kPlanes; ++p) {
     const V r = hn::LoadU(d, task.readings[k * kPlanes + p] + columns.x);
-    const V inverse_e = inverse_irradiance(d, task, columns, inverse_gain, task.lights[k], inverse_shape, p);
+    const V inverse_e = hn::Mul(
+        per_unit, inverse_irradiance(d, task, columns, inverse_gain, task.lights[k], inverse_shape, p));
     const V ratio = hn::Mul(r, inverse_e);
     if constexpr (kPlanes == 1) {
       value = ratio;
@@ -54,7 +56,7 @@ HWY_INLINE V reading_over_strength(D d, const RowTask& task, const Columns& colu
 
 // One state of the films for a vector of columns. Returns how many readings have a weight.
 template <std::size_t kPlanes>
-HWY_INLINE V gather_state(D d, const RowTask& task, const Columns& columns, Vector3 view,
+HWY_INLINE V gather_state(D d, const RowTask& task, float per_unit, const Columns& columns, Vector3 view,
                           LobeBlock::Light* lights, std::size_t at) {
   const RowPoints& points = *task.points;
   const bool has_gains = !points.led_gain.empty();
@@ -68,8 +70,8 @@ HWY_INLINE V gather_state(D d, const RowTask& task, const Columns& columns, Vect
     const V led_gain = has_gains ? columns.along.at(d, points.led_gain[k]) : one;
     const LightHere here = light_here(d, task.lights[k], columns.x_mm, columns.y_mm, led_gain);
     V variance = zero;
-    const V value =
-        reading_over_strength<kPlanes>(d, task, columns, k, here.inverse_shape, inverse_gain, variance);
+    const V value = reading_over_strength<kPlanes>(d, task, columns, k, here.inverse_shape,
+                                                   hn::Set(d, per_unit), inverse_gain, variance);
     const V modelled = hn::Mul(share, hn::Max(value, least));
     const M counts = hn::And(hn::Gt(here.cosine, zero), hn::Lt(hn::Abs(value), infinity));
     brightest.add(hn::IfThenElse(counts, value, hn::Neg(infinity)));
@@ -111,9 +113,10 @@ void gather_block_lanes(const LobeRowTask& task, std::size_t x, std::size_t pixe
     V used = hn::Zero(d);
     for (std::size_t s = 0; s < task.state_count; ++s) {
       LobeBlock::Light* of_state = block.lights().data() + s * lights;
-      used =
-          hn::Add(used, task.planes == 1 ? gather_state<1>(d, task.states[s], columns, view, of_state, at)
-                                         : gather_state<3>(d, task.states[s], columns, view, of_state, at));
+      const RowTask& state = task.states[s];
+      used = hn::Add(used, task.planes == 1
+                               ? gather_state<1>(d, state, task.per_unit, columns, view, of_state, at)
+                               : gather_state<3>(d, state, task.per_unit, columns, view, of_state, at));
     }
     hn::StoreU(used, d, block.used.data() + at);
   }
@@ -128,7 +131,8 @@ namespace weft::solver {
 
 HWY_EXPORT(gather_block_lanes);
 
-LobeRows::LobeRows(const TileInput& input, Sight sight) : input_(input), sight_(sight) {
+LobeRows::LobeRows(const TileInput& input, Sight sight, double unit)
+    : input_(input), sight_(sight), unit_(unit) {
   write_row_lights(*input.field, lights_);
   scratch_.resize(row_scratch_floats(lights_.size()));
   readings_.resize(input.readings.size() + input.parallel.size());
@@ -172,6 +176,7 @@ void LobeRows::read(int x, LobeBlock& block) const {
   task.states = tasks_.data();
   task.state_count = tasks_.size();
   task.planes = input_.planes;
+  task.per_unit = static_cast<float>(1 / unit_);
   task.is_far = sight_.is_far();
   const Vec3 camera = sight_.above_cloth_mm();
   task.camera_mm[0] = static_cast<float>(camera.x);

@@ -12,11 +12,11 @@
 
 namespace weft::solver {
 
-/// The readings of a tile, a row group at a time, in float32 vectors: as LobeReader reads them.
+/// The readings of a tile, a row group at a time, in float32 vectors: as LobeReader reads them, over `unit`.
 class LobeRows {
  public:
   /// `input` must outlive it.
-  LobeRows(const TileInput& input, Sight sight);
+  LobeRows(const TileInput& input, Sight sight, double unit = 1);
   LobeRows(const LobeRows&) = delete;
   LobeRows& operator=(const LobeRows&) = delete;
   /// Readings of a pixel, as LobeReader::count().
@@ -29,6 +29,7 @@ class LobeRows {
  private:
   const TileInput& input_;
   Sight sight_;
+  double unit_;
   std::vector<RowLight> lights_;
   std::vector<const float*> readings_;  ///< of one state of the films after the other
   std::vector<float> scratch_;
@@ -41,6 +42,7 @@ struct LobeRowTask {
   const RowTask* states = nullptr;
   std::size_t state_count = 0;
   int planes = 1;
+  float per_unit = 1;       ///< what readings over their strength are times
   bool is_far = false;      ///< the camera looks straight down from far away
   float camera_mm[3] = {};  ///< from the plane of the cloth
 };

@@ -245,7 +245,9 @@ struct Material {
 };
 
 Material part_of(const Material& all, const std::vector<std::size_t>& numbers) {
-  Material part = {LobeSamples(all.samples.lights(), all.samples.states()), {}, all.channels.part(numbers)};
+  Material part = {LobeSamples(all.samples.lights(), all.samples.states(), all.samples.scale()),
+                   {},
+                   all.channels.part(numbers)};
   for (const std::size_t i : numbers) {
     part.samples.add(all.samples.of(i));
     part.start.push_back(all.start[i]);

@@ -153,7 +153,7 @@ class Splitter {
   }
 
   Group of(const Sides& sides, std::uint8_t side) const {
-    Group group = {LobeSamples(samples_.lights(), samples_.states()), {}};
+    Group group = {LobeSamples(samples_.lights(), samples_.states(), samples_.scale()), {}};
     for (std::size_t i = 0; i < sides.size(); ++i) {
       if (sides[i] != side) continue;
       group.samples.add(samples_.of(i));

@@ -182,9 +182,15 @@ bool agrees(const Lobe& a, const Lobe& b) {
   return std::abs(a.alpha - b.alpha) <= kAlphaAgrees && std::abs(a.f0 - b.f0) <= kF0Agrees * a.f0;
 }
 
-LobeRefusal refusal_of(const LobeFit& fit, double lambert_chi2) {
+double median_albedo_of(const LobeFit& fit) {
+  std::vector<double> albedos;
+  for (const Vec3& b : fit.b) albedos.push_back(length(b));
+  return median(std::move(albedos));
+}
+
+LobeRefusal refusal_of(const LobeFit& fit, double lambert_chi2, AlbedoScale scale) {
   if (fit.chi2 > kLobeFitsTo && fit.chi2 > kLeastWon * lambert_chi2) return LobeRefusal::kNothingFits;
-  if (!(fit.lobe.f0 > kLeastF0 && fit.lobe.f0 < kMostF0)) return LobeRefusal::kStrength;
+  if (!has_strength_of_cloth(fit.lobe.f0, median_albedo_of(fit), scale)) return LobeRefusal::kStrength;
   if (!(fit.lobe.alpha < kMostAlpha)) return LobeRefusal::kTooBroad;
   if (!(fit.lobe.alpha * std::min(fit.lobe.along, 1.0) > kLeastAlpha)) return LobeRefusal::kTooNarrow;
   return LobeRefusal::kNone;
@@ -315,12 +321,12 @@ const LobeFit& best_of(const std::vector<Family>& families) {
 
 // The families that explain the readings nearly as well as the best one; whether there are any.
 bool add_rivals(const std::vector<Family>& families, const LobeFit& best, double lambert_chi2,
-                std::vector<Lobe>& rivals) {
+                AlbedoScale scale, std::vector<Lobe>& rivals) {
   const std::size_t before = rivals.size();
   for (const Family& family : families) {
     if (&family.fit == &best || is_round(family.fit.lobe)) continue;
     if (family.fit.total() < (1 + kUndecided) * best.total() &&
-        refusal_of(family.fit, lambert_chi2) == LobeRefusal::kNone)
+        refusal_of(family.fit, lambert_chi2, scale) == LobeRefusal::kNone)
       rivals.push_back(family.fit.lobe);
   }
   return rivals.size() > before;
@@ -366,14 +372,17 @@ void describe(const LobeSamples& samples, const LobeParameters& fitted, Measured
   add_drift(measured);
   measured.half_deg = half_angles(samples, measured.fit);
   measured.points = points_of(samples, measured.fit);
-  std::vector<double> albedos;
-  for (const Vec3& b : measured.fit.b) albedos.push_back(length(b));
-  measured.median_albedo = median(albedos);
+  measured.median_albedo = median_albedo_of(measured.fit);
   const auto wefts = std::ranges::count_if(measured.fit.yarn, [](double yarn) { return yarn > 0; });
   measured.weft_share = static_cast<double>(wefts) / static_cast<double>(measured.fit.yarn.size());
 }
 
 }  // namespace
+
+bool has_strength_of_cloth(double f0, double median_albedo, AlbedoScale scale) {
+  if (scale == AlbedoScale::kAbsolute) return f0 > kLeastF0 && f0 < kMostF0;
+  return f0 * kBrightestCloth > kLeastF0 * median_albedo && f0 * kDarkestCloth < kMostF0 * median_albedo;
+}
 
 const char* name_of(LobeRefusal refusal) {
   return kRefusals[static_cast<std::size_t>(refusal)];
@@ -404,15 +413,13 @@ std::array<Vec3, kOtherStarts> other_starts(std::span<const LobeReading> reading
 }
 
 void try_other_starts(const LobeSamples& samples, int threads, LobeFit& fit) {
-  std::vector<double> albedos;
-  for (const Vec3& b : fit.b) albedos.push_back(length(b));
-  const double median_albedo = median(albedos);
+  const double albedo = median_albedo_of(fit);
   LobeFit other = fit;
   for (std::size_t start = 0; start < kOtherStarts; ++start) {
     for (const double yarn : {0.0, kPi / 2}) {
       if (yarn > 0 && !has_yarn(fit.lobe)) continue;
       for (std::size_t i = 0; i < other.b.size(); ++i) {
-        other.b[i] = other_starts(samples.of(i), median_albedo)[start];
+        other.b[i] = other_starts(samples.of(i), albedo)[start];
         other.yarn[i] = yarn;
       }
       samples.fit_pixels(fit.lobe, other.yarn, kStartSteps, threads, other.b, other.cost);
@@ -452,16 +459,16 @@ MeasuredLobe measure_lobe(const LobeSamples& samples, const std::vector<Vec3>& s
   measured.candidates.push_back({bent.lobe, bent.chi2});
   const bool bends = bent.total() < (1 - kBendWins) * straight.total();
   const LobeFit& best = bends ? bent : straight;
-  measured.refusal = refusal_of(best, lambert_chi2);
+  measured.refusal = refusal_of(best, lambert_chi2, samples.scale());
   if (measured.is_measured() && !bends && !agrees(best.lobe, bent.lobe))
     measured.refusal = LobeRefusal::kBentDiffuse;
   if (!measured.is_measured()) return measured;
 
   std::vector<Lobe> rivals = {bends ? straight.lobe : bent.lobe};
-  measured.is_family_undecided = add_rivals(families, straight, lambert_chi2, rivals);
+  measured.is_family_undecided = add_rivals(families, straight, lambert_chi2, samples.scale(), rivals);
   LobeFit refined = Trial(samples, start, tint, threads).refined(best.lobe);
   // What the trial pixels told may not hold for all.
-  measured.refusal = refusal_of(refined, lambert_chi2);
+  measured.refusal = refusal_of(refined, lambert_chi2, samples.scale());
   if (!measured.is_measured()) return measured;
   measured.fit = std::move(refined);
   measured.lobe = measured.fit.lobe;
@@ -487,10 +494,11 @@ std::optional<MeasuredLobe> measure_two_lobes(const LobeSamples& samples, const 
   const LobeFit bent = trial.bent(straight);
   const bool bends = bent.total() < (1 - kBendWins) * straight.total();
   const LobeFit& best = bends ? bent : straight;
-  if (refusal_of(best, lambert_chi2) != LobeRefusal::kNone || !are_two(best.lobe)) return {};
+  if (refusal_of(best, lambert_chi2, samples.scale()) != LobeRefusal::kNone || !are_two(best.lobe)) return {};
   if (!bends && !agrees(best.lobe, bent.lobe)) return {};
   LobeFit refined = Trial(samples, start, ggx.lobe.tint, threads).refined(best.lobe);
-  if (refusal_of(refined, lambert_chi2) != LobeRefusal::kNone || !are_two(refined.lobe)) return {};
+  if (refusal_of(refined, lambert_chi2, samples.scale()) != LobeRefusal::kNone || !are_two(refined.lobe))
+    return {};
   if (one.is_measured() && !(refined.total() < (1 - kTwoWin) * one.fit.total())) return {};
   MeasuredLobe measured;
   measured.refusal = LobeRefusal::kNone;

@@ -19,7 +19,7 @@ enum class LobeRefusal {
   kTooFewPixels,  ///< fewer than kLeastLobePixels with kLeastLobeReadings
   kLambertFits,   ///< nothing is left to explain by a lobe
   kNothingFits,   ///< no family explains the readings
-  kStrength,      ///< f0 is none that a cloth has
+  kStrength,      ///< f0 is none that a cloth has (has_strength_of_cloth)
   kTooBroad,      ///< as broad as shading itself
   kBentDiffuse,   ///< a diffuse part that departs from Lambert's law explains them as well
   kTooNarrow,     ///< narrower than what is fitted
@@ -78,6 +78,10 @@ inline constexpr double kLambertFitsTo = 1.5;
 /// A lobe's chi2 is at most this, or at most kLeastWon of Lambert's.
 inline constexpr double kLobeFitsTo = 1.5, kLeastWon = 0.15;
 inline constexpr double kLeastF0 = 0.015, kMostF0 = 0.15, kLeastAlpha = 0.025, kMostAlpha = 0.85;
+/// Where the scale of the albedo is relative f0 is held against the albedo: some cloth from this dark to this
+/// bright has both.
+inline constexpr double kDarkestCloth = 0.02, kBrightestCloth = 0.8;
+bool has_strength_of_cloth(double f0, double median_albedo, AlbedoScale scale);
 /// Sigmas of a measured lobe, as shares of alpha and f0, before those of the lights are added.
 inline constexpr double kMostSigmaAlpha = 0.2, kMostSigmaF0 = 0.25;
 /// With and without a bend of the diffuse part, alpha and f0 agree to this (f0: share of itself).
