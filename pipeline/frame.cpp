@@ -95,6 +95,7 @@ Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::M
     facts.tally = solved->tally;
     facts.robust_share = solved->robust_share;
     facts.gloss = solved->gloss;
+    facts.work = solved->work;
     facts.left_out = std::move(solved->left_out);
     facts.reference = std::move(*solved);
     return facts;
@@ -117,6 +118,7 @@ Result<FrameFacts> solve_as_seen(const Photographs& photographs, const solver::M
     Result<Gloss> found = Gloss::find(photographs, *chosen, nullptr, context);
     if (!found) return std::move(found).error();
     facts.gloss = found->facts;
+    facts.work.lobe = found->facts.seconds;
     chosen = &gloss.emplace(std::move(*found)).over(*chosen);
   }
   if (Result<void> ok = solve_tiles(photographs, *chosen, tile, context, sink, bands, facts); !ok)
@@ -142,7 +144,9 @@ Result<FrameFacts> solve_frame(const Photographs& photographs, const solver::Met
                     next);
   }
   const BandSink aligned = [&](const MapBand& band) { return realign->put(band); };
+  Stopwatch watch;
   Result<FrameFacts> facts = solve_as_seen(photographs, method, tile, context, realign ? aligned : next);
+  if (facts) facts->work.frame = watch.lap() - facts->waited_seconds - facts->work.total();
   if (facts && deblur) facts->deblur = deblur->facts();
   if (facts && realign) {
     facts->lateral_corner_px = {shift_at_corner(photographs.lateral->red, *photographs.camera),

@@ -12,6 +12,7 @@
 #include "pipeline/gloss.h"
 #include "pipeline/photographs.h"
 #include "pipeline/reference.h"
+#include "pipeline/work.h"
 #include "solver/left_out/left_out.h"
 #include "solver/method.h"
 
@@ -20,6 +21,7 @@ namespace weft::pipeline {
 /// What solving a frame said.
 struct FrameFacts {
   double waited_seconds = 0;  ///< seconds that bands waited for the sink
+  SolveWork work;             ///< all other seconds
   solver::SolveTally tally;
   std::optional<ReferenceFacts> reference = {};  ///< where the level is reference
   /// Of `robust` and `reference`: the share of blocks on which `robust` predicts left-out light better than

@@ -18,16 +18,23 @@ namespace weft::pipeline {
 
 class LightCorrection;
 
-/// From where the photographs see the cloth.
+/// From where the photographs see the cloth; under distant lights from straight above.
 solver::Sight sight_of(const Photographs& photographs);
+
+/// Lobes, and the unit that their readings and albedo are over: 1 where the albedo is absolute.
+struct MeasuredGloss {
+  std::vector<solver::MeasuredLobe> lobes;  ///< one or two; of a refused one Lambert's law holds
+  double unit = 1;
+};
 
 /// The lobes that the pixels of sample_gloss() share with those of a second pose, one a material
 /// (solver/reflectance/materials.h). They depend on the photographs alone, and on the correction that their
-/// readings go through, if there is one. Errors of the calibration count as if both poses saw the rig from
-/// the same side, which at 20 degrees makes them wrong by 6 percent. Errors: of the correction.
-Result<std::vector<solver::MeasuredLobe>> measure_gloss(const Photographs& photographs,
-                                                        const solver::Method& base,
-                                                        LightCorrection* correction, int threads);
+/// readings go through, if there is one. Where the scale of the albedo is relative, the unit is the one in
+/// which the lobe is as strong as that of a fibre: any scale of the intensities leads to the same lobe.
+/// Errors of the calibration count as if both poses saw the rig from the same side, which at 20 degrees makes
+/// them wrong by 6 percent. Errors: of the correction.
+Result<MeasuredGloss> measure_gloss(const Photographs& photographs, const solver::Method& base,
+                                    LightCorrection* correction, int threads);
 
 /// f0 of R, G and B.
 struct F0OfChannels {
@@ -35,12 +42,11 @@ struct F0OfChannels {
 };
 
 /// What solving with lobes came to.
-struct GlossFacts {
-  std::vector<solver::MeasuredLobe> lobes;  ///< one or two; of a refused one Lambert's law holds
-  double share = 0;                         ///< of the blocks of the frame that are solved with them
-  double seconds = 0;                       ///< that looking for them took, whatever the frame's size
-  bool of_film_pair = false;                ///< they were sought in crossed and parallel photographs
-  bool of_second_pose = false;              ///< and in a second pose of the cloth
+struct GlossFacts : MeasuredGloss {
+  double share = 0;             ///< of the blocks of the frame that are solved with them
+  double seconds = 0;           ///< that looking for them took, whatever the frame's size
+  bool of_film_pair = false;    ///< they were sought in crossed and parallel photographs
+  bool of_second_pose = false;  ///< and in a second pose of the cloth
   /// Of each lobe with a tint its f0 in the channels of the albedo that is written.
   std::vector<std::optional<F0OfChannels>> f0_of_channels = {};
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <utility>
 #include <vector>
 
@@ -20,8 +19,9 @@ using solver::LeftOut;
 using solver::Patch;
 
 // Mean albedos that are tried where the scale is relative. Those that win are refined between their
-// neighbours.
-constexpr std::array<double, 8> kAlbedos = {0, 0.125, 0.18, 0.25, 0.35, 0.5, 0.7, 1};
+// neighbours. As they are solved they have light of the bounces in them, on deep white cloth 1.4 times its
+// own; the last one only shows whether brighter cloth would do worse.
+constexpr std::array<double, 10> kAlbedos = {0, 0.125, 0.18, 0.25, 0.35, 0.5, 0.7, 1, 1.4, 2};
 // A robust solve leaves readings out, so noise makes it err by more than all lights would: by up to this,
 // squared, on matt twills.
 constexpr double kNoiseMargin = 1.1;
@@ -57,9 +57,8 @@ void append(LeftOut& all, const LeftOut& more) {
   all.noise.insert(all.noise.end(), more.noise.begin(), more.noise.end());
 }
 
-// `with` as errors of equal brightness. What is subtracted makes readings darker, and what a model leaves of
-// them, a highlight say, with them: that predicts nothing better. Noise stays what it was, and of errors no
-// larger than the subtracted light it may well have been the cause.
+// `with` as errors of equal brightness. Noise stays what it was, and of errors no larger than the subtracted
+// light it may well have been the cause.
 LeftOut as_bright_as(const LeftOut& without, LeftOut with) {
   std::vector<double> shares;
   for (std::size_t pixel = 0; pixel < with.scale.size(); ++pixel) {
@@ -79,10 +78,6 @@ LeftOut as_bright_as(const LeftOut& without, LeftOut with) {
     for (std::size_t k = 0; k < with.lights; ++k) with.error[pixel * with.lights + k] *= factor;
   }
   return with;
-}
-
-Gain gain_of(const LeftOut& without, const LeftOut& with) {
-  return solver::compare(without, as_bright_as(without, with)).frame;
 }
 
 double mean_albedo(const SolvedFrame& solved, const std::vector<Patch>& patches) {
@@ -108,13 +103,13 @@ double vertex_of(const std::array<double, 3>& x, const std::array<double, 3>& y)
 // What left-out light says of the variants that were tried: with and without shadows, by albedo scale.
 class Trial {
  public:
-  Trial(const Photographs& photographs, LightCorrection& correction, const LightStages& traced,
-        std::vector<double> scales)
+  Trial(const Photographs& photographs, const solver::Method& method, LightCorrection& correction,
+        const LightStages& traced, std::vector<double> scales)
       : photographs_(photographs),
+        method_(method),
         correction_(correction),
         traced_(traced),
         scales_(std::move(scales)),
-        method_(solver::robust_method()),
         left_out_{std::vector<LeftOut>(scales_.size()), std::vector<LeftOut>(scales_.size())} {}
 
   // Leaves lights out of patches inside one slab of the correction.
@@ -124,7 +119,7 @@ class Trial {
       for (std::size_t i = 0; i < scales_.size(); ++i) {
         correction_.apply_only({shadows, scales_[i] > 0, scales_[i]});
         const Result<LeftOut> judged = leave_out_lights(
-            photographs_, {.method = method_.get(), .correction = &correction_}, patches, context);
+            photographs_, {.method = &method_, .correction = &correction_}, patches, context);
         if (!judged) return judged.error();
         append(left_out_[shadows][i], *judged);
       }
@@ -143,7 +138,7 @@ class Trial {
   // Whether the last scale does worse than the best by more than its sigma.
   bool bounds(std::size_t best) const {
     const std::vector<LeftOut>& tried = left_out_[traced_.shadows];
-    const Gain brighter = gain_of(tried[best], tried.back());
+    const Gain brighter = gain_of_correction(tried[best], tried.back());
     return brighter.mean < -brighter.sigma;
   }
   // Between the neighbours of the best.
@@ -162,16 +157,16 @@ class Trial {
     LightChoice choice;
     const bool both = traced_.shadows && scale > 0;
     if (both) {
-      choice.shadows = gain_of(tried(false, true), tried(true, true));
-      choice.interreflection = gain_of(tried(true, false), tried(true, true));
+      choice.shadows = gain_of_correction(tried(false, true), tried(true, true));
+      choice.interreflection = gain_of_correction(tried(true, false), tried(true, true));
       if (choice.shadows.keeps() && choice.interreflection.keeps() &&
-          gain_of(tried(false, false), tried(true, true)).keeps()) {
+          gain_of_correction(tried(false, false), tried(true, true)).keeps()) {
         choice.stages = {true, true};
         return choice;
       }
     }
-    if (traced_.shadows) choice.shadows = gain_of(tried(false, false), tried(true, false));
-    if (scale > 0) choice.interreflection = gain_of(tried(false, false), tried(false, true));
+    if (traced_.shadows) choice.shadows = gain_of_correction(tried(false, false), tried(true, false));
+    if (scale > 0) choice.interreflection = gain_of_correction(tried(false, false), tried(false, true));
     const bool bounces = choice.interreflection.keeps();
     choice.stages.shadows =
         choice.shadows.keeps() && !(bounces && choice.interreflection.mean > choice.shadows.mean);
@@ -182,22 +177,26 @@ class Trial {
  private:
   double gain(bool shadows, std::size_t scale) const {
     if (scale == 0) return 0;
-    return gain_of(left_out_[shadows][0], left_out_[shadows][scale]).mean;
+    return gain_of_correction(left_out_[shadows][0], left_out_[shadows][scale]).mean;
   }
 
   const Photographs& photographs_;
+  const solver::Method& method_;
   LightCorrection& correction_;
   LightStages traced_;
-  std::vector<double> scales_;  // the first is 0: no bounce
-  std::unique_ptr<solver::Method> method_;
+  std::vector<double> scales_;                    // the first is 0: no bounce
   std::array<std::vector<LeftOut>, 2> left_out_;  // [shadows][scale]
 };
 
 }  // namespace
 
-Result<LightChoice> choose_light(const Photographs& photographs, const SolvedFrame& solved,
-                                 LightCorrection& correction, const LightStages& traced,
-                                 const JobContext& context) {
+Gain gain_of_correction(const LeftOut& without, const LeftOut& with) {
+  return solver::compare(without, as_bright_as(without, with)).frame;
+}
+
+Result<LightChoice> choose_light(const Photographs& photographs, const solver::Method& method,
+                                 const SolvedFrame& solved, LightCorrection& correction,
+                                 const LightStages& traced, const JobContext& context) {
   const std::vector<Patch> patches = patches_to_choose_by(photographs.size);
   const bool is_relative = photographs.albedo_scale == AlbedoScale::kRelative;
   const double albedo = mean_albedo(solved, patches);
@@ -206,7 +205,7 @@ Result<LightChoice> choose_light(const Photographs& photographs, const SolvedFra
   if (traced.interreflection && is_relative && albedo > 0) {
     for (std::size_t i = 1; i < kAlbedos.size(); ++i) scales.push_back(kAlbedos[i] / albedo);
   }
-  Trial trial(photographs, correction, traced, scales);
+  Trial trial(photographs, method, correction, traced, scales);
   for (const std::vector<Patch>& row : patches_of_few_rows(patches, photographs.size)) {
     if (Result<void> judged = trial.judge(row, context); !judged) return std::move(judged).error();
   }
@@ -218,6 +217,10 @@ Result<LightChoice> choose_light(const Photographs& photographs, const SolvedFra
   choice.scale_is_open = is_open;
   choice.stages.albedo_scale = trial.refined(best);
   return choice;
+}
+
+std::size_t light_choice_patches(Size size) {
+  return of_few_rows(patches_to_choose_by(size), size).size();
 }
 
 }  // namespace weft::pipeline

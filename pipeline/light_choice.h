@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
+
+#include "core/image.h"
 #include "core/job.h"
 #include "core/result.h"
 #include "pipeline/light_correction.h"
@@ -19,15 +22,24 @@ struct LightChoice {
   bool scale_is_open = false;
 };
 
-/// Leaves lights out on patches of at most four rows of blocks (solver/left_out) and keeps each effect that
-/// `correction` traces where they are then predicted better by more than its own sigma.
+/// Leaves lights out of solves by `method` on patches of at most four rows of blocks (solver/left_out) and
+/// keeps each effect that `correction` traces where they are then predicted better by more than its own
+/// sigma.
 ///
 /// Both factors of a bounce carry the albedo's scale. Where it is relative, the scale is the one with which
 /// left-out light is predicted best, mean albedos up to 1 being tried: so the same cloth is corrected alike
 /// whatever intensities the solve was given. Where brighter cloth would always do better, it is open: that is
 /// so on shallow weaves, whose bounces look like a little more albedo.
-Result<LightChoice> choose_light(const Photographs& photographs, const SolvedFrame& solved,
-                                 LightCorrection& correction, const LightStages& traced,
-                                 const JobContext& context);
+Result<LightChoice> choose_light(const Photographs& photographs, const solver::Method& method,
+                                 const SolvedFrame& solved, LightCorrection& correction,
+                                 const LightStages& traced, const JobContext& context);
+
+/// How much better left-out light of corrected readings is predicted than of readings as they are, as errors
+/// of equal brightness. What is subtracted makes readings darker, and what a model leaves of them, a
+/// highlight say, with them: that predicts nothing better.
+solver::Gain gain_of_correction(const solver::LeftOut& without, const solver::LeftOut& with);
+
+/// Of how many patches choose_light() leaves lights out in a frame of this size.
+std::size_t light_choice_patches(Size size);
 
 }  // namespace weft::pipeline

@@ -95,10 +95,10 @@ class Round {
   }
 
   // Sets `stages` to those of the candidates that earn their place.
-  Result<LightChoice> choose(const LightStages& candidates) {
+  Result<LightChoice> choose(const LightStages& candidates, const solver::Method& method) {
     Stopwatch watch;
     LightCorrection correction = correct(candidates);
-    Result<LightChoice> choice = choose_light(photographs_, solved, correction, candidates, context_);
+    Result<LightChoice> choice = choose_light(photographs_, method, solved, correction, candidates, context_);
     if (choice) facts.stages = choice->stages;
     facts.choice_seconds = watch.lap();
     return choice;
@@ -119,8 +119,7 @@ class Round {
   Result<solver::LeftOut> leave_out_lights_of(std::span<const solver::Patch> patches,
                                               const solver::Method& method) const {
     LightCorrection correction = correct(facts.stages);
-    return leave_out_lights(photographs_, {.method = &method, .correction = &correction},
-                            of_few_rows(patches, photographs_.size), context_);
+    return leave_out_lights(photographs_, {.method = &method, .correction = &correction}, patches, context_);
   }
 
   Result<Gloss> find_gloss(const solver::Method& base) const {
@@ -161,16 +160,24 @@ class Reference {
     facts.robust_share = choice->share();
     method_ = solver::blended_method(*standard_, *robust_method_, *choice);
     robust_ = std::move(*choice);
-    return find_gloss(nullptr);
+    Result<Gloss> gloss = Gloss::find(photographs_, *method_, nullptr, context_);
+    if (!gloss) return std::move(gloss).error();
+    facts.work.lobe += gloss->facts.seconds;
+    facts.gloss = gloss->facts;
+    gloss_ = std::move(*gloss);
+    below_ = &gloss_->over(*method_);
+    return {};
   }
 
   Result<void> find_candidates() {
+    Stopwatch watch;
     Result<solver::Gates> gates = measure_gates(
         solve_samples(photographs_, *solver::standard_method(), context_.threads), photographs_);
     if (!gates) return std::move(gates).error();
     facts.gates = *gates;
     facts.stages = {options_.force_stages || gates->shadows(),
                     options_.force_stages || gates->interreflection()};
+    facts.work.samples = watch.lap();
     return {};
   }
 
@@ -178,9 +185,7 @@ class Reference {
   // `last_`, if there is one.
   Result<void> approach() {
     FrameKeeper first(photographs_, nullptr);
-    if (const auto solved =
-            solve_bands(photographs_, gloss_->over(*method_), tile_, context_, std::ref(first));
-        !solved) {
+    if (const auto solved = solve_bands(photographs_, *below_, tile_, context_, std::ref(first)); !solved) {
       return solved.error();
     }
     SolvedFrame frame = std::move(first.frame);
@@ -195,8 +200,7 @@ class Reference {
         return {};
       }
       FrameKeeper next(photographs_, &round->solved);
-      const Result<double> solved =
-          round->solve(gloss_->over(*method_), tile_, /*is_last=*/false, std::ref(next), {});
+      const Result<double> solved = round->solve(*below_, tile_, /*is_last=*/false, std::ref(next), {});
       if (!solved) return solved.error();
       ReferenceRound& now = round->facts;
       now.turned_deg = next.mean_turn_deg();
@@ -210,42 +214,56 @@ class Reference {
     }
   }
 
+  // Drops the last round where the level below predicts left-out light better.
+  Result<void> hold_against_below() {
+    Stopwatch watch;
+    const std::vector<solver::Patch> few =
+        of_few_rows(solver::patches_of(photographs_.size, solver::PatchUse::kReport), photographs_.size);
+    Result<Gloss> gloss = last_->find_gloss(*method_);
+    if (!gloss) return std::move(gloss).error();
+    const solver::Method& method = gloss->over(*method_);
+    Result<solver::LeftOut> left_out = last_->leave_out_lights_of(few, method);
+    if (!left_out) return std::move(left_out).error();
+    const Result<solver::LeftOut> of_below =
+        leave_out_lights(photographs_, {.method = below_}, few, context_);
+    if (!of_below) return of_below.error();
+    facts.work.lobe += gloss->facts.seconds;
+    facts.work.few_rows += watch.lap() - gloss->facts.seconds;
+    facts.over_robust = gain_of_correction(*of_below, *left_out);
+    facts.robust_is_published = !options_.force_stages && facts.over_robust.mean < 0;
+    if (facts.robust_is_published) {
+      last_.reset();
+      return {};
+    }
+    gloss->facts.seconds += facts.gloss.seconds;
+    facts.gloss = gloss->facts;
+    last_gloss_ = std::move(*gloss);
+    last_method_ = &method;
+    facts.left_out = std::move(*left_out);
+    return {};
+  }
+
   Result<void> finish(const BandSink& sink) {
     facts.stages = last_ ? last_->facts.stages : LightStages{};
     const BandOptions bands = {.tally = &facts.tally,
                                .model = solver::ModelTraits{.bounces_are_out = facts.stages.interreflection},
                                .robust = &*robust_};
-    if (last_) {
-      if (Result<void> ok = find_gloss(last_.get()); !ok) return ok;
-    }
-    last_method_ = &gloss_->over(*method_);
-    const Result<double> waited =
-        last_ ? last_->solve(*last_method_, tile_, /*is_last=*/true, sink, bands)
-              : solve_bands(photographs_, *last_method_, tile_, context_, sink, bands);
+    const Result<double> waited = last_ ? last_->solve(*last_method_, tile_, /*is_last=*/true, sink, bands)
+                                        : solve_bands(photographs_, *below_, tile_, context_, sink, bands);
     if (!waited) return waited.error();
     facts.waited_seconds = *waited;
-    if (Result<void> ok = check(); !ok) return ok;
-    if (!last_) return {};
+    if (!last_) return check();
     facts.rounds.push_back(last_->facts);
     facts.rounds.back().turned_deg = 0;
     facts.shadow_reach_is_capped = last_->reach_is_capped;
     return {};
   }
 
+  bool goes_beyond_robust() const { return last_ != nullptr; }
+
   ReferenceFacts facts;
 
  private:
-  // Of the readings that a round corrects, or of all as they are.
-  Result<void> find_gloss(const Round* round) {
-    Result<Gloss> gloss = round != nullptr ? round->find_gloss(*method_)
-                                           : Gloss::find(photographs_, *method_, nullptr, context_);
-    if (!gloss) return std::move(gloss).error();
-    gloss->facts.seconds += facts.gloss.seconds;
-    facts.gloss = gloss->facts;
-    gloss_ = std::move(*gloss);
-    return {};
-  }
-
   // Leaves in facts.stages what earns its place by the relief of the first round, and of each where the scale
   // of the albedo has to be found: the better the relief, the better it is known.
   Result<void> choose(Round& round) {
@@ -255,20 +273,19 @@ class Reference {
       round.facts.stages = facts.stages;
       return {};
     }
-    Result<LightChoice> choice = round.choose(facts.stages);
+    Result<LightChoice> choice = round.choose(facts.stages, *below_);
     if (!choice) return std::move(choice).error();
+    facts.work.choice += round.facts.choice_seconds;
     facts.stages = choice->stages;
     if (facts.rounds.empty()) facts.choice = *choice;
     return {};
   }
 
-  // Leaves lights out of the last solve; where readings are corrected, on few rows of blocks.
+  // Leaves lights out of the level below.
   Result<void> check() {
-    const std::vector<solver::Patch> patches =
-        solver::patches_of(photographs_.size, solver::PatchUse::kReport);
     Result<solver::LeftOut> left_out =
-        last_ ? last_->leave_out_lights_of(patches, *last_method_)
-              : leave_out_lights(photographs_, {.method = last_method_}, patches, context_);
+        leave_out_lights(photographs_, {.method = below_},
+                         solver::patches_of(photographs_.size, solver::PatchUse::kReport), context_);
     if (!left_out) return std::move(left_out).error();
     facts.left_out = std::move(*left_out);
     return {};
@@ -280,10 +297,11 @@ class Reference {
   const JobContext& context_;
   const std::unique_ptr<solver::Method> standard_ = solver::standard_method(),
                                         robust_method_ = solver::robust_method();
-  std::unique_ptr<solver::Method> method_;  ///< the two, by block
-  std::optional<Gloss> gloss_;
-  const solver::Method* last_method_ = nullptr;  ///< `method_`, with the lobe where there is one
-  std::optional<solver::BlockChoice> robust_;    ///< where the better of the two solves
+  std::unique_ptr<solver::Method> method_;   ///< the two, by block
+  std::optional<Gloss> gloss_, last_gloss_;  ///< of readings as they are, and as the last round corrects them
+  /// `method_` with the lobe of each, where there is one; `below_` is the level robust.
+  const solver::Method *below_ = nullptr, *last_method_ = nullptr;
+  std::optional<solver::BlockChoice> robust_;  ///< where the better of the two solves
   std::unique_ptr<Round> last_;
 };
 
@@ -297,6 +315,9 @@ Result<ReferenceFacts> solve_reference(const Photographs& photographs, const Til
   if (Result<void> ok = reference.find_candidates(); !ok) return std::move(ok).error();
   if (reference.facts.stages.any()) {
     if (Result<void> ok = reference.approach(); !ok) return std::move(ok).error();
+  }
+  if (reference.goes_beyond_robust()) {
+    if (Result<void> ok = reference.hold_against_below(); !ok) return std::move(ok).error();
   }
   if (Result<void> ok = reference.finish(sink); !ok) return std::move(ok).error();
   return std::move(reference.facts);

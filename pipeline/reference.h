@@ -12,6 +12,7 @@
 #include "pipeline/light_choice.h"
 #include "pipeline/light_correction.h"
 #include "pipeline/photographs.h"
+#include "pipeline/work.h"
 #include "solver/gates/gates.h"
 #include "solver/left_out/left_out.h"
 #include "solver/method.h"
@@ -46,11 +47,16 @@ struct ReferenceFacts {
   LightStages stages;  ///< that the last solve took out
   std::vector<ReferenceRound> rounds;
   bool shadow_reach_is_capped = false;
-  double robust_share = 1;    ///< of the frame; the rest is solved as the standard level does
-  GlossFacts gloss;           ///< of the readings that the last solve used
+  /// Left-out light by what the last round would give, over that by the level below; without patches where
+  /// nothing was to be taken out.
+  solver::Gain over_robust;
+  bool robust_is_published = false;  ///< it predicts better: `stages` are none
+  double robust_share = 1;           ///< of the frame; the rest is solved as the standard level does
+  GlossFacts gloss;                  ///< of the readings that the last solve used
   solver::LeftOut left_out;   ///< of the readings that the last solve used, on patches that chose nothing
   solver::SolveTally tally;   ///< of the last solve
   double waited_seconds = 0;  ///< for the sink
+  SolveWork work;             ///< but for what grows with the frame
 };
 
 /// The reference level: `robust`, then its normals integrated to a height, readings corrected for the shadows
@@ -60,6 +66,9 @@ struct ReferenceFacts {
 /// the normals no less than the one before is refused: the last good one stands. As at the robust level,
 /// blocks where `robust` predicts left-out light no better are solved as `standard` does. Pixels are solved
 /// in double where their conditioning asks for it, as at any level. Without an effect there is but one solve.
+///
+/// What the last round would give is held against the level below on patches that chose nothing. Where that
+/// predicts left-out light better, its solution is the one that is published.
 ///
 /// The lobe of a glossy cloth (pipeline/gloss.h) is found before the first round, so that relief and bounces
 /// follow normals that highlights did not turn, and again for the last solve once bounces are out.

@@ -2,10 +2,17 @@
 #include "pipeline/shifts.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <memory>
+#include <utility>
 
 #include "core/parallel.h"
+#include "pipeline/cut.h"
+#include "pipeline/frame.h"
 #include "pipeline/tile_reader.h"
+#include "solver/registration/far_shifts.h"
 #include "solver/sample_tiles.h"
 
 namespace weft::pipeline {
@@ -32,6 +39,45 @@ bool has_moved(const solver::ShotRegistration& shot) {
   return shot.significant && shot.cost_deg > kLeastCost_deg;
 }
 
+constexpr int kFarSide = 256;                          // pixels a side that are searched
+constexpr std::array<int, 2> kFarParts = {512, 2048};  // pixels a side of the frame, one after the other
+
+// The middle of a frame, on whole cells of the colour filter.
+Rect middle_of(Size size, int side) {
+  const Size part = {std::min(size.width, side), std::min(size.height, side)};
+  const int x0 = (size.width - part.width) / 4 * 2, y0 = (size.height - part.height) / 4 * 2;
+  return {x0, y0, x0 + part.width, y0 + part.height};
+}
+
+// Green readings over strength of developed photographs, a picture a light.
+std::vector<Image<float>> greens_of(const Photographs& photographs) {
+  std::vector<Image<float>> greens;
+  const Size size = photographs.size;
+  for (std::size_t k = 0; k < photographs.count(); ++k) {
+    Image<float> unused;
+    const auto readings = readings_of(photographs.frames, k, {0, 0, size.width, size.height}, unused.plane());
+    Image<float> green(size);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        const double strength = photographs.field->at(k, 1, x, y).strength;
+        green(x, y) = strength > 0 ? static_cast<float>(static_cast<double>(readings[1](x, y)) / strength)
+                                   : std::numeric_limits<float>::quiet_NaN();
+      }
+    }
+    greens.push_back(std::move(green));
+  }
+  return greens;
+}
+
+std::vector<Vec3> lights_in_the_middle(const Photographs& photographs) {
+  std::vector<Vec3> lights;
+  for (std::size_t k = 0; k < photographs.count(); ++k) {
+    lights.push_back(
+        photographs.field->at(k, 1, photographs.size.width / 2, photographs.size.height / 2).direction);
+  }
+  return lights;
+}
+
 }  // namespace
 
 std::vector<std::size_t> SessionShifts::with(ShiftVerdict verdict) const {
@@ -53,6 +99,33 @@ Result<SessionShifts> register_shots(const Photographs& photographs, const JobCo
   for (const solver::ShotRegistration& shot : measured.shots) {
     const ShiftVerdict verdict = can_do_without ? ShiftVerdict::kLeftOut : ShiftVerdict::kFlagged;
     result.shots.push_back({shot, has_moved(shot) ? verdict : ShiftVerdict::kStill});
+  }
+  return result;
+}
+
+Result<FarShifts> find_far_shifts(const Photographs& photographs, const JobContext& context) {
+  FarShifts result;
+  const int longest = std::max(photographs.size.width, photographs.size.height);
+  for (const int side : kFarParts) {
+    Result<Photographs> part = cut(photographs, middle_of(photographs.size, side));
+    double pixel_px = 1;
+    while (part && (part->mosaics() || std::max(part->size.width, part->size.height) > kFarSide)) {
+      part = half_size(*part, context.threads);
+      pixel_px *= 2;
+    }
+    if (!part) return std::move(part).error();
+    if (context.stop.stop_requested()) return interrupted();
+    const solver::FarShifts found =
+        solver::find_far_shifts(greens_of(*part), lights_in_the_middle(*part), context.threads);
+    result.reach_px = solver::kFarReach * pixel_px * std::min(part->size.width, part->size.height);
+    for (std::size_t k = 0; found.found && k < found.shots.size(); ++k) {
+      const double px = pixel_px * std::hypot(found.shots[k].dx_px, found.shots[k].dy_px);
+      if (!(px > 0)) continue;
+      result.moved.push_back(k);
+      result.most_px = std::max(result.most_px, px);
+      result.explained = found.explained;
+    }
+    if (!result.moved.empty() || side >= longest) break;
   }
   return result;
 }

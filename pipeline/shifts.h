@@ -41,4 +41,17 @@ inline constexpr std::size_t kLeastStillShots = 4;
 /// does. Memory: a few megabytes. Returns kInterrupted on request.
 Result<SessionShifts> register_shots(const Photographs& photographs, const JobContext& context);
 
+/// Shifts beyond those that are registered.
+struct FarShifts {
+  std::vector<std::size_t> moved;  ///< lights whose shots show the cloth elsewhere; empty: nothing was found
+  double most_px = 0;              ///< of them, in pixels of the frame
+  double explained = 0;            ///< solver::FarShifts::explained
+  double reach_px = 0;             ///< no shift beyond it was looked for
+};
+
+/// Looks for shifts that are too large to be registered (solver/registration/far_shifts.h) in the middle of
+/// the frame: 512 pixels a side, then 2048 and coarser. Memory: a copy of that part. Errors: kInterrupted,
+/// and those of cut().
+Result<FarShifts> find_far_shifts(const Photographs& photographs, const JobContext& context);
+
 }  // namespace weft::pipeline

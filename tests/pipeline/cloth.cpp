@@ -16,6 +16,7 @@ namespace {
 Photographs unlit(Size size, const DistantLights& lights) {
   Photographs photographs;
   photographs.size = size;
+  photographs.albedo_scale = AlbedoScale::kAbsolute;
   photographs.field = *LightField::make(lights, std::nullopt, size, 0);
   return photographs;
 }

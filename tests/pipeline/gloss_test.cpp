@@ -60,6 +60,34 @@ TEST(Gloss, OfDarkClothIsFoundAndItsNormalsAreRight) {
   EXPECT_GT(mean_error_deg(by_standard), 1.5);
 }
 
+TEST(Gloss, IsTheSameForIntensitiesOfAnyScaleWhereTheAlbedoHasNone) {
+  const Cloth cloth = {.normal = dented, .albedo = {0.1, 0.08, 0.06}, .lobe = kSilk};
+  for (const double scale : {1e-12, 20.0}) {
+    Photographs photographs = developed(kSize, cloth);
+    photographs.field = *LightField::make(ten_lights({scale, scale, scale}), std::nullopt, kSize, 0);
+    photographs.albedo_scale = AlbedoScale::kRelative;
+    WholeMaps maps(kSize);
+    const FrameFacts facts = solve(photographs, "robust", maps);
+    ASSERT_TRUE(facts.gloss && facts.gloss->is_measured()) << "times " << scale;
+    EXPECT_EQ(facts.gloss->share, 1) << "times " << scale;
+    EXPECT_LT(mean_error_deg(maps), 0.1) << "times " << scale;
+    const solver::MeasuredLobe& lobe = facts.gloss->lobes.front();
+    EXPECT_NEAR(lobe.lobe.alpha, kSilk.alpha, 0.01) << "times " << scale;
+    // Of the weighted sum of the channels.
+    EXPECT_NEAR(lobe.lobe.f0 / lobe.median_albedo, 0.05 / 0.083, 0.03) << "times " << scale;
+    EXPECT_NEAR(maps.albedo(100, 80, 0) * scale, 0.1, 0.003) << "times " << scale;
+  }
+}
+
+TEST(Gloss, UnderDistantLightsIsFoundWhereTheCameraIsKnown) {
+  Photographs photographs = mosaics(kSize, {.normal = dented, .albedo = {0.1, 0.08, 0.06}, .lobe = kSilk});
+  photographs.camera = overhead_camera(kSize, 600, 0.08);
+  WholeMaps maps(kSize);
+  const FrameFacts facts = solve(photographs, "robust", maps);
+  ASSERT_TRUE(facts.gloss && facts.gloss->is_measured());
+  EXPECT_LT(mean_error_deg(maps), 0.3);
+}
+
 TEST(Gloss, OfDevelopedPhotographsLeavesEachChannelItsAlbedo) {
   const Cloth cloth = {.normal = dented, .albedo = {0.3, 0.15, 0.05}, .lobe = kSilk};
   WholeMaps maps(kSize);
@@ -229,10 +257,10 @@ TEST(Gloss, WhoseRoughnessChangesAcrossTheFrameIsSeen) {
            return 1 + rougher * x / kSize.width;
          }});
     const auto base = solver::robust_method();
-    const auto lobes = measure_gloss(photographs, *base, nullptr, 2);
-    EXPECT_TRUE(lobes && lobes->size() == 1 && lobes->front().is_measured());
-    EXPECT_EQ(lobes->front().parts.size(), solver::kFrameParts);
-    return solver::change_across(lobes->front().parts);
+    const auto gloss = measure_gloss(photographs, *base, nullptr, 2);
+    EXPECT_TRUE(gloss && gloss->lobes.size() == 1 && gloss->lobes.front().is_measured());
+    EXPECT_EQ(gloss->lobes.front().parts.size(), solver::kFrameParts);
+    return solver::change_across(gloss->lobes.front().parts);
   };
   EXPECT_FALSE(change_of(0));
   const auto change = change_of(0.2);

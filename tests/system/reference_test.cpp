@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The reference level on simulated sessions in memory.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <string>
 #include <utility>
 
+#include "app/jobs/facts_json.h"
 #include "app/jobs/session_input.h"
 #include "core/image_io/image_io.h"
 #include "core/vec.h"
@@ -120,6 +123,49 @@ TEST_F(ReferenceLevel, IsTheSameForIntensitiesOfAnyScale) {
   EXPECT_LT(error_deg(dark, "reference"), 0.6 * error_deg(dark, "robust"));
 }
 
+TEST_F(ReferenceLevel, OfGlossAndOfWhiteClothIsTheSameForIntensitiesOfAnyScale) {
+  simulator::Scene white = scene_named("deep", kSize);
+  white.material.albedo.fill(0.8);
+  for (const simulator::Scene& scene : {scene_named("gloss_satin", kSize), white}) {
+    photograph(scene);
+    for (const char* level : {"robust", "reference"}) {
+      const Solved first = solve(photographs(0.05), level);
+      for (const double scale : {20.0, 0.25, 4.0}) {
+        // What reference adds is the same between: the ends show it.
+        if (level == std::string("reference") && scale != 20) continue;
+        const Solved other = solve(photographs(scale), level);
+        EXPECT_LT(mean_angle_deg(first.normal, other.normal), 0.02)
+            << scene.fabric << ", " << level << ", times " << scale;
+        EXPECT_EQ(other.facts.gloss->is_measured(), first.facts.gloss->is_measured()) << scene.fabric;
+      }
+    }
+    std::filesystem::remove_all(session_);
+  }
+}
+
+TEST_F(ReferenceLevel, OfGlossWithoutBouncesIsNoWorseThanRobust) {
+  simulator::Scene scene = scene_named("gloss_satin", kSize);
+  scene.effects.cast_shadows = scene.effects.interreflection = false;
+  photograph(scene);
+  for (const double scale : {1.0, 0.3}) {
+    const pipeline::Photographs taken = photographs(scale);
+    const Solved robust = solve(taken, "robust");
+    ASSERT_TRUE(robust.facts.gloss->is_measured()) << scale;
+    EXPECT_LE(error_deg(taken, "reference"), 1.01 * mean_angle_deg(robust.normal, truth_)) << scale;
+  }
+}
+
+TEST_F(ReferenceLevel, TakesBouncesOutOfWhiteClothWhoseAlbedoHasNoScale) {
+  simulator::Scene scene = scene_named("deep", kSize);
+  for (const double albedo : {0.6, 0.8}) {
+    scene.material.albedo.fill(albedo);
+    photograph(scene);
+    const pipeline::Photographs taken = photographs(0.3);
+    EXPECT_LT(error_deg(taken, "reference"), 0.6 * error_deg(taken, "robust")) << "albedo " << albedo;
+    std::filesystem::remove_all(session_);
+  }
+}
+
 TEST_F(ReferenceLevel, IsNoWorseOnAShallowWeaveOfUnknownAlbedo) {
   photograph(scene_named("plain_family", kSize));
   const pipeline::Photographs dark = photographs(0.3);
@@ -152,6 +198,34 @@ TEST_F(ReferenceLevel, LooksCoarselyUntilTheLastRoundAndTakesNoneThatWouldTurnNo
   const auto [error, rounds] = error_and_rounds({});
   EXPECT_LT(rounds, all);
   EXPECT_LT(error, 1.01 * by_all);
+}
+
+// Light between yarns shows where patches choose, and nowhere else.
+TEST_F(ReferenceLevel, PublishesTheSolutionOfRobustWhereThatPredictsLeftOutLightBetter) {
+  simulator::Scene scene = scene_named("deep", {256, 192});
+  photograph(scene);
+  pipeline::Photographs taken = photographs();
+  std::filesystem::remove_all(session_);
+  scene.effects.cast_shadows = scene.effects.interreflection = false;
+  photograph(scene);
+  const pipeline::Photographs bare = photographs();
+  for (const solver::Patch& patch : solver::patches_of(taken.size, solver::PatchUse::kReport)) {
+    const int y0 = patch.pixels.y0 / kRowGroup * kRowGroup;
+    for (std::size_t k = 0; k < taken.count(); ++k) {
+      for (int y = y0; y < y0 + kRowGroup; ++y) {
+        for (int x = patch.pixels.x0; x < patch.pixels.x0 + kRowGroup; ++x)
+          taken.mosaics()->frames[k].counts(x, y) = bare.mosaics()->frames[k].counts(x, y);
+      }
+    }
+  }
+  const Solved robust = solve(taken, "robust"), reference = solve(taken, "reference");
+  const pipeline::ReferenceFacts& facts = *reference.facts.reference;
+  EXPECT_TRUE(facts.choice.stages.any()) << "of the first round";
+  EXPECT_TRUE(facts.robust_is_published) << "gain over robust " << facts.over_robust.mean;
+  EXPECT_FALSE(facts.stages.any());
+  EXPECT_LT(mean_angle_deg(robust.normal, reference.normal), 1e-4);
+  EXPECT_EQ(app::json_of(facts)["published"], "robust");
+  EXPECT_THAT(app::warnings_of(facts), testing::Contains(testing::HasSubstr("that of robust")));
 }
 
 TEST_F(ReferenceLevel, AsksForTheMemoryOfItsFrames) {
