@@ -101,7 +101,13 @@ Image<Complex> products_of(const Image<float>& first, const Image<float>* second
   return plane;
 }
 
-Correlation correlation_of(const Image<Complex>& products, bool second, Size size) {
+// What a plane's products by lag say of it, and its variance.
+struct Correlated {
+  Correlation correlation;
+  double variance;
+};
+
+Correlated correlated(const Image<Complex>& products, bool second, Size size) {
   const auto value = [&](int x, int y) {  // lags, y up
     const int w = products.width(), h = products.height();
     const Complex sum = products((x + w) % w, (h - y) % h);
@@ -116,7 +122,7 @@ Correlation correlation_of(const Image<Complex>& products, bool second, Size siz
     for (int x = -reach; x <= reach; ++x)
       out(reach + x, reach - y) = static_cast<float>(value(x, y) / variance);
   }
-  return Correlation(std::move(out));
+  return {Correlation(std::move(out)), variance};
 }
 
 double level_of(const Correlation& correlation) {
@@ -195,16 +201,19 @@ std::vector<Correlation::Peak> Correlation::peaks(double least, double nearest, 
 Correlations correlate(const Surface& surface, Rect crop, int threads) {
   const Size size = {crop.width(), crop.height()};
   Correlations out;
+  const auto take = [&](std::size_t channel, Correlated&& found) {
+    out.of[channel] = std::move(found.correlation);
+    out.variance[channel] = found.variance;
+    out.level[channel] = level_of(out.of[channel]);
+  };
   {
     const Image<float> right = detail_of(surface, 0, crop, threads),
                        up = detail_of(surface, 1, crop, threads);
     const Image<Complex> products = products_of(right, &up, threads);
-    out.of[0] = correlation_of(products, false, size);
-    out.of[1] = correlation_of(products, true, size);
+    take(0, correlated(products, false, size));
+    take(1, correlated(products, true, size));
   }
-  out.of[2] =
-      correlation_of(products_of(detail_of(surface, 2, crop, threads), nullptr, threads), false, size);
-  for (std::size_t i = 0; i < out.of.size(); ++i) out.level[i] = level_of(out.of[i]);
+  take(2, correlated(products_of(detail_of(surface, 2, crop, threads), nullptr, threads), false, size));
   return out;
 }
 

@@ -46,7 +46,8 @@ class Correlation {
 struct Correlations {
   std::array<Correlation, 3> of;
   bool slope_repeats(int channel) const { return level[static_cast<std::size_t>(channel)] > 0.2; }
-  std::array<double, 3> level = {};  ///< of the four strongest peaks of each
+  std::array<double, 3> level = {};     ///< of the four strongest peaks of each
+  std::array<double, 3> variance = {};  ///< of each, to a factor that the slopes have in common
 };
 
 /// Of the `crop` of a surface. Trends over more than 64 pixels are taken out first; pixels without a solution

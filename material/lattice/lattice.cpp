@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/vec.h"
@@ -41,13 +43,15 @@ double least_repeats_in(Size size, const Cell& cell) {
   return std::min(repeats(cell.a), repeats(cell.b));
 }
 
-// Yarns that are hardly sampled put tops of the correlation where no larger weave has any.
+// Yarns that are hardly sampled put tops of the correlation where no larger weave has any, and hollows before
+// them; plies of a yarn put their tops on its slope.
 bool is_too_fine(const Lattice& lattice, const std::vector<const Correlation*>& slopes) {
-  constexpr double kAlike = 0.55, kCloserThan_px = 5;
+  constexpr double kAlike = 0.55;
   const bool has_close_top = std::ranges::any_of(slopes, [&](const Correlation* each) {
     const auto peaks = each->peaks(0, 2, 0.68 * each->reach());
     return std::ranges::any_of(peaks, [&](const auto& peak) {
-      return length(peak.lag) < kCloserThan_px && peak.value > kAlike * peaks.front().value;
+      return length(peak.lag) < kLeastYarn_px && peak.value > kAlike * peaks.front().value &&
+             each->at(0.5 * peak.lag).value_or(0) < 0;
     });
   });
   return has_close_top || std::min(lattice.yarn_x_px, lattice.yarn_y_px) < kLeastYarn_px;
@@ -85,11 +89,12 @@ void find_colours(const Correlation& luminance, const Cell& along, Lattice& latt
   lattice.colour = sublattice ? reduced(sublattice->of(lattice.weave)) : lattice.weave;
 }
 
-void state_axes(const Cell& along, Lattice& lattice) {
+void state_yarns(const Yarns& yarns, Lattice& lattice) {
+  const Cell& along = yarns.along;
   lattice.axes = {repeat_along(along.a, lattice.colour), repeat_along(along.b, lattice.colour)};
-  // All rows of the lattice that lie along a yarn are a yarn apart.
-  lattice.yarn_x_px = lattice.weave.area() / length(along.b);
-  lattice.yarn_y_px = lattice.weave.area() / length(along.a);
+  lattice.yarn_x_px = yarns.x_px;
+  lattice.yarn_y_px = yarns.y_px;
+  lattice.yarn_share = yarns.share;
   lattice.turn_x_deg = degrees(std::atan2(along.a.y, along.a.x));
   lattice.turn_y_deg = degrees(std::atan2(-along.b.x, along.b.y));
 }
@@ -108,6 +113,14 @@ void find_weave(const Cell& first, const Correlation& mean, const std::vector<co
   lattice.residual_px = cell.residual_px;
   lattice.points = cell.points;
   lattice.strength = strength_of(lattice.weave, slopes);
+}
+
+Error not_as_said(const SaidYarns& said) {
+  std::string what = said.turn_deg ? fmt::format("turned by {:g} degrees", *said.turn_deg) : "";
+  if (said.x_px > 0 || said.y_px > 0)
+    what += fmt::format("{}{:g} by {:g} pixels wide", what.empty() ? "" : " and ", said.x_px, said.y_px);
+  return {ErrorKind::kBadData, "the yarns do not lie as was said", "turn_deg, yarn_px",
+          "no repeat of the cloth has yarns " + what, "leave both out, and see what is found"};
 }
 
 }  // namespace
@@ -174,10 +187,10 @@ Result<Lattice> find_lattice(const Surface& surface, const LatticeOptions& optio
     return lattice;
   }
   find_weave(*first, mean, slopes, lattice);
-  const Cell along =
-      cell_along_yarns(lattice.weave, yarn_directions(surface, crop, lattice.weave, correlations));
-  find_colours(correlations.of[2], along, lattice);
-  state_axes(along, lattice);
+  const std::optional<Yarns> yarns = find_yarns(lattice.weave, correlations, options.said);
+  if (!yarns) return not_as_said(options.said);
+  find_colours(correlations.of[2], yarns->along, lattice);
+  state_yarns(*yarns, lattice);
   lattice.kind = kind_of(lattice, slopes, surface.size());
   return lattice;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <string_view>
 
 #include "core/result.h"
@@ -41,6 +42,7 @@ struct Lattice {
   bool colours_repeat = false;  ///< found in the luminance, and not assumed
   double yarn_x_px = 0;         ///< width of the yarns that follow each other along axes.a
   double yarn_y_px = 0;
+  double yarn_share = 0;   ///< of the slopes' energy that goes on along either set of yarns, 0 to 1
   double turn_x_deg = 0;   ///< of axes.a from +x, counterclockwise
   double turn_y_deg = 0;   ///< of axes.b from +y
   double strength = 0;     ///< correlation of the slopes at the nearest repeats, the lower of both, 0 to 1
@@ -50,9 +52,17 @@ struct Lattice {
       0;  ///< Student's t of the coarser lattice that was chosen, or of the best refused one
 };
 
+/// What somebody says of the yarns; what is not said is found.
+struct SaidYarns {
+  /// Of axes.a from +x, counterclockwise; a right angle more or less is the same.
+  std::optional<double> turn_deg = {};
+  double x_px = 0, y_px = 0;  ///< as Lattice::yarn_x_px and yarn_y_px; 0: not said
+};
+
 /// Where the repeat is looked for.
 struct LatticeOptions {
   int crop_px = 1024;  ///< side of the square around the frame's centre, 64 to 4096
+  SaidYarns said = {};
   int threads = 0;
 };
 
@@ -62,7 +72,8 @@ struct LatticeOptions {
 /// the surest one taken at t over 12. Colours are sought apart, at whole repeats of the weave.
 ///
 /// kBadData where the surface has no pixels, is under 64 pixels wide or high, has no mm_per_pixel, or a value
-/// is not finite. No repeat is not an error: `kind` says what was seen. Same bytes for any thread count.
+/// is not finite; where nothing of the lattice lies within 5 degrees and a tenth of a yarn of what was said.
+/// No repeat is not an error: `kind` says what was seen. Same bytes for any thread count.
 Result<Lattice> find_lattice(const Surface& surface, const LatticeOptions& options = {});
 
 }  // namespace weft::material

@@ -16,7 +16,8 @@ namespace weft::material {
 namespace {
 
 constexpr double kNearest_px = 3, kLeastArea_px = 9;
-constexpr double kRounding = 0.02;  ///< of a correlation: what sampling at whole pixels may add
+constexpr double kRounding = 0.02;  ///< of a correlation: what sampling at whole pixels may add, ...
+constexpr double kOfPhases = 0.05;  ///< ... and over all points that lie alike among the pixels
 
 int remainder_of(int i, int n) {
   return (i % n + n) % n;
@@ -150,7 +151,7 @@ double t_above_neighbours(const Multiples& multiples, const Sublattice& sublatti
   if (n < kFewest) return 0;
   const double mean = sum / n,
                variance = std::max((squares - n * mean * mean) / (n - 1), kRounding * kRounding);
-  return mean / std::sqrt(variance / n);
+  return mean > kOfPhases ? mean / std::sqrt(variance / n) : 0;
 }
 
 }  // namespace

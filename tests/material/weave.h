@@ -20,11 +20,16 @@ namespace weft::material {
 struct Binding {
   const char* name;
   int over, under, step;
+  bool turns = false;  ///< every other warp yarn lies under what it would lie over
+  int together = 1;    ///< yarns that lie beside each other alike, of warp and weft
   int period() const { return over + under; }
+  /// Crossings of the smallest repeat.
+  int crossings() const { return (turns ? 2 : 1) * period() * together * together; }
 };
 inline constexpr Binding kPlain = {"plain", 1, 1, 1}, kTwill = {"twill 2/2", 2, 2, 1},
                          kTwill31 = {"twill 3/1", 3, 1, 1}, kSatin5 = {"satin 5", 4, 1, 2},
-                         kSatin8 = {"satin 8", 7, 1, 3};
+                         kSatin8 = {"satin 8", 7, 1, 3}, kRib22 = {"rib 2/2", 2, 2, 2},
+                         kRib21 = {"rib 2/1", 2, 1, 0, true}, kBasket = {"basket 2/2", 1, 1, 1, false, 2};
 
 struct WeaveSettings {
   Binding binding = kPlain;
@@ -36,6 +41,9 @@ struct WeaveSettings {
   double tone = 0.08;     ///< standard deviation of the yarns' albedo, relative
   int stripe_yarns = 0;   ///< warp yarns of one tone, then as many of another; 0: none
   int stripe_other = 0;   ///< yarns of the other tone; 0: as many
+  bool is_check = false;  ///< the weft is striped likewise
+  Vec2 print_px = {};     ///< repeat of dots that are printed, along the frame; 0: none
+  double twist = 0;       ///< height of the ridges that two plies make, in pitches
   double warp_px = 0;     ///< how far the cloth is pulled, largest of each axis
   double bow_px = 0;      ///< sagitta of the weft over the frame's width
   double crimp = 0.08;    ///< height of a yarn's wave in pitches
@@ -93,12 +101,16 @@ class Weave {
       const Section wave = along(side(warp.yarn[k], weft.yarn[0]), side(warp.yarn[k], weft.yarn[1]),
                                  weft.off[0], settings_.pitch_y_px);
       if (across_warp.z + wave.z > best.z)
-        best = {across_warp.z + wave.z, across_warp.slope, wave.slope, albedo(tone_x_, warp.yarn[k], true)};
+        best = plied(
+            {across_warp.z + wave.z, across_warp.slope, wave.slope, albedo(tone_x_, warp.yarn[k], true)},
+            {warp.off[k], weft.off[0]}, 1);
       const Section across_weft = section(weft.off[k], settings_.pitch_y_px);
       const Section rise = along(-side(warp.yarn[0], weft.yarn[k]), -side(warp.yarn[1], weft.yarn[k]),
                                  warp.off[0], settings_.pitch_x_px);
       if (across_weft.z + rise.z > best.z)
-        best = {across_weft.z + rise.z, rise.slope, across_weft.slope, albedo(tone_y_, weft.yarn[k], false)};
+        best = plied(
+            {across_weft.z + rise.z, rise.slope, across_weft.slope, albedo(tone_y_, weft.yarn[k], false)},
+            {warp.off[0], weft.off[k]}, -1);
     }
     return best;
   }
@@ -110,6 +122,7 @@ class Weave {
     const double dx = point.dx, dy = point.dy;
     point.dx = dx * here.by_x.x + dy * here.by_x.y;
     point.dy = dx * here.by_y.x + dy * here.by_y.y;
+    if (is_printed(at)) point.albedo *= 0.4;
     return point;
   }
 
@@ -129,10 +142,33 @@ class Weave {
     const int next = off(yarn) < 0 ? yarn - 1 : yarn + 1;
     return {{yarn, next}, {off(yarn), off(next)}};
   }
+  static int floored(int a, int n) { return (a - (a % n + n) % n) / n; }
   double side(int warp, int weft) const {
     const Binding& b = settings_.binding;
-    const int place = ((weft - b.step * warp) % b.period() + b.period()) % b.period();
-    return place < b.over ? 1 : -1;
+    const int i = floored(warp, b.together), j = floored(weft, b.together);
+    const int place = ((j - b.step * i) % b.period() + b.period()) % b.period();
+    return (place < b.over) == (b.turns && i % 2 != 0) ? -1 : 1;
+  }
+  // Two ridges from crossing to crossing, at half a right angle to the yarn.
+  Point plied(Point point, Vec2 off, double turn) const {
+    if (settings_.twist == 0) return point;
+    const double height = settings_.twist * (settings_.pitch_x_px + settings_.pitch_y_px) / 2,
+                 kx = 4 * kPi / settings_.pitch_x_px, ky = turn * 4 * kPi / settings_.pitch_y_px;
+    const double phase = kx * off.x + ky * off.y;
+    point.z += height * std::sin(phase);
+    point.dx += height * kx * std::cos(phase);
+    point.dy += height * ky * std::cos(phase);
+    return point;
+  }
+  // Two dots of different size in each repeat.
+  bool is_printed(Vec2 at) const {
+    const Vec2 repeat = settings_.print_px;
+    if (repeat.x == 0) return false;
+    const auto is_within = [&](double x, double y, double radius) {
+      return std::hypot(std::remainder(at.x / repeat.x - x, 1.0), std::remainder(at.y / repeat.y - y, 1.0)) <
+             radius;
+    };
+    return is_within(0, 0, 0.26) || is_within(0.45, 0.3, 0.14);
   }
   Section section(double off, double pitch) const {
     const double flank = radians(settings_.flank_deg), radius = pitch / 2 / std::sin(flank);
@@ -150,7 +186,9 @@ class Weave {
   double albedo(const std::vector<double>& tones, int yarn, bool is_warp) const {
     const int one = settings_.stripe_yarns, other = settings_.stripe_other > 0 ? settings_.stripe_other : one;
     double value = 0.3 * std::max(0.1, 1 + settings_.tone * tones[index(yarn)]);
-    if (one > 0 && is_warp && ((yarn % (one + other)) + one + other) % (one + other) >= one) value *= 0.5;
+    if (one > 0 && (is_warp || settings_.is_check) &&
+        ((yarn % (one + other)) + one + other) % (one + other) >= one)
+      value *= 0.5;
     return value;
   }
 

@@ -91,6 +91,51 @@ TEST(Lattice, LiesAlongTheYarnsAndNotAlongTheTwillsLine) {
   EXPECT_NEAR(lattice.turn_y_deg, 2, 0.05);
 }
 
+TEST(Lattice, LiesAlongTheYarnsWhereColoursAndPliesDoNot) {
+  const WeaveSettings cloths[] = {
+      {.pitch_x_px = 12, .pitch_y_px = 12, .turn_deg = 1.4, .tone = 0},
+      {.pitch_x_px = 10, .pitch_y_px = 9, .turn_deg = 0, .stripe_yarns = 6, .is_check = true},
+      {.pitch_x_px = 12, .pitch_y_px = 12, .turn_deg = 8, .twist = 0.012},
+      {.pitch_x_px = 10, .pitch_y_px = 10, .turn_deg = 25, .tone = 0, .print_px = {80, 80}},
+  };
+  for (const WeaveSettings& weave : cloths) {
+    const Lattice lattice = lattice_of(weave_surface(weave, {400, 400}));
+    const LatticeError error = error_of(lattice, weave);
+    EXPECT_LT(error.turn_deg, 0.05) << weave.turn_deg << " was found as " << lattice.turn_x_deg;
+    EXPECT_LT(error.yarn_px, 0.02) << weave.turn_deg << ": " << lattice.yarn_x_px << " x "
+                                   << lattice.yarn_y_px;
+  }
+}
+
+TEST(Lattice, CountsTheYarnsOfARib) {
+  for (const Binding& binding : {kRib22, kRib21, kBasket}) {
+    const WeaveSettings weave = {
+        .binding = binding, .pitch_x_px = 11, .pitch_y_px = 9, .turn_deg = 1.4, .tone = 0};
+    const Lattice lattice = lattice_of(weave_surface(weave, {400, 400}));
+    const LatticeError error = error_of(lattice, weave);
+    EXPECT_EQ(std::lround(error.yarns_of_cell), binding.crossings()) << binding.name;
+    EXPECT_LT(error.yarn_px, 0.02) << binding.name << ": " << lattice.yarn_x_px << " x " << lattice.yarn_y_px;
+    EXPECT_LT(error.turn_deg, 0.05) << binding.name << ": " << lattice.turn_x_deg;
+  }
+}
+
+TEST(Lattice, LiesAsSomebodySaysAndIsRefusedWhereNothingDoes) {
+  const Surface cloth = weave_surface({.pitch_x_px = 12, .pitch_y_px = 12, .turn_deg = 25}, {400, 400});
+  const double diagonal_px = 12 * std::sqrt(2.0);
+  const Lattice yarns = lattice_of(cloth, {.said = {.turn_deg = 24, .x_px = 12, .y_px = 12}}),
+                diagonals = lattice_of(cloth, {.said = {.turn_deg = -19}}),
+                by_width = lattice_of(cloth, {.said = {.x_px = diagonal_px, .y_px = diagonal_px}});
+  EXPECT_NEAR(yarns.turn_x_deg, 25, 0.05);
+  EXPECT_NEAR(yarns.yarn_x_px, 12, 0.02);
+  EXPECT_NEAR(diagonals.turn_x_deg, -20, 0.05);
+  EXPECT_NEAR(by_width.turn_x_deg, -20, 0.05);
+  EXPECT_NEAR(by_width.yarn_y_px, diagonal_px, 0.02);
+  const Result<Lattice> refused = find_lattice(cloth, {.said = {.turn_deg = 7, .x_px = 12}});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kBadData);
+  EXPECT_THAT(refused.error().why, testing::HasSubstr("turned by 7 degrees and 12 by 0 pixels wide"));
+}
+
 TEST(Lattice, SeesColoursApartFromTheWeave) {
   WeaveSettings weave = {.pitch_x_px = 8.3,
                          .pitch_y_px = 9.1,

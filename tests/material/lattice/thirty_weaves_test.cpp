@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <numeric>
 #include <string>
@@ -69,6 +71,51 @@ TEST(ThirtyWeaves, HaveTheirCellsAndColours) {
   }
   std::printf("right cells: %d of 30, right colour cells: %d of 30\n", right_cells, right_colours);
   EXPECT_GE(right_cells, 28);
+}
+
+// Cloths whose yarns colours, prints and plies hide, and yarns without any mark of their own. Prints the
+// worst of each, which docs/finishing.md tells.
+TEST(PlainWeaves, LieAlongTheirYarnsHoweverTheyAreColouredAndTurned) {
+  struct Cloth {
+    const char* name;
+    WeaveSettings weave;
+  };
+  const Cloth cloths[] = {
+      {"all yarns alike", {.tone = 0}},
+      {"all yarns alike, 11.4", {.pitch_y_px = 11.4, .tone = 0}},
+      {"faint tone", {.pitch_x_px = 9, .pitch_y_px = 8.4, .tone = 0.02}},
+      {"plied", {.twist = 0.012}},
+      {"striped", {.pitch_x_px = 10, .pitch_y_px = 9, .stripe_yarns = 6}},
+      {"gingham", {.pitch_x_px = 10, .pitch_y_px = 9, .tone = 0, .stripe_yarns = 6, .is_check = true}},
+      {"check", {.pitch_x_px = 10, .pitch_y_px = 10, .stripe_yarns = 4, .stripe_other = 2, .is_check = true}},
+      {"broad check", {.pitch_x_px = 12, .pitch_y_px = 10, .stripe_yarns = 8, .is_check = true}},
+      {"printed", {.pitch_x_px = 9.3, .pitch_y_px = 8.9, .print_px = {118, 106}}},
+      {"printed, alike", {.pitch_x_px = 10, .pitch_y_px = 10, .tone = 0, .print_px = {80, 80}}},
+      {"rib 2/2", {.binding = kRib22, .tone = 0}},
+      {"rib 2/1", {.binding = kRib21, .pitch_x_px = 11, .pitch_y_px = 9, .tone = 0}},
+      {"basket", {.binding = kBasket, .pitch_x_px = 10, .pitch_y_px = 10}},
+      {"worn", {.wander = 0.04, .noise_deg = 3, .warp_px = 1}},
+      {"low crimp", {.tone = 0, .crimp = 0.02}},
+  };
+  bool is_even = true;
+  for (const Cloth& cloth : cloths) {
+    LatticeError worst;
+    is_even = !is_even;
+    for (const double turn_deg : is_even ? std::array{0.0, 25.0} : std::array{1.4, 8.0}) {
+      WeaveSettings weave = cloth.weave;
+      weave.turn_deg = turn_deg;
+      const Result<Lattice> lattice = find_lattice(weave_surface(weave, {448, 448}));
+      ASSERT_TRUE(lattice) << lattice.error().message();
+      const LatticeError error = error_of(*lattice, weave);
+      EXPECT_EQ(lattice->kind, LatticeKind::kRepeat) << cloth.name << " at " << turn_deg;
+      EXPECT_LT(error.turn_deg, 0.05) << cloth.name << " at " << turn_deg << ": " << lattice->turn_x_deg;
+      EXPECT_LT(error.yarn_px, 0.02) << cloth.name << " at " << turn_deg << ": " << lattice->yarn_x_px
+                                     << " x " << lattice->yarn_y_px;
+      worst.turn_deg = std::max(worst.turn_deg, error.turn_deg);
+      worst.yarn_px = std::max(worst.yarn_px, error.yarn_px);
+    }
+    std::printf("%-22s %.4f deg, %.4f px a yarn\n", cloth.name, worst.turn_deg, worst.yarn_px);
+  }
 }
 
 }  // namespace
