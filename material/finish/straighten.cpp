@@ -149,6 +149,11 @@ void state_pull(double mm_per_pixel, Straightened& out) {
 
 }  // namespace
 
+bool is_to_be_asked(const Lattice& lattice) {
+  return std::abs(lattice.turn_x_deg) > kMostTurn_deg ||
+         std::abs(lattice.turn_y_deg - lattice.turn_x_deg) > kMostSkew_deg;
+}
+
 Result<Straightened> straighten(const Surface& surface, const Lattice& lattice,
                                 const StraightenOptions& options) {
   if (auto usable = check_surface(surface, kLeastSide, kNotStraightened); !usable)

@@ -19,6 +19,10 @@ struct StraightenOptions {
   int threads = 0;
 };
 
+/// Beyond these what was found may be the diagonals of a weave, so that somebody is asked first.
+inline constexpr double kMostTurn_deg = 15, kMostSkew_deg = 3;
+bool is_to_be_asked(const Lattice& lattice);
+
 /// A cloth whose yarns run along the axes, and what was done to it.
 struct Straightened {
   Surface surface;

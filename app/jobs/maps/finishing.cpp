@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include "app/jobs/maps/yarn_picture.h"
+#include "core/percent.h"
 #include "material/filtering/detail.h"
 #include "material/finish/color.h"
 #include "material/finish/crop.h"
@@ -40,7 +42,7 @@ class Finisher {
   Result<Json> run(const Recipe& recipe, std::size_t at) {
     const RecipeStep& step = recipe.steps[at];
     if (step.name == "flatten") return flatten(step.options);
-    if (step.name == "straighten") return straighten(repeats_wanted(recipe, at));
+    if (step.name == "straighten") return straighten(recipe, at);
     if (step.name == "crop") return crop(step.options);
     if (step.name == "tile") return tile();
     if (step.name == "repair") return repair(step.options);
@@ -62,10 +64,11 @@ class Finisher {
     return {0, 0};
   }
 
-  // Looked for once in the cloth as it stands.
-  Result<void> find_lattice() {
-    if (lattice_) return {};
-    Result<Lattice> lattice = material::find_lattice(surface_, {.threads = context_.threads});
+  // Looked for once in the cloth as it stands, or again as somebody says that its yarns lie.
+  Result<void> find_lattice(const material::SaidYarns& said = {}) {
+    const bool is_said = said.turn_deg || said.x_px > 0 || said.y_px > 0;
+    if (lattice_ && !is_said) return {};
+    Result<Lattice> lattice = material::find_lattice(surface_, {.said = said, .threads = context_.threads});
     if (!lattice) return std::move(lattice).error();
     lattice_ = *lattice;
     facts.yarn_px =
@@ -109,35 +112,68 @@ class Finisher {
                 {"sigma_deg", flatten.sigma_deg}};
   }
 
-  Result<Json> straighten(std::array<int, 2> repeats) {
-    if (Result<void> ok = find_lattice(); !ok) return std::move(ok).error();
+  Result<Json> straighten(const Recipe& recipe, std::size_t at) {
+    const Json& said = recipe.steps[at].options;
+    material::SaidYarns yarns;
+    if (!said["turn_deg"].is_null()) yarns.turn_deg = said["turn_deg"].get<double>();
+    yarns.x_px = said["yarn_px"][0].get<double>() / input_.coarser;
+    yarns.y_px = said["yarn_px"][1].get<double>() / input_.coarser;
+    if (Result<void> ok = find_lattice(yarns); !ok) return std::move(ok).error();
+    Json found = {{"acts", false}, {"kind", material::name_of(lattice_->kind)}};
     if (lattice_->kind != LatticeKind::kRepeat) {
       warn("NO_REPEAT", fmt::format("the cloth was not straightened: {}", material::words_of(lattice_->kind)),
            "nothing, if it has none; else scan more of it");
-      return Json{{"acts", false}, {"kind", material::name_of(lattice_->kind)}};
+      is_left_turned_ = true;
+      return found;
+    }
+    found.update({{"turn_deg", lattice_->turn_x_deg},
+                  {"skew_deg", lattice_->turn_y_deg - lattice_->turn_x_deg},
+                  {"yarn_px", {lattice_->yarn_x_px, lattice_->yarn_y_px}},
+                  {"yarn_share", lattice_->yarn_share},
+                  {"colours_repeat", lattice_->colours_repeat},
+                  {"strength", lattice_->strength}});
+    if (!yarns.turn_deg && material::is_to_be_asked(*lattice_)) {
+      found["picture"] = ask(at);
+      return found;
     }
     material::StraightenOptions options;
+    const std::array<int, 2> repeats = repeats_wanted(recipe, at);
     options.repeats_x = repeats[0];
     options.repeats_y = repeats[1];
     options.threads = context_.threads;
     Result<material::Straightened> straight = material::straighten(surface_, *lattice_, options);
     if (!straight) return std::move(straight).error();
-    Json found = {{"acts", true},
-                  {"kind", material::name_of(lattice_->kind)},
-                  {"yarn_px", {lattice_->yarn_x_px, lattice_->yarn_y_px}},
-                  {"colours_repeat", lattice_->colours_repeat},
-                  {"strength", lattice_->strength},
+    found.update({{"acts", true},
                   {"repeats", {straight->repeats_x, straight->repeats_y}},
                   {"period_px", {straight->period_px.width, straight->period_px.height}},
                   {"mm_per_pixel", {straight->mm_per_pixel_x, straight->mm_per_pixel_y}},
-                  {"turn_deg", straight->turn_deg},
-                  {"skew_deg", straight->skew_deg},
                   {"largest_pull_mm", straight->largest_pull_mm},
-                  {"rms_pull_mm", straight->rms_pull_mm}};
+                  {"rms_pull_mm", straight->rms_pull_mm}});
     tile_ = material::tile_of(*straight);
     surface_ = std::move(straight->surface);
     lattice_.reset();
+    is_left_turned_ = false;
     return found;
+  }
+
+  // Shows where the yarns seem to lie, and asks for a word; the picture's name.
+  std::string ask(std::size_t at) {
+    const std::string file = fmt::format("straighten_{}.png", at + 1);
+    facts.pictures.push_back({file, yarn_picture(surface_, *lattice_)});
+    const auto hundredths = [](double value) { return std::round(100 * value) / 100 + 0.0; };  // no -0.00
+    const double turn_deg = hundredths(lattice_->turn_x_deg),
+                 skew_deg = hundredths(lattice_->turn_y_deg - lattice_->turn_x_deg);
+    warn("TURN_ASKED",
+         fmt::format(
+             "the cloth was not straightened: its yarns seem to be turned by {:.2f} degrees and sheared by "
+             "{:.2f}, and beyond {:g} and {:g} those may be diagonals",
+             turn_deg, skew_deg, material::kMostTurn_deg, material::kMostSkew_deg),
+         fmt::format(
+             "look at {}; where its lines lie along the yarns give the recipe straighten = {{ turn_deg = "
+             "{:.2f}, yarn_px = [{:.2f}, {:.2f}] }}, else what is true",
+             file, turn_deg, input_.coarser * lattice_->yarn_x_px, input_.coarser * lattice_->yarn_y_px));
+    is_left_turned_ = true;
+    return file;
   }
 
   Result<Json> tile() {
@@ -145,7 +181,8 @@ class Finisher {
     options.threads = context_.threads;
     if (!tile_)
       warn("NOT_STRAIGHTENED", "the tile is cut where the cloth is closest to itself, without its repeat",
-           "straighten it first");
+           is_left_turned_ ? "do what is said of straightening"
+                           : "put the step straighten before the step tile");
     Result<material::Tile> cut = material::tile(surface_, options);
     if (!cut) return std::move(cut).error();
     const auto seam = [](const material::Seam& s) {
@@ -229,10 +266,10 @@ class Finisher {
     if (!colored) return std::move(colored).error();
     surface_ = std::move(colored->surface);
     if (colored->share_above_white > 0)
-      warn(
-          "ALBEDO_ABOVE_WHITE",
-          fmt::format("{:.2g} percent of the pixels have an albedo over 1", 100 * colored->share_above_white),
-          "take a smaller exposure");
+      warn("ALBEDO_ABOVE_WHITE",
+           fmt::format("{} percent of the pixels have an albedo over 1",
+                       percent_words(colored->share_above_white)),
+           "take a smaller exposure");
     return Json{{"share_above_white", colored->share_above_white}};
   }
 
@@ -267,7 +304,9 @@ class Finisher {
          fmt::format("the {} joint has {:.2f} of the cloth's gradient energy in its slopes and {:.2f} in its "
                      "albedo; {} to {} is not seen",
                      axis, seam.gradient_slope, seam.gradient_albedo, kLeastEnergy, kMostEnergy),
-         "ask for another number of repeats");
+         tile_             ? "ask the step tile for another number of repeats"
+         : is_left_turned_ ? "do what is said of straightening"
+                           : "put the step straighten before the step tile");
   }
 
   static constexpr double kLeastEnergy = 0.9, kMostEnergy = 1.1;
@@ -277,6 +316,7 @@ class Finisher {
   const JobContext& context_;
   std::optional<Lattice> lattice_;
   std::optional<material::TileOptions> tile_;  // of a cloth that was straightened
+  bool is_left_turned_ = false;                // straightening was told to, and said why not
 };
 
 }  // namespace

@@ -67,6 +67,9 @@ std::optional<std::string> fault_of(const Json& value, const StepKey& key) {
     case StepHolds::kNumber:
       if (is_within(value, key)) return {};
       return "must be a number " + range_of(key);
+    case StepHolds::kMaybe:
+      if (value.is_null() || is_within(value, key)) return {};
+      return fmt::format("must be a number {}, or be left out", range_of(key));
     case StepHolds::kWhole:
       if (is_within(value, key) && std::floor(value.get<double>()) == value.get<double>()) return {};
       return "must be a whole number " + range_of(key);
@@ -93,7 +96,8 @@ std::optional<std::string> fault_of(const Json& value, const StepKey& key) {
 // Numbers as JSON has them however they were written: 3 and 3.0 are one recipe.
 Json plain(const Json& value, StepHolds holds) {
   if (holds == StepHolds::kWhole) return static_cast<int>(value.get<double>());
-  if (holds == StepHolds::kNumber) return value.get<double>();
+  if (holds == StepHolds::kNumber || (holds == StepHolds::kMaybe && !value.is_null()))
+    return value.get<double>();
   if (holds == StepHolds::kNumbers) return value.get<std::vector<double>>();
   if (holds != StepHolds::kSpots) return value;
   Json spots = Json::array();
@@ -132,6 +136,41 @@ Result<RecipeStep> step_from_json(const Json& object, const std::string& where) 
   return step;
 }
 
+bool is_kind(const std::string& name) {
+  return std::ranges::any_of(step_kinds(), [&](const RecipeStepKind& kind) { return name == kind.name; });
+}
+
+// The list itself, or that of the recipe that is named.
+Result<Json> listed_steps(const Json& document, const std::string& where) {
+  if (!document.is_object() || document.contains("steps") == document.contains("recipe"))
+    return unfit(where, "it has no list of steps");
+  if (document.contains("steps")) {
+    if (!document["steps"].is_array()) return unfit(where, "it has no list of steps");
+    return document["steps"];
+  }
+  const Json& name = document["recipe"];
+  const Recipe known = recipe_named(name.is_string() ? name.get<std::string>() : "");
+  if (known.steps.empty())
+    return unfit(where, fmt::format("recipe must be one of {}", fmt::join(recipe_names(), ", ")));
+  return json_of(known)["steps"];
+}
+
+// Keys that stand under a step's name beside the steps.
+Result<void> override_keys(const Json& document, const std::string& where, Json& steps) {
+  for (const auto& [name, keys] : document.items()) {
+    if (!is_kind(name)) continue;
+    if (!keys.is_object() || keys.contains("do")) return unfit(where, name + " must be keys of that step");
+    bool is_there = false;
+    for (Json& step : steps) {
+      if (!step.is_object() || step.value("do", Json()) != Json(name)) continue;
+      step.update(keys);
+      is_there = true;
+    }
+    if (!is_there) return unfit(where, fmt::format("none of its steps is {}", name));
+  }
+  return {};
+}
+
 }  // namespace
 
 const std::vector<RecipeStepKind>& step_kinds() {
@@ -150,7 +189,13 @@ const std::vector<RecipeStepKind>& step_kinds() {
          1e4},
         {"always", "also where the slow slope is within what the calibration does not know", StepHolds::kFlag,
          false}}},
-      {"straighten", "Brings the weave's threads along rows and columns, bow and skew out", {}},
+      {"straighten",
+       "Brings the weave's threads along rows and columns, bow and skew out",
+       {{"turn_deg",
+         "of the cloth in the picture, counterclockwise; left out: found, and over 15 asked about",
+         StepHolds::kMaybe, nullptr, -90, 90},
+        {"yarn_px", "width of the yarns beside each other and below each other; 0: found",
+         StepHolds::kNumbers, Json::array({0, 0}), 0, 1000}}},
       {"crop",
        "Cuts to a rectangle",
        {{"left_mm", "from the left border", StepHolds::kNumber, 0, 0, 1e5},
@@ -176,13 +221,13 @@ const std::vector<RecipeStepKind>& step_kinds() {
 }
 
 Result<Recipe> recipe_from_json(const Json& document, const std::string& where) {
-  if (!document.is_object() || !document.contains("steps") || !document["steps"].is_array())
-    return unfit(where, "it has no list of steps");
-  const Json& steps = document["steps"];
-  if (steps.size() > kMostSteps) return unfit(where, fmt::format("it has over {} steps", kMostSteps));
+  Result<Json> steps = listed_steps(document, where);
+  if (!steps) return std::move(steps).error();
+  if (steps->size() > kMostSteps) return unfit(where, fmt::format("it has over {} steps", kMostSteps));
+  if (Result<void> ok = override_keys(document, where, *steps); !ok) return std::move(ok).error();
   Recipe recipe;
-  for (std::size_t i = 0; i < steps.size(); ++i) {
-    Result<RecipeStep> step = step_from_json(steps[i], fmt::format("{}: step {}", where, i + 1));
+  for (std::size_t i = 0; i < steps->size(); ++i) {
+    Result<RecipeStep> step = step_from_json((*steps)[i], fmt::format("{}: step {}", where, i + 1));
     if (!step) return std::move(step).error();
     recipe.steps.push_back(std::move(*step));
   }
@@ -237,13 +282,16 @@ Result<Recipe> read_recipe(const fs::path& file) {
   }
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
-  for (const auto& [key, value] : *table) {
-    if (key.str() != "step")
-      return unfit(file.string(), fmt::format("there is no key {}, only step", std::string(key.str())));
+  Json document = Json::object();
+  for (const auto& [node_key, value] : *table) {
+    const std::string key(node_key.str());
+    if (key != "step" && key != "recipe" && !is_kind(key))
+      return unfit(file.string(),
+                   fmt::format("there is no key {}, only step, recipe and names of steps", key));
+    document[key == "step" ? "steps" : key] = weft::json_of(value);
   }
-  const toml::node* steps = table->get("step");
-  return recipe_from_json({{"steps", steps != nullptr ? weft::json_of(*steps) : Json::array()}},
-                          file.string());
+  if (table->empty()) document["steps"] = Json::array();
+  return recipe_from_json(document, file.string());
 }
 
 }  // namespace weft::app

@@ -31,6 +31,7 @@ struct Recipe {
 /// What an option of a step holds.
 enum class StepHolds {
   kNumber,   ///< from `least` to `most`
+  kMaybe,    ///< likewise, or null where nobody says one
   kWhole,    ///< a whole one
   kFlag,     ///< true or false
   kWord,     ///< one of `words`
@@ -56,9 +57,11 @@ struct RecipeStepKind {
 /// All that a recipe may say.
 const std::vector<RecipeStepKind>& step_kinds();
 
-/// {"steps": [{"do": "tile", "repeats": [4, 3]}, ...]}; any other key of the object is passed over, so that a
-/// maps.json is a recipe too. Keys that a step lacks have their default. kBadData with the step's number and
-/// the key; of an unknown name the nearest known one is named.
+/// {"steps": [{"do": "tile", "repeats": [4, 3]}, ...]}, or {"recipe": "tile"} of one that weft brings along;
+/// a step's name beside either has keys that take the place of that step's: {"straighten": {"turn_deg": 25}}.
+/// Any other key of the object is passed over, so that a maps.json is a recipe too. Keys that a step lacks
+/// have their default. kBadData with the step's number and the key; of an unknown name the nearest known one
+/// is named.
 Result<Recipe> recipe_from_json(const Json& document, const std::string& where);
 Json json_of(const Recipe& recipe);
 
@@ -66,8 +69,8 @@ Json json_of(const Recipe& recipe);
 std::vector<std::string> recipe_names();
 Recipe recipe_named(const std::string& name);
 
-/// A file: TOML with a table [[step]] a step, or JSON as above. Or the name of a recipe that weft brings
-/// along (flat, tile, detail). kNoInput, kBadData.
+/// A file: TOML with a table [[step]] a step, else as the JSON above, or that JSON. Or the name of a recipe
+/// that weft brings along (flat, tile, detail). kNoInput, kBadData.
 Result<Recipe> read_recipe(const std::filesystem::path& file);
 
 }  // namespace weft::app

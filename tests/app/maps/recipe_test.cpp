@@ -68,6 +68,27 @@ TEST(Recipe, ReadsBackWhatItWritesWithTheFactsOfASetOfMaps) {
   EXPECT_EQ(recipe_of(document.dump()), recipe);
 }
 
+TEST(Recipe, TakesKeysOfAStepBesideItsSteps) {
+  const Recipe whole = recipe_of(R"({"steps": [{"do": "flatten"},
+      {"do": "straighten", "turn_deg": 25, "yarn_px": [12, 10.5]}, {"do": "tile"}]})");
+  EXPECT_EQ(recipe_of(R"({"recipe": "tile", "straighten": {"turn_deg": 25, "yarn_px": [12, 10.5]}})"), whole);
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "turned.toml";
+  ASSERT_TRUE(write_file(file, "recipe = \"tile\"\nstraighten = { turn_deg = 25, yarn_px = [12, 10.5] }\n"));
+  const Result<Recipe> from_toml = read_recipe(file);
+  ASSERT_TRUE(from_toml) << from_toml.error().message();
+  EXPECT_EQ(*from_toml, whole);
+  EXPECT_EQ(recipe_of(R"({"recipe": "tile"})").steps[1].options,
+            Json::parse(R"({"turn_deg": null, "yarn_px": [0.0, 0.0]})"));
+  EXPECT_THAT(refusal_of(R"({"recipe": "flat", "straighten": {"turn_deg": 25}})"),
+              HasSubstr("none of its steps is straighten"));
+  EXPECT_THAT(refusal_of(R"({"recipe": "tiel"})"), HasSubstr("must be one of flat, tile, detail"));
+  EXPECT_THAT(refusal_of(R"({"recipe": "tile", "straighten": {"turn_deg": 91}})"),
+              HasSubstr("must be a number from -90 to 90, or be left out"));
+  EXPECT_THAT(refusal_of(R"({"recipe": "tile", "straighten": {"do": "crop"}})"),
+              HasSubstr("must be keys of that step"));
+}
+
 TEST(Recipe, NamesTheNearestStepAndKey) {
   EXPECT_THAT(refusal_of(R"({"steps": [{"do": "flaten"}]})"),
               AllOf(HasSubstr("step 1"), HasSubstr("the nearest is flatten")));

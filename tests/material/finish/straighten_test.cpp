@@ -43,6 +43,17 @@ TEST(Straighten, PutsTheYarnsOnTheAxesAtNinePlaces) {
   }
 }
 
+TEST(Straighten, IsAskedAboutWhereTheTurnOrTheShearIsLarge) {
+  Lattice lattice;
+  lattice.turn_x_deg = -14.9;
+  lattice.turn_y_deg = -12;
+  EXPECT_FALSE(is_to_be_asked(lattice));
+  lattice.turn_y_deg = -11.8;
+  EXPECT_TRUE(is_to_be_asked(lattice)) << "sheared by 3.1 degrees";
+  lattice.turn_x_deg = lattice.turn_y_deg = -15.1;
+  EXPECT_TRUE(is_to_be_asked(lattice));
+}
+
 TEST(Straighten, MakesMoreOfTheReliefRepeat) {
   // A displacement with the wrong sign doubles the pulls.
   const WeaveSettings weave = {.binding = kSatin5,
