@@ -29,7 +29,7 @@ Vec3 normal_of(double slope_x, double slope_y) {
 class PixelSums {
  public:
   PixelSums(const Surface& surface, const MipOptions& options)
-      : surface_(surface), options_(options), typed_shortening_(normal_length(options.alpha)) {}
+      : surface_(surface), options_(options), typed_shortening_(length_of(lobe_at(0, 0))) {}
 
   void add_to(Footprint& sum, double share, int x, int y) const {
     if ((surface_.status(x, y) & kNoSolution) != 0) return;
@@ -57,13 +57,16 @@ class PixelSums {
   }
 
   LobeWidth lobe_at(int x, int y) const {
-    if (surface_.lobe.empty()) return {options_.alpha, options_.alpha, 0};
+    if (surface_.lobe.empty()) return {options_.alpha, options_.alpha * options_.along, 0};
     const auto alpha = [&](int plane) { return std::clamp(double{surface_.lobe(x, y, plane)}, 0.0, 1.0); };
     return {alpha(0), alpha(1), double{surface_.lobe(x, y, 2)}};
   }
 
   double shortening_of(const LobeWidth& lobe) const {
-    if (surface_.lobe.empty()) return typed_shortening_;
+    return surface_.lobe.empty() ? typed_shortening_ : length_of(lobe);
+  }
+
+  static double length_of(const LobeWidth& lobe) {
     return normal_length(std::sqrt((lobe.across * lobe.across + lobe.along * lobe.along) / 2));
   }
 
@@ -154,10 +157,16 @@ Result<void> check(const Surface& surface, const MipOptions& options) {
     return Error{ErrorKind::kUsage, "no mips can be made", "mips", std::move(why), std::move(remedy)};
   };
   if (surface.size().pixels() == 0) return refused("the surface has no pixels", "give one that has");
-  if (!(options.alpha >= 0 && options.alpha <= 1)) {
-    return refused(fmt::format("alpha {:g} is not in 0 to 1", options.alpha), "give one in that range");
+  for (const double each : {options.alpha, options.alpha * options.along}) {
+    if (!(each >= 0 && each <= 1))
+      return refused(fmt::format("alpha {:g} is not in 0 to 1", each), "give one in that range");
   }
   if (options.finest < 0) return refused("levels begin at 0", "begin at 0 or above");
+  if (options.base.width > surface.size().width || options.base.height > surface.size().height) {
+    return refused(fmt::format("{} x {} pixels are asked for, the surface has {} x {}", options.base.width,
+                               options.base.height, surface.size().width, surface.size().height),
+                   "ask for at most as many");
+  }
   return {};
 }
 
@@ -166,10 +175,11 @@ Result<void> check(const Surface& surface, const MipOptions& options) {
 Result<std::vector<MipLevel>> roughness_mips(const Surface& surface, const MipOptions& options) {
   if (Result<void> ok = check(surface, options); !ok) return std::move(ok).error();
   const PixelSums pixels(surface, options);
+  const Size base = options.base.pixels() > 0 ? options.base : surface.size();
   std::vector<MipLevel> levels;
   Sums before;
-  for (int level = options.finest; level <= last_level(surface.size()); ++level) {
-    const Size size = size_of_level(surface.size(), level);
+  for (int level = options.finest; level <= last_level(base); ++level) {
+    const Size size = size_of_level(base, level);
     Sums kept = {size, {}};
     if (level >= kLastFromPixels) kept.footprints.resize(static_cast<std::size_t>(size.pixels()));
     levels.push_back(level_of(level, size, options, kept, [&](int x, int y) {

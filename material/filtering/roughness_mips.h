@@ -98,8 +98,10 @@ struct MipOptions {
   MipRule rule = MipRule::kVmf;
   NormalWeight weight = NormalWeight::kProjected;
   PixelMeaning pixels = PixelMeaning::kFacet;
-  double alpha = 1;  ///< 0 to 1, where the surface has no lobe
-  int finest = 1;    ///< the first level that is made; 0 has the surface's own size
+  double alpha = 1;  ///< 0 to 1, where the surface has no lobe: across the yarn, which lies along x
+  double along = 1;  ///< and along it, over that; their product is 0 to 1 too
+  Size base = {};    ///< of level 0, nowhere larger than the surface; empty: the surface's own
+  int finest = 1;    ///< the first level that is made
   int threads = 0;
 };
 
@@ -110,12 +112,12 @@ struct MipLevel {
   double mean_alpha = 0;  ///< root of the mean alpha^2, of what a person calls the level's roughness
 };
 
-/// Levels of width and height max(1, size >> level), down to 1 x 1. A texel is the box of the picture that it
+/// Levels of width and height max(1, base >> level), down to 1 x 1. A texel is the box of the picture that it
 /// covers, of pixels that it cuts by their share, so that odd sizes lose no border. Pixels without a solution
 /// are left out, and those with an opacity count by it. Constant normals leave alpha bit for bit; a lobe that
 /// is wider along than across comes back with its axes exchanged, the same lobe. The same bytes for any
-/// number of threads. Nothing comes back of 1 x 1 pixels. kUsage for an alpha out of 0 to 1, a level below 0
-/// and a surface without pixels.
+/// number of threads. Nothing comes back of 1 x 1 pixels. kUsage for an alpha out of 0 to 1, a level below 0,
+/// a base that is larger than the surface and a surface without pixels.
 Result<std::vector<MipLevel>> roughness_mips(const Surface& surface, const MipOptions& options = {});
 
 }  // namespace weft::material

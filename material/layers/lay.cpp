@@ -9,6 +9,7 @@
 
 #include "core/parallel.h"
 #include "core/vec.h"
+#include "material/filtering/gloss.h"
 
 namespace weft::material {
 namespace {
@@ -47,6 +48,11 @@ void join_normals(Values& below, const Values& layer, double mask, const Values&
   below[1] = slopes[1];
 }
 
+// Of the roots of alphas, as the parameter has them.
+void join_lobes(Values& below, const Values& layer, double mask, const Values&) {
+  if (mask > 0) below[0] = std::sqrt(joined_alpha(below[0] * below[0], mask * layer[0] * layer[0]));
+}
+
 Blend joining(NormalBlend normals) {
   switch (normals) {
     case NormalBlend::kAddSlopes:
@@ -67,6 +73,7 @@ Blend blend_of(Parameter parameter, const LayOptions& options) {
   if (parameter == Parameter::kAlbedo) return multiply_by_ratio;
   if (parameter == Parameter::kNormal) return joining(options.normals);
   if (parameter == Parameter::kHeight) return add_less_mean;
+  if (parameter == Parameter::kRoughness) return join_lobes;
   return nullptr;
 }
 

@@ -13,8 +13,9 @@ namespace weft::material {
 
 enum class LayerBlend {
   kReplace,  ///< below + mask (layer - below)
-  /// The layer's relief and pattern are added to what is below and nothing else of it changes: slopes and
-  /// heights less their mean, the albedo multiplied by the layer's over its mean.
+  /// The layer's relief, pattern and gloss are joined to what is below and nothing else of it changes: slopes
+  /// and heights less their mean, the albedo multiplied by the layer's over its mean, and the roughness that
+  /// facets of the one on facets of the other have (material/filtering/gloss).
   kDetail
 };
 const char* name_of(LayerBlend blend);
@@ -30,8 +31,8 @@ struct LayOptions {
 /// Lays `layer` on `below` through `mask`, 1 plane, which counts from 0 to 1. Maps have one size. What is
 /// the same everywhere stays so where nothing varies. kUsage for sizes or planes that differ.
 ///
-/// kDetail leaves every parameter alone but albedo, normal and height. A plane of an albedo whose mean is not
-/// above 0 leaves what is below.
+/// kDetail leaves every parameter alone but albedo, normal, height and roughness. A mask narrows the layer's
+/// lobe as it flattens its slopes. A plane of an albedo whose mean is not above 0 leaves what is below.
 Result<void> lay(Parameter parameter, Field& below, const Field& layer, const Field& mask,
                  const LayOptions& options);
 

@@ -144,8 +144,9 @@ Result<void> make_gloss(MapWork& work) {
 }
 
 Result<void> make_mips(MapWork& work) {
+  const Lobe typed = typed_lobe(work.options.cloth);
   const Result<std::vector<material::MipLevel>> levels = material::roughness_mips(
-      work.surface, {.alpha = typed_alpha(work.options.cloth), .threads = work.context.threads});
+      work.surface, {.alpha = typed.alpha, .along = typed.along, .threads = work.context.threads});
   if (!levels) return levels.error();
   const std::filesystem::path folder = work.folder / "mips";
   if (Result<void> ok = make_writable_folder(folder); !ok) return ok;

@@ -108,6 +108,17 @@ std::string built_source(const MapSet& set, Parameter parameter) {
   return "assumed";
 }
 
+// Whether a built material tells its roughness, and has not that of nothing said.
+bool tells_roughness(const MapSet& set) {
+  const auto inputs = set.document.find("inputs");
+  if (inputs == set.document.end()) return true;
+  const char* name = material::facts_of(kRoughness).name;
+  const auto says = [&](const char* table) {
+    return inputs->contains(table) && (*inputs)[table].contains(name);
+  };
+  return says("surface") || says("over") || !inputs->value("layers", Json::array()).empty();
+}
+
 }  // namespace
 
 Result<MaterialStack> MaterialStack::open(const MaterialNode& node, std::vector<MapSet> layers, int threads) {
@@ -151,8 +162,17 @@ bool MaterialStack::reaches(std::size_t i, Parameter parameter) const {
   return names(parameter) || (parameter == kAnisotropy && names(kAnisotropyDeg));
 }
 
+bool MaterialStack::changes(std::size_t i, Parameter parameter) const {
+  if (!reaches(i, parameter)) return false;
+  const KeptValues& values = node_->material.layers[i].values;
+  const auto blend = values.find("blend");
+  if (blend == values.end() || blend->second.value != "detail") return true;
+  if (parameter == kRoughness) return tells_roughness(layers_[i]);
+  return parameter == kAlbedo || parameter == kNormal || parameter == kHeight;
+}
+
 Result<void> MaterialStack::lay_layer(std::size_t i, Parameter parameter, Field& below) const {
-  if (!reaches(i, parameter)) return {};
+  if (!changes(i, parameter)) return {};
   const KeptValues& values = node_->material.layers[i].values;
   const auto word = [&](const char* key, const char* otherwise) {
     const auto found = values.find(key);
@@ -163,8 +183,6 @@ Result<void> MaterialStack::lay_layer(std::size_t i, Parameter parameter, Field&
       .normals = *material::normal_blend_named(word("normals", "add-slopes")),
       .alpha = values.contains("alpha") ? values.at("alpha").value.get<double>() : 1,
       .threads = threads_};
-  const bool is_of_detail = parameter == kAlbedo || parameter == kNormal || parameter == kHeight;
-  if (options.blend == material::LayerBlend::kDetail && !is_of_detail) return {};
   const Result<Field> read = built_field(layers_[i], parameter, threads_);
   if (!read) return read.error();
   Field layer = material::fitted(*read, space_of(parameter), *node_->fits[i], node_->size, threads_);
@@ -258,11 +276,7 @@ std::string MaterialStack::source(Parameter parameter) const {
   if (has(node_->material.over, parameter)) return of_table("over");
   std::string source = of_table("surface");
   for (std::size_t i = 0; i < layers_.size(); ++i) {
-    const bool is_detail = node_->material.layers[i].values.contains("blend") &&
-                           node_->material.layers[i].values.at("blend").value == "detail";
-    if (!reaches(i, parameter) ||
-        (is_detail && parameter != kAlbedo && parameter != kNormal && parameter != kHeight))
-      continue;
+    if (!changes(i, parameter)) continue;
     const std::string layer = built_source(layers_[i], parameter);
     if (layer != "assumed" || source != "assumed") source = "derived";
   }

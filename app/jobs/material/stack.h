@@ -39,6 +39,7 @@ class MaterialStack {
   Result<material::Field> mask_of(std::size_t i, const material::Field& height_mm) const;
   Result<void> find_masks();
   bool reaches(std::size_t i, material::Parameter parameter) const;
+  bool changes(std::size_t i, material::Parameter parameter) const;
 
   const MaterialNode* node_;
   std::vector<MapSet> layers_;

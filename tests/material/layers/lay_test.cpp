@@ -115,9 +115,27 @@ TEST(Lay, DetailAddsReliefAndPatternWithoutTheirMeans) {
   EXPECT_NEAR(normal.at(1, 1, 0), 0.1 + 0.5 - slope_means[0], 1e-6);
   EXPECT_NEAR(normal.at(1, 1, 1), -0.2 + 0.2 - slope_means[1], 1e-6);
   EXPECT_NEAR(means_of(height)[0], 2, 1e-6);
-  Field roughness = Field::same(0.3);
-  ASSERT_TRUE(lay(Parameter::kRoughness, roughness, Field::same(0.9), everywhere, detail));
-  EXPECT_EQ(roughness.constant[0], 0.3);
+  Field specular = Field::same(0.3);
+  ASSERT_TRUE(lay(Parameter::kSpecular, specular, Field::same(0.9), everywhere, detail));
+  EXPECT_EQ(specular.constant[0], 0.3);
+}
+
+TEST(Lay, GlossOfADetailIsThatOfFacetsOnFacets) {
+  const LayOptions detail = {.blend = LayerBlend::kDetail};
+  // Bases and details as alphas, with the single GGX nearest to them (docs/filtering.md, Gloss).
+  struct Joint {
+    double base, detail, best;
+  };
+  for (const Joint& j : {Joint{0.1, 0.1, 0.171}, Joint{0.2, 0.3, 0.410}, Joint{0.5, 0.5, 0.713}}) {
+    Field roughness = Field::same(std::sqrt(j.base));
+    ASSERT_TRUE(
+        lay(Parameter::kRoughness, roughness, Field::same(std::sqrt(j.detail)), Field::same(1), detail));
+    const double alpha = roughness.constant[0] * roughness.constant[0];
+    EXPECT_NEAR(alpha / j.best, 1, 0.025) << j.base << " and " << j.detail << " became " << alpha;
+    Field masked = Field::same(std::sqrt(j.base));
+    ASSERT_TRUE(lay(Parameter::kRoughness, masked, Field::same(std::sqrt(j.detail)), Field::same(0), detail));
+    EXPECT_EQ(masked.constant[0], std::sqrt(j.base)) << "where nothing of it lies";
+  }
 }
 
 TEST(Lay, ReorientedDetailKeepsItsAngleToATiltedBase) {
