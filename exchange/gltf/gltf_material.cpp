@@ -111,7 +111,7 @@ class MaterialWriter {
       if (texture.channels != "r" || !is_faded) return misplaced("occlusion", texture, "R, 1 being open");
       document_["occlusionTexture"] = reference(texture.file);
       document_["occlusionTexture"]["strength"] = texture.scale;
-    } else if (occlusion) {
+    } else if (occlusion && occlusion->constant[0] != 1) {
       left_out_.push_back("occlusion: glTF takes no constant");
     }
     if (material_.height_mm)
@@ -166,7 +166,7 @@ class MaterialWriter {
   Result<void> put_anisotropy() {
     const auto& strength = material_.anisotropy;
     const auto& direction = material_.anisotropy_direction;
-    if (!strength) return {};
+    if (!strength || (!strength->texture && strength->constant[0] == 0)) return {};
     Json anisotropy = {{"anisotropyStrength", strength->constant[0]}, {"anisotropyRotation", 0.0}};
     const bool has_direction_map = direction && direction->texture;
     if (strength->texture || has_direction_map) {

@@ -165,6 +165,23 @@ Loss LossMeter::loss(Size size) {
   return std::move(loss_);
 }
 
+constexpr int kFewestTexels = 8;
+
+DistanceLoss difference_of(const std::string& channel, int level, View<const float> own,
+                           View<const float> engine) {
+  DistanceLoss loss = {.channel = channel, .level = level};
+  for (int y = 0; y < own.height(); ++y) {
+    for (int x = 0; x < own.width(); ++x) {
+      loss.mean += static_cast<double>(own(x, y));
+      loss.engine += static_cast<double>(engine(x, y));
+      loss.mean_abs += static_cast<double>(std::abs(own(x, y) - engine(x, y)));
+    }
+  }
+  const auto texels = static_cast<double>(own.size().pixels());
+  for (double* sum : {&loss.mean, &loss.engine, &loss.mean_abs}) *sum /= texels;
+  return loss;
+}
+
 }  // namespace
 
 double angle_deg(const float* a, const float* b) {
@@ -190,6 +207,27 @@ Loss measure_loss(const PresetFile& file, const SourcePlanes& planes, const Chan
     meter.add_values(wanted, read);
   }
   return meter.loss(size);
+}
+
+std::vector<DistanceLoss> loss_by_distance(const PresetFile& file, const SourcePlanes& planes,
+                                           const ChannelFacts& facts, LobeLevels lobe, Size size,
+                                           int threads) {
+  std::vector<DistanceLoss> losses;
+  for (const std::string& name : file.channels) {
+    if (!name.starts_with("roughness")) continue;
+    const PresetFile alone = {.name = file.name, .channels = {name}, .stored = file.stored};
+    Image<float> engine(size), own;
+    const View<float> values = engine.plane();
+    pack_values(alone, planes, facts, 0, {&values, 1});
+    for (int level = 1; level <= static_cast<int>(lobe.size()); ++level) {
+      engine = next_level(alone, engine, threads);
+      if (std::min(engine.width(), engine.height()) < kFewestTexels) break;
+      own = Image<float>(engine.size());
+      put_lobe(alone, facts, lobe, level, own);
+      losses.push_back(difference_of(name, level, own.plane(), engine.plane()));
+    }
+  }
+  return losses;
 }
 
 }  // namespace weft::exchange

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "exchange/blocks/dds.h"
 #include "exchange/presets/reduce.h"
@@ -40,7 +41,41 @@ void reduce_direction(const PresetFile& file, const std::string& stem, const Ima
                  {to.plane(*x), to.plane(*y), z ? to.plane(*z) : spare.plane()});
 }
 
+// Where a plane stands among those of a level of the lobe.
+std::optional<int> place_in_lobe(Plane plane) {
+  constexpr std::array kLobe = {Plane::kAlpha, Plane::kAlphaAlong, Plane::kYarnDeg};
+  const auto* found = std::ranges::find(kLobe, plane);
+  if (found == kLobe.end()) return std::nullopt;
+  return static_cast<int>(found - kLobe.begin());
+}
+
 }  // namespace
+
+bool is_of_lobe(const Channel& channel) {
+  return !channel.planes.empty() &&
+         std::ranges::all_of(channel.planes, [](Plane plane) { return place_in_lobe(plane).has_value(); });
+}
+
+void put_lobe(const PresetFile& file, const ChannelFacts& facts, LobeLevels lobe, int level,
+              Image<float>& values) {
+  if (lobe.empty()) return;
+  const Image<float>& from = lobe[std::min(static_cast<std::size_t>(level), lobe.size()) - 1];
+  ChannelFacts own = facts;
+  own.direction = file.direction;
+  for (std::size_t c = 0; c < file.channels.size(); ++c) {
+    const Channel& channel = *channel_named(file.channels[c]);
+    if (!is_of_lobe(channel)) continue;
+    std::array<float, 4> in = {};
+    for (int y = 0; y < values.height(); ++y) {
+      const int row = std::min(y, from.height() - 1);
+      for (int x = 0; x < values.width(); ++x) {
+        for (std::size_t i = 0; i < channel.planes.size(); ++i)
+          in[i] = from(std::min(x, from.width() - 1), row, *place_in_lobe(channel.planes[i]));
+        values(x, y, static_cast<int>(c)) = channel.value(in.data(), own);
+      }
+    }
+  }
+}
 
 Image<float> next_level(const PresetFile& file, const Image<float>& values, int threads) {
   Image<float> next(level_size(values.size(), 1), values.planes());

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -21,6 +22,7 @@
 #include "core/image_io/image_io.h"
 #include "exchange/archive/zip.h"
 #include "exchange/blocks/dds.h"
+#include "exchange/blocks/decode.h"
 #include "exchange/gltf/glb.h"
 #include "exchange/presets/preset.h"
 #include "exchange/u3m/u3m.h"
@@ -228,6 +230,123 @@ TEST_F(Exports, OfASmallerSizeKeepTheMillimetres) {
   EXPECT_NEAR(d["size_mm"][1].get<double>() / (normal.info.size.height * mm_per_pixel_), 1, 1e-9);
   expect_refusal(*work_, {"export", session_.string(), "--preset", "png16", "--size", "100000", "-q"}, 65,
                  {"--size", "100000 pixels are asked for"});
+}
+
+// Alphas of a level of a set's own mips: their geometric mean, row by row.
+std::vector<double> own_alphas(const fs::path& maps, int level) {
+  const auto lobe = read_image(maps / fmt::format("mips/lobe_{:02}.exr", level));
+  EXPECT_TRUE(lobe) << lobe.error().message();
+  std::vector<double> alphas;
+  for (int y = 0; lobe && y < lobe->info.size.height; ++y) {
+    for (int x = 0; x < lobe->info.size.width; ++x)
+      alphas.push_back(std::sqrt(static_cast<double>(lobe->planes(x, y, 0) * lobe->planes(x, y, 1))));
+  }
+  return alphas;
+}
+
+// And of a channel of a file's level, whose values are `value` of the samples.
+template <typename Value>
+std::vector<double> alphas_of(const Image<float>& level, int channel, const Value& value) {
+  std::vector<double> alphas;
+  for (int y = 0; y < level.height(); ++y) {
+    for (int x = 0; x < level.width(); ++x)
+      alphas.push_back(value(static_cast<double>(level(x, y, channel))));
+  }
+  return alphas;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+// As OpenImageIO's own program reads it.
+Image<float> level_of_tx(const fs::path& file, int level) {
+  const fs::path alone = file.parent_path().parent_path() / "level.exr";
+  const std::string command =
+      fmt::format("oiiotool '{}' --selectmip {} -o '{}'", file.string(), level, alone.string());
+  EXPECT_EQ(std::system(command.c_str()), 0) << command;
+  auto image = read_image(alone);
+  EXPECT_TRUE(image) << image.error().message();
+  return image ? std::move(image->planes) : Image<float>();
+}
+
+/// A set of the same session whose lobe is narrow, so that the spread of normals matters.
+class GlossyExports : public Exports {
+ protected:
+  void SetUp() override {
+    ASSERT_NO_FATAL_FAILURE(Exports::SetUp());
+    if (!glossy_.empty()) return;
+    app::MapsOptions maps;
+    maps.session = session_;
+    maps.maps = {"occlusion", "roughness", "mips"};
+    maps.derive.cloth = "satin";
+    maps.output = *work_ / "glossy";
+    const auto made = weft::app::make_maps(maps, {});
+    ASSERT_TRUE(made) << made.error().message();
+    glossy_ = made->folder;
+  }
+  static ExportReport glossy(const std::string& preset, int size_px = 0) {
+    ExportOptions options = {.input = glossy_, .presets = {preset}, .name = "satin"};
+    options.output = *work_ / fmt::format("glossy_{}_{}", preset, size_px);
+    options.size_px = size_px;
+    const auto reports = export_maps(options, {});
+    EXPECT_TRUE(reports) << reports.error().message();
+    return reports ? (*reports)[0] : ExportReport();
+  }
+  static inline fs::path glossy_;
+};
+
+TEST_F(GlossyExports, HaveMipsOfRoughnessThatAreTheSetsOwn) {
+  const fs::path arnold = glossy("arnold").folder, order = glossy("order1886").folder,
+                 blocks = glossy("dds").folder;
+  const auto square = [](double root) { return root * root; };
+  const auto itself = [](double alpha) { return alpha; };
+  const auto parameters = exchange::parse_dds(bytes_of(order / "satin_parameters.dds"), "parameters");
+  const auto orm = exchange::parse_dds(bytes_of(blocks / "satin_orm.dds"), "orm");
+  ASSERT_TRUE(parameters && orm);
+  const double finest = mean_of(alphas_of(level_of_tx(arnold / "satin_roughness.tx", 0), 0, square));
+  for (const int level : {1, 2, 3, 4}) {
+    const std::vector<double> own = own_alphas(glossy_, level);
+    EXPECT_GT(mean_of(own), 1.03 * finest) << "level " << level << ": nothing to lose";
+    const std::vector<double> tx = alphas_of(level_of_tx(arnold / "satin_roughness.tx", level), 0, square);
+    ASSERT_EQ(tx.size(), own.size());
+    for (std::size_t i = 0; i < own.size(); ++i)
+      ASSERT_NEAR(tx[i] / own[i], 1, 0.02) << "level " << level << ", texel " << i << " of " << own.size();
+    for (const auto* texture : {&*parameters, &*orm}) {
+      const Size size = exchange::level_size(texture->size, level);
+      const auto read =
+          exchange::decode_blocks(texture->format, texture->levels[static_cast<std::size_t>(level)], size, 1);
+      ASSERT_TRUE(read) << read.error().message();
+      const double mean =
+          texture == &*orm ? mean_of(alphas_of(*read, 1, square)) : mean_of(alphas_of(*read, 0, itself));
+      EXPECT_NEAR(mean / mean_of(own), 1, 0.02) << "level " << level;
+    }
+  }
+}
+
+TEST_F(GlossyExports, OfOneLevelSayWhatRoughnessLosesByDistance) {
+  const ExportReport report = glossy("png16");
+  const Json* roughness = nullptr;
+  for (const Json& file : report.document["files"]) {
+    if (file["channels"][0]["name"] == "roughness") roughness = &file;
+  }
+  ASSERT_NE(roughness, nullptr);
+  const Json& levels = (*roughness)["lost"]["by_distance"];
+  ASSERT_GE(levels.size(), 3U) << roughness->dump();
+  for (const Json& level : levels) {
+    std::vector<double> roots;
+    for (const double alpha : own_alphas(glossy_, level["level"].get<int>()))
+      roots.push_back(std::sqrt(alpha));
+    EXPECT_NEAR(level["mean"].get<double>(), mean_of(roots), 0.002) << level.dump();
+    EXPECT_LT(level["engine"].get<double>(), level["mean"].get<double>()) << level.dump();
+    EXPECT_GE(level["lost"].get<double>(),
+              0.999 * (level["mean"].get<double>() - level["engine"].get<double>()));
+  }
+  EXPECT_THAT(report.document["notes"].dump(), HasSubstr("Seen from 8 times as far"));
+  const ExportReport with_mips = glossy("arnold");
+  EXPECT_THAT(with_mips.document["notes"].dump(), testing::Not(HasSubstr("times as far")));
 }
 
 TEST_F(Exports, HaveContainersThatTheirOwnCheckersTake) {

@@ -129,6 +129,7 @@ Result<void> Encoder::run_one(const Task& task, const MapPlanes& planes, const e
   const TextureInput input = {.file = encoded.file,
                               .planes = planes.planes(),
                               .facts = encoded.facts,
+                              .lobe = planes.lobe(),
                               .size = encoded.size,
                               .pitch_mm = task.plan->pitch_mm,
                               .is_tile = folder_.is_tile,
@@ -140,6 +141,10 @@ Result<void> Encoder::run_one(const Task& task, const MapPlanes& planes, const e
   Result<Image<float>> read = read_texture(path, input, threads);
   if (!read) return std::move(read).error();
   encoded.loss = exchange::measure_loss(encoded.file, input.planes, input.facts, std::move(*read));
+  if (encoded.levels == 1) {
+    encoded.loss.by_distance = exchange::loss_by_distance(encoded.file, input.planes, input.facts, input.lobe,
+                                                          encoded.size, threads);
+  }
   Result<std::string> digest = sha256_of_file(path);
   if (!digest) return std::move(digest).error();
   encoded.sha256 = std::move(*digest);

@@ -16,6 +16,7 @@
 #include "app/jobs/export/layers.h"
 #include "app/jobs/export/plan.h"
 #include "app/jobs/export/prepare.h"
+#include "app/jobs/export/textured.h"
 #include "core/files.h"
 
 namespace weft::app {
@@ -90,6 +91,22 @@ struct Work {
   ExportReport report;
 };
 
+// Textures of one number, which the documents say and no document names.
+void drop_numbers(const std::vector<WrittenDocument>& documents, const fs::path& folder,
+                  std::vector<EncodedFile>& files) {
+  if (documents.empty()) return;
+  std::vector<std::string> named;
+  for (const WrittenDocument& document : documents)
+    named.insert(named.end(), document.files.begin(), document.files.end());
+  const auto is_dropped = [&](const EncodedFile& file) { return is_said_as_number(file, named); };
+  for (const EncodedFile& file : files) {
+    std::error_code ignored;
+    if (is_dropped(file)) fs::remove(folder / file.name, ignored);
+    if (is_dropped(file)) fs::remove((folder / file.name).parent_path(), ignored);  // where it is empty
+  }
+  std::erase_if(files, is_dropped);
+}
+
 Result<void> finish(Work& work, const MapFolder& folder, const Json& provenance,
                     const std::vector<EncodedFile>& files, const JobContext& context) {
   Stopwatch watch;
@@ -104,6 +121,7 @@ Result<void> finish(Work& work, const MapFolder& folder, const Json& provenance,
     all.insert(all.end(), layers->files.begin(), layers->files.end());
     documents->insert(documents->end(), layers->documents.begin(), layers->documents.end());
   }
+  drop_numbers(*documents, aside, all);
   work.report.document = export_document(*work.plan, folder, provenance, all, *documents);
   if (Result<void> ok = write_json(aside / kExportProduct.document, work.report.document); !ok) return ok;
   work.report.seconds = watch.lap();
@@ -152,7 +170,9 @@ Result<std::vector<ExportReport>> export_maps(const ExportOptions& asked, const 
   for (const PlannedExport& plan : prepared->plans) {
     Result<std::optional<Json>> earlier = earlier_export(plan.folder);
     if (!earlier) return std::move(earlier).error();
-    Work work = {.plan = &plan, .partial = nullptr, .report = {.folder = plan.folder}};
+    Work work = {.plan = &plan,
+                 .partial = nullptr,
+                 .report = {.folder = plan.folder, .source = source_of(prepared->folder)}};
     if (*earlier && (*earlier)->value("id", "") == plan.id && is_whole(plan.folder, **earlier)) {
       work.report.was_there = true;
       work.report.document = std::move(**earlier);

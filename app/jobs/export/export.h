@@ -22,7 +22,8 @@ struct ExportOptions {
   /// A session, a set of maps, a built material, a solve, or a material that is built first: a file that ends
   /// in .toml, or library:NAME.
   std::filesystem::path input;
-  std::string maps = {};                  ///< id of the set of a session; empty: its newest
+  std::string maps = {};                  ///< id of the set of a session; empty: set_to_use() says it
+  bool is_draft = false;                  ///< maps of a preview will do
   std::vector<std::string> presets = {};  ///< names, or files that end in .toml
   /// Empty: SESSION/export/<preset>, of a folder elsewhere FOLDER/export/<preset>, of a material's file
   /// NAME-export/<preset> beside it. Of several presets each has a folder of its name in it.
@@ -37,9 +38,10 @@ struct ExportOptions {
 /// What an export of one preset left behind.
 struct ExportReport {
   std::filesystem::path folder;
-  bool was_there = false;  ///< a complete one of the same maps, preset and options was found
-  Json document = {};      ///< export.json
-  double seconds = 0;      ///< 0 where it was there
+  bool was_there = false;                ///< a complete one of the same maps, preset and options was found
+  Json document = {};                    ///< export.json
+  std::vector<std::string> source = {};  ///< which solve it is of, and what is stale of that today
+  double seconds = 0;                    ///< 0 where it was there
 };
 
 /// Packs the maps for each preset, writes its files and documents, measures what they lose by reading them

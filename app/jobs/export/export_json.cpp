@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/export/export_json.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -72,6 +74,26 @@ Json json_of(const WrittenDocument& document) {
           {"bytes", document.bytes}, {"files", document.files}, {"left_out", document.left_out}};
 }
 
+// What becomes of roughness some eight times as far, where engines make the mips; empty where they are right
+// to 2 percent.
+std::string distance_note(const std::vector<EncodedFile>& files) {
+  constexpr int kLevel = 3;
+  constexpr double kNothing = 0.02;
+  for (const EncodedFile& file : files) {
+    const exchange::DistanceLoss* seen = nullptr;
+    for (const exchange::DistanceLoss& each : file.loss.by_distance) {
+      if (each.level <= kLevel) seen = &each;
+    }
+    if (seen == nullptr || seen->mean_abs <= kNothing * seen->mean) continue;
+    return fmt::format(
+        "Seen from {} times as far an engine's own mips of {} have {:.3g} in the mean where the cloth has "
+        "{:.3g}: they lose the spread of normals. The presets dds, order1886, arnold and renderman hold mips "
+        "that keep it.",
+        1 << seen->level, file.name, seen->engine, seen->mean);
+  }
+  return {};
+}
+
 // One number where pixels are square, two where they are not, null where nobody knows.
 Json pitch_json(const PixelPitch& pitch_mm) {
   if (pitch_mm[0] == 0) return nullptr;
@@ -91,6 +113,13 @@ Json json_of(const exchange::Loss& loss) {
     json["albedo"] = {{"mean", loss.albedo->mean_abs}};
     json["albedo"]["psnr_db"] = loss.albedo->psnr_db ? Json(*loss.albedo->psnr_db) : Json();
   }
+  for (const exchange::DistanceLoss& each : loss.by_distance) {
+    json["by_distance"].push_back({{"channel", each.channel},
+                                   {"level", each.level},
+                                   {"mean", each.mean},
+                                   {"engine", each.engine},
+                                   {"lost", each.mean_abs}});
+  }
   return json;
 }
 
@@ -102,6 +131,7 @@ Json export_document(const PlannedExport& plan, const MapFolder& folder, const J
       {"id", plan.id},
       {"preset", plan.preset.name},
       {"name", plan.name},
+      {"title", plan.title},
       {"normal", plan.preset.normal},
       {"roughness", exchange::kRoughnessConventionNames[static_cast<std::size_t>(plan.preset.roughness)]},
       {"width", plan.size.width},
@@ -115,6 +145,7 @@ Json export_document(const PlannedExport& plan, const MapFolder& folder, const J
       {"files", Json::array()},
       {"documents", Json::array()},
       {"from", provenance}};
+  if (const std::string note = distance_note(files); !note.empty()) json["notes"].push_back(note);
   for (const EncodedFile& file : files) {
     json["files"].push_back(file_json(plan, file, folder));
     if (plan.preset.keeps_no_files()) json["files"].back()["inside"] = plan.documents.front().name;

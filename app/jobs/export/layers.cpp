@@ -28,7 +28,7 @@ Result<PlannedExport> plan_layer(const PlannedExport& plan, const RuntimeLayer& 
                                  const MapFolder& maps) {
   exchange::Preset preset = plan.preset;
   preset.documents.clear();
-  const std::string name = plain_name(layer.name);
+  const std::string name = file_name_of(layer.name, "layer");
   for (exchange::PresetFile& file : preset.files)
     file.name = fmt::format("layers/{}/{}", name, fs::path(file.name).filename().string());
   ExportOptions options = {.input = layer.folder, .name = name};
@@ -86,7 +86,7 @@ Result<WrittenLayers> write_layers(const PlannedExport& plan, const PlannedDocum
   std::vector<exchange::TexturedMaterial> materials = {textured_material(plan, maps, files)};
   std::map<std::string, std::vector<std::string>> packed = {{maps.id, names_of(files)}};
   for (std::size_t i = 1; i < stack->layers.size(); ++i) {
-    const Result<MapFolder> layer = open_map_folder(stack->layers[i].folder, "");
+    const Result<MapFolder> layer = open_map_folder({.input = stack->layers[i].folder, .is_draft = true});
     if (!layer) return layer.error();
     const Result<PlannedExport> planned = plan_layer(plan, stack->layers[i], *layer);
     if (!planned) return planned.error();
@@ -121,6 +121,7 @@ Result<WrittenLayers> write_layers(const PlannedExport& plan, const PlannedDocum
   Result<WrittenDocument> list =
       written(folder, document.name, "layers", layers_json(shown, packed).dump(2) + "\n");
   if (!list) return std::move(list).error();
+  for (const auto& [id, names] : packed) list->files.insert(list->files.end(), names.begin(), names.end());
   layers.documents.push_back(std::move(*list));
   return layers;
 }

@@ -9,12 +9,14 @@
 #include <utility>
 
 #include "app/jobs/maps/maps.h"
+#include "app/jobs/maps/session_sets.h"
 #include "core/albedo_scale.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/product.h"
 #include "core/solve.h"
 #include "core/text.h"
+#include "exchange/document.h"
 
 namespace weft::app {
 namespace {
@@ -43,19 +45,20 @@ bool stays_inside(const std::string& file) {
          std::ranges::none_of(path, [](const fs::path& part) { return part == ".."; });
 }
 
-// The newest set of maps that is no preview, or the one with this id.
-Result<fs::path> set_of_session(const fs::path& session, const std::string& id) {
-  if (id.empty()) {
-    std::vector<Product> sets = list_products(kMapsProduct, session / "maps");
-    std::ranges::reverse(sets);
-    for (const Product& set : sets) {
-      const Result<Json> document = read_json(set.folder / kMapsProduct.document, kMapsProduct.schema, 1);
-      if (document && !document->value("preview", false)) return set.folder;
-    }
+Result<fs::path> set_of_session(const MapFolderWish& wish) {
+  if (!wish.maps_id.empty()) {
+    const Result<Product> found = find_product(kMapsProduct, wish.input / "maps", wish.maps_id);
+    if (!found) return found.error();
+    return found->folder;
   }
-  Result<Product> found = find_product(kMapsProduct, session / "maps", id);
-  if (!found) return std::move(found).error();
-  return found->folder;
+  const Result<Session> session = read_session(wish.input);
+  if (!session) return session.error();
+  const library::SessionSolves solves = library::solves_of(*session);
+  const std::vector<SessionSet> sets = sets_of(solves);
+  if (const SessionSet* set = set_to_use(solves, sets, wish.wanted)) return set->product.folder;
+  return Error{ErrorKind::kNoInput, fmt::format("there is no complete {}", kMapsProduct.noun),
+               (wish.input / "maps").string(), "no folder there holds a maps.json",
+               fmt::format("make it first with weft maps {}", wish.input.string())};
 }
 
 Result<FolderMap> map_from_json(const Json& entry, const std::string& where) {
@@ -111,6 +114,30 @@ void find_session(MapFolder& folder) {
   if (Result<Session> read = read_session(session)) folder.session = std::move(*read);
 }
 
+// Which solve it comes from, how good that is, and what speaks against it today.
+Result<void> find_source(MapFolder& folder, bool draft) {
+  const Json& document = folder.document;
+  const bool is_solve = folder.kind == "solve";
+  folder.level = text_at(document, is_solve ? "method" : "level");
+  folder.is_draft = is_solve ? folder.level == library::kLevels.front() : flag_at(document, "draft");
+  if (folder.session && folder.kind != "material") {
+    const library::SessionSolves solves = library::solves_of(*folder.session);
+    const std::string id = is_solve ? folder.id : text_at(document, "solve");
+    const library::ChoosableSolve* const found = solves.find(id);
+    folder.stale = why_stale(solves, id);
+    if (found != nullptr) {
+      folder.level = found->level;
+      folder.is_draft = found->is_preview();
+    }
+  }
+  if (!folder.is_draft || draft) return {};
+  std::string remedy = "build it of better maps: weft maps SESSION, then leave draft out of its file";
+  if (folder.session) remedy = how_to_make_better(library::solves_of(*folder.session));
+  return Error{ErrorKind::kUsage, kUnusable, folder.folder.string(),
+               "they are of a preview, which has half the size and no masks",
+               remedy + "; --draft exports the draft"};
+}
+
 std::string scale_of(const MapFolder& folder) {
   constexpr const char* kKey = "albedo_scale";
   if (folder.document.contains(kKey) && folder.document[kKey].is_string())
@@ -124,12 +151,12 @@ std::string scale_of(const MapFolder& folder) {
   return document ? document->value(kKey, "unknown") : "unknown";
 }
 
-std::string cloth_name(const MapFolder& folder) {
+std::string title_of(const MapFolder& folder) {
   std::string name = folder.document.value("name", "");
   if (name.empty() && folder.session) name = folder.session->fabric;
   if (name.empty() && folder.session) name = folder.session->folder.stem().string();
   if (name.empty()) name = absolute_folder(folder.folder).filename().string();
-  return plain_name(name);
+  return name;
 }
 
 Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
@@ -166,7 +193,9 @@ Result<MapFolder> read_folder(const fs::path& path, const FolderKind& kind) {
   folder.document = std::move(*document);
   find_session(folder);
   folder.albedo_scale = scale_of(folder);
-  folder.name = cloth_name(folder);
+  folder.title = title_of(folder);
+  folder.name = file_name_of(folder.title, "cloth");
+  if (!exchange::is_plain_text(folder.title)) folder.title = folder.name;
   return folder;
 }
 
@@ -201,23 +230,43 @@ const FolderMap* MapFolder::map(const std::string& wanted) const {
   return found == maps.end() ? nullptr : &*found;
 }
 
-Result<MapFolder> open_map_folder(const fs::path& input, const std::string& maps_id) {
+Result<MapFolder> open_map_folder(const MapFolderWish& wish) {
+  const fs::path& input = wish.input;
   fs::path folder = input;
   if (is_there(input / "session.json")) {
-    const Result<fs::path> set = set_of_session(input, maps_id);
+    const Result<fs::path> set = set_of_session(wish);
     if (!set) return set.error();
     folder = *set;
-  } else if (!maps_id.empty()) {
+  } else if (!wish.maps_id.empty()) {
     return Error{ErrorKind::kUsage, kUnusable, "--maps",
                  "it chooses among the sets of a session, and " + input.string() + " is none",
                  "name the session, or leave --maps out"};
   }
   for (const FolderKind& kind : kFolderKinds) {
-    if (is_there(folder / kind.document)) return read_folder(folder, kind);
+    if (!is_there(folder / kind.document)) continue;
+    Result<MapFolder> read = read_folder(folder, kind);
+    if (!read) return read;
+    if (Result<void> ok = find_source(*read, wish.is_draft); !ok) return std::move(ok).error();
+    return read;
   }
   return Error{ErrorKind::kNoInput, kUnusable, input.string(),
                "it is no session, no set of maps, no built material and no solve",
                "name a folder with session.json, maps.json, material.json or solve.json"};
+}
+
+std::vector<std::string> source_of(const MapFolder& folder) {
+  std::vector<std::string> lines;
+  if (folder.kind == "material") {
+    for (const Json& scan : folder.document.value("scans", Json::array())) {
+      for (const std::string& line : source_lines(scan))
+        lines.push_back(fmt::format("{}: {}", text_at(scan, "session"), line));
+    }
+    return lines;
+  }
+  return source_lines({{"solve", folder.kind == "solve" ? folder.id : text_at(folder.document, "solve")},
+                       {"level", folder.level},
+                       {"draft", folder.is_draft},
+                       {"stale", folder.stale}});
 }
 
 Result<Json> provenance_of(const MapFolder& folder) {
@@ -225,9 +274,12 @@ Result<Json> provenance_of(const MapFolder& folder) {
   const Result<std::string> digest = sha256_of_file(folder.folder / folder.document_file);
   if (!digest) return digest.error();
   json[folder.kind + "_sha256"] = *digest;
-  for (const char* key : {"solve", "rectified", "inputs"}) {
+  for (const char* key : {"solve", "rectified", "scans", "inputs"}) {
     if (folder.kind != key && folder.document.contains(key)) json[key] = folder.document[key];
   }
+  if (!folder.level.empty()) json["level"] = folder.level;
+  json["draft"] = folder.is_draft;
+  if (!folder.stale.empty()) json["stale"] = folder.stale;
   if (!folder.session) return json;
   const Session& session = *folder.session;
   const Result<std::string> session_digest = sha256_of_file(session.folder / "session.json");

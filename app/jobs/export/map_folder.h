@@ -30,7 +30,8 @@ struct MapFolder {
   std::filesystem::path folder;
   std::string kind;  ///< "maps", "material" or "solve"
   std::string id;
-  std::string name;  ///< of the cloth
+  std::string title;  ///< of the cloth, as people call it
+  std::string name;   ///< of it in names of files
   Size size;
   std::optional<double> mm_per_pixel;  ///< none: photographs do not tell
   bool is_tile = false;
@@ -39,14 +40,29 @@ struct MapFolder {
   std::string document_file;  ///< "maps.json"
   Json document;
   std::optional<Session> session;  ///< that it lies in
+  /// Of the solve: its level, whether it is a preview, and why it is stale today, a sentence each.
+  std::string level = {};
+  bool is_draft = false;
+  std::vector<std::string> stale = {};
 
   const FolderMap* map(const std::string& name) const;
 };
 
-/// `input` is a session (then its newest set of maps that is no preview, or the one of `maps_id`) or a folder
-/// as above. kNoInput where there is no such thing; kBadData with file and key for a document that cannot be
-/// used, a map's file that leaves the folder, sizes and pitches that are none.
-Result<MapFolder> open_map_folder(const std::filesystem::path& input, const std::string& maps_id);
+/// What is opened, and what it is for.
+struct MapFolderWish {
+  std::filesystem::path input;           ///< a session, or a folder as above
+  std::string maps_id = {};              ///< of a session's sets; empty: set_to_use() says it
+  std::vector<std::string> wanted = {};  ///< maps, of which a session's set should be
+  bool is_draft = false;                 ///< maps of a preview will do
+};
+
+/// kNoInput where there is no such thing; kUsage for maps of a preview that nobody asked for; kBadData with
+/// file and key for a document that cannot be used, a map's file that leaves the folder, sizes and pitches
+/// that are none.
+Result<MapFolder> open_map_folder(const MapFolderWish& wish);
+
+/// For people: which solves it is of, and what is stale of them.
+std::vector<std::string> source_of(const MapFolder& folder);
 
 /// What leads back to the photographs: ids, and the SHA-256 of documents, maps and raw files.
 Result<Json> provenance_of(const MapFolder& folder);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -25,6 +26,8 @@ Error unfit_map(const fs::path& file, std::string why) {
   return {ErrorKind::kBadData, "a map cannot be exported", file.string(), std::move(why),
           "make the maps again"};
 }
+
+constexpr std::array kLobePlanes = {Plane::kAlpha, Plane::kAlphaAlong, Plane::kYarnDeg};
 
 // How a plane is averaged: what is asked for the same is reduced together.
 exchange::Averaging averaging_of(Plane plane) {
@@ -114,6 +117,21 @@ Result<void> MapPlanes::read(const std::string& file, const std::vector<Plane>& 
   return {};
 }
 
+// Of maps that are made smaller the lobe is the one that the pixels beneath have together.
+Result<void> MapPlanes::find_lobe() {
+  if (!has_lobe_) {
+    Result<LobeOnGrid> lobe = lobe_on_grid(folder_, size_, threads_);
+    if (!lobe) return std::move(lobe).error();
+    lobe_ = std::move(*lobe);
+    has_lobe_ = true;
+  }
+  if (lobe_.own.planes() == 0 || origin_of(folder_, Plane::kAlpha).file.empty()) return {};
+  for (const Plane plane : kLobePlanes)
+    planes_[index_of(plane)] = {
+        .pixels = lobe_.own.plane(static_cast<int>(plane) - static_cast<int>(Plane::kAlpha))};
+  return {};
+}
+
 Result<void> MapPlanes::load(const std::set<Plane>& wanted) {
   std::map<std::string, std::vector<Plane>> by_file;
   std::set<std::string> needed;
@@ -136,7 +154,9 @@ Result<void> MapPlanes::load(const std::set<Plane>& wanted) {
     if (loaded_.contains(file)) continue;
     if (Result<void> ok = read(file, by_file[file]); !ok) return ok;
   }
-  return {};
+  const bool asks_for_lobe =
+      std::ranges::any_of(kLobePlanes, [&](Plane plane) { return wanted.contains(plane); });
+  return asks_for_lobe ? find_lobe() : Result<void>();
 }
 
 exchange::ChannelFacts channel_facts(const MapFolder& folder, const SourcePlanes& planes) {

@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "app/jobs/export/lobe_levels.h"
 #include "app/jobs/export/map_folder.h"
 #include "core/image.h"
 #include "core/result.h"
 #include "exchange/presets/channels.h"
+#include "exchange/presets/mips.h"
 
 namespace weft::app {
 
@@ -17,7 +19,7 @@ namespace weft::app {
 class MapPlanes {
  public:
   /// Everything is averaged down to `size`, which is at most the folder's: heights, colours and data as they
-  /// are, normals as slopes, alphas by their squares, yarns by the nearest.
+  /// are, normals as slopes; a lobe becomes as wide as the spread of normals beneath makes it.
   MapPlanes(const MapFolder& folder, Size size, int threads)
       : folder_(folder), size_(size), threads_(threads) {}
 
@@ -28,18 +30,24 @@ class MapPlanes {
   /// What is loaded; of files that are not, an empty plane with a number, so that it counts as there.
   const exchange::SourcePlanes& planes() const { return planes_; }
 
+  /// The lobe on ever coarser grids, once a plane of it was asked for; empty where there are no normals.
+  exchange::LobeLevels lobe() const { return lobe_.coarser; }
+
   /// The planes as check_file() and says_something() need them: those of files have a pixel without a
   /// meaning.
   static exchange::SourcePlanes outline_of(const MapFolder& folder);
 
  private:
   Result<void> read(const std::string& file, const std::vector<exchange::Plane>& planes);
+  Result<void> find_lobe();
 
   const MapFolder& folder_;
   Size size_;
   int threads_;
   std::map<std::string, Image<float>> loaded_;  ///< by file, planes in the order of exchange::Plane
   exchange::SourcePlanes planes_;
+  LobeOnGrid lobe_;
+  bool has_lobe_ = false;
 };
 
 /// What channels need to know of the cloth beside its pixels, of planes that are loaded: the range of heights

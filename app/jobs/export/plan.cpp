@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using exchange::DocumentKind;
 using exchange::Preset;
 
-constexpr int kVersion = 1;  // raised whenever the bytes of an export may change
+constexpr int kVersion = 2;  // raised whenever the bytes of an export may change
 
 Error unfit_export(std::string where, std::string why, std::string remedy) {
   return {ErrorKind::kBadData, "the maps cannot be exported", std::move(where), std::move(why),
@@ -166,6 +166,7 @@ Result<Json> inputs_of(const ExportOptions& options, const MapFolder& folder, co
       {"of", *document},
       {"maps", std::move(*digests)},
       {"name", plan.name},
+      {"title", plan.title},
       {"width", plan.size.width},
       {"height", plan.size.height},
       {"dx10", options.is_dx10}};
@@ -189,6 +190,7 @@ Result<PlannedExport> plan_preset(const ExportOptions& options, const MapFolder&
   Result<std::string> name = name_of(options, folder);
   if (!name) return std::move(name).error();
   plan.name = std::move(*name);
+  plan.title = options.name.empty() ? folder.title : options.name;
   const Result<Size> size = size_of(options, folder, plan.preset);
   if (!size) return size.error();
   plan.size = *size;

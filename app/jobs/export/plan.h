@@ -27,7 +27,8 @@ struct PlannedDocument {
 /// What will be written for one preset.
 struct PlannedExport {
   exchange::Preset preset;
-  std::string name;  ///< of the cloth in file names
+  std::string title;  ///< of the cloth, for people
+  std::string name;   ///< of it in file names
   Size size;
   PixelPitch pitch_mm = {};  ///< 0: not known
   std::vector<PlannedFile> files;

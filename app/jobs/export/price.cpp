@@ -218,6 +218,12 @@ Result<std::vector<ExportPrice>> price_exports(const ExportOptions& asked, const
       if (context.stop.stop_requested()) return interrupted();
       Result<ExportPrice> price = trials.price(planned.file, plan.preset.roughness);
       if (!price) return std::move(price).error();
+      if (levels_of(planned.file, folder.size) == 1) {
+        exchange::ChannelFacts facts = piece.facts;
+        facts.roughness = plan.preset.roughness;
+        price->loss.by_distance = exchange::loss_by_distance(planned.file, maps.planes(), facts, maps.lobe(),
+                                                             folder.size, context.threads);
+      }
       price->preset = plan.preset.name;
       price->file = planned.name;
       price->bytes *= smaller;

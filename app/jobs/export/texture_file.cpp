@@ -85,7 +85,11 @@ Result<void> write_dds(const fs::path& path, const TextureInput& input, int thre
   texture.size = level.size();
   const int levels = exchange::level_count(texture.size);
   for (int i = 0; i < levels; ++i) {
-    Image<float> next = i + 1 < levels ? exchange::next_level(input.file, level, threads) : Image<float>();
+    Image<float> next;
+    if (i + 1 < levels) {
+      next = exchange::next_level(input.file, level, threads);
+      exchange::put_lobe(input.file, input.facts, input.lobe, i + 1, next);
+    }
     exchange::to_samples(input.file, input.facts, views_of(level));
     Result<std::string> blocks = exchange::encode_blocks(stored.blocks, const_views_of(level), threads);
     if (!blocks) return std::move(blocks).error();
@@ -97,15 +101,35 @@ Result<void> write_dds(const fs::path& path, const TextureInput& input, int thre
   return write_file(path, *bytes);
 }
 
+// Levels of the channels that are of the lobe.
+std::vector<PlaneLevels> lobe_levels_of(const TextureInput& input) {
+  std::vector<PlaneLevels> all;
+  for (std::size_t c = 0; c < input.file.channels.size() && !input.lobe.empty(); ++c) {
+    if (!exchange::is_of_lobe(*exchange::channel_named(input.file.channels[c]))) continue;
+    PresetFile alone = input.file;
+    alone.channels = {input.file.channels[c]};
+    PlaneLevels one = {.plane = c, .levels = {}};
+    for (std::size_t i = 0; i < input.lobe.size(); ++i) {
+      one.levels.emplace_back(input.lobe[i].size());
+      exchange::put_lobe(alone, input.facts, input.lobe, static_cast<int>(i) + 1, one.levels.back());
+      exchange::to_samples(alone, input.facts, views_of(one.levels.back()));
+    }
+    all.push_back(std::move(one));
+  }
+  return all;
+}
+
 Result<void> write_tx(const fs::path& path, const TextureInput& input) {
   Image<float> values = values_of(input);
   exchange::to_samples(input.file, input.facts, views_of(values));
+  const std::vector<PlaneLevels> own_levels = lobe_levels_of(input);
   const TiledTextureOptions options = {.type = type_of(input.file.stored),
                                        .is_periodic = input.is_tile,
                                        .is_prman = input.file.stored.is_prman,
                                        .attributes = input.attributes,
                                        .pitch_mm = input.pitch_mm,
-                                       .color = input.file.stored.color};
+                                       .color = input.file.stored.color,
+                                       .own_levels = own_levels};
   return write_tiled_texture(path, const_views_of(values),
                              exchange::channel_names(input.file.channels.size()), options);
 }

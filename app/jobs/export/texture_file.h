@@ -7,6 +7,7 @@
 #include "core/image.h"
 #include "core/image_io/image_io.h"
 #include "core/result.h"
+#include "exchange/presets/mips.h"
 #include "exchange/presets/pack.h"
 
 namespace weft::app {
@@ -16,6 +17,7 @@ struct TextureInput {
   const exchange::PresetFile& file;
   const exchange::SourcePlanes& planes;
   exchange::ChannelFacts facts;
+  exchange::LobeLevels lobe = {};  ///< of the cloth at this size; empty: levels are means
   Size size;
   PixelPitch pitch_mm = {};
   bool is_tile = false;

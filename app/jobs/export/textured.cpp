@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <initializer_list>
 #include <optional>
+#include <set>
+#include <string_view>
 #include <utility>
 
 namespace weft::app {
@@ -69,6 +72,60 @@ std::optional<Parameter> parameter_of(const MapFolder& maps, const std::vector<E
   return parameter;
 }
 
+bool is_same_everywhere(const EncodedFile& file, const Texture& texture) {
+  const std::size_t first = std::string_view("rgba").find(texture.channels.front());
+  for (std::size_t i = first; i < first + texture.channels.size(); ++i) {
+    if (file.loss.channels[i].least != file.loss.channels[i].most) return false;
+  }
+  return true;
+}
+
+bool is_flat(const Parameter& normal) {
+  return normal.constant[0] == 0 && normal.constant[1] == 0;
+}
+
+// What is one number leaves as a number, unless a format multiplies it with its neighbour in the file (glTF),
+// or takes none.
+class Constants {
+ public:
+  Constants(TexturedMaterial& material, const std::vector<EncodedFile>& files)
+      : material_(material), files_(files) {}
+
+  void take(bool takes_no_occlusion) {
+    together({&base_color_, &material_.opacity});
+    material_.base_color = *base_color_;
+    together({&material_.roughness, &material_.metallic});
+    together({&material_.anisotropy, &material_.anisotropy_direction});
+    for (auto* alone :
+         {&material_.height_mm, &material_.f0, &material_.sheen_color, &material_.sheen_roughness})
+      together({alone});
+    if (material_.normal && is_flat(*material_.normal)) together({&material_.normal});
+    const auto& occlusion = material_.occlusion;
+    if (occlusion && (occlusion->constant[0] == 1 || !takes_no_occlusion)) together({&material_.occlusion});
+  }
+
+ private:
+  bool is_same(const Parameter& parameter) const {
+    const auto file = std::ranges::find(files_, parameter.texture->file, &EncodedFile::name);
+    return is_same_everywhere(*file, *parameter.texture);
+  }
+
+  // Of a group that stands in one file all leave as numbers, or none.
+  void together(std::initializer_list<std::optional<Parameter>*> group) {
+    std::set<std::string> varying;
+    for (const std::optional<Parameter>* each : group) {
+      if (*each && (*each)->texture && !is_same(**each)) varying.insert((*each)->texture->file);
+    }
+    for (std::optional<Parameter>* each : group) {
+      if (*each && (*each)->texture && !varying.contains((*each)->texture->file)) (*each)->texture.reset();
+    }
+  }
+
+  TexturedMaterial& material_;
+  const std::vector<EncodedFile>& files_;
+  std::optional<Parameter> base_color_ = material_.base_color;
+};
+
 // Reflectance itself, or over 0.08, which uses more of the steps of a file.
 std::optional<Parameter> reflectance_of(const MapFolder& maps, const std::vector<EncodedFile>& files) {
   if (std::optional<Parameter> plain = parameter_of(maps, files, {"f0"})) return plain;
@@ -100,13 +157,26 @@ std::vector<std::pair<std::string, std::string>> provenance_words(const MapFolde
 
 }  // namespace
 
+bool is_said_as_number(const EncodedFile& file, const std::vector<std::string>& named) {
+  static const std::set<std::string> kParameters = {
+      "albedo.r",        "albedo.g",     "albedo.b",  "normal.x", "normal.y",
+      "normal.z",        "height",       "occlusion", "opacity",  "roughness",
+      "roughness.least", "f0",           "specular",  "metallic", "anisotropy",
+      "anisotropy.x",    "anisotropy.y", "sheen.r",   "sheen.g",  "sheen.b",
+      "sheen_roughness", "zero",         "half",      "one"};
+  const bool is_plain = std::ranges::all_of(file.loss.channels, [](const exchange::ChannelLoss& channel) {
+    return channel.least == channel.most && kParameters.contains(channel.channel);
+  });
+  return is_plain && std::ranges::find(named, file.name) == named.end();
+}
+
 TexturedMaterial textured_material(const PlannedExport& plan, const MapFolder& maps,
                                    const std::vector<EncodedFile>& files) {
   const auto of = [&](const std::vector<std::string>& channels) {
     return parameter_of(maps, files, channels);
   };
   TexturedMaterial material;
-  material.name = plan.name;
+  material.name = plan.title;
   if (plan.pitch_mm[0] > 0)
     material.size_mm = {plan.pitch_mm[0] * plan.size.width, plan.pitch_mm[1] * plan.size.height};
   material.repeats = maps.is_tile;
@@ -127,6 +197,10 @@ TexturedMaterial textured_material(const PlannedExport& plan, const MapFolder& m
   material.sheen_color = of({"sheen.r", "sheen.g", "sheen.b"});
   material.sheen_roughness = of({"sheen_roughness"});
   material.provenance = provenance_words(maps);
+  const bool has_glb = std::ranges::any_of(plan.documents, [](const PlannedDocument& document) {
+    return document.kind == exchange::DocumentKind::kGlb;
+  });
+  Constants(material, files).take(has_glb);
   return material;
 }
 
