@@ -34,7 +34,7 @@ struct Found {
 namespace {
 
 // Raised whenever the tables change.
-constexpr int kVersion = 3;
+constexpr int kVersion = 4;
 constexpr std::size_t kMostRanked = 20'000;
 constexpr int kMostLimit = 1000;
 constexpr std::size_t kBatch = 500;  // of sessions that are written together, so that others write between
@@ -163,9 +163,7 @@ Entry read_entry(const Found& found) {
   Result<Metadata> metadata = metadata_of(*session);
   if (!metadata) entry.error = metadata.error();
   if (metadata) entry.metadata = std::move(*metadata);
-  for (const Shot& shot : session->shots) {
-    for (const std::string& warning : warnings_of(shot)) entry.warnings.push_back(warning);
-  }
+  entry.warnings = warnings_of(*session);
   entry.fabric = session->fabric;
   entry.rig = session->rig;
   entry.calibration = session->calibration_id;

@@ -1,17 +1,70 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+#include <filesystem>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
+#include "core/json_document.h"
+#include "core/result.h"
 #include "core/session.h"
-#include "core/solve.h"
 
-// The solve of a session that others are made from.
+// Which solve of a session others are made from, and what speaks against one.
 
 namespace weft::library {
 
-/// Its id: the one that `current_solve` of session.json names, else the oldest; empty where there is none. So
-/// a further solve never becomes it by itself; change_metadata() moves it.
+/// The levels of a solve, the least first. A method of comparison stands between the first two.
+inline constexpr std::array<std::string_view, 5> kLevels = {"preview", "fast", "standard", "robust",
+                                                            "reference"};
+
+/// A complete solve, as one looks at it to choose.
+struct ChoosableSolve {
+  std::string id;
+  std::filesystem::path folder;
+  std::string level;          ///< or the method of comparison
+  std::string written;        ///< ISO 8601
+  std::string outdated = {};  ///< why its photographs are not those of today; empty: they are
+  bool is_waiting = false;    ///< a batch made it, and nobody accepted it or asked for it since
+  bool is_whole = true;       ///< all its maps were kept
+
+  bool is_preview() const { return level == kLevels.front(); }
+};
+/// "the standard solve 0123456789abcdef of 2026-11-27T21:10:05Z"
+std::string words_of(const ChoosableSolve& solve);
+
+/// The solves of a session.
+struct SessionSolves {
+  std::filesystem::path session;
+  std::vector<ChoosableSolve> all;  ///< the oldest first
+  /// Indices of `all`; empty where there is no solve. `best`: of those of today's photographs the highest
+  /// level, of two alike the newest; one that waits stands above previews alone. `current`: what a person
+  /// chose, for as long as the photographs stay those that it was chosen for; else the best.
+  std::optional<std::size_t> best = {}, current = {};
+  bool is_chosen = false;  ///< the current one, by a person
+
+  const ChoosableSolve* find(const std::string& id) const;  ///< null: there is none
+  const ChoosableSolve* current_one() const;                ///< null: there is none
+};
+SessionSolves solves_of(const Session& session);
+
+/// The id of the current one; empty where there is none.
 std::string current_solve(const Session& session);
+
+/// Today's photographs, that nothing supersedes and nobody left out: what a choice is made for.
+std::string digest_of_photographs(const Session& session);
+
+/// Why what was made of the solve of this id is not what would be made today, a sentence each: photographs
+/// that are others now, another current solve, a better one.
+std::vector<std::string> why_stale(const SessionSolves& solves, const std::string& id);
+
+/// Where maps come from: the solve of this id, without one the current. kNoInput where there is none, or none
+/// of today's photographs; a preview is refused unless `draft` asks for it (kNoInput, kUsage of a named one).
+Result<ChoosableSolve> solve_for_maps(const SessionSolves& solves, const std::string& id, bool draft);
+
+/// What a product says of its solve: {"level", "draft", "stale"}, the last of sentences, if there are any.
+Json json_of_source(const ChoosableSolve& solve, const std::vector<std::string>& stale);
 
 }  // namespace weft::library

@@ -11,6 +11,7 @@
 
 #include "core/solve.h"
 #include "core/text.h"
+#include "library/current.h"
 #include "library/left_out.h"
 #include "library/session_lock.h"
 
@@ -164,6 +165,20 @@ Json in_order(const std::string& key, const Json& value) {
   return shots.empty() ? Json() : Json(shots);
 }
 
+// A choice of a solve is for the photographs of its moment. Whether that is another one now.
+bool note_choice(Session& session) {
+  Json& document = session.document;
+  const bool is_one = document.contains("current_solve");
+  const Json now = is_one ? Json(digest_of_photographs(session)) : Json();
+  if (document.value("current_solve_for", Json()) == now) return false;
+  if (is_one) {
+    document["current_solve_for"] = now;
+  } else {
+    document.erase("current_solve_for");
+  }
+  return true;
+}
+
 // Of a session's document; 0 where it holds none, or none that counts.
 int revision_of(const Json& session) {
   const Json metadata = session.value("metadata", Json());
@@ -275,6 +290,8 @@ Result<Change> change_metadata(const std::filesystem::path& folder, const Json& 
     change.before[key] = std::move(before);
     change.after[key] = after;
   }
+  if (fields.contains("current_solve") && note_choice(*session) && !change.after.contains("current_solve"))
+    change.before["current_solve"] = change.after["current_solve"] = fields["current_solve"];
   if (change.after.empty()) return change;
   session->fabric = document.value("fabric", "");
   document["metadata"]["revision"] = change.revision = revision + 1;

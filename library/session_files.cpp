@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <utility>
+
+#include "core/exposed.h"
 
 namespace weft::library {
 namespace {
@@ -44,6 +47,17 @@ std::vector<std::string> warnings_of(const Shot& shot) {
   if (list == shot.document.end() || !list->is_array()) return warnings;
   for (const Json& warning : *list) {
     if (warning.is_string()) warnings.push_back(warning.get<std::string>());
+  }
+  return warnings;
+}
+
+std::vector<std::string> warnings_of(const Session& session) {
+  std::vector<std::string> warnings;
+  if (std::string exposure = exposure_warning(session); !exposure.empty())
+    warnings.push_back(std::move(exposure));
+  for (const Shot& shot : session.shots) {
+    if (shot.superseded_by) continue;
+    for (std::string& warning : warnings_of(shot)) warnings.push_back(std::move(warning));
   }
   return warnings;
 }

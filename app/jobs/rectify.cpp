@@ -23,7 +23,6 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using material::MapKind;
 using material::TableGrid;
 
 constexpr ProductKind kRectified = {"weft.rectified", "rectify.json", "set of rectified maps",
@@ -77,8 +76,8 @@ void turn_yarns(double turn_deg, View<float> yarn_deg) {
   }
 }
 
-Result<void> rectify_map(const Rectification& r, const std::string& name, MapKind kind, SampleType type,
-                         const Result<LoadedImage>& map) {
+Result<void> rectify_map(const Rectification& r, const std::string& name, material::MapKind kind,
+                         SampleType type, const Result<LoadedImage>& map) {
   if (!map) return map.error();
   const auto yarn_channel = std::ranges::find(map->info.channels, "yarn_deg");
   const int yarn = yarn_channel == map->info.channels.end()
@@ -123,13 +122,33 @@ Result<void> rectify_status(const Rectification& r, std::int64_t& solved) {
   return writer->finish();
 }
 
-Json document_of(const std::string& id, const Product& solve, const Calibration& calibration,
+// All maps that the solve has.
+Result<void> rectify_maps(const Rectification& r, const SolveMaps& maps, const fs::path& solve) {
+  using material::MapKind;
+  r.context.progress("rectify", 0.1);
+  Result<void> made = rectify_map(r, "normal.exr", MapKind::kNormal, SampleType::kFloat, maps.normal());
+  if (!made) return made;
+  r.context.progress("rectify", 0.4);
+  made = rectify_map(r, "albedo.exr", MapKind::kValue, SampleType::kHalf, maps.albedo());
+  if (!made) return made;
+  r.context.progress("rectify", 0.7);
+  made = rectify_map(r, "sigma.exr", MapKind::kSigma, SampleType::kHalf, maps.sigma());
+  if (!made) return made;
+  for (const char* name : {"roughness.exr", "specular.exr"}) {
+    if (!is_there(solve / name)) continue;
+    made = rectify_map(r, name, MapKind::kChoice, SampleType::kHalf, read_image(solve / name));
+    if (!made) return made;
+  }
+  return {};
+}
+
+Json document_of(const std::string& id, const std::string& solve, const Calibration& calibration,
                  const Rectification& r, std::int64_t solved) {
   const TableGrid& g = r.grid;
   const Vec3 corner = g.point_mm(0, 0);
   return {{"schema", fmt::format("{}/1", kRectified.schema)},
           {"id", id},
-          {"solve", solve.id},
+          {"solve", solve},
           {"calibration", calibration.id},
           {"width", g.size.width},
           {"height", g.size.height},
@@ -142,6 +161,12 @@ Json document_of(const std::string& id, const Product& solve, const Calibration&
           {"filter", kFilter},
           {"compression", name_of(r.options.compression)},
           {"pixels", solved}};
+}
+
+Json with_source(Json document, const Json& source) {
+  document.erase("stale");
+  document.update(source);
+  return document;
 }
 
 Result<Calibration> calibration_with_camera(const fs::path& folder) {
@@ -175,9 +200,11 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   const Result<Calibration> calibration = calibration_with_camera(
       options.calibration.empty() ? session->calibration_folder() : options.calibration);
   if (!calibration) return calibration.error();
-  const Result<Product> solve =
-      find_solve(session->folder, options.solve.empty() ? library::current_solve(*session) : options.solve);
+  const library::SessionSolves solves = library::solves_of(*session);
+  const Result<library::ChoosableSolve> solve =
+      library::solve_for_maps(solves, options.solve, options.is_draft);
   if (!solve) return solve.error();
+  const Json source = library::json_of_source(*solve, why_stale(solves, solve->id));
   const Result<SolveMaps> maps = SolveMaps::open(solve->folder);
   if (!maps) return maps.error();
   const CameraModel seen = seen_from(session->pose, session->cloth_height_mm, *calibration->camera);
@@ -197,7 +224,7 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   const Product product = product_of(kRectified, inputs, session->folder / "rectified", options.output);
   Result<std::optional<Json>> finished = find_finished(product);
   if (!finished) return std::move(finished).error();
-  if (*finished) return RectifyReport{product.folder, true, std::move(**finished)};
+  if (*finished) return RectifyReport{product.folder, true, with_source(std::move(**finished), source)};
 
   Result<Image<std::uint16_t>> status = maps->status();
   if (!status) return std::move(status).error();
@@ -206,21 +233,8 @@ Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobCo
   const Rectification r = {*camera, *grid, std::move(*status), partial.path(), options, context};
   std::int64_t solved = 0;
   if (const Result<void> ok = rectify_status(r, solved); !ok) return ok.error();
-  context.progress("rectify", 0.1);
-  Result<void> made = rectify_map(r, "normal.exr", MapKind::kNormal, SampleType::kFloat, maps->normal());
-  if (!made) return std::move(made).error();
-  context.progress("rectify", 0.4);
-  made = rectify_map(r, "albedo.exr", MapKind::kValue, SampleType::kHalf, maps->albedo());
-  if (!made) return std::move(made).error();
-  context.progress("rectify", 0.7);
-  made = rectify_map(r, "sigma.exr", MapKind::kSigma, SampleType::kHalf, maps->sigma());
-  if (!made) return std::move(made).error();
-  for (const char* name : {"roughness.exr", "specular.exr"}) {
-    if (!is_there(solve->folder / name)) continue;
-    made = rectify_map(r, name, MapKind::kChoice, SampleType::kHalf, read_image(solve->folder / name));
-    if (!made) return std::move(made).error();
-  }
-  Json document = document_of(product.id, *solve, *calibration, r, solved);
+  if (const Result<void> ok = rectify_maps(r, *maps, solve->folder); !ok) return ok.error();
+  Json document = with_source(document_of(product.id, solve->id, *calibration, r, solved), source);
   if (const Result<void> ok = write_json(partial.path() / "rectify.json", document); !ok) return ok.error();
   if (const Result<void> ok = partial.publish(); !ok) return ok.error();
   context.progress("rectify", 1);

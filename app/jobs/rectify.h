@@ -14,6 +14,7 @@ namespace weft::app {
 struct RectifyOptions {
   std::filesystem::path session;
   std::string solve;                  ///< id of the solve; empty: the session's current one
+  bool is_draft = false;              ///< a preview will do
   std::filesystem::path calibration;  ///< empty: the session's own
   std::filesystem::path output;       ///< empty: <session>/rectified/<id>
   double mm_per_pixel = 0;            ///< 0: what the camera sees at the grid's centre; else above 0
@@ -26,7 +27,7 @@ struct RectifyOptions {
 struct RectifyReport {
   std::filesystem::path folder;
   bool was_there = false;  ///< a complete one of the same solve and options was found
-  Json document;           ///< rectify.json
+  Json document;           ///< rectify.json, with what is stale of the solve today
 };
 
 /// Puts the maps of a solve on a square grid of the table at the session's cloth_height_mm, lens and
@@ -36,8 +37,8 @@ struct RectifyReport {
 /// of half the frame's size, as the level preview gives, have half the camera's. Memory holds one map of the
 /// solve at a time: 16 to 32 bytes a pixel.
 ///
-/// Errors: kUsage (an option), kNoInput (no session, no complete solve of it), kBadData (a calibration
-/// without camera, maps that are not of its size), kCannotCreate, kInputOutput, kInterrupted.
+/// Errors: kUsage (an option), kNoInput (no session), those of library::solve_for_maps(), kBadData (a
+/// calibration without camera, maps that are not of its size), kCannotCreate, kInputOutput, kInterrupted.
 Result<RectifyReport> rectify_session(const RectifyOptions& options, const JobContext& context);
 
 }  // namespace weft::app

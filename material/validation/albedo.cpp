@@ -58,6 +58,14 @@ double srgb_8bit(double linear) {
   return 255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
 }
 
+const char* remedy_of_brightness(const Checked& checked) {
+  if (checked.maps.is_colour_changed) return "take a smaller exposure or gain in the step color";
+  return has_better_level(checked)
+             ? "solve with --quality reference, which takes light between yarns out of the albedo"
+             : "check the white patch of the calibration and its reflectance; leave it if the cloth is so "
+               "white";
+}
+
 // Where the albedo, and its logarithm with it, says something of the light.
 bool has_light(const Checked& checked, int x, int y) {
   return checked.counts(x, y) != 0 && luminance_at(checked.albedo, x, y) > 1e-4;
@@ -102,7 +110,7 @@ Finding bright_albedo(const Checked& checked) {
       {"ALBEDO_BRIGHT",
        fmt::format("{:.1f} percent of the cloth is brighter than {:.3f} (sRGB {:.0f}), the brightest {:.3f}",
                    100 * bright.count / checked.pixels, limit, srgb_8bit(limit), number),
-       "look for highlights and light between yarns in the albedo; solve with reference"},
+       remedy_of_brightness(checked)},
       number, limit, std::move(bright.where));
 }
 
@@ -125,7 +133,7 @@ Finding gamut(const Checked& checked) {
                    "{:g}; the least is {:.4f}",
                    100 * negative.count / checked.pixels, 100 * outside.count / checked.pixels,
                    checked.limits.gamut, least),
-       "keep the maps in float, or export to a wider colour space"},
+       "leave it: such colours are outside of Rec.709, float files keep them and others cut them at 0"},
       least, checked.limits.gamut, std::move(outside.where));
 }
 
@@ -151,7 +159,7 @@ Finding saturation(const Checked& checked) {
        fmt::format("in {:.1f} percent of the cloth one channel is over {:g} times another, {:.0f} times at "
                    "most",
                    100 * share, limit, most),
-       "check the colour calibration against its chart"},
+       "leave it if the cloth is as pure as that, else calibrate colour again with weft calibrate color"},
       most, limit, std::move(found.where));
 }
 
@@ -213,7 +221,10 @@ Finding light_by_openness(const Checked& checked) {
       {"LIGHT_IN_ALBEDO_OPENNESS",
        fmt::format("log albedo changes by {:+.3f} over openness, where cloth of one colour has 0: {}", slope,
                    slope > 0 ? "shadows are left in it" : "light between yarns is left in it"),
-       "solve with reference"},
+       has_better_level(checked)
+           ? "solve with --quality reference; leave it if yarns of two colours lie at two depths"
+           : "leave it: reference took out what it found, and yarns of two colours at two depths look so "
+             "too"},
       slope, limit, std::move(hidden.where));
 }
 
@@ -233,10 +244,13 @@ Finding light_by_normals(const Checked& checked) {
   const std::string numbers =
       fmt::format("albedo correlates by {:+.3f} and {:+.3f} with the normal's x and y", x, y);
   if (worst <= limit) return passed("LIGHT_IN_ALBEDO_NORMALS", numbers, worst, limit);
-  return failed(Severity::kWarning,
-                {"LIGHT_IN_ALBEDO_NORMALS", numbers + ": one side of the yarns is brighter",
-                 "check the lights with weft calibrate check"},
-                worst, limit);
+  return failed(
+      Severity::kWarning,
+      {"LIGHT_IN_ALBEDO_NORMALS", numbers + ": one side of the yarns is brighter",
+       has_better_level(checked)
+           ? "solve with --quality reference; if it stays, check the lights with weft calibrate check"
+           : "check the lights with weft calibrate check; leave it if they are where they should be"},
+      worst, limit);
 }
 
 }  // namespace weft::material

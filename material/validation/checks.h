@@ -53,6 +53,9 @@ Finding passed(std::string name, std::string text, double number, double limit);
 Finding failed(Severity severity, Verdict verdict, double number, double limit,
                Image<std::uint8_t> where = {});
 
+/// Whether a solve at the highest level would be another than this.
+bool has_better_level(const Checked& checked);
+
 // albedo.cpp
 Finding dark_albedo(const Checked& checked);
 Finding bright_albedo(const Checked& checked);

@@ -87,7 +87,8 @@ Finding f0_range(const Checked& checked) {
                    "is {:.4f}",
                    100 * share, least, most, metal ? "metals" : "fibres", middle),
        metal ? "type it as a dielectric"
-             : "type 0.04 for cellulose, 0.046 for wool and silk, 0.05 for polyester"},
+             : "make a material of the maps and set its specular, F0 over 0.08: 0.5 for cellulose, 0.575 for "
+               "wool and silk, 0.625 for polyester"},
       middle, nearest, std::move(outside.where));
 }
 
@@ -105,7 +106,8 @@ Finding energy(const Checked& checked) {
        fmt::format("albedo and F0 come to {:.3f}: {:.1f} percent of the cloth reflects more light than "
                    "falls on it",
                    number, 100 * over.count / checked.pixels),
-       "check the white patch of the calibration and its reflectance"},
+       checked.maps.is_colour_changed ? "take a smaller exposure or gain in the step color"
+                                      : "check the white patch of the calibration and its reflectance"},
       number, limit, std::move(over.where));
 }
 
@@ -129,7 +131,7 @@ Finding lobe_energy(const Checked& checked) {
   return failed(
       Severity::kWarning,
       {"LOBE_ENERGY", fmt::format("added up, albedo and a lobe of {:.3f} reflect {:.3f}", lobe, number),
-       "use an engine that takes the lobe's share from the diffuse part"},
+       "leave it where the engine takes the lobe's share from the diffuse part"},
       number, limit, std::move(over.where));
 }
 

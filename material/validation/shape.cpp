@@ -83,7 +83,7 @@ Finding seam(const Checked& checked) {
        fmt::format("the step where the tile goes on is {:.2f} of the largest inside from right to left and "
                    "{:.2f} from bottom to top",
                    across, down),
-       "cut the tile again at other repeats"},
+       "straighten the cloth before it is cut, or ask the step tile for other repeats"},
       number, limit, std::move(where));
 }
 
@@ -135,13 +135,19 @@ Finding height_off_slopes(const Checked& checked) {
                   number, limit);
   }
   Marked off = marked(checked, [&](int x, int y) { return inside(x, y) && !(angle_at(x, y) <= limit); });
+  // A height that was integrated comes as close to the slopes as any: it is they that close to no surface.
+  const bool is_derived = checked.maps.is_height_of_slopes;
   return failed(
-      Severity::kError,
+      is_derived ? Severity::kWarning : Severity::kError,
       {"HEIGHT_OFF_SLOPES",
        fmt::format("the height's slopes are {:.1f} degrees off the normals in the middle, and {:.3g} times "
-                   "as steep",
-                   number, gain),
-       gain < 0 ? "turn the height or the green channel over" : "check the unit and scale of the height"},
+                   "as steep{}",
+                   number, gain, is_derived ? "; no height on these pixels has them" : ""),
+       is_derived ? (has_better_level(checked)
+                         ? "solve with --quality reference; leave it where normals alone are drawn"
+                         : "leave it: normals show more of the relief than any height of these pixels can")
+       : gain < 0 ? "turn the height or the green channel over"
+                  : "check the unit and scale of the height"},
       number, limit, std::move(off.where));
 }
 
@@ -153,12 +159,14 @@ Finding texel_density(const Checked& checked) {
                   limits.most_mm_per_pixel);
   }
   const double limit = mm > limits.most_mm_per_pixel ? limits.most_mm_per_pixel : limits.least_mm_per_pixel;
-  return failed(Severity::kWarning,
-                {"TEXEL_DENSITY",
-                 fmt::format("{:.4g} mm a pixel is not between {:g} and {:g}", mm, limits.least_mm_per_pixel,
-                             limits.most_mm_per_pixel),
-                 "check mm_per_pixel of the maps"},
-                mm, limit);
+  return failed(
+      Severity::kWarning,
+      {"TEXEL_DENSITY",
+       fmt::format("{:.4g} mm a pixel is not between {:g} and {:g}", mm, limits.least_mm_per_pixel,
+                   limits.most_mm_per_pixel),
+       "ask for other pixels with --mm-per-pixel; where they are of another size, correct that in the "
+       "step scale"},
+      mm, limit);
 }
 
 }  // namespace weft::material

@@ -19,7 +19,8 @@ Error not_validated(ErrorKind kind, std::string why, std::string remedy) {
 }
 
 Error nothing_solved() {
-  return not_validated(ErrorKind::kBadData, "no pixel has a solution", "look at the status map of the solve");
+  return not_validated(ErrorKind::kBadData, "no pixel has a solution",
+                       "look into report.html of the solve for what its photographs lack, and scan again");
 }
 
 Result<void> check_sizes(const MapsToValidate& maps) {
@@ -85,6 +86,10 @@ const char* name_of(Severity severity) {
       return "error";
   }
   return "";
+}
+
+bool has_better_level(const Checked& checked) {
+  return checked.maps.level != "reference";
 }
 
 double luminance_at(const Image<float>& albedo, int x, int y) {

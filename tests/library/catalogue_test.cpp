@@ -218,6 +218,19 @@ TEST(Catalogue, TellsBytesAndWarningsOfASession) {
   EXPECT_EQ(entry.warnings, Names{"the dark shot is not quite dark"});
 }
 
+TEST(Catalogue, TellsOfAllLedsOnceThatTheyAreOver) {
+  const Shelf shelf;
+  Json shots = Json::array();
+  for (int led = 1; led <= 10; ++led)
+    shots.push_back(shot(led, "lit", {{"sha256", "f"}, {"exposed", {{"clipped", 0.9}, {"room", 0.1}}}}));
+  shelf.put("a", {{"shots", shots}});
+  Catalogue catalogue = opened(shelf);
+  refreshed(catalogue, {shelf.path()});
+  const Entry entry = *catalogue.find_one("a");
+  ASSERT_EQ(entry.warnings.size(), 1U);
+  EXPECT_EQ(entry.warnings.front().rfind("All 10 LEDs are over", 0), 0U) << entry.warnings.front();
+}
+
 TEST(Catalogue, ForgetsWhatLiesInNoFolderAnyMore) {
   const Shelf near, far;
   near.put("a");

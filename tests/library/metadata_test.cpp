@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/files.h"
-#include "library/current.h"
 #include "library/left_out.h"
 #include "library/session_lock.h"
 #include "tests/library/shelf.h"
@@ -114,24 +113,6 @@ TEST(Metadata, OfTheWrongKindIsNamed) {
     ASSERT_FALSE(read) << metadata.dump();
     EXPECT_EQ(read.error().kind, ErrorKind::kBadData);
   }
-}
-
-TEST(CurrentSolve, StaysTheFirstUntilSomebodyNamesAnother) {
-  const Shelf shelf;
-  const auto folder = shelf.put("a");
-  EXPECT_EQ(current_solve(*read_session(folder)), "");
-  shelf.solve("a", "bbbbbbbbbbbbbbbb");
-  std::filesystem::last_write_time(folder / "solve/bbbbbbbbbbbbbbbb/solve.json",
-                                   std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
-  shelf.solve("a", "aaaaaaaaaaaaaaaa");
-  EXPECT_EQ(current_solve(*read_session(folder)), "bbbbbbbbbbbbbbbb");
-  ASSERT_TRUE(change_metadata(folder, {{"current_solve", "aaaaaaaaaaaaaaaa"}}));
-  EXPECT_EQ(current_solve(*read_session(folder)), "aaaaaaaaaaaaaaaa");
-  const Result<Change> none = change_metadata(folder, {{"current_solve", "cccccccccccccccc"}});
-  ASSERT_FALSE(none);
-  EXPECT_EQ(none.error().kind, ErrorKind::kNoInput);
-  std::filesystem::remove_all(folder / "solve/aaaaaaaaaaaaaaaa");
-  EXPECT_EQ(current_solve(*read_session(folder)), "bbbbbbbbbbbbbbbb") << "the named one is gone";
 }
 
 TEST(LeftOut, NamesShotsThatAreThere) {

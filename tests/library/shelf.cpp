@@ -30,10 +30,12 @@ std::filesystem::path Shelf::put(const std::string& name, const Json& fields) co
   return folder_of(name);
 }
 
-void Shelf::solve(const std::string& name, const std::string& id) const {
+void Shelf::solve(const std::string& name, const std::string& id, const Json& fields) const {
   const auto folder = folder_of(name) / "solve" / id;
   std::filesystem::create_directories(folder);
-  const Result<void> written = write_json(folder / "solve.json", {{"schema", "weft.solve/1"}, {"id", id}});
+  Json solve = {{"schema", "weft.solve/1"}, {"id", id}};
+  solve.update(fields);
+  const Result<void> written = write_json(folder / "solve.json", solve);
   EXPECT_TRUE(written) << (written ? "" : written.error().message());
 }
 

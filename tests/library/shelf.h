@@ -18,8 +18,8 @@ class Shelf {
 
   /// Writes its session.json; `fields` replace those of a finished scan of twill on rig bench-1.
   std::filesystem::path put(const std::string& name, const Json& fields = Json::object()) const;
-  /// Adds a finished solve without maps.
-  void solve(const std::string& name, const std::string& id) const;
+  /// Adds a finished solve without maps; `fields` go into its solve.json.
+  void solve(const std::string& name, const std::string& id, const Json& fields = Json::object()) const;
 
  private:
   TemporaryFolder folder_;

@@ -141,7 +141,9 @@ Result<void> make_curl(MapWork& work) {
              "these normals are of no surface: around half of the pixels their slopes do not close by "
              "over {:.1f} sigma; of those {:.0f} percent are SPECULAR, {:.0f} percent SHADOWED",
              curl->frame_median, 100 * curl->specular_share, 100 * curl->shadowed_share),
-         "solve the session at a higher level, as robust"});
+         work.level == "reference" || work.level == "robust"
+             ? "scan the cloth again, flat, and with crossed polarisers if it shines"
+             : "solve the session with --quality robust"});
   }
   return write_map(work, std::move(facts), {curl->median.plane()});
 }

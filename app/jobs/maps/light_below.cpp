@@ -20,7 +20,6 @@ namespace weft::app {
 namespace {
 
 namespace fs = std::filesystem;
-using material::MapKind;
 
 // Of full scale: a table that is darker tells nothing of what covers it.
 constexpr float kLeastLight = 0.01F;
@@ -102,8 +101,8 @@ ThroughCloth on_grid(const Image<float>& share, const CameraModel& camera, const
   Image<float> nearest(grid.size);
   const std::array<View<const float>, 1> seen = {share.plane()};
   const std::array<View<float>, 1> mean_out = {through.share.plane()}, nearest_out = {nearest.plane()};
-  rectify_rows(camera, grid, MapKind::kValue, seen, all_solved.plane(), 0, threads, mean_out);
-  rectify_rows(camera, grid, MapKind::kChoice, seen, all_solved.plane(), 0, threads, nearest_out);
+  rectify_rows(camera, grid, material::MapKind::kValue, seen, all_solved.plane(), 0, threads, mean_out);
+  rectify_rows(camera, grid, material::MapKind::kChoice, seen, all_solved.plane(), 0, threads, nearest_out);
   for (int y = 0; y < grid.size.height; ++y) {
     for (int x = 0; x < grid.size.width; ++x) {
       through.saturated(x, y) = std::isinf(nearest(x, y)) ? 1 : 0;

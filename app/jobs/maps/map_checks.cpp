@@ -35,6 +35,9 @@ Result<Json> check_maps(MapWork& work, bool has_measured_black) {
   // The slopes of a tile's height are those of its waves, which differences of pixels are not.
   if (!work.height_mm.empty() && !work.surface.is_tile) maps.height_mm = work.height_mm.plane();
   maps.has_measured_black = has_measured_black;
+  maps.level = work.level;
+  maps.is_height_of_slopes = true;
+  maps.is_colour_changed = work.is_colour_changed;
   material::ValidationLimits limits;
   limits.threads = work.context.threads;
   const Result<std::vector<Finding>> findings = material::validate(maps, limits);

@@ -43,6 +43,8 @@ struct MapWork {
   const DeriveOptions& options;
   const JobContext& context;
 
+  std::string level = {};                              ///< of the solve; no remedy names it or one below
+  bool is_colour_changed = false;                      ///< by a step of the recipe
   std::optional<material::OpacityFacts> opacity = {};  ///< of surface.opacity
   double yarn_px = 0;                                  ///< width of a yarn; 0: not known
   Image<float> height_mm = {};                         ///< once find_height() was asked

@@ -33,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 using material::Surface;
 
-constexpr int kVersion = 1;  // raised whenever the bytes of a map may change
+constexpr int kVersion = 2;  // raised whenever the bytes of a map may change
 
 Json json_of(const DeriveOptions& options) {
   return {{"height", kHeightMethodNames[static_cast<std::size_t>(options.height)]},
@@ -113,7 +113,7 @@ Json steps_of(const Recipe& recipe, const FinishingFacts& facts) {
 }
 
 // What the calibration leaves open of a slope, as the solve says it of most pixels.
-Result<FinishingInput> known_of(const Session& session, const RectifyReport& rectified) {
+Result<FinishingInput> known_of(const Session& session, const RectifyReport& rectified, bool is_preview) {
   const Result<Product> solve = find_solve(session.folder, rectified.document["solve"].get<std::string>());
   if (!solve) return solve.error();
   const Result<Json> document = read_json(solve->folder / kSolveProduct.document, kSolveProduct.schema, 1);
@@ -123,7 +123,13 @@ Result<FinishingInput> known_of(const Session& session, const RectifyReport& rec
   const Json::json_pointer by_calibration("/calibration/median");
   const Json& sigma = facts->sigma_normal_deg;
   const bool is_told = sigma.contains(by_calibration) && sigma[by_calibration].is_number();
-  return FinishingInput{.slow_sigma_deg = is_told ? sigma[by_calibration].get<double>() : 0.0};
+  return FinishingInput{.slow_sigma_deg = is_told ? sigma[by_calibration].get<double>() : 0.0,
+                        .coarser = is_preview ? kPreviewFactor : 1};
+}
+
+// A step that may be taken back.
+bool changes_colour(const Recipe& recipe) {
+  return std::ranges::find(recipe.steps, "color", &RecipeStep::name) != recipe.steps.end();
 }
 
 // On the grid that flattening found, which later steps changed.
@@ -162,6 +168,8 @@ Json document_of(const Product& product, const RectifyReport& rectified, const M
   return {{"schema", fmt::format("{}/1", kMapsProduct.schema)},
           {"id", product.id},
           {"solve", rectified.document["solve"]},
+          {"level", rectified.document["level"]},
+          {"draft", rectified.document["draft"]},
           {"rectified", rectified.document["id"]},
           {"width", surface.size().width},
           {"height", surface.size().height},
@@ -173,6 +181,21 @@ Json document_of(const Product& product, const RectifyReport& rectified, const M
           {"derive", json_of(options.derive)},
           {"checks", checks},
           {"verdicts", json_of(verdicts)}};
+}
+
+// What is stale today, in place of what was when the document was written.
+void add_stale(const RectifyReport& rectified, Json& document) {
+  document.erase("stale");
+  if (rectified.document.contains("stale")) document["stale"] = rectified.document["stale"];
+}
+
+// A set that was there and is asked for again is the newest: exports and materials take it.
+Json asked_for_again(const Product& product, const RectifyReport& rectified, Json document) {
+  std::error_code ignored;  // of an archive that cannot be written
+  fs::last_write_time(product.folder / kMapsProduct.document, fs::file_time_type::clock::now(), ignored);
+  for (const char* key : {"level", "draft"}) document[key] = rectified.document[key];
+  add_stale(rectified, document);
+  return document;
 }
 
 // Previews are looked at once.
@@ -238,7 +261,7 @@ Result<Json> make_set(const MapsOptions& options, const Session& session, const 
   if (!opacity) return opacity.error();
   const Result<Json> table = take_table_out(options, surface, context.threads);
   if (!table) return table.error();
-  const Result<FinishingInput> known = known_of(session, rectified);
+  const Result<FinishingInput> known = known_of(session, rectified, options.is_preview);
   if (!known) return known.error();
   const Result<FinishingFacts> finished = finish_surface(surface, options.recipe, *known, context);
   if (!finished) return finished.error();
@@ -246,12 +269,18 @@ Result<Json> make_set(const MapsOptions& options, const Session& session, const 
   if (Result<void> ok = write_surface(aside.path(), *read, options.compression); !ok)
     return std::move(ok).error();
   if (Result<void> ok = draw_surface(aside.path(), surface); !ok) return std::move(ok).error();
+  for (const StepPicture& each : finished->pictures) {
+    if (Result<void> ok = write_png(aside.path() / each.file, each.picture); !ok)
+      return std::move(ok).error();
+  }
   MapWork work = {.surface = surface,
                   .has_f0 = read->has_f0,
                   .folder = aside.path(),
                   .compression = options.compression,
                   .options = options.derive,
                   .context = context,
+                  .level = rectified.document["level"].get<std::string>(),
+                  .is_colour_changed = changes_colour(options.recipe),
                   .opacity = *opacity,
                   .yarn_px = finished->yarn_px,
                   .verdicts = missing_bare(options, session)};
@@ -263,6 +292,7 @@ Result<Json> make_set(const MapsOptions& options, const Session& session, const 
   if (!checks) return checks.error();
   Json document = document_of(product, rectified, options, *finished, work, *checks);
   if (!table->is_null()) document["table"] = *table;
+  add_stale(rectified, document);
   if (Result<void> ok = write_maps_page(aside.path(), document); !ok) return std::move(ok).error();
   if (Result<void> ok = write_json(aside.path() / kMapsProduct.document, document); !ok)
     return std::move(ok).error();
@@ -276,6 +306,7 @@ Result<RectifyReport> rectified_maps(const MapsOptions& options, double mm_per_p
   RectifyOptions rectify;
   rectify.session = options.session;
   rectify.solve = options.solve;
+  rectify.is_draft = options.is_draft;
   rectify.calibration = options.calibration;
   rectify.mm_per_pixel = mm_per_pixel;
   return rectify_session(rectify, context);
@@ -291,7 +322,9 @@ Result<MapsReport> make_maps(const MapsOptions& options, const JobContext& conte
   if (!product) return product.error();
   Result<std::optional<Json>> found = find_finished(*product);
   if (!found) return std::move(found).error();
-  if (*found) return MapsReport{product->folder, true, std::move(**found)};
+  if (*found) {
+    return MapsReport{product->folder, true, asked_for_again(*product, *rectified, std::move(**found))};
+  }
   PartialFolder partial(product->folder);
   Result<Json> document = make_set(options, *session, *rectified, *product, partial, context);
   if (!document) return std::move(document).error();

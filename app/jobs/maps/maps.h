@@ -23,6 +23,7 @@ inline constexpr ProductKind kMapsProduct = {"weft.maps", "maps.json", "set of m
 struct MapsOptions {
   std::filesystem::path session;
   std::string solve;                  ///< id of the solve; empty: the session's current one
+  bool is_draft = false;              ///< a preview will do
   std::filesystem::path calibration;  ///< empty: the session's own
   std::filesystem::path output;       ///< empty: <session>/maps/<id>
   Recipe recipe;                      ///< no step: the maps as they were photographed
@@ -43,7 +44,7 @@ inline constexpr double kPreviewFactor = 4;
 struct MapsReport {
   std::filesystem::path folder;
   bool was_there = false;  ///< a complete one of the same solve, recipe and options was found
-  Json document;           ///< maps.json
+  Json document;           ///< maps.json, with what is stale of the solve today
 };
 
 /// The maps of the solve on a grid of pixels of this size, 0: what the camera sees. Errors of

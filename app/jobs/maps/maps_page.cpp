@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/jobs/maps/session_sets.h"
 #include "core/files.h"
 #include "core/text.h"
 #include "core/verdict.h"
@@ -78,14 +79,21 @@ report::Table table_of_steps(const Json& steps) {
   return table;
 }
 
-Result<std::string> pictures_of(const fs::path& folder, const Json& maps, const Json& checks) {
-  std::vector<std::pair<std::string, std::string>> shown = {
-      {"albedo.png", "albedo"}, {"normal.png", "normal"}, {"relit.png", "relit from the upper left"}};
-  for (const Json& map : maps) {
+Result<std::string> pictures_of(const fs::path& folder, const Json& document) {
+  std::vector<std::pair<std::string, std::string>> shown;
+  for (const Json& step : document["steps"]) {
+    if (step.contains("facts") && step["facts"].contains("picture"))
+      shown.emplace_back(step["facts"]["picture"].get<std::string>(), "where the yarns seem to lie");
+  }
+  for (const auto& [file, label] : {std::pair{"albedo.png", "albedo"},
+                                    {"normal.png", "normal"},
+                                    {"relit.png", "relit from the upper left"}})
+    shown.emplace_back(file, label);
+  for (const Json& map : document["maps"]) {
     if (map.contains("picture"))
       shown.emplace_back(map["picture"].get<std::string>(), map["name"].get<std::string>());
   }
-  for (const Json& check : checks) {
+  for (const Json& check : document["checks"]) {
     if (check.contains("picture"))
       shown.emplace_back(check["picture"].get<std::string>(), check["name"].get<std::string>());
   }
@@ -103,13 +111,15 @@ Result<std::string> pictures_of(const fs::path& folder, const Json& maps, const 
 Result<void> write_maps_page(const fs::path& folder, const Json& document) {
   const Result<std::vector<Verdict>> verdicts = verdicts_from_json(document["verdicts"], "maps.json");
   if (!verdicts) return verdicts.error();
-  const Result<std::string> pictures = pictures_of(folder, document["maps"], document["checks"]);
+  const Result<std::string> pictures = pictures_of(folder, document);
   if (!pictures) return pictures.error();
   const int width = document["width"].get<int>(), height = document["height"].get<int>();
   const double mm = document["mm_per_pixel"].get<double>();
   std::string body = fmt::format(
       "<h1>Maps</h1>\n<p class=\"meta\">{} × {} pixels of {:.4g} mm: {:.4g} × {:.4g} mm{}</p>\n", width,
       height, mm, width * mm, height * mm, document["is_tile"].get<bool>() ? ", a tile" : "");
+  for (const std::string& line : source_lines(document))
+    body += fmt::format("<p class=\"meta\">{}</p>\n", escape_markup(line));
   body += report::verdict_box(*verdicts, "Nothing speaks against them.");
   body += *pictures;
   if (!document["maps"].empty())

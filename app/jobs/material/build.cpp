@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
@@ -17,6 +18,12 @@ namespace fs = std::filesystem;
 // All maps in float, and as much again of mips and a mask.
 std::uint64_t bytes_of(const MaterialNode& node) {
   return 120 * static_cast<std::uint64_t>(node.size.pixels()) + (std::uint64_t{1} << 20);
+}
+
+// Which scans it is made of, as they are today.
+void add_scans(Json scans, Json& document) {
+  document["draft"] = std::ranges::any_of(scans, [](const Json& scan) { return scan.value("draft", false); });
+  document["scans"] = std::move(scans);
 }
 
 class Builder {
@@ -46,16 +53,17 @@ class Builder {
     made_.insert(product.folder);
     was_made_.insert(product.folder);
     ++report_.built;
-    return make(node, product);
+    return make(index, product);
   }
 
   bool was_made(const fs::path& folder) const { return was_made_.contains(folder); }
 
  private:
-  Result<void> make(const MaterialNode& node, const Product& product) {
+  Result<void> make(std::size_t index, const Product& product) {
+    const MaterialNode& node = tree_.nodes[index];
     std::vector<MapSet> layers;
     for (const std::size_t each : node.layers) {
-      Result<MapSet> set = open_map_set(product.folder.parent_path() / tree_.nodes[each].id);
+      Result<MapSet> set = open_map_set(product.folder.parent_path() / tree_.nodes[each].id, true);
       if (!set) return std::move(set).error();
       layers.push_back(std::move(*set));
     }
@@ -64,6 +72,7 @@ class Builder {
     Result<Json> document =
         compose_material(node, std::move(layers), aside.path(), options_.compose, context_);
     if (!document) return std::move(document).error();
+    add_scans(scans_of(tree_, index), *document);
     if (Result<void> ok = write_json(aside.path() / kMaterialProduct.document, *document); !ok) return ok;
     Result<void> published = aside.publish();
     if (published) return {};
@@ -121,6 +130,7 @@ Result<BuildReport> build_materials(const BuildOptions& options, const JobContex
     const fs::path folder = parents[i] / node.id;
     Result<Json> document = read_json(folder / kMaterialProduct.document, kMaterialProduct.schema, 1);
     if (!document) return std::move(document).error();
+    add_scans(scans_of(*tree, tree->roots[i]), *document);
     report.materials.push_back(
         {node.material.place, node.id, folder, !builder.was_made(folder), std::move(*document)});
   }

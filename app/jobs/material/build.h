@@ -30,7 +30,7 @@ struct BuiltMaterial {
   std::string id;
   std::filesystem::path folder;
   bool was_there = false;
-  Json document;  ///< material.json
+  Json document;  ///< material.json, with what is stale of its scans today
 };
 
 struct BuildReport {

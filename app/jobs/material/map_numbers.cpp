@@ -7,6 +7,8 @@
 #include <cmath>
 #include <utility>
 
+#include "app/jobs/file_meaning.h"
+#include "app/jobs/linear_image.h"
 #include "app/jobs/material/map_set.h"
 #include "core/color_spaces.h"
 #include "core/image_io/image_io.h"
@@ -79,12 +81,18 @@ struct Conversion {
   double least = 0, most = 1;
 };
 
-Conversion conversion_of(Parameter parameter, const MapFile& map, SampleType type) {
+bool is_packed(const ImageFileInfo& info, const std::vector<View<const float>>& planes) {
+  const bool is_integer = info.type == SampleType::kUint8 || info.type == SampleType::kUint16;
+  return is_integer || (planes.size() == 3 && are_packed_normals({planes[0], planes[1], planes[2]}));
+}
+
+Conversion conversion_of(Parameter parameter, const MapFile& map, const ImageFileInfo& info,
+                         const std::vector<View<const float>>& planes) {
   const ParameterFacts& facts = material::facts_of(parameter);
   Conversion to = {parameter, facts, map};
-  const bool is_integer = type == SampleType::kUint8 || type == SampleType::kUint16;
-  to.is_srgb = map.is_srgb.value_or(facts.kind == ParameterKind::kColour && type == SampleType::kUint8);
-  const bool is_packed_normal = facts.kind == ParameterKind::kNormal && is_integer && !map.scale;
+  to.is_srgb =
+      map.is_srgb.value_or(facts.kind == ParameterKind::kColour && transfer_of(info) == Transfer::kSrgb);
+  const bool is_packed_normal = facts.kind == ParameterKind::kNormal && !map.scale && is_packed(info, planes);
   to.scale = map.scale.value_or(is_packed_normal ? 2 : 1);
   to.offset = map.offset.value_or(is_packed_normal ? -1 : 0);
   const bool is_albedo = parameter == Parameter::kAlbedo;
@@ -105,6 +113,7 @@ bool convert(const Conversion& to, Values& v, std::size_t count) {
   if (to.is_srgb) v = rec709_of_srgb(v);
   for (std::size_t p = 0; p < count; ++p) v[p] = to.scale * v[p] + to.offset;
   if (to.facts.kind == ParameterKind::kNormal) {
+    if (count == 2) v[2] = std::sqrt(std::max(0.0, 1 - v[0] * v[0] - v[1] * v[1]));
     const double length = std::hypot(v[0], v[1], v[2]);
     if (!(length > 0.5 && length < 1.5)) return false;
     const auto slopes = material::slopes_of_normal(v[0], to.map.y_is_down ? -v[1] : v[1], v[2]);
@@ -142,13 +151,17 @@ std::string range_words(const Conversion& to) {
 
 Result<Field> read_field(Parameter parameter, const MapFile& map, const std::string& where) {
   if (map.same) return same_field(parameter, *map.same);
-  const Result<LoadedImage> image = read_image(map.file);
+  const Result<LoadedImage> image = read_samples(map.file);
   if (!image) return image.error();
   const ParameterFacts& facts = material::facts_of(parameter);
-  const std::size_t count = map.is_lobe ? 3 : static_cast<std::size_t>(material::numbers_of(facts.kind));
+  // Of a normal the third part follows from two.
+  const bool lacks_z = facts.kind == ParameterKind::kNormal && map.channels.size() == 2;
+  const std::size_t count = map.is_lobe ? 3
+                            : lacks_z   ? 2
+                                        : static_cast<std::size_t>(material::numbers_of(facts.kind));
   const Result<std::vector<View<const float>>> planes = planes_wanted(*image, map, count, where);
   if (!planes) return planes.error();
-  const Conversion to = conversion_of(parameter, map, image->info.type);
+  const Conversion to = conversion_of(parameter, map, image->info, *planes);
   const int kept = facts.kind == ParameterKind::kNormal ? 2 : map.is_lobe ? 1 : static_cast<int>(count);
   Image<float> field(image->info.size, kept);
   for (int y = 0; y < field.height(); ++y) {
@@ -171,7 +184,7 @@ Result<Field> read_field(Parameter parameter, const MapFile& map, const std::str
 
 Result<Field> read_mask(const MapFile& map, std::size_t channel, const std::string& where) {
   if (map.same) return Field::same(map.same->front());
-  const Result<LoadedImage> image = read_image(map.file);
+  const Result<LoadedImage> image = read_samples(map.file);
   if (!image) return image.error();
   MapFile one = map;
   if (one.channels.empty()) {

@@ -6,11 +6,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/jobs/file_meaning.h"
 #include "app/jobs/maps/maps.h"
+#include "app/jobs/maps/session_sets.h"
 #include "app/jobs/material/build.h"
 #include "core/albedo_scale.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
+#include "core/number.h"
 #include "core/solve.h"
 #include "core/text.h"
 
@@ -80,7 +83,8 @@ std::string source_of(const MapSet& set, const std::string& name) {
 bool has_relative_albedo(const MapSet& set) {
   if (set.document.value("albedo_scale", "") == name_of(AlbedoScale::kRelative)) return true;
   const std::string solve = set.document.value("solve", "");
-  const fs::path file = set.folder.parent_path().parent_path() / "solve" / solve / kSolveProduct.document;
+  const fs::path file =
+      absolute_folder(set.folder).parent_path().parent_path() / "solve" / solve / kSolveProduct.document;
   if (solve.empty() || !is_there(file)) return false;
   const Result<Json> document = read_json(file, kSolveProduct.schema, 1);
   return document && document->value("albedo_scale", "") == name_of(AlbedoScale::kRelative);
@@ -88,7 +92,7 @@ bool has_relative_albedo(const MapSet& set) {
 
 Json provenance_of(const MapSet& set, const fs::path& scan) {
   Json facts = Json::object();
-  for (const char* key : {"id", "solve", "rectified"}) {
+  for (const char* key : {"id", "solve", "rectified", "level"}) {
     if (set.document.contains(key) && set.document[key].is_string())
       facts[key == std::string("id") ? "maps" : key] = set.document[key];
   }
@@ -96,13 +100,38 @@ Json provenance_of(const MapSet& set, const fs::path& scan) {
   return facts;
 }
 
+// Masks follow the height, so a set that has one is preferred.
 Result<fs::path> folder_of_maps(const fs::path& scan) {
   if (is_there(scan / kMapsProduct.document) || is_there(scan / kMaterialProduct.document)) return scan;
-  const Result<Product> newest = find_product(kMapsProduct, scan / "maps");
-  if (newest) return newest->folder;
+  const Result<Session> session = read_session(scan);
+  const library::SessionSolves solves =
+      session ? library::solves_of(*session) : library::SessionSolves{.session = scan, .all = {}};
+  const std::vector<SessionSet> sets = sets_of(solves);
+  if (const SessionSet* set = set_to_use(solves, sets, {"height"})) return set->product.folder;
   return Error{ErrorKind::kNoInput, "there are no maps to take from", scan.string(),
                "it is no session with maps, no set of maps and no built material",
-               "make them first with weft maps"};
+               "make them first with weft maps " + scan.string()};
+}
+
+// What its session says of its solve today; a set that lies elsewhere says it itself.
+Result<void> find_solve_of(MapSet& set, bool draft) {
+  bool is_draft = flag_at(set.document, "draft");
+  std::string remedy = "make better ones with weft maps";
+  const Result<Session> session = read_session(absolute_folder(set.folder).parent_path().parent_path());
+  if (const std::string id = text_at(set.document, "solve"); session && !id.empty()) {
+    const library::SessionSolves solves = library::solves_of(*session);
+    const library::ChoosableSolve* const solve = solves.find(id);
+    set.stale = why_stale(solves, id);
+    if (solve != nullptr) is_draft = solve->is_preview();
+    if (solve != nullptr) set.provenance["level"] = solve->level;
+    remedy = how_to_make_better(solves);
+  }
+  if (!is_draft) return {};
+  set.provenance["draft"] = true;
+  if (draft) return {};
+  return unusable(ErrorKind::kUsage, set.folder.string(),
+                  "its maps are of a preview, which has half the size and no masks",
+                  remedy + "; draft = true beside scan (weft material new --draft) takes the draft");
 }
 
 // One number or three, as a set says them in place of a file.
@@ -126,36 +155,147 @@ std::optional<std::vector<double>> same_everywhere(const MapSet& set, const Scan
 
 std::optional<std::array<double, 2>> size_of(const ImageFileInfo& info) {
   const auto mm = info.attributes.find("weft.mm_per_pixel");
-  const double each = mm == info.attributes.end() ? 0 : std::strtod(mm->second.c_str(), nullptr);
+  const double each = mm == info.attributes.end() ? 0 : as_number(mm->second).value_or(0);
   const PixelPitch pitch = each > 0 ? PixelPitch{each, each} : info.pitch_mm;
   if (!(pitch[0] > 0 && pitch[0] < 1e3 && pitch[1] > 0 && pitch[1] < 1e3)) return {};
   return std::array<double, 2>{pitch[0] * info.size.width, pitch[1] * info.size.height};
 }
 
+// What of the catalogue of exports a parameter can be read from, and its factor.
+struct ExportedParameter {
+  Parameter parameter;
+  std::vector<std::string> channels;
+  double scale = 1;
+};
+
+const std::vector<ExportedParameter>& exported_parameters() {
+  static const std::vector<ExportedParameter> all = {
+      {kAlbedo, {"albedo.r", "albedo.g", "albedo.b"}},
+      {kNormal, {"normal.x", "normal.y", "normal.z"}},
+      {kNormal, {"normal.x", "normal.y"}},
+      {kHeight, {"height"}},
+      {kOcclusion, {"occlusion"}},
+      {kOpacity, {"opacity"}},
+      {kCavity, {"cavity"}},
+      {kRoughness, {"roughness"}},
+      {kRoughness, {"roughness.least"}},
+      {kSpecular, {"specular"}},
+      {kSpecular, {"f0"}, 1 / material::kF0OfSpecular},
+      {kSpecularTint, {"specular_tint.r", "specular_tint.g", "specular_tint.b"}},
+      {kMetallic, {"metallic"}},
+      {kSheen, {"sheen.r", "sheen.g", "sheen.b"}},
+      {kSheenRoughness, {"sheen_roughness"}},
+      {kCloth, {"cloth"}},
+  };
+  return all;
+}
+
+// Values of the samples 0 and 1 as scale and offset, where they are others.
+void take_range(const ChannelMeaning& channel, double factor, MapFile& map) {
+  const exchange::ChannelRange range = channel.range.value_or(exchange::ChannelRange{});
+  if (range.least == 0 && range.most == 1 && factor == 1) return;
+  map.scale = factor * (range.most - range.least);
+  map.offset = factor * range.least;
+}
+
+void take_roughness(exchange::RoughnessConvention convention, MapFile& map) {
+  using enum exchange::RoughnessConvention;
+  if (convention == kSmoothness) {
+    map.scale = -1;
+    map.offset = 1;
+  } else {
+    map.unit = convention == kRoot
+                   ? "roughness"
+                   : exchange::kRoughnessConventionNames[static_cast<std::size_t>(convention)];
+  }
+}
+
+// Of a file that an export.json lists.
+Result<void> take_listing(Parameter parameter, const FileMeaning& meaning, const Json& value,
+                          const std::string& where, MapFile& map) {
+  const std::string said = value.value("channel", "");
+  for (const ExportedParameter& row : exported_parameters()) {
+    const auto places = row.parameter == parameter ? meaning.find(row.channels) : std::nullopt;
+    if (!places || (!said.empty() && said != meaning.info.channels[places->front()])) continue;
+    for (const std::size_t place : *places) map.channels.push_back(meaning.info.channels[place]);
+    const ChannelMeaning& first = meaning.channels[places->front()];
+    map.is_srgb = first.is_srgb;
+    take_range(first, row.scale, map);
+    if (parameter == kRoughness) take_roughness(meaning.roughness, map);
+    map.y_is_down = meaning.direction == exchange::NormalDirection::kDirectX;
+    return {};
+  }
+  if (!said.empty()) return {};
+  std::string names;
+  for (const ChannelMeaning& channel : meaning.channels)
+    names += (names.empty() ? "" : ", ") + (channel.is.empty() ? "nothing known" : channel.is);
+  return unusable(ErrorKind::kBadData, where,
+                  fmt::format("by its export.json {} holds {}, and no {}", map.file.filename().string(),
+                              names, material::facts_of(parameter).name),
+                  "name another file of the export, or say channel");
+}
+
+// Of any file, as far as it tells itself.
+Result<void> take_tags(Parameter parameter, const FileMeaning& meaning, const Json& value,
+                       const std::string& where, MapFile& map) {
+  const ImageFileInfo& info = meaning.info;
+  const auto says = [&](const char* key) { return value.contains(key); };
+  if (const auto places = meaning.find({"normal.x", "normal.y", "normal.z"});
+      parameter == kNormal && places) {
+    for (const std::size_t place : *places) map.channels.push_back(info.channels[place]);
+  }
+  const bool is_color = material::facts_of(parameter).kind == material::ParameterKind::kColour;
+  if (is_color && info.color == ColorSpace::kOther && !says("transfer")) {
+    return unusable(
+        ErrorKind::kBadData, where,
+        fmt::format("{} says that its colours went through a curve that is neither that of sRGB nor none",
+                    map.file.filename().string()),
+        "export it in sRGB or linear, or say transfer");
+  }
+  const bool is_integer = info.type == SampleType::kUint8 || info.type == SampleType::kUint16;
+  if (parameter == kHeight && is_integer && map.unit.empty() && !says("scale") && !says("unit")) {
+    return unusable(
+        ErrorKind::kBadData, where,
+        fmt::format("{} holds integers, and nothing says how many millimetres its black and white are",
+                    map.file.filename().string()),
+        "say scale, the millimetres between them, and offset, those of black");
+  }
+  return {};
+}
+
 void take_words(const Json& value, MapFile& map) {
+  if (value.contains("scale") || value.contains("offset")) map.scale = map.offset = std::nullopt;
   if (value.contains("scale")) map.scale = value["scale"].get<double>();
   if (value.contains("offset")) map.offset = value["offset"].get<double>();
   if (value.contains("channel")) map.channels = {value["channel"].get<std::string>()};
   if (value.contains("transfer")) map.is_srgb = value["transfer"] == "srgb";
   if (value.contains("unit")) map.unit = value["unit"].get<std::string>();
-  map.y_is_down = value.value("y", "") == "down";
+  if (value.contains("y")) map.y_is_down = value["y"] == "down";
 }
 
-Result<MapFile> map_of_file(const Json& value, const std::string& where) {
+Result<MapFile> map_of_file(std::optional<Parameter> parameter, const Json& value, const std::string& where) {
   MapFile map = {.file = value["map"].get<std::string>()};
-  const Result<ImageFileInfo> info = read_image_info(map.file);
-  if (!info) {
-    Error error = info.error();
+  const Result<FileMeaning> meaning = meaning_of(map.file);
+  if (!meaning) {
+    Error error = meaning.error();
     error.where = where + ": " + error.where;
     return error;
   }
-  map.size = info->size;
-  map.size_mm = size_of(*info);
-  const auto source = info->attributes.find("weft.source");
-  if (source != info->attributes.end()) map.source = source->second;
-  const auto unit = info->attributes.find("weft.unit");
-  if (unit != info->attributes.end()) map.unit = unit->second;
+  const ImageFileInfo& info = meaning->info;
+  map.size = info.size;
+  map.size_mm = size_of(info);
+  const auto source = info.attributes.find("weft.source");
+  if (source != info.attributes.end()) map.source = source->second;
+  const auto unit = info.attributes.find("weft.unit");
+  if (unit != info.attributes.end()) map.unit = unit->second;
   map.provenance = {{"file", map.file.filename().string()}};
+  if (parameter) {
+    const Result<void> taken = meaning->is_listed ? take_listing(*parameter, *meaning, value, where, map)
+                                                  : take_tags(*parameter, *meaning, value, where, map);
+    if (!taken) return taken.error();
+  } else if (meaning->is_listed && meaning->channels.size() == 1) {
+    take_range(meaning->channels.front(), 1, map);
+  }
   take_words(value, map);
   return map;
 }
@@ -189,13 +329,14 @@ MapFile file_in(const MapSet& set, const ScanMap& map) {
   found.size_mm = set.size_mm;
   found.is_tile = set.is_tile;
   found.is_of_scan = true;
+  found.stale = set.stale;
   found.provenance = set.provenance;
   found.provenance["map"] = map.name;
   return found;
 }
 
 Result<MapFile> map_of_scan(std::optional<Parameter> parameter, const Json& value, const std::string& where) {
-  const Result<MapSet> set = open_map_set(value["scan"].get<std::string>());
+  const Result<MapSet> set = open_map_set(value["scan"].get<std::string>(), value.value("draft", false));
   if (!set) {
     Error error = set.error();
     error.where = where + ": " + error.where;
@@ -226,13 +367,13 @@ Result<MapFile> map_of_scan(std::optional<Parameter> parameter, const Json& valu
   MapFile map = file_in(*set, *found);
   const std::optional<double> own = map.scale;
   take_words(value, map);
-  if (own && value.contains("scale")) map.scale = *own * *map.scale;
+  if (own) map.scale = *own * map.scale.value_or(1);
   return map;
 }
 
 }  // namespace
 
-Result<MapSet> open_map_set(const fs::path& scan) {
+Result<MapSet> open_map_set(const fs::path& scan, bool draft) {
   const Result<fs::path> folder = folder_of_maps(scan);
   if (!folder) return folder.error();
   MapSet set = {.folder = *folder, .document = {}, .size = {}};
@@ -253,12 +394,23 @@ Result<MapSet> open_map_set(const fs::path& scan) {
     set.size_mm = {{set.document["size_mm"][0].get<double>(), set.document["size_mm"][1].get<double>()}};
   set.is_albedo_relative = has_relative_albedo(set);
   set.provenance = provenance_of(set, scan);
+  if (!is_material) {
+    if (Result<void> ok = find_solve_of(set, draft); !ok) return std::move(ok).error();
+  }
   return set;
+}
+
+Json source_of(const MapSet& set) {
+  if (!set.provenance.contains("solve")) return nullptr;
+  Json source = set.provenance;
+  source.erase("rectified");
+  if (!set.stale.empty()) source["stale"] = set.stale;
+  return source;
 }
 
 Result<MapFile> find_map(Parameter parameter, const Json& value, const std::string& where) {
   Result<MapFile> map =
-      value.contains("scan") ? map_of_scan(parameter, value, where) : map_of_file(value, where);
+      value.contains("scan") ? map_of_scan(parameter, value, where) : map_of_file(parameter, value, where);
   if (!map) return map;
   const material::ParameterFacts& facts = material::facts_of(parameter);
   const bool is_other = !map->unit.empty() && map->unit != facts.unit && !map->scale && *facts.unit != 0;
@@ -273,7 +425,7 @@ Result<MapFile> find_map(Parameter parameter, const Json& value, const std::stri
 }
 
 Result<MapFile> find_mask(const Json& value, const std::string& where) {
-  return value.contains("scan") ? map_of_scan({}, value, where) : map_of_file(value, where);
+  return value.contains("scan") ? map_of_scan({}, value, where) : map_of_file({}, value, where);
 }
 
 Result<material::Field> read_built(const MapSet& built, Parameter parameter) {
@@ -291,7 +443,9 @@ Result<void> expand_scan(MaterialFile& file) {
   const auto scan = file.top.find("scan");
   if (scan == file.top.end()) return {};
   const std::string folder = scan->second.value.get<std::string>();
-  const Result<MapSet> set = open_map_set(folder);
+  const auto asks = file.top.find("draft");
+  const bool is_draft = asks != file.top.end() && asks->second.value.get<bool>();
+  const Result<MapSet> set = open_map_set(folder, is_draft);
   if (!set) {
     Error error = set.error();
     error.where = file.place.name + ": scan: " + error.where;
@@ -304,7 +458,9 @@ Result<void> expand_scan(MaterialFile& file) {
     const MapFile found = file_in(*set, map);
     if (found.same && found.source == "assumed" && !is_there(set->folder / kMaterialProduct.document))
       continue;
-    file.surface[name] = {Json{{"map", map.name}, {"scan", folder}}, from};
+    Json value = {{"map", map.name}, {"scan", folder}};
+    if (is_draft) value["draft"] = true;
+    file.surface[name] = {std::move(value), from};
   }
   if (!file.top.contains("size_mm") && set->size_mm)
     file.top["size_mm"] = {Json{(*set->size_mm)[0], (*set->size_mm)[1]}, from};

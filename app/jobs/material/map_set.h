@@ -18,19 +18,24 @@
 
 namespace weft::app {
 
-/// A folder of maps of one size: of a session its newest set, a set (maps.json) or a built material
-/// (material.json).
+/// A folder of maps of one size: of a session the set that set_to_use() says, with a height where one of them
+/// has it, a set (maps.json) or a built material (material.json).
 struct MapSet {
   std::filesystem::path folder;
   Json document;
   Size size;
   std::optional<std::array<double, 2>> size_mm = {};
   bool is_tile = false;
-  bool is_albedo_relative = false;   ///< its albedo lacks one factor
-  Json provenance = Json::object();  ///< ids back to the photographs
+  bool is_albedo_relative = false;      ///< its albedo lacks one factor
+  Json provenance = Json::object();     ///< ids back to the photographs, level of the solve, whether a draft
+  std::vector<std::string> stale = {};  ///< why it is not what would be made today, a sentence each
 };
-/// kNoInput where there is no set; kBadData.
-Result<MapSet> open_map_set(const std::filesystem::path& scan);
+/// kNoInput where there is no set; kUsage for one of a preview unless `draft` asks for it; kBadData.
+Result<MapSet> open_map_set(const std::filesystem::path& scan, bool draft);
+
+/// Its solve for people and programs: "session", "maps", "solve", "level" and, where it is so, "draft" and
+/// "stale"; null where nobody knows of a solve.
+Json source_of(const MapSet& set);
 
 /// Where a parameter's numbers lie, and how they become the parameter.
 struct MapFile {
@@ -41,25 +46,30 @@ struct MapFile {
   std::string source = "assumed";          ///< measured, derived or assumed
   std::optional<double> scale = {}, offset = {};
   bool y_is_down = false;
-  std::optional<bool> is_srgb = {};              ///< none: colours of 8 bits are, and nothing else
+  std::optional<bool> is_srgb =
+      {};  ///< none: colours are what transfer_of() of linear_image.h says of the file
   std::optional<std::vector<double>> same = {};  ///< the whole map is this
   Size size = {};
   std::optional<std::array<double, 2>> size_mm = {};
   bool is_tile = true;
   bool is_of_scan = false;
   Json provenance = Json::object();
+  std::vector<std::string> stale = {};  ///< of the scan's set
 };
 
 /// The map that a value of a parameter names, {"map", "scan", ...} in its one form; its numbers are not read.
-/// `where` is for messages. kNoInput; kBadData with the nearest map that the scan has, for a unit that is
-/// another's, and for a relative albedo without a scale.
+/// Of a file they are what its meaning (app/jobs/file_meaning.h) says unless the value does. `where` is for
+/// messages. kNoInput; kBadData with the nearest map that the scan has, for a unit that is another's, for a
+/// relative albedo without a scale, for a file that an export.json lists as something else, and for heights
+/// in integers of which nobody says the millimetres.
 Result<MapFile> find_map(material::Parameter parameter, const Json& value, const std::string& where);
 /// Likewise of a mask or of weights.
 Result<MapFile> find_mask(const Json& value, const std::string& where);
 
 /// Its numbers as a field: slopes of a normal, roughness of any scale. Integer files hold n / 2 + 1/2 of a
-/// normal unless a scale is said. kBadData with the first pixel that is no number or out of the parameter's
-/// range (an albedo from -1 to 4), and for channels that are not there.
+/// normal unless a scale is said, and so do floats that show it (are_packed_normals()). kBadData with the
+/// first pixel that is no number or out of the parameter's range (an albedo from -1 to 4), and for channels
+/// that are not there.
 Result<material::Field> read_field(material::Parameter parameter, const MapFile& map,
                                    const std::string& where);
 /// One plane, scaled as it says; `channel` counts from 0 where the map names none.

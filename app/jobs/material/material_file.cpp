@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "app/jobs/material/material_keys.h"
+#include "core/number.h"
 #include "core/text.h"
 #include "core/toml/toml_json.h"
 
@@ -44,7 +44,9 @@ class MaterialParser {
     const std::string prefix = std::string(kMaterialSchema) + "/";
     int major = 0;
     if (schema.starts_with(prefix))
-      std::from_chars(schema.data() + prefix.size(), schema.data() + schema.size(), major);
+      major =
+          as_whole_number<int>(schema.substr(prefix.size(), schema.find('.', prefix.size()) - prefix.size()))
+              .value_or(0);
     if (major == 1) return {};
     if (major > 1)
       return unfit_material(

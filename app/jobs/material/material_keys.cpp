@@ -24,6 +24,7 @@ const std::vector<MaterialKey>& map_keys() {
   static const std::vector<MaterialKey> keys = {
       {.name = "map", .holds = kText},
       {.name = "scan", .holds = kFolder},
+      {.name = "draft", .holds = kFlag},
       {.name = "unit", .holds = kText},
       {.name = "scale", .holds = kNumber, .least = -1e6, .most = 1e6},
       {.name = "offset", .holds = kNumber, .least = -1e6, .most = 1e6},
@@ -167,6 +168,7 @@ std::span<const MaterialKey> top_keys() {
       {.name = "is_tile", .holds = kFlag},
       {.name = "pixels", .holds = kWholes, .least = 1, .most = 32768, .count = 2},
       {.name = "scan", .holds = kFolder},
+      {.name = "draft", .holds = kFlag},
       {.name = "surface", .holds = kTable},
       {.name = "over", .holds = kTable},
       {.name = "layer", .holds = kTable},

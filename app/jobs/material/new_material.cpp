@@ -39,6 +39,7 @@ std::string text_of(const NewMaterial& material) {
     text += fmt::format("inherits = {}\n", quoted_text(as_written(material.inherits, folder)));
   if (!material.scan.empty())
     text += fmt::format("scan = {}\n", quoted_text(as_written(material.scan.string(), folder)));
+  if (material.is_draft) text += "draft = true\n";
   text += "\n[surface]\n";
   if (material.inherits.empty() && material.scan.empty())
     text += "albedo = [0.5, 0.5, 0.5]\nroughness = 0.7\n";

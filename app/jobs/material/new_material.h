@@ -14,6 +14,7 @@ struct NewMaterial {
   std::filesystem::path file;
   std::string inherits;             ///< as in a file; empty: nothing
   std::filesystem::path scan;       ///< empty: none
+  bool is_draft = false;            ///< maps of a preview will do
   std::vector<std::string> layers;  ///< materials to be laid on it, bottom to top
 };
 

@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "app/jobs/material/map_set.h"
@@ -150,6 +151,22 @@ void list_values(Json& list, const std::string& prefix, const KeptValues& values
     list.push_back({{"key", prefix + key}, {"value", value.value}, {"from", value.from}});
 }
 
+// The sets of maps that its own values come from, each once.
+Json scans_in(const ResolvedMaterial& material) {
+  Json scans = Json::array();
+  std::set<std::string> seen;
+  for (const KeptValues* values : {&material.surface, &material.over}) {
+    for (const auto& [key, value] : *values) {
+      if (!value.value.is_object() || !value.value.contains("scan")) continue;
+      const std::string folder = value.value["scan"].get<std::string>();
+      if (!seen.insert(folder).second) continue;
+      const Result<MapSet> set = open_map_set(folder, true);
+      if (Json source = set ? source_of(*set) : Json(); !source.is_null()) scans.push_back(std::move(source));
+    }
+  }
+  return scans;
+}
+
 }  // namespace
 
 MaterialSource materials_on_disk() {
@@ -187,7 +204,8 @@ Json json_of(const ResolvedMaterial& material) {
   return {{"schema", "weft.material-resolved/1"},
           {"material", material.place.name},
           {"generations", std::move(generations)},
-          {"values", std::move(values)}};
+          {"values", std::move(values)},
+          {"scans", scans_in(material)}};
 }
 
 }  // namespace weft::app

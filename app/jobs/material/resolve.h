@@ -33,8 +33,8 @@ MaterialSource materials_on_disk();
 /// not there, a new one without a material, and a key unset that is not there. Errors of the source.
 Result<ResolvedMaterial> resolve_material(const MaterialPlace& place, const MaterialSource& source);
 
-/// {"schema": "weft.material-resolved/1", "material", "generations", "values": [{"key", "value", "from"}]}:
-/// every value with the file that it comes from.
+/// {"schema": "weft.material-resolved/1", "material", "generations", "values": [{"key", "value", "from"}],
+/// "scans"}: every value with the file that it comes from, and the solves that its own maps are of.
 Json json_of(const ResolvedMaterial& material);
 
 }  // namespace weft::app

@@ -281,6 +281,15 @@ class TreePlanner {
     return {};
   }
 
+  // What of a file's meaning lies beside it, as in an export.json.
+  static Json meaning_json(const MapFile& map) {
+    Json json = {{"unit", map.unit}, {"y_is_down", map.y_is_down}};
+    if (map.scale) json["scale"] = *map.scale;
+    if (map.offset) json["offset"] = *map.offset;
+    if (map.is_srgb) json["is_srgb"] = *map.is_srgb;
+    return json;
+  }
+
   // A value without its paths, with the digest of what it names.
   Result<Json> identity(const MaterialNode& node, const std::string& key, const Json& value) {
     const auto map = node.maps.find(key);
@@ -288,6 +297,7 @@ class TreePlanner {
     Json facts = value;
     facts.erase("map");
     facts.erase("scan");
+    facts.erase("draft");
     if (map->second.same) {
       facts["same"] = *map->second.same;
     } else {
@@ -296,6 +306,7 @@ class TreePlanner {
       facts["sha256"] = std::move(*sha256);
     }
     facts["channels"] = map->second.channels;
+    facts["read_as"] = meaning_json(map->second);
     facts["source"] = map->second.source;
     facts["from"] = map->second.provenance;
     return facts;
@@ -369,6 +380,28 @@ Result<MaterialTree> plan_materials(const std::vector<MaterialPlace>& roots, con
     nodes.push_back(*node);
   }
   return planner.take(std::move(nodes));
+}
+
+Json scans_of(const MaterialTree& tree, std::size_t index) {
+  Json scans = Json::array();
+  const auto add = [&](Json scan) {
+    const bool is_new = std::ranges::none_of(scans, [&](const Json& each) { return each == scan; });
+    if (is_new) scans.push_back(std::move(scan));
+  };
+  const MaterialNode& node = tree.nodes[index];
+  for (const auto& [key, map] : node.maps) {
+    if (!map.is_of_scan || !map.provenance.contains("solve")) continue;
+    Json scan = map.provenance;
+    for (const char* other : {"map", "rectified"}) scan.erase(other);
+    if (!map.stale.empty()) scan["stale"] = map.stale;
+    add(std::move(scan));
+  }
+  for (const std::vector<std::size_t>* below : {&node.layers, &node.runtime}) {
+    for (const std::size_t each : *below) {
+      for (Json& scan : scans_of(tree, each)) add(std::move(scan));
+    }
+  }
+  return scans;
 }
 
 std::vector<fs::path> files_of(const MaterialTree& tree) {

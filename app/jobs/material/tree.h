@@ -20,7 +20,7 @@
 namespace weft::app {
 
 /// Raised whenever the bytes of a built material may change.
-inline constexpr int kMaterialBuilder = 1;
+inline constexpr int kMaterialBuilder = 2;
 
 /// The grid of a material without a map has this many pixels a side.
 inline constexpr int kPlainSide = 16;
@@ -56,6 +56,10 @@ struct MaterialTree {
 /// from a height where there is none.
 Result<MaterialTree> plan_materials(const std::vector<MaterialPlace>& roots, const MaterialSource& source,
                                     DigestCache& digests);
+
+/// The sets of maps that a node and its layers take from: "session", "maps", "solve", "level" and, where it
+/// is so, "draft" and "stale", sentences of why today another would be made.
+Json scans_of(const MaterialTree& tree, std::size_t index);
 
 /// Files that the tree is made of, without what weft brings along.
 std::vector<std::filesystem::path> files_of(const MaterialTree& tree);

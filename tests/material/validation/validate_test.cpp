@@ -254,6 +254,53 @@ TEST(Validation, SeesAHeightOfAnotherScaleAndOneUpsideDown) {
   }
 }
 
+TEST(Validation, NamesNoRemedyThatWasTakenAlready) {
+  Cloth cloth;
+  cloth.paint([&](int x, int y) {
+    const double tone = 0.97 * std::exp(0.5 * (double{cloth.openness(x, y)} - 1)) +
+                        0.02 * double{cloth.surface.slope(x, y, 0)};
+    return std::array{tone, tone, tone};
+  });
+  MapsToValidate maps = cloth.maps();
+  const auto remedies = [&] {
+    std::string all;
+    for (const Verdict& verdict : verdicts_of(findings_of(maps)))
+      all += verdict.name + ": " + verdict.remedy + "\n";
+    return all;
+  };
+  const auto count = [&](const std::string& words) {
+    const std::string all = remedies();
+    int found = 0;
+    for (std::size_t at = all.find(words); at != std::string::npos; at = all.find(words, at + 1)) ++found;
+    return found;
+  };
+  maps.level = "standard";
+  EXPECT_EQ(count("--quality reference"), 3) << remedies();
+  maps.level = "reference";
+  EXPECT_EQ(count("--quality"), 0) << remedies();
+  EXPECT_GE(count("white patch"), 1) << remedies();
+  maps.is_colour_changed = true;
+  EXPECT_EQ(count("white patch"), 0) << "what a step made brighter is no fault of the patch: " << remedies();
+  EXPECT_GE(count("step color"), 1) << remedies();
+}
+
+TEST(Validation, WarnsOfAHeightThatItIntegratedAndAsksForNoOtherUnit) {
+  Cloth cloth;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) cloth.height_mm(x, y) *= 0.5F;
+  }
+  MapsToValidate maps = cloth.maps();
+  EXPECT_EQ(finding("HEIGHT_OFF_SLOPES", maps).severity, Severity::kError);
+  maps.is_height_of_slopes = true;
+  for (const auto& [level, wanted] : {std::pair{"fast", "--quality reference"}, {"reference", "leave it"}}) {
+    maps.level = level;
+    const Finding off = finding("HEIGHT_OFF_SLOPES", maps);
+    EXPECT_EQ(off.severity, Severity::kWarning);
+    EXPECT_NE(off.verdict.remedy.find(wanted), std::string::npos) << level << off.verdict.remedy;
+    EXPECT_EQ(off.verdict.remedy.find("unit"), std::string::npos) << off.verdict.remedy;
+  }
+}
+
 TEST(Validation, ChecksTexelDensityAndKnownGreys) {
   Cloth cloth;
   cloth.surface.mm_per_pixel = 20;

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/json_document.h"
+#include "core/product.h"
+#include "core/result.h"
+#include "core/session.h"
+#include "library/current.h"
+
+// The sets of maps of a session, and which of them others are made from.
+
+namespace weft::app {
+
+/// A text or a truth of a document; empty or false where it has none of that kind.
+std::string text_at(const Json& document, const char* key);
+bool flag_at(const Json& document, const char* key);
+
+/// A set of maps with what is known of its solve.
+struct SessionSet {
+  Product product;
+  Json document;
+  std::string level;               ///< of its solve; empty: nobody knows
+  bool is_draft = false;           ///< of a preview
+  std::vector<std::string> stale;  ///< why it is not what would be made today, a sentence each
+};
+
+/// The complete sets of a session but its previews, the oldest first. `of_previews`: those too.
+std::vector<SessionSet> sets_of(const library::SessionSolves& solves, bool of_previews = false);
+
+/// Which of them exports and materials are made from: of those of the current solve, else of all, the newest
+/// that has the maps `wanted`, else the newest. Maps of a preview come last. Null where there is none.
+const SessionSet* set_to_use(const library::SessionSolves& solves, const std::vector<SessionSet>& sets,
+                             const std::vector<std::string>& wanted);
+
+/// What to do where there are maps of a preview alone: "make better ones with weft maps SESSION".
+std::string how_to_make_better(const library::SessionSolves& solves);
+
+/// "from the standard solve 0123456789abcdef", then why that is stale.
+std::vector<std::string> source_lines(const Json& document);
+
+}  // namespace weft::app
