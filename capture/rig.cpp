@@ -21,7 +21,7 @@ constexpr int kMostLeds = 10;
 
 /// A path of the file, made absolute; empty stays empty.
 fs::path beside(const fs::path& file, const std::string& path) {
-  return path.empty() ? fs::path() : (fs::absolute(file).parent_path() / path).lexically_normal();
+  return path.empty() ? fs::path() : (file.parent_path() / path).lexically_normal();
 }
 
 std::string place(const fs::path& file, const char* table) {
@@ -178,7 +178,7 @@ Result<Rig> read_rig(const fs::path& file) {
   const Result<toml::table> table = read_toml(file);
   if (!table) return table.error();
   Rig rig;
-  rig.file = file;
+  rig.file = fs::absolute(file).lexically_normal();
   TomlKeys keys(*table, file.string(), kPage);
   keys.know({"name", "leds", "led", "board", "camera", "below", "polariser", "scan", "daemon"});
   rig.name = keys.text_or("name", "rig");

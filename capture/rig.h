@@ -14,7 +14,7 @@ namespace weft::capture {
 
 /// What a person writes about a rig, in TOML (docs/rig.md). Paths in the file are relative to its folder.
 struct Rig {
-  std::filesystem::path file;  ///< it was read from
+  std::filesystem::path file;  ///< it was read from, absolute; empty: there is no rig
   std::string name;            ///< in every session and calibration of it
   int leds = 10;               ///< 1 to 10; where the file does not say, as many as `lights` has; 0: no rig
 
@@ -72,6 +72,9 @@ struct Rig {
     std::filesystem::path virtual_control;
     std::filesystem::path state;  ///< folder for its lock, address and log; empty: beside the rig file
   } daemon;
+
+  /// Photographs and calibrations lie below it: the file's; without a file that of the sessions.
+  std::filesystem::path folder() const { return file.empty() ? scan.sessions : file.parent_path(); }
 };
 
 /// Reads and checks the file. kNoInput, kBadData with the key and what is allowed there.

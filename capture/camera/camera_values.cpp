@@ -57,7 +57,7 @@ Result<Choice> nearest_choice(const std::vector<Choice>& choices, double wanted,
   const auto above = std::ranges::upper_bound(choices, wanted, {}, &Choice::value);
   if (above != choices.begin()) sides = std::prev(above)->text;
   if (above != choices.end()) sides += (sides.empty() ? "" : " and ") + above->text;
-  return Error{ErrorKind::kBadData, "the camera has no such " + name, fmt::format("{:g}", wanted),
+  return Error{ErrorKind::kBadData, "the camera has no such " + name, fmt::format("{:.10g}", wanted),
                sides.empty() ? "it lists none" : "the nearest are " + sides,
                sides.empty()
                    ? "set the camera's mode dial to M and fit the lens that the rig was calibrated with"

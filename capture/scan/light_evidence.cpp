@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/percent.h"
 #include "core/statistics.h"
 
 namespace weft::capture {
@@ -303,17 +304,17 @@ ShotVerdict ScanEvidence::judge_dark_again(const std::vector<double>& light) con
   if (more > kDarkTo) {
     verdict.finding = Finding::kRoomLight;
     verdict.sentence = fmt::format(
-        "the dark shot at the end is brighter than the first by {:.2g} percent of full scale: a lamp in the "
-        "room or a LED came on during the scan",
-        100 * more);
+        "the dark shot at the end is brighter than the first by {} percent of full scale: a lamp in the room "
+        "or a LED came on during the scan",
+        percent_words(more));
     verdict.accuses_all = true;
     return verdict;
   }
   verdict.doubt = Finding::kRoomLight;
   verdict.warnings.push_back(
-      fmt::format("the dark shot at the end is {} than the first by {:.2g} percent of full scale: the room's "
+      fmt::format("the dark shot at the end is {} than the first by {} percent of full scale: the room's "
                   "light changed or the sensor warmed in between; scan again with the room dark",
-                  more > 0 ? "brighter" : "darker", 100 * std::abs(more)));
+                  more > 0 ? "brighter" : "darker", percent_words(std::abs(more))));
   return verdict;
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "capture/scan/plan.h"
+#include "core/exposure_words.h"
 
 namespace weft::capture {
 namespace {
@@ -23,10 +24,29 @@ constexpr double kMostClippedByMeter = 1e-5;
 constexpr double kPoorRange = 0.5;  // 99.9 percent below less than this share of white
 constexpr double kLongestBracket = 100;
 constexpr double kWhite = 0.8;  // albedo that the first test shot holds
+constexpr double kStart_us = 1e6 / 125;
 
 /// What a LED gives a microsecond.
 double rate_of(const MeteredShot& shot) {
   return shot.seen.bright / shot.exposure_us;
+}
+
+/// The longest time that is not above (by a percent, which no shutter keeps); the shortest where all are.
+double longest_below(const std::vector<double>& times_us, double wanted_us) {
+  if (times_us.empty()) return std::floor(wanted_us);
+  const auto above = std::upper_bound(times_us.begin(), times_us.end(), 1.01 * wanted_us);
+  return above == times_us.begin() ? times_us.front() : *std::prev(above);
+}
+
+/// Takes what to expect from the calibrated lights.
+void expect_light(MeterInput& input, const PatchLights& lights, double iso) {
+  for (const int led : input.leds) {
+    double brightest = 0;
+    for (const Vec3& s : lights.leds[static_cast<std::size_t>(led - 1)]) brightest = std::max(brightest, s.z);
+    input.expected.push_back(brightest);
+  }
+  const double most = *std::ranges::max_element(input.expected);
+  input.start_us = 1e6 * kMeteredTo / (kWhite * most * lights.reading * iso / 100);
 }
 
 Json to_json(const MeteredShot& shot) {
@@ -52,7 +72,7 @@ class Meter {
     Metering metering;
     metering.led = brightest.led;
     metering.wanted_us = brightest.longest_us();
-    metering.exposure_us = longest_below(metering.wanted_us);
+    metering.exposure_us = longest_below(input_.shutter_times_us, metering.wanted_us);
     judge_range(brightest, metering);
     metering.test_shots = std::move(shots_);
     return metering;
@@ -60,14 +80,6 @@ class Meter {
 
  private:
   double settable(double wanted_us) const { return nearest_time_us(input_.shutter_times_us, wanted_us); }
-
-  /// The longest time that is not above (by a percent, which no shutter keeps); the shortest where all are.
-  double longest_below(double wanted_us) const {
-    const auto& times = input_.shutter_times_us;
-    if (times.empty()) return std::floor(wanted_us);
-    const auto above = std::upper_bound(times.begin(), times.end(), 1.01 * wanted_us);
-    return above == times.begin() ? times.front() : *std::prev(above);
-  }
 
   Result<void> try_leds() {
     if (input_.expected.empty()) return try_each(input_.leds);
@@ -112,8 +124,8 @@ class Meter {
     const bool is_full = seen.clipped > kMostClippedByMeter;
     return Error{ErrorKind::kBadData, is_full ? "cloth is too bright" : "cloth is too dark",
                  fmt::format("LED {}", led),
-                 fmt::format("at {:.6g} us its brightest photosites come to {:.3f} of white", exposure_us_,
-                             seen.bright),
+                 fmt::format("at {} its brightest photosites come to {:.3f} of white",
+                             exposure_words(exposure_us_), seen.bright),
                  is_full ? "lower the LEDs' current or close the aperture and calibrate again"
                          : "check that the LED lights and the lens is open, or scan with --exposure"};
   }
@@ -123,10 +135,10 @@ class Meter {
     const double bright = brightest.seen.bright * metering.exposure_us / brightest.exposure_us;
     if (bright >= kPoorRange) return;
     const double times = std::min(std::round(kMeteredTo / bright), kLongestBracket);
-    metering.warnings.push_back(fmt::format(
-        "highlights hold the exposure at {:.6g} us, where 99.9 percent of the cloth stay below {:.0f} "
-        "percent of the range; scan with --bracket {:.0f} for the rest",
-        metering.exposure_us, 100 * bright, times));
+    metering.warnings.push_back(
+        fmt::format("highlights hold the exposure at {}, where 99.9 percent of the cloth stay below {:.0f} "
+                    "percent of the range; scan with --bracket {:.0f} for the rest",
+                    exposure_words(metering.exposure_us), 100 * bright, times));
   }
 
   const MeterInput& input_;
@@ -163,19 +175,24 @@ Json to_json(const Metering& metering) {
   return {{"led", metering.led}, {"wanted_us", metering.wanted_us}, {"test_shots", std::move(shots)}};
 }
 
-void expect_light(MeterInput& input, const PatchLights& lights, double iso) {
-  input.expected.clear();
-  for (const int led : input.leds) {
-    double brightest = 0;
-    for (const Vec3& s : lights.leds[static_cast<std::size_t>(led - 1)]) brightest = std::max(brightest, s.z);
-    input.expected.push_back(brightest);
-  }
-  const double most = *std::ranges::max_element(input.expected);
-  input.start_us = 1e6 * kMeteredTo / (kWhite * most * lights.reading * iso / 100);
+MeterInput meter_input(std::vector<int> leds, std::vector<double> shutter_times_us,
+                       const std::optional<PatchLights>& lights, double iso) {
+  MeterInput input = {std::move(leds), {}, std::move(shutter_times_us), kStart_us};
+  if (lights) expect_light(input, *lights, iso);
+  return input;
 }
 
 Result<Metering> meter(const MeterInput& input, const TestShot& shoot) {
   return Meter(input, shoot).run();
+}
+
+std::optional<double> metered_by(const MeteredShot& shot, const MeterInput& input) {
+  if (!shot.is_readable()) return std::nullopt;
+  double wanted_us = shot.longest_us();
+  const auto led = std::ranges::find(input.leds, shot.led) - input.leds.begin();
+  if (static_cast<std::size_t>(led) < input.expected.size())
+    wanted_us *= input.expected[static_cast<std::size_t>(led)] / *std::ranges::max_element(input.expected);
+  return longest_below(input.shutter_times_us, wanted_us);
 }
 
 }  // namespace weft::capture

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,8 +53,10 @@ struct MeterInput {
   double start_us = 0;                   ///< of the first test shot
 };
 
-/// Takes what to expect from the calibrated lights: the first test shot then holds white cloth.
-void expect_light(MeterInput& input, const PatchLights& lights, double iso);
+/// What a scan of these LEDs begins with. Where the calibrated lights are known they tell what to expect: the
+/// first test shot then holds white cloth.
+MeterInput meter_input(std::vector<int> leds, std::vector<double> shutter_times_us,
+                       const std::optional<PatchLights>& lights, double iso);
 
 /// A test shot: how bright the cloth is under a LED at an exposure.
 using TestShot = std::function<Result<Brightness>(int led, double exposure_us)>;
@@ -62,5 +65,9 @@ using TestShot = std::function<Result<Brightness>(int led, double exposure_us)>;
 /// unlike it; where they agree with it the others are believed, else all are tried. Errors are those of the
 /// test shots, and kBadData where no exposure of the camera suits.
 Result<Metering> meter(const MeterInput& input, const TestShot& shoot);
+
+/// What that would come to, by one test shot and what it lets expect of the other LEDs (where nothing is
+/// expected, that none is brighter); nothing where the shot is full or too dark.
+std::optional<double> metered_by(const MeteredShot& shot, const MeterInput& input);
 
 }  // namespace weft::capture

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/exposure_words.h"
+
 namespace weft::capture {
 namespace {
 
 constexpr double kSameTime = 0.01;  // 1/60 s is listed as 16667 or 16700 us; a third of a stop is 0.26
+const double kHalfAStep = std::exp2(1.0 / 6);
 
 }  // namespace
 
@@ -118,14 +121,19 @@ double nearest_time_us(const std::vector<double>& times_us, double wanted_us) {
 }
 
 Result<double> settable_time_us(const std::vector<double>& times_us, double wanted_us) {
-  const double nearest = nearest_time_us(times_us, wanted_us);
-  if (std::abs(nearest / wanted_us - 1) <= kSameTime) return nearest;
-  const auto above = std::upper_bound(times_us.begin(), times_us.end(), wanted_us);
-  const bool is_between = above != times_us.begin() && above != times_us.end();
-  return Error{ErrorKind::kUsage, "the camera has no such exposure", fmt::format("{:.6g} us", wanted_us),
-               is_between ? fmt::format("it has {:.6g} and {:.6g} us", *std::prev(above), *above)
-                          : fmt::format("it has {:.6g} to {:.6g} us", times_us.front(), times_us.back()),
-               "ask for one that it has, or for none: then the cloth is metered"};
+  const bool is_beyond = !times_us.empty() && (wanted_us * kHalfAStep < times_us.front() ||
+                                               wanted_us > times_us.back() * kHalfAStep);
+  if (!is_beyond) return nearest_time_us(times_us, wanted_us);
+  return Error{
+      ErrorKind::kUsage, "the camera has no such exposure", exposure_words(wanted_us),
+      fmt::format("it has {} to {}", exposure_words(times_us.front()), exposure_words(times_us.back())),
+      "ask for one of those: 20ms, 1/60 and 0.5s are exposures"};
+}
+
+std::string nearest_time_words(double wanted_us, double settable_us) {
+  if (std::abs(settable_us / wanted_us - 1) <= kSameTime) return "";
+  return fmt::format("{} is the exposure that the camera has nearest to {}", exposure_words(settable_us),
+                     exposure_words(wanted_us));
 }
 
 std::string name_of(const PlannedShot& shot) {

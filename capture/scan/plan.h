@@ -63,8 +63,11 @@ std::vector<PlannedShot> missing_shots(const std::vector<PlannedShot>& plan, con
 
 /// The time of `times_us` (rising) that is nearest to `wanted_us` by ratio; `wanted_us` where there is none.
 double nearest_time_us(const std::vector<double>& times_us, double wanted_us);
-/// The same, if it is within 1 percent; else kUsage with the two times between which `wanted_us` lies.
+/// The same, which is what a person means by `wanted_us`, if it lies at most a sixth of a stop beyond the
+/// shortest or the longest time; else kUsage with these two.
 Result<double> settable_time_us(const std::vector<double>& times_us, double wanted_us);
+/// What to say where that is another time than what was asked for; empty: it is the same one.
+std::string nearest_time_words(double wanted_us, double settable_us);
 
 /// "LED 3", "the dark shot".
 std::string name_of(const PlannedShot& shot);

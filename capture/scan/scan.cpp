@@ -23,6 +23,8 @@
 #include "capture/scan/request_check.h"
 #include "capture/scan/second_copy.h"
 #include "capture/scan/shooter.h"
+#include "core/exposed.h"
+#include "core/exposure_words.h"
 #include "core/suits.h"
 
 namespace weft::capture {
@@ -30,9 +32,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostClipped = 1e-5;  // of a channel of a metered frame
-constexpr int kTimesWrong = 2;         // a shot whose light is wrong ends the scan
+constexpr int kTimesWrong = 2;  // a shot whose light is wrong ends the scan
 constexpr double kSixthOfAStop = 0.116;
+constexpr double kMostRoom = 1e6;                  // of a frame without any light
 constexpr std::int64_t kUsualPixels = 16'500'000;  // of a camera that no calibration tells of
 
 /// What became of a frame on its way into the session.
@@ -143,7 +145,22 @@ class Scan {
     Result<std::vector<double>> times = shooter_.shutter_times_us();
     if (!times) return times.error();
     shutter_times_us_ = std::move(*times);
-    return {};
+    return settle_times();
+  }
+
+  /// What is asked for in the camera's own times, before a session is made for it; 0: metered.
+  Result<void> settle_times() {
+    const auto settle = [this](double wanted_us, double& settled_us) -> Result<void> {
+      if (wanted_us <= 0) return {};
+      const Result<double> settable = settable_time_us(shutter_times_us_, wanted_us);
+      if (!settable) return settable.error();
+      settled_us = *settable;
+      if (std::string words = nearest_time_words(wanted_us, *settable); !words.empty())
+        warnings_.push_back(std::move(words));
+      return {};
+    };
+    if (Result<void> ok = settle(request_.exposure.exposure_us, asked_us_); !ok) return ok;
+    return list_.below ? settle(request_.below_us, below_asked_us_) : Result<void>();
   }
 
   Result<void> open_session() {
@@ -172,10 +189,8 @@ class Scan {
                    "take again what weft scan took"};
     }
     Json record = {{"from", "request"}};
-    if (exposure_.exposure_us > 0) {
-      const Result<double> settable = settable_time_us(shutter_times_us_, exposure_.exposure_us);
-      if (!settable) return settable.error();
-      exposure_.exposure_us = *settable;
+    if (asked_us_ > 0) {
+      exposure_.exposure_us = asked_us_;
     } else {
       Result<Metering> metering = metered();
       if (!metering) return metering.error();
@@ -205,14 +220,12 @@ class Scan {
     times_.bracket_us = fields.optional_number("bracket_us").value_or(of_session.exposure_us);
     times_.below_us = fields.optional_number("below_us").value_or(of_session.exposure_us);
     if (Result<void> ok = fields.status(); !ok) return ok;
-    const double asked_us = request_.exposure.exposure_us;
-    const bool other_time = asked_us > 0 && !request_.again &&
-                            nearest_time_us(shutter_times_us_, asked_us) != of_session.exposure_us;
+    const bool other_time = asked_us_ > 0 && !request_.again && asked_us_ != of_session.exposure_us;
     if (other_time || of_session.iso != exposure_.iso || of_session.f_number != exposure_.f_number) {
       return Error{ErrorKind::kCannotCreate, "session was begun with another exposure",
                    request_.session.string(),
-                   fmt::format("its frames are taken at {:.6g} us, ISO {:g}, f/{:g}", of_session.exposure_us,
-                               of_session.iso, of_session.f_number),
+                   fmt::format("its frames are taken at {}, ISO {:g}, f/{:g}",
+                               exposure_words(of_session.exposure_us), of_session.iso, of_session.f_number),
                    "scan under another name, or leave the exposure as it was"};
     }
     exposure_ = of_session;
@@ -233,16 +246,15 @@ class Scan {
         calibration_->response->exposure_ratio(times_.bracket_us, exposure_.exposure_us)) {
       return;
     }
-    warnings_.push_back(fmt::format(
-        "the calibration has no measured ratio of {:.6g} us to {:.6g} us, without which the brackets are not "
-        "used: measure it with weft calibrate response",
-        times_.bracket_us, exposure_.exposure_us));
+    warnings_.push_back(
+        fmt::format("the calibration has no measured ratio of {} to {}, without which the brackets are not "
+                    "used: measure it with weft calibrate response",
+                    exposure_words(times_.bracket_us), exposure_words(exposure_.exposure_us)));
   }
 
   Result<Metering> metered() {
     report_.phase(ScanPhase::kMetering);
-    MeterInput input = {list_.leds, {}, shutter_times_us_, 1e6 / 125};
-    if (so_far_.model) expect_light(input, *so_far_.model, exposure_.iso);
+    const MeterInput input = meter_input(list_.leds, shutter_times_us_, so_far_.model, exposure_.iso);
     return meter(input, [&](int led, double exposure_us) -> Result<Brightness> {
       return tested({led, ShotRole::kLit, solved_state()}, exposure_us);
     });
@@ -254,7 +266,7 @@ class Scan {
 
   /// The time asked for, else a metered one; that of the lit shots where the cloth lets no light through.
   Result<double> time_of_light_below() {
-    if (request_.below_us > 0) return settable_time_us(shutter_times_us_, request_.below_us);
+    if (below_asked_us_ > 0) return below_asked_us_;
     report_.phase(ScanPhase::kMetering);
     const Result<Metering> metering =
         meter({{1}, {}, shutter_times_us_, exposure_.exposure_us}, [&](int, double exposure_us) {
@@ -319,22 +331,19 @@ class Scan {
 
   Result<void> plan_again() {
     std::optional<double> bracket_us;
-    if (const double asked_us = request_.exposure.exposure_us; asked_us > 0) {
-      const Result<double> settable = settable_time_us(shutter_times_us_, asked_us);
-      if (!settable) return settable.error();
-      if (*settable != exposure_.exposure_us) bracket_us = *settable;
-    }
+    if (asked_us_ > 0 && asked_us_ != exposure_.exposure_us) bracket_us = asked_us_;
     const Response response = calibration_ && calibration_->response ? *calibration_->response : Response();
     if (bracket_us && !response.exposure_ratio(*bracket_us, exposure_.exposure_us)) {
-      const std::vector<double> measured_us = response.exposures_beside(exposure_.exposure_us);
+      std::vector<std::string> measured;
+      for (const double us : response.exposures_beside(exposure_.exposure_us))
+        measured.push_back(exposure_words(us));
       return Error{
           ErrorKind::kUsage, "the shot cannot be taken again at another exposure", request_.session.string(),
-          fmt::format("nobody measured the ratio of {:.6g} us to the session's {:.6g} us", *bracket_us,
-                      exposure_.exposure_us),
-          measured_us.empty()
-              ? "scan the cloth again at another exposure: weft calibrate response measures the "
-                "ratios of its own exposures only, and the session's is none of them"
-              : fmt::format("take it at one that was measured: {:.6g} us", fmt::join(measured_us, ", "))};
+          fmt::format("nobody measured the ratio of {} to the session's {}", exposure_words(*bracket_us),
+                      exposure_words(exposure_.exposure_us)),
+          measured.empty() ? "scan the cloth again at another exposure: weft calibrate response measures the "
+                             "ratios of its own exposures only, and the session's is none of them"
+                           : fmt::format("take it at one that was measured: {}", fmt::join(measured, ", "))};
     }
     Result<PlannedShot> again = shot_again(journal_->session(), *request_.again, exposure_, bracket_us);
     if (!again) return again.error();
@@ -454,9 +463,9 @@ class Scan {
 
     KeptFrame kept = {
         {}, histogram_rgb(*frame), verdict.warnings, {code_of(verdict.doubt), verdict.level, verdict.misfit}};
-    warn_of_clipping(shot, kept);
     Json notes = Json::object();
     if (verdict.level) notes["level"] = *verdict.level;
+    note_exposure(shot, *frame, kept, notes);
     if (!kept.warnings.empty()) notes["warnings"] = kept.warnings;
     Result<Shot> in_session = journal_->keep(shot, photograph, notes);
     if (!in_session) {
@@ -527,22 +536,23 @@ class Scan {
     return names;
   }
 
-  void warn_of_clipping(const PlannedShot& shot, KeptFrame& kept) const {
-    if (shot.role == ShotRole::kBracket) return;
+  static void note_exposure(const PlannedShot& shot, const RawFrame& frame, KeptFrame& kept, Json& notes) {
     double clipped = 0;
     for (const RawHistogram& histogram : kept.histogram_rgb) clipped = std::max(clipped, histogram.clipped);
-    if (clipped <= kMostClipped) return;
-    kept.finding.code = "clipped";
-    kept.warnings.push_back(
-        fmt::format("{} has {:.2g} percent of a channel full: scan with a shorter --exposure, or "
-                    "with --bracket 0.25",
-                    name_of(shot), 100 * clipped));
+    if (clipped > kMostClipped && shot.role != ShotRole::kBracket) kept.finding.code = "clipped";
+    if (shot.role != ShotRole::kLit && shot.role != ShotRole::kBracket) return;
+    const MeteredShot of_its_time = {shot.led, 1, brightness_of(frame)};
+    set_exposed({clipped, std::min(of_its_time.longest_us(), kMostRoom)}, notes);
   }
 
   Result<void> finish() {
     report_.phase(ScanPhase::kFinishing);
     warnings_.insert(warnings_.end(), so_far_.warnings.begin(), so_far_.warnings.end());
-    return journal_->finish(warnings_, request_.copy.empty() ? Json() : second_copy());
+    const Result<void> done = journal_->finish(warnings_, request_.copy.empty() ? Json() : second_copy());
+    // Not among those of the record: its shots say it, and one that is taken again may mend it.
+    if (const std::string exposure = exposure_warning(journal_->session()); !exposure.empty())
+      warnings_.insert(warnings_.begin(), exposure);
+    return done;
   }
 
   /// It comes before the end of the session: a scan that is killed meanwhile makes it when it is run again.
@@ -567,6 +577,7 @@ class Scan {
   ShotList list_;
   std::optional<Journal> journal_;
   std::vector<double> shutter_times_us_;
+  double asked_us_ = 0, below_asked_us_ = 0;  ///< of the camera's own; 0: metered
   ExposureSettings exposure_;
   OtherTimes times_;
   std::vector<PlannedShot> plan_;

@@ -85,7 +85,8 @@ struct FrameFinding {
   std::optional<double> level, misfit;  ///< as in Verdict (light_evidence.h)
 };
 
-/// A frame that is kept. Its finding has a code where there is a warning.
+/// A frame that is kept. Its finding has a code where there is a warning, or where it is clipped, of which
+/// the outcome speaks for all frames together.
 struct KeptFrame {
   Shot shot;
   std::array<RawHistogram, 3> histogram_rgb;

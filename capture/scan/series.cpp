@@ -91,7 +91,9 @@ double Series::share_of_us(double exposure_us, double share) const {
 
 Result<Photograph> Series::shoot(const SeriesShot& shot) {
   const fs::path name = fs::path(shot.name).filename();
-  return shooter_.take(light_of(shot.leds), {shot.exposure_us, iso_, f_number_}, aside_ / name,
+  const Result<double> exposure_us = settable_time_us(shutter_times_us_, shot.exposure_us);
+  if (!exposure_us) return exposure_us.error();
+  return shooter_.take(light_of(shot.leds), {*exposure_us, iso_, f_number_}, aside_ / name,
                        [&] { empty(aside_); });
 }
 

@@ -21,7 +21,8 @@ struct SeriesShot {
 };
 
 /// Single photographs for a calibration, with the light, the recovery and the checks that a scan's have. All
-/// calls: the errors of scan(), of which there is no evidence by light; what was taken stays.
+/// calls: the errors of scan(), of which there is no evidence by light; what was taken stays. An exposure is
+/// the camera's own that is nearest; kUsage where it lies beyond all of them.
 class Series {
  public:
   /// The folder is there; a file that is there is never written over.

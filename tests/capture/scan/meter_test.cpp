@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "capture/scan/light_fit.h"
 #include "capture/scan/plan.h"
@@ -34,10 +35,7 @@ struct TestTable {
   void expect_flat_cloth() {
     const Result<PatchLights> model = PatchLights::make(cloth.calibration(), 0);
     ASSERT_TRUE(model) << model.error().message();
-    for (const auto& led : model->leds) {
-      input.expected.push_back(0);
-      for (const Vec3& s : led) input.expected.back() = std::max(input.expected.back(), s.z);
-    }
+    input = meter_input(input.leds, input.shutter_times_us, *model, 100);
   }
 
   Brightness shot(int led, double exposure_us) {
@@ -113,6 +111,27 @@ TEST(Meter, KeepsEveryLedOfAGlossyClothFromClippingAndNamesABracket) {
   for (const int led : rig.input.leds) {
     EXPECT_LE(rig.shot(led, metering.exposure_us).clipped, 1e-5) << "LED " << led;
   }
+}
+
+TEST(Meter, IsToldByOneReadableShotOfAnyLedWhereTheLightsAreKnown) {
+  TestTable rig(test::small_scene());
+  rig.expect_flat_cloth();
+  const double exposure_us = rig.metered().exposure_us;
+  for (const int led : rig.input.leds) {
+    const std::optional<double> told_us =
+        metered_by({led, exposure_us / 4, rig.shot(led, exposure_us / 4)}, rig.input);
+    ASSERT_TRUE(told_us) << "LED " << led;
+    EXPECT_LE(std::abs(std::log2(*told_us / exposure_us)), 0.34)
+        << "LED " << led << " tells " << *told_us << " us, the meter " << exposure_us << " us";
+  }
+  EXPECT_EQ(metered_by({1, 8 * exposure_us, rig.shot(1, 8 * exposure_us)}, rig.input), std::nullopt)
+      << "it is full";
+}
+
+TEST(Meter, ScalesAShotOfADimLedToTheBrightest) {
+  const MeterInput input = {{1, 2}, {3, 6}, {1000, 2000, 4000, 8000}, 1000};
+  EXPECT_EQ(metered_by({1, 1000, {0.2, 0.2, 0}}, input), 2000) << "0.8 / 0.2 / 2 ms";
+  EXPECT_EQ(metered_by({2, 1000, {0.2, 0.2, 0}}, input), 4000);
 }
 
 TEST(Meter, SuggestsABracketWhereHighlightsHoldTheExposure) {

@@ -4,6 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace weft::capture {
 namespace {
 
@@ -61,14 +65,30 @@ TEST(Plan, TakesTheNearestShutterTimeByRatio) {
   EXPECT_EQ(nearest_time_us({}, 2900), 2900);
 }
 
-TEST(Plan, DoesNotTakeAShutterTimeForAnother) {
-  const std::vector<double> times_us = {1000, 2000, 4000};
-  EXPECT_EQ(settable_time_us(times_us, 2010).value(), 2000);
-  const Result<double> between = settable_time_us(times_us, 2900);
-  ASSERT_FALSE(between);
-  EXPECT_EQ(between.error().kind, ErrorKind::kUsage);
-  EXPECT_EQ(between.error().why, "it has 2000 and 4000 us");
-  EXPECT_EQ(settable_time_us(times_us, 1e8).error().why, "it has 1000 to 4000 us");
+TEST(Plan, TakesTheShutterTimeThatAPersonMeans) {
+  const std::vector<double> times_us = {12500, 1e6 / 60, 1e6, 1.3e6, 1.6e6};
+  for (const auto& [asked_us, means_us] : std::vector<std::pair<double, double>>{
+           {16160, 1e6 / 60}, {14000, 12500}, {1.5e6, 1.6e6}, {11200, 12500}, {1.79e6, 1.6e6}}) {
+    const Result<double> settable = settable_time_us(times_us, asked_us);
+    ASSERT_TRUE(settable) << settable.error().message();
+    EXPECT_EQ(*settable, means_us) << "for " << asked_us << " us";
+  }
+  EXPECT_EQ(nearest_time_words(16160, 1e6 / 60),
+            "16.67 ms is the exposure that the camera has nearest to 16.16 ms");
+  EXPECT_EQ(nearest_time_words(16700, 1e6 / 60), "") << "1/60 s is listed so";
+  EXPECT_EQ(settable_time_us({}, 2900).value(), 2900) << "of a camera that lists none";
+}
+
+TEST(Plan, RefusesAShutterTimeBeyondAllThatTheCameraHas) {
+  const std::vector<double> times_us = {250, 1000, 30e6};
+  for (const auto& [asked_us, where] :
+       std::vector<std::pair<double, std::string>>{{16.2, "16.2 us"}, {220, "220 us"}, {1e9, "1000 s"}}) {
+    const Result<double> refused = settable_time_us(times_us, asked_us);
+    ASSERT_FALSE(refused) << asked_us << " us became " << *refused;
+    EXPECT_EQ(refused.error().kind, ErrorKind::kUsage);
+    EXPECT_EQ(refused.error().where, where);
+    EXPECT_EQ(refused.error().why, "it has 250 us to 30 s");
+  }
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <set>
 #include <stop_token>
 
+#include "capture/scan/plan.h"
 #include "capture/scan/second_copy.h"
 #include "core/files.h"
 #include "tests/capture/scan/scan_bench.h"
@@ -54,6 +55,31 @@ TEST(Scan, MetersTheClothAndRecordsHow) {
   const double bright = bench.kept[1].histogram_rgb[1].clipped;
   EXPECT_EQ(bright, 0);
   EXPECT_EQ(bench.rig.takes(), 15) << "two test shots and the frames";
+}
+
+TEST(Scan, ExposesForTheCamerasNearestTimeAndSaysSo) {
+  ScanBench bench;
+  const double own_us = bench.request.exposure.exposure_us;
+  bench.request.exposure.exposure_us = 1.08 * own_us;
+  const Result<ScanOutcome> outcome = bench.scan();
+  ASSERT_TRUE(outcome) << outcome.error().message();
+  EXPECT_EQ(outcome->session.shots[1].exposure_us, own_us);
+  ASSERT_EQ(outcome->warnings.size(), 1u);
+  EXPECT_THAT(outcome->warnings.front(), HasSubstr("that the camera has nearest to"));
+  EXPECT_EQ(bench.objection(), "");
+}
+
+TEST(Scan, MakesNoSessionForAnExposureThatTheCameraDoesNotHave) {
+  for (const double exposure_us : {16.2, 1e9}) {
+    ScanBench bench;
+    bench.request.exposure.exposure_us = exposure_us;
+    const Result<ScanOutcome> outcome = bench.scan();
+    ASSERT_FALSE(outcome) << exposure_us << " us";
+    EXPECT_EQ(outcome.error().kind, ErrorKind::kUsage);
+    EXPECT_THAT(outcome.error().why, HasSubstr("it has 244 us to 32 s"));
+    EXPECT_FALSE(fs::exists(bench.request.session));
+    EXPECT_EQ(bench.rig.takes(), 0);
+  }
 }
 
 TEST(Scan, TellsOfEveryFrameWithItsHistogram) {
@@ -354,7 +380,27 @@ TEST(Scan, GivesTheCodeOfWhatAFrameIsWarnedOf) {
   ASSERT_TRUE(bench.scan());
   EXPECT_EQ(bench.kept[0].finding.code, "") << "the dark shot";
   EXPECT_EQ(bench.kept[1].finding.code, "clipped");
-  EXPECT_THAT(bench.kept[1].warnings, testing::Not(IsEmpty()));
+}
+
+TEST(Scan, SaysOnceOfAllFramesThatTheyAreOverOrDark) {
+  ScanBench bench;
+  const double metered_us = bench.request.exposure.exposure_us;
+  for (const auto& [times, words] :
+       {std::pair{32.0, "All 10 LEDs are over"}, {1 / 32.0, "All 10 LEDs are dark"}}) {
+    bench.request.session.replace_filename(times > 1 ? "over.weft" : "dark.weft");
+    bench.request.exposure.exposure_us =
+        nearest_time_us(bench.rig.camera().shutter_times_us().value(), times * metered_us);
+    const Result<ScanOutcome> outcome = bench.scan();
+    ASSERT_TRUE(outcome) << outcome.error().message();
+    ASSERT_FALSE(outcome->warnings.empty()) << words;
+    EXPECT_THAT(outcome->warnings.front(), HasSubstr(words));
+    EXPECT_THAT(outcome->warnings.front(), HasSubstr("scan again with a metered exposure"));
+    const auto of_exposure = std::ranges::count_if(outcome->warnings, [](const std::string& warning) {
+      return warning.find("of a channel") != std::string::npos ||
+             warning.find("are dark") != std::string::npos;
+    });
+    EXPECT_EQ(of_exposure, 1) << "one sentence for one cause";
+  }
 }
 
 TEST(Scan, WithoutACalibrationSaysThatFramesAreNotHeldAgainstTheLeds) {
