@@ -7,6 +7,8 @@
 #include <tuple>
 #include <utility>
 
+#include "core/percent.h"
+
 namespace weft::batch {
 namespace {
 
@@ -48,8 +50,8 @@ std::vector<Grown> grown(const Change& change) {
          fmt::format("sigma {:.3g} to {:.3g} degrees", change.sigma_deg->before, change.sigma_deg->after)});
   if (change.left_out && change.left_out->after > (1 + kWorseBy) * change.left_out->before)
     all.push_back({factor_of(*change.left_out, 1e-3),
-                   fmt::format("left-out lights {:.2g} to {:.2g} percent off", 100 * change.left_out->before,
-                               100 * change.left_out->after)});
+                   fmt::format("left-out lights {} to {} percent off", percent_words(change.left_out->before),
+                               percent_words(change.left_out->after))});
   std::ranges::stable_sort(all, [](const Grown& a, const Grown& b) { return a.factor > b.factor; });
   return all;
 }

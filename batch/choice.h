@@ -13,7 +13,8 @@
 
 namespace weft::batch {
 
-/// One level of one session. `seconds` is 0 where a solve of it is there.
+/// One level of one session. `seconds` is 0 where a solve of it is there, `degrees` are those of the whole
+/// cloth (deg_of_whole).
 struct Option {
   double seconds = 0, degrees = 0;
 };

@@ -54,7 +54,7 @@ class Moments {
 
 // One level of the sessions of one class: seconds are a megapixel and frame.
 struct Known {
-  Moments seconds, degrees;
+  Moments seconds, solve_seconds, degrees, solved;
 };
 
 using KnownLevels = std::vector<Known>;
@@ -75,7 +75,9 @@ void learn(std::span<const Traits> sessions, std::span<const Measured> measured,
       known.resize(each.levels.size());
       for (std::size_t l = 0; l < known.size(); ++l) {
         known[l].seconds.add(each.levels[l].seconds / work_of(traits));
+        known[l].solve_seconds.add(each.levels[l].solve_seconds / work_of(traits));
         known[l].degrees.add(each.levels[l].degrees);
+        known[l].solved.add(each.levels[l].solved);
       }
     }
     for (const bool of_cloth : {true, false}) {
@@ -114,7 +116,9 @@ std::vector<Forecast> forecast_of(const Traits& traits, const Classes& classes, 
   for (std::size_t l = 0; l < levels.size(); ++l) {
     const Known& narrowest = (*known.front())[l];
     levels[l].seconds = narrowest.seconds.mean() * work_of(traits);
+    levels[l].solve_seconds = narrowest.solve_seconds.mean() * work_of(traits);
     levels[l].degrees = narrowest.degrees.mean();
+    levels[l].solved = narrowest.solved.mean();
     for (const KnownLevels* each : known) {
       if ((*each)[l].seconds.count() < 2) continue;
       levels[l].seconds_spread = (*each)[l].seconds.deviation() * work_of(traits);

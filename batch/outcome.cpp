@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "batch/outcome.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -45,10 +47,14 @@ bool is_of_session(ErrorKind kind) {
 }
 
 std::string line_of(const Outcome& o) {
-  Json json = {{"schema", kSchema},         {"plan", o.plan},
-               {"session", o.session},      {"state", kStateNames[static_cast<std::size_t>(o.state)]},
-               {"attempt", o.attempt},      {"host", o.host},
-               {"seconds", o.seconds},      {"node_seconds", o.node_seconds},
+  Json json = {{"schema", fmt::format("{}{}", kSchema, o.solved ? ".1" : "")},
+               {"plan", o.plan},
+               {"session", o.session},
+               {"state", kStateNames[static_cast<std::size_t>(o.state)]},
+               {"attempt", o.attempt},
+               {"host", o.host},
+               {"seconds", o.seconds},
+               {"node_seconds", o.node_seconds},
                {"peak_bytes", o.peak_bytes}};
   if (o.error) json["error"] = json_of(*o.error);
   if (o.is_done()) {
@@ -62,6 +68,7 @@ std::string line_of(const Outcome& o) {
     json["sigma_deg"] = o.sigma_deg;
     json["sigma_p95_deg"] = o.sigma_p95_deg;
     json["unsolved"] = o.unsolved;
+    if (o.solved) json["solved"] = *o.solved;
     if (o.left_out) json["left_out"] = *o.left_out;
     json["warnings"] = o.warnings;
     json["made"] = o.made;
@@ -97,6 +104,7 @@ std::optional<Outcome> outcome_from_line(std::string_view line) {
   o.sigma_deg = fields.number("sigma_deg");
   o.sigma_p95_deg = fields.number("sigma_p95_deg");
   o.unsolved = fields.number("unsolved");
+  o.solved = fields.optional_number("solved");
   o.left_out = fields.optional_number("left_out");
   o.warnings = texts_in(fields, "warnings");
   o.made = texts_in(fields, "made");

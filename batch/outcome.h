@@ -41,12 +41,15 @@ struct Outcome {
   double expected_deg = 0;  ///< mean error that the solve expects of its normals; 0 where it was there
   double sigma_deg = 0, sigma_p95_deg = 0;  ///< that the solve says of its normals: median and p95
   double unsolved = 0;                      ///< share of pixels
-  std::optional<double> left_out = {};      ///< rms of how left-out lights are predicted, a share
-  std::vector<std::string> warnings = {};   ///< by name
-  std::vector<std::string> made = {};       ///< folders of maps and exports
-  std::optional<Change> change = {};        ///< from the solve before
-  std::string no_change = {};               ///< why it could not be compared with the solve before
+  /// Share of the cloth that has a normal; none in lines of early versions.
+  std::optional<double> solved = {};
+  std::optional<double> left_out = {};     ///< rms of how left-out lights are predicted, a share
+  std::vector<std::string> warnings = {};  ///< by name
+  std::vector<std::string> made = {};      ///< folders of maps and exports
+  std::optional<Change> change = {};       ///< from the solve before
+  std::string no_change = {};              ///< why it could not be compared with the solve before
 
+  double solved_share() const { return solved.value_or(1 - unsolved); }
   bool is_result() const { return state != State::kLost; }
   bool is_done() const { return state == State::kSolved || state == State::kThere; }
   friend bool operator==(const Outcome&, const Outcome&);

@@ -61,6 +61,10 @@ Json json_of(const Forecast& forecast) {
                {"predicted_deg_spread", forecast.degrees_spread},
                {"from", forecast.is_measured ? "measured" : "carried_over"}};
   if (forecast.turn_deg) json["turn_deg"] = *forecast.turn_deg;
+  if (forecast.solve_seconds > 0) {
+    json["predicted_solved"] = forecast.solved;
+    json["solve_seconds"] = forecast.solve_seconds;
+  }
   return json;
 }
 
@@ -96,6 +100,8 @@ Result<Job> job_from_json(const Json& json, const std::string& where) {
   forecast.degrees_spread = fields.number("predicted_deg_spread");
   forecast.is_measured = fields.one_of<int, 2>("from", {"carried_over", "measured"}) == 1;
   forecast.turn_deg = fields.optional_number("turn_deg");
+  forecast.solved = fields.optional_number("predicted_solved").value_or(1);
+  forecast.solve_seconds = fields.optional_number("solve_seconds").value_or(0);
   job.memory_bytes = count_of(fields, "memory_bytes");
   job.read_bytes = count_of(fields, "read_bytes");
   job.write_bytes = count_of(fields, "write_bytes");
@@ -164,17 +170,21 @@ std::vector<TaskPlace> tasks_from(JsonFields& header) {
 
 Json json_of(const Header& header) {
   Json levels = Json::array(), curve = Json::array(), calibrations = Json::array();
-  for (const LevelTotal& level : header.levels)
+  bool has_shares = false;
+  for (const LevelTotal& level : header.levels) {
     levels.push_back({{"quality", level.quality},
                       {"hours", level.hours},
                       {"mean_deg", level.mean_deg},
                       {"spread_deg", level.spread_deg},
                       {"sessions", level.sessions}});
+    if (level.solved) levels.back()["solved"] = *level.solved;
+    has_shares |= level.solved.has_value();
+  }
   for (const Spent& spent : header.curve)
     curve.push_back({{"hours", spent.hours}, {"mean_deg", spent.mean_deg}});
   for (const NamedCalibration& each : header.calibrations)
     calibrations.push_back({{"folder", each.folder}, {"id", each.id}, {"rig", each.rig}});
-  return {{"schema", kPlanSchema},
+  return {{"schema", fmt::format("{}{}", kPlanSchema, has_shares ? ".1" : "")},
           {"id", header.id},
           {"archive", header.archive},
           {"output", header.output},
@@ -211,7 +221,8 @@ Result<void> read_lists(JsonFields& fields, const std::string& where, Header& he
   for (const Json& each : fields.list("levels")) {
     JsonFields level(each, where + ": levels");
     header.levels.push_back({level.text("quality"), level.number("hours"), level.number("mean_deg"),
-                             level.number("spread_deg"), level.integer("sessions")});
+                             level.number("spread_deg"), level.integer("sessions"),
+                             level.optional_number("solved")});
     if (Result<void> ok = level.status(); !ok) return ok;
   }
   for (const Json& each : fields.list("curve")) {
@@ -234,8 +245,15 @@ void for_each_line(std::string_view text, const Take& take) {
 
 }  // namespace
 
+MeanError error_of(std::span<const Job> jobs) {
+  MeanError error;
+  for (const Job& job : jobs) error.add(job.forecast.degrees, job.forecast.solved);
+  return error;
+}
+
 std::string digest_of_session(Json document) {
-  for (const char* said : {"fabric", "metadata", "current_solve", "copy"}) document.erase(said);
+  for (const char* said : {"fabric", "metadata", "current_solve", "current_solve_for", "copy"})
+    document.erase(said);
   return sha256_of(document.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,7 +20,7 @@
 
 namespace weft::batch {
 
-inline constexpr const char* kPlanSchema = "weft.batch/1";
+inline constexpr const char* kPlanSchema = "weft.batch/1";  // 1.1 where shares of the cloth are in it
 
 /// What becomes of each solve besides its level.
 struct Product {
@@ -45,6 +46,10 @@ struct Forecast {
   double degrees = 0, degrees_spread = 0;  ///< mean error of the normals
   bool is_measured = false;                ///< on this very session; else carried over from others
   std::optional<double> turn_deg = {};     ///< mean angle to the solve before
+  double solved = 1;                       ///< share of the cloth that has a normal: `degrees` holds for it
+  /// Of `seconds` the solve alone, as its solve.json counts them; 0 where nothing was measured, and in plans
+  /// of early versions.
+  double solve_seconds = 0;
 
   friend bool operator==(const Forecast&, const Forecast&) = default;
 };
@@ -80,16 +85,32 @@ struct LeftOut {
   friend bool operator==(const LeftOut&, const LeftOut&) = default;
 };
 
+/// Adds up the errors of many cloths: their mean over all that has a normal.
+class MeanError {
+ public:
+  void add(double degrees, double solved) { sum_ += solved * degrees, solved_ += solved, ++cloths_; }
+  double degrees() const { return solved_ > 0 ? sum_ / solved_ : 0; }
+  double solved() const { return cloths_ > 0 ? solved_ / cloths_ : 0; }  ///< share of all cloth
+
+ private:
+  double sum_ = 0, solved_ = 0;
+  int cloths_ = 0;
+};
+/// As it is planned.
+MeanError error_of(std::span<const Job> jobs);
+
 /// All sessions at one level.
 struct LevelTotal {
   std::string quality;
   double hours = 0, mean_deg = 0, spread_deg = 0;
   int sessions = 0;  ///< that the plan solves at it
+  /// Share of the cloth that mean_deg holds for; none in plans of early versions.
+  std::optional<double> solved = {};
 
   friend bool operator==(const LevelTotal&, const LevelTotal&) = default;
 };
 
-/// Hours and the mean error that they buy.
+/// Hours and the mean error that they buy, over the whole cloth (deg_of_whole).
 struct Spent {
   double hours = 0, mean_deg = 0;
 
@@ -116,8 +137,8 @@ struct Header {
   int threads = 0;  ///< that the seconds hold for
   int sampled = 0;  ///< sessions that were measured
   double sample_seconds = 0;
-  std::vector<LevelTotal> levels;
-  std::vector<Spent> curve;  ///< where hours were given out
+  std::vector<LevelTotal> levels;  ///< those that were measured: all, or the one that was asked for
+  std::vector<Spent> curve;        ///< where hours were given out
   std::vector<TaskPlace> tasks;
   int sessions = 0, left_out = 0;
 

@@ -10,6 +10,7 @@
 
 #include "core/error_json.h"
 #include "core/error_kind.h"
+#include "core/solve.h"
 #include "core/statistics.h"
 
 namespace weft::batch {
@@ -36,8 +37,8 @@ void count(const Row& row, Summary& summary) {
     return;
   }
   ++summary.solved;
-  summary.mean_deg += outcome.expected_deg;
-  summary.predicted_deg += row.job->forecast.degrees;
+  summary.error.add(outcome.expected_deg, outcome.solved_share());
+  summary.predicted_error.add(row.job->forecast.degrees, row.job->forecast.solved);
   summary.seconds += outcome.node_seconds;
   summary.predicted_seconds += row.job->forecast.seconds;
   summary.peak_bytes = std::max(summary.peak_bytes, outcome.peak_bytes);
@@ -119,7 +120,8 @@ Json json_of(const Row& row) {
                {"state", row.result ? kStateNames[static_cast<std::size_t>(row.result->state)] : "missing"},
                {"attempts", row.attempts},
                {"predicted_seconds", row.job->forecast.seconds},
-               {"predicted_deg", row.job->forecast.degrees}};
+               {"predicted_deg", row.job->forecast.degrees},
+               {"predicted_solved", row.job->forecast.solved}};
   const std::optional<Outcome>& said = row.result ? row.result : row.lost;
   if (said && said->error) json["error"] = json_of(*said->error);
   if (!row.is_done()) return json;
@@ -128,6 +130,7 @@ Json json_of(const Row& row) {
   json["seconds"] = row.result->seconds;
   json["peak_bytes"] = row.result->peak_bytes;
   json["sigma_deg"] = row.result->sigma_deg;
+  json["solved"] = row.result->solved_share();
   json["warnings"] = row.result->warnings;
   json["before"] = row.job->before;
   if (row.result->change) {
@@ -162,12 +165,13 @@ Summary summarize(std::span<const Row> rows) {
     const Row& row = rows[i];
     count(row, summary);
     if (row.is_missing()) missing.insert(row.job->task);
+    if (row.is_done() && row.result->solved_share() < kLeastSolved) summary.barely_solved.push_back(i);
+    if (row.is_done() && !row.result->warnings.empty()) summary.warned.push_back(i);
     if (!row.is_done() || !row.result->change) continue;
     summary.changed.push_back(i);
     if (regression_weight(*row.result->change) > 0) ++summary.worse;
     if (row.result->change->is_none()) ++summary.unchanged;
   }
-  if (summary.solved > 0) summary.mean_deg /= summary.solved, summary.predicted_deg /= summary.solved;
   std::ranges::stable_sort(summary.changed, [&](std::size_t a, std::size_t b) {
     return is_graver(*rows[a].result->change, *rows[b].result->change);
   });
@@ -179,7 +183,7 @@ Summary summarize(std::span<const Row> rows) {
 
 Json json_of(const Summary& s, std::span<const Row> rows) {
   Json causes = Json::array(), calibrations = Json::array(), changed = Json::array(),
-       sessions = Json::array();
+       barely_solved = Json::array(), warned = Json::array(), sessions = Json::array();
   for (const Cause& cause : s.causes)
     causes.push_back({{"kind", cause.kind},
                       {"what", cause.what},
@@ -193,7 +197,10 @@ Json json_of(const Summary& s, std::span<const Row> rows) {
                             {"warned", c.warned},
                             {"mean_turn_deg", c.mean_turn_deg ? Json(*c.mean_turn_deg) : Json()},
                             {"left_out", c.left_out ? Json(*c.left_out) : Json()}});
-  for (const std::size_t i : s.changed) changed.push_back(rows[i].job->session);
+  for (const auto& [of, names] :
+       {std::pair{&s.changed, &changed}, {&s.barely_solved, &barely_solved}, {&s.warned, &warned}}) {
+    for (const std::size_t i : *of) names->push_back(rows[i].job->session);
+  }
   for (const Row& row : rows) sessions.push_back(json_of(row));
   return {{"solved", s.solved},
           {"there", s.there},
@@ -202,8 +209,13 @@ Json json_of(const Summary& s, std::span<const Row> rows) {
           {"second_attempts", s.second_attempts},
           {"seconds", s.seconds},
           {"predicted_seconds", s.predicted_seconds},
-          {"mean_deg", s.mean_deg},
-          {"predicted_deg", s.predicted_deg},
+          {"seconds_ratio", s.seconds_ratio()},
+          {"mean_deg", s.error.degrees()},
+          {"mean_solved", s.error.solved()},
+          {"predicted_deg", s.predicted_error.degrees()},
+          {"predicted_solved", s.predicted_error.solved()},
+          {"barely_solved", std::move(barely_solved)},
+          {"warned", std::move(warned)},
           {"peak_bytes", s.peak_bytes},
           {"causes", std::move(causes)},
           {"calibrations", std::move(calibrations)},

@@ -54,8 +54,10 @@ struct Summary {
   int solved = 0, there = 0, failed = 0, missing = 0;
   int second_attempts = 0;                    ///< sessions that were begun more than once
   double seconds = 0, predicted_seconds = 0;  ///< of those solved, node-seconds
-  double mean_deg = 0, predicted_deg = 0;  ///< of those solved: means of what solves expect, and as predicted
+  MeanError error, predicted_error;           ///< of those solved: as solves expect it, and as predicted
   std::uint64_t peak_bytes = 0;
+  std::vector<std::size_t> barely_solved;   ///< rows that are done and have under kLeastSolved of a cloth
+  std::vector<std::size_t> warned;          ///< rows that are done and whose solves warn
   std::vector<Cause> causes;                ///< of failed and missing sessions, the most frequent first
   std::vector<std::size_t> changed;         ///< rows that were compared, the gravest first (is_graver)
   int worse = 0;                            ///< of them with regressions
@@ -63,6 +65,8 @@ struct Summary {
   std::vector<ByCalibration> calibrations;  ///< the most suspect first
   std::vector<int> missing_tasks;           ///< with a missing session, rising
 
+  /// How the night was foretold: predicted over taken seconds; 0 where nothing was solved or predicted.
+  double seconds_ratio() const { return seconds > 0 ? predicted_seconds / seconds : 0; }
   bool is_whole() const { return failed == 0 && missing == 0; }
 };
 

@@ -54,6 +54,17 @@ TEST(Forecast, IsThatOfTheOwnClassWithItsSpread) {
   EXPECT_NEAR(forecasts[0][0].seconds, 10, 1e-9) << "what was measured stays";
 }
 
+TEST(Forecast, CarriesTheShareOfTheClothThatIsSolved) {
+  const std::vector<Traits> sessions(3, cloth("twill"));
+  std::vector<Measured> sample = {measured(0, 10, 0.6), measured(1, 14, 0.2)};
+  sample[1].levels[0].solved = 0.1;
+  sample[1].levels[0].solve_seconds = 12;
+  const auto forecasts = carry_over(sessions, sample);
+  EXPECT_DOUBLE_EQ(forecasts[1][0].solved, 0.1) << "what was measured stays";
+  EXPECT_DOUBLE_EQ(forecasts[2][0].solved, 0.55);
+  EXPECT_DOUBLE_EQ(forecasts[2][0].solve_seconds, 6);
+}
+
 TEST(Forecast, GoesByPixelsAndFramesWhereNoSizeIsAlike) {
   const std::vector<Traits> sessions = {cloth("twill", 16, 11), cloth("silk", 32, 22)};
   const std::vector<Measured> sample = {measured(0, 10, 0.6)};

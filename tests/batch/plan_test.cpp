@@ -19,6 +19,9 @@ TEST(Plan, IsReadAsItWasWritten) {
   plan.header.curve = {{0.5, 2.5}, {1.0, 0.7}};
   plan.jobs[3].before = "old";
   plan.jobs[3].forecast.turn_deg = 0.25;
+  plan.jobs[2].forecast.solved = 0.9;
+  plan.jobs[2].forecast.solve_seconds = 80;
+  plan.header.levels[0].solved = 0.95;
   plan.left_out = {{"/archive/a.weft", Reason::kUnsolvable, "bad_data", "it is \"odd\"\nand long", 0},
                    {"/archive/b.weft", Reason::kTurnsLittle, "", "", 12.5}};
   const std::string text = text_of(plan);
@@ -27,6 +30,16 @@ TEST(Plan, IsReadAsItWasWritten) {
   EXPECT_EQ(*read, plan);
   EXPECT_EQ(read->header.id.size(), 16U);
   EXPECT_EQ(read->header.left_out, 2);
+}
+
+TEST(Plan, WeighsTheErrorOfEachClothByTheShareThatItHoldsFor) {
+  std::vector<Job> jobs = {sample_job(0), sample_job(1)};
+  jobs[0].forecast.degrees = 0.8;
+  jobs[1].forecast.degrees = 0.25;
+  jobs[1].forecast.solved = 0.1;
+  EXPECT_DOUBLE_EQ(error_of(jobs).degrees(), (0.8 + 0.025) / 1.1);
+  EXPECT_DOUBLE_EQ(error_of(jobs).solved(), 0.55);
+  EXPECT_EQ(error_of({}).degrees(), 0);
 }
 
 TEST(Plan, HasATaskOfAboutSoManySeconds) {

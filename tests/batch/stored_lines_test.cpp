@@ -15,21 +15,24 @@ namespace {
 
 const std::filesystem::path kSchemas = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas";
 
-std::string stored(const char* file) {
+std::string stored(const std::string& file) {
   const Result<std::string> text = read_text(kSchemas / file);
   EXPECT_TRUE(text) << file;
   return text ? *text : "";
 }
 
 TEST(StoredLines, OfAPlanAreRead) {
-  const std::string text = stored("weft.batch-1/night.jsonl");
-  const Result<Plan> plan = plan_from_text(text, "night.jsonl");
-  ASSERT_TRUE(plan) << plan.error().message();
-  ASSERT_EQ(plan->jobs.size(), 1U);
-  EXPECT_EQ(plan->jobs[0].session, "/archive/twill.weft");
-  EXPECT_EQ(plan->header.tasks.size(), 1U);
-  Plan again = *plan;
-  EXPECT_EQ(text_of(again), text);
+  for (const std::string version : {"1", "1.1"}) {
+    const std::string text = stored("weft.batch-" + version + "/night.jsonl");
+    const Result<Plan> plan = plan_from_text(text, "night.jsonl");
+    ASSERT_TRUE(plan) << version << ": " << plan.error().message();
+    ASSERT_EQ(plan->jobs.size(), 1U);
+    EXPECT_EQ(plan->jobs[0].session, "/archive/twill.weft");
+    EXPECT_EQ(plan->header.tasks.size(), 1U);
+    EXPECT_EQ(plan->jobs[0].forecast.solved, version == "1" ? 1 : 0.9375);
+    Plan again = *plan;
+    EXPECT_EQ(text_of(again), text) << version;
+  }
 }
 
 TEST(StoredLines, OfAPlanOfANewerMajorVersionAreRefused) {
@@ -43,16 +46,19 @@ TEST(StoredLines, OfAPlanOfANewerMajorVersionAreRefused) {
 }
 
 TEST(StoredLines, OfResultsAreRead) {
-  const std::string text = stored("weft.batch-result-1/task-0.jsonl");
-  const Result<Plan> plan = plan_from_text(stored("weft.batch-1/night.jsonl"), "night.jsonl");
-  ASSERT_TRUE(plan) << plan.error().message();
-  const auto histories = histories_of(text, plan->header.id);
-  ASSERT_EQ(histories.size(), 1U);
-  const History& history = histories.begin()->second;
-  ASSERT_TRUE(history.result);
-  EXPECT_EQ(history.result->solve, plan->jobs[0].solve);
-  EXPECT_TRUE(history.result->change);
-  EXPECT_EQ(line_of(*history.result), text);
+  for (const std::string version : {"1", "1.1"}) {
+    const std::string text = stored("weft.batch-result-" + version + "/task-0.jsonl");
+    const Result<Plan> plan = plan_from_text(stored("weft.batch-" + version + "/night.jsonl"), "night.jsonl");
+    ASSERT_TRUE(plan) << plan.error().message();
+    const auto histories = histories_of(text, plan->header.id);
+    ASSERT_EQ(histories.size(), 1U);
+    const History& history = histories.begin()->second;
+    ASSERT_TRUE(history.result);
+    EXPECT_EQ(history.result->solve, plan->jobs[0].solve);
+    EXPECT_EQ(history.result->solved.has_value(), version == "1.1");
+    EXPECT_TRUE(history.result->change);
+    EXPECT_EQ(line_of(*history.result), text);
+  }
 }
 
 }  // namespace

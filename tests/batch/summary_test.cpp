@@ -60,6 +60,30 @@ TEST(Summary, CountsWhatIsSolvedFailedAndMissing) {
   EXPECT_EQ(json_of(summary, rows)["sessions"].size(), 6U);
 }
 
+TEST(Summary, NamesWhatIsHardlySolvedAndWeighsErrorsByTheClothThatTheyHoldFor) {
+  const Plan plan = sample_plan(3);
+  std::map<std::string, History> histories;
+  for (const Job& job : plan.jobs) histories[job.session] = {done(job, 80), {}, 1};
+  Outcome& spoiled = *histories[plan.jobs[1].session].result;
+  spoiled.expected_deg = 0.25;
+  spoiled.solved = 0.1;
+  spoiled.warnings = {"OVEREXPOSED"};
+  for (const int good : {0, 2})
+    histories[plan.jobs[static_cast<std::size_t>(good)].session].result->expected_deg = 0.8;
+  const std::vector<Row> rows = rows_of(plan, histories);
+  const Summary summary = summarize(rows);
+  EXPECT_EQ(summary.solved, 3);
+  EXPECT_THAT(summary.barely_solved, testing::ElementsAre(1U));
+  EXPECT_THAT(summary.warned, testing::ElementsAre(1U));
+  EXPECT_DOUBLE_EQ(summary.error.solved(), 2.1 / 3);
+  EXPECT_DOUBLE_EQ(summary.error.degrees(), (2 * 0.8 + 0.1 * 0.25) / 2.1);
+  EXPECT_DOUBLE_EQ(summary.seconds_ratio(), summary.predicted_seconds / 240);
+  const Json json = json_of(summary, rows);
+  EXPECT_EQ(json["barely_solved"], Json({plan.jobs[1].session}));
+  EXPECT_EQ(json["seconds_ratio"], summary.seconds_ratio());
+  EXPECT_EQ(json["sessions"][1]["solved"], 0.1);
+}
+
 TEST(Summary, NamesTheCalibrationFirstThatMadeSessionsWorse) {
   Plan plan = sample_plan(6);
   std::map<std::string, History> histories;

@@ -14,7 +14,9 @@
 #include "core/image_io/image_io.h"
 #include "core/partial_name.h"
 #include "core/process.h"
+#include "core/session.h"
 #include "core/solve.h"
+#include "library/current.h"
 #include "library/session_files.h"
 #include "tests/system/samples.h"
 
@@ -55,7 +57,9 @@ TEST_F(BatchTest, ARunSolvesWhatIsPlannedOnceAndAsWeftSolveDoes) {
   EXPECT_EQ(planned["sessions"], 3);
   EXPECT_EQ(planned["tasks"], 3) << "a task has one session at least";
   EXPECT_EQ(planned["sampled"], 1);
-  EXPECT_EQ(planned["levels"].size(), 5U);
+  ASSERT_EQ(planned["levels"].size(), 1U) << "no other level than that which is asked for is measured";
+  EXPECT_EQ(planned["levels"][0]["quality"], "standard");
+  EXPECT_EQ(planned["levels"][0]["solved"], 1) << "degrees stand beside the share that they hold for";
   const Outcome outcome = run();
   ASSERT_EQ(outcome.exit_code, 0) << outcome.error;
   EXPECT_EQ(outcome.json()["solved"], 3);
@@ -68,6 +72,11 @@ TEST_F(BatchTest, ARunSolvesWhatIsPlannedOnceAndAsWeftSolveDoes) {
               bytes_of(work_ / "alone" / map))
         << map;
 
+  const Json solve =
+      Json::parse(bytes_of(session(1) / "solve" / solves_of(session(1)).front() / "solve.json"));
+  EXPECT_GT(solve.at("foretold").at("seconds").get<double>(), 0) << solve;
+  EXPECT_GT(solve.at("taken").at("seconds").get<double>(), 0) << solve;
+
   const auto before = contents_of(archive());
   const Outcome again = run();
   EXPECT_EQ(again.exit_code, 0);
@@ -77,7 +86,13 @@ TEST_F(BatchTest, ARunSolvesWhatIsPlannedOnceAndAsWeftSolveDoes) {
 
   const Outcome merged = merge();
   EXPECT_EQ(merged.exit_code, 0) << merged.error;
-  EXPECT_EQ(merged.json()["solved"], 3);
+  const Json report = merged.json();
+  EXPECT_EQ(report["solved"], 3);
+  EXPECT_GT(report["predicted_seconds"].get<double>(), 0);
+  EXPECT_DOUBLE_EQ(report["seconds_ratio"].get<double>(),
+                   report["predicted_seconds"].get<double>() / report["seconds"].get<double>());
+  EXPECT_EQ(report["mean_solved"], 1);
+  EXPECT_EQ(report["barely_solved"], Json::array());
   EXPECT_GT(fs::file_size(work_ / "night.results" / "report" / "report.html"), 1000U);
 }
 
@@ -329,10 +344,15 @@ TEST_F(BatchTest, SaysWhatChangedAndMovesTheCurrentSolveWhenAsked) {
     return Json::parse(bytes_of(session(i) / "session.json")).value("current_solve", Json());
   };
   EXPECT_TRUE(current(0).is_null()) << "nothing is replaced by itself";
+  const auto used = [&](int i) { return library::current_solve(*read_session(session(i))); };
+  EXPECT_EQ(used(0), old) << "it waits until it is accepted, though it is of a higher level";
+  ASSERT_EQ(run_weft({"solve", session(1).string(), "-q"}).exit_code, 0);
+  EXPECT_EQ(used(1), document["sessions"][1]["solve"]) << "or until a person asks for it";
   const Outcome accepted = run_weft({"batch", "accept", plan_file().string(), "--with-worse", "--json"});
   ASSERT_EQ(accepted.exit_code, 0) << accepted.error;
   EXPECT_EQ(accepted.json()["moved"], 2);
   EXPECT_EQ(current(0), row["solve"]);
+  EXPECT_EQ(used(0), row["solve"]);
   EXPECT_THAT(solves_of(session(0)), SizeIs(2));
   ASSERT_EQ(run_weft({"batch", "prune", plan_file().string(), "--keep", "0"}).exit_code, 0);
   EXPECT_THAT(solves_of(session(0)), SizeIs(2)) << "without --yes nothing goes";
@@ -442,6 +462,10 @@ TEST_F(BatchTest, AnExportThatCannotBeMadeIsSaidBeforeTheNight) {
   const Outcome unknown = planned("export:nonsuch");
   EXPECT_EQ(unknown.exit_code, 66);
   EXPECT_THAT(unknown.error, HasSubstr("there is no such preset: nonsuch"));
+  const Outcome preview = run_weft({"batch", "plan", archive().string(), "--then", "maps", "--quality",
+                                    "preview", "-o", plan_file().string(), "-q"});
+  EXPECT_EQ(preview.exit_code, 64);
+  EXPECT_THAT(preview.error, HasSubstr("--quality standard"));
   const Outcome lacking = planned("export:unreal");
   EXPECT_EQ(lacking.exit_code, 65);
   EXPECT_THAT(lacking.error, HasSubstr("occlusion comes from the map occlusion, which these maps lack"));

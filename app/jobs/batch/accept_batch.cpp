@@ -53,13 +53,15 @@ Accepted accept_one(const batch::Row& row, const AcceptBatchOptions& options) {
     accepted.why = session.error().message();
     return accepted;
   }
-  const std::string current = library::current_solve(*session);
-  if (current == accepted.solve) {
+  const library::SessionSolves solves = library::solves_of(*session);
+  const library::ChoosableSolve* const current = solves.current_one();
+  const bool is_current = current != nullptr && current->id == accepted.solve;
+  if (is_current && solves.is_chosen) {
     accepted.why = "it is the current one already";
     return accepted;
   }
-  if (current != row.job->before) {
-    accepted.why = fmt::format("its current solve is {} since the plan", current);
+  if (!is_current && current != nullptr && current->id != row.job->before) {
+    accepted.why = fmt::format("its current solve is {} since the plan", current->id);
     return accepted;
   }
   accepted.is_moved = true;

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <optional>
 
+#include "app/jobs/report.h"
+#include "core/solve.h"
 #include "core/text.h"
 #include "report/html.h"
 #include "report/page_picture.h"
@@ -27,6 +29,12 @@ std::string name_in(const std::string& session) {
 
 std::string number(const std::optional<double>& value, const char* format = "{:.3g}") {
   return value ? fmt::format(fmt::runtime(format), *value) : "";
+}
+
+// As people call it, and by its session.
+std::string cloth_in(const batch::Job& job) {
+  const std::string name = name_in(job.session);
+  return job.fabric.empty() || job.fabric == name ? name : fmt::format("{}, {}", job.fabric, name);
 }
 
 std::string sessions_in_words(int count) {
@@ -48,9 +56,10 @@ report::Section done_section(const BatchState& state) {
           {"begun more than once", std::to_string(s.second_attempts)},
           {"node-hours", fmt::format("{:.3g}", hours)},
           {"node-hours predicted of these",
-           predicted > 0 ? fmt::format("{:.3g} ({:+.0f} %)", predicted, 100 * (hours / predicted - 1)) : ""},
-          {"mean error expected, degrees", fmt::format("{:.3g}", s.mean_deg)},
-          {"mean error planned, degrees", fmt::format("{:.3g}", s.predicted_deg)},
+           predicted > 0 ? fmt::format("{:.3g}, {:.2f} times what it took", predicted, s.seconds_ratio())
+                         : ""},
+          {"mean error expected", error_in_words(s.error.degrees(), s.error.solved())},
+          {"mean error planned", error_in_words(s.predicted_error.degrees(), s.predicted_error.solved())},
           {"largest memory, MB", std::to_string(s.peak_bytes >> 20)},
           {"left out by the plan", std::to_string(header.left_out)}}};
   return section;
@@ -62,6 +71,25 @@ std::optional<report::Section> causes_section(const BatchState& state) {
   section.table = report::Table{.header = {"cause", "kind", "sessions", "one of them"}};
   for (const batch::Cause& cause : state.summary.causes)
     section.table->rows.push_back({cause.what, cause.kind, std::to_string(cause.sessions), cause.example});
+  return section;
+}
+
+std::optional<report::Section> warned_section(const BatchState& state) {
+  if (state.summary.warned.empty()) return {};
+  report::Section section = {.title = "Solved, with warnings"};
+  section.table = report::Table{.header = {"session", "solved", "expected", "warnings"}};
+  for (const std::size_t index : state.summary.warned) {
+    if (section.table->rows.size() == kMostRows) {
+      section.paragraphs.push_back(fmt::format("The first {} are shown; report.json has all.", kMostRows));
+      break;
+    }
+    const batch::Outcome& outcome = *state.rows[index].result;
+    if (outcome.solved_share() < kLeastSolved) section.table->alarms.insert(section.table->rows.size());
+    section.table->rows.push_back(
+        {name_in(outcome.session), share_in_words(outcome.solved_share()),
+         outcome.expected_deg > 0 ? fmt::format("{:.3g} degrees", outcome.expected_deg) : "",
+         fmt::format("{}", fmt::join(outcome.warnings, ", "))});
+  }
   return section;
 }
 
@@ -84,7 +112,7 @@ std::vector<std::string> row_of_change(const Row& row) {
   const auto pair = [](const std::optional<batch::BeforeAfter>& p) {
     return p ? fmt::format("{:.3g} → {:.3g}", p->before, p->after) : std::string();
   };
-  return {name_in(row.job->session),
+  return {cloth_in(*row.job),
           fmt::format("{:.3g}", change.mean_deg),
           fmt::format("{:.3g}", change.p95_deg),
           fmt::format("{:.3g}", change.max_deg),
@@ -171,6 +199,17 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
   if (s.failed > 0)
     verdicts.push_back({"FAILED", fmt::format("{} failed", sessions_in_words(s.failed)),
                         "put right what the causes say, then run with --retry-failed, or plan again"});
+  if (!s.barely_solved.empty()) {
+    std::vector<std::string> named;
+    for (const std::size_t i : s.barely_solved)
+      named.push_back(fmt::format("{} ({})", name_in(state.rows[i].job->session),
+                                  share_in_words(state.rows[i].result->solved_share())));
+    verdicts.push_back(
+        {"BARELY_SOLVED",
+         fmt::format("{} solved on less than half of the cloth: {}",
+                     sessions_in_words(static_cast<int>(named.size())), fmt::join(named, ", ")),
+         "look at the warnings of these solves; scan again what is too bright or too dark"});
+  }
   if (s.worse > 0)
     verdicts.push_back({"WORSE", fmt::format("{} became worse", sessions_in_words(s.worse)),
                         "look at them first; weft batch accept leaves them as they are"});
@@ -180,6 +219,7 @@ std::vector<Verdict> verdicts_of(const BatchState& state) {
 std::vector<report::Section> sections_of(const BatchState& state) {
   std::vector<report::Section> sections = {done_section(state)};
   if (auto causes = causes_section(state)) sections.push_back(std::move(*causes));
+  if (auto warned = warned_section(state)) sections.push_back(std::move(*warned));
   sections.push_back(calibrations_section(state));
   sections.push_back(changes_section(state));
   if (auto left = left_out_section(state)) sections.push_back(std::move(*left));

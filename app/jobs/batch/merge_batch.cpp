@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kReportSchema = "weft.batch-report/1";
+constexpr const char* kReportSchema = "weft.batch-report/1.1";
 
 std::string picture_name(std::size_t number) {
   return fmt::format("worst-{:02}.png", number);
@@ -44,6 +44,7 @@ std::optional<batch::Outcome> unwritten(const batch::Plan& plan, const batch::Jo
   outcome.solve = job.solve;
   outcome.folder = folder.string();
   outcome.no_change = "its process was killed before it compared them: run the same command again";
+  if (facts->taken) outcome.solved = facts->taken->solved;
   if (facts->check) outcome.left_out = facts->check->all.rms;
   for (const Verdict& warning : facts->warnings) outcome.warnings.push_back(warning.name);
   return outcome;

@@ -13,13 +13,16 @@
 #include "app/jobs/batch/sample.h"
 #include "app/jobs/batch/survey.h"
 #include "app/jobs/export/preset_files.h"
+#include "app/jobs/report.h"
 #include "batch/choice.h"
 #include "batch/forecast.h"
 #include "batch/outcome.h"
 #include "core/error_kind.h"
 #include "core/files.h"
 #include "core/parallel.h"
+#include "core/solve.h"
 #include "core/solve_record.h"
+#include "solver/method.h"
 
 namespace weft::app {
 namespace {
@@ -38,11 +41,24 @@ fs::path archive_of(const std::vector<fs::path>& sessions) {
   return common;
 }
 
-// A batch under plan. Candidates that can be solved have a forecast a level.
+// The levels that a plan knows: where one is asked for that one, else all.
+Result<std::vector<std::size_t>> levels_of(const PlanBatchOptions& options) {
+  const std::vector<std::string> names = level_names();
+  std::vector<std::size_t> levels;
+  const bool is_fixed = !options.to_deg && !options.within_seconds;
+  for (std::size_t l = 0; l < names.size(); ++l) {
+    if (!is_fixed || names[l] == options.quality) levels.push_back(l);
+  }
+  if (!levels.empty()) return levels;
+  return Error{ErrorKind::kUsage, "no such level", options.quality, fmt::format("{}", fmt::join(names, ", ")),
+               "name one of them"};
+}
+
+// A batch under plan. Candidates that can be solved have a forecast for each of levels_.
 class Planning {
  public:
-  Planning(const PlanBatchOptions& options, const JobContext& context)
-      : options_(options), context_(context) {}
+  Planning(const PlanBatchOptions& options, std::vector<std::size_t> levels, const JobContext& context)
+      : options_(options), context_(context), levels_(std::move(levels)) {}
 
   Result<PlanBatchReport> plan() {
     Stopwatch watch;
@@ -122,10 +138,13 @@ class Planning {
     std::vector<std::size_t> unfit, sample = batch::choose_sample(open, options_.sample);
     for (std::size_t& each : sample) each = of_open[each];
     const JobContext silent = {context_.threads, context_.stop};
+    std::optional<SharedSeconds> shared;
+    const std::optional<solver::Level> only =
+        is_fixed() ? solver::find_method(level_names()[levels_.front()])->level : std::nullopt;
     for (std::size_t k = 0; k < sample.size(); ++k) {
       context_.progress("measure", static_cast<double>(k) / static_cast<double>(sample.size()));
-      Result<std::vector<Forecast>> levels =
-          measure_session(candidates_[sample[k]], options_.product, silent);
+      Result<std::vector<Forecast>> levels = measure_session(
+          candidates_[sample[k]], {.product = options_.product, .only = only, .shared = shared}, silent);
       if (context_.stop.stop_requested()) return interrupted();
       if (levels) {
         measured.push_back({sample[k], std::move(*levels)});
@@ -142,8 +161,7 @@ class Planning {
     if (follow_ups_.empty() && refused_) return *refused_;
     plan_.header.sampled = static_cast<int>(measured.size());
     forecasts_ = batch::carry_over(traits, measured);
-    if (forecasts_.empty())
-      forecasts_.assign(candidates_.size(), std::vector<Forecast>(level_names().size()));
+    if (forecasts_.empty()) forecasts_.assign(candidates_.size(), std::vector<Forecast>(levels_.size()));
     for (auto i = unfit.rbegin(); i != unfit.rend(); ++i) {
       candidates_.erase(candidates_.begin() + static_cast<std::ptrdiff_t>(*i));
       forecasts_.erase(forecasts_.begin() + static_cast<std::ptrdiff_t>(*i));
@@ -187,8 +205,7 @@ class Planning {
   FollowUpPrice follow_up_of(std::size_t i, std::size_t level) const {
     const double megapixels = candidates_[i].traits.megapixels;
     const FollowUpPrice* const nearest = nearest_follow_up(megapixels);
-    return nearest == nullptr ? FollowUpPrice()
-                              : nearest->of(megapixels * candidates_[i].levels[level].pixels_share);
+    return nearest == nullptr ? FollowUpPrice() : nearest->of(megapixels * level_of(i, level).pixels_share);
   }
 
   void add_follow_ups() {
@@ -198,12 +215,15 @@ class Planning {
     }
   }
 
+  bool is_fixed() const { return levels_.size() == 1; }
+  // Of a session, `level` being one of levels_.
+  const LevelOfSession& level_of(std::size_t i, std::size_t level) const {
+    return candidates_[i].levels[levels_[level]];
+  }
+
   // Whether there is nothing to do at the level that was asked for.
   bool is_done(const Candidate& candidate) const {
-    const std::vector<std::string> names = level_names();
-    const auto level = static_cast<std::size_t>(std::ranges::find(names, options_.quality) - names.begin());
-    const bool is_fixed = !options_.to_deg && !options_.within_seconds;
-    return is_fixed && level < names.size() && candidate.levels[level].is_there;
+    return is_fixed() && candidate.levels[levels_.front()].is_there;
   }
 
   bool turns_little(const Forecast& forecast) const {
@@ -212,13 +232,20 @@ class Planning {
 
   // What is there, or is left out for turning little, costs nothing.
   bool is_free(std::size_t i, std::size_t level) const {
-    return candidates_[i].levels[level].is_there || turns_little(forecasts_[i][level]);
+    return level_of(i, level).is_there || turns_little(forecasts_[i][level]);
   }
 
+  // Nobody makes maps of a preview unawares.
+  std::size_t first_level() const { return is_fixed() || options_.product.then.empty() ? 0 : 1; }
+
+  // From the first level on that may be chosen.
   std::vector<batch::Option> options_of(std::size_t i) const {
     std::vector<batch::Option> options;
-    for (std::size_t l = 0; l < forecasts_[i].size(); ++l)
-      options.push_back({is_free(i, l) ? 0 : forecasts_[i][l].seconds, forecasts_[i][l].degrees});
+    for (std::size_t l = first_level(); l < forecasts_[i].size(); ++l) {
+      const Forecast& forecast = forecasts_[i][l];
+      options.push_back(
+          {is_free(i, l) ? 0 : forecast.seconds, deg_of_whole(forecast.degrees, forecast.solved)});
+    }
     return options;
   }
 
@@ -229,28 +256,28 @@ class Planning {
                    "measure at least one with --sample, or name a level with --quality"};
     }
     if (options_.within_seconds) return decide_by_hours();
-    const auto named = std::ranges::find(names, options_.quality);
-    if (named == names.end()) {
-      return Error{ErrorKind::kUsage, "no such level", options_.quality,
-                   fmt::format("{}", fmt::join(names, ", ")), "name one of them"};
+    if (is_fixed() && levels_.front() == 0 && !options_.product.then.empty()) {
+      return Error{ErrorKind::kUsage, "a preview feeds no maps", "--then",
+                   "it has half the size and no masks", "plan with --quality standard, or without --then"};
     }
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       if (!options_.to_deg) {
-        take(i, static_cast<std::size_t>(named - names.begin()));
+        take(i, 0);
         continue;
       }
       const std::vector<batch::Option> options = options_of(i);
       const std::optional<std::size_t> level = batch::cheapest_within(options, *options_.to_deg);
       if (level) {
-        take(i, *level);
+        take(i, first_level() + *level);
         continue;
       }
       const auto closest = std::ranges::min_element(options, {}, &batch::Option::degrees);
-      plan_.left_out.push_back(
-          {candidates_[i].input.folder.string(), batch::Reason::kNotGoodEnough, "",
-           fmt::format("the closest level, {}, is expected to be off by {:.3g} degrees",
-                       names[static_cast<std::size_t>(closest - options.begin())], closest->degrees),
-           closest->seconds});
+      const auto closest_level = first_level() + static_cast<std::size_t>(closest - options.begin());
+      const Forecast& forecast = forecasts_[i][closest_level];
+      plan_.left_out.push_back({candidates_[i].input.folder.string(), batch::Reason::kNotGoodEnough, "",
+                                fmt::format("the closest level, {}: {}", names[levels_[closest_level]],
+                                            error_in_words(forecast.degrees, forecast.solved)),
+                                closest->seconds});
     }
     return {};
   }
@@ -261,7 +288,7 @@ class Planning {
     const Result<batch::Spending> spending = batch::spend(options, *options_.within_seconds);
     if (!spending) return spending.error();
     plan_.header.curve = spending->curve;
-    for (std::size_t i = 0; i < candidates_.size(); ++i) take(i, spending->chosen[i]);
+    for (std::size_t i = 0; i < candidates_.size(); ++i) take(i, first_level() + spending->chosen[i]);
     return {};
   }
 
@@ -270,7 +297,7 @@ class Planning {
     const Candidate& candidate = candidates_[i];
     const Forecast& forecast = forecasts_[i][level];
     const std::string session = candidate.input.folder.string();
-    const LevelOfSession& of_level = candidate.levels[level];
+    const LevelOfSession& of_level = level_of(i, level);
     if (of_level.is_there) {
       plan_.left_out.push_back({session, batch::Reason::kThere, "",
                                 fmt::format("solve {} is there", of_level.solve), forecast.seconds});
@@ -286,7 +313,7 @@ class Planning {
     batch::Job job;
     job.session = session;
     job.digest = candidate.digest;
-    job.quality = level_names()[level];
+    job.quality = level_names()[levels_[level]];
     job.calibration = candidate.traits.calibration;
     job.solve = of_level.solve;
     job.before = candidate.before;
@@ -301,28 +328,29 @@ class Planning {
     plan_.jobs.push_back(std::move(job));
   }
 
-  // Every level of all sessions, so that the price of each is known before one is paid.
+  // All sessions at each level, so that the price of each is known before one is paid.
   void add_totals() {
     const std::vector<std::string> names = level_names();
-    for (std::size_t l = 0; l < names.size(); ++l) {
+    for (std::size_t l = 0; l < levels_.size(); ++l) {
       batch::LevelTotal total;
-      total.quality = names[l];
-      double squares = 0;
+      total.quality = names[levels_[l]];
+      batch::MeanError error, squares;
       for (const std::vector<Forecast>& levels : forecasts_) {
         total.hours += levels[l].seconds / 3600;
-        total.mean_deg += levels[l].degrees;
-        squares += levels[l].degrees * levels[l].degrees;
+        error.add(levels[l].degrees, levels[l].solved);
+        squares.add(levels[l].degrees * levels[l].degrees, levels[l].solved);
       }
-      const auto count = static_cast<double>(std::max<std::size_t>(1, forecasts_.size()));
-      total.mean_deg /= count;
-      total.spread_deg = std::sqrt(std::max(0.0, squares / count - total.mean_deg * total.mean_deg));
-      total.sessions = static_cast<int>(std::ranges::count(plan_.jobs, names[l], &batch::Job::quality));
+      total.mean_deg = error.degrees();
+      total.solved = error.solved();
+      total.spread_deg = std::sqrt(std::max(0.0, squares.degrees() - total.mean_deg * total.mean_deg));
+      total.sessions = static_cast<int>(std::ranges::count(plan_.jobs, total.quality, &batch::Job::quality));
       plan_.header.levels.push_back(total);
     }
   }
 
   const PlanBatchOptions& options_;
   const JobContext& context_;
+  const std::vector<std::size_t> levels_;  // of level_names(), what `level` is an index into
   batch::Plan plan_;
   std::vector<Candidate> candidates_;
   std::vector<std::vector<Forecast>> forecasts_;
@@ -362,7 +390,9 @@ Result<void> check_plan_options(const PlanBatchOptions& options) {
 
 Result<PlanBatchReport> plan_batch(const PlanBatchOptions& options, const JobContext& context) {
   if (Result<void> ok = check_plan_options(options); !ok) return std::move(ok).error();
-  return Planning(options, context).plan();
+  Result<std::vector<std::size_t>> levels = levels_of(options);
+  if (!levels) return std::move(levels).error();
+  return Planning(options, std::move(*levels), context).plan();
 }
 
 }  // namespace weft::app

@@ -52,13 +52,13 @@ std::optional<double> turn_in_the_middle(const fs::path& cut_file, const fs::pat
 
 }  // namespace
 
-Result<std::vector<batch::Forecast>> measure_session(const Candidate& candidate,
-                                                     const batch::Product& product,
+Result<std::vector<batch::Forecast>> measure_session(const Candidate& candidate, const SampleOptions& options,
                                                      const JobContext& context) {
   const TemporaryFolder crops;
-  SolveOptions options;
-  options.compression = compression_of(product);
-  const Result<Ladder> ladder = explain_session(candidate.input, options, crops.path(), context);
+  SolveOptions solve;
+  solve.compression = compression_of(options.product);
+  const PriceOptions wanted = {.only = options.only, .crops = crops.path(), .shared = &options.shared};
+  const Result<Ladder> ladder = explain_session(candidate.input, solve, wanted, context);
   if (!ladder) return ladder.error();
   const fs::path before = candidate.input.folder / "solve" / candidate.before;
   double compare_s = 0;
@@ -71,6 +71,8 @@ Result<std::vector<batch::Forecast>> measure_session(const Candidate& candidate,
     batch::Forecast level;
     level.seconds = price.seconds.total();
     level.degrees = price.error.total_deg;
+    level.solved = price.error.solved;
+    level.solve_seconds = price_of(price).seconds;
     const bool is_half = price.level == solver::Level::kPreview;
     if (!candidate.before.empty() && !is_half) {
       level.seconds += compare_s;

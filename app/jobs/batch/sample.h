@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "app/jobs/batch/survey.h"
+#include "app/jobs/explain.h"
 #include "batch/forecast.h"
 #include "batch/plan.h"
 #include "core/job.h"
@@ -9,11 +13,17 @@
 
 namespace weft::app {
 
-/// Prices every level of one session on its own photographs (app/jobs/explain.h). Where it has a solve, the
-/// seconds hold comparing with that, as measured here, and each level that it can be compared with says how
-/// far its middle turns. Errors of explain_session().
-Result<std::vector<batch::Forecast>> measure_session(const Candidate& candidate,
-                                                     const batch::Product& product,
+/// What is measured on a session.
+struct SampleOptions {
+  const batch::Product& product;
+  std::optional<solver::Level> only = {};  ///< this level alone; none: all
+  std::optional<SharedSeconds>& shared;    ///< of the sessions before
+};
+
+/// Prices levels of one session on its own photographs (app/jobs/explain.h), as many as level_names() has, or
+/// the one. Where it has a solve, the seconds hold comparing with that, as measured here, and each level that
+/// it can be compared with says how far its middle turns. Errors of explain_session().
+Result<std::vector<batch::Forecast>> measure_session(const Candidate& candidate, const SampleOptions& options,
                                                      const JobContext& context);
 
 }  // namespace weft::app

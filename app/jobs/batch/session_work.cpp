@@ -99,6 +99,7 @@ void add_facts_of(const SolveReport& report, batch::Outcome& outcome) {
   outcome.sigma_p95_deg = number_in(facts.sigma_normal_deg, "p95");
   outcome.unsolved = static_cast<double>(facts.status.with(kNoSolution)) /
                      static_cast<double>(std::max<std::int64_t>(1, facts.size.pixels()));
+  outcome.solved = facts.taken ? facts.taken->solved : 1 - outcome.unsolved;
   if (facts.check) outcome.left_out = facts.check->all.rms;
   for (const Verdict& warning : facts.warnings) outcome.warnings.push_back(warning.name);
 }
@@ -142,7 +143,11 @@ batch::Outcome work_on_session(const SessionWork& work, const JobContext& contex
   if (!calibration) return ended_by(work, calibration.error());
   SolveOptions options;
   options.method = work.job.quality;
+  options.plan = work.header->id;
   options.compression = compression_of(work.product);
+  const batch::Forecast& forecast = work.job.forecast;
+  if (forecast.solve_seconds > 0)
+    options.foretold = SolvePrice{forecast.solve_seconds, forecast.degrees, forecast.solved, {}};
   const SessionOptions input = {.folder = work.session, .calibration = *calibration, .leds = {}};
   const Result<SolveReport> report = work.product.is_whole() ? solve_whole(input, options, work, context)
                                                              : solve_lean(input, options, work, context);
