@@ -3,6 +3,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
 #include <vector>
 
 #include "core/result.h"
@@ -13,6 +16,7 @@ namespace weft::app {
 struct NormalComparison {
   std::int64_t pixels = 0;
   double mean_deg = 0, median_deg = 0, p95_deg = 0, max_deg = 0;
+  double flipped_mean_deg = 0;  ///< mean with the y of one map turned round, as between OpenGL and DirectX
 };
 
 /// Relative differences of two albedo maps over R, G, B of the pixels that count.
@@ -22,12 +26,29 @@ struct AlbedoComparison {
   double bias_rel = 0;  ///< mean of (A - B) / B
 };
 
+/// Differences of one channel that both maps have, in its own unit.
+struct NumberComparison {
+  std::string name = {}, unit = {};  ///< "height", "mm"; empty: nobody says
+  std::int64_t pixels = 0;
+  double mean_abs = 0, bias = 0, max_abs = 0;
+};
+
+enum class ComparedKind { kNormal, kAlbedo, kNumber };
+using MapComparison = std::variant<NormalComparison, AlbedoComparison, std::vector<NumberComparison>>;
+
 /// Mean, median, 95th percentile and maximum of angles, which are sorted on the way.
 NormalComparison summarize(std::vector<float>& angles_deg);
 
-/// Compares `tested` with `truth`, of equal size. A pixel counts if it is inside the mask (over one half;
-/// empty: all), finite in both maps and of some length in the truth. Normal maps hold X, Y, Z; integer files
-/// hold (n + 1) / 2.
+/// Compares `tested` with `truth`, of equal size, as what they are (app/jobs/file_meaning.h): normals by
+/// names of channels, an export.json or unit lengths, colours by those, by tags of the format or by the
+/// file's name. A pixel counts if it is inside the mask (over one half; empty: all), finite in both maps,
+/// not called unsolved by the status.png of a solve that a map lies in and, of normals and colours, not all 0
+/// in the truth. Normals may be packed as n / 2 + 1/2 and lack z; a DirectX
+/// map that an export.json lists is turned. kUsage where nothing tells what a map is, or they are of two
+/// kinds, and `kind` is not said; kBadData for other sizes and for what is not such a map.
+Result<MapComparison> compare_maps(const std::filesystem::path& tested, const std::filesystem::path& truth,
+                                   const std::filesystem::path& mask, std::optional<ComparedKind> kind = {});
+/// The same of maps that are known to be normals, or albedo.
 Result<NormalComparison> compare_normals(const std::filesystem::path& tested,
                                          const std::filesystem::path& truth,
                                          const std::filesystem::path& mask);

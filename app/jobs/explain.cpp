@@ -83,19 +83,6 @@ Result<SolveReport> solve_cut(const Photographs& photographs, const std::string&
   return std::move(*quickest);
 }
 
-// Seconds that grow with the pixels of the maps.
-struct Growing {
-  double at_cut = 0, a_pixel = 0;
-  double pixels_of_cut = 0;
-
-  double at(double pixels) const { return std::max(0.0, at_cut + a_pixel * (pixels - pixels_of_cut)); }
-};
-
-// What files and pictures take is the same at all levels, and mostly not of the pixels: two cuts tell.
-struct SharedSeconds {
-  Growing write, pictures, sync;
-};
-
 Result<SharedSeconds> shared_seconds(const Photographs& photographs, const SolveOptions& options,
                                      const JobContext& context) {
   std::array<SolveSeconds, 2> quickest;
@@ -109,6 +96,7 @@ Result<SharedSeconds> shared_seconds(const Photographs& photographs, const Solve
       if (!solved) return solved.error();
       SolveSeconds& best = quickest[i];
       if (run == 0) best = solved->seconds;
+      best.solve = std::min(best.solve, solved->seconds.solve);
       best.write = std::min(best.write, solved->seconds.write);
       best.pictures = std::min(best.pictures, solved->seconds.pictures);
       best.sync = std::min(best.sync, solved->seconds.sync);
@@ -120,19 +108,27 @@ Result<SharedSeconds> shared_seconds(const Photographs& photographs, const Solve
     const double a_pixel = pixels[0] > pixels[1] ? std::max(0.0, more) / (pixels[0] - pixels[1]) : 0;
     return Growing{quickest[0].*part, a_pixel, pixels[0]};
   };
-  return SharedSeconds{growing(&SolveSeconds::write), growing(&SolveSeconds::pictures),
-                       growing(&SolveSeconds::sync)};
+  return SharedSeconds{growing(&SolveSeconds::solve), growing(&SolveSeconds::write),
+                       growing(&SolveSeconds::pictures), growing(&SolveSeconds::sync)};
 }
 
-// Of the whole frame, from those of its cut.
+// Of the whole frame, from those of its cut; reading and registering it aside.
 LevelSeconds scaled(const SolveSeconds& cut, const SharedSeconds& shared, Size frame, bool is_half) {
   const Rect area = timed_area(frame);
-  const auto in_cut = static_cast<double>(Size{area.width(), area.height()}.pixels());
+  const Size in_cut = {area.width(), area.height()};
   const auto pixels = static_cast<double>(frame.pixels()), of_maps = is_half ? pixels / 4 : pixels;
   const Size maps = is_half ? Size{frame.width / 2, frame.height / 2} : frame;
   const double square = report::Downsampler(maps, 1).square();
   LevelSeconds seconds;
-  seconds.solve = pixels / in_cut * cut.solve;
+  seconds.prepare = is_half ? cut.prepare * pixels / static_cast<double>(in_cut.pixels()) : cut.prepare;
+  // No level takes less a pixel than `fast` does, of which the two cuts are.
+  const double least = shared.solve.a_pixel * static_cast<double>(in_cut.pixels()) / (is_half ? 4 : 1);
+  const double begin = std::clamp(shared.solve.at(0), 0.0, std::max(0.0, cut.work.frame - least));
+  pipeline::SolveWork growing = cut.work;
+  growing.frame -= begin;
+  const pipeline::SolveWork work = pipeline::carried_over(growing, in_cut, frame);
+  seconds.fixed = work.lobe + begin;
+  seconds.solve = work.total() + begin;
   seconds.write = shared.write.at(of_maps);
   seconds.pictures = shared.pictures.at(of_maps / (square * square));
   seconds.report = cut.report;
@@ -141,12 +137,14 @@ LevelSeconds scaled(const SolveSeconds& cut, const SharedSeconds& shared, Size f
 }
 
 // What the reference level takes out of the readings, and why, as solve.json says it.
-std::string words_of(const Json& stages, const Json& gates) {
+std::string words_of(const Json& reference, const Json& gates) {
   std::string words;
-  for (const Json& stage : stages) {
+  for (const Json& stage : reference.at("stages")) {
     words += fmt::format("{}{}", words.empty() ? "takes out " : ", ", stage.get<std::string>());
   }
-  if (words.empty()) words = "gates shut";
+  const bool was_tried = !reference.at("left_out").empty();
+  if (words.empty())
+    words = was_tried ? "left-out light is predicted no better without its effects" : "gates shut";
   const char* before = ": ";
   for (const Json& gate : gates) {
     const std::string unit = gate.at("unit");
@@ -176,7 +174,8 @@ void add_note(const std::string& words, LevelPrice& level) {
 std::size_t best_of(const Ladder& ladder, const std::vector<std::size_t>& from_cheapest) {
   std::size_t best = from_cheapest.front();
   for (const std::size_t i : from_cheapest) {
-    const double error = ladder.levels[i].error.total_deg, before = ladder.levels[best].error.total_deg;
+    const double error = ladder.levels[i].error.of_whole_deg(),
+                 before = ladder.levels[best].error.of_whole_deg();
     if (error < (1 - kWorthwhileGain) * before) best = i;
   }
   return best;
@@ -195,74 +194,103 @@ void add_notes(Ladder& ladder) {
   std::vector<std::size_t> cheaper;
   for (const std::size_t i : from_cheapest(ladder)) {
     LevelPrice& level = ladder.levels[i];
+    if (!level.is_solved()) level.note = "most of the cloth has no normal: scan it again";
     if (!cheaper.empty()) {
       const LevelPrice& best = ladder.levels[best_of(ladder, cheaper)];
-      if (level.error.total_deg > (1 - kWorthwhileGain) * best.error.total_deg)
+      if (level.is_solved() && level.error.of_whole_deg() > (1 - kWorthwhileGain) * best.error.of_whole_deg())
         level.note = "nothing to gain over " + best.name();
     }
     cheaper.push_back(i);
   }
 }
 
-Result<Ladder> price(const Photographs& photographs, double read, double prepare, const SolveOptions& options,
-                     const fs::path& crops, const JobContext& context) {
+// What pricing a level in the cut came to.
+struct Priced {
+  LevelPrice price;
+  Json gates;
+  std::vector<std::string> notes;
+};
+
+Result<Priced> price_level(const Photographs& photographs, const solver::MethodName& level,
+                           const SharedSeconds& shared, const SolveOptions& options, const fs::path& crops,
+                           const JobContext& context) {
+  const Result<SolveReport> cut = solve_cut(photographs, level.name, options, crops, context);
+  if (!cut) return cut.error();
+  const bool is_half = level.extent == solver::Extent::kHalfSize;
+  Priced priced;
+  priced.price = {*level.level, cut->expected, scaled(cut->seconds, shared, photographs.size, is_half), ""};
+  if (level.level == solver::Level::kReference) {
+    priced.gates = cut->facts.gates;
+    priced.notes.push_back(words_of(cut->facts.reference, priced.gates));
+  }
+  priced.notes.push_back(gloss_words(cut->facts.reflectance));
+  return priced;
+}
+
+// What is measured on the photographs of a frame before one level is.
+struct FrameSeconds {
+  double read = 0, prepare = 0;
+};
+
+Result<Ladder> price(const Photographs& photographs, const FrameSeconds& frame, const SolveOptions& options,
+                     const PriceOptions& wanted, const JobContext& context) {
   const JobContext silent = {context.threads, context.stop};
   context.progress("explain", 0);
-  const Result<SharedSeconds> shared = shared_seconds(photographs, options, silent);
-  if (!shared) return shared.error();
-  Ladder ladder;
-  std::string stages;
-  std::vector<std::string> gloss;
-  const auto levels = std::ranges::count_if(
-      solver::method_names(), [](const solver::MethodName& name) { return name.level.has_value(); });
+  std::optional<SharedSeconds> own;
+  std::optional<SharedSeconds>& shared = wanted.shared != nullptr ? *wanted.shared : own;
+  if (!shared) {
+    Result<SharedSeconds> measured = shared_seconds(photographs, options, silent);
+    if (!measured) return std::move(measured).error();
+    shared = *measured;
+  }
+  std::vector<const solver::MethodName*> levels;
   for (const solver::MethodName& level : solver::method_names()) {
-    if (!level.level) continue;
-    const bool is_half = level.extent == solver::Extent::kHalfSize;
-    const Result<SolveReport> cut = solve_cut(photographs, level.name, options, crops, silent);
-    if (!cut) return cut.error();
-    LevelSeconds seconds = scaled(cut->seconds, *shared, photographs.size, is_half);
-    seconds.read = read;
-    seconds.prepare = is_half ? 0 : prepare;
-    ladder.levels.push_back({*level.level, cut->expected, seconds, ""});
-    gloss.push_back(gloss_words(cut->facts.reflectance));
-    if (level.level == solver::Level::kReference) {
-      ladder.gates = cut->facts.gates;
-      stages = words_of(cut->facts.reference.at("stages"), ladder.gates);
-    }
+    if (level.level && (!wanted.only || level.level == wanted.only)) levels.push_back(&level);
+  }
+  Ladder ladder;
+  std::vector<std::vector<std::string>> notes;
+  for (const solver::MethodName* level : levels) {
+    Result<Priced> priced = price_level(photographs, *level, *shared, options, wanted.crops, silent);
+    if (!priced) return std::move(priced).error();
+    priced->price.seconds.read = frame.read;
+    if (level->extent != solver::Extent::kHalfSize) priced->price.seconds.prepare += frame.prepare;
+    ladder.levels.push_back(std::move(priced->price));
+    notes.push_back(std::move(priced->notes));
+    if (!priced->gates.is_null()) ladder.gates = std::move(priced->gates);
     if (context.stop.stop_requested()) return interrupted();
-    context.progress("explain", static_cast<double>(ladder.levels.size()) / static_cast<double>(levels));
+    context.progress("explain",
+                     static_cast<double>(ladder.levels.size()) / static_cast<double>(levels.size()));
   }
   add_notes(ladder);
-  add_note(stages, ladder.levels.back());
-  for (std::size_t i = 0; i < gloss.size(); ++i) add_note(gloss[i], ladder.levels[i]);
+  for (std::size_t i = 0; i < notes.size(); ++i) {
+    for (const std::string& note : notes[i]) add_note(note, ladder.levels[i]);
+  }
   return ladder;
 }
 
 Result<Ladder> explain(Photographs photographs, double read, const SolveOptions& options,
-                       const fs::path& crops, const JobContext& context) {
+                       const PriceOptions& wanted, const JobContext& context) {
   Stopwatch watch;
   Result<pipeline::SessionShifts> shifts = register_shots(photographs, context);
   if (!shifts) return std::move(shifts).error();
   if (Result<void> ok = leave_out(shifts->with(pipeline::ShiftVerdict::kLeftOut), photographs); !ok)
     return std::move(ok).error();
-  const double prepare = watch.lap();
-  return price(photographs, read, prepare, options, crops, context);
+  return price(photographs, {read, watch.lap()}, options, wanted, context);
 }
 
 Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
   const auto& levels = ladder.levels;
-  const auto quickest = std::min_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
-    return a.seconds.total() < b.seconds.total();
-  });
-  const auto closest = std::min_element(levels.begin(), levels.end(), [](const auto& a, const auto& b) {
-    return a.error.total_deg < b.error.total_deg;
-  });
-  const std::string quick =
-      fmt::format("the quickest, {}, takes {:.3g} s at {:.3g} degrees", quickest->name(),
-                  quickest->seconds.total(), quickest->error.total_deg);
-  const std::string close =
-      fmt::format("the closest, {}, is expected to be off by {:.3g} degrees in {:.3g} s", closest->name(),
-                  closest->error.total_deg, closest->seconds.total());
+  const auto quickest =
+      std::ranges::min_element(levels, {}, [](const LevelPrice& level) { return level.seconds.total(); });
+  const auto closest = std::ranges::min_element(
+      levels, {}, [](const LevelPrice& level) { return level.error.of_whole_deg(); });
+  const auto error_of = [](const LevelPrice& level) {
+    return error_in_words(level.error.total_deg, level.error.solved);
+  };
+  const std::string quick = fmt::format("the quickest, {}, takes {:.3g} s at {}", quickest->name(),
+                                        quickest->seconds.total(), error_of(*quickest));
+  const std::string close = fmt::format("the closest, {}, is expected to be off by {} in {:.3g} s",
+                                        closest->name(), error_of(*closest), closest->seconds.total());
   std::string where, why, remedy;
   if (wish.within_seconds) {
     where = fmt::format("--within {:g}", *wish.within_seconds);
@@ -278,38 +306,59 @@ Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
           remedy + "; --explain lists all levels"};
 }
 
+Error nothing_solved(const Ladder& ladder) {
+  const auto most =
+      std::ranges::max_element(ladder.levels, {}, [](const LevelPrice& level) { return level.error.solved; });
+  return {
+      ErrorKind::kBadData, "no level solves this cloth", "the middle of the frame",
+      fmt::format("the most, {} of it, has a normal by {}", share_in_words(most->error.solved), most->name()),
+      "scan it again with the exposure that the meter takes; --explain lists all levels"};
+}
+
 }  // namespace
 
 Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& options,
-                               const fs::path& crops, const JobContext& context) {
+                               const PriceOptions& wanted, const JobContext& context) {
   const Result<SessionPlan> plan = plan_session(input);
   if (!plan) return plan.error();
   Stopwatch watch;
   Result<LoadedSession> loaded = load_session(*plan, context);
   if (!loaded) return std::move(loaded).error();
-  return explain(std::move(loaded->photographs), watch.lap(), options, crops, context);
+  return explain(std::move(loaded->photographs), watch.lap(), options, wanted, context);
 }
 
-Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options, const fs::path& crops,
-                              const JobContext& context) {
+Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,
+                              const PriceOptions& wanted, const JobContext& context) {
   const Result<PhotoPlan> plan = plan_photos(input);
   if (!plan) return plan.error();
   Stopwatch watch;
   Result<Photographs> photographs = load_photos(*plan, context);
   if (!photographs) return std::move(photographs).error();
-  return explain(std::move(*photographs), watch.lap(), options, crops, context);
+  return explain(std::move(*photographs), watch.lap(), options, wanted, context);
 }
 
 Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish) {
+  if (std::ranges::none_of(ladder.levels, &LevelPrice::is_solved)) return nothing_solved(ladder);
   std::vector<std::size_t> fitting;
   for (const std::size_t i : from_cheapest(ladder)) {
     const LevelPrice& level = ladder.levels[i];
     const bool is_quick = !wish.within_seconds || level.seconds.total() <= *wish.within_seconds;
-    const bool is_close = !wish.to_deg || level.error.total_deg <= *wish.to_deg;
-    if (is_quick && is_close) fitting.push_back(i);
+    const bool is_close = !wish.to_deg || level.error.of_whole_deg() <= *wish.to_deg;
+    if (level.is_solved() && is_quick && is_close) fitting.push_back(i);
   }
   if (fitting.empty()) return nothing_fits(ladder, wish);
   return wish.to_deg ? fitting.front() : best_of(ladder, fitting);
+}
+
+SolvePrice price_of(const LevelPrice& level) {
+  const LevelSeconds& seconds = level.seconds;
+  return {seconds.total() - seconds.sync, level.error.total_deg, level.error.solved,
+          Json{{"read", seconds.read},
+               {"prepare", seconds.prepare},
+               {"solve", seconds.solve},
+               {"write", seconds.write},
+               {"pictures", seconds.pictures},
+               {"report", seconds.report}}};
 }
 
 Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen) {
@@ -320,12 +369,14 @@ Json json_of(const Ladder& ladder, std::optional<std::size_t> chosen) {
     levels.push_back(
         {{"quality", level.name()},
          {"predicted_deg", error.total_deg},
+         {"solved", error.solved},
          {"parts_deg",
           {{"noise", error.noise_deg}, {"model", error.model_deg}, {"calibration", error.calibration_deg}}},
          {"seconds",
           {{"read", seconds.read},
            {"prepare", seconds.prepare},
            {"solve", seconds.solve},
+           {"fixed", seconds.fixed},
            {"write", seconds.write},
            {"pictures", seconds.pictures},
            {"report", seconds.report},

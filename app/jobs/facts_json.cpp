@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "app/jobs/facts_json.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -68,6 +70,11 @@ Json json_of(const pipeline::ReferenceFacts& facts) {
           {"rounds", std::move(rounds)},
           {"left_out", std::move(left_out)},
           {"albedo_scale_is_open", facts.choice.scale_is_open},
+          {"published", facts.robust_is_published ? "robust" : "reference"},
+          {"over_robust",
+           {{"gain", facts.over_robust.mean},
+            {"sigma", facts.over_robust.sigma},
+            {"patches", facts.over_robust.patches}}},
           {"shadow_reach_is_capped", facts.shadow_reach_is_capped}};
 }
 
@@ -78,6 +85,12 @@ std::vector<std::string> warnings_of(const pipeline::ReferenceFacts& facts) {
         "light between yarns was left in: the scale of the albedo is relative and this cloth does not tell "
         "it; "
         "measure the reflectance of the paper that the lights are calibrated on");
+  }
+  if (facts.robust_is_published) {
+    said.push_back(fmt::format(
+        "the solution is that of robust: what reference takes out made left-out light harder to predict, by "
+        "{:.2f} percent of the brightness",
+        -100 * facts.over_robust.mean));
   }
   if (std::ranges::any_of(facts.rounds, &pipeline::ReferenceRound::is_refused)) {
     said.emplace_back(

@@ -24,7 +24,8 @@ Json json_of(const solver::SolveTally& tally);
 /// {"sigma_px", "share"}.
 Json json_of(const pipeline::DeblurFacts& facts);
 
-/// {"stages", "rounds", "left_out", "albedo_scale_is_open", "shadow_reach_is_capped"}.
+/// {"stages", "rounds", "left_out", "albedo_scale_is_open", "published", "over_robust",
+/// "shadow_reach_is_capped"}.
 Json json_of(const pipeline::ReferenceFacts& facts);
 
 /// What the reference level could not do, a sentence each.

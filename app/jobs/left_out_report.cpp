@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/percent.h"
 #include "report/html.h"
 #include "report/page.h"
 
@@ -47,12 +48,15 @@ std::optional<Verdict> verdict_of(const LeftOutFacts& facts, bool of_session,
                                   std::optional<solver::Level> level) {
   const LeftOutShares& all = facts.all;
   if (all.median < kWorstFit || all.median < kOverNoise * all.noise_median.value_or(0)) return std::nullopt;
-  Verdict verdict = {"LIGHTS_DO_NOT_FIT",
-                     fmt::format("The lights do not fit together: the reading of a light that is left out is "
-                                 "missed by {:.0f} percent (median)",
-                                 100 * all.median),
-                     of_session ? "check that this calibration is the rig's and calibrate the lights again"
-                                : "check the directions and strengths of the lights"};
+  Verdict verdict = {
+      "LIGHTS_DO_NOT_FIT",
+      fmt::format("The lights do not fit together: the reading of a light that is left out is "
+                  "missed by {} percent (median)",
+                  all.median > 1 ? "over 100" : percent_words(all.median)),
+      of_session
+          ? "check that this calibration is the rig's and calibrate the lights again"
+          : "check how values follow light (--transfer), the exposures, and the strengths and directions "
+            "of the lights (x to the right, y up; z is towards the camera)"};
   if (all.noise_median) verdict.text += fmt::format(", where noise gives {:.1f}", 100 * *all.noise_median);
   if (level && *level < solver::Level::kRobust)
     verdict.remedy += "; if the cloth shines, solve with --quality robust";

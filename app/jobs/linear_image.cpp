@@ -50,6 +50,16 @@ bool is_linear_image(const std::filesystem::path& file) {
 }
 
 Transfer transfer_of(const ImageFileInfo& info) {
+  switch (info.color) {
+    case ColorSpace::kSrgb:
+      return Transfer::kSrgb;
+    case ColorSpace::kLinearColor:
+      return Transfer::kLinear;
+    case ColorSpace::kOther:
+      return Transfer::kAuto;
+    case ColorSpace::kData:
+      break;
+  }
   return info.type == SampleType::kUint8 ? Transfer::kSrgb : Transfer::kLinear;
 }
 
@@ -75,6 +85,11 @@ Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transf
                  "use raw, TIFF, PNG or EXR frames"};
   }
   if (transfer == Transfer::kAuto) transfer = transfer_of(*info);
+  if (transfer == Transfer::kAuto) {
+    return Error{ErrorKind::kBadData, "the photograph's light is not known", file.string(),
+                 "it says that it went through a curve that is neither that of sRGB nor none",
+                 "export it without a curve, or say --transfer"};
+  }
   Result<LoadedImage> loaded = read_image(file);
   if (!loaded) return std::move(loaded).error();
   if (not_numbers == NotNumbers::kRefuse) {

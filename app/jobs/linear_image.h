@@ -13,7 +13,7 @@ namespace weft::app {
 
 /// How the values of a developed photograph follow light.
 enum class Transfer {
-  kAuto,    ///< 16-bit and float files are linear, 8-bit ones and JPEG sRGB
+  kAuto,    ///< as the file says; where it does not, 16-bit and float files are linear, 8-bit ones sRGB
   kLinear,  ///< proportional to light
   kSrgb,    ///< IEC 61966-2-1
 };
@@ -46,7 +46,8 @@ Result<ImageFileInfo> read_linear_image_info(const std::filesystem::path& file);
 Result<Image<float>> read_linear_image(const std::filesystem::path& file, Transfer transfer, Clipped clipped,
                                        NotNumbers not_numbers = NotNumbers::kRefuse);
 
-/// What kAuto means for a file.
+/// What kAuto means for a file; kAuto where it says of a curve that is neither, which read_linear_image()
+/// then refuses.
 Transfer transfer_of(const ImageFileInfo& info);
 
 /// image -= dark, sample by sample.

@@ -8,7 +8,9 @@
 #include <limits>
 #include <sstream>
 
+#include "app/jobs/photo_mask.h"
 #include "core/files.h"
+#include "core/number.h"
 #include "pipeline/plane_weights.h"
 
 namespace weft::app {
@@ -16,9 +18,30 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLongestQuote = 40;
+
 Error bad_lights(const fs::path& file, std::string why) {
   return {ErrorKind::kBadData, "lights cannot be read", file.string(), std::move(why),
           "see docs/formats.md for the layout"};
+}
+
+Error bad_number(const fs::path& file, int line, std::string_view word) {
+  return {ErrorKind::kBadData, "lights cannot be read", file.string(),
+          fmt::format("line {} has not three numbers: {}", line, why_no_number(word)),
+          "write finite numbers with a point, as in 0.5 or 5e-1; docs/formats.md has the layout"};
+}
+
+// The last three words of a line.
+Result<std::array<double, 3>> triple_of(const std::vector<std::string_view>& words, const fs::path& file,
+                                        int line) {
+  std::array<double, 3> t = {};
+  for (std::size_t i = 0; i < t.size(); ++i) {
+    const std::string_view word = words[words.size() - t.size() + i];
+    const std::optional<double> number = as_number(word);
+    if (!number) return bad_number(file, line, word);
+    t[i] = *number;
+  }
+  return t;
 }
 
 // Three numbers a line of a text file; empty lines are skipped.
@@ -29,13 +52,12 @@ Result<std::vector<std::array<double, 3>>> read_triples(const fs::path& file) {
   std::istringstream lines(*text);
   std::string line;
   for (int number = 1; std::getline(lines, line); ++number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    std::istringstream words(line);
-    std::array<double, 3> t = {};
-    std::string more;
-    if (!(words >> t[0] >> t[1] >> t[2]) || words >> more)
-      return bad_lights(file, fmt::format("line {} is not three numbers", number));
-    triples.push_back(t);
+    const std::vector<std::string_view> words = words_of_line(line);
+    if (words.empty()) continue;
+    if (words.size() != 3) return bad_lights(file, fmt::format("line {} is not three numbers", number));
+    const Result<std::array<double, 3>> t = triple_of(words, file, number);
+    if (!t) return t.error();
+    triples.push_back(*t);
   }
   return triples;
 }
@@ -81,7 +103,9 @@ Result<PhotoPlan> read_folder(const fs::path& folder) {
     }
     plan.lights.lights.push_back({*direction, intensities[k]});
   }
-  if (is_there(folder / "mask.png")) plan.mask = folder / "mask.png";
+  Result<fs::path> mask = find_mask(folder);
+  if (!mask) return std::move(mask).error();
+  plan.mask = std::move(*mask);
   return plan;
 }
 
@@ -89,37 +113,34 @@ Result<PhotoPlan> read_light_file(const fs::path& file) {
   const Result<std::string> text = read_text(file);
   if (!text) return text.error();
   std::istringstream lines(*text);
-  std::size_t count = 0;
   std::string line;
-  std::string more;
   std::getline(lines, line);
-  std::istringstream first(line);
-  if (!(first >> count) || first >> more) {
-    return bad_lights(file, "the first line is not the number of photographs");
+  const std::vector<std::string_view> first = words_of_line(line);
+  const auto count = first.size() == 1 ? as_whole_number<std::size_t>(first[0]) : std::nullopt;
+  if (!count) {
+    return bad_lights(file, fmt::format("the first line is not the number of photographs: \"{}\"",
+                                        line.substr(0, kLongestQuote)));
   }
   PhotoPlan plan;
-  while (std::getline(lines, line)) {
-    line.erase(line.find_last_not_of(" \t\r") + 1);
-    if (line.empty()) continue;
-    // The name may hold spaces: the last three words are the direction.
-    std::array<double, 3> t = {};
-    std::size_t end = line.size();
-    for (std::size_t i = 3; i-- > 0;) {
-      const std::size_t blank = line.find_last_of(" \t", end == 0 ? 0 : end - 1);
-      if (blank == std::string::npos ||
-          !(std::istringstream(line.substr(blank + 1, end - blank - 1)) >> t[i])) {
-        return bad_lights(file, fmt::format("\"{}\" is not \"file x y z\"", line));
-      }
-      end = line.find_last_not_of(" \t", blank) + 1;
-    }
-    const Result<Vec3> direction = direction_of(t, file);
+  for (int number = 2; std::getline(lines, line); ++number) {
+    const std::vector<std::string_view> words = words_of_line(line);
+    if (words.empty()) continue;
+    if (words.size() < 4) return bad_lights(file, fmt::format("\"{}\" is not \"file x y z\"", line));
+    const Result<std::array<double, 3>> t = triple_of(words, file, number);
+    if (!t) return t.error();
+    const Result<Vec3> direction = direction_of(*t, file);
     if (!direction) return direction.error();
-    plan.files.push_back(file.parent_path() / line.substr(0, end));
+    // The name may hold spaces.
+    const std::string_view last = words[words.size() - 4];
+    const std::string name(words.front().data(), last.data() + last.size());
+    plan.files.push_back(file.parent_path() / name);
+    if (words.size() > 4 && as_number(last) && !is_there(plan.files.back()))
+      return bad_lights(file, fmt::format("line {} has more than three numbers", number));
     plan.lights.lights.push_back({*direction, {1, 1, 1}});
   }
-  if (plan.files.size() != count) {
+  if (plan.files.size() != *count) {
     return bad_lights(file,
-                      fmt::format("it announces {} photographs and lists {}", count, plan.files.size()));
+                      fmt::format("it announces {} photographs and lists {}", *count, plan.files.size()));
   }
   return plan;
 }
@@ -153,10 +174,13 @@ Result<PhotoPlan> plan_photos(const PhotoOptions& options) {
   for (std::size_t k = 0; k < plan.files.size(); ++k) {
     const Result<ImageFileInfo> info = read_linear_image_info(plan.files[k]);
     if (!info) return info.error();
+    const Transfer transfer = options.transfer == Transfer::kAuto ? transfer_of(*info) : options.transfer;
     if (k == 0) {
       plan.size = info->size;
-      plan.transfer = options.transfer == Transfer::kAuto ? transfer_of(*info) : options.transfer;
+      plan.transfer = transfer;
     }
+    // Each by its own kind, where they differ.
+    if (transfer != plan.transfer) plan.transfer = Transfer::kAuto;
     if (info->size != plan.size) {
       return Error{ErrorKind::kBadData, "photographs differ in size", plan.files[k].string(),
                    fmt::format("{} x {} pixels, the first has {} x {}", info->size.width, info->size.height,
@@ -173,14 +197,7 @@ Result<PhotoPlan> plan_photos(const PhotoOptions& options) {
   }
   plan.description = {{"photographs", std::move(inputs)}, {"transfer", name_of(plan.transfer)}};
   if (!plan.mask.empty()) {
-    const Result<ImageFileInfo> info = read_image_info(plan.mask);
-    if (!info) return info.error();
-    if (info->size != plan.size) {
-      return Error{ErrorKind::kBadData, "mask differs in size", plan.mask.string(),
-                   fmt::format("{} x {} pixels, the photographs have {} x {}", info->size.width,
-                               info->size.height, plan.size.width, plan.size.height),
-                   "make the mask again from one of the photographs"};
-    }
+    if (const auto mask = read_mask(plan.mask, plan.size); !mask) return mask.error();
     const Result<std::string> digest = sha256_of_file(plan.mask);
     if (!digest) return digest.error();
     plan.description["mask"] = *digest;
@@ -202,11 +219,11 @@ Result<pipeline::Photographs> load_photos(const PhotoPlan& plan, const JobContex
   if (!field) return std::move(field).error();
   photographs.field = std::move(*field);
 
-  std::optional<LoadedImage> mask;
+  std::optional<Image<std::uint8_t>> mask;
   if (!plan.mask.empty()) {
-    Result<LoadedImage> loaded = read_image(plan.mask);
-    if (!loaded) return std::move(loaded).error();
-    mask = std::move(*loaded);
+    Result<Image<std::uint8_t>> read = read_mask(plan.mask, plan.size);
+    if (!read) return std::move(read).error();
+    mask = std::move(*read);
   }
   std::vector<Image<float>> rgb(plan.files.size());
   const auto read_photo = [&](std::size_t k) -> Result<void> {
@@ -215,7 +232,7 @@ Result<pipeline::Photographs> load_photos(const PhotoPlan& plan, const JobContex
     if (mask) {
       for (int y = 0; y < plan.size.height; ++y) {
         for (int x = 0; x < plan.size.width; ++x) {
-          if (mask->planes(x, y) > 0.5f) continue;
+          if ((*mask)(x, y) != 0) continue;
           for (int c = 0; c < 3; ++c) (*image)(x, y, c) = std::numeric_limits<float>::quiet_NaN();
         }
       }

@@ -16,7 +16,8 @@ namespace weft::app {
 /// Where photographs under distant lights are: one of `folder` and `light_file` is named.
 struct PhotoOptions {
   /// A folder in the layout of the DiLiGenT benchmark (Shi et al., CVPR 2016): filenames.txt,
-  /// light_directions.txt and, where they exist, light_intensities.txt (R G B a line) and mask.png.
+  /// light_directions.txt and, where they exist, light_intensities.txt (R G B a line) and a mask
+  /// (app/jobs/photo_mask.h).
   std::filesystem::path folder;
   /// Or an RTI light file: a count, then one line "file x y z" a photograph.
   std::filesystem::path light_file;
@@ -31,7 +32,7 @@ struct PhotoPlan {
   DistantLights lights;
   std::filesystem::path mask;  ///< empty: every pixel counts
   Size size;
-  Transfer transfer = Transfer::kLinear;
+  Transfer transfer = Transfer::kLinear;  ///< kAuto: files differ, and each is taken by its own kind
   Clipped clipped = Clipped::kMark;
   Json description;
 };

@@ -12,6 +12,7 @@
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/report_page.h"
 #include "core/files.h"
+#include "core/percent.h"
 #include "core/statistics.h"
 #include "pipeline/evidence.h"
 #include "solver/diagnosis/highlights.h"
@@ -25,6 +26,8 @@ namespace fs = std::filesystem;
 using solver::Fault;
 using solver::FaultKind;
 
+// Without those that moved there must be more lights than the three that always fit.
+constexpr std::size_t kLeastOfMoved = 4;
 // A gain that turns the normals by less is in the report, but nobody is warned of it.
 constexpr double kLeastWarned_deg = 0.05;
 constexpr int kGridSide = 32;
@@ -70,14 +73,26 @@ struct Speaker {
     const char* noun = photographs.of_session ? "LED" : "Light";
     return fmt::format("{}{} {}", noun, lights.size() > 1 ? "s" : "", listed(numbers(lights)));
   }
-  // The option that leaves lights out, as long as it can be read.
-  std::string without(const std::vector<std::size_t>& lights) const {
-    if (photographs.numbers.size() > 16) return "the other lights (--lights)";
+  // What solves without these lights, where enough are left: ", or ...".
+  std::string or_without(const std::vector<std::size_t>& lights) const {
+    if (photographs.numbers.size() < lights.size() + 3) return "";
+    if (!photographs.session.empty()) return ", or " + leave_out(lights) + " and solve again";
+    if (photographs.numbers.size() > 16) return ", or solve with the other lights (--lights)";
     std::vector<int> rest;
     for (std::size_t k = 0; k < photographs.numbers.size(); ++k) {
       if (std::find(lights.begin(), lights.end(), k) == lights.end()) rest.push_back(photographs.numbers[k]);
     }
-    return "--lights " + joined(rest);
+    return ", or solve with --lights " + joined(rest);
+  }
+  // So that no later solve has them either.
+  std::string leave_out(const std::vector<std::size_t>& lights) const {
+    std::vector<int> shots = photographs.left_out;
+    for (const int led : numbers(lights)) {
+      const auto shot = photographs.shot_of_led.find(led);
+      if (shot != photographs.shot_of_led.end()) shots.push_back(shot->second);
+    }
+    return fmt::format("leave {} out with weft library tag {} --set left_out={}",
+                       lights.size() > 1 ? "them" : "it", photographs.session, joined(shots));
   }
   // What turns a residual before and after into words.
   static std::string falls(const Fault& fault) {
@@ -87,12 +102,12 @@ struct Speaker {
 
   Verdict exchanged(const Fault& fault) const {
     const char* place = photographs.of_session ? "session.json" : "the list of lights";
+    const char* first = photographs.of_session ? "check the wiring; for these photographs " : "";
     if (fault.lights.size() == 2) {
       return {"LEDS_EXCHANGED",
               fmt::format("{} look swapped: with them exchanged {}", name(fault.lights), falls(fault)),
-              fmt::format("check the wiring; for these photographs exchange the numbers {} in {} and solve "
-                          "again, or solve with {}",
-                          listed(numbers(fault.lights)), place, without(fault.lights))};
+              fmt::format("{}exchange the numbers {} in {} and solve again{}", first,
+                          listed(numbers(fault.lights)), place, or_without(fault.lights))};
     }
     std::string order;
     for (std::size_t i = 0; i < fault.lights.size(); ++i) {
@@ -102,22 +117,25 @@ struct Speaker {
     return {"LEDS_EXCHANGED",
             fmt::format("{} look out of order: {}; with them in order {}", name(fault.lights), order,
                         falls(fault)),
-            fmt::format("check the wiring; for these photographs put the numbers in {} in order and solve "
-                        "again, or solve with {}",
-                        place, without(fault.lights))};
+            fmt::format("{}put the numbers in {} in order and solve again{}", first, place,
+                        or_without(fault.lights))};
   }
   Verdict dead(const Fault& fault) const {
     return {"LED_DEAD",
             fmt::format("{} looks dead: its photograph shows {:.1f} percent of the light it should",
                         name(fault.lights), std::max(0.0, percent(fault.value))),
-            "check the LED and its cable and scan again, or solve with " + without(fault.lights)};
+            (photographs.of_session ? "check the LED and its cable and scan again"
+                                    : "photograph again under it") +
+                or_without(fault.lights)};
   }
   Verdict gain(const Fault& fault) const {
     return {"LED_GAIN",
             fmt::format("{} gives {:.1f} percent of what its calibration says (± {:.1f}), which turns "
                         "the normals by {:.2f}°",
                         name(fault.lights), percent(fault.value), percent(fault.sigma), fault.moved_deg),
-            "calibrate the lights again, or solve with " + without(fault.lights)};
+            (photographs.of_session ? "calibrate the lights again"
+                                    : "see whether it was exposed otherwise than the rest") +
+                or_without(fault.lights)};
   }
   Verdict operator()(const Fault& fault) const {
     switch (fault.kind) {
@@ -262,6 +280,14 @@ void MapSummary::add(const pipeline::MapBand& band, View<const float> normal_deg
     }
     sigma_.add_rows(std::array{View<const float>(row_.plane())});
   }
+  constexpr unsigned kNoCloth = kNoSolution | kInvalidReading;
+  for (int y = 0; y < band.status.height(); ++y) {
+    for (int x = 0; x < band.status.width(); ++x) {
+      const unsigned status = band.status(x, y);
+      if (status != kNoCloth) ++cloth_;
+      if ((status & kNoSolution) == 0) ++solved_;
+    }
+  }
 }
 
 Json MapSummary::sigma_noise_deg() const {
@@ -276,9 +302,21 @@ Json MapSummary::sigma_calibration_deg() const {
   return middle_of(calibration_);
 }
 
+std::string share_in_words(double share) {
+  return share < 1 && share >= 0.995 ? "over 99 %" : percent_words(share) + " %";
+}
+
+std::string error_in_words(double mean_deg, double solved) {
+  if (!(solved > 0)) return "nothing solved";
+  return fmt::format("{:.3g} degrees on {} of the cloth", mean_deg, share_in_words(solved));
+}
+
 ExpectedError MapSummary::expected() const {
   const auto mean_deg = [](const AngleHistogram& rms) { return solver::kMeanOfRms * rms.mean(); };
-  return {mean_deg(sum_), mean_deg(noise_), mean_deg(model_), mean_deg(calibration_)};
+  const bool is_known = std::isfinite(sum_.quantile(0.5));
+  const double total_deg = is_known || solved_ == 0 ? mean_deg(sum_) : deg_of_whole(0, 0);
+  return {total_deg, mean_deg(noise_), mean_deg(model_), mean_deg(calibration_),
+          cloth_ > 0 ? static_cast<double>(solved_) / static_cast<double>(cloth_) : 0};
 }
 
 Json MapSummary::sigma_facts() const {
@@ -298,6 +336,7 @@ Json MapSummary::sigma_normal_deg() const {
   }
   return {{"median", number(sum_.quantile(0.5))},
           {"p95", number(sum_.quantile(0.95))},
+          {"solved", expected().solved},
           {"square_px", sigma_.square()},
           {"columns", means.width()},
           {"rows", means.height()},
@@ -347,24 +386,27 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
 
 namespace {
 
-// Of a cloth that moved and was not put right: one verdict or none. Gloss deviates from a fit as well.
-std::vector<Verdict> moved_verdicts(const PhotographsSummary& photographs, bool shines) {
-  const char* remedy =
-      "see that nothing touches cloth, table and camera while they are scanned, and scan again";
-  const pipeline::SessionShifts& shifts = photographs.shifts;
-  const double residual = photographs.diagnosis.residual;
-  if (!shifts.found) {
-    if (residual <= kMoved || shines) return {};
-    return {{"CLOTH_MOVED",
-             fmt::format("The shots show the cloth in different places, too far apart to be registered, and "
-                         "readings deviate by {:.1f} percent from their fit",
-                         percent(residual)),
-             remedy}};
+// Of shifts that were measured: one verdict or none.
+std::vector<Verdict> moved_verdicts(const PhotographsSummary& photographs) {
+  const Speaker say = {photographs};
+  const std::string remedy =
+      fmt::format("see that nothing touches cloth, table and camera while they are {0}, and {1} again",
+                  photographs.of_session ? "scanned" : "photographed",
+                  photographs.of_session ? "scan" : "photograph them");
+  if (const auto& far = photographs.far_shifts; far && !far->moved.empty()) {
+    const bool can_do_without = photographs.numbers.size() - far->moved.size() >= kLeastOfMoved;
+    return {
+        {"CLOTH_MOVED",
+         fmt::format("The cloth moved: under {} it lies up to {:.0f} pixels from where the others show it, "
+                     "which explains {} percent of what readings miss",
+                     say.name(far->moved), far->most_px, percent_words(far->explained)),
+         remedy + (can_do_without ? say.or_without(far->moved) : "")}};
   }
+  const pipeline::SessionShifts& shifts = photographs.shifts;
   double cost_deg = 0;
   std::vector<std::size_t> lights;
   for (const std::size_t k : shifts.with(pipeline::ShiftVerdict::kFlagged)) {
-    if (shifts.shots[k].measured.cost_deg <= kLeastWarnedShift_deg) continue;
+    if (!shifts.found || shifts.shots[k].measured.cost_deg <= kLeastWarnedShift_deg) continue;
     cost_deg = std::max(cost_deg, shifts.shots[k].measured.cost_deg);
     lights.push_back(k);
   }
@@ -373,11 +415,42 @@ std::vector<Verdict> moved_verdicts(const PhotographsSummary& photographs, bool 
       {"CLOTH_MOVED",
        fmt::format("The cloth moved in so many shots that none can be left out: a shift under {} turns the "
                    "normals by up to {:.2f}°",
-                   Speaker{photographs}.name(lights), cost_deg),
+                   say.name(lights), cost_deg),
        remedy}};
 }
 
+// What named faults do not explain.
+double misfit_of(const PhotographsSummary& photographs) {
+  const solver::Diagnosis& diagnosis = photographs.diagnosis;
+  return diagnosis.faults.empty() ? diagnosis.residual : diagnosis.left;
+}
+
+// Of readings that fit no cloth, for a reason that nothing told.
+Verdict unexplained(const PhotographsSummary& photographs, std::optional<solver::Level> level) {
+  std::string looked_at = "exchanged, dead and dimmer lights";
+  if (photographs.far_shifts)
+    looked_at += fmt::format(", a cloth that moved by up to {:.0f} pixels", photographs.far_shifts->reach_px);
+  if (level) looked_at += ", highlights";
+  const double residual = photographs.diagnosis.residual;
+  Verdict verdict = {
+      "READINGS_DO_NOT_FIT",
+      fmt::format("The readings do not fit: they deviate by {} percent from what was solved of "
+                  "them, and nothing that was looked at explains it ({})",
+                  residual > 1 ? "over 100" : percent_words(residual), looked_at),
+      photographs.of_session
+          ? "check that this calibration is the rig's, and look at the photographs"
+          : "check how values follow light (--transfer), that none are clipped, that all were "
+            "exposed alike, and their order and directions"};
+  if (level && *level < solver::Level::kRobust)
+    verdict.remedy += "; if the cloth shines, solve with --quality robust";
+  return verdict;
+}
+
 }  // namespace
+
+bool may_have_moved_far(const PhotographsSummary& photographs) {
+  return !photographs.shifts.found && misfit_of(photographs) > kLeastMisfit;
+}
 
 std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular,
                                  const std::optional<LeftOutFacts>& check,
@@ -392,25 +465,31 @@ std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double s
   }
   const bool is_dominated =
       specular > kSpecularDominated && photographs.outshining >= solver::kLeastOutshining;
-  std::ranges::move(moved_verdicts(photographs, is_dominated || photographs.glossy_share > kMostlyGlossy),
-                    std::back_inserter(verdicts));
+  std::ranges::move(moved_verdicts(photographs), std::back_inserter(verdicts));
   if (check && verdicts.empty()) {
     if (const std::optional<Verdict> unfit = verdict_of(*check, photographs.of_session, level))
       verdicts.push_back(*unfit);
   }
+  const bool shines = is_dominated || photographs.glossy_share > kMostlyGlossy;
+  if (verdicts.empty() && !shines && !photographs.shifts.found && misfit_of(photographs) > kMisfit)
+    verdicts.push_back(unexplained(photographs, level));
   if (is_dominated) {
     const bool robust_ran = level && *level >= solver::Level::kRobust;
     verdicts.push_back({"SPECULAR_DOMINATED",
-                        fmt::format("Highlights dominate: in {:.0f} percent of the pixels a reading is over "
+                        fmt::format("Highlights dominate: in {} percent of the pixels a reading is over "
                                     "three times what a matt cloth would give",
-                                    percent(specular)),
-                        std::string("put crossed polarisers on LEDs and lens and scan again") +
+                                    percent_words(specular)),
+                        fmt::format("put crossed polarisers on LEDs and lens and {} again",
+                                    photographs.of_session ? "scan" : "photograph") +
                             (robust_ran ? "" : ", or solve with --quality robust")});
   }
   if (photographs.shadow_reach_is_capped) {
     verdicts.push_back({"SHADOWS_CAPPED",
                         "The relief is so high that shadows fall farther than they are looked for",
-                        "lay the cloth flat and scan again, or solve with --quality robust"});
+                        photographs.of_session
+                            ? "lay the cloth flat and scan again, or solve with --quality robust and choose "
+                              "that solve: weft library tag SESSION --set current_solve=ID"
+                            : "lay the cloth flat and photograph again, or solve with --quality robust"});
   }
   for (const std::string& warning : photographs.warnings) verdicts.push_back({"CONDITIONS", warning, ""});
   return verdicts;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,10 +39,18 @@ class AngleHistogram {
 };
 
 /// The mean error of the normals that sigma.exr lets one expect, and of its parts, whose squares add up pixel
-/// by pixel. Degrees.
+/// by pixel. Degrees. They hold for the share of the cloth that has a normal; a radian where of none of them
+/// anything is known.
 struct ExpectedError {
   double total_deg = 0, noise_deg = 0, model_deg = 0, calibration_deg = 0;
+  double solved = 0;  ///< 0 to 1; what no photograph shows, outside a mask, is no cloth
+
+  double of_whole_deg() const { return deg_of_whole(total_deg, solved); }
 };
+/// "0.77 degrees on 98 % of the cloth", or "nothing solved".
+std::string error_in_words(double mean_deg, double solved);
+/// "98 %": 100 only of all.
+std::string share_in_words(double share);
 
 /// What the report says of the maps, gathered while they are solved.
 class MapSummary {
@@ -53,9 +62,9 @@ class MapSummary {
   void add(const pipeline::MapBand& band, View<const float> normal_deg,
            View<const float> calibration_deg = {});
 
-  /// {"median", "p95", "square_px", "columns", "rows", "grid"} of the predicted angle in degrees; the grid's
-  /// values are means of squares, row by row, null where there is none. "median" is null where no pixel has
-  /// an angle.
+  /// {"median", "p95", "solved", "square_px", "columns", "rows", "grid"} of the predicted angle in degrees,
+  /// of the share of the cloth that is solved; the grid's values are means of squares, row by row, null where
+  /// there is none. "median" is null where no pixel has an angle.
   Json sigma_normal_deg() const;
   /// {"median", "p95"} of the part of that angle that noise makes, the model, and the calibration's
   /// covariance, in degrees; null where there is none.
@@ -70,6 +79,7 @@ class MapSummary {
   report::Downsampler sigma_;
   Image<float> row_;  // of the band, NaN where the angle is not known
   AngleHistogram sum_, noise_, model_, calibration_;
+  std::int64_t cloth_ = 0, solved_ = 0;  // pixels
 };
 
 /// Condition number of the lights over the frame; infinite where they do not span three directions.
@@ -87,11 +97,16 @@ struct PhotographsSummary {
   bool of_session = true;       ///< lights are LEDs of a rig; else photographs in a list
   bool noise_is_known = false;  ///< the camera's noise was calibrated
   LightCondition condition;
-  double glossy_share = 0;            ///< of the blocks, solved with a lobe that was measured
-  double outshining = 0;              ///< share of pixels, solver/diagnosis/highlights.h
-  std::vector<std::string> warnings;  ///< a sentence each, said when the photographs were read
-  pipeline::SessionShifts shifts;     ///< of the photographs as they were read
+  double glossy_share = 0;                        ///< of the blocks, solved with a lobe that was measured
+  double outshining = 0;                          ///< share of pixels, solver/diagnosis/highlights.h
+  std::vector<std::string> warnings;              ///< a sentence each, said when the photographs were read
+  pipeline::SessionShifts shifts;                 ///< of the photographs as they were read
+  std::optional<pipeline::FarShifts> far_shifts;  ///< where they were looked for
   bool shadow_reach_is_capped = false;
+  /// Of a session: its folder's name, the shot of each LED, and the shots that a person left out.
+  std::string session;
+  std::map<int, int> shot_of_led;
+  std::vector<int> left_out;
 };
 /// `picked` are the numbers of the lights where photographs were picked from a list; else empty. `warnings`
 /// are what was said when they were read.
@@ -103,18 +118,24 @@ PhotographsSummary summarize_photographs(const pipeline::Photographs& photograph
 /// outshine the cloth (solver/diagnosis/highlights.h).
 inline constexpr double kSpecularDominated = 0.2;
 
-/// Shots that cannot be registered are warned of where readings deviate by more than this from their fit,
-/// over the albedo: cloth that shows nothing to register by fits well.
-inline constexpr double kMoved = 0.05;
-/// Nor are they where more than this share of the cloth is solved with its lobe, or highlights dominate: what
-/// deviates is then gloss.
+/// Readings are said not to fit where shots cannot be registered and they deviate by more than this from
+/// their fit, over the albedo: cloth that shows nothing to register by fits well.
+inline constexpr double kMisfit = 0.05;
+/// From here on shifts are looked for that are too large to be registered: of one shot of ten that moved the
+/// median hardly tells.
+inline constexpr double kLeastMisfit = 0.01;
+/// Whether they are. What named faults explain does not count.
+bool may_have_moved_far(const PhotographsSummary& photographs);
+/// Nor where more than this share of the cloth is solved with its lobe, or highlights dominate: what deviates
+/// is then gloss.
 inline constexpr double kMostlyGlossy = 0.5;
 /// What is left alone and costs more is warned of.
 inline constexpr double kLeastWarnedShift_deg = 0.2;
 
 /// Everything to be warned of, the gravest first: LEDS_EXCHANGED, LED_DEAD, LED_GAIN, CLOTH_MOVED,
-/// LIGHTS_DO_NOT_FIT, SPECULAR_DOMINATED, SHADOWS_CAPPED, CONDITIONS. `specular` is the share of pixels with
-/// that bit. `level` is the one that ran, if it was a level: no remedy names it or one below.
+/// LIGHTS_DO_NOT_FIT or READINGS_DO_NOT_FIT, SPECULAR_DOMINATED, SHADOWS_CAPPED, CONDITIONS. `specular` is
+/// the share of pixels with that bit. `level` is the one that ran, if it was a level: no remedy names it or
+/// one below.
 std::vector<Verdict> verdicts_of(const PhotographsSummary& photographs, double specular,
                                  const std::optional<LeftOutFacts>& check,
                                  std::optional<solver::Level> level);

@@ -11,6 +11,7 @@
 
 #include "app/jobs/left_out_report.h"
 #include "app/jobs/reflectance.h"
+#include "app/jobs/report.h"
 #include "core/text.h"
 #include "report/figures.h"
 #include "report/html.h"
@@ -127,8 +128,9 @@ std::string sigma_map(const Json& report) {
   report::FrameMap map = {sigma.value("columns", 0), sigma.value("rows", 0), {}, "°"};
   for (const Json& v : sigma["grid"]) map.values.push_back(v.is_number() ? v.get<double>() : NAN);
   const Json condition = report.value("condition", Json::object());
-  std::string note =
-      fmt::format("Median {:.3g}°, 95 percent below {:.3g}°.", number(sigma, "median"), number(sigma, "p95"));
+  std::string note = fmt::format(
+      "Median {:.3g}°, 95 percent below {:.3g}°. Both hold for the {} of the cloth that has a normal.",
+      number(sigma, "median"), number(sigma, "p95"), share_in_words(number(sigma, "solved", 1)));
   if (condition.contains("median") && condition["median"].is_number()) {
     note += fmt::format(" Condition number of all lights {:.2f}, at worst {:.2f}.",
                         number(condition, "median"), number(condition, "worst", INFINITY));
@@ -223,6 +225,11 @@ std::string time(const Json& report) {
   report::Table table;
   for (const auto& [phase, seconds] : report["seconds"].items()) {
     table.rows.push_back({phase, fmt::format("{:.2f} s", seconds.get<double>())});
+  }
+  if (const auto foretold = report.find("foretold"); foretold != report.end()) {
+    table.rows.push_back({"foretold of all of them", fmt::format("{:.2f} s", number(*foretold, "seconds"))});
+    table.rows.push_back(
+        {"and for it", error_in_words(number(*foretold, "mean_deg"), number(*foretold, "solved"))});
   }
   return table.rows.empty() ? "" : report::html_section("Time by phase", html_of(table), "time");
 }

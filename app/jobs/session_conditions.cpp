@@ -12,6 +12,7 @@
 
 #include "core/image_io/image_io.h"
 #include "core/iso_time.h"
+#include "core/percent.h"
 #include "pipeline/conditions/brackets.h"
 #include "pipeline/conditions/drift.h"
 #include "pipeline/conditions/photosites.h"
@@ -141,10 +142,25 @@ std::vector<std::string> words_of(const Drift& drift, const pipeline::DriftEvide
   return words;
 }
 
-std::string words_of(const UselessLight& light) {
-  return light.why == UselessLight::Why::kSaturated
-             ? fmt::format("saturated {:.3g} percent of the frame", 100 * light.full_share)
-             : "did not light the cloth: its frame looks like the dark shot";
+// Of all lights that are useless for one reason; empty where none is.
+std::string words_of(const std::vector<UselessLight>& useless, UselessLight::Why why,
+                     const std::vector<int>& leds) {
+  std::vector<int> of_leds;
+  double least = 1;
+  for (const UselessLight& light : useless) {
+    if (light.why != why) continue;
+    of_leds.push_back(leds[light.light]);
+    least = std::min(least, light.full_share);
+  }
+  if (of_leds.empty()) return "";
+  const bool is_one = of_leds.size() == 1;
+  const std::string names = fmt::format("LED{} {}", is_one ? "" : "s", fmt::join(of_leds, ", "));
+  if (why == UselessLight::Why::kNotLit) {
+    return fmt::format("{} did not light the cloth: {} like the dark shot", names,
+                       is_one ? "its frame looks" : "their frames look");
+  }
+  return fmt::format("{} saturated {}{} percent of the frame", names, is_one ? "" : "at least ",
+                     percent_words(least));
 }
 
 }  // namespace
@@ -214,15 +230,18 @@ Result<void> leave_out_useless_lights(const SessionPlan& plan, LoadedSession& lo
   pipeline::Photographs& photographs = loaded.photographs;
   const std::vector<UselessLight> useless = pipeline::find_useless_lights(photographs);
   std::vector<std::size_t> lights;
-  std::vector<std::string> warnings;
-  std::string reasons;
   for (const UselessLight& light : useless) {
     lights.push_back(light.light);
-    const int led = photographs.leds[light.light];
-    const std::string words = fmt::format("LED {} {}", led, words_of(light));
+    loaded.conditions.left_out.push_back({photographs.leds[light.light], light.why});
+  }
+  std::vector<std::string> warnings;
+  std::string reasons;
+  for (const auto why : {UselessLight::Why::kSaturated, UselessLight::Why::kNotLit}) {
+    const std::string words = words_of(useless, why, photographs.leds);
+    if (words.empty()) continue;
     reasons += (reasons.empty() ? "" : "; ") + words;
-    warnings.push_back(words + "; it was left out");
-    loaded.conditions.left_out.push_back({led, light.why});
+    const auto count = std::ranges::count(useless, why, &UselessLight::why);
+    warnings.push_back(words + (count == 1 ? "; it was left out" : "; they were left out"));
   }
   const std::size_t rest = photographs.count() - useless.size();
   if (!useless.empty() && rest < 3) {

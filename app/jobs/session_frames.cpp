@@ -8,6 +8,7 @@
 #include "app/jobs/linear_image.h"
 #include "capture/raw/decode.h"
 #include "capture/raw/raw_info.h"
+#include "core/exposure_words.h"
 #include "core/files.h"
 #include "core/same_camera.h"
 #include "core/suits.h"
@@ -81,8 +82,8 @@ Result<void> FrameHeaders::check_alike(const Shot& shot, Size size, const CfaPat
     return recorded > 0 && !same_setting(recorded, journal);
   };
   if (differs(says.exposure_us, shot.exposure_us)) {
-    return refuse(fmt::format("it was exposed for {:.6g} us, session.json says {:.6g} us", says.exposure_us,
-                              shot.exposure_us));
+    return refuse(fmt::format("it was exposed for {}, session.json says {}", exposure_words(says.exposure_us),
+                              exposure_words(shot.exposure_us)));
   }
   if (differs(says.iso, shot.iso)) {
     return refuse(fmt::format("it was taken at ISO {:.6g}, session.json says {:.6g}", says.iso, shot.iso));

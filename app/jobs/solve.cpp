@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/jobs/condition_map.h"
+#include "app/jobs/exposure_verdict.h"
 #include "app/jobs/facts_json.h"
 #include "app/jobs/foreseen.h"
 #include "app/jobs/gloss_maps.h"
@@ -23,9 +24,11 @@
 #include "core/product.h"
 #include "core/solve.h"
 #include "core/solve_record.h"
+#include "library/left_out.h"
 #include "pipeline/albedo_color.h"
 #include "pipeline/bands.h"
 #include "pipeline/calibration_channels.h"
+#include "pipeline/conditions/fullness.h"
 #include "pipeline/frame.h"
 #include "pipeline/shifts.h"
 #include "pipeline/sigma_channels.h"
@@ -43,6 +46,13 @@ class StatusTally {
       const std::uint16_t* row = status.row(y);
       for (int x = 0; x < status.width(); ++x) ++seen_[row[x] % seen_.size()];
     }
+  }
+  std::int64_t with_both(StatusBit a, StatusBit b) const {
+    std::int64_t count = 0;
+    for (std::size_t status = 0; status < seen_.size(); ++status) {
+      if ((status & a) && (status & b)) count += seen_[status];
+    }
+    return count;
   }
   StatusCounts counts() const {
     StatusCounts counts;
@@ -91,11 +101,16 @@ struct Input {
   std::vector<int> picked;  // numbers of photographs picked from a list
   std::function<Result<LoadedSession>()> load;
   bool is_registered = false;  // photographs come with their shifts
+  const SessionPlan* of = nullptr;
 };
 
 Json seconds_json(const SolveSeconds& seconds) {
   return {{"read", seconds.read},   {"prepare", seconds.prepare},   {"solve", seconds.solve},
           {"write", seconds.write}, {"pictures", seconds.pictures}, {"report", seconds.report}};
+}
+
+double seconds_until_published(const SolveSeconds& s) {
+  return s.read + s.prepare + s.solve + s.write + s.pictures + s.report;
 }
 
 // A band as it is written.
@@ -165,12 +180,17 @@ class Run {
     facts_.method = options.method;
     facts_.compression = options.compression;
     facts_.input = input.description;
+    facts_.foretold = options.foretold;
   }
 
   Result<SolveReport> run() {
     Stopwatch total;
     if (Result<void> ok = prepare(); !ok) return std::move(ok).error();
     if (Result<void> ok = solve_into_files(); !ok) return std::move(ok).error();
+    // A part that is solved for a price may lie where no cloth is.
+    if (facts_.pixels == 0 && !input_.is_registered)
+      return nothing_solved(input_.of != nullptr ? input_.of->session.folder.string() : input_.title,
+                            facts_.size, fullness_, summary_.of_session);
     if (Result<void> ok = describe(); !ok) return std::move(ok).error();
     if (Result<void> ok = publish(); !ok) return std::move(ok).error();
     seconds_.total = total.lap();
@@ -189,6 +209,7 @@ class Run {
     if (!options_.deblur) photographs_.spread.reset();
     facts_.conditions = json_of(loaded->conditions);
     warnings_ = std::move(loaded->warnings);
+    fullness_ = pipeline::fullness_of(photographs_);
     seconds_.read = watch_.lap();
 
     facts_.registration = Json::array();
@@ -241,34 +262,25 @@ class Run {
     };
     Result<pipeline::FrameFacts> frame = solve_frame(photographs_, method_, options_.tile, context_, keep);
     if (!frame) return std::move(frame).error();
+    seconds_.work = frame->work;
     seconds_.solve = watch_.lap() - frame->waited_seconds;
     facts_.status = tally.counts();
+    lost_ = tally.with_both(kNoSolution, kSaturated);
     facts_.pixels = facts_.size.pixels() - facts_.status.with(kNoSolution);
-    facts_.solved_by = json_of(frame->tally);
-    if (frame->robust_share) facts_.solved_by["robust_share"] = *frame->robust_share;
-    if (frame->deblur) facts_.sharpening = json_of(*frame->deblur);
-    if (frame->lateral_corner_px) facts_.lateral_color = {{"corner_px", *frame->lateral_corner_px}};
-    if (frame->gloss) {
-      reflectance_ = reflectance_document(*frame->gloss, facts_.albedo_scale);
-      facts_.reflectance = reflectance_summary(reflectance_);
-    }
-    if (frame->reference) {
-      facts_.gates = json_of(frame->reference->gates);
-      facts_.reference = json_of(*frame->reference);
-      for (std::string& said : warnings_of(*frame->reference)) warnings_.push_back(std::move(said));
-    }
+    take_facts(*frame);
     summary_ = summarize_photographs(photographs_, picked_, warnings_, context_);
+    if (input_.of != nullptr) {
+      summary_.session = absolute_folder(input_.of->session.folder).filename().string();
+      summary_.left_out = library::left_out(input_.of->session);
+      for (const Shot& shot : input_.of->lit) summary_.shot_of_led[shot.led] = shot.index;
+    }
     summary_.shifts = std::move(shifts_);
+    if (Result<void> ok = look_for_far_shifts(); !ok) return ok;
     if (frame->gloss) summary_.glossy_share = frame->gloss->share;
     summary_.shadow_reach_is_capped = frame->reference && frame->reference->shadow_reach_is_capped;
     if (frame->left_out) facts_.check = facts_of(*frame->left_out, summary_.numbers);
     seconds_.report = watch_.lap();
-    if (options_.condition) {
-      const Result<void> written = write_condition_map(
-          photographs_, facts_.method, partial_.path() / "condition.exr", options_.compression, context_);
-      if (!written) return written;
-      seconds_.solve += watch_.lap();
-    }
+    if (Result<void> ok = write_condition(); !ok) return ok;
     photographs_ = {};  // their memory is needed for nothing more
 
     if (Result<void> ok = files->finish(); !ok) return ok;
@@ -279,6 +291,41 @@ class Run {
     }
     seconds_.write = frame->waited_seconds + watch_.lap();
     return {};
+  }
+
+  void take_facts(const pipeline::FrameFacts& frame) {
+    facts_.solved_by = json_of(frame.tally);
+    if (frame.robust_share) facts_.solved_by["robust_share"] = *frame.robust_share;
+    if (frame.deblur) facts_.sharpening = json_of(*frame.deblur);
+    if (frame.lateral_corner_px) facts_.lateral_color = {{"corner_px", *frame.lateral_corner_px}};
+    if (frame.gloss) {
+      reflectance_ = reflectance_document(*frame.gloss, facts_.albedo_scale);
+      facts_.reflectance = reflectance_summary(reflectance_);
+    }
+    if (frame.reference) {
+      facts_.gates = json_of(frame.reference->gates);
+      facts_.reference = json_of(*frame.reference);
+      for (std::string& said : warnings_of(*frame.reference)) warnings_.push_back(std::move(said));
+    }
+  }
+
+  // Where shots could not be registered and readings do not fit, the cloth may have moved by far.
+  Result<void> look_for_far_shifts() {
+    if (!may_have_moved_far(summary_)) return {};
+    Result<pipeline::FarShifts> far = find_far_shifts(photographs_, context_);
+    if (!far) return std::move(far).error();
+    summary_.far_shifts = std::move(*far);
+    return {};
+  }
+
+  Result<void> write_condition() {
+    if (!options_.condition) return {};
+    Result<void> written = write_condition_map(photographs_, facts_.method, partial_.path() / "condition.exr",
+                                               options_.compression, context_);
+    const double seconds = watch_.lap();
+    seconds_.solve += seconds;
+    seconds_.work.frame += seconds;
+    return written;
   }
 
   // Writes the pictures beside the maps, with their error where there is a truth.
@@ -310,20 +357,30 @@ class Run {
     const bool tells_highlights = method_.level && !is_half();
     const double specular =
         static_cast<double>(facts_.status.with(kSpecular)) / static_cast<double>(facts_.size.pixels());
+    const ExpectedError expected = maps_->expected();
     facts_.sigma_normal_deg = maps_->sigma_facts();
+    facts_.sigma_normal_deg["solved"] = expected.solved;
     facts_.warnings = verdicts_of(summary_, tells_highlights ? specular : 0,
                                   tells_highlights ? facts_.check : std::nullopt, method_.level);
-    const fs::path document = partial_.path() / kSolveProduct.document;
-    if (Result<void> ok = write_json(document, json_of(facts_)); !ok) return ok;
+    const Json noise_deg = maps_->sigma_noise_deg();
+    const std::optional<Verdict> exposure =
+        exposure_verdict(fullness_, static_cast<double>(lost_) / static_cast<double>(facts_.size.pixels()),
+                         noise_deg.is_null() ? 0 : noise_deg["median"].get<double>(), summary_.of_session);
+    if (exposure) facts_.warnings.insert(facts_.warnings.begin(), *exposure);
     Json page = report_document(input_.title, facts_, summary_, *maps_, seconds_json(seconds_));
     if (!reflectance_.is_null()) {
       if (Result<void> ok = write_json(partial_.path() / "reflectance.json", reflectance_); !ok) return ok;
       page["reflectance"] = reflectance_;
       page["gloss"] = reflectance_said(reflectance_);
     }
+    if (facts_.foretold) page["foretold"] = json_of(*facts_.foretold);
     if (Result<void> ok = write_report(partial_.path(), page); !ok) return ok;
     seconds_.report += watch_.lap();
-    return {};
+    facts_.taken = {seconds_until_published(seconds_), expected.total_deg, expected.solved,
+                    seconds_json(seconds_)};
+    Json said = json_of(facts_);
+    if (!options_.plan.empty()) said["plan"] = options_.plan;
+    return write_json(partial_.path() / kSolveProduct.document, said);
   }
 
   Result<void> publish() {
@@ -343,6 +400,8 @@ class Run {
   pipeline::Photographs photographs_;
   std::vector<int> picked_;  // numbers of the photographs of a list, by light
   pipeline::SessionShifts shifts_;
+  pipeline::Fullness fullness_;  // of the photographs as they were read
+  std::int64_t lost_ = 0;        // pixels without a solution that have a saturated reading
   std::vector<std::string> warnings_;
   Json reflectance_;  // reflectance.json, where a lobe was looked for
   SolveFacts facts_;
@@ -351,6 +410,14 @@ class Run {
   std::optional<MapSummary> maps_;
   PhotographsSummary summary_;
 };
+
+// A person asks for what a batch made: it waits no longer, and is as new as if it were made now.
+void end_waiting(const Product& product, Json document) {
+  document.erase("plan");
+  if (!write_json(product.folder / kSolveProduct.document, document)) return;  // of an archive
+  std::error_code ignored;
+  fs::last_write_time(product.folder.parent_path(), fs::file_time_type::clock::now(), ignored);
+}
 
 Result<SolveReport> solve(const solver::MethodName& method, const Input& input, const SolveOptions& options,
                           const JobContext& context) {
@@ -362,6 +429,7 @@ Result<SolveReport> solve(const solver::MethodName& method, const Input& input, 
     Result<SolveFacts> facts =
         solve_facts_from_json(**finished, (product.folder / kSolveProduct.document).string());
     if (!facts) return std::move(facts).error();
+    if (options.plan.empty() && (*finished)->contains("plan")) end_waiting(product, **finished);
     return SolveReport{product.folder, true, std::move(*facts), {}, {}, {}};
   }
   return Run(method, input, options, context, product).run();
@@ -439,7 +507,8 @@ Result<SolveReport> solve_session(const SessionOptions& input, const SolveOption
                 .default_parent = plan->session.folder / "solve",
                 .truth = is_there(truth) ? truth : fs::path(),
                 .picked = {},
-                .load = [&] { return load_poses(*plan, *second, context); }},
+                .load = [&] { return load_poses(*plan, *second, context); },
+                .of = &*plan},
                options, context);
 }
 

@@ -15,6 +15,7 @@
 #include "core/solve.h"
 #include "core/tiles.h"
 #include "pipeline/bands.h"
+#include "pipeline/work.h"
 
 namespace weft::app {
 
@@ -28,11 +29,17 @@ struct SolveOptions {
   /// A session of the same cloth as it lay otherwise (Session::pose), in which its lobe is sought too, by the
   /// levels that seek one: scanned with the same calibration, and films if there were any. Empty: none.
   std::filesystem::path second_pose = {};
+  /// Id of the plan of a batch that asks for it: the solve then waits until it is accepted, or asked for
+  /// without a plan (library/current.h).
+  std::string plan = {};
   bool condition = false;  ///< also writes condition.exr (app/jobs/condition_map.h)
+  /// What was said of it before: solve.json keeps it beside what was taken. No part of the id.
+  std::optional<SolvePrice> foretold = {};
 };
 
 struct SolveSeconds {
   double read = 0, prepare = 0, solve = 0, write = 0, pictures = 0, report = 0, sync = 0, total = 0;
+  pipeline::SolveWork work;  ///< `solve` by what it grows with
 };
 
 /// What a solve left behind.
@@ -41,7 +48,7 @@ struct SolveReport {
   bool was_there = false;  ///< a complete solve of the same inputs and options was found
   SolveFacts facts;
   ExpectedError expected;            ///< of this run: zero if was_there
-  std::optional<Transfer> transfer;  ///< of photographs: kLinear or kSrgb
+  std::optional<Transfer> transfer;  ///< of photographs, as of PhotoPlan
   SolveSeconds seconds;              ///< of this run: zero if was_there
 };
 

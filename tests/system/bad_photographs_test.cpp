@@ -2,11 +2,14 @@
 // Photographs and light files that cannot be solved.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/image_io/image_io.h"
 #include "tests/system/samples.h"
@@ -88,6 +91,105 @@ TEST_F(BadPhotographs, AMaskOfAnotherSizeIsRefused) {
   const std::array<View<const float>, 1> planes = {mask.plane()};
   ASSERT_TRUE(write_image(folder_ / "mask.png", planes, {"Y"}, {.type = SampleType::kUint8}));
   expect_refused(65, {"mask differs in size", "mask.png", "40 x 31", "40 x 30", "make the mask again"});
+}
+
+TEST_F(BadPhotographs, AMaskIsReadAsPeopleMakeThem) {
+  write({});
+  // Of half the picture: the count 1 on 0, alpha on black, alpha on white, in capitals.
+  struct Made {
+    const char* name;
+    std::array<float, 2> color, alpha;  // outside and inside
+  };
+  for (const Made& made : {Made{"mask.png", {0, 1}, {1, 1}}, Made{"mask.png", {0, 1 / 255.0F}, {1, 1}},
+                           Made{"mask.png", {0, 0}, {0, 1}}, Made{"mask.png", {1, 1}, {0, 1}},
+                           Made{"Mask.PNG", {0, 1}, {1, 1}}, Made{"mask.tif", {0, 1}, {1, 1}}}) {
+    Image<float> mask({40, 30}, 4);
+    for (int y = 0; y < 30; ++y) {
+      for (int x = 0; x < 40; ++x) {
+        const std::size_t side = x < 20 ? 0 : 1;
+        for (int p = 0; p < 4; ++p) mask(x, y, p) = p < 3 ? made.color[side] : made.alpha[side];
+      }
+    }
+    const std::array<View<const float>, 4> planes = {mask.plane(0), mask.plane(1), mask.plane(2),
+                                                     mask.plane(3)};
+    const fs::path written = folder_ / (std::string(made.name).ends_with("tif") ? "m.tif" : "m.png");
+    ASSERT_TRUE(write_image(written, planes, {"R", "G", "B", "A"}, {.type = SampleType::kUint8}));
+    fs::rename(written, folder_ / made.name);
+    const fs::path maps = work_ / "maps";
+    const Outcome run = run_weft(
+        {"solve", "--photos", folder_.string(), "-o", maps.string(), "--no-previews", "--quiet", "--json"});
+    EXPECT_EQ(run.exit_code, 0) << made.name << run.error;
+    EXPECT_EQ(run.json()["pixels"], 20 * 30) << made.name << " " << made.color[1] << " " << made.alpha[0];
+    fs::remove(folder_ / made.name);
+    fs::rename(maps, work_ / "last");
+    if (made.name != std::string("mask.tif")) fs::remove_all(work_ / "last");
+  }
+  const Outcome compared = run_weft({"compare", (work_ / "last" / "normal.exr").string(),
+                                     (folder_ / "normal_gt.exr").string(), "--json", "--quiet"});
+  EXPECT_EQ(compared.json()["pixels"], 20 * 30) << "pixels without a solution are no normals";
+}
+
+TEST_F(BadPhotographs, AMaskThatLeavesNothingIsRefused) {
+  write({});
+  Image<float> mask({40, 30});
+  const std::array<View<const float>, 1> planes = {mask.plane()};
+  ASSERT_TRUE(write_image(folder_ / "mask.png", planes, {"Y"}, {.type = SampleType::kUint8}));
+  expect_refused(65, {"mask leaves no cloth", "mask.png", "white", "take the mask away"});
+  mask(3, 4) = 0.3F;
+  ASSERT_TRUE(write_image(folder_ / "mask.png", planes, {"Y"}, {.type = SampleType::kUint8}));
+  expect_refused(65, {"mask says nothing", "mask.png", "30 percent of white", "paint white"});
+  fs::copy_file(folder_ / "mask.png", folder_ / "Mask.png");
+  expect_refused(65, {"several masks", "Mask.png and mask.png", "leave the one"});
+}
+
+TEST_F(BadPhotographs, BlackAndWhiteOnesAreNoSuccess) {
+  PhotographSample sample;
+  sample.ending = ".png";
+  sample.type = SampleType::kUint16;
+  for (const auto& [value, words] :
+       {std::pair<float, std::vector<std::string>>{0, {"nothing was solved", "100 percent dark", "longer"}},
+        {1, {"nothing was solved", "100 percent of the readings are full", "shorter exposure"}}}) {
+    write(sample);
+    Image<float> blank(sample.size, 3);
+    for (int p = 0; p < 3; ++p) {
+      for (int y = 0; y < 30; ++y) std::fill_n(blank.plane(p).row(y), 40, value);
+    }
+    const std::array<View<const float>, 3> planes = {blank.plane(0), blank.plane(1), blank.plane(2)};
+    for (std::size_t k = 0; k < sample.lights.size(); ++k) {
+      ASSERT_TRUE(
+          write_image(folder_ / sample.name_of(k), planes, {"R", "G", "B"}, {.type = SampleType::kUint16}));
+    }
+    expect_refused(65, words);
+  }
+}
+
+TEST_F(BadPhotographs, OfTwoKindsAreEachTakenByTheirOwn) {
+  PhotographSample deep;
+  deep.ending = ".png";
+  deep.type = SampleType::kUint16;
+  write(deep);
+  Result<LoadedImage> linear = read_image(folder_ / "01.png");
+  ASSERT_TRUE(linear) << linear.error().message();
+  for (int p = 0; p < 3; ++p) {
+    for (int y = 0; y < 30; ++y) {
+      for (int x = 0; x < 40; ++x) {
+        const double v = linear->planes(x, y, p);
+        linear->planes(x, y, p) =
+            static_cast<float>(v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1 / 2.4) - 0.055);
+      }
+    }
+  }
+  const std::array<View<const float>, 3> planes = {linear->planes.plane(0), linear->planes.plane(1),
+                                                   linear->planes.plane(2)};
+  ASSERT_TRUE(write_image(folder_ / "01.png", planes, {"R", "G", "B"}, {.type = SampleType::kUint8}));
+  const fs::path maps = work_ / "maps";
+  const Outcome run = run_weft({"solve", "--photos", folder_.string(), "-o", maps.string(), "--no-previews"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_NE(run.error.find("each by its kind"), std::string::npos) << run.error;
+  const Json compared = run_weft({"compare", (maps / "normal.exr").string(),
+                                  (folder_ / "normal_gt.exr").string(), "--json", "--quiet"})
+                            .json();
+  EXPECT_LT(compared["mean_deg"], 0.2) << "one photograph of six in 8 bits";
 }
 
 TEST_F(BadPhotographs, APhotographThatIsNoImageIsRefused) {
@@ -180,6 +282,44 @@ TEST_F(BadPhotographs, ALightFileWithADirectionThatIsNoNumberIsRefused) {
   write({});
   expect_light_file_refused("3\n01.exr 0 0 1\n02.exr 0 nan 1\n03.exr 1 0 1\n", 65,
                             {"lights cannot be read", "lights.lp"});
+}
+
+TEST_F(BadPhotographs, ANumberThatIsNotReadWholeIsRefusedWithItsLine) {
+  write({});
+  struct Case {
+    const char *number, *why;
+  };
+  for (const Case& each :
+       {Case{"2,68", "decimal comma"}, Case{"1e400", "beyond"}, Case{"nan", "no finite number"},
+        Case{"0x10", "no number"}, Case{"1.5abc", "no number"}}) {
+    const std::string number = each.number;
+    expect_light_file_refused("3\n01.exr 0 0 1\n02.exr 0 1 " + number + "\n03.exr 1 0 1\n", 65,
+                              {"lights.lp", "line 3", number, each.why, "with a point"});
+  }
+  put_bytes(folder_ / "light_intensities.txt", "1 1 1\n1 1 1\n1 1 1\n1 1 1\n1 1 1\n1 1 1e400\n");
+  expect_refused(65, {"light_intensities.txt", "line 6", "1e400", "beyond"});
+  put_bytes(folder_ / "light_directions.txt", "0 0 1\n2,68 1 1\n1 0 1\n0 0 1\n0 1 1\n1 1 1\n");
+  expect_refused(65, {"light_directions.txt", "line 2", "2,68", "decimal comma"});
+}
+
+TEST_F(BadPhotographs, ACountThatIsNoneAndALineOfFourNumbersAreNamed) {
+  write({});
+  for (const std::string count : {"-1", "3.0", "3 lights"})
+    expect_light_file_refused(count + "\n01.exr 0 0 1\n02.exr 0 1 1\n03.exr 1 0 1\n", 65,
+                              {"lights.lp", "first line is not the number of photographs", count});
+  expect_light_file_refused("3\n01.exr 0 0 1 2\n02.exr 0 1 1 2\n03.exr 1 0 1 2\n", 65,
+                            {"lights.lp", "line 2 has more than three numbers"});
+}
+
+// What CLI11 reads by itself as far as it goes.
+TEST_F(BadPhotographs, AnOptionsNumberIsReadWhole) {
+  write({});
+  for (const char* number : {"2,5", "nan", "0x10", "1e400"})
+    expect_refusal(work_, {"solve", "--photos", folder_.string(), "--to", number, "--quiet"}, 64,
+                   {"--to", number}, {.folder = work_.path()});
+  for (const char* number : {"0x10", "64abc"})
+    expect_refusal(work_, {"solve", "--photos", folder_.string(), "--tile-width", number, "--quiet"}, 64,
+                   {"--tile-width", number}, {.folder = work_.path()});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -414,12 +415,38 @@ TEST_F(Conditions, ALedThatSaturatesEverythingIsLeftOutByName) {
   EXPECT_LT(saturated, 48 * 32 / 2) << "what was left out marks no pixel";
 }
 
+TEST_F(Conditions, AScanThatIsOverOrFiveStopsDarkIsNotSolvedWithoutAWarning) {
+  for (const auto& [at_full, light, name] :
+       {std::tuple{0.25, 1.0, "OVEREXPOSED"}, {0.8, 1 / 32.0, "UNDEREXPOSED"}, {0.8, 1.0, ""}}) {
+    simulator::Scene scene = scene_named("golden", {48, 32});
+    scene.camera.albedo_at_full = at_full;
+    for (auto* albedo : {&scene.material.warp_albedo, &scene.material.weft_albedo}) {
+      for (double& share : albedo->value()) share *= light;
+    }
+    const fs::path session = work_ / (name + std::string("of.weft"));
+    simulate(scene, session);
+    const Outcome run = run_weft({"solve", session.string(), "--quality", "standard", "--no-previews",
+                                  "--quiet", "--strict", "--json"});
+    const Json warnings = run.json()["warnings"];
+    std::vector<std::string> names;
+    for (const Json& warning : warnings) names.push_back(warning["name"]);
+    if (*name == 0) {
+      EXPECT_THAT(names, testing::Not(testing::Contains(HasSubstr("EXPOSED")))) << warnings;
+      continue;
+    }
+    EXPECT_EQ(run.exit_code, 2) << at_full;
+    ASSERT_FALSE(names.empty()) << at_full;
+    EXPECT_EQ(names.front(), name) << warnings;
+    EXPECT_THAT(std::string(warnings[0]["remedy"]), HasSubstr("scan again with a metered exposure"));
+  }
+}
+
 TEST_F(Conditions, WithTwoLedsThatLitThereIsNothingToSolve) {
   simulate(scene_named("golden", {48, 32}), session_);
   for (std::size_t led = 3; led <= 10; ++led) put_led_dark(led);
-  expect_refusal(
-      work_, {"solve", session_.string(), "--quiet"}, 65,
-      {"too few lights", session_.string(), "LED 3 did not light", "LED 10 did not light", "leaves 2"});
+  expect_refusal(work_, {"solve", session_.string(), "--quiet"}, 65,
+                 {"too few lights", session_.string(), "LEDs 3, 4, 5, 6, 7, 8, 9, 10 did not light the cloth",
+                  "leaves 2"});
 }
 
 TEST_F(Conditions, CalibrationsShareOfSigmaIsWorkedOutOnAGridAndBlended) {

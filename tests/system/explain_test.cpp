@@ -44,6 +44,13 @@ TEST_F(Explain, PricesEveryLevelAndLeavesNothingBehind) {
     for (const char* part : {"read", "prepare", "solve", "write", "pictures", "report", "sync"}) {
       sum += level.at("seconds").at(part).get<double>();
     }
+    const bool seeks_a_lobe = kLevels[i] == "robust" || kLevels[i] == "reference";
+    const double fixed = level["seconds"].at("fixed").get<double>();
+    if (seeks_a_lobe) {
+      EXPECT_GT(fixed, 0) << level;
+    }
+    EXPECT_LE(fixed, level["seconds"].at("solve").get<double>()) << level;
+    EXPECT_EQ(level.at("solved"), 1) << level;
     for (const char* paid : {"solve", "write", "pictures", "report", "sync"})
       EXPECT_GT(level["seconds"].at(paid).get<double>(), 0) << paid << ": " << level;
     EXPECT_NEAR(level["seconds"].at("total").get<double>(), sum, 1e-9) << level;
@@ -114,7 +121,27 @@ TEST_F(Explain, SolvesByTheLevelThatItChose) {
   ASSERT_EQ(run.exit_code, 0) << run.error;
   const std::string method = Json::parse(bytes_of(work_ / "maps" / "solve.json")).at("method");
   EXPECT_NE(method, "preview");
-  EXPECT_THAT(run.error, testing::HasSubstr("chose " + method));
+  EXPECT_THAT(run.error, testing::AllOf(testing::HasSubstr("chose " + method),
+                                        testing::HasSubstr("degrees on 100 % of the cloth")));
+  const Json solve = Json::parse(bytes_of(work_ / "maps" / "solve.json"));
+  for (const char* price : {"foretold", "taken"}) {
+    EXPECT_GT(solve.at(price).at("seconds").get<double>(), 0) << solve[price];
+    EXPECT_GT(solve[price].at("mean_deg").get<double>(), 0) << solve[price];
+    EXPECT_EQ(solve[price].at("solved"), 1) << solve[price];
+    EXPECT_TRUE(solve[price].at("parts_s").contains("solve")) << solve[price];
+  }
+  EXPECT_THAT(run.output, testing::HasSubstr("foretold"));
+}
+
+TEST_F(Explain, IsKeptByASolveThatIsToldOfIt) {
+  const fs::path maps = work_ / "maps";
+  const Outcome run = run_weft({"solve", session_.string(), "--quality", "fast", "--foretold",
+                                "2.5,0.75,0.99", "-o", maps.string(), "-q"});
+  ASSERT_EQ(run.exit_code, 0) << run.error;
+  EXPECT_EQ(Json::parse(bytes_of(maps / "solve.json")).at("foretold"),
+            Json({{"seconds", 2.5}, {"mean_deg", 0.75}, {"solved", 0.99}}));
+  for (const char* wrong : {"2.5,0.75", "2.5,0.75,1.5", "-1,0.75,1"})
+    expect_refusal(work_, {"solve", session_.string(), "-q", "--foretold", wrong}, 64, {"--foretold"});
 }
 
 TEST_F(Explain, DrawsTheSameCropAtEveryLevel) {
@@ -146,13 +173,14 @@ TEST(ExplainPhotographs, UnderDistantLightsHavePricesToo) {
   }
 }
 
-// Degrees and seconds of preview, fast, standard, robust, reference.
-app::Ladder ladder_of(const std::vector<std::pair<double, double>>& levels) {
+// Degrees and seconds of preview, fast, standard, robust, reference, and the share of the cloth they solve.
+app::Ladder ladder_of(const std::vector<std::pair<double, double>>& levels, double solved = 1) {
   app::Ladder ladder;
   for (std::size_t i = 0; i < levels.size(); ++i) {
     app::LevelPrice level;
     level.level = *solver::method_names()[i].level;
     level.error.total_deg = levels[i].first;
+    level.error.solved = solved;
     level.seconds.solve = levels[i].second;
     ladder.levels.push_back(level);
   }
@@ -176,9 +204,57 @@ TEST(ChooseLevel, TakesTheCheapestThatMeetsAllWishes) {
 
 TEST(ChooseLevel, SaysBothLimitsWhereBothWishesCannotBeMet) {
   const app::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
-  EXPECT_THAT(chosen(ladder, {.within_seconds = 10, .to_deg = 0.5}),
-              testing::AllOf(testing::HasSubstr("preview, takes 1 s"),
-                             testing::HasSubstr("reference, is expected to be off by 0.4 degrees in 100 s")));
+  EXPECT_THAT(
+      chosen(ladder, {.within_seconds = 10, .to_deg = 0.5}),
+      testing::AllOf(testing::HasSubstr("preview, takes 1 s at 3 degrees on 100 % of the cloth"),
+                     testing::HasSubstr(
+                         "reference, is expected to be off by 0.4 degrees on 100 % of the cloth in 100 s")));
+}
+
+TEST(ChooseLevel, CountsClothWithoutANormalAsOffByARadian) {
+  app::Ladder ladder = ladder_of({{3, 1}, {1, 2}, {0.9, 4}, {0.89, 8}, {0.4, 100}});
+  ladder.levels[4].error.solved = 0.9;  // 0.36 + 5.73 degrees
+  EXPECT_EQ(chosen(ladder, {.within_seconds = 1000}), "standard");
+  EXPECT_THAT(chosen(ladder, {.to_deg = 0.5}), testing::HasSubstr("no level is that good"));
+  ladder.levels[4].error.solved = 0.999;  // 0.3996 + 0.0573 degrees
+  EXPECT_EQ(chosen(ladder, {.to_deg = 0.5}), "reference");
+}
+
+TEST(ChooseLevel, TakesNoneWhereMostOfTheClothHasNoNormal) {
+  // What an overexposed scan gives: an error of what little is left, or of nothing.
+  app::Ladder ladder = ladder_of({{0, 1}, {0.3, 2}, {0.25, 4}, {0.25, 8}, {0.25, 100}}, 0.11);
+  ladder.levels[0].error.solved = 0;
+  for (const app::LevelWish& wish :
+       {app::LevelWish{.to_deg = 1}, app::LevelWish{.to_deg = 60}, app::LevelWish{.within_seconds = 10}}) {
+    const Result<std::size_t> choice = app::choose_level(ladder, wish);
+    ASSERT_FALSE(choice) << ladder.levels[*choice].name();
+    EXPECT_EQ(choice.error().kind, ErrorKind::kBadData);
+    EXPECT_THAT(choice.error().message(),
+                testing::AllOf(testing::HasSubstr("no level solves this cloth"), testing::HasSubstr("11 %"),
+                               testing::HasSubstr("scan it again")));
+  }
+}
+
+TEST(ExplainPhotographs, ThatAreMostlyOverexposedSayHowLittleOfTheClothIsSolved) {
+  const Workspace work;
+  PhotographSample sample;
+  sample.size = {96, 64};
+  sample.ending = ".png";
+  sample.type = SampleType::kUint16;
+  for (DistantLight& light : sample.lights) {
+    for (double& channel : light.irradiance_rgb) channel *= 4;
+  }
+  sample.write(work / "photos");
+  const Outcome told =
+      run_weft({"solve", "--photos", (work / "photos").string(), "--explain", "--json", "-q"});
+  ASSERT_EQ(told.exit_code, 0) << told.error;
+  const Json document = told.json();
+  for (const Json& level : document.at("levels")) {
+    EXPECT_LT(level.at("solved").get<double>(), 0.4) << level;
+    EXPECT_THAT(level.at("note").get<std::string>(), testing::HasSubstr("most of the cloth has no normal"));
+  }
+  expect_refusal(work, {"solve", "--photos", (work / "photos").string(), "-q", "--to", "60"}, 65,
+                 {"no level solves this cloth"});
 }
 
 }  // namespace

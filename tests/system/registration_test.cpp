@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -32,6 +34,11 @@ class Registration : public testing::Test {
     app::SessionOptions options;
     options.folder = work_ / name;
     return std::move(app::load_session(*app::plan_session(options), {})->photographs);
+  }
+  static pipeline::FarShifts need_far(const pipeline::Photographs& photographs) {
+    Result<pipeline::FarShifts> far = pipeline::find_far_shifts(photographs, {});
+    if (!far) throw std::runtime_error(far.error().message());
+    return *std::move(far);
   }
   double mean_error_deg(const pipeline::Photographs& photographs) {
     const LoadedImage truth = *read_image(work_ / "still.weft" / "truth" / "normal.exr");
@@ -98,6 +105,30 @@ TEST_F(Registration, TakesNoGlossForMovement) {
     for (const pipeline::ShotShift& shot : shifts.shots)
       farthest_px = std::max(farthest_px, std::abs(shot.measured.shift.dx_px));
     EXPECT_GT(farthest_px, 0.3) << "gloss feigns no movement here";
+  }
+}
+
+TEST_F(Registration, FindsAPushByManyPixelsAndNoneInGloss) {
+  for (const char* name : {"movement", "dyed_twill"}) {
+    simulator::Scene still = scene_named(name, kClothSize);
+    still.effects.movement = false;
+    simulator::Scene pushed = still;
+    pushed.effects.movement = true;
+    pushed.camera.movement.sigma_mm = 0.6;
+    pushed.camera.movement.sigma_deg = 0;
+    pipeline::Photographs session = photographs_of(still, (name + std::string("_still.weft")).c_str());
+    pipeline::Photographs other = photographs_of(pushed, (name + std::string("_pushed.weft")).c_str());
+    EXPECT_TRUE(need_far(session).moved.empty()) << name;
+    std::swap(session.mosaics()->frames[4], other.mosaics()->frames[4]);
+    const pipeline::FarShifts far = need_far(session);
+    EXPECT_EQ(far.moved, std::vector<std::size_t>{4}) << name << ": explained " << far.explained;
+    EXPECT_LE(far.most_px, far.reach_px * std::sqrt(2.0)) << name;
+  }
+  for (const char* name : {"satin_sheen", "velvet"}) {
+    simulator::Scene glossy = scene_named(name, kClothSize);
+    glossy.effects.finite_led = glossy.effects.cast_shadows = glossy.effects.interreflection = false;
+    const pipeline::FarShifts far = need_far(photographs_of(glossy, name));
+    EXPECT_TRUE(far.moved.empty()) << name << ": " << far.most_px << " px, explained " << far.explained;
   }
 }
 

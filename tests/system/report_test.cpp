@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numbers>
+#include <optional>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "app/jobs/exposure_verdict.h"
 #include "app/jobs/report.h"
 #include "app/jobs/report_page.h"
 #include "app/jobs/session_input.h"
@@ -203,6 +206,24 @@ TEST_F(Report, OfPhotographsWithoutANoiseModel) {
   EXPECT_THAT(bytes_of(work_ / "maps" / "report.html"), HasSubstr("Light 6"));
 }
 
+TEST(MapSummary, CountsTheShareOfTheClothThatHasANormal) {
+  Image<std::uint16_t> status({10, 1});
+  for (int x = 4; x < 8; ++x) status(x, 0) = kSaturated | kNoSolution;
+  for (int x = 8; x < 10; ++x) status(x, 0) = kInvalidReading | kNoSolution;  // outside a mask: no cloth
+  app::MapSummary maps({10, 1}), none({10, 1});
+  pipeline::MapBand band;
+  band.status = status.plane();
+  maps.add(band, {});
+  EXPECT_DOUBLE_EQ(maps.expected().solved, 0.5);
+  EXPECT_NEAR(maps.expected().total_deg, 180 / std::numbers::pi, 1e-12) << "no angle is known";
+  EXPECT_NEAR(maps.expected().of_whole_deg(), 180 / std::numbers::pi, 1e-12);
+  EXPECT_EQ(none.expected().solved, 0);
+  EXPECT_EQ(app::error_in_words(0, 0), "nothing solved");
+  EXPECT_EQ(app::error_in_words(0.248, 0.108), "0.248 degrees on 11 % of the cloth");
+  EXPECT_EQ(app::share_in_words(0.9999), "over 99 %");
+  EXPECT_EQ(app::share_in_words(1), "100 %");
+}
+
 TEST(MapSummary, FindsQuantilesOfSigmaAndOfItsPartsWhereTheNormalIsKnown) {
   constexpr int kWidth = 1000;
   Image<float> noise({kWidth, 1}), model({kWidth, 1}), calibration({kWidth, 1}), sum({kWidth, 1});
@@ -292,14 +313,52 @@ TEST(Verdicts, WarnOfAClothThatMovedWhereItCostsADegreeAndNotWhereATenth) {
   EXPECT_THAT(verdicts[0].remedy, testing::HasSubstr("scan again"));
 }
 
-TEST(Verdicts, WarnOfShotsThatCannotBeRegisteredWhereTheyDoNotFit) {
-  app::PhotographsSummary summary = moved_summary(0);
+// Ten shots that cannot be registered and deviate.
+app::PhotographsSummary unregistered_summary(double residual) {
+  app::PhotographsSummary summary = moved_summary(1.1);
   summary.shifts.found = false;
-  summary.diagnosis.residual = 0.004;
-  EXPECT_THAT(app::verdicts_of(summary, 0, {}, {}), IsEmpty());
-  summary.diagnosis.residual = 0.11;
-  ASSERT_EQ(app::verdicts_of(summary, 0, {}, {}).size(), 1U);
-  EXPECT_EQ(app::verdicts_of(summary, 0, {}, {})[0].name, "CLOTH_MOVED");
+  summary.diagnosis.residual = residual;
+  summary.far_shifts = pipeline::FarShifts{{}, 0, 0, 128};
+  return summary;
+}
+
+TEST(Verdicts, NameNoCauseOfReadingsThatDoNotFitUnlessOneWasFound) {
+  EXPECT_THAT(app::verdicts_of(unregistered_summary(0.004), 0, {}, {}), IsEmpty());
+  app::PhotographsSummary summary = unregistered_summary(0.09);
+  std::vector<Verdict> verdicts = app::verdicts_of(summary, 0, {}, solver::Level::kStandard);
+  ASSERT_EQ(verdicts.size(), 1U);
+  EXPECT_EQ(verdicts[0].name, "READINGS_DO_NOT_FIT");
+  EXPECT_THAT(verdicts[0].text, HasSubstr("by 9 percent"));
+  EXPECT_THAT(verdicts[0].text, HasSubstr("a cloth that moved by up to 128 pixels"));
+  EXPECT_THAT(verdicts[0].remedy, HasSubstr("--quality robust"));
+  summary.diagnosis.residual = 5.62;
+  summary.of_session = false;
+  verdicts = app::verdicts_of(summary, 0, {}, solver::Level::kRobust);
+  EXPECT_THAT(verdicts.at(0).text, HasSubstr("by over 100 percent"));
+  EXPECT_THAT(verdicts.at(0).remedy, HasSubstr("--transfer"));
+  EXPECT_THAT(verdicts.at(0).remedy, Not(HasSubstr("robust")));
+  const LeftOutFacts unfit = {{.median = 0.2, .rms = 0.3, .readings = 100}, {}};
+  verdicts = app::verdicts_of(summary, 0, unfit, solver::Level::kStandard);
+  ASSERT_EQ(verdicts.size(), 1U);
+  EXPECT_EQ(verdicts[0].name, "LIGHTS_DO_NOT_FIT") << "what left-out light says is said";
+}
+
+TEST(Verdicts, SayThatTheClothMovedWhereAFarShiftExplainsIt) {
+  app::PhotographsSummary summary = unregistered_summary(0.09);
+  summary.far_shifts = pipeline::FarShifts{{6, 7, 8, 9}, 23.4, 0.84, 128};
+  const std::vector<Verdict> verdicts = app::verdicts_of(summary, 0, {}, solver::Level::kStandard);
+  ASSERT_EQ(verdicts.size(), 1U);
+  EXPECT_EQ(verdicts[0].name, "CLOTH_MOVED");
+  EXPECT_THAT(verdicts[0].text, HasSubstr("LEDs 7, 8, 9 and 10 it lies up to 23 pixels"));
+  EXPECT_THAT(verdicts[0].text, HasSubstr("84 percent"));
+  EXPECT_THAT(verdicts[0].remedy, HasSubstr("--lights 1,2,3,4,5,6"));
+  summary.far_shifts->moved = {1, 2, 3, 4, 5, 6, 7, 8, 9};
+  EXPECT_THAT(app::verdicts_of(summary, 0, {}, {}).at(0).remedy, Not(HasSubstr("--lights")))
+      << "three are left";
+}
+
+TEST(Verdicts, SayOfGlossThatItShinesAndNotThatItMoved) {
+  app::PhotographsSummary summary = unregistered_summary(0.11);
   summary.glossy_share = 0.9;  // solved with its lobe
   EXPECT_THAT(app::verdicts_of(summary, 0, {}, {}), IsEmpty());
   summary.glossy_share = 0;
@@ -307,6 +366,37 @@ TEST(Verdicts, WarnOfShotsThatCannotBeRegisteredWhereTheyDoNotFit) {
   const std::vector<Verdict> dominated = app::verdicts_of(summary, 0.5, {}, {});
   ASSERT_EQ(dominated.size(), 1U);
   EXPECT_EQ(dominated[0].name, "SPECULAR_DOMINATED");
+}
+
+TEST(Verdicts, OfPhotographsSpeakOfNoScan) {
+  app::PhotographsSummary summary = moved_summary(1.1);
+  summary.of_session = false;
+  summary.outshining = 1;
+  summary.shadow_reach_is_capped = true;
+  summary.diagnosis.faults = {{FaultKind::kDead, {1}, {}},
+                              {FaultKind::kExchanged, {2, 3}, {3, 2}},
+                              {FaultKind::kGain, {5}, {}, 0.5, 0, 0, 0, 3}};
+  for (const Verdict& verdict : app::verdicts_of(summary, 0.5, {}, solver::Level::kStandard)) {
+    for (const char* word : {"scan", "wiring", "cable", "calibrat"})
+      EXPECT_THAT(verdict.remedy, Not(HasSubstr(word))) << verdict.name;
+  }
+}
+
+TEST(ExposureVerdict, TellsOverAndDarkPhotographsFromGoodOnes) {
+  const pipeline::Fullness good = {.full = 0.02, .missing = 0, .lit = 0.98, .brightest = 0.8};
+  EXPECT_FALSE(app::exposure_verdict(good, 0.001, 3, true)) << "a dark weave is noisy in a good exposure";
+  const pipeline::Fullness over = {.full = 0.97, .missing = 0, .lit = 0.03, .brightest = 1};
+  const std::optional<Verdict> too_long = app::exposure_verdict(over, 0.89, 0.2, true);
+  ASSERT_TRUE(too_long);
+  EXPECT_EQ(too_long->name, "OVEREXPOSED");
+  EXPECT_THAT(too_long->text, HasSubstr("97 percent of the readings are full"));
+  EXPECT_THAT(too_long->text, HasSubstr("89 percent of the picture has no solution"));
+  const pipeline::Fullness dark = {.full = 0, .missing = 0, .lit = 0.9, .brightest = 0.026};
+  const std::optional<Verdict> too_short = app::exposure_verdict(dark, 0, 5.1, true);
+  ASSERT_TRUE(too_short);
+  EXPECT_EQ(too_short->name, "UNDEREXPOSED");
+  EXPECT_THAT(too_short->text, HasSubstr("2.6 percent of white"));
+  EXPECT_FALSE(app::exposure_verdict(dark, 0, 0.4, true)) << "noise does no harm";
 }
 
 TEST(Verdicts, WarnOfShadowsFromFartherThanTheyAreLookedFor) {
@@ -377,11 +467,12 @@ TEST(ReportPage, SaysBelowWhichAnglesNinetyFivePercentAre) {
       {"lights", Json::array()},
       {"faults", Json::array()},
       {"budget", Json::array()},
-      {"sigma_normal_deg", {{"median", 0.25}, {"p95", 0.5}, {"columns", 1}, {"rows", 1}, {"grid", {0.25}}}},
+      {"sigma_normal_deg",
+       {{"median", 0.25}, {"p95", 0.5}, {"solved", 0.11}, {"columns", 1}, {"rows", 1}, {"grid", {0.25}}}},
       {"seconds", Json::object()},
       {"error", {{"mean_deg", 1.5}, {"p95_deg", 3.25}}}};
   const std::string page = app::report_page(report, {});
-  EXPECT_THAT(page, HasSubstr("Median 0.25°, 95 percent below 0.5°."));
+  EXPECT_THAT(page, HasSubstr("Median 0.25°, 95 percent below 0.5°. Both hold for the 11 % of the cloth"));
   EXPECT_THAT(page, HasSubstr("mean error against the truth; 95 percent below 3.25°"));
 }
 

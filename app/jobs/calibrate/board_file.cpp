@@ -79,8 +79,9 @@ Result<PrintedBoard> read_board_file(const fs::path& file, const BoardSettings& 
   board.marker_share = said.marker_share.value_or(board.marker_share);
   board.dictionary = said.dictionary.value_or(board.dictionary);
   out.thickness_mm = said.thickness_mm.value_or(0);
-  if (!(out.thickness_mm >= 0 && out.thickness_mm <= 100))
-    return bad_key(file, "thickness_mm", "it must be 0 to 100");
+  if (!kBoardThickness_mm.holds(out.thickness_mm))
+    return bad_key(file, "thickness_mm",
+                   fmt::format("it must be {:g} to {:g}", kBoardThickness_mm.least, kBoardThickness_mm.most));
   if (const Result<void> ok = check_board(board); !ok) return ok.error();
   return out;
 }

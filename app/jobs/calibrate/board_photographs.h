@@ -11,12 +11,15 @@
 #include "core/calibration.h"
 #include "core/image.h"
 #include "core/job.h"
+#include "core/number.h"
 #include "core/raw_frame.h"
 #include "core/result.h"
 
 // A folder of photographs of a board: which can be used, and what they show.
 
 namespace weft::app {
+
+inline constexpr NumberRange kBoardThickness_mm = {0, 100};
 
 /// How a board was printed, as far as somebody said.
 struct BoardSettings {

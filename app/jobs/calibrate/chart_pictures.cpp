@@ -129,7 +129,8 @@ Result<ChartPicture> read_chart_picture(const fs::path& file, const Calibration*
 }
 
 Result<ChartColors> read_chart_colors(const fs::path& input) {
-  const fs::path file = (is_there(input / "session.json") ? input.parent_path() : input) / "chart.toml";
+  const fs::path file =
+      (is_there(input / "session.json") ? absolute_folder(input).parent_path() : input) / "chart.toml";
   const ChartColors published = {calibration::published_chart(),
                                  "as published for charts from November 2014"};
   if (!is_there(file)) return published;

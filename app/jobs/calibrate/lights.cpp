@@ -81,25 +81,25 @@ class LightsJob {
   std::vector<Verdict> verdicts_;
 };
 
+Result<void> check_range(const char* option, double value, const NumberRange& range, const char* remedy) {
+  if (range.holds(value)) return {};
+  return bad(ErrorKind::kUsage, "option out of range", option,
+             fmt::format("{} is not {} to {}", value, range.least, range.most), remedy);
+}
+
 Result<void> LightsJob::prepare() {
   if (options_.from.empty()) {
     return bad(ErrorKind::kUsage, "lights cannot be calibrated alone", "--from",
                "the camera says where each pixel looks, and the response what its counts mean",
                "name a calibration that has both with --from");
   }
-  if (!(options_.tape_sigma_mm >= 0.1 && options_.tape_sigma_mm <= 1000)) {
-    return bad(ErrorKind::kUsage, "option out of range", "tape sigma",
-               fmt::format("{} mm is not 0.1 to 1000", options_.tape_sigma_mm),
-               "say how well the tape measures");
-  }
-  if (!(options_.flatness_deg >= 0 && options_.flatness_deg <= 2)) {
-    return bad(ErrorKind::kUsage, "option out of range", "flatness",
-               fmt::format("{} degrees is not 0 to 2", options_.flatness_deg), "say how flat the sheet lies");
-  }
-  if (!(options_.flicker_percent >= 0.01 && options_.flicker_percent <= 5)) {
-    return bad(ErrorKind::kUsage, "option out of range", "flicker",
-               fmt::format("{} percent is not 0.01 to 5", options_.flicker_percent),
-               "say how much LEDs flicker from shot to shot");
+  for (const Result<void>& fits :
+       {check_range("tape sigma, mm", options_.tape_sigma_mm, kTapeSigma_mm,
+                    "say how well the tape measures"),
+        check_range("flatness, degrees", options_.flatness_deg, kFlatness_deg, "say how flat the sheet lies"),
+        check_range("flicker, percent", options_.flicker_percent, kFlicker_percent,
+                    "say how much LEDs flicker from shot to shot")}) {
+    if (!fits) return fits;
   }
   if (!options_.output.empty()) {
     if (Result<void> ok = check_new(options_.output); !ok) return ok;

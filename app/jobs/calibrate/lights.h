@@ -5,6 +5,7 @@
 
 #include "app/jobs/calibrate/outcome.h"
 #include "core/job.h"
+#include "core/number.h"
 #include "core/result.h"
 
 namespace weft::app {
@@ -16,16 +17,20 @@ enum class LightsMethod {
   kSeed,      ///< the iteration of seed 000 on one flat sheet (calibration/lights/seed_iteration.h)
 };
 
+inline constexpr NumberRange kTapeSigma_mm = {0.1, 1000}, kFlatness_deg = {0, 2},
+                             kFlicker_percent = {0.01, 5};
+
 struct CalibrateLightsOptions {
   std::filesystem::path input;   ///< *.weft, sheet.toml and, where a tape measured the LEDs, rig.toml
   std::filesystem::path from;    ///< the calibration to change: camera and response are needed
   std::filesystem::path output;  ///< the new one, which must not be there; empty: nothing is written
   LightsMethod method = LightsMethod::kPhysical;
-  double tape_sigma_mm = 10;     ///< how well positions were measured, along each axis: 0.1 to 1000
-  double flatness_deg = 0.05;    ///< of the sheet's slow waves, rms: 0 to 2
-  double flicker_percent = 0.3;  ///< of LEDs from shot to shot, where the sheets do not tell: 0.01 to 5
-  bool lambertian = false;       ///< takes the paper to follow Lambert's law
-  bool accept_misfit = false;    ///< writes the calibration although readings and model contradict each other
+  double tape_sigma_mm = 10;   ///< how well positions were measured, along each axis; kTapeSigma_mm
+  double flatness_deg = 0.05;  ///< of the sheet's slow waves, rms; kFlatness_deg
+  double flicker_percent =
+      0.3;                     ///< of LEDs from shot to shot, where the sheets do not tell; kFlicker_percent
+  bool lambertian = false;     ///< takes the paper to follow Lambert's law
+  bool accept_misfit = false;  ///< writes the calibration although readings and model contradict each other
 };
 
 /// Measures the lights of a rig from sessions of a sheet of white paper in several poses, which its tags tell

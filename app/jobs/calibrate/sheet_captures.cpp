@@ -11,6 +11,7 @@
 
 #include "app/jobs/linear_image.h"
 #include "app/jobs/session_frames.h"
+#include "core/exposure_words.h"
 #include "core/files.h"
 #include "core/parallel.h"
 #include "core/radiometry.h"
@@ -294,9 +295,9 @@ Result<double> exposure_scale(const Session& session, const Session& first, cons
   return bad_capture(
       session.path_of(shot), "the sheet was exposed differently",
       fmt::format(
-          "{:.6g} us at ISO {:.6g}, in {} {:.6g} us at ISO {:.6g}, and the calibration has no measured ratio "
-          "of the two",
-          shot.exposure_us, shot.iso, first.folder.filename().string(), like.exposure_us, like.iso),
+          "{} at ISO {:.6g}, in {} {} at ISO {:.6g}, and the calibration has no measured ratio of the two",
+          exposure_words(shot.exposure_us), shot.iso, first.folder.filename().string(),
+          exposure_words(like.exposure_us), like.iso),
       "photograph the sheet in all poses with one exposure");
 }
 

@@ -20,7 +20,7 @@ constexpr const char* kSchema = "weft.photographs";
 PlannedPhotographs planned_by(const PhotoOptions& options, const std::string& name, const fs::path& archive) {
   PlannedPhotographs planned;
   planned.source = options.light_file.empty() ? options.folder : options.light_file;
-  planned.folder = archive / (plain_name(name) + ".photos");
+  planned.folder = archive / (file_name_of(name, "photographs") + ".photos");
   Result<PhotoPlan> photos = plan_photos(options);
   if (!photos) {
     planned.state = ImportState::kRefused;

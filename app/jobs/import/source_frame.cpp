@@ -32,7 +32,8 @@ Result<void> read_header(SourceFrame& frame) {
   if (!info) return info.error();
   if (transfer_of(*info) != Transfer::kLinear || info->format == "jpeg") {
     return Error{ErrorKind::kBadData, "photograph is not linear", file.string(),
-                 "it holds 8 bits, which went through a tone curve",
+                 info->type == SampleType::kUint8 ? "it holds 8 bits, which went through a tone curve"
+                                                  : "it says that it went through a tone curve",
                  "export 16-bit TIFF or float EXR files without a curve"};
   }
   frame.size = info->size;

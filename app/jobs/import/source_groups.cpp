@@ -33,10 +33,7 @@ struct NamedGroup {
 };
 
 std::string session_name_of(const std::string& text) {
-  std::string name = plain_name(text);
-  name.erase(0, name.find_first_not_of(".-"));
-  name.resize(std::min(name.size(), kLongestGroupName));
-  return library::is_session_name(name) ? name : "session";
+  return file_name_of(text, "session", kLongestGroupName);
 }
 
 /// The folder above the parts of a path that the pattern speaks of.

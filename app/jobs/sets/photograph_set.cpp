@@ -63,7 +63,7 @@ Result<std::string> described(const SetRequest& request) {
   const char* name = description_of(request.part);
   if (name == nullptr) return std::string();
   std::string text = request.description.empty()
-                         ? newest_description(request.folder.parent_path(), request.part)
+                         ? newest_description(absolute_folder(request.folder).parent_path(), request.part)
                          : request.description;
   if (!text.empty() || request.part == SetPart::kChart) return text;
   return Error{ErrorKind::kUsage, fmt::format("nobody said what the {} is", fs::path(name).stem().string()),
