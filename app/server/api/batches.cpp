@@ -79,6 +79,7 @@ Json levels_of(const batch::Header& header) {
                       {"seconds", 3600 * level.hours},
                       {"mean_deg", level.mean_deg},
                       {"spread_deg", level.spread_deg},
+                      {"solved", level.solved.value_or(1)},
                       {"sessions", level.sessions}});
   return levels;
 }
@@ -136,6 +137,7 @@ Json jobs_of(const batch::Plan& plan) {
                     {"seconds_spread", job->forecast.seconds_spread},
                     {"degrees", job->forecast.degrees},
                     {"degrees_spread", job->forecast.degrees_spread},
+                    {"solved", job->forecast.solved},
                     {"is_measured", job->forecast.is_measured},
                     {"turn_deg", optional_json(job->forecast.turn_deg)},
                     {"before", job->before}});
@@ -144,15 +146,15 @@ Json jobs_of(const batch::Plan& plan) {
 
 Json planned_of(const BatchState& state) {
   const batch::Plan& plan = state.plan;
-  double degrees = 0;
+  const batch::MeanError error = batch::error_of(plan.jobs);
   std::uint64_t memory = 0, write = 0;
   for (const batch::Job& job : plan.jobs) {
-    degrees += job.forecast.degrees / static_cast<double>(plan.jobs.size());
     memory = std::max(memory, job.memory_bytes);
     write += job.write_bytes;
   }
   return {{"id", plan.header.id},
-          {"mean_deg", degrees},
+          {"mean_deg", error.degrees()},
+          {"solved", error.solved()},
           {"memory_bytes", memory},
           {"write_bytes", write},
           {"sampled", plan.header.sampled},
@@ -218,6 +220,15 @@ Json changes_of(const BatchState& state, const fs::path& report) {
   return changes;
 }
 
+Json names_of(const std::vector<std::size_t>& rows, const BatchState& state) {
+  Json names = Json::array();
+  for (const std::size_t index : rows) {
+    if (names.size() == kMostListed) break;
+    names.push_back(name_of_session(state.rows[index].job->session));
+  }
+  return names;
+}
+
 Result<Reply> report_of(const RigParts& parts, const Call& call) {
   const std::string& name = call.segments.at(0);
   const Result<BatchState> state = state_of(parts, name);
@@ -227,6 +238,8 @@ Result<Reply> report_of(const RigParts& parts, const Call& call) {
   for (const char* all : {"sessions", "missing_tasks"}) document.erase(all);
   document["changed"] = state->summary.changed.size();
   document["changes"] = changes_of(*state, report);
+  document["barely_solved"] = names_of(state->summary.barely_solved, *state);
+  document["warned"] = names_of(state->summary.warned, *state);
   document["verdicts"] = weft::json_of(verdicts_of(*state));
   document["has_page"] = is_there(report / kPage);
   return json_reply(document);

@@ -43,7 +43,7 @@ Result<Reply> begin_or_go_on(const RigParts& parts, const Call& call) {
   wish.name = body->value("name", "");
   wish.description = body->value("description", "");
   const std::string from = body->value("from", "");
-  if (!from.empty()) wish.from = parts.rig.file.parent_path() / from;
+  if (!from.empty()) wish.from = parts.rig.folder() / from;
   return replied(parts.sets.begin(wish));
 }
 
@@ -76,7 +76,7 @@ Json json_of(const ListedCalibration& one, const std::filesystem::path& root,
 }
 
 Result<Reply> list_of_calibrations(const RigParts& parts, const Call&) {
-  const std::filesystem::path root = parts.rig.file.parent_path();
+  const std::filesystem::path root = parts.rig.folder();
   const Result<std::vector<ListedCalibration>> all = list_calibrations(root);
   if (!all) return all.error();
   const std::filesystem::path current = capture::calibration_now(parts.rig);
@@ -88,7 +88,7 @@ Result<Reply> list_of_calibrations(const RigParts& parts, const Call&) {
 
 Result<Reply> history_of_rig(const RigParts& parts, const Call&) {
   CalibrateHistoryOptions options;
-  options.rig = parts.rig.file.parent_path();
+  options.rig = parts.rig.folder();
   if (is_there(parts.rig.scan.sessions)) options.sessions = parts.rig.scan.sessions;
   const Result<CalibrationHistory> history = calibrate_history(options, {});
   if (!history) return history.error();
@@ -100,8 +100,7 @@ Result<Reply> history_of_rig(const RigParts& parts, const Call&) {
 Result<Reply> accept(const RigParts& parts, const Call& call) {
   const Result<Json> body = command_in(parts, call);
   if (!body) return body.error();
-  const Result<std::filesystem::path> folder =
-      folder_below(parts.rig.file.parent_path(), *body, "calibration");
+  const Result<std::filesystem::path> folder = folder_below(parts.rig.folder(), *body, "calibration");
   if (!folder && folder.error().kind == ErrorKind::kUsage) {
     return Error{ErrorKind::kUsage, "no calibration can be accepted so", "calibration", folder.error().why,
                  "see calibrations/accept in openapi.json"};

@@ -76,7 +76,7 @@ Result<Reply> begin_shot(const RigParts& parts, const Call& call) {
   if (!led) return led.error();
   const Json exposure = body->value("exposure_us", Json());
   if (!exposure.is_number() || !(exposure > 0) || exposure > kLongestShot_us)
-    return refused("exposure_us", fmt::format("must be above 0 and at most {:g}", kLongestShot_us));
+    return refused("exposure_us", fmt::format("must be above 0 and at most {:.0f}", kLongestShot_us));
   const Result<int> id = parts.attendance.shoot(*led, exposure.get<double>());
   if (!id) return id.error();
   return json_reply({{"id", *id}}, kAccepted);

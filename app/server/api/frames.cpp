@@ -116,9 +116,14 @@ Result<Reply> again(const RigParts& parts, const Call& call) {
   if (!by) return by.error();
   const Json exposure = body->value("exposure_us", Json(0));
   if (!exposure.is_number() || exposure < 0 || exposure > kLongestAgain_us) {
-    return Error{ErrorKind::kUsage, "the shot cannot be taken again", "exposure_us",
-                 fmt::format("must be above 0 and at most {:g}, or absent: the session's", kLongestAgain_us),
-                 "see frames/{index}/again in openapi.json"};
+    return Error{
+        ErrorKind::kUsage, "the shot cannot be taken again", "exposure_us",
+        fmt::format("must be above 0 and at most {:.0f}, or absent: the session's", kLongestAgain_us),
+        "see frames/{index}/again in openapi.json"};
+  }
+  if (exposure > 0) {
+    const Result<double> settable = parts.attendance.settable_us(exposure.get<double>());
+    if (!settable) return settable.error();
   }
   const Result<Session> session = parts.library.session(call.segments.at(0));
   if (!session) return session.error();

@@ -12,11 +12,14 @@
 #include <utility>
 #include <vector>
 
+#include "app/jobs/calibrate/board_photographs.h"
+#include "app/jobs/calibrate/lights.h"
 #include "app/jobs/maps/recipe.h"
 #include "app/jobs/planned_cloth.h"
 #include "app/server/api/batch_body.h"
 #include "app/server/api/library_materials.h"
 #include "core/files.h"
+#include "core/number.h"
 #include "library/session_files.h"
 
 namespace weft::app {
@@ -58,7 +61,7 @@ struct JobField {
   const char* option;  // empty: the argument itself
   Holds holds;
   bool is_needed = false;
-  double least = 0, most = 0;                // of a number
+  NumberRange range = {};                    // of a number
   std::vector<std::string_view> words = {};  // that are allowed; none: all
   const char* unless = "";                   // another field, which says it already
 };
@@ -76,14 +79,20 @@ const JobField kOutput = {"output", "--output", Holds::kNewFolder, true};
 const JobField kFrom = {"from", "--from", Holds::kFolder};
 
 JobField word(const char* field, const char* option, std::vector<std::string_view> words = {}) {
-  return {field, option, Holds::kWord, false, 0, 0, std::move(words)};
+  return {field, option, Holds::kWord, false, {}, std::move(words)};
+}
+JobField number(const char* field, const char* option, const NumberRange& range) {
+  return {field, option, Holds::kNumber, false, range};
 }
 JobField number(const char* field, const char* option, double least, double most) {
-  return {field, option, Holds::kNumber, false, least, most};
+  return number(field, option, NumberRange{least, most});
 }
 
-JobField count(const char* field, const char* option, double least, double most) {
-  return {field, option, Holds::kCount, false, least, most};
+// A preview will do.
+const JobField kDraft = {"draft", "--draft", Holds::kFlag};
+
+JobField count(const char* field, const char* option, const NumberRange& range) {
+  return {field, option, Holds::kCount, false, range};
 }
 
 const std::vector<std::string_view> kLevels = {"preview", "fast", "standard", "robust", "reference"};
@@ -96,9 +105,9 @@ JobKind batch_plan_kind() {
            {"name", "", Holds::kOfBatch},
            word("quality", "--quality", kLevels),
            number("to_deg", "--to", 1e-6, 180),
-           {"within_s", "--within", Holds::kSeconds, false, 1, 1e9},
+           {"within_s", "--within", Holds::kSeconds, false, {1, 1e9}},
            number("least_change_deg", "--least-change", 1e-6, 180),
-           count("sample", "--sample", 0, 100000),
+           count("sample", "--sample", {0, 100000}),
            {"calibration", "--calibration", Holds::kFolder}}};
 }
 
@@ -106,7 +115,7 @@ JobKind batch_run_kind() {
   return {"batch_run",
           {"batch", "run", "--merge"},
           {{"batch", "", Holds::kOfBatch, true},
-           count("at_once", "--jobs", 1, 64),
+           count("at_once", "--jobs", {1, 64}),
            {"retry_failed", "--retry-failed", Holds::kFlag}}};
 }
 
@@ -125,6 +134,7 @@ std::vector<std::string_view> own_recipes() {
 std::vector<JobField> maps_fields() {
   return {kSession,
           word("solve", "--solve"),
+          kDraft,
           number("mm_per_pixel", "--mm-per-pixel", 1e-4, 100),
           {"preview", "--preview", Holds::kFlag},
           word("recipe", "--recipe", own_recipes()),
@@ -138,6 +148,7 @@ std::vector<JobField> export_fields() {
   return {{"session", "", Holds::kSession},
           {"material", "", Holds::kBuild},
           set,
+          kDraft,
           word("name", "--name"),
           {"presets", "--preset", Holds::kWords, true}};
 }
@@ -160,7 +171,7 @@ const std::vector<JobKind>& job_kinds() {
       {"price", {"solve", "--explain", "--crops", kJobFiles}, {kSession}},
       {"rectify",
        {"rectify"},
-       {kSession, word("solve", "--solve"), number("mm_per_pixel", "--mm-per-pixel", 1e-4, 100),
+       {kSession, word("solve", "--solve"), kDraft, number("mm_per_pixel", "--mm-per-pixel", 1e-4, 100),
         number("turn_deg", "--turn", -360, 360)}},
       {"maps", {"maps"}, with_field(maps_fields(), {"maps", "--maps", Holds::kWords})},
       {"finish", {"finish"}, maps_fields()},
@@ -185,8 +196,10 @@ const std::vector<JobKind>& job_kinds() {
       {"calibrate_camera",
        {"calibrate", "camera"},
        {kInput, kOutput, kFrom, word("board", "--board", {"charuco", "checkerboard"}),
-        number("squares_x", "--squares-x", 2, 100), number("squares_y", "--squares-y", 2, 100),
-        number("square_mm", "--square-mm", 1e-3, 1e4), number("thickness_mm", "--thickness-mm", 0, 1000)},
+        count("squares_x", "--squares-x", calibration::kBoardSquares),
+        count("squares_y", "--squares-y", calibration::kBoardSquares),
+        number("square_mm", "--square-mm", calibration::kBoardSquare_mm),
+        number("thickness_mm", "--thickness-mm", kBoardThickness_mm)},
        true},
       {"calibrate_response",
        {"calibrate", "response"},
@@ -199,9 +212,9 @@ const std::vector<JobKind>& job_kinds() {
         {"output", "--output", Holds::kNewFolder},
         kFrom,
         word("method", "--method", {"physical", "per-pixel", "seed"}),
-        number("tape_sigma_mm", "--tape-sigma", 1e-3, 1e4),
-        number("flatness_deg", "--flatness", 0, 90),
-        number("flicker_percent", "--flicker", 0, 100)}},
+        number("tape_sigma_mm", "--tape-sigma", kTapeSigma_mm),
+        number("flatness_deg", "--flatness", kFlatness_deg),
+        number("flicker_percent", "--flicker", kFlicker_percent)}},
       {"calibrate_grey", {"calibrate", "grey"}, {kSession, kOutput, kFrom}},
       {"calibrate_patches", {"calibrate", "patches"}, {kSession, kOutput, kFrom}},
       {"calibrate_update",
@@ -264,13 +277,12 @@ Result<fs::path> new_folder_below(const fs::path& root, const Json& body, const 
 }
 
 Result<std::string> number_in(const Json& value, const JobField& field) {
-  const double amount = value.is_number() ? value.get<double>() : field.least - 1;
+  const double amount = value.is_number() ? value.get<double>() : field.range.least - 1;
   const bool is_whole = field.holds == Holds::kCount;
-  const bool fits =
-      amount >= field.least && amount <= field.most && (!is_whole || amount == std::floor(amount));
+  const bool fits = field.range.holds(amount) && (!is_whole || amount == std::floor(amount));
   if (!fits)
     return unfit(field.field, fmt::format("must be a {}number from {} to {}", is_whole ? "whole " : "",
-                                          field.least, field.most));
+                                          field.range.least, field.range.most));
   if (is_whole) return fmt::format("{:.0f}", amount);
   return fmt::format("{}{}", amount, field.holds == Holds::kSeconds ? "s" : "");
 }
@@ -380,6 +392,12 @@ Result<void> check_together(const std::string& kind, const Json& body) {
     return unfit("sessions", "either it or find must be named");
   if (kind == "batch_plan" && named("quality") + named("to_deg") + named("within_s") > 1)
     return unfit("quality", "either it or to_deg or within_s may be named");
+  const int wishes = (named("to_deg") + named("within_s") > 0) + named("quality") + named("method");
+  if (kind == "solve" && wishes > 1)
+    return unfit("quality", "either it or method or to_deg with within_s may be named");
+  const bool is_chosen = kind == "batch_plan" && named("to_deg") + named("within_s") > 0;
+  if (is_chosen && body.value("sample", Json()) == 0)
+    return unfit("sample", "must be above 0 where levels are chosen by what was measured");
   if (kind == "rig_plan" && named("cloth") + named("roughness") > 1)
     return unfit("cloth", "either it or roughness may be named");
   if (kind == "rig_plan" && named("f0") > named("roughness"))

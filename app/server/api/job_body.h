@@ -18,7 +18,7 @@ namespace weft::app {
 struct JobPlaces {
   /// The folder of a session by its name. kUsage, kNoInput.
   std::function<Result<std::filesystem::path>(const std::string& name)> session;
-  std::filesystem::path folder;         ///< that of the rig file: photographs and calibrations lie below it
+  std::filesystem::path folder;         ///< of the rig: photographs and calibrations lie below it
   std::string rig;                      ///< its name
   std::filesystem::path sessions;       ///< where new ones go
   std::filesystem::path copy;           ///< of finished sessions; empty: where each session says

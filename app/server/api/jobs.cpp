@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "app/server/api/api.h"
@@ -12,6 +11,7 @@
 #include "app/server/api/library_materials.h"
 #include "app/server/api/scan_body.h"
 #include "app/server/api/session_query.h"
+#include "core/number.h"
 #include "library/session_name.h"
 
 namespace weft::app {
@@ -48,8 +48,8 @@ JobPlaces places_of(const RigParts& parts) {
     if (!found) return found.error();
     return found->folder;
   };
-  JobPlaces places = {session,  rig.file.parent_path(), rig.name, rig.scan.sessions, rig.scan.copy,
-                      rig.file, library_material,       build};
+  JobPlaces places = {session,       rig.folder(), rig.name,         rig.scan.sessions,
+                      rig.scan.copy, rig.file,     library_material, build};
   places.session_folder = [&parts](const std::string& name) { return parts.library.folder_of(name); };
   places.sessions_found = [&parts](const std::map<std::string, std::string>& asked) {
     return all_folders(parts.library, asked);
@@ -75,12 +75,10 @@ Result<Reply> add_job(const RigParts& parts, const Call& call) {
 Result<int> number_of(const Call& call, const char* key, int otherwise) {
   const auto found = call.query.find(key);
   if (found == call.query.end()) return otherwise;
-  int number = 0;
-  const std::string& text = found->second;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || number < 1)
+  const auto number = as_whole_number<int>(found->second);
+  if (!number || *number < 1)
     return Error{ErrorKind::kUsage, "jobs cannot be listed so", key, "must be a number from 1", ""};
-  return number;
+  return *number;
 }
 
 // What a plan leaves out may be ten thousand sessions, and is asked for with the batch.

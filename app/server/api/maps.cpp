@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 #include "app/jobs/maps/maps.h"
 #include "app/jobs/maps/recipe.h"
+#include "app/jobs/maps/session_sets.h"
 #include "app/server/api/api.h"
 #include "app/server/api/descriptions.h"
 #include "app/server/api/viewed.h"
 #include "library/session_files.h"
+#include "library/session_name.h"
 
 namespace weft::app {
 namespace {
 
 // What a list says of a set of maps; null where its document is damaged.
-Json set_summary(const Product& product, const Json& document) {
+Json set_summary(const SessionSet& set) {
+  const Product& product = set.product;
+  const Json& document = set.document;
   JsonFields fields(document, kMapsProduct.document);
   const auto is_so = [&](const char* key) { return document.value(key, Json()) == Json(true); };
   Json summary = {{"id", product.id},
                   {"created", written_at(product.folder / kMapsProduct.document)},
                   {"bytes", library::bytes_below(product.folder)},
                   {"solve", fields.text("solve")},
+                  {"level", set.level},
+                  {"draft", set.is_draft},
+                  {"stale", set.stale},
                   {"preview", is_so("preview")},
                   {"is_tile", is_so("is_tile")},
                   {"width", fields.integer("width")},
@@ -33,15 +41,16 @@ Json set_summary(const Product& product, const Json& document) {
 Result<Reply> sets(const RigParts& parts, const Call& call) {
   const Result<Session> session = parts.library.session(call.segments.at(0));
   if (!session) return session.error();
+  const library::SessionSolves solves = library::solves_of(*session);
+  const std::vector<SessionSet> all = sets_of(solves, true), finals = sets_of(solves);
+  const SessionSet* const current = set_to_use(solves, finals, {});
   Json list = Json::array();
-  for (const Product& product : list_products(kMapsProduct, map_sets_of(*session))) {
-    const Result<std::optional<Json>> document = find_finished(product);
-    if (!document || !*document) continue;
-    if (Json summary = set_summary(product, **document); !summary.is_null())
-      list.push_back(std::move(summary));
+  for (const SessionSet& set : all) {
+    if (Json summary = set_summary(set); !summary.is_null()) list.push_back(std::move(summary));
   }
   std::ranges::reverse(list);
-  return json_reply({{"sets", std::move(list)}});
+  return json_reply(
+      {{"sets", std::move(list)}, {"current", current != nullptr ? Json(current->product.id) : Json()}});
 }
 
 Result<Reply> one_set(const RigParts& parts, const Call& call) {
@@ -52,10 +61,29 @@ Result<Reply> one_set(const RigParts& parts, const Call& call) {
   return json_reply(*document);
 }
 
+// One of the pictures that a set lies beside.
+Result<Reply> picture_of_set(const RigParts& parts, const Call& call) {
+  const Result<Viewed> viewed = find_map_set(parts, call.segments.at(0), call.segments.at(1));
+  if (!viewed) return viewed.error();
+  const std::string& name = call.segments.at(2);
+  const bool is_picture = library::is_session_name(name) && name.ends_with(".png");
+  Result<std::shared_ptr<const FileBody>> file =
+      is_picture
+          ? open_file_body(viewed->folder / name)
+          : Error{ErrorKind::kNoInput, "the set of maps has no such picture", name.substr(0, 40), "", ""};
+  if (!file) return std::move(file).error();
+  Reply reply = {200, "image/png"};
+  reply.file = std::move(*file);
+  reply.keeping = Keeping::kForever;
+  return reply;
+}
+
 const char* word_of(StepHolds holds) {
   switch (holds) {
     case StepHolds::kNumber:
       return "number";
+    case StepHolds::kMaybe:
+      return "maybe";
     case StepHolds::kWhole:
       return "whole";
     case StepHolds::kFlag:
@@ -99,10 +127,13 @@ Result<Reply> recipes(const Call&) {
 Resource maps_resource(const RigParts& parts) {
   const std::string of = "/api/v1/sessions/{name}/maps";
   const std::string one = of + "/{id}";
-  Resource resource = {{{"GET", of, [&parts](const Call& call) { return sets(parts, call); }},
-                        {"GET", one, [&parts](const Call& call) { return one_set(parts, call); }},
-                        {"GET", "/api/v1/recipes", recipes, false, Pool::kQuick}},
-                       maps_description()};
+  Resource resource = {
+      {{"GET", of, [&parts](const Call& call) { return sets(parts, call); }},
+       {"GET", one, [&parts](const Call& call) { return one_set(parts, call); }},
+       {"GET", one + "/pictures/{file}", [&parts](const Call& call) { return picture_of_set(parts, call); },
+        false, Pool::kFiles},
+       {"GET", "/api/v1/recipes", recipes, false, Pool::kQuick}},
+      maps_description()};
   for (Route& route : view_routes(parts, one, find_map_set)) resource.routes.push_back(std::move(route));
   return resource;
 }

@@ -49,8 +49,13 @@ Result<void> check_moved(capture::ScanRequest& request) {
   return {};
 }
 
+/// With an exposure that the camera has, as far as that is known.
 Result<SessionChoice> session_for(const RigParts& parts, const Json& body) {
-  return choose_session(body, parts.rig, parts.library, std::chrono::system_clock::now());
+  Result<SessionChoice> choice =
+      choose_session(body, parts.rig, parts.library, std::chrono::system_clock::now());
+  if (!choice || choice->request.exposure.exposure_us == 0) return choice;
+  const Result<double> settable = parts.attendance.settable_us(choice->request.exposure.exposure_us);
+  return settable ? std::move(choice) : settable.error();
 }
 
 /// What a scan would be; of a new one with its price.

@@ -67,13 +67,20 @@ Result<Reply> find_sessions(const RigParts& parts, const Call& call) {
                      {"after", page->after ? Json(*page->after) : Json()}});
 }
 
+// The solve that maps are made of without a draft; null where there is none.
+Json maps_of(const library::SessionSolves& solves) {
+  const Result<library::ChoosableSolve> solve = library::solve_for_maps(solves, "", false);
+  if (!solve) return nullptr;
+  return {{"solve", solve->id}, {"level", solve->level}, {"stale", why_stale(solves, solve->id)}};
+}
+
 /// The session with its frames, and what is known of each without decoding it; what is not known yet is made
 /// in the background.
 Result<Reply> one_session(const RigParts& parts, const Call& call) {
   const std::string& name = call.segments.at(0);
   const Result<Session> session = parts.library.session(name);
   if (!session) return session.error();
-  Json frames = Json::array(), by_led = Json::array(), warnings = Json::array();
+  Json frames = Json::array(), by_led = Json::array();
   bool whole = true;
   for (const Shot& shot : session->shots) {
     const FrameFile file = {session->path_of(shot), shot.sha256};
@@ -86,15 +93,17 @@ Result<Reply> one_session(const RigParts& parts, const Call& call) {
     } else if (shot.role == ShotRole::kLit) {
       by_led.push_back({{"led", shot.led}, {"clipped_rgb", clipped_of(*histogram)}});
     }
-    for (const Json& warning : frame["warnings"]) warnings.push_back(warning);
     frames.push_back(std::move(frame));
   }
+  const library::SessionSolves solves = library::solves_of(*session);
   const Result<library::Metadata> said = library::metadata_of(*session);
   return json_reply({{"name", name},
                      {"folder", session->folder.string()},
                      {"said", said ? library::json_of(*said) : Json()},
                      {"left_out", library::left_out(*session)},
-                     {"current_solve", library::current_solve(*session)},
+                     {"current_solve", solves.current ? solves.current_one()->id : ""},
+                     {"current_level", solves.current ? solves.current_one()->level : ""},
+                     {"maps_of", maps_of(solves)},
                      {"fabric", session->fabric},
                      {"rig", session->rig},
                      {"state", session->state},
@@ -105,7 +114,7 @@ Result<Reply> one_session(const RigParts& parts, const Call& call) {
                      {"frames", std::move(frames)},
                      {"histograms_complete", whole},
                      {"clipping_by_led", std::move(by_led)},
-                     {"warnings", std::move(warnings)}});
+                     {"warnings", library::warnings_of(*session)}});
 }
 
 Result<Reply> next_name(const RigParts& parts, const Call& call) {

@@ -9,6 +9,7 @@
 #include "app/server/api/viewed.h"
 #include "core/files.h"
 #include "core/solve.h"
+#include "library/current.h"
 #include "library/session_files.h"
 
 namespace weft::app {
@@ -16,10 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Json summary_of(const SolveFacts& solve, const fs::path& folder) {
+Json summary_of(const SolveFacts& solve, const fs::path& folder, const library::SessionSolves& of) {
   Json warnings = Json::array();
   for (const Verdict& verdict : solve.warnings) warnings.push_back(verdict.name);
+  const library::ChoosableSolve* const current = of.current_one();
+  const library::ChoosableSolve* const found = of.find(solve.id);
   return {{"id", solve.id},
+          {"is_current", current != nullptr && current->id == solve.id},
+          {"outdated", found != nullptr ? found->outdated : ""},
           {"created", written_at(folder / kSolveProduct.document)},
           {"bytes", library::bytes_below(folder)},
           {"method", solve.method},
@@ -32,12 +37,13 @@ Json summary_of(const SolveFacts& solve, const fs::path& folder) {
 Result<Reply> solves(const RigParts& parts, const Call& call) {
   const Result<Session> session = parts.library.session(call.segments.at(0));
   if (!session) return session.error();
+  const library::SessionSolves of = library::solves_of(*session);
   Json list = Json::array();
   for (const Product& product : list_solves(session->folder)) {
     const Result<std::optional<Json>> document = find_finished(product);
     if (!document || !*document) continue;
     const Result<SolveFacts> facts = solve_facts_from_json(**document);
-    if (facts) list.push_back(summary_of(*facts, product.folder));
+    if (facts) list.push_back(summary_of(*facts, product.folder, of));
   }
   std::ranges::reverse(list);
   return json_reply(

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "app/jobs/maps/maps.h"
+#include "app/jobs/maps/session_sets.h"
 #include "app/jobs/material/build.h"
 #include "app/server/api/library_materials.h"
 #include "app/server/api/tile_query.h"
@@ -17,6 +18,7 @@
 #include "core/files.h"
 #include "core/iso_time.h"
 #include "core/lights.h"
+#include "library/current.h"
 #include "library/session_files.h"
 #include "report/preview.h"
 
@@ -111,6 +113,23 @@ Json layers_json(const Layers& layers) {
                     {"bits", std::move(bits)}});
   }
   return list;
+}
+
+// Why the solve, or what was made of one, is not what would be made today.
+Json stale_of(const Viewed& viewed) {
+  if (viewed.is_build) {
+    Json stale = Json::array();
+    for (const Json& scan : viewed.set->value("scans", Json::array())) {
+      if (!scan.is_object()) continue;
+      for (const Json& why : scan.value("stale", Json::array())) stale.push_back(why);
+    }
+    return stale;
+  }
+  const library::SessionSolves solves = library::solves_of(viewed.session);
+  if (viewed.set) return why_stale(solves, text_at(*viewed.set, "solve"));
+  const library::ChoosableSolve* const solve = solves.find(viewed.id);
+  const bool is_outdated = solve != nullptr && !solve->outdated.empty();
+  return is_outdated ? Json::array({solve->outdated}) : Json::array();
 }
 
 // At the middle of the frame; null where nobody knows.
@@ -262,6 +281,7 @@ Result<Json> viewed_json(const RigParts& parts, const Viewed& viewed) {
   document["display_gain"] = *gain;
   document["leds"] = leds_of(viewed);
   document["mm_per_pixel"] = mm_per_pixel_of(viewed);
+  document["stale"] = stale_of(viewed);
   document["cloth_height_mm"] = viewed.session.cloth_height_mm;
   if (viewed.set) document["set"] = *viewed.set;
   return document;

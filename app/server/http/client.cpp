@@ -14,7 +14,7 @@
 namespace weft::app {
 namespace {
 
-constexpr int kConnectS = 2, kAnswerS = 10, kSilenceS = 25;  // more than two heartbeats
+constexpr int kConnectS = 2, kAnswerS = 10, kSilenceS = 25;  // of a machine that is busy
 constexpr const char* kHealth = "/api/v1/healthz";
 constexpr const char* kEvents = "/api/v1/events";
 

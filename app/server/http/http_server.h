@@ -20,7 +20,7 @@ struct HttpLimits {
               devices = 4;   ///< threads of each pool
   std::size_t waiting = 32;  ///< requests that wait for a thread of their pool; one more is answered with 503
   std::size_t streams = 16;  ///< of events at once; one more is answered with 503
-  double heartbeat_s = 10;   ///< between events of a stream at most
+  double heartbeat_s = 1;    ///< between events of a stream at most
 };
 
 /// The HTTP interface over a table of routes: HttpDoor before cpp-httplib, which parses, routes and answers.

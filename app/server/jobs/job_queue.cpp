@@ -8,6 +8,7 @@
 #include <chrono>
 #include <csignal>
 #include <fstream>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
@@ -25,6 +26,7 @@ constexpr auto kLook = std::chrono::milliseconds(100);
 constexpr double kPatience_s = 10;                   // for a cancelled job to put away what it has begun
 constexpr double kCountdown_s = 1;                   // what is left is told this often, whatever a job says
 constexpr int kWarningsCode = 2, kBadDataCode = 65;  // of verbs
+constexpr int kSignalled = 128;                      // and above: with the signal that ended the process
 constexpr std::size_t kMostNotes = 50, kLongestNote = 1000;
 
 bool has_ended(JobState state) {
@@ -54,6 +56,11 @@ Json printed(const fs::path& file) {
   return document.is_discarded() ? Json() : document;
 }
 
+std::optional<double> number_in(const Json& object, const char* key) {
+  const Json value = object.is_object() ? object.value(key, Json()) : Json();
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
 /// What became of a job by how its process ended. What was finished before it could be stopped is done.
 void judge(JobStatus& job, Json result, bool is_cancelled, bool is_stopped) {
   // A check that found something has an answer.
@@ -69,9 +76,12 @@ void judge(JobStatus& job, Json result, bool is_cancelled, bool is_stopped) {
     job.state = JobState::kFailed;
     job.result = std::move(result);
     if (!job.error.is_null()) return;
-    job.error = weft::json_of(Error{ErrorKind::kInternal, "job ended without a word", job.spec.kind,
-                                    fmt::format("exit code {}", job.exit_code.value_or(-1)),
-                                    "its memory limit may have ended it: try a cheaper level"});
+    const int code = job.exit_code.value_or(-1);
+    job.error = weft::json_of(
+        Error{ErrorKind::kInternal, "job ended without a word", job.spec.kind,
+              fmt::format("exit code {}{}{}", code, job.notes.empty() ? "" : ": ",
+                          job.notes.empty() ? "" : job.notes.back()),
+              code > kSignalled ? "its memory limit may have ended it: try a cheaper level" : "see its log"});
   }
 }
 
@@ -308,6 +318,7 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
   }
   command.push_back(options_.program.string());
   for (const std::string& argument : job.spec.arguments) command.push_back(with_files(argument, id));
+  std::ranges::move(foretold(job.spec), std::back_inserter(command));
   command.insert(command.end(), {"--json", "--json-events"});
   const fs::path output = file_of(id, ".out");
   Result<std::unique_ptr<ChildProcess>> started =
@@ -364,7 +375,7 @@ void JobQueue::run(const std::string& id, const std::stop_token& stop) {
 std::optional<double> JobQueue::expected_seconds(const JobSpec& spec) const {
   if (const Json planned = spec.wants.value(kPlannedSeconds, Json()); planned.is_number())
     return planned.get<double>();
-  if (const std::optional<double> priced = priced_seconds(spec)) return priced;
+  if (const Json level = priced_level(spec); !level.is_null()) return number_in(level["seconds"], "total");
   const auto same = [](const std::string& a, const std::string& b) {
     return a == b || (a.starts_with('/') && b.starts_with('/'));
   };
@@ -378,20 +389,32 @@ std::optional<double> JobQueue::expected_seconds(const JobSpec& spec) const {
   return std::nullopt;
 }
 
-std::optional<double> JobQueue::priced_seconds(const JobSpec& spec) const {
+// What the newest price of its session says of the level that a solve is to be of; null where there is none.
+Json JobQueue::priced_level(const JobSpec& spec) const {
   const Json quality = spec.wants.is_object() ? spec.wants.value("quality", Json()) : Json();
-  if (spec.kind != "solve" || !quality.is_string()) return std::nullopt;
+  if (spec.kind != "solve" || !quality.is_string()) return {};
   for (auto it = jobs_.rbegin(); it != jobs_.rend(); ++it) {
     const JobStatus& job = it->second;
     if (job.spec.kind != "price" || job.spec.of != spec.of || !job.result.is_object()) continue;
     for (const Json& level : job.result.value("levels", Json::array())) {
-      if (!level.is_object() || level.value("quality", Json()) != quality) continue;
-      const Json seconds = level.value("seconds", Json());
-      const Json total = seconds.is_object() ? seconds.value("total", Json()) : Json();
-      if (total.is_number()) return total.get<double>();
+      if (level.is_object() && level.value("quality", Json()) == quality &&
+          number_in(level.value("seconds", Json()), "total"))
+        return level;
     }
   }
-  return std::nullopt;
+  return {};
+}
+
+// So that the solve keeps what its price said; empty where there was none.
+std::vector<std::string> JobQueue::foretold(const JobSpec& spec) const {
+  if (spec.wants.contains("calibration")) return {};  // not that of the price
+  const Json level = priced_level(spec);
+  const std::optional<double> degrees = number_in(level, "predicted_deg"),
+                              solved = number_in(level, "solved");
+  if (!degrees || !solved) return {};
+  const Json& seconds = level["seconds"];
+  const double until_written = *number_in(seconds, "total") - number_in(seconds, "sync").value_or(0);
+  return {"--foretold", fmt::format("{},{},{}", until_written, *degrees, *solved)};
 }
 
 // Reads what the verb has said since, and counts down what is left.

@@ -73,7 +73,8 @@ class JobQueue {
   void fail(JobStatus& job, const Error& error);
   void run(const std::string& id, const std::stop_token& stop);
   std::optional<double> expected_seconds(const JobSpec& spec) const;
-  std::optional<double> priced_seconds(const JobSpec& spec) const;
+  Json priced_level(const JobSpec& spec) const;
+  std::vector<std::string> foretold(const JobSpec& spec) const;
   void follow(const std::string& id, std::size_t& read, std::optional<double>& expected_s);
   void signal_all(int number) const;
   void hear(JobStatus& job, const std::string& line);

@@ -5,11 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "capture/raw/decode.h"
 #include "capture/scan/histogram.h"
-#include "capture/scan/meter.h"
+#include "capture/scan/plan.h"
 #include "core/calibration.h"
 #include "core/error_json.h"
 #include "core/files.h"
@@ -36,14 +37,31 @@ bool may_pass(const Error& error) {
   return error.kind == ErrorKind::kTryAgain || error.kind == ErrorKind::kProtocol;
 }
 
-/// Where the rig's calibration knows it.
-std::optional<capture::PhotositeNoise> noise_of(const capture::Rig& rig) {
+Calibration calibration_of(const capture::Rig& rig) {
   const fs::path folder = capture::calibration_now(rig);
-  if (folder.empty()) return std::nullopt;
-  const Result<Calibration> calibration = read_calibration(folder);
-  if (!calibration || !calibration->response) return std::nullopt;
-  return capture::PhotositeNoise{calibration->response->electrons_per_count,
-                                 calibration->response->read_noise_counts};
+  Result<Calibration> calibration = folder.empty() ? Calibration() : read_calibration(folder);
+  return calibration ? std::move(*calibration) : Calibration();
+}
+
+std::optional<capture::PhotositeNoise> noise_of(const Calibration& calibration) {
+  if (!calibration.response) return std::nullopt;
+  return capture::PhotositeNoise{calibration.response->electrons_per_count,
+                                 calibration.response->read_noise_counts};
+}
+
+/// Those of all LEDs of the rig.
+std::optional<capture::PatchLights> lights_of(const Calibration& calibration, const capture::Rig& rig) {
+  if (!calibration.camera || !calibration.lights) return std::nullopt;
+  Result<capture::PatchLights> lights = capture::PatchLights::make(calibration, rig.scan.cloth_height_mm);
+  if (!lights || lights->leds.size() < static_cast<std::size_t>(rig.leds)) return std::nullopt;
+  return std::move(*lights);
+}
+
+/// Whether two photographs that cannot be metered by are of the same cloth, as far as they tell.
+bool are_alike(const capture::Brightness& a, const capture::Brightness& b) {
+  constexpr double kAlike = 0.1;
+  return std::abs(a.bright - b.bright) <= kAlike * b.bright &&
+         std::abs(a.clipped - b.clipped) <= kAlike * std::max(b.clipped, 0.001);
 }
 
 }  // namespace
@@ -110,9 +128,13 @@ Result<void> Attendance::open_held() {
   if (!devices) return std::move(devices).error();
   Result<capture::CameraFacts> facts = devices->camera->connect();
   if (!facts) return std::move(facts).error();
+  if (Result<std::vector<double>> times = devices->camera->shutter_times_us(); times)
+    know_exposures(std::move(*times));
   devices_ = std::move(*devices);
   set_.reset();
-  noise_ = noise_of(rig_);
+  const Calibration calibration = calibration_of(rig_);
+  noise_ = noise_of(calibration);
+  lights_ = lights_of(calibration, rig_);
   feel_heat_held();
   change([&](Status& status) { status.camera = std::move(*facts); });
   return {};
@@ -240,7 +262,18 @@ void Attendance::end_look_held() {
   change([](Status& status) { status.is_live = false; });
 }
 
-Result<int> Attendance::shoot(int led, double exposure_us) {
+Result<double> Attendance::settable_us(double exposure_us) const {
+  return capture::settable_time_us(status().exposures_us, exposure_us);
+}
+
+void Attendance::know_exposures(std::vector<double> exposures_us) {
+  const std::lock_guard lock(mutex_);
+  status_.exposures_us = std::move(exposures_us);
+}
+
+Result<int> Attendance::shoot(int led, double wanted_us) {
+  const Result<double> exposure_us = settable_us(wanted_us);
+  if (!exposure_us) return exposure_us.error();
   std::jthread last;  // may still tell of its shot: joined once nothing is locked
   const std::lock_guard lock(mutex_);
   if (is_lent_) return is_scanning(rig_.name);
@@ -254,7 +287,7 @@ Result<int> Attendance::shoot(int led, double exposure_us) {
   TestShot shot;
   shot.id = ++newest_;
   shot.led = led;
-  shot.exposure_us = exposure_us;
+  shot.exposure_us = *exposure_us;
   shots_.push_back(shot);
   last = std::move(shooter_);
   shooter_ = std::jthread([this, shot = std::move(shot)] { take(shot); });
@@ -269,10 +302,12 @@ void Attendance::take(TestShot shot) {
   screens_.wait_until_black();
   {
     const std::lock_guard devices(devices_mutex_);
-    Result<FrameFile> frame = devices_ ? photograph_held(shot) : Result<FrameFile>(is_closed(rig_.name));
+    Result<FrameFile> frame =
+        devices_ ? photograph_held(shot.led, shot.exposure_us, fmt::format("shot{:06}", shot.id))
+                 : Result<FrameFile>(is_closed(rig_.name));
     if (frame) {
       shot.frame = std::move(*frame);
-      look_at(shot);
+      look_at_held(shot);
     } else {
       shot.error = std::move(frame).error();
     }
@@ -296,10 +331,10 @@ void Attendance::take(TestShot shot) {
   told_.shot(shot);
 }
 
-Result<FrameFile> Attendance::photograph_held(const TestShot& shot) {
+Result<FrameFile> Attendance::photograph_held(int led, double exposure_us, const std::string& stem) {
   if (status().is_live) end_look_held();
   if (Result<void> made = make_writable_folder(folder_); !made) return std::move(made).error();
-  const capture::ExposureSettings exposure = {shot.exposure_us, rig_.scan.iso, rig_.scan.f_number};
+  const capture::ExposureSettings exposure = {exposure_us, rig_.scan.iso, rig_.scan.f_number};
   if (set_ != exposure) {
     set_.reset();
     if (const Result<capture::CameraFacts> set = devices_->camera->set(exposure); !set) {
@@ -308,17 +343,17 @@ Result<FrameFile> Attendance::photograph_held(const TestShot& shot) {
     }
     set_ = exposure;
   }
-  const double most_s = capture::ScanOptions().lamp_margin_s + 1e-6 * shot.exposure_us;
-  const std::vector<int> leds = shot.led > 0 ? std::vector{shot.led} : std::vector<int>();
+  const double most_s = capture::ScanOptions().lamp_margin_s + 1e-6 * exposure_us;
+  const std::vector<int> leds = led > 0 ? std::vector{led} : std::vector<int>();
   const Result<double> rest = light_held(leds, most_s);
   if (!rest) return rest.error();
   if (*rest > 0) {
-    return Error{ErrorKind::kTryAgain, fmt::format("LED {} is too warm", shot.led), rig_.name,
+    return Error{ErrorKind::kTryAgain, fmt::format("LED {} is too warm", led), rig_.name,
                  fmt::format("it has to rest for {:.0f} s", *rest), "take the shot after that"};
   }
   change([&](Status& status) { status.lit = leds; });
-  Result<capture::Photograph> photograph = devices_->camera->take(
-      folder_ / fmt::format("shot{:06}", shot.id), [&] { static_cast<void>(devices_->lamps->light({}, 1)); });
+  Result<capture::Photograph> photograph =
+      devices_->camera->take(folder_ / stem, [&] { static_cast<void>(devices_->lamps->light({}, 1)); });
   if (photograph) return FrameFile{photograph->file, photograph->sha256, {}};
   static_cast<void>(devices_->lamps->light({}, 1));
   set_.reset();
@@ -327,18 +362,47 @@ Result<FrameFile> Attendance::photograph_held(const TestShot& shot) {
 }
 
 /// Of one that cannot be decoded nothing is told here: its histogram says why.
-void Attendance::look_at(TestShot& shot) {
+void Attendance::look_at_held(TestShot& shot) {
   const Result<RawFrame> frame = capture::decode_raw(shot.frame->file);
   if (!frame) return;
   shot.size = frame->counts.size();
-  if (shot.led > 0) {
-    shot.suggested_us =
-        capture::MeteredShot{shot.led, shot.exposure_us, capture::brightness_of(*frame)}.next_us();
+  if (shot.led != series_led_ || shot.exposure_us != series_us_) {
+    series_ = {};
+    metered_.reset();
   }
-  if (shot.led != series_led_ || shot.exposure_us != series_us_) series_ = {};
   series_led_ = shot.led;
   series_us_ = shot.exposure_us;
   shot.focus = series_.add(capture::focus_of(*frame, noise_));
+  if (shot.led > 0)
+    shot.suggested_us = suggested_held({shot.led, shot.exposure_us, capture::brightness_of(*frame)});
+}
+
+/// What a scan of this cloth would be exposed with; none where its meter fails.
+std::optional<double> Attendance::suggested_held(const capture::MeteredShot& shot) {
+  std::vector<int> leds(static_cast<std::size_t>(rig_.leds));
+  std::iota(leds.begin(), leds.end(), 1);
+  const capture::MeterInput input =
+      capture::meter_input(std::move(leds), status().exposures_us, lights_, rig_.scan.iso);
+  if (const std::optional<double> read_us = capture::metered_by(shot, input)) return read_us;
+  if (metered_ && are_alike(shot.seen, metered_->seen)) return metered_->exposure_us;
+  const Result<capture::Metering> metering =
+      capture::meter(input, [&](int led, double exposure_us) -> Result<capture::Brightness> {
+        if (!devices_ || is_wanted()) return is_closed(rig_.name);
+        const Result<FrameFile> photograph = photograph_held(led, exposure_us, "meter");
+        if (!photograph) return photograph.error();
+        const Result<RawFrame> frame = capture::decode_raw(photograph->file);
+        std::error_code ignored;
+        fs::remove(photograph->file, ignored);
+        return frame ? Result<capture::Brightness>(capture::brightness_of(*frame)) : frame.error();
+      });
+  if (!metering) return std::nullopt;
+  metered_ = {shot.seen, metering->exposure_us};
+  return metering->exposure_us;
+}
+
+bool Attendance::is_wanted() const {
+  const std::lock_guard lock(mutex_);
+  return is_lent_ || is_stopping_;
 }
 
 void Attendance::keep(TestShot shot) {

@@ -18,6 +18,8 @@
 #include "capture/framing/focus.h"
 #include "capture/rig.h"
 #include "capture/rig_devices/rig_devices.h"
+#include "capture/scan/light_fit.h"
+#include "capture/scan/meter.h"
 #include "core/json_document.h"
 #include "core/result.h"
 
@@ -26,11 +28,11 @@ namespace weft::app {
 /// A photograph that a person looks at and nobody keeps.
 struct TestShot {
   int id = 0;
-  int led = 0;  ///< 0: none was lit
-  double exposure_us = 0;
-  std::optional<FrameFile> frame;      ///< once it is taken
-  Size size = {};                      ///< of that
-  std::optional<double> suggested_us;  ///< what the meter of a scan would try next; none without a LED
+  int led = 0;                                  ///< 0: none was lit
+  double exposure_us = 0;                       ///< of the camera's own
+  std::optional<FrameFile> frame;               ///< once it is taken
+  Size size = {};                               ///< of that
+  std::optional<double> suggested_us;           ///< what the meter of a scan comes to; none without a LED
   std::optional<capture::FocusStanding> focus;  ///< among those of its LED and exposure, one after another
   std::optional<Error> error;                   ///< why it is not
 };
@@ -59,6 +61,7 @@ class Attendance {
     bool is_dark = false;             ///< a test shot is taken: screens are to be black
     std::vector<double> can_light_s;  ///< by LED: how long it may be lit at once from now; empty: not known
     std::optional<capture::CameraFacts> camera;
+    std::vector<double> exposures_us;  ///< that the camera has, rising; empty: it was not asked yet
     std::optional<Error> error;
   };
   struct Told {
@@ -88,8 +91,14 @@ class Attendance {
   /// The same errors.
   Result<Lit> light_in_turns();
   /// Begins a test shot by this LED (0: none) and gives its id. The light that was lit comes back after it.
-  /// Errors as light(); kTryAgain while another one is taken.
+  /// One that is full or too dark is followed by the meter's own, once in a series of like ones. Errors as
+  /// light() and settable_us(); kTryAgain while another one is taken.
   Result<int> shoot(int led, double exposure_us);
+  /// The exposure of the camera's own that is meant by this one, which it is itself as long as those are not
+  /// known; kUsage where it lies beyond all of them.
+  Result<double> settable_us(double exposure_us) const;
+  /// The camera has these.
+  void know_exposures(std::vector<double> exposures_us);
   /// One of the last; kNoInput where it is none of these.
   Result<TestShot> shot(int id) const;
 
@@ -119,8 +128,10 @@ class Attendance {
   Result<double> light_held(const std::vector<int>& leds, double most_s);
   void feel_heat_held();
   void take(TestShot shot);
-  Result<FrameFile> photograph_held(const TestShot& shot);
-  void look_at(TestShot& shot);
+  Result<FrameFile> photograph_held(int led, double exposure_us, const std::string& stem);
+  void look_at_held(TestShot& shot);
+  std::optional<double> suggested_held(const capture::MeteredShot& shot);
+  bool is_wanted() const;    ///< for a scan, or to end
   void keep(TestShot shot);  ///< the next one may begin from here on
   void fail_held(const Error& error);
   void end_look_held();
@@ -140,9 +151,15 @@ class Attendance {
   std::optional<capture::ExposureSettings> set_;
   Look look_;                                     ///< the last one
   std::optional<capture::PhotositeNoise> noise_;  ///< by the rig's calibration
+  std::optional<capture::PatchLights> lights_;    ///< by that
   capture::FocusSeries series_;
   int series_led_ = -1;
   double series_us_ = 0;
+  struct Metered {
+    capture::Brightness seen;  ///< of the test shot that did not tell
+    double exposure_us = 0;
+  };
+  std::optional<Metered> metered_;  ///< by the meter's own test shots, in this series
 
   mutable std::mutex mutex_;  ///< of all that follows; held for moments
   std::condition_variable_any changed_;

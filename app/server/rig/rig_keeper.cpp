@@ -101,7 +101,7 @@ Result<void> RigKeeper::begin(capture::ScanRequest request, const std::string& b
   status_.session = name_of_session(request);
   status_.by = by;
   for (const int led : request.leds) status_.leds.emplace_back().led = led;
-  first_kept_.reset();
+  pace_ = {};
   pause_ = false;
   request_ = is_scan ? std::optional(request) : std::nullopt;
   tell_status_locked();
@@ -189,7 +189,9 @@ Result<capture::ScanOutcome> RigKeeper::scan_with_devices(const capture::ScanReq
     const std::lock_guard lock(mutex_);
     status_.devices_open = true;
   }
-  WatchedCamera camera(*lent.devices.camera, [this](const capture::CameraFacts& facts) { on_facts(facts); });
+  WatchedCamera camera(
+      *lent.devices.camera, [this](const capture::CameraFacts& facts) { on_facts(facts); },
+      [this](const std::vector<double>& times_us) { attendance_.know_exposures(times_us); });
   const capture::ScanEvents events = {
       [this](const capture::ScanStatus& status) { on_status(status); },
       [&](const capture::KeptFrame& frame) { on_kept(request, frame); },
@@ -234,6 +236,7 @@ bool RigKeeper::tell_scan(const capture::ScanStatus& status, bool is_dark) {
   }
   const std::lock_guard lock(mutex_);
   const bool was_dark = std::exchange(status_.is_dark, is_dark);
+  pace_.follow(status);
   status_.scan = status;
   if (LedStatus* led = lit_shot_of(status.led, status.role, status.polariser); led != nullptr) {
     const bool is_kept = led->state == LedStatus::State::kKept;
@@ -270,10 +273,6 @@ void RigKeeper::on_kept(const capture::ScanRequest& request, const capture::Kept
     if (LedStatus* led = lit_shot_of(frame.shot.led, frame.shot.role, frame.shot.polariser); led != nullptr) {
       *led = {frame.shot.led, LedStatus::State::kKept, led->takes + 1, frame.finding,
               std::max({rgb[0].clipped, rgb[1].clipped, rgb[2].clipped})};
-    }
-    if (!first_kept_) {
-      first_kept_ = std::chrono::steady_clock::now();
-      first_frames_ = status_.scan.frames;
     }
   }
   log_.add("frame", fmt::format("{} is kept", frame.shot.file), event);
@@ -315,7 +314,7 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
     log_.add(cancelled ? "scan_cancelled" : "scan_failed", outcome.error().message(), std::move(record));
   }
   const std::lock_guard lock(mutex_);
-  if (outcome && is_scan && pace_held()) pace_s_ = pace_held();
+  if (outcome && is_scan && pace_.shot_s()) pace_s_ = pace_.shot_s();
   if (outcome) {
     status_.scan.phase = capture::ScanPhase::kComplete;
     status_.warnings = outcome->warnings;
@@ -323,6 +322,8 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
     status_.scan.phase = cancelled ? capture::ScanPhase::kCancelled : capture::ScanPhase::kFailed;
     status_.scan.why = outcome.error().message();
     if (!cancelled) status_.error = outcome.error();
+    // What cannot be done is not gone on with.
+    if (outcome.error().kind == ErrorKind::kUsage) request_.reset();
   }
   status_.state = outcome || cancelled ? RigStatus::State::kIdle : RigStatus::State::kFailed;
   status_.scan.led = 0;
@@ -337,8 +338,7 @@ void RigKeeper::on_end(const capture::ScanRequest& request, const Result<capture
 RigStatus RigKeeper::status_locked() const {
   RigStatus status = status_;
   Attendance::Status attended = attendance_.status();
-  if (const auto pace_s = pace_held(); running_ && pace_s)
-    status.left_s = *pace_s * (status.scan.frames_planned - status.scan.frames);
+  if (running_) status.left_s = pace_.left_s();
   const bool is_finished = status.scan.phase == capture::ScanPhase::kComplete;
   status.can_go_on = !running_ && request_ && !is_finished;
   const bool is_free = status.state == RigStatus::State::kIdle || status.state == RigStatus::State::kFailed;
@@ -348,17 +348,11 @@ RigStatus RigKeeper::status_locked() const {
     status.can_light_s = attended.can_light_s;
   }
   if (attended.camera && !status.camera) status.camera = attended.camera;
+  status.exposures_us = std::move(attended.exposures_us);
   status.is_dark = status.is_dark || attended.is_dark;
   status.lit = attended.lit;
   status.controls = controls_();
   return status;
-}
-
-/// Seconds a shot of the scan, once two of its frames were kept.
-std::optional<double> RigKeeper::pace_held() const {
-  if (!first_kept_ || status_.scan.frames <= first_frames_) return std::nullopt;
-  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - *first_kept_;
-  return passed.count() / (status_.scan.frames - first_frames_);
 }
 
 std::optional<double> RigKeeper::pace_s() const {

@@ -16,6 +16,7 @@
 #include "app/server/rig/frame_pictures.h"
 #include "app/server/rig/logbook.h"
 #include "app/server/rig/rig_status.h"
+#include "app/server/rig/scan_pace.h"
 #include "capture/devices.h"
 #include "capture/rig.h"
 #include "capture/scan/scan.h"
@@ -91,7 +92,6 @@ class RigKeeper {
   void on_end(const capture::ScanRequest& request, const Result<capture::ScanOutcome>& outcome, bool is_scan);
   void log_once(const char* event, const std::string& why);
   RigStatus status_locked() const;
-  std::optional<double> pace_held() const;
   LedStatus* lit_shot_of(int led, ShotRole role, Polariser polariser);
   void tell_status_locked() { events_.add("status", to_json(status_locked(), rig_)); }
 
@@ -112,9 +112,8 @@ class RigKeeper {
   bool stopping_ = false;
   RigStatus status_;
   std::optional<capture::ScanRequest> request_;  ///< of the last scan; none: something else was done
-  int first_frames_ = 0;                         ///< kept when the scan was first told of a frame
-  std::optional<std::chrono::steady_clock::time_point> first_kept_;
-  std::optional<double> pace_s_;
+  ScanPace pace_;
+  std::optional<double> pace_s_;  ///< of the last scan that came to its end
   std::atomic<bool> pause_ = false;
   std::string logged_;  ///< the last trouble that log_once() wrote; the scan's own
   std::jthread scan_;

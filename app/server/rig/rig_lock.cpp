@@ -63,7 +63,7 @@ Error kept_out(const std::filesystem::path& folder) {
 
 std::filesystem::path state_folder(const capture::Rig& rig) {
   if (!rig.daemon.state.empty()) return rig.daemon.state;
-  return rig.file.parent_path() / (rig.name + ".state");
+  return rig.folder() / (rig.name + ".state");
 }
 
 Result<RigLock> RigLock::take(const capture::Rig& rig) {

@@ -123,6 +123,7 @@ Json to_json(const RigStatus& status, const capture::Rig& rig) {
               {"port", rig.camera.port},
               {"serial", rig.camera.serial},
               {"open", status.devices_open},
+              {"exposures_us", status.exposures_us},
               {"says", status.camera ? to_json(*status.camera) : nothing}}}}}};
 }
 

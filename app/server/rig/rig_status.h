@@ -43,6 +43,7 @@ struct RigStatus {
   std::string controls;                        ///< who holds them; empty: nobody
   std::string by;                              ///< who began the scan, or the last one; empty: not known
   std::optional<capture::CameraFacts> camera;  ///< what it said of itself during that scan
+  std::vector<double> exposures_us;            ///< Attendance::Status
 };
 
 /// {"rig", "state", "phase", "session", "led", "frames", "frames_planned", "exposure_us", "why", "error",

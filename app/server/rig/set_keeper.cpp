@@ -21,7 +21,7 @@ Result<std::filesystem::path> folder_of(const capture::Rig& rig, const std::stri
                           return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
                                  c == '-' || c == '_' || c == '.';
                         });
-  if (is_plain) return rig.file.parent_path() / "sets" / name;
+  if (is_plain) return rig.folder() / "sets" / name;
   return Error{ErrorKind::kUsage, "this is no name of a set", name,
                "it has letters, digits, -, _ and . and does not begin with a dot", "give it another one"};
 }

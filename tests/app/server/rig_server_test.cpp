@@ -30,6 +30,7 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using testing::Contains;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -188,6 +189,66 @@ TEST(RigServer, SaysWhyAScanFailedAndLetsItBeResumed) {
   cable = true;
   ASSERT_EQ(ask(port, "POST", kScan, R"({"session": "a"})").status, 202);
   EXPECT_EQ(wait_for_state(port, "idle")["frames"], 4);
+}
+
+TEST(RigServer, GoesOnWithTheSameSessionAfterAFault) {
+  ScriptedRig scripted("goes_on");
+  std::atomic<bool> cable = false;
+  scripted.before = [&](int frame) -> Result<void> {
+    if (frame < 2 || cable) return {};
+    return Error{ErrorKind::kNoDevice, "the LED board is gone", "/dev/weft-led", "its cable was pulled",
+                 "plug it in again"};
+  };
+  const auto server = scripted.started();
+  const int port = server->port();
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "session": "a"})").status, 202);
+  EXPECT_THAT(wait_for_state(port, "failed")["can"], Contains("resume"));
+  const std::string first = read_session(scripted.session("a"))->shots.at(1).sha256;
+  cable = true;
+  ASSERT_EQ(ask(port, "POST", "/api/v1/scan/resume", "").status, 202);
+  const Json status = wait_for_state(port, "idle");
+  EXPECT_EQ(status["session"], "a");
+  EXPECT_EQ(status["frames"], 4);
+  EXPECT_EQ(status["error"], Json());
+  const Result<Session> session = read_session(scripted.session("a"));
+  EXPECT_EQ(session->shots.size(), 4U);
+  EXPECT_EQ(session->shots.at(1).sha256, first) << "what was kept stays";
+}
+
+TEST(RigServer, RefusesAnExposureThatTheCameraDoesNotHaveBeforeAnythingBegins) {
+  ScriptedRig scripted("no_such_exposure");
+  const auto server = scripted.started();
+  const int port = server->port();
+  EXPECT_EQ(wait_for_state(port, "idle")["devices"]["camera"]["exposures_us"], Json::array());
+  ASSERT_EQ(ask(port, "POST", "/api/v1/rig/devices", R"({"open": true})").status, 200);
+  const Json known = wait_for_state(port, "attended")["devices"]["camera"]["exposures_us"];
+  EXPECT_EQ(known.size(), 5U) << known;
+  for (const char* body : {R"({"fabric": "satin", "session": "a", "exposure_us": 16.2})",
+                           R"({"fabric": "satin", "session": "a", "exposure_us": 9e8, "dry_run": true})"}) {
+    const Answer refused = ask(port, "POST", kScan, body);
+    EXPECT_EQ(refused.status, 400) << refused.body;
+    EXPECT_EQ(refused.json()["error"]["why"], "it has 1 ms to 1.6 s") << refused.body;
+  }
+  EXPECT_EQ(ask(port, "POST", "/api/v1/rig/test-shot", R"({"led": 1, "exposure_us": 16.2})").status, 400);
+  EXPECT_EQ(wait_for_state(port, "attended")["error"], Json()) << "no fault of the rig";
+  EXPECT_FALSE(is_there(scripted.session("a")));
+  const Answer shot = ask(port, "POST", "/api/v1/rig/test-shot", R"({"led": 1, "exposure_us": 16160})");
+  ASSERT_EQ(shot.status, 202) << shot.body;
+  const Json taken = ask(port, "GET", "/api/v1/rig/test-shots/1").json();
+  EXPECT_NEAR(taken["exposure_us"].get<double>(), 1e6 / 60, 1e-6) << "the camera's nearest";
+  ASSERT_EQ(ask(port, "POST", kScan, R"({"fabric": "satin", "exposure_us": 16160})").status, 202);
+}
+
+TEST(RigServer, IsHeardEverySecondWhereNothingHappens) {
+  ScriptedRig scripted("beats");
+  const auto server = scripted.started();
+  RawClient follower(server->port());
+  follower.say(request_text(server->port(), "GET", "/api/v1/events"));
+  follower.hear(seconds(5), "\n\n");
+  for (int beat = 0; beat < 2; ++beat) {
+    EXPECT_THAT(follower.hear(milliseconds(1800), "heartbeat"), HasSubstr("event: heartbeat")) << beat;
+    follower.hear(seconds(1), "\n\n");
+  }
 }
 
 TEST(RigServer, SaysThatADeviceDoesNotAnswer) {

@@ -40,7 +40,9 @@ class NoCamera : public capture::Camera {
     return facts;
   }
   Result<capture::CameraFacts> set(const capture::ExposureSettings&) override { return connect(); }
-  Result<std::vector<double>> shutter_times_us() override { return std::vector<double>{1000.0}; }
+  Result<std::vector<double>> shutter_times_us() override {
+    return std::vector<double>{1000, 12500, 1e6 / 60, 1e6 / 50, 1.6e6};
+  }
   Result<capture::Photograph> take(const fs::path&, const std::function<void()>&) override {
     return capture::Photograph{};
   }

@@ -177,10 +177,11 @@ TEST_F(JobBody, PlansLightsForTheRigOfTheDaemonAndNoOther) {
 
 TEST_F(JobBody, HasARecipeAsTheTextThatItsVerbReads) {
   EXPECT_EQ(
-      arguments(R"({"kind": "maps", "session": "satin", "solve": "ab12", "maps": ["height", "cavity"],
+      arguments(
+          R"({"kind": "maps", "session": "satin", "solve": "ab12", "draft": true, "maps": ["height", "cavity"],
                           "mm_per_pixel": 0.125, "preview": true, "steps": {"steps": [{"do": "flatten"}]}})"),
-      (Words{"maps", "/scans/satin.weft", "--solve", "ab12", "--mm-per-pixel", "0.125", "--preview",
-             "--steps",
+      (Words{"maps", "/scans/satin.weft", "--solve", "ab12", "--draft", "--mm-per-pixel", "0.125",
+             "--preview", "--steps",
              R"({"steps":[{"do":"flatten","by":"polynomial","degree":3,"cut_mm":20.0,"always":false}]})",
              "--maps", "height,cavity"}));
   EXPECT_EQ(arguments(R"({"kind": "finish", "session": "satin", "recipe": "detail", "preview": false})"),

@@ -111,6 +111,21 @@ TEST_F(Jobs, TakeAsLongAsTheirSessionWasPriced) {
   EXPECT_EQ(left_s("satin", {{"method", "lts"}}), 0);
 }
 
+TEST_F(Jobs, TellASolveWhatThePriceOfItsSessionSaid) {
+  const std::string levels = R"({"levels": [{"quality": "fast", "predicted_deg": 0.5, "solved": 0.75,)"
+                             R"( "seconds": {"sync": 1, "total": 4}}]})";
+  ended(queue_->add({"price", "satin", {"-c", "echo '" + levels + "'"}, "", ""})->id);
+  const auto told = [&](const char* of, const Json& wants) {
+    const std::string script = R"(echo "{\"said\": \"$0 $1\"}")";
+    return ended(queue_->add({"solve", of, {"-c", script}, "", "", {}, wants})->id).result["said"];
+  };
+  EXPECT_EQ(told("satin", {{"quality", "fast"}}), "--foretold 3,0.5,0.75") << "to the writing of solve.json";
+  EXPECT_EQ(told("satin", {{"quality", "robust"}}), "--json --json-events") << "its price has no such level";
+  EXPECT_EQ(told("satin", {{"quality", "fast"}, {"calibration", "may"}}), "--json --json-events")
+      << "it was priced by another calibration";
+  EXPECT_EQ(told("linen", {{"quality", "fast"}}), "--json --json-events");
+}
+
 TEST_F(Jobs, CountDownWithoutAWordAndNotWhileTheyAreHeld) {
   ended(queue_
             ->add({"price",
@@ -224,6 +239,11 @@ TEST_F(Jobs, ThatFailKeepTheErrorOfTheirVerb) {
   const JobStatus silent = ended(add("kill -SEGV $$"));
   EXPECT_EQ(silent.exit_code, 128 + 11);
   EXPECT_EQ(silent.error["what"], "job ended without a word");
+  EXPECT_NE(silent.error["remedy"].get<std::string>().find("memory"), std::string::npos)
+      << silent.error.dump();
+  const JobStatus plain = ended(add("echo 'libfoo.so: cannot open shared object file' >&2; exit 127"));
+  EXPECT_EQ(plain.error["why"], "exit code 127: libfoo.so: cannot open shared object file");
+  EXPECT_EQ(plain.error["remedy"], "see its log");
 }
 
 TEST_F(Jobs, RunOneAfterAnotherInTheirOrderUnlessOneIsPutFirst) {
