@@ -27,9 +27,12 @@
 #include "app/jobs/batch/plan_batch.h"
 #include "app/jobs/batch/run_batch.h"
 #include "app/jobs/batch/survey.h"
+#include "app/jobs/report.h"
 #include "batch/session_list.h"
 #include "core/compression.h"
 #include "core/files.h"
+#include "core/number.h"
+#include "core/solve.h"
 
 namespace weft::app {
 namespace {
@@ -54,13 +57,11 @@ struct RunArguments {
 
 // A number with the unit behind it, in the last unit of the list; none where it is something else.
 std::optional<double> with_unit(const std::string& text, const std::vector<std::pair<char, double>>& units) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (end == text.c_str() || !(number > 0)) return {};
-  const std::string unit = end;
-  if (unit.size() != 1) return {};
-  const auto found = std::ranges::find(units, unit.front(), &std::pair<char, double>::first);
-  return found == units.end() ? std::nullopt : std::optional(number * found->second);
+  if (text.empty()) return {};
+  const std::optional<double> number = as_number(std::string_view(text).substr(0, text.size() - 1));
+  const auto unit = std::ranges::find(units, text.back(), &std::pair<char, double>::first);
+  if (!number || !(*number > 0) || unit == units.end()) return {};
+  return *number * unit->second;
 }
 
 Error no_amount(const char* option, const std::string& text, const char* remedy) {
@@ -144,15 +145,16 @@ void print_left_out(const batch::Plan& plan) {
 }
 
 struct PlanSums {
-  double hours = 0, degrees = 0, read_gb = 0, write_gb = 0;
+  double hours = 0, read_gb = 0, write_gb = 0;
+  batch::MeanError error;
   std::uint64_t memory_bytes = 0;
 };
 
 PlanSums sums_of(const batch::Plan& plan) {
   PlanSums sums;
+  sums.error = batch::error_of(plan.jobs);
   for (const batch::Job& job : plan.jobs) {
     sums.hours += job.forecast.seconds / 3600;
-    sums.degrees += job.forecast.degrees / static_cast<double>(plan.jobs.size());
     sums.read_gb += static_cast<double>(job.read_bytes) * 1e-9;
     sums.write_gb += static_cast<double>(job.write_bytes) * 1e-9;
     sums.memory_bytes = std::max(sums.memory_bytes, job.memory_bytes);
@@ -163,24 +165,34 @@ PlanSums sums_of(const batch::Plan& plan) {
 void print_plan(const PlanBatchReport& report) {
   const batch::Plan& plan = report.plan;
   const batch::Header& header = plan.header;
-  print("level       node-hours of all   degrees  spread  planned");
+  print("level       node-hours of all   degrees        of  spread  planned");
   for (const batch::LevelTotal& level : header.levels)
-    print(fmt::format("{:<10} {:>18.3g} {:>9.3g} {:>7.2g} {:>8}", level.quality, level.hours, level.mean_deg,
-                      level.spread_deg, level.sessions));
-  if (!header.curve.empty()) print("hours spent where they buy most, and the mean error in degrees:");
+    print(fmt::format("{:<10} {:>18.3g} {:>9.3g} {:>9} {:>7.2g} {:>8}", level.quality, level.hours,
+                      level.mean_deg, share_in_words(level.solved.value_or(1)), level.spread_deg,
+                      level.sessions));
+  if (!header.curve.empty())
+    print(
+        "hours spent where they buy most, and the mean error in degrees, a radian where there is no normal:");
   for (const batch::Spent& spent : header.curve)
     print(fmt::format("  {:>9.3g} {:>9.3g}", spent.hours, spent.mean_deg));
   const PlanSums sums = sums_of(plan);
   print(fmt::format(
-      "sessions {}, tasks {}: {}, {:.3g} degrees, {:.3g} GB read, {:.3g} GB written, {} MB of memory",
-      header.sessions, header.tasks.size(), hours_words(sums.hours), sums.degrees, sums.read_gb,
-      sums.write_gb, sums.memory_bytes >> 20));
+      "sessions {}, tasks {}: {}, {}, {:.3g} GB read, {:.3g} GB written, {} MB of memory", header.sessions,
+      header.tasks.size(), hours_words(sums.hours),
+      header.sampled > 0 ? error_in_words(sums.error.degrees(), sums.error.solved()) : "no error foretold",
+      sums.read_gb, sums.write_gb, sums.memory_bytes >> 20));
   print(
       fmt::format("  measured on {} of them in {:.3g} s, with {} threads; the rest of planning took {:.3g} s",
                   header.sampled, header.sample_seconds, header.threads, report.seconds));
   if (!header.product.then.empty())
     print(fmt::format("  {} of each {} these hours", fmt::join(header.product.then, ", "),
                       header.sampled > 0 ? "are among" : "come on top of"));
+  for (const batch::Job& job : plan.jobs) {
+    if (job.forecast.solved < kLeastSolved)
+      note(fmt::format("{}: only {} of its cloth will have a normal: scan it again",
+                       std::filesystem::path(job.session).stem().string(),
+                       share_in_words(job.forecast.solved)));
+  }
   print_left_out(plan);
   print(report.file.string());
 }
@@ -194,6 +206,7 @@ Json plan_json(const PlanBatchReport& report) {
                       {"hours", level.hours},
                       {"mean_deg", level.mean_deg},
                       {"spread_deg", level.spread_deg},
+                      {"solved", level.solved.value_or(1)},
                       {"sessions", level.sessions}});
   for (const batch::Spent& spent : header.curve)
     curve.push_back({{"hours", spent.hours}, {"mean_deg", spent.mean_deg}});
@@ -202,21 +215,14 @@ Json plan_json(const PlanBatchReport& report) {
                         {"left_out", batch::kReasonNames[static_cast<std::size_t>(left.reason)]},
                         {"said", left.said},
                         {"seconds", left.seconds}});
-  return {{"plan", report.file.string()},
-          {"id", header.id},
-          {"sessions", header.sessions},
-          {"tasks", header.tasks.size()},
-          {"hours", sums.hours},
-          {"mean_deg", sums.degrees},
-          {"read_gb", sums.read_gb},
-          {"write_gb", sums.write_gb},
-          {"memory_bytes", sums.memory_bytes},
-          {"sampled", header.sampled},
-          {"sample_seconds", header.sample_seconds},
-          {"seconds", report.seconds},
-          {"levels", std::move(levels)},
-          {"curve", std::move(curve)},
-          {"left_out", std::move(left_out)}};
+  return {{"plan", report.file.string()},  {"id", header.id},
+          {"sessions", header.sessions},   {"tasks", header.tasks.size()},
+          {"hours", sums.hours},           {"mean_deg", sums.error.degrees()},
+          {"solved", sums.error.solved()}, {"read_gb", sums.read_gb},
+          {"write_gb", sums.write_gb},     {"memory_bytes", sums.memory_bytes},
+          {"sampled", header.sampled},     {"sample_seconds", header.sample_seconds},
+          {"seconds", report.seconds},     {"levels", std::move(levels)},
+          {"curve", std::move(curve)},     {"left_out", std::move(left_out)}};
 }
 
 Result<int> plan(const PlanArguments& a, const CommonArguments& common) {
@@ -255,9 +261,12 @@ std::string words_of(const batch::Outcome& outcome) {
     case batch::State::kSolved:
     case batch::State::kThere:
       return fmt::format(
-          "{}: {}{}{}", name,
+          "{}: {}{}{}{}", name,
           outcome.state == batch::State::kThere ? "is there already"
                                                 : fmt::format("solved in {:.2f} s", outcome.seconds),
+          outcome.solved_share() < kLeastSolved
+              ? fmt::format(", but only {} of its cloth has a normal", share_in_words(outcome.solved_share()))
+              : "",
           outcome.change ? fmt::format(", turned by {:.3g} degrees", outcome.change->mean_deg) : "",
           outcome.change && batch::regression_weight(*outcome.change) > 0
               ? fmt::format(", worse: {}", fmt::join(batch::regressions(*outcome.change), "; "))

@@ -18,6 +18,7 @@
 #include "app/jobs/batch/batch_page.h"
 #include "app/jobs/batch/farm.h"
 #include "app/jobs/batch/merge_batch.h"
+#include "app/jobs/report.h"
 #include "core/process.h"
 
 namespace weft::app {
@@ -28,8 +29,12 @@ void print_state(const batch::Summary& s) {
                     s.there, s.failed, s.missing, s.second_attempts));
   if (s.predicted_seconds > 0)
     print(fmt::format(
-        "  {:.3g} node-hours, {:.3g} predicted of these; {:.3g} degrees, {:.3g} predicted; {} MB at most",
-        s.seconds / 3600, s.predicted_seconds / 3600, s.mean_deg, s.predicted_deg, s.peak_bytes >> 20));
+        "  {:.3g} node-hours, {:.3g} predicted of these, {:.2f} times what it took; {}, predicted {}; {} MB "
+        "at most",
+        s.seconds / 3600, s.predicted_seconds / 3600, s.seconds_ratio(),
+        error_in_words(s.error.degrees(), s.error.solved()),
+        error_in_words(s.predicted_error.degrees(), s.predicted_error.solved()), s.peak_bytes >> 20));
+  if (!s.warned.empty()) print(fmt::format("  {} of those solved warn", s.warned.size()));
   for (const batch::Cause& cause : s.causes)
     print(fmt::format("  {} {}: {}", cause.sessions, cause.sessions == 1 ? "session" : "sessions",
                       cause.example));

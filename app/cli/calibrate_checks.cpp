@@ -129,8 +129,7 @@ Result<void> solve_again(const std::vector<AffectedSession>& affected, const std
   }
   const Result<RigClient> daemon = connect_to_owner(*rig, **owner);
   if (!daemon) return daemon.error();
-  const std::string below =
-      absolute_folder(calibration).lexically_relative(absolute_folder(rig->file.parent_path())).string();
+  const std::string below = absolute_folder(calibration).lexically_relative(rig->folder()).string();
   int queued = 0;
   for (const AffectedSession& each : affected) {
     if (!each.after_move) continue;

@@ -34,14 +34,14 @@ void add_rig_name(Options& options, std::string& rig) {
 void add_board(Options& options, BoardSettings& board) {
   options.add("--board", &board.kind, "What is printed; default that of board.toml")
       .one_of({"charuco", "checkerboard"});
-  options.add("--squares-x", &board.squares_x, "Squares a row").in_range(2, 100);
-  options.add("--squares-y", &board.squares_y, "Squares a column").in_range(2, 100);
-  options.add("--square-mm", &board.square_mm, "Side of a square, mm").above_zero();
+  options.add("--squares-x", &board.squares_x, "Squares a row").in_range(calibration::kBoardSquares);
+  options.add("--squares-y", &board.squares_y, "Squares a column").in_range(calibration::kBoardSquares);
+  options.add("--square-mm", &board.square_mm, "Side of a square, mm").in_range(calibration::kBoardSquare_mm);
   options.add("--marker-share", &board.marker_share, "ChArUco: side of a marker over that of a square")
-      .in_range(0.1, 0.95);
+      .in_range(calibration::kMarkerShare);
   options.add("--dictionary", &board.dictionary, "ChArUco: as OpenCV names it, DICT_5X5_100");
   options.add("--thickness-mm", &board.thickness_mm, "Of the board: the table is so far below its print")
-      .not_negative();
+      .in_range(kBoardThickness_mm);
 }
 
 Run add_camera(Options& options) {
@@ -109,15 +109,15 @@ Run add_lights(Options& options) {
       .one_of({"physical", "per-pixel", "seed"})
       .shows_default();
   options.add("--tape-sigma", &a->tape_sigma_mm, "How well positions were measured, mm an axis")
-      .in_range(0.1, 1000.0)
+      .in_range(kTapeSigma_mm)
       .shows_default();
   options.add("--flatness", &a->flatness_deg, "Rms waviness of the sheet, degrees")
-      .in_range(0.0, 2.0)
+      .in_range(kFlatness_deg)
       .shows_default();
   options
       .add("--flicker", &a->flicker_percent,
            "Flicker of LEDs from shot to shot, percent, where sheets do not tell")
-      .in_range(0.01, 5.0)
+      .in_range(kFlicker_percent)
       .shows_default();
   options.add_flag("--lambertian", &a->lambertian, "Take the paper to follow Lambert's law");
   options.add_flag("--accept-misfit", &a->accept_misfit,

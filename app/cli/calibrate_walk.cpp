@@ -110,7 +110,7 @@ bool has_passed(const fs::path& result) {
 class Walk {
  public:
   Walk(const capture::Rig& rig, const WalkArguments& a, const CommonArguments& common)
-      : folder_(rig.file.parent_path()), rig_(rig), a_(a), common_(common), name_(a.name) {
+      : folder_(rig.folder()), rig_(rig), a_(a), common_(common), name_(a.name) {
     const std::string today = iso_time_now().substr(0, kDateLength);
     for (int number = 1; name_.empty(); ++number) {
       const std::string name = number == 1 ? today : fmt::format("{}-{}", today, number);

@@ -28,6 +28,13 @@ void add_common(Options& options, CommonArguments& common) {
       .in_range(0, 1024);
 }
 
+// To the program that started weft, for which no option could be read yet.
+void tell_usage_error(const std::string& why) {
+  speak_events();
+  complain({ErrorKind::kUsage, "the command cannot be read", "", why, "see weft --help"});
+  tell_end(kUsageError);
+}
+
 // The exit code where there is nothing to run: --help, or a usage error.
 std::optional<int> read(CLI::App& cli, int argc, char** argv) {
   try {
@@ -35,9 +42,13 @@ std::optional<int> read(CLI::App& cli, int argc, char** argv) {
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
     const bool asked_for_help = error.get_exit_code() == 0;
+    const bool asked_for_events =
+        std::find(argv, argv + argc, std::string_view("--json-events")) != argv + argc;
     const std::vector<std::string> unknown = cli.remaining(/*recurse=*/true);
     // What is not known says more than what is then missing.
-    if (!asked_for_help && !unknown.empty()) {
+    if (!asked_for_help && asked_for_events) {
+      tell_usage_error(unknown.empty() ? error.what() : unknown.front() + " was not expected");
+    } else if (!asked_for_help && !unknown.empty()) {
       note("weft: " + unknown.front() + " was not expected. See weft --help.");
     } else {
       cli.exit(error);

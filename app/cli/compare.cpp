@@ -4,8 +4,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <variant>
 
 #include "app/cli/exit_code.h"
 #include "app/cli/options.h"
@@ -18,19 +22,57 @@ namespace {
 
 struct CompareArguments {
   std::filesystem::path tested, truth, mask;
-  std::string kind = "normal";
+  std::string kind = "auto";
 };
 
-Result<int> print_albedo(const CompareArguments& a, bool json) {
-  const Result<AlbedoComparison> c = compare_albedo(a.tested, a.truth, a.mask);
-  if (!c) return c.error();
+constexpr std::array<const char*, 3> kKindNames = {"normal", "albedo",
+                                                   "number"};  // in the order of ComparedKind
+
+// A mean that falls to less than half by turning y round is no chance from here on.
+constexpr double kTellsFlip_deg = 1;
+
+void print_comparison(const NormalComparison& c, bool json) {
+  const bool is_flipped = c.mean_deg > kTellsFlip_deg && 2 * c.flipped_mean_deg < c.mean_deg;
   if (json) {
-    print_json({{"pixels", c->pixels}, {"mean_rel", c->mean_rel}, {"bias_rel", c->bias_rel}});
-  } else {
-    print(
-        fmt::format("{} pixels: mean |A - B| / B {:.5f}, bias {:+.5f}", c->pixels, c->mean_rel, c->bias_rel));
+    Json document = {{"kind", "normal"},           {"pixels", c.pixels},   {"mean_deg", c.mean_deg},
+                     {"median_deg", c.median_deg}, {"p95_deg", c.p95_deg}, {"max_deg", c.max_deg}};
+    if (is_flipped) document["flipped_mean_deg"] = c.flipped_mean_deg;
+    print_json(document);
+    return;
   }
-  return kDone;
+  print(fmt::format("{} pixels: mean {:.4f}, median {:.4f}, 95 % under {:.4f}, max {:.4f} degrees", c.pixels,
+                    c.mean_deg, c.median_deg, c.p95_deg, c.max_deg));
+  if (is_flipped)
+    print(
+        fmt::format("  with the green of one map turned round the mean is {:.4f} degrees: one of them is in "
+                    "DirectX's direction, y down",
+                    c.flipped_mean_deg));
+}
+
+void print_comparison(const AlbedoComparison& c, bool json) {
+  if (json) {
+    print_json(
+        {{"kind", "albedo"}, {"pixels", c.pixels}, {"mean_rel", c.mean_rel}, {"bias_rel", c.bias_rel}});
+    return;
+  }
+  print(fmt::format("{} pixels: mean |A - B| / B {:.5f}, bias {:+.5f}", c.pixels, c.mean_rel, c.bias_rel));
+}
+
+void print_comparison(const std::vector<NumberComparison>& all, bool json) {
+  Json numbers = Json::array();
+  for (const NumberComparison& c : all) {
+    numbers.push_back({{"name", c.name},
+                       {"unit", c.unit},
+                       {"pixels", c.pixels},
+                       {"mean_abs", c.mean_abs},
+                       {"bias", c.bias},
+                       {"max_abs", c.max_abs}});
+    if (json) continue;
+    const std::string unit = c.unit.empty() ? "" : " " + c.unit;
+    print(fmt::format("{}{} pixels: mean |A - B| {:.5g}{}, bias {:+.5g}, max {:.5g}",
+                      c.name.empty() ? "" : c.name + ": ", c.pixels, c.mean_abs, unit, c.bias, c.max_abs));
+  }
+  if (json) print_json({{"kind", "number"}, {"numbers", std::move(numbers)}});
 }
 
 // Two solves by all that a batch says of a session: the tested one is the new one.
@@ -66,23 +108,17 @@ Result<int> compare_two_solves(const CompareArguments& a, const CommonArguments&
 Result<int> compare(const CompareArguments& a, const CommonArguments& common) {
   std::error_code ignored;
   if (std::filesystem::is_directory(a.tested, ignored) && std::filesystem::is_directory(a.truth, ignored)) {
-    if (a.mask.empty() && a.kind == "normal") return compare_two_solves(a, common);
+    if (a.mask.empty() && a.kind == "auto") return compare_two_solves(a, common);
     return Error{ErrorKind::kUsage, "solves cannot be compared so", "--mask, --kind",
                  "of two folders all maps are compared, where both are solved", "leave these out"};
   }
-  if (a.kind == "albedo") return print_albedo(a, common.json);
-  const Result<NormalComparison> c = compare_normals(a.tested, a.truth, a.mask);
+  const auto kind = std::ranges::find(kKindNames, a.kind);
+  const Result<MapComparison> c = compare_maps(
+      a.tested, a.truth, a.mask,
+      kind == kKindNames.end() ? std::nullopt
+                               : std::optional(static_cast<ComparedKind>(kind - kKindNames.begin())));
   if (!c) return c.error();
-  if (common.json) {
-    print_json({{"pixels", c->pixels},
-                {"mean_deg", c->mean_deg},
-                {"median_deg", c->median_deg},
-                {"p95_deg", c->p95_deg},
-                {"max_deg", c->max_deg}});
-  } else {
-    print(fmt::format("{} pixels: mean {:.4f}, median {:.4f}, 95 % under {:.4f}, max {:.4f} degrees",
-                      c->pixels, c->mean_deg, c->median_deg, c->p95_deg, c->max_deg));
-  }
+  std::visit([&](const auto& compared) { print_comparison(compared, common.json); }, *c);
   return kDone;
 }
 
@@ -91,8 +127,8 @@ Run add_compare(Options& options) {
   options.add("tested", &a->tested, "Map to test (EXR, TIFF, PNG), or the folder of a solve").required();
   options.add("truth", &a->truth, "Map that is right, or the folder of the solve before").required();
   options.add("--mask", &a->mask, "Image that is over one half where pixels count");
-  options.add("--kind", &a->kind, "What the maps are: normal, albedo")
-      .one_of({"normal", "albedo"})
+  options.add("--kind", &a->kind, "What the maps are: auto, normal, albedo, number")
+      .one_of({"auto", "normal", "albedo", "number"})
       .shows_default();
   return [a](const CommonArguments& common) { return compare(*a, common); };
 }
@@ -100,7 +136,8 @@ Run add_compare(Options& options) {
 }  // namespace
 
 Verb compare_verb() {
-  return {"compare", "Compare a map with the truth: degrees, or relative albedo", add_compare};
+  return {"compare", "Compare a map with the truth: degrees, relative albedo, or numbers in their unit",
+          add_compare};
 }
 
 }  // namespace weft::app

@@ -16,20 +16,31 @@ namespace {
 Result<Ladder> price(const SolveArguments& a, const CommonArguments& common) {
   ProgressLine line(common.quiet);
   const JobContext context = {common.threads, stop_on_signal(), line.callback()};
-  return a.session.folder.empty() ? explain_photos(a.photos, a.options, a.crops, context)
-                                  : explain_session(a.session, a.options, a.crops, context);
+  const PriceOptions wanted = {.crops = a.crops};
+  return a.session.folder.empty() ? explain_photos(a.photos, a.options, wanted, context)
+                                  : explain_session(a.session, a.options, wanted, context);
 }
 
 void print_words(const Ladder& ladder, std::optional<std::size_t> chosen) {
-  print("level       degrees  seconds     read  prepare    solve    write pictures   report     sync");
+  print(
+      "level       degrees        of  seconds     read  prepare    solve    write pictures   report     "
+      "sync");
   for (std::size_t i = 0; i < ladder.levels.size(); ++i) {
     const LevelPrice& level = ladder.levels[i];
     const LevelSeconds& s = level.seconds;
     print(fmt::format(
-        "{:<10} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}",
-        level.name(), level.error.total_deg, s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
+        "{:<10} {:>8} {:>9} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g} {:>8.3g}  {}",
+        level.name(), level.error.solved > 0 ? fmt::format("{:.3g}", level.error.total_deg) : "-",
+        share_in_words(level.error.solved), s.total(), s.read, s.prepare, s.solve, s.write, s.pictures,
         s.report, s.sync, chosen == i ? "<- chosen" : ""));
     if (!level.note.empty()) print("           " + level.note);
+  }
+  print(
+      "degrees hold for that share of the cloth; so that solve.json keeps what is foretold here, solve with");
+  for (const LevelPrice& level : ladder.levels) {
+    const SolvePrice price = price_of(level);
+    print(fmt::format("  --quality {} --foretold {:.4g},{:.4g},{:.4g}", level.name(), price.seconds,
+                      price.mean_deg, price.solved));
   }
 }
 
@@ -52,17 +63,17 @@ Result<int> run_explain(const SolveArguments& arguments, const CommonArguments& 
   return kDone;
 }
 
-Result<std::string> chosen_level(const SolveArguments& arguments, const CommonArguments& common) {
+Result<LevelPrice> chosen_level(const SolveArguments& arguments, const CommonArguments& common) {
   const Result<Ladder> ladder = price(arguments, common);
   if (!ladder) return ladder.error();
   const Result<std::size_t> chosen = choose_level(*ladder, arguments.wish);
   if (!chosen) return chosen.error();
   const LevelPrice& level = ladder->levels[*chosen];
   if (!common.quiet) {
-    note(fmt::format("chose {}: {:.3g} degrees off and {:.3g} s expected", level.name(),
-                     level.error.total_deg, level.seconds.total()));
+    note(fmt::format("chose {}: {} and {:.3g} s expected", level.name(),
+                     error_in_words(level.error.total_deg, level.error.solved), level.seconds.total()));
   }
-  return level.name();
+  return level;
 }
 
 Result<int> run_ladder(const SolveArguments& arguments, const CommonArguments& common) {

@@ -13,7 +13,7 @@ namespace weft::app {
 Result<int> run_explain(const SolveArguments& arguments, const CommonArguments& common);
 
 /// The level that the wishes choose, with a note of what is expected of it.
-Result<std::string> chosen_level(const SolveArguments& arguments, const CommonArguments& common);
+Result<LevelPrice> chosen_level(const SolveArguments& arguments, const CommonArguments& common);
 
 /// Solves a session by every level and draws them side by side.
 Result<int> run_ladder(const SolveArguments& arguments, const CommonArguments& common);

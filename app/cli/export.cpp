@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -17,6 +19,7 @@
 #include "app/jobs/export/export_json.h"
 #include "app/jobs/export/preset_files.h"
 #include "app/jobs/export/price.h"
+#include "core/number.h"
 
 namespace weft::app {
 namespace {
@@ -51,6 +54,8 @@ Result<int> show_preset(const std::string& name) {
   return kDone;
 }
 
+constexpr std::size_t kDistanceShown = 3;  // levels
+
 std::string lost_words(const Json& lost) {
   std::string words;
   if (lost.contains("normal_deg")) {
@@ -62,6 +67,12 @@ std::string lost_words(const Json& lost) {
     const Json& albedo = lost["albedo"];
     words += fmt::format("; albedo {:.2g}", albedo["mean"].get<double>());
     if (albedo["psnr_db"].is_number()) words += fmt::format(", {:.1f} dB", albedo["psnr_db"].get<double>());
+  }
+  if (lost.contains("by_distance") && !lost["by_distance"].empty()) {
+    const Json& levels = lost["by_distance"];
+    const Json& seen = levels[std::min<std::size_t>(levels.size(), kDistanceShown) - 1];
+    words += fmt::format("; roughness {:.2g} off {} times as far", seen["lost"].get<double>(),
+                         1 << seen["level"].get<int>());
   }
   return words;
 }
@@ -77,6 +88,7 @@ void print_report(const ExportReport& report) {
   print(fmt::format("  {} x {} pixels, {}, normals {}, roughness as {}", d["width"].get<int>(),
                     d["height"].get<int>(), size, d["normal"].get<std::string>(),
                     d["roughness"].get<std::string>()));
+  for (const std::string& line : report.source) print("  " + line);
   for (const Json& file : d["files"]) {
     print(fmt::format("  {}: {}, {:.2f} MB{}", file["file"].get<std::string>(),
                       file["encoding"].get<std::string>(), file["bytes"].get<double>() * 1e-6,
@@ -101,6 +113,7 @@ Result<int> run_export(const ExportArguments& a, const CommonArguments& common) 
     if (!common.json) print_report(report);
     Json json = {
         {"folder", report.folder.string()}, {"was_there", report.was_there}, {"seconds", report.seconds}};
+    json["source"] = report.source;
     json.update(report.document);
     exports.push_back(std::move(json));
   }
@@ -138,11 +151,12 @@ Error missing(const char* option, const char* remedy) {
 
 Result<void> read_aim(ExportArguments& a) {
   if (a.to.empty()) return {};
-  char* end = nullptr;
-  const double deg = std::strtod(a.to.c_str(), &end);
-  const std::string unit = end;
-  if (deg > 0 && deg <= 90 && (unit.empty() || unit == "deg")) {
-    a.options.to_deg = deg;
+  constexpr std::string_view kUnit = "deg";
+  std::string_view number = a.to;
+  if (number.ends_with(kUnit)) number.remove_suffix(kUnit.size());
+  const std::optional<double> deg = as_number(number);
+  if (deg && *deg > 0 && *deg <= 90) {
+    a.options.to_deg = *deg;
     return {};
   }
   return Error{ErrorKind::kUsage, "nothing can be exported", "--to",
@@ -161,7 +175,8 @@ Run add_export(Options& options) {
       .by_commas();
   options.add("-o,--output", &e.output,
               "Folder; of several presets it gets one for each. Default SESSION/export/PRESET");
-  options.add("--maps", &e.maps, "Id of the set of maps; default the session's newest");
+  options.add("--maps", &e.maps, "Id of the set of maps; default the newest of the session's current solve");
+  options.add_flag("--draft", &e.is_draft, "Maps of a preview will do, of half the size and without masks");
   options.add("--name", &e.name, "Of the cloth, in file names; default as it is called");
   options.add("--size", &e.size_px, "Pixels of the longer side; default as many as there are")
       .in_range(1, 1 << 20);

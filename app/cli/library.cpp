@@ -13,8 +13,10 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "core/files.h"
+#include "core/session.h"
 #include "library/catalogue.h"
 #include "library/edits.h"
+#include "library/metadata.h"
 #include "library/prune.h"
 
 namespace weft::app {
@@ -147,10 +149,26 @@ Result<int> print_change(const library::Change& change, const CommonArguments& c
   return kDone;
 }
 
+// A session's folder is itself, wherever it lies; else it is a name or an id of the library's.
+Result<Entry> entry_to_tag(const TagArguments& a, const CommonArguments& common) {
+  if (!is_there(fs::path(a.session) / "session.json")) {
+    Result<Catalogue> catalogue = fresh_catalogue(a.place, common);
+    if (!catalogue) return std::move(catalogue).error();
+    const fs::path named = a.session;
+    return catalogue->find_one(named.extension() == ".weft" ? named.stem().string() : a.session);
+  }
+  const Result<Session> session = read_session(a.session);
+  if (!session) return session.error();
+  Result<library::Metadata> metadata = library::metadata_of(*session);
+  if (!metadata) return std::move(metadata).error();
+  Entry entry;
+  entry.folder = absolute_folder(a.session);
+  entry.metadata = std::move(*metadata);
+  return entry;
+}
+
 Result<int> tag(const TagArguments& a, const CommonArguments& common) {
-  Result<Catalogue> catalogue = fresh_catalogue(a.place, common);
-  if (!catalogue) return std::move(catalogue).error();
-  const Result<Entry> entry = catalogue->find_one(a.session);
+  const Result<Entry> entry = entry_to_tag(a, common);
   if (!entry) return entry.error();
   const Result<Json> fields = fields_of(a, *entry);
   if (!fields) return fields.error();

@@ -14,6 +14,7 @@
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
 #include "app/jobs/maps/price.h"
+#include "app/jobs/maps/session_sets.h"
 #include "app/jobs/planned_cloth.h"
 
 namespace weft::app {
@@ -65,6 +66,7 @@ void print_words(const MapsReport& report) {
   const double mm = d["mm_per_pixel"].get<double>();
   print(fmt::format("  {} x {} pixels of {:.5g} mm{}", d["width"].get<int>(), d["height"].get<int>(), mm,
                     d["is_tile"].get<bool>() ? ", a tile" : ""));
+  for (const std::string& line : source_lines(d)) print("  " + line);
   for (const Json& map : d["maps"]) {
     const std::string unit = map.contains("unit") ? " " + map["unit"].get<std::string>() : "";
     if (map.contains("constant")) {
@@ -134,6 +136,7 @@ Result<int> make(const MapsArguments& arguments, const CommonArguments& common) 
 void add_common(Options& options, MapsArguments& a) {
   options.add("session", &a.maps.session, "Session folder, NAME.weft").required();
   options.add("--solve", &a.maps.solve, "Id of the solve; default the session's current one");
+  options.add_flag("--draft", &a.maps.is_draft, "A preview will do, of half the size and without masks");
   options.add("--calibration", &a.maps.calibration, "Calibration folder; default the session's own");
   options.add("-o,--output", &a.maps.output, "Folder for the maps; default SESSION/maps/ID");
   options.add("--mm-per-pixel", &a.maps.mm_per_pixel, "Of the grid; default what the camera sees")

@@ -11,7 +11,9 @@
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/jobs/maps/session_sets.h"
 #include "app/jobs/material/build.h"
+#include "app/jobs/material/map_set.h"
 #include "app/jobs/material/new_material.h"
 #include "app/jobs/material/watch.h"
 #include "core/verdict.h"
@@ -44,6 +46,14 @@ std::string shown(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+// Which solves a material is of, and what is stale of them.
+void print_scans(const Json& scans) {
+  for (const Json& scan : scans) {
+    for (const std::string& line : source_lines(scan))
+      print(fmt::format("  {}: {}", scan.value("session", "scan"), line));
+  }
+}
+
 Result<int> resolve(const MaterialArguments& a, const CommonArguments& common) {
   const Result<std::vector<MaterialPlace>> places = places_of(a);
   if (!places) return places.error();
@@ -58,6 +68,7 @@ Result<int> resolve(const MaterialArguments& a, const CommonArguments& common) {
     print(fmt::format("{:28}  {:32}  {}", each["key"].get<std::string>(), shown(each["value"]),
                       each["from"].get<std::string>()));
   }
+  print_scans(document["scans"]);
   return kDone;
 }
 
@@ -69,6 +80,8 @@ Json json_of_build(const BuildReport& report) {
                          {"id", each.id},
                          {"folder", each.folder.string()},
                          {"was_there", each.was_there},
+                         {"draft", each.document["draft"]},
+                         {"scans", each.document["scans"]},
                          {"verdicts", each.document["verdicts"]}});
   }
   return {{"built", report.built},
@@ -87,6 +100,7 @@ void print_build(const BuildReport& report) {
                                  : ", of no known size";
     print(fmt::format("  {}: {} x {} pixels{}{}", d["name"].get<std::string>(), d["width"].get<int>(),
                       d["height"].get<int>(), size, d["is_tile"].get<bool>() ? ", a tile" : ""));
+    print_scans(d["scans"]);
     for (const Json& verdict : d["verdicts"])
       print(fmt::format("  {}: {}; {}", verdict["name"].get<std::string>(),
                         verdict["text"].get<std::string>(), verdict["remedy"].get<std::string>()));
@@ -187,6 +201,9 @@ Result<int> make_new(const MaterialArguments& a, const CommonArguments& common) 
     print_json({{"file", fs::absolute(a.made.file).string()}});
   } else {
     print(a.made.file.string());
+    const Result<MapSet> set = open_map_set(a.made.scan, true);
+    if (Json source = set ? source_of(*set) : Json(); !source.is_null())
+      print_scans(Json::array({std::move(source)}));
   }
   return kDone;
 }
@@ -208,6 +225,7 @@ Run add_new(Options& options) {
   options.add("file", &a->made.file, "The file to be written, NAME.toml").required();
   options.add("--inherits", &a->made.inherits, "What it begins with: a TOML file, or library:NAME");
   options.add("--scan", &a->made.scan, "Session or folder of maps whose measured and derived maps it takes");
+  options.add_flag("--draft", &a->made.is_draft, "Maps of a preview will do: writes draft = true");
   options
       .add("--layer", &a->made.layers,
            "Materials to be laid on it, bottom to top: library:dirt/dust goes into what is deep")

@@ -11,6 +11,8 @@
 #include <variant>
 #include <vector>
 
+#include "core/number.h"
+
 namespace CLI {
 class App;
 class Option;
@@ -31,6 +33,7 @@ class Option {
   Option one_of(const std::vector<std::string>& words) const;
   Option in_range(int least, int most) const;
   Option in_range(double least, double most) const;
+  Option in_range(const NumberRange& range) const;
   Option above_zero() const;
   Option not_negative() const;
 

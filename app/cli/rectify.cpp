@@ -9,6 +9,7 @@
 #include "app/cli/options.h"
 #include "app/cli/terminal.h"
 #include "app/cli/verbs.h"
+#include "app/jobs/maps/session_sets.h"
 
 namespace weft::app {
 namespace {
@@ -25,6 +26,7 @@ Result<int> rectify(const RectifyOptions& options, const CommonArguments& common
   }
   const Json& d = report->document;
   print(report->folder.string());
+  for (const std::string& line : source_lines(d)) print("  " + line);
   print(report->was_there ? "  is there already: same solve, same options"
                           : fmt::format("  {} x {} pixels of {:.5g} mm", d["width"].get<int>(),
                                         d["height"].get<int>(), d["mm_per_pixel"].get<double>()));
@@ -35,6 +37,7 @@ Run add_rectify(Options& options) {
   const auto a = std::make_shared<RectifyOptions>();
   options.add("session", &a->session, "Session folder, NAME.weft").required();
   options.add("--solve", &a->solve, "Id of the solve; default the session's current one");
+  options.add_flag("--draft", &a->is_draft, "A preview will do, of half the size and without masks");
   options.add("--calibration", &a->calibration, "Calibration folder; default the session's own");
   options.add("-o,--output", &a->output, "Folder for the maps; default SESSION/rectified/ID");
   options.add("--mm-per-pixel", &a->mm_per_pixel, "Of the grid; default what the camera sees").above_zero();

@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <memory>
+#include <optional>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -23,7 +25,9 @@
 #include "capture/rig_devices/rig_devices.h"
 #include "capture/scan/scan.h"
 #include "core/error_json.h"
+#include "core/exposure_words.h"
 #include "core/files.h"
+#include "core/percent.h"
 #include "core/temporary_folder.h"
 
 namespace weft::app {
@@ -38,7 +42,7 @@ struct RigArguments {
   std::vector<int> leds;  ///< of `lights` and `test`; empty: all
   double seconds = 1;     ///< of `lights`, each LED
   int led = 1;            ///< of `shot`; 0: none
-  double exposure_us = 50'000;
+  std::optional<std::string> exposure;
   fs::path output;  ///< of `shot`: a PNG; empty: none
 };
 
@@ -102,9 +106,12 @@ Result<int> light_in_turn(const capture::Rig& rig, const RigArguments& arguments
 /// One photograph that nobody keeps, but as a picture where one is asked for.
 Result<int> take_test_shot(const capture::Rig& rig, const RigArguments& arguments,
                            const CommonArguments& common) {
+  const Result<double> asked_us = exposure_in_us(arguments.exposure, kLongestTestShot_us);
+  if (!asked_us) return asked_us.error();
   const auto devices = OpenedDevices::open(rig);
   if (!devices) return devices.error();
-  const Result<Json> shot = (*devices)->shoot(arguments.led, arguments.exposure_us, stop_on_signal());
+  const Result<Json> shot =
+      (*devices)->shoot(arguments.led, *asked_us > 0 ? *asked_us : kTestShot_us, stop_on_signal());
   if (!shot) return shot.error();
   if (!arguments.output.empty()) {
     const Result<std::string> picture = (*devices)->client().bytes(
@@ -118,8 +125,11 @@ Result<int> take_test_shot(const capture::Rig& rig, const RigArguments& argument
     return kDone;
   }
   const auto clipped = shot->at("clipped_rgb").get<std::array<double, 3>>();
-  print(fmt::format("LED {} at {:g} us: clipped {:.2g} {:.2g} {:.2g} %", arguments.led, arguments.exposure_us,
-                    100 * clipped[0], 100 * clipped[1], 100 * clipped[2]));
+  print(fmt::format("LED {} at {}: clipped {} {} {} %", arguments.led,
+                    exposure_words(shot->at("exposure_us").get<double>()), percent_words(clipped[0]),
+                    percent_words(clipped[1]), percent_words(clipped[2])));
+  if (const Json& suggested = shot->at("suggested_us"); suggested.is_number())
+    print("a scan would expose " + exposure_words(suggested.get<double>()));
   return kDone;
 }
 
@@ -154,12 +164,12 @@ Result<int> photograph_in_turn(const capture::Rig& rig, const RigArguments& argu
                     {"clipped_rgb", {rgb[0].clipped, rgb[1].clipped, rgb[2].clipped}},
                     {"warnings", frame.warnings}});
     if (common.json) return;
-    print(fmt::format("{:8} mean {:5.1f} {:5.1f} {:5.1f} %  clipped {:.2g} %",
+    print(fmt::format("{:8} mean {:5.1f} {:5.1f} {:5.1f} %  clipped {} %",
                       frame.shot.led > 0                    ? fmt::format("LED {}", frame.shot.led)
                       : frame.shot.role == ShotRole::kBelow ? "below"
                                                             : "dark",
                       100 * mean_of(rgb[0]), 100 * mean_of(rgb[1]), 100 * mean_of(rgb[2]),
-                      100 * std::max({rgb[0].clipped, rgb[1].clipped, rgb[2].clipped})));
+                      percent_words(std::max({rgb[0].clipped, rgb[1].clipped, rgb[2].clipped}))));
     for (const std::string& warning : frame.warnings) print(fmt::format("{:8} {}", "", warning));
   };
   const Result<capture::ScanOutcome> outcome =
@@ -215,7 +225,7 @@ Run add_rig_shot(Options& options) {
   const auto a = std::make_shared<RigArguments>();
   add_rig_file(options, a->rig);
   options.add("--led", &a->led, "The LED that is lit; 0: none").in_range(0, 10).shows_default();
-  options.add("--exposure", &a->exposure_us, "Shutter time, us").in_range(1.0, 30e6).shows_default();
+  add_exposure(options, a->exposure, exposure_words(kTestShot_us));
   options.add("-o,--output", &a->output, "Picture to write (PNG, at most 320 pixels)");
   return run_shared(take_test_shot, a);
 }

@@ -21,6 +21,7 @@
 #include "capture/rig.h"
 #include "core/calibration.h"
 #include "core/files.h"
+#include "core/percent.h"
 #include "core/session.h"
 
 namespace weft::app {
@@ -29,13 +30,15 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto kBetweenQuestions = std::chrono::milliseconds(500);
+constexpr double kLongestExposure_us = 1e9;
 
 struct ScanArguments {
   fs::path rig;
   fs::path output;  ///< session; empty: named by the rig file's template
   std::string fabric;
   std::vector<int> leds;  ///< empty: all
-  std::optional<double> exposure_us, bracket, cloth_height_mm, tilt_deg, downhill_deg;
+  std::optional<std::string> exposure;
+  std::optional<double> bracket, cloth_height_mm, tilt_deg, downhill_deg;
   std::vector<std::string> metadata;   ///< "key=value"
   std::string accept_moved;            ///< why; empty: not
   std::optional<int> again;            ///< LED of a finished session; 0: the dark shot
@@ -65,7 +68,9 @@ Result<Json> body_of(const ScanArguments& arguments) {
   }
   if (!arguments.fabric.empty()) body["fabric"] = arguments.fabric;
   if (!arguments.leds.empty()) body["leds"] = arguments.leds;
-  if (arguments.exposure_us) body["exposure_us"] = *arguments.exposure_us;
+  const Result<double> exposure_us = exposure_in_us(arguments.exposure, kLongestExposure_us);
+  if (!exposure_us) return exposure_us.error();
+  if (*exposure_us > 0) body["exposure_us"] = *exposure_us;
   if (arguments.bracket) body["bracket"] = *arguments.bracket;
   if (arguments.cloth_height_mm) body["cloth_height_mm"] = *arguments.cloth_height_mm;
   if (arguments.tilt_deg) body["tilt_deg"] = *arguments.tilt_deg;
@@ -107,11 +112,12 @@ class Narrator {
     const int led = frame["led"].get<int>();
     const std::string role = frame["role"].get<std::string>();
     const std::string polariser = frame["polariser"].get<std::string>();
-    note(fmt::format("  {:>2} {:7} {:8} {}clipped {:.3g} %", frame["index"].get<int>(),
+    note(fmt::format("  {:>2} {:7} {:8} {}clipped {} %", frame["index"].get<int>(),
                      led > 0           ? fmt::format("LED {}", led)
                      : role == "below" ? "below"
                                        : "dark",
-                     role, polariser == "none" ? "" : fmt::format("{:8} ", polariser), 100 * clipped));
+                     role, polariser == "none" ? "" : fmt::format("{:8} ", polariser),
+                     percent_words(clipped)));
     for (const Json& warning : frame["warnings"]) note("     " + warning.get<std::string>());
   }
 
@@ -285,7 +291,7 @@ Result<int> scan(ScanArguments arguments, const CommonArguments& common) {
     Result<std::string> again = call_again(arguments.output, *arguments.again);
     if (!again) return std::move(again).error();
     call = std::move(*again);
-    body = Json{{"exposure_us", arguments.exposure_us.value_or(0)}};
+    body = Json{{"exposure_us", body->value("exposure_us", 0.0)}};
   }
   const Result<std::optional<std::string>> owner = address_of_owner(*rig);
   if (!owner) return owner.error();
@@ -323,8 +329,7 @@ Run add_scan(Options& options) {
               "unfinished in the last hour, else a new one by the rig file's session_name");
   options.add("--fabric", &a->fabric, "Name of the cloth");
   add_leds(options, a->leds);
-  options.add("--exposure", &a->exposure_us, "Shutter time, us; default metered for this cloth")
-      .in_range(1.0, 1e9);
+  add_exposure(options, a->exposure, "metered for this cloth");
   options
       .add("--bracket", &a->bracket,
            "Each LED once more at so many times the exposure, 0.001 to 100: for cloth that one "

@@ -114,7 +114,7 @@ capture::Rig no_rig(const std::vector<std::string>& archives) {
   capture::Rig rig;
   rig.name = "archive";
   rig.leds = 0;
-  rig.scan.sessions = archives.front();
+  rig.scan.sessions = absolute_folder(archives.front());
   const char* state = std::getenv("XDG_STATE_HOME");
   const char* home = std::getenv("HOME");
   rig.daemon.state = state != nullptr && *state != '\0'
@@ -123,15 +123,17 @@ capture::Rig no_rig(const std::vector<std::string>& archives) {
   return rig;
 }
 
-/// The rig of its file; where none is named or found and there are archives, no rig.
+/// The rig of its file; where none is named or found, no rig.
 Result<capture::Rig> rig_to_serve(ServeArguments arguments) {
   const std::filesystem::path file = find_rig(arguments.rig);
-  if (arguments.open && arguments.rig.empty() && arguments.archives.empty() && !is_there(file)) {
+  const bool has_rig = !named_rig(arguments.rig).empty() || is_there(file);
+  if (!has_rig && arguments.archives.empty()) {
     Result<std::string> folder = own_sessions();
     if (!folder) return std::move(folder).error();
+    note("weft: no rig file is named, and none lies here or at " + file.string() +
+         ": serving the sessions of " + *folder + " without a rig");
     arguments.archives.push_back(std::move(*folder));
   }
-  const bool has_rig = !arguments.rig.empty() || arguments.archives.empty() || is_there(file);
   Result<capture::Rig> rig = has_rig ? capture::read_rig(file) : no_rig(arguments.archives);
   if (!rig) return rig;
   for (const std::string& archive : arguments.archives) {
@@ -190,10 +192,8 @@ Run add_serve(Options& options) {
   options.add(
       "--archive", &a->archives,
       "Folder of sessions to show beside the rig's, with those below it; may be given again. Without a "
-      "rig file the server has no rig: library and jobs alone");
-  options.add_flag("--open", &a->open,
-                   "Open the page in a browser, of a daemon that runs already too. Without a rig file and "
-                   "an archive the sessions of ~/weft are shown");
+      "rig file the server has no rig: library and jobs alone, by default of ~/weft");
+  options.add_flag("--open", &a->open, "Open the page in a browser, of a daemon that runs already too");
   return [a](const CommonArguments& common) { return serve(*a, common); };
 }
 

@@ -21,6 +21,7 @@
 #include "capture/rig.h"
 #include "core/files.h"
 #include "core/session.h"
+#include "library/current.h"
 #include "solver/method.h"
 
 namespace weft::app {
@@ -52,10 +53,21 @@ Json json_of(const SolveReport& report) {
             {"total", report.seconds.total}}},
           {"peak_bytes", peak_memory_bytes()},
           {"pixels", facts.pixels},
+          {"foretold", facts.foretold ? weft::json_of(*facts.foretold) : Json()},
+          {"taken", facts.taken ? weft::json_of(*facts.taken) : Json()},
           {"status", json_of(facts.status)},
           {"check", facts.check ? json_of(*facts.check) : Json()},
           {"warnings", json_of(facts.warnings)},
           {"pictures", facts.pictures}};
+}
+
+// What was got and paid, beside what was said before.
+void print_price(const SolvePrice& taken, const std::optional<SolvePrice>& foretold) {
+  print(fmt::format("  expected: {}", error_in_words(taken.mean_deg, taken.solved)));
+  if (!foretold) return;
+  print(fmt::format("  foretold {} in {:.3g} s, {:.2f} times the {:.3g} s that it took",
+                    error_in_words(foretold->mean_deg, foretold->solved), foretold->seconds,
+                    foretold->seconds / taken.seconds, taken.seconds));
 }
 
 void print_words(const SolveReport& report) {
@@ -67,14 +79,29 @@ void print_words(const SolveReport& report) {
   print(report.folder.string());
   print(fmt::format("  {} of {} pixels solved from {} lights; albedo is {}", facts.pixels,
                     facts.size.pixels(), facts.lights, name_of(facts.albedo_scale)));
+  if (facts.taken) print_price(*facts.taken, facts.foretold);
   print("  pixels by status:" + status_words(facts.status));
   if (facts.reflectance.contains("family")) print("  gloss: " + reflectance_words(facts.reflectance));
   const SolveSeconds& s = report.seconds;
   print(fmt::format(
-      "  {:.2f} s: read {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, report {:.2f}, sync {:.2f}; "
+      "  {:.2f} s: read {:.2f}, prepare {:.2f}, solve {:.2f}, write {:.2f}, pictures {:.2f}, report {:.2f}, "
+      "sync {:.2f}; "
       "peak {} MB",
-      s.total, s.read, s.solve, s.write, s.pictures, s.report, s.sync, peak_memory_bytes() >> 20));
+      s.total, s.read, s.prepare, s.solve, s.write, s.pictures, s.report, s.sync, peak_memory_bytes() >> 20));
   print(fmt::format("  look at {}", (report.folder / "report.html").string()));
+}
+
+// Of a session that goes on making its maps of another solve: which, and how this one is chosen.
+void print_other_current(const SolveReport& report, const std::filesystem::path& folder) {
+  const Result<Session> session = read_session(folder);
+  if (!session) return;
+  const library::SessionSolves solves = library::solves_of(*session);
+  const library::ChoosableSolve* const current = solves.current_one();
+  const bool is_among = solves.find(report.facts.id) != nullptr;
+  if (current == nullptr || !is_among || current->id == report.facts.id) return;
+  print(fmt::format("  maps are made of {}{}; to choose this one: weft library tag {} --set current_solve={}",
+                    words_of(*current), solves.is_chosen ? ", which a person chose" : "", folder.string(),
+                    report.facts.id));
 }
 
 void print_check(const SolveFacts& facts) {
@@ -106,6 +133,16 @@ Result<void> check_moved(SolveArguments& arguments) {
   return {};
 }
 
+// Seconds, degrees and the share of the cloth that they hold for, as --explain prints them.
+Result<std::optional<SolvePrice>> price_in(const std::vector<double>& said) {
+  if (said.empty()) return std::optional<SolvePrice>();
+  const bool is_price = said.size() == 3 && said[0] >= 0 && said[1] >= 0 && said[2] >= 0 && said[2] <= 1;
+  if (is_price) return std::optional(SolvePrice{said[0], said[1], said[2], {}});
+  return Error{ErrorKind::kUsage, "a price cannot be read", "--foretold",
+               "three numbers from 0 are wanted, the last at most 1",
+               "copy the line that weft solve --explain prints for the level"};
+}
+
 Result<int> solve(SolveArguments& arguments, const CommonArguments& common) {
   const bool is_session = !arguments.session.folder.empty();
   if (is_session && arguments.session.calibration.empty()) {
@@ -116,10 +153,14 @@ Result<int> solve(SolveArguments& arguments, const CommonArguments& common) {
   if (!arguments.ladder.empty()) return run_ladder(arguments, common);
   if (arguments.explain) return run_explain(arguments, common);
   SolveOptions options = arguments.options;
+  Result<std::optional<SolvePrice>> foretold = price_in(arguments.foretold);
+  if (!foretold) return std::move(foretold).error();
+  options.foretold = std::move(*foretold);
   if (arguments.wish.is_one()) {
-    Result<std::string> level = chosen_level(arguments, common);
-    if (!level) return std::move(level).error();
-    options.method = std::move(*level);
+    const Result<LevelPrice> level = chosen_level(arguments, common);
+    if (!level) return level.error();
+    options.method = level->name();
+    options.foretold = price_of(*level);
   }
   Result<SolveReport> report = [&] {
     ProgressLine line(common.quiet);
@@ -128,12 +169,17 @@ Result<int> solve(SolveArguments& arguments, const CommonArguments& common) {
                       : solve_photos(arguments.photos, options, context);
   }();
   if (!report) return std::move(report).error();
-  if (report->transfer && !common.quiet)
-    note(fmt::format("photographs are taken as {}; --transfer overrides", name_of(*report->transfer)));
+  if (report->transfer && !common.quiet) {
+    note(fmt::format("photographs are taken as {}; --transfer overrides",
+                     *report->transfer == Transfer::kAuto
+                         ? "linear or srgb, each by its kind, as they are not all of one kind"
+                         : name_of(*report->transfer)));
+  }
   if (common.json) {
     print_json(json_of(*report));
   } else {
     print_words(*report);
+    if (is_session) print_other_current(*report, arguments.session.folder);
     if (arguments.check) print_check(report->facts);
   }
   const SolveFacts& facts = report->facts;
@@ -201,6 +247,14 @@ Level add_level(Options& options, const Option& session, SolveArguments& a) {
           .add("--ladder", &a.ladder,
                "Solve by every level, and draw the same 128 x 128 normals of each into this PNG")
           .needs(session);
+  const Option foretold =
+      options
+          .add("--foretold", &a.foretold,
+               "What --explain said of this solve, SECONDS,DEGREES,SHARE: solve.json keeps it beside what is "
+               "taken")
+          .by_commas()
+          .one_at_a_time();
+  for (const Option& priced : {explain, within, to, ladder}) foretold.excludes(priced);
   for (const Option& priced : {explain, within, to, ladder}) priced.excludes(level).excludes(by_name);
   ladder.excludes(explain).excludes(within).excludes(to);
   return {explain, ladder};
