@@ -310,6 +310,96 @@ test('a cable pulled at LED 7 is told of with its cause, and once it is back onl
   await visitor.leave();
 });
 
+for (const [how, goOn] of [
+  ['by its button', (page) => page.getByRole('button', {name: 'Go on'}).click()],
+  ['by its key', (page) => page.keyboard.press('p')],
+]) {
+  test(`after a fault that is mended the same scan goes on ${how}, with all that it has`, async () => {
+    const visitor = await visit(browser, rig);
+    const page = await atTheDesk(visitor);
+    await rig.inject('light dead 6');
+    await page.getByLabel('Exposure').fill('10');
+    await page.getByLabel('Fabric').fill(`fault ${how}`);
+    await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+    await page.keyboard.press('Enter');
+    await page.keyboard.press('Space');
+    await page.getByRole('button', {name: 'Go on'}).waitFor({timeout: scanTakes_ms});
+    const {session} = await rig.ask('rig');
+    const kept = async () => (await rig.ask(`sessions/${session}`)).frames.filter(({led}) => led > 0 && led < 6).map(({led, sha256}) => [led, sha256]);
+    const before = await kept();
+    assert.ok(before.length > 2, `${before.length} were kept`);
+    await picture(page, 'desk-fault');
+    await rig.inject('light normal');
+    await goOn(page);
+    await page.getByRole('region', {name: 'Last scan'}).getByText(`fault ${how}`, {exact: true}).waitFor({timeout: scanTakes_ms});
+    assert.equal((await rig.ask('rig')).session, session, 'it is the same session');
+    assert.deepEqual((await kept()).filter(([led, sha256]) => before.some((one) => one[0] === led && one[1] === sha256)), before);
+    await visitor.leave();
+  });
+}
+
+test('a daemon that dies while it is dark leaves the page light within three seconds, and nothing claims that it photographs', async () => {
+  const visitor = await visit(browser, rig);
+  visitor.mayFail(/net::ERR_/);
+  const page = await atTheDesk(visitor);
+  await page.keyboard.type('killed');
+  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await page.keyboard.press('Enter');
+  await page.keyboard.press('Space');
+  await page.locator('.dark').waitFor();
+  await until(async () => (await rig.ask('rig')).frames > 2);
+  const {port} = rig;
+  await rig.stopServing('SIGKILL');
+  const dead = Date.now();
+  await page.locator('.dark').waitFor({state: 'detached'});
+  const took_ms = Date.now() - dead;
+  assert.ok(took_ms < 3000, `it took ${took_ms} ms`);
+  await page.getByRole('alert').filter({hasText: /^The daemon/}).first().waitFor();
+  assert.equal(await page.locator('header .rig').getByText(/photographing|fetching|ready/).count(), 0);
+  await picture(page, 'desk-killed');
+  await rig.serve({port});
+  await page.locator('header .rig').getByText('ready').waitFor();
+  await page.getByRole('button', {name: 'Scan'}).click();
+  await page.getByRole('region', {name: 'Last scan'}).getByText('killed', {exact: true}).waitFor({timeout: scanTakes_ms});
+  await visitor.leave();
+});
+
+test('what the meter of a test shot says is what a scan takes, and what is typed becomes a time of the camera', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await atTheDesk(visitor);
+  await scanByKeys(page, 'metered');
+  const metered_us = (await rig.ask('rig')).exposure_us;
+  await page.keyboard.press('n');
+  const field = page.getByLabel('Exposure');
+  await field.fill('100');
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('t');
+  await page.getByText('A scan would expose').waitFor({timeout: scanTakes_ms});
+  await page.getByRole('button', {name: 'Use that'}).click();
+  assert.equal(Number(await field.inputValue()), Number((metered_us / 1000).toPrecision(3)));
+  await picture(page, 'desk-metered');
+
+  await field.fill('16.16');
+  await page.getByText('16.7 ms (1/60 s) is the camera\'s nearest.').waitFor();
+  await page.keyboard.press('Tab');
+  assert.equal(await field.inputValue(), '16.7');
+  assert.ok(await page.locator('#exposure-list option').count() > 40, 'the times of the camera are listed');
+  await field.fill('0.1');
+  await page.getByText('The camera has 0.25 ms (1/4000 s) to 30 s.').waitFor();
+  await page.getByLabel('Fabric').fill('as typed');
+  assert.ok(await page.getByRole('button', {name: 'Scan'}).isDisabled());
+  assert.deepEqual(await violations(page), []);
+  await picture(page, 'desk-no-such-exposure');
+  await field.fill('1/100');
+  await page.keyboard.press('Enter');
+  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await page.locator('#scan').focus();
+  await page.keyboard.press('Space');
+  await page.getByRole('region', {name: 'Last scan'}).getByText('as typed', {exact: true}).waitFor({timeout: scanTakes_ms});
+  assert.equal(Math.round((await rig.ask('rig')).exposure_us), 10_000);
+  await visitor.leave();
+});
+
 test('a dead LED, two swapped ones and a lamp are named in words, and the scan goes on once that is mended', async () => {
   const visitor = await visit(browser, rig);
   const page = await atTheDesk(visitor);

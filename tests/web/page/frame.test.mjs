@@ -103,6 +103,57 @@ test('when the daemon is stopped the page greys, and is back by itself once it a
   await visitor.leave();
 });
 
+test('without its daemon every screen says so within three seconds and claims nothing of the rig', async () => {
+  const visitor = await visit(browser, rig);
+  visitor.mayFail(/net::ERR_/);
+  const pages = [];
+  for (const screen of screens) pages.push(await enter(visitor, screen));
+  await Promise.all(pages.map((page) => page.locator('header .rig').getByText('ready').waitFor()));
+  const {port} = rig;
+  await rig.stopServing('SIGKILL');
+  const dead = Date.now();
+  await Promise.all(pages.map((page) => page.getByRole('alert').filter({hasText: /^The daemon (does not answer|has said nothing)/}).waitFor()));
+  const took_ms = Date.now() - dead;
+  assert.ok(took_ms < 3000, `it took ${took_ms} ms`);
+  for (const page of pages) assert.equal(await page.locator('header .rig').getByText('ready').count(), 0);
+  await picture(pages[0], 'frame-silent');
+  await rig.serve({port});
+  await Promise.all(pages.map((page) => page.locator('header .rig').getByText('ready').waitFor()));
+  await visitor.leave();
+});
+
+test('a daemon that hangs is told of within three seconds', async () => {
+  const visitor = await visit(browser, rig);
+  const page = await enter(visitor);
+  await page.locator('header .rig').getByText('ready').waitFor();
+  rig.hang(true);
+  const hung = Date.now();
+  await page.getByRole('alert').filter({hasText: 'The daemon has said nothing for'}).waitFor();
+  const took_ms = Date.now() - hung;
+  rig.hang(false);
+  assert.ok(took_ms < 3500, `it took ${took_ms} ms`);
+  await page.locator('header .rig').getByText('ready').waitFor();
+  await visitor.leave();
+});
+
+test('a screen that was first asked for while the daemon was gone is there once it is back', async () => {
+  const visitor = await visit(browser, rig);
+  visitor.mayFail(/net::ERR_/, /Failed to load resource/);
+  const pages = [await enter(visitor), await enter(visitor, 'doctor')];
+  const {port} = rig;
+  await rig.stopServing('SIGKILL');
+  for (const page of pages) {
+    await page.getByRole('link', {name: 'Library', exact: true}).click();
+    await page.locator('main').getByRole('alert').waitFor();
+  }
+  await rig.serve({port});
+  for (const page of pages) {
+    await page.locator('main').getByRole('heading', {name: 'Library'}).waitFor();
+    await page.locator('main').getByRole('alert').waitFor({state: 'detached'});
+  }
+  await visitor.leave();
+});
+
 test('who keeps the rig to himself is named, and one press gives it back to all', async () => {
   const visitor = await visit(browser, rig);
   const page = await enter(visitor, 'doctor');

@@ -52,6 +52,7 @@ before(async () => {
   await archive.add('weave', scene, 'fast');
   await archive.make('maps', 'weave', '--maps', 'height,occlusion,roughness');
   await archive.add('swatch', swatch);
+  await archive.add('sketch', swatch.replace('"swatch"', '"sketch"'), 'preview');
   archive.write('.local/share/weft/materials/dusty.toml', dusty);
   archive.write('.local/share/weft/materials/golden.toml', golden);
   await archive.serve();
@@ -241,6 +242,25 @@ test('a session becomes a .glb of its true size without a terminal', async () =>
   const place = glb.accessors[glb.meshes[0].primitives[0].attributes.POSITION];
   const wide_m = place.max[0] - place.min[0];
   assert.ok(Math.abs(wide_m / (one.width * one.mm_per_pixel * 1e-3) - 1) < 1e-5, `${wide_m} m of ${one.width * one.mm_per_pixel} mm`);
+  await visitor.leave();
+});
+
+test('a preview makes a draft that says so, and final maps are made of a better solve', async () => {
+  const visitor = await visit(browser, archive, {width: 1100, height: 760});
+  const page = await visitor.open(`${archive.address}/material/sketch`);
+  await page.getByText('solved at standard first').waitFor();
+  await page.getByRole('button', {name: 'Only a draft'}).click();
+  await page.waitForURL(/material\/sketch\/maps\/[0-9a-f]+/, {timeout: making_ms});
+  await page.getByText('▲ A draft').waitFor();
+  const draft = page.url();
+  await page.getByRole('tab', {name: 'Export'}).click();
+  await page.getByRole('checkbox', {name: /^Export the draft/}).waitFor();
+  await page.getByRole('button', {name: 'Make the maps'}).click();
+  await page.waitForURL((url) => /sketch\/maps\/[0-9a-f]+/.test(url.pathname) && !draft.includes(url.pathname), {timeout: making_ms});
+  await page.getByText(/^standard solve [0-9a-f]{8}$/).waitFor();
+  assert.equal(await page.getByText('Stale').count(), 0);
+  const {current, sets} = await archive.ask('sessions/sketch/maps');
+  assert.equal(sets.find(({id}) => id === current).level, 'standard');
   await visitor.leave();
 });
 

@@ -21,13 +21,16 @@ export interface Events {
 export type Kind = keyof Events;
 
 const kinds: Kind[] = ['status', 'frame', 'job', 'shot', 'control', 'calibration', 'gap', 'heartbeat'];
-const delays_s = [1, 2, 5, 10];
-const silence_s = 20;
+const delays_s = [0.2, 1, 2, 5, 10];
+/** The daemon says something every second. */
+const silence_s = 2.5;
+const look_ms = 250;
+const usual_s = 2;
 
 export interface Connection {
-  /** silent: no word for so long that what is shown may be old. */
+  /** silent: it is broken, or there was no word for so long that what is shown may be old. */
   state: 'connecting' | 'live' | 'silent';
-  /** Since the last word. */
+  /** Since the last word, whole seconds; 0 as long as that is usual. */
   age_s: number;
 }
 export const connection = signal<Connection>({state: 'connecting', age_s: 0});
@@ -43,26 +46,50 @@ export function onEvent<K extends Kind>(kind: K, handle: (data: Events[K]) => vo
 }
 
 interface Message {
-  kind: Kind;
+  /** broken: the daemon cannot be reached. */
+  kind: Kind | 'broken';
   data: unknown;
 }
 
 let lastWord = Date.now();
+let silent_ms = 0;
 
+/** When the daemon was last heard. */
+export function heardAt(): number {
+  return lastWord;
+}
+
+function tellSilence(state: Connection['state']): void {
+  const age_s = silent_ms < usual_s * 1000 ? 0 : Math.floor(silent_ms / 1000);
+  const {state: before, age_s: age_before_s} = connection.peek();
+  if (state !== before || age_s !== age_before_s) connection.value = {state, age_s};
+}
+
+/** After a gap it is live again by the word that follows, for until then what is known is old. */
 function hear({kind, data}: Message): void {
-  lastWord = Date.now();
-  connection.value = {state: 'live', age_s: 0};
+  if (kind === 'broken') return tellSilence('silent');
   handlers.get(kind)?.forEach((handle) => handle(data));
+  if (kind === 'gap') return;
+  lastWord = Date.now();
+  silent_ms = 0;
+  tellSilence('live');
 }
 
+/** What a page slept itself is no silence of the daemon. */
 function watchSilence(): void {
+  let before = Date.now();
   setInterval(() => {
-    const age_s = Math.floor((Date.now() - lastWord) / 1000);
-    if (age_s >= silence_s) connection.value = {state: 'silent', age_s};
-  }, 1000);
+    const now = Date.now();
+    silent_ms += Math.min(now - before, 2 * look_ms);
+    before = now;
+    tellSilence(silent_ms >= silence_s * 1000 ? 'silent' : connection.peek().state);
+  }, look_ms);
 }
 
-/** Listens until it is told to stop, and begins anew after every fault. What may have been missed is a gap. */
+/**
+ * Listens until it is told to stop, and begins anew after every fault: at once where it listened, so that a hiccup is
+ * none. What may have been missed is a gap.
+ */
 class Listener {
   private source: EventSource | null = null;
   private timer = 0;
@@ -102,6 +129,7 @@ class Listener {
 
   private again(): void {
     this.stop();
+    if (this.failures > 0) this.tell({kind: 'broken', data: {}});
     const delay_s = delays_s[Math.min(this.failures++, delays_s.length - 1)] ?? 10;
     this.timer = window.setTimeout(() => this.start(), delay_s * 1000);
   }
@@ -119,9 +147,14 @@ function listenForAll(locks: LockManager): void {
 
 function listenWhileSeen(): void {
   const listener = new Listener(hear);
-  const turn = () => (document.hidden ? listener.stop() : listener.start());
+  const turn = () => {
+    if (document.hidden) return listener.stop();
+    silent_ms = 0;
+    tellSilence('connecting');
+    listener.start();
+  };
   document.addEventListener('visibilitychange', turn);
-  if (!document.hidden) listener.start();
+  turn();
 }
 
 /** Begins; to be called once, after somebody was let in. */

@@ -1387,7 +1387,7 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        /** Server-sent events: status (first of all as things are), frame, job, shot, calibration, control, gap (events are missing; a status follows), heartbeat every 10 s; x-events has the schema of each one's data */
+        /** Server-sent events: status (first of all as things are), frame, job, shot, calibration, control, gap (events are missing; a status follows), heartbeat after each second of silence; x-events has the schema of each one's data */
         get: {
             parameters: {
                 query?: {
@@ -3184,6 +3184,63 @@ export interface paths {
                         "application/json": components["schemas"]["ErrorDocument"];
                     };
                 };
+                421: components["responses"]["ForeignHost"];
+                /** @description The file is damaged */
+                422: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "application/json": components["schemas"]["ErrorDocument"];
+                    };
+                };
+            };
+        };
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/sessions/{name}/maps/{id}/pictures/{file}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /** A picture beside the maps: what a step or a check found, and where */
+        get: {
+            parameters: {
+                query?: never;
+                header?: never;
+                path: {
+                    /** @description Session, without .weft */
+                    name: string;
+                    /** @description Id of the set of maps */
+                    id: string;
+                    /** @description As the facts of a step and the checks name it: straighten_2.png */
+                    file: string;
+                };
+                cookie?: never;
+            };
+            requestBody?: never;
+            responses: {
+                /** @description It never changes */
+                200: {
+                    headers: {
+                        [name: string]: unknown;
+                    };
+                    content: {
+                        "image/png": string;
+                    };
+                };
+                400: components["responses"]["Unreadable"];
+                401: components["responses"]["NoToken"];
+                403: components["responses"]["ForeignOrigin"];
+                404: components["responses"]["NotThere"];
                 421: components["responses"]["ForeignHost"];
                 /** @description The file is damaged */
                 422: {
@@ -5538,6 +5595,8 @@ export interface components {
                 id: string;
                 /** @description Mean error that the planned solves are expected to have, degrees */
                 mean_deg: number;
+                /** @description Share of all cloth that it holds for, where there is a normal */
+                solved: number;
                 /** @description Of the largest session */
                 memory_bytes: number;
                 write_bytes: number;
@@ -5550,10 +5609,12 @@ export interface components {
                     seconds: number;
                     mean_deg: number;
                     spread_deg: number;
+                    /** @description Share of the cloth that mean_deg holds for */
+                    solved: number;
                     /** @description That the plan solves at it */
                     sessions: number;
                 }[];
-                /** @description Seconds spent where they buy most, and the mean error; of within_s */
+                /** @description Seconds spent where they buy most, and the mean error over the whole cloth, a radian where there is no normal; of within_s */
                 curve: {
                     seconds: number;
                     mean_deg: number;
@@ -5581,6 +5642,8 @@ export interface components {
                     seconds_spread: number;
                     degrees: number;
                     degrees_spread: number;
+                    /** @description Share of the cloth that degrees hold for */
+                    solved: number;
                     /** @description On this very session */
                     is_measured: boolean;
                     /** @description Mean angle to the solve before */
@@ -5605,8 +5668,17 @@ export interface components {
             second_attempts?: number;
             seconds: number;
             predicted_seconds: number;
+            /** @description Predicted over taken seconds; 0: nothing was solved or predicted */
+            seconds_ratio: number;
             mean_deg: number;
+            /** @description Share of all cloth that mean_deg holds for, where there is a normal */
+            mean_solved: number;
             predicted_deg: number;
+            predicted_solved: number;
+            /** @description Sessions with a normal on less than half of the cloth, at most 200 */
+            barely_solved: string[];
+            /** @description Sessions that were solved with warnings, at most 200 */
+            warned: string[];
             peak_bytes?: number;
             /** @description Of sessions without a solve, the most frequent first */
             causes: {
@@ -5768,7 +5840,7 @@ export interface components {
             /** @description Of the photograph; 0: it is not taken yet */
             width: number;
             height: number;
-            /** @description What the meter of a scan would try next; null: no LED was lit, or the photograph cannot be read */
+            /** @description What a scan would be exposed with, by its own meter; null: no LED was lit, or the meter fails */
             suggested_us: number | null;
         };
         AttendedDevices: components["schemas"]["Devices"] & {
@@ -5972,6 +6044,8 @@ export interface components {
             maps?: string[];
             /** @description Of maps, finish: on a grid four times as coarse; earlier previews of the session go */
             preview?: boolean;
+            /** @description Of rectify, maps, finish, export, export_price: a preview will do, of half the size and without masks */
+            draft?: boolean;
             /** @description Of maps, finish: one of those that GET recipes names, in place of steps */
             recipe?: string;
             /** @description Of maps, finish: a recipe; what it may say is in GET recipes */
@@ -6000,7 +6074,7 @@ export interface components {
             pace?: number;
             /** @description Of export, export_price: names */
             presets?: string[];
-            /** @description Of export, export_price: id of a set of maps of the session; absent: the newest */
+            /** @description Of export, export_price: id of a set of maps of the session; absent: the newest of its current solve */
             set?: string;
             /** @description Of material, and of export and export_price in place of session: as GET materials has its key */
             material?: string;
@@ -6099,6 +6173,8 @@ export interface components {
             role: "look" | "operate";
         };
         MapSets: {
+            /** @description Id of the set that exports and materials are made of; null: there is none */
+            current: string | null;
             sets: components["schemas"]["MapSetSummary"][];
         };
         MapSetSummary: {
@@ -6109,6 +6185,12 @@ export interface components {
             bytes: number;
             /** @description Id of that which they were made of */
             solve: string;
+            /** @description Of that solve; empty: nobody knows */
+            level: string;
+            /** @description That solve is a preview */
+            draft: boolean;
+            /** @description Why it is not what would be made today, a sentence each; empty: it is */
+            stale: string[];
             preview: boolean;
             /** @description It goes on over its borders */
             is_tile: boolean;
@@ -6142,8 +6224,11 @@ export interface components {
                 name: string;
                 /** @description For people, with its unit */
                 says: string;
-                /** @enum {string} */
-                holds: "number" | "whole" | "flag" | "word" | "numbers" | "spots";
+                /**
+                 * @description maybe: a number, or null where nobody says one
+                 * @enum {string}
+                 */
+                holds: "number" | "maybe" | "whole" | "flag" | "word" | "numbers" | "spots";
                 /** @description Where a step does not say it */
                 default: unknown;
                 least: number;
@@ -6280,6 +6365,8 @@ export interface components {
                 /** @description Empty: the calibration's */
                 serial: string;
                 open: boolean;
+                /** @description That it has, rising; empty: it was not asked yet. An exposure that is asked for is the nearest of them */
+                exposures_us: number[];
                 says: components["schemas"]["CameraFacts"] | null;
             };
         };
@@ -6479,6 +6566,16 @@ export interface components {
             left_out: number[];
             /** @description Id; empty where there is none */
             current_solve: string;
+            /** @description Of the current solve; empty where there is none */
+            current_level: string;
+            /** @description The solve that maps are made of; null: there is none of today's photographs but previews */
+            maps_of: {
+                /** @description Id */
+                solve: string;
+                level: string;
+                /** @description Why it is not what would be made today, a sentence each; empty: it is */
+                stale: string[];
+            } | null;
             fabric: string;
             rig: string;
             state: string;
@@ -6506,6 +6603,10 @@ export interface components {
         };
         SolveSummary: {
             id: string;
+            /** @description Others are made of it */
+            is_current: boolean;
+            /** @description Why its photographs are not those of today; empty: they are */
+            outdated: string;
             method: string;
             width: number;
             height: number;
@@ -6519,6 +6620,8 @@ export interface components {
         };
         ViewedSolve: {
             id: string;
+            /** @description Why it is not what would be made today, a sentence each; empty: it is */
+            stale: string[];
             method: string;
             width: number;
             height: number;

@@ -2,10 +2,16 @@
 // Black and still while the rig exposes. A key or a touch shows how things are for a moment, at the price of some light.
 import {useEffect, useRef, useState} from 'preact/hooks';
 import {answer, api} from '../api/client';
-import {rig} from '../state/rig';
-import {stateInWords} from './words';
+import {connection, rig} from '../state/rig';
+import {silenceInWords, stateInWords} from './words';
 
 const glimpse_ms = 2000;
+
+function knownInWords(): string {
+  const {age_s} = connection.value;
+  if (age_s > 0 || !rig.value) return silenceInWords(age_s);
+  return `${stateInWords(rig.value)}, ${rig.value.frames} of ${rig.value.frames_planned}.`;
+}
 
 function cancelScan(): void {
   answer(api.POST('/api/v1/scan/cancel', {body: {}})).catch(() => {});
@@ -34,9 +40,9 @@ export function DarkPage() {
   return (
     <div ref={page} class="dark" role="application" tabIndex={-1} aria-label="The screen is dark while the rig exposes"
       onKeyDown={press} onPointerDown={() => show('status')}>
-      {glimpse !== 'none' && rig.value && (
+      {glimpse !== 'none' && (
         <p>
-          {stateInWords(rig.value)}, {rig.value.frames} of {rig.value.frames_planned}. This light may spoil the shot.
+          {knownInWords()} This light may spoil the shot.
           {glimpse === 'cancel' && ' Enter cancels the scan; what is photographed is kept.'}
         </p>
       )}

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // How one comes in: by the token behind the # of the link, by the cookie of before, or by typing the token.
-import {useState} from 'preact/hooks';
+import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type ApiError} from '../api/client';
 import {useAction} from '../ui/action';
 import {Button} from '../ui/button';
 import {Complaint} from '../ui/complaint';
 import {Field} from '../ui/field';
+
+const again_ms = 1000;
 
 export async function logIn(token: string): Promise<void> {
   await answer(api.POST('/api/v1/login', {body: {token}}));
@@ -24,6 +26,12 @@ export function Entrance({error, onEntered}: {error: ApiError; onEntered: () => 
     if (error.status === 401) await logIn(token.replace(/^.*#/, '').trim());
     await onEntered();
   });
+  const isGone = (enter.complaint ?? error).status === 0;
+  useEffect(() => {
+    if (!isGone || enter.isBusy) return undefined;
+    const timer = setTimeout(() => void enter.run(), again_ms);
+    return () => clearTimeout(timer);
+  }, [isGone, enter.isBusy]);
   if (error.status !== 401) {
     return (
       <main class="entrance">

@@ -9,11 +9,10 @@ import {runningJob} from '../state/running_job';
 import {Button} from '../ui/button';
 import {Mark} from '../ui/mark';
 import {Share} from '../ui/share';
-import {durationOf} from '../ui/words';
 import {Controls} from './controls';
 import {KeyList} from './key_list';
 import {VirtualRig} from './virtual_rig';
-import {stateInWords, verdictOf} from './words';
+import {silenceInWords, stateInWords, verdictOf} from './words';
 
 const tabs = [
   {screen: 'desk', says: 'Desk'},
@@ -35,9 +34,13 @@ function Tabs() {
   );
 }
 
+/** Of what is not heard nothing is claimed. */
 function RigState() {
   const status = rig.value;
   if (!status) return null;
+  if (connection.value.state === 'silent') {
+    return <div class="rig" role="status"><span class="name">{status.rig}</span><Mark verdict="waiting">no word</Mark></div>;
+  }
   const isScanning = status.frames_planned > 0 && ['scanning', 'paused'].includes(status.state);
   return (
     <div class="rig" role="status">
@@ -51,7 +54,7 @@ function RigState() {
 
 function RunningJob() {
   const job = runningJob.value;
-  if (!job) return null;
+  if (!job || connection.value.state === 'silent') return null;
   return (
     <a class="job" href="/jobs">
       {job.kind} {job.of}
@@ -66,7 +69,7 @@ function Warnings() {
     <>
       {state === 'silent' && (
         <div class="strip fault" role="alert">
-          The daemon has said nothing for {durationOf(age_s)}. What is shown may be old; the page asks again by itself.
+          {silenceInWords(age_s)} What is shown may be old; the page asks again by itself.
           <Button onClick={() => location.reload()}>Reload</Button>
         </div>
       )}

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import type {ComponentType} from 'preact';
-import {useEffect, useState} from 'preact/hooks';
+import {useEffect, useRef, useState} from 'preact/hooks';
+import {connection, heardAt, onEvent} from '../api/events';
+import {place} from '../state/address';
 import {Complaint} from '../ui/complaint';
 import {Button} from '../ui/button';
 
@@ -28,7 +30,9 @@ function NoSuchScreen() {
   );
 }
 
+/** A browser remembers that it could not fetch a file, so that only the page as a whole is fetched again. */
 function NotLoaded() {
+  useBack(() => location.reload());
   return (
     <section class="page">
       <Complaint error={{what: 'This screen cannot be fetched.', where: '', why: 'The daemon does not answer, or is of another version by now.', remedy: 'Reload the page.'}}>
@@ -38,12 +42,37 @@ function NotLoaded() {
   );
 }
 
+/** Calls `back` when the daemon is heard again. */
+function useBack(back: () => void): void {
+  const current = useRef(back);
+  current.current = back;
+  useEffect(() => onEvent('gap', () => {
+    if (connection.peek().state !== 'connecting') current.current();
+  }), []);
+}
+
+/** How often the daemon came back after one had gone to this address in vain. */
+function useArrivals(): number {
+  const [arrivals, setArrivals] = useState(0);
+  const arrived = useRef(0);
+  const address = place.value;
+  useEffect(() => {
+    arrived.current = Date.now();
+  }, [address]);
+  useBack(() => {
+    if (arrived.current >= heardAt()) setArrivals((before) => before + 1);
+  });
+  return arrivals;
+}
+
+/** What was first asked for while the daemon was gone is asked for again once it is back. */
 export function LazyScreen({name}: {name: string}) {
   const [shown, show] = useState<{name: string; Screen: ComponentType} | null>(null);
+  const arrivals = useArrivals();
   useEffect(() => {
     const load = Object.hasOwn(screens, name) ? screens[name] : undefined;
     if (!load) return show({name, Screen: NoSuchScreen});
     load().then((module) => show({name, Screen: module.default}), () => show({name, Screen: NotLoaded}));
   }, [name]);
-  return shown?.name === name ? <shown.Screen /> : null;
+  return shown?.name === name ? <shown.Screen key={arrivals} /> : null;
 }

@@ -7,11 +7,15 @@ interface FieldProps {
   value: string;
   onInput: (value: string) => void;
   onEnter?: () => void;
+  /** Another value stands, and the hands are elsewhere. */
+  onLeave?: () => void;
   unit?: string;
   hint?: ComponentChildren;
   placeholder?: string;
   type?: 'text' | 'number' | 'search' | 'password' | 'date';
   isDisabled?: boolean;
+  /** It cannot be used; the hint says why. */
+  isWrong?: boolean;
   /** Proposals. */
   list?: readonly string[];
   id?: string;
@@ -20,7 +24,7 @@ interface FieldProps {
 }
 
 /** A line to type in, with its name above and what is to be known of it below. */
-export function Field({label, value, onInput, onEnter, unit, hint, placeholder, type = 'text', isDisabled, list, id, hasFocus}: FieldProps) {
+export function Field({label, value, onInput, onEnter, onLeave, unit, hint, placeholder, type = 'text', isDisabled, isWrong, list, id, hasFocus}: FieldProps) {
   const name = id ?? `field-${label.toLowerCase().replace(/[^a-z]+/g, '-')}`;
   const input = useRef<HTMLInputElement>(null);
   useEffect(() => {
@@ -37,8 +41,9 @@ export function Field({label, value, onInput, onEnter, unit, hint, placeholder, 
       <div class="row">
         <input ref={input} id={name} type={type} value={value} placeholder={placeholder} disabled={isDisabled} autocomplete="off"
           spellcheck={false} list={list && `${name}-list`} aria-describedby={hint ? `${name}-hint` : undefined}
+          aria-invalid={isWrong || undefined}
           step={type === 'number' ? 'any' : undefined}
-          onInput={(event) => onInput(event.currentTarget.value)} onKeyDown={enter} />
+          onInput={(event) => onInput(event.currentTarget.value)} onChange={onLeave} onKeyDown={enter} />
         {unit && <span class="unit">{unit}</span>}
       </div>
       {list && <datalist id={`${name}-list`}>{list.map((word) => <option key={word} value={word} />)}</datalist>}

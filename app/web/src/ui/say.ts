@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Counts, angles and ages as people say them.
+import {percentOf} from './words';
 
 const minute_s = 60;
 const hour_s = 60 * minute_s;
@@ -18,6 +19,12 @@ export function digits(value: number, significant = 2): string {
 
 export function degrees(value: number): string {
   return `${digits(value)}°`;
+}
+
+/** An error never stands without the share of the cloth that it holds for. */
+export function degreesOn(value: number, solved: number): string {
+  if (solved <= 0) return 'nothing solved';
+  return `${degrees(value)} on ${solved < 1 && solved >= 0.995 ? 'over 99 %' : percentOf(solved)}`;
 }
 
 /** An exposure as cameras say it: 1/250 s, 0.4 s. */

@@ -69,11 +69,13 @@ export async function visit(browser, rig, {width = 1280, height = 800, origins =
   return new Visitor(context, origins);
 }
 
-/** For who changes the page: its files from a folder, the rest (policy, calls) from the daemon. */
+/** For who changes the page: its files from a folder, as long as the daemon is there, the rest from it. */
 async function serveFrom(context, folder, rig) {
   const policy = (await fetch(rig.address)).headers.get('content-security-policy');
   const types = {'.js': 'text/javascript', '.css': 'text/css', '.svg': 'image/svg+xml', '.html': 'text/html'};
-  await context.route(/^[^?]*\/\/[^/]+\/(?!api\/)/, (route) => {
+  await context.route(/^[^?]*\/\/[^/]+\/(?!api\/)/, async (route) => {
+    const isThere = await fetch(`${rig.address}/api/v1/healthz`).then(() => true, () => false);
+    if (!isThere) return route.abort('connectionrefused');
     const {pathname} = new URL(route.request().url());
     const file = path.join(folder, pathname.startsWith('/assets/') ? pathname : 'index.html');
     return route.fulfill({body: fs.readFileSync(file), headers: {'content-security-policy': policy, 'content-type': types[path.extname(file)]}});

@@ -67,13 +67,19 @@ export class Rig {
     return Number(new URL(this.address).port);
   }
 
-  async stopServing() {
+  /** `signal`: SIGKILL where the daemon is to have no time for a last word. */
+  async stopServing(signal = 'SIGTERM') {
     const daemon = this.#daemon;
     this.#daemon = null;
     if (!daemon || daemon.exitCode !== null) return;
     const ended = new Promise((resolve) => daemon.once('exit', resolve));
-    daemon.kill('SIGTERM');
+    daemon.kill(signal);
     await ended;
+  }
+
+  /** Stops it in the middle of what it does, its sockets open, and has it go on. */
+  hang(hangs) {
+    this.#daemon.kill(hangs ? 'SIGSTOP' : 'SIGCONT');
   }
 
   /** Asks the daemon as curl would. */

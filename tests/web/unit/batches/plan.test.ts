@@ -39,7 +39,7 @@ test('a search in the address is what is planned', () => {
 });
 
 test('only what was measured stands in the plot', () => {
-  const level = {spread_deg: 0, sessions: 0};
+  const level = {spread_deg: 0, solved: 1, sessions: 0};
   expect(levelPoints({levels: [{quality: 'fast', seconds: 3, mean_deg: 0.5, ...level}, {quality: 'robust', seconds: 0, mean_deg: 0, ...level}]}))
     .toEqual([{name: 'fast', seconds: 3, mean_deg: 0.5}]);
 });

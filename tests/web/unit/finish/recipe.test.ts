@@ -3,7 +3,7 @@ import {describe, expect, test} from 'vitest';
 import {factsInWords} from '../../../../app/web/src/screens/finish/found';
 import {requestOf} from '../../../../app/web/src/screens/finish/making';
 import {changed, type History, historyIn, keysOfBox, moved, nothing, recipeOfSet, redone, stepOf, undone, withKeys, without, type StepKind} from '../../../../app/web/src/screens/finish/recipe';
-import {numbersIn, spotsIn, textOfSpots} from '../../../../app/web/src/screens/finish/step_form';
+import {maybeIn, numbersIn, spotsIn, textOfSpots} from '../../../../app/web/src/screens/finish/step_form';
 
 const crop: StepKind = {
   name: 'crop', says: 'Cuts',
@@ -60,6 +60,7 @@ describe('a recipe', () => {
   test('becomes a preview without further maps, or all maps', () => {
     const steps = {steps: recipe};
     expect(requestOf({session: 'satin', solve: 'ab'}, recipe, true)).toEqual({kind: 'finish', session: 'satin', solve: 'ab', preview: true, steps});
+    expect(requestOf({session: 'satin', solve: 'ab', isDraft: true}, recipe, false)).toEqual({kind: 'maps', session: 'satin', solve: 'ab', draft: true, steps});
     expect(requestOf({session: 'satin', solve: ''}, recipe, false)).toEqual({kind: 'maps', session: 'satin', steps});
   });
 });
@@ -71,6 +72,12 @@ describe('what is typed', () => {
     expect(spotsIn(textOfSpots(spots))).toEqual(spots);
     expect(spotsIn('')).toEqual([]);
     expect(spotsIn('1 2')[0]?.radius_mm).toBeNaN();
+  });
+
+  test('of a number that may be left out is null where nothing is typed', () => {
+    expect(maybeIn('-24,5')).toBe(-24.5);
+    expect(maybeIn('0')).toBe(0);
+    expect(maybeIn(' ')).toBeNull();
   });
 
   test('by a rectangle is in millimetres', () => {

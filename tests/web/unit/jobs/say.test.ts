@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 import {expect, test} from 'vitest';
-import {age, counted, degrees, digits, shutter} from '../../../../app/web/src/ui/say';
+import {age, counted, degrees, degreesOn, digits, shutter} from '../../../../app/web/src/ui/say';
 
 test('two digits that matter are written', () => {
   expect([0.0034123, 0.413, 3.14, 41.4, 0].map((value) => digits(value))).toEqual(['0.0034', '0.41', '3.1', '41', '0']);
   expect(degrees(0.0812)).toBe('0.081°');
+});
+
+test('an error is told with the share of the cloth that it holds for', () => {
+  const told = ([[0.77, 1], [0.248, 0.108], [0.77, 0.981], [0.77, 0.99999], [0.3, 0.0002], [0, 0]] as const).map(([value, solved]) => degreesOn(value, solved));
+  expect(told).toEqual(['0.77° on 100 %', '0.25° on 11 %', '0.77° on 98 %', '0.77° on over 99 %', '0.30° on 0.020 %', 'nothing solved']);
 });
 
 test('one is singular', () => expect([counted(1, 'solve'), counted(2, 'solve')]).toEqual(['1 solve', '2 solves']));

@@ -39,5 +39,6 @@ test('exports are asked of the session or of the build, and a folder in a name s
   expect(addressOfFile(maps, 'exr', 'masters/a b.exr')).toBe('/api/v1/sessions/satin/exports/exr/files/masters%3Aa%20b.exr');
   expect(addressOfExports({of: 'cloth:wool', is: 'builds', id: 'ab'})).toBe('/api/v1/materials/cloth%3Awool/builds/ab/exports');
   expect(requestOf('export', maps, ['glb'])).toEqual({kind: 'export', session: 'satin', set: '1c', presets: ['glb']});
+  expect(requestOf('export', maps, ['glb'], true)).toEqual({kind: 'export', session: 'satin', set: '1c', presets: ['glb'], draft: true});
   expect(requestOf('export_price', {of: 'dusty', is: 'builds', id: 'ab'}, ['glb'])).toEqual({kind: 'export_price', material: 'dusty', set: 'ab', presets: ['glb']});
 });

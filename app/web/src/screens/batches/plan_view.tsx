@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 import {Axes} from '../../ui/axes';
+import {Cloth} from '../../ui/cloth';
 import {lanesOf, logScale} from '../../ui/plot_scale';
-import {counted, degrees} from '../../ui/say';
+import {counted, degrees, degreesOn} from '../../ui/say';
 import {Table} from '../../ui/table';
 import {bytesOf, durationOf} from '../../ui/words';
 import {levelPoints, reasonInWords, type Plan} from './plan';
@@ -14,12 +15,12 @@ export function PlanView({plan}: {plan: Plan}) {
   return (
     <>
       <p class="dim">
-        {degrees(plan.mean_deg)} predicted, {bytesOf(plan.memory_bytes)} of memory, {bytesOf(plan.write_bytes)} written;
+        {degreesOn(plan.mean_deg, plan.solved)} of the cloth predicted, {bytesOf(plan.memory_bytes)} of memory, {bytesOf(plan.write_bytes)} written;
         measured on {counted(plan.sampled, 'session')} in {durationOf(plan.sample_seconds)}
       </p>
       <Table caption="Levels" heads={['Level', 'All at it', 'Mean error', 'Spread', 'Planned']}
-        rows={plan.levels.map(({quality, seconds, mean_deg, spread_deg, sessions}) => ({
-          key: quality, cells: [quality, durationOf(seconds), degrees(mean_deg), degrees(spread_deg), sessions],
+        rows={plan.levels.map(({quality, seconds, mean_deg, solved, spread_deg, sessions}) => ({
+          key: quality, cells: [quality, durationOf(seconds), degreesOn(mean_deg, solved), degrees(spread_deg), sessions],
         }))} />
       <Curve plan={plan} />
       <Leaf title={counted(plan.jobs.length, 'session')}>
@@ -27,7 +28,7 @@ export function PlanView({plan}: {plan: Plan}) {
           rows={plan.jobs.map((job) => ({
             key: job.session,
             cells: [
-              <a href={`/sessions/${job.session}`}>{job.session}</a>, job.quality, durationOf(job.seconds), degrees(job.degrees),
+              <a href={`/sessions/${job.session}`}><Cloth session={job.session} /></a>, job.quality, durationOf(job.seconds), degreesOn(job.degrees, job.solved),
               job.turn_deg === null ? '' : degrees(job.turn_deg), job.is_measured ? 'measured' : 'carried over',
             ],
           }))} />
@@ -36,7 +37,7 @@ export function PlanView({plan}: {plan: Plan}) {
         <Leaf title={plan.reasons.map(({reason, sessions, seconds}) => `${sessions} ${reasonInWords(reason)}${seconds > 0 ? ` (${durationOf(seconds)} saved)` : ''}`).join(', ')}
           isOpen={plan.reasons.some(({reason}) => reason === 'unsolvable')}>
           <Table caption="Left out" heads={['Session', 'Why']}
-            rows={plan.left_out_sessions.map(({session, said}) => ({key: session, cells: [<a href={`/sessions/${session}`}>{session}</a>, said]}))} />
+            rows={plan.left_out_sessions.map(({session, said}) => ({key: session, cells: [<a href={`/sessions/${session}`}><Cloth session={session} /></a>, said]}))} />
         </Leaf>
       )}
     </>

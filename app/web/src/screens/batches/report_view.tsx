@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type Schemas} from '../../api/client';
+import {clothOf} from '../../state/cloths';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
+import {Cloth} from '../../ui/cloth';
 import {Complaint} from '../../ui/complaint';
 import {Dialog} from '../../ui/dialog';
 import {Mark} from '../../ui/mark';
-import {counted, degrees} from '../../ui/say';
+import {counted, degrees, degreesOn, digits} from '../../ui/say';
 import {Table} from '../../ui/table';
 import {percentOf} from '../../ui/words';
 import {acceptanceInWords, changeInCells, type Report} from './report';
@@ -28,6 +30,18 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
         <p key={verdict}><Mark verdict="warning">{text}</Mark> {remedy && <span class="dim">{remedy}</span>}</p>
       ))}
       {report.causes.map(({what, sessions, example}) => <p key={what}><Mark verdict="fault">{counted(sessions, 'session')}: {example}</Mark></p>)}
+      {report.seconds > 0 && (
+        <p class="numbers">
+          {degreesOn(report.mean_deg, report.mean_solved)} of the cloth, {degreesOn(report.predicted_deg, report.predicted_solved)} predicted;
+          seconds predicted were {digits(report.seconds_ratio)} times those taken.
+        </p>
+      )}
+      {report.warned.length > 0 && (
+        <details open={report.barely_solved.length > 0}>
+          <summary>{counted(report.warned.length, 'session')} solved with warnings</summary>
+          <ul>{report.warned.map((session) => <li key={session}><a href={`/sessions/${session}`}>{session}</a></li>)}</ul>
+        </details>
+      )}
       <p>{counted(report.changed, 'session')} compared with the solve before, {report.worse} worse in something, {report.unchanged} without a changed pixel.</p>
       <div class="row">
         <Button kind="main" onClick={() => ask(true)}>Accept...</Button>
@@ -38,7 +52,7 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
           rows={report.changes.map((each) => ({
             key: each.session,
             cells: [
-              <a href={`/viewer/${each.session}/${each.solve}`}>{each.session}</a>, ...changeInCells(each),
+              <a href={`/viewer/${each.session}/${each.solve}`}><Cloth session={each.session} /></a>, ...changeInCells(each),
               each.regressions.length > 0 && <Mark verdict="warning">{each.regressions.join('; ')}</Mark>,
             ],
           }))} />
@@ -53,8 +67,8 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
         }))} />
       {report.changes.filter(({picture}) => picture !== null).map(({session, picture}) => (
         <figure key={session}>
-          <img src={files + picture} alt={`${session}: before, after, after relit, change`} loading="lazy" />
-          <figcaption class="dim">{session}: before, after, after relit, change</figcaption>
+          <img src={files + picture} alt={`${clothOf(session)}: before, after, after relit, change`} loading="lazy" />
+          <figcaption class="dim"><Cloth session={session} />: before, after, after relit, change</figcaption>
         </figure>
       ))}
       {isAsked && <Acceptance name={name} worse={report.worse} onClose={() => ask(false)} onAccepted={onAccepted} />}
@@ -92,7 +106,7 @@ function Acceptance({name, worse, onClose, onAccepted}: AcceptanceProps) {
         </label>
       )}
       {would && would.left_sessions.length > 0 && (
-        <ul>{would.left_sessions.slice(0, 10).map(({session, why}) => <li key={session}>{session}: {why}</li>)}</ul>
+        <ul>{would.left_sessions.slice(0, 10).map(({session, why}) => <li key={session}><Cloth session={session} />: {why}</li>)}</ul>
       )}
       <Complaint error={look.complaint ?? make.complaint} />
       <div class="row">

@@ -2,6 +2,7 @@
 // What is said of the next cloth, kept while other screens are looked at.
 import {signal} from '@preact/signals';
 import type {Schemas} from '../../api/client';
+import {chosenIn} from './exposure';
 
 export interface Cloth {
   fabric: string;
@@ -9,7 +10,7 @@ export interface Cloth {
   id: string;
   tags: string;
   height_mm: string;
-  /** Empty: metered for this cloth. */
+  /** As it is typed. Empty: metered for this cloth. */
   exposure_ms: string;
 }
 
@@ -42,10 +43,10 @@ export interface MoreShots {
   bracket: string;
 }
 
-/** As POST scan takes it: what is not said is as the rig file has it. */
-export function scanRequestOf({fabric, id, tags, height_mm, exposure_ms}: Cloth, {repeat, bracket}: MoreShots): Schemas['ScanRequest'] {
+/** As POST scan takes it: what is not said is as the rig file has it. `times_us`: those that the camera has. */
+export function scanRequestOf({fabric, id, tags, height_mm, exposure_ms}: Cloth, {repeat, bracket}: MoreShots, times_us: readonly number[] = []): Schemas['ScanRequest'] {
   const metadata = {...(id.trim() && {id: id.trim()}), ...(tagsOf(tags).length && {tags: tagsOf(tags)})};
-  const exposure = numberOr(exposure_ms, null);
+  const {exposure_us} = chosenIn(exposure_ms, times_us);
   const height = numberOr(height_mm, null);
   const share = numberOr(bracket, null);
   return {
@@ -53,7 +54,7 @@ export function scanRequestOf({fabric, id, tags, height_mm, exposure_ms}: Cloth,
     repeat,
     ...(Object.keys(metadata).length && {metadata}),
     ...(height !== null && {cloth_height_mm: height}),
-    ...(exposure !== null && {exposure_us: exposure * 1000}),
+    ...(exposure_us !== null && {exposure_us}),
     ...(share !== null && {bracket: share}),
   };
 }

@@ -4,8 +4,17 @@ import {Complaint} from '../../ui/complaint';
 import {Field} from '../../ui/field';
 import {BillView} from './bill_view';
 import {cloth, say} from './cloth';
+import {millisecondsOf} from './exposure';
 import {bracket, repeats} from './preferences';
-import {proposal} from './proposal';
+import {chosen, proposal, times_us} from './proposal';
+
+export const exposureField = 'exposure';
+
+/** What was typed becomes the time that it stands for. */
+function takeNearest(): void {
+  const {exposure_us} = chosen.value;
+  if (exposure_us !== null && times_us.value.length > 0) say({exposure_ms: millisecondsOf(exposure_us)});
+}
 
 /** The name of what a scan would make, or of what it would go on with. */
 function Proposed() {
@@ -44,7 +53,8 @@ export function ClothForm({onSaid, hasFocus}: {onSaid: () => void; hasFocus: boo
       <Field label="Tags" value={tags} placeholder="red, wool" onInput={(value) => say({tags: value})} onEnter={onSaid} />
       <div class="pair">
         <Field label="Height" type="number" unit="mm" placeholder="as the rig" value={height_mm} onInput={(value) => say({height_mm: value})} onEnter={onSaid} />
-        <Field label="Exposure" type="number" unit="ms" placeholder="metered" value={exposure_ms} onInput={(value) => say({exposure_ms: value})} onEnter={onSaid} />
+        <Field id={exposureField} label="Exposure" unit="ms" placeholder="metered" value={exposure_ms} list={times_us.value.map(millisecondsOf)}
+          hint={chosen.value.says} isWrong={chosen.value.isWrong} onInput={(value) => say({exposure_ms: value})} onLeave={takeNearest} onEnter={onSaid} />
       </div>
       <MoreShots onSaid={onSaid} />
       {proposal.value.would?.bill && <BillView bill={proposal.value.would.bill} />}

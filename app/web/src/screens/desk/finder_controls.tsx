@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The finder, its light, and test shots.
 import {useState} from 'preact/hooks';
+import {ApiError} from '../../api/client';
 import {rig} from '../../state/rig';
 import {useKeys} from '../../state/keys';
 import {useAction} from '../../ui/action';
@@ -10,13 +11,15 @@ import {closeDevices, light, looks, openDevices, shootTest} from './devices';
 import {cloth} from './cloth';
 import {lightLed} from './led_strip';
 import {showsEdges, showsGrid, turn} from './preferences';
+import {chosen} from './proposal';
 
 const first_us = 20_000;
 
 /** What is typed, else what the last scan exposed with, else a fiftieth of a second. */
 function exposureNow_us(): number {
-  const typed = Number(cloth.value.exposure_ms) * 1000;
-  return typed > 0 ? typed : rig.value?.exposure_us || first_us;
+  const {exposure_us, says, isWrong} = chosen.value;
+  if (isWrong) throw new ApiError(says, cloth.value.exposure_ms, '', '', 0);
+  return exposure_us ?? (rig.value?.exposure_us || first_us);
 }
 
 async function turnFinder(): Promise<void> {

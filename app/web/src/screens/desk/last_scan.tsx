@@ -6,6 +6,7 @@ import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Mark} from '../../ui/mark';
+import {digits} from '../../ui/say';
 import {percentOf} from '../../ui/words';
 import {Price} from '../jobs/price';
 import {useJobs} from '../jobs/state';
@@ -27,7 +28,7 @@ interface AgainProps {
 function Again({session, frame, exposed}: AgainProps) {
   const exposure_us = exposed?.word === 'over' ? lessThan(frame.exposure_us, session.other_exposures_us) : 0;
   const again = useAction(() => shootAgain(session.name, frame.index, exposure_us));
-  const how = exposure_us > 0 ? `Again at ${(exposure_us / 1000).toFixed(0)} ms` : 'Again';
+  const how = exposure_us > 0 ? `Again at ${digits(exposure_us / 1000)} ms` : 'Again';
   return (
     <>
       <Button kind={exposed?.word === 'over' ? 'plain' : 'quiet'} label={`Shoot ${titleOf(frame)} again`}

@@ -4,9 +4,16 @@ import {computed, effect, signal} from '@preact/signals';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
 import {rig} from '../../state/rig';
 import {cloth, scanRequestOf} from './cloth';
+import {chosenIn} from './exposure';
 import {bracket, repeats} from './preferences';
 
-export const scanRequest = computed(() => scanRequestOf(cloth.value, {repeat: repeats.value, bracket: bracket.value}));
+/** Shutter times that the camera has, rising; empty until it was asked. One list for as long as they are the same. */
+const listed = computed(() => JSON.stringify(rig.value?.devices.camera.exposures_us ?? []));
+export const times_us = computed(() => JSON.parse(listed.value) as number[]);
+/** What the exposure that is typed comes to. */
+export const chosen = computed(() => chosenIn(cloth.value.exposure_ms, times_us.value));
+
+export const scanRequest = computed(() => scanRequestOf(cloth.value, {repeat: repeats.value, bracket: bracket.value}, times_us.value));
 
 export interface Proposal {
   /** Its name and its bill, and whether it goes on with one that is there. */

@@ -5,6 +5,7 @@ import {answer, api, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
 import {rig} from '../../state/rig';
 import {withDevicesFree} from './devices';
+import {holdOf} from './hold';
 import {scanRequest} from './proposal';
 
 export type Session = Schemas['Session'];
@@ -28,6 +29,12 @@ export async function beginScan(reason: string): Promise<void> {
 
 export async function ask(what: 'pause' | 'resume' | 'cancel'): Promise<void> {
   await answer(api.POST(`/api/v1/scan/${what}`, {body: {}}));
+}
+
+/** Pauses, or goes on: after a fault with the same session, all of its photographs kept. */
+export async function pauseOrGoOn(): Promise<void> {
+  const hold = rig.value && holdOf(rig.value);
+  if (hold) await withDevicesFree(() => ask(hold));
 }
 
 export async function shootAgain(session: string, index: number, exposure_us: number): Promise<void> {

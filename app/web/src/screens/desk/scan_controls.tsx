@@ -3,14 +3,17 @@
 import {useState} from 'preact/hooks';
 import {rig} from '../../state/rig';
 import {useKeys} from '../../state/keys';
-import {useAction} from '../../ui/action';
+import {useAction, type Action} from '../../ui/action';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {Dialog} from '../../ui/dialog';
 import {Field} from '../../ui/field';
 import {Share} from '../../ui/share';
 import {cloth, forgetCloth} from './cloth';
-import {ask, beginScan, scanned, showsScanned} from './scan';
+import {exposureField} from './cloth_form';
+import {holdOf} from './hold';
+import {chosen} from './proposal';
+import {ask, beginScan, pauseOrGoOn, scanned, showsScanned} from './scan';
 
 export const scanButton = 'scan';
 export const nextButton = 'next-cloth';
@@ -40,22 +43,22 @@ function Cancel({onClose}: {onClose: () => void}) {
 }
 
 /** While it runs, and where it stopped. */
-function Running({onCancel}: {onCancel: () => void}) {
+function Running({hold, onCancel}: {hold: Action; onCancel: () => void}) {
   const status = rig.value;
-  const pause = useAction(() => ask(status?.state === 'paused' ? 'resume' : 'pause'));
   if (!status) return null;
-  const {can} = status;
+  const can = holdOf(status);
   return (
     <div class="running">
       <strong>{status.session}</strong>
       <Share label="Photographs" share={status.frames_planned > 0 ? status.frames / status.frames_planned : null} left_s={status.left_s} />
-      <p class="dim">{status.frames} of {status.frames_planned} photographs. {status.why}</p>
+      <p class="dim">{status.frames} of {status.frames_planned} photographs. {!status.error && status.why}</p>
       <div class="row">
-        {can.includes('pause') && <Button keyHint="p" isDisabled={pause.isBusy} onClick={() => void pause.run()}>Pause</Button>}
-        {can.includes('resume') && <Button kind="main" keyHint="p" isDisabled={pause.isBusy} onClick={() => void pause.run()}>Go on</Button>}
-        {can.includes('cancel') && <Button keyHint="Esc" onClick={onCancel}>Cancel</Button>}
+        {can === 'pause' && <Button keyHint="p" isDisabled={hold.isBusy} onClick={() => void hold.run()}>Pause</Button>}
+        {can === 'resume' && <Button kind="main" keyHint="p" isDisabled={hold.isBusy} onClick={() => void hold.run()}>Go on</Button>}
+        {status.can.includes('cancel') && <Button keyHint="Esc" onClick={onCancel}>Cancel</Button>}
       </div>
-      <Complaint error={status.error ?? pause.complaint} />
+      <Complaint error={status.error} />
+      <Complaint error={hold.complaint} />
     </div>
   );
 }
@@ -74,18 +77,18 @@ export function ScanControls() {
   const [asksToCancel, askToCancel] = useState(false);
   const [reason, setReason] = useState('');
   const scan = useAction(() => beginScan(reason));
-  const pauseOrGoOn = () => ask(rig.value?.state === 'paused' ? 'resume' : 'pause').catch(() => {});
+  const hold = useAction(pauseOrGoOn);
   const status = rig.value;
   const can = status?.can ?? [];
-  const isReady = can.includes('scan') && cloth.value.fabric.trim() !== '' && !scan.isBusy;
+  const isReady = can.includes('scan') && cloth.value.fabric.trim() !== '' && !chosen.value.isWrong && !scan.isBusy;
   const start = () => {
     if (isReady) void scan.run();
-    else if (can.includes('scan')) focusOn('fabric');
+    else if (can.includes('scan')) focusOn(chosen.value.isWrong ? exposureField : 'fabric');
   };
   useKeys('desk', [
     {key: 'Space', does: 'scan', run: start},
     {key: 'Escape', does: 'cancel the scan (asks)', run: () => askToCancel(rig.value?.can.includes('cancel') ?? false)},
-    {key: 'p', does: 'pause the scan, or go on', run: () => void pauseOrGoOn()},
+    {key: 'p', does: 'pause the scan, or go on', run: () => void hold.run()},
     {key: 'n', does: 'next cloth', run: nextCloth},
   ]);
   if (!status) return null;
@@ -93,7 +96,7 @@ export function ScanControls() {
   const isDone = showsScanned.value && scanned.value !== null;
   return (
     <div class="scan-controls">
-      {(isAtWork || status.error) && <Running onCancel={() => askToCancel(true)} />}
+      {(isAtWork || status.error) && <Running hold={hold} onCancel={() => askToCancel(true)} />}
       {!isAtWork && isDone && <Button id={nextButton} kind="main" keyHint="n" onClick={nextCloth}>Next cloth</Button>}
       {!isAtWork && !isDone && <Button id={scanButton} kind="main" keyHint="Space" isDisabled={!isReady} onClick={start}>Scan</Button>}
       <Complaint error={scan.complaint} />

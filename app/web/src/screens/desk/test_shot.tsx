@@ -9,16 +9,13 @@ import {percentOf} from '../../ui/words';
 import {exposedOf} from './clipping';
 import {say} from './cloth';
 import {shots} from './devices';
+import {exposureInWords, millisecondsOf} from './exposure';
 import {HistogramPlot} from './histogram';
 import {Loupe} from './loupe';
 import type {Point} from './loupe_tiles';
 
 type TestShot = Schemas['TestShot'];
 type Focus = NonNullable<TestShot['focus']>;
-
-function millisecondsOf(us: number): string {
-  return `${Number((us / 1000).toPrecision(3))} ms`;
-}
 
 function shadeOf(relative: number | null): string {
   return relative === null ? 'unknown' : relative > 0.97 ? 'sharpest' : relative > 0.85 ? 'close' : 'soft';
@@ -102,8 +99,8 @@ function Suggested({shot}: {shot: TestShot}) {
   if (suggested === null) return null;
   return (
     <p class="row">
-      <span>A scan would expose {millisecondsOf(suggested)}.</span>
-      <Button onClick={() => say({exposure_ms: String(Number((suggested / 1000).toPrecision(4)))})}>Use that</Button>
+      <span>A scan would expose {exposureInWords(suggested)}.</span>
+      <Button onClick={() => say({exposure_ms: millisecondsOf(suggested)})}>Use that</Button>
     </p>
   );
 }
@@ -113,7 +110,7 @@ function Facts({shot}: {shot: TestShot}) {
   const exposed = histogram && exposedOf(histogram);
   return (
     <div class="facts">
-      <h2>{shot.led === 0 ? 'Without a LED' : `LED ${shot.led}`}, {millisecondsOf(shot.exposure_us)}</h2>
+      <h2>{shot.led === 0 ? 'Without a LED' : `LED ${shot.led}`}, {exposureInWords(shot.exposure_us)}</h2>
       {exposed && (
         <p>
           <Mark verdict={exposed.verdict}>{exposed.word}</Mark>, {percentOf(exposed.clipped)} clipped

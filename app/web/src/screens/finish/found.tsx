@@ -4,6 +4,8 @@ import {fieldsOf, isFields, listIn, numberIn, textIn} from '../../ui/fields';
 import {Mark, type Verdict} from '../../ui/mark';
 import {digits} from '../../ui/say';
 import {Table} from '../../ui/table';
+import {addressOfMaps} from '../viewer/maps';
+import type {SolveName} from '../viewer/sight';
 
 export function Verdicts({document}: {document: unknown}) {
   const verdicts = listIn(document, 'verdicts');
@@ -30,6 +32,12 @@ export function factsInWords(facts: unknown): string {
   }).join(', ');
 }
 
+/** Pictures of what steps ask about. */
+export function StepPictures({of, document}: {of: SolveName; document: unknown}) {
+  const files = listIn(document, 'steps').map((step) => textIn(fieldsOf(step)['facts'], 'picture')).filter((file) => file !== '');
+  return <>{files.map((file) => <img key={file} class="asked" alt="Where the yarns seem to lie" src={`${addressOfMaps(of)}/pictures/${file}`} />)}</>;
+}
+
 export function StepFacts({document}: {document: unknown}) {
   const steps = listIn(document, 'steps').map((step) => ({name: textIn(step, 'do'), says: factsInWords(fieldsOf(step)['facts'])}));
   return <ul class="facts">{steps.map(({name, says}, index) => says && <li key={index}><strong>{name}</strong> <span class="dim">{says}</span></li>)}</ul>;
@@ -54,11 +62,12 @@ function Checks({document}: {document: unknown}) {
 }
 
 /** The maps of a set, each with where it comes from. */
-export function MadePanel({document}: {document: unknown}) {
+export function MadePanel({of, document}: {of: SolveName; document: unknown}) {
   return (
     <section class="made">
       <h2>What was made</h2>
       <Verdicts document={document} />
+      <StepPictures of={of} document={document} />
       <Checks document={document} />
       <StepFacts document={document} />
       <Table caption="Maps" heads={['Map', 'From', 'Least', 'Most', 'Mean']}

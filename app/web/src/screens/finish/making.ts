@@ -12,13 +12,16 @@ export interface Of {
   session: string;
   /** Empty: the session's current one. */
   solve: string;
+  /** It is a preview, and a person wants maps of it all the same. */
+  isDraft?: boolean;
 }
 
-export function requestOf({session, solve}: Of, recipe: Recipe, isPreview: boolean): Schemas['JobRequest'] {
+export function requestOf({session, solve, isDraft}: Of, recipe: Recipe, isPreview: boolean): Schemas['JobRequest'] {
   return {
     kind: isPreview ? 'finish' : 'maps',
     session,
     ...(solve && {solve}),
+    ...(isDraft && {draft: true}),
     ...(isPreview && {preview: true}),
     steps: {steps: [...recipe]},
   };
@@ -61,7 +64,7 @@ export function usePreview(of: Of, recipe: Recipe): Preview {
       clearTimeout(timer);
       void giveUp(queued);
     };
-  }, [of.session, of.solve, words]);
+  }, [of.session, of.solve, of.isDraft, words]);
   const job = jobWith(id);
   useEffect(() => {
     if (job?.state === 'done' && job.result) setMade(job.result);

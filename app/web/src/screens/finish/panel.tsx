@@ -19,7 +19,7 @@ import {cancel, jobs, queueJob, useJobs} from '../jobs/state';
 import {addressOfViewer, FIRST_SIGHT} from '../viewer/sight';
 import type {Viewer} from '../viewer/viewer';
 import {Draft} from './draft';
-import {StepFacts, Verdicts} from './found';
+import {StepFacts, StepPictures, Verdicts} from './found';
 import {type Of, requestOf, usePreview} from './making';
 import {PreviewView} from './preview_view';
 import {keysOfBox, moved, type Recipe, recipeOfSet, type Recipes, type Spot, type Step, stepOf, withKeys, without} from './recipe';
@@ -50,7 +50,9 @@ interface FinishingProps {
 
 function Finishing({viewer, set, recipes}: FinishingProps) {
   const {session, solve} = viewer.name;
-  const of = {session, solve: viewer.name.isSet ? textIn(set, 'solve') : solve};
+  const [isDraft, setIsDraft] = useState(false);
+  const isPreview = viewer.maps.value?.solve.method === 'preview';
+  const of = {session, solve: viewer.name.isSet ? textIn(set, 'solve') : solve, isDraft: isPreview && isDraft};
   const draft = useMemo(() => new Draft(session, recipeOfSet(set)), [session]);
   const {past, now, future} = draft.history.value;
   const preview = usePreview(of, now);
@@ -61,6 +63,12 @@ function Finishing({viewer, set, recipes}: FinishingProps) {
   ]);
   return (
     <>
+      {isPreview && (
+        <label>
+          <input type="checkbox" checked={isDraft} onChange={(event) => setIsDraft(event.currentTarget.checked)} />
+          {' '}A draft: this solve is a preview, of half the size and without masks
+        </label>
+      )}
       <div class="row">
         {recipes.recipes.map(({name, steps}) => <Button key={name} label={`Recipe ${name}`} onClick={() => draft.change(steps)}>{name}</Button>)}
       </div>
@@ -71,7 +79,13 @@ function Finishing({viewer, set, recipes}: FinishingProps) {
       <PreviewView session={session} preview={preview} />
       <Complaint error={preview.complaint ?? (preview.job?.state === 'failed' ? errorOf(preview.job) : null)} />
       <Steps viewer={viewer} recipe={now} recipes={recipes} onChange={(recipe) => draft.change(recipe)} />
-      {isFields(preview.document) && <><Verdicts document={preview.document} /><StepFacts document={preview.document} /></>}
+      {isFields(preview.document) && (
+        <>
+          <Verdicts document={preview.document} />
+          <StepPictures of={{session, solve: textIn(preview.document, 'id'), isSet: true}} document={preview.document} />
+          <StepFacts document={preview.document} />
+        </>
+      )}
       <MakeAll of={of} recipe={now} />
     </>
   );

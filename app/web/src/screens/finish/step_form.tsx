@@ -66,6 +66,8 @@ function KeyField({label, of, value, onChange}: KeyFieldProps) {
       return <Typed label={label} of={of} text={textOfSpots(value)} onText={(text) => onChange(spotsIn(text))} />;
     case 'numbers':
       return <Typed label={label} of={of} text={Array.isArray(value) ? value.join(' ') : ''} onText={(text) => onChange(numbersIn(text))} />;
+    case 'maybe':
+      return <Typed label={label} of={of} text={typeof value === 'number' ? String(value) : ''} onText={(text) => onChange(maybeIn(text))} />;
     default:
       return <Typed label={label} of={of} text={String(value)} onText={(text) => onChange(Number(text.replace(',', '.')))} />;
   }
@@ -90,6 +92,11 @@ function Typed({label, of: {name, says}, text, onText}: {label: string; of: Step
 
 export function numbersIn(text: string): number[] {
   return text.split(/[\s;]+/).filter((word) => word !== '').map((word) => Number(word.replace(',', '.')));
+}
+
+/** Null where nothing is typed. */
+export function maybeIn(text: string): number | null {
+  return numbersIn(text)[0] ?? null;
 }
 
 /** "12 30 1.5; 40 8 2": places in millimetres, each with its radius. */

@@ -2,7 +2,7 @@
 // The same pixels as every level makes them, side by side.
 import {useState} from 'preact/hooks';
 import {Button} from '../../ui/button';
-import {degrees} from '../../ui/say';
+import {degreesOn} from '../../ui/say';
 import {durationOf} from '../../ui/words';
 import type {Level, Quality} from './ladder';
 
@@ -26,11 +26,11 @@ export function Crops({job, levels, onChoose}: CropsProps) {
         {looks.map((each) => <Button key={each.look} isPressed={look === each.look} onClick={() => setLook(each.look)}>{each.says}</Button>)}
       </div>
       <ul class="crops">
-        {levels.map(({quality, predicted_deg, seconds}) => (
+        {levels.map(({quality, predicted_deg, solved, seconds}) => (
           <li key={quality}>
             <button type="button" aria-label={`${quality}, as it looks: queue it`} onClick={() => onChoose(quality)}>
               <span class="crop"><img src={`/api/v1/jobs/${job}/files/${quality}_${look}.png`} alt="" /></span>
-              <strong>{quality}</strong> <span class="dim numbers">{degrees(predicted_deg)}, {durationOf(seconds)}</span>
+              <strong>{quality}</strong> <span class="dim numbers">{degreesOn(predicted_deg, solved)}, {durationOf(seconds)}</span>
             </button>
           </li>
         ))}

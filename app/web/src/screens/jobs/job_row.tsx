@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError} from '../../api/client';
+import {Cloth} from '../../ui/cloth';
 import {textIn} from '../../ui/fields';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
@@ -56,7 +57,7 @@ function Subject({job}: {job: Job}) {
   if (job.of.includes('/')) return <span>{job.of}</span>;
   return (
     <>
-      <a href={`/sessions/${job.of}`}>{job.of}</a>
+      <a href={`/sessions/${job.of}`}><Cloth session={job.of} /></a>
       {isOfMaps && <> <a href={`/viewer/${job.of}/maps/${textIn(job.result, 'id')}`}>Look at them</a></>}
       {solve && <> <a href={`/viewer/${job.of}/${solve}`}>Look at it</a></>}
       {job.kind === 'price' && job.state === 'done' && <> <a href={`/jobs?price=${job.of}`}>Levels</a></>}

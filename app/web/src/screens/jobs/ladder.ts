@@ -9,6 +9,8 @@ export type Quality = (typeof qualities)[number];
 export interface Level {
   quality: Quality;
   predicted_deg: number;
+  /** Share of the cloth that it holds for: the rest has no normal. */
+  solved: number;
   parts_deg: {noise: number; model: number; calibration: number};
   seconds: number;
   note: string;
@@ -29,6 +31,7 @@ function levelOf(document: unknown): Level | null {
   return {
     quality,
     predicted_deg,
+    solved: numberIn(document, 'solved') ?? 1,
     parts_deg: {noise: part('noise'), model: part('model'), calibration: part('calibration')},
     seconds,
     note: textIn(document, 'note'),
@@ -39,12 +42,25 @@ function isQuality(text: string): text is Quality {
   return (qualities as readonly string[]).includes(text);
 }
 
-/** Levels that nothing cheaper equals: what a person chooses among. */
+/** Cloth of which less has a normal is not solved; as the command line has it. */
+const leastSolved = 0.5;
+/** What straight up is off from a normal that nobody knows, on the mean. */
+const unknown_deg = 180 / Math.PI;
+
+function degOfWhole({predicted_deg, solved}: Level): number {
+  return solved * predicted_deg + (1 - solved) * unknown_deg;
+}
+
+/** Levels that solve the cloth and that nothing cheaper equals: what a person chooses among. */
 export function worthwhile(levels: readonly Level[]): Level[] {
   return levels.filter(
     (level) =>
-      !levels.some(
-        (other) => other.seconds < level.seconds && other.predicted_deg <= level.predicted_deg,
-      ),
+      level.solved >= leastSolved &&
+      !levels.some((other) => other.seconds < level.seconds && degOfWhole(other) <= degOfWhole(level)),
   );
+}
+
+/** Levels that can stand on logarithmic axes: an error of nothing is none. */
+export function drawable(levels: readonly Level[]): Level[] {
+  return levels.filter(({solved, predicted_deg}) => solved > 0 && predicted_deg > 0);
 }

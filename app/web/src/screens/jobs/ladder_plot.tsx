@@ -2,7 +2,7 @@
 // Accuracy against time: each level as a point, and its error's parts as small marks below it.
 import {Axes} from '../../ui/axes';
 import {lanesOf, logScale} from '../../ui/plot_scale';
-import {degrees} from '../../ui/say';
+import {degreesOn} from '../../ui/say';
 import {durationOf} from '../../ui/words';
 import type {Level, Quality} from './ladder';
 
@@ -84,7 +84,7 @@ function LevelPoint({level, x, placeY, nameFrom, isWorthwhile, onChoose}: LevelP
     event.preventDefault();
     choose();
   };
-  const says = `${level.quality}: ${durationOf(level.seconds)}, ${degrees(level.predicted_deg)}. Queue it`;
+  const says = `${level.quality}: ${durationOf(level.seconds)}, ${degreesOn(level.predicted_deg, level.solved)}. Queue it`;
   return (
     <g class="level" role="button" tabIndex={0} aria-label={says} onClick={choose} onKeyDown={press}>
       {drawnParts(level).map((part) => (

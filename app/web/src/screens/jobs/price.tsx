@@ -3,15 +3,17 @@
 import './price.css';
 import {useState} from 'preact/hooks';
 import {asApiError, type ApiError, type Schemas} from '../../api/client';
+import {clothOf} from '../../state/cloths';
 import {Button} from '../../ui/button';
+import {Cloth} from '../../ui/cloth';
 import {Complaint} from '../../ui/complaint';
 import {Empty} from '../../ui/empty';
-import {degrees} from '../../ui/say';
+import {degrees, degreesOn} from '../../ui/say';
 import {Share} from '../../ui/share';
 import {Table} from '../../ui/table';
 import {durationOf} from '../../ui/words';
 import {Crops} from './crops';
-import {levelsIn, worthwhile, type Level, type Quality} from './ladder';
+import {drawable, levelsIn, worthwhile, type Level, type Quality} from './ladder';
 import {LadderPlot} from './ladder_plot';
 import {hasEnded, type Job} from './queue';
 import {jobs, queueJob} from './state';
@@ -31,7 +33,7 @@ export function Price({session}: {session: string}) {
   return (
     <section class="panel price" aria-labelledby="price-title">
       <div class="row">
-        <h2 id="price-title">Accuracy against time of <a href={`/sessions/${session}`}>{session}</a></h2>
+        <h2 id="price-title">Accuracy against time of <a href={`/sessions/${session}`}><Cloth session={session} /></a></h2>
         {levels.length > 0 && <Button kind="quiet" onClick={price}>Measure again</Button>}
       </div>
       <Complaint error={complaint} />
@@ -56,15 +58,15 @@ interface LevelsProps {
 function Levels({job, levels, onSolve}: LevelsProps) {
   return (
     <>
-      <LadderPlot levels={levels} worthwhile={worthwhile(levels)} onChoose={onSolve} />
+      {drawable(levels).length > 0 && <LadderPlot levels={drawable(levels)} worthwhile={worthwhile(levels)} onChoose={onSolve} />}
       <Crops job={job.id} levels={levels} onChoose={onSolve} />
-      <Table caption={`Levels of ${job.of}`} heads={['Level', 'Time', 'Error', 'noise', 'model', 'calibration', 'Note', 'Solve']}
+      <Table caption={`Levels of ${clothOf(job.of)}`} heads={['Level', 'Time', 'Error on so much of the cloth', 'noise', 'model', 'calibration', 'Note', 'Solve']}
         rows={levels.map((level) => ({
           key: level.quality,
           cells: [
             level.quality,
             durationOf(level.seconds),
-            degrees(level.predicted_deg),
+            degreesOn(level.predicted_deg, level.solved),
             degrees(level.parts_deg.noise),
             degrees(level.parts_deg.model),
             degrees(level.parts_deg.calibration),

@@ -4,6 +4,7 @@ import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type ApiError, asApiError, type Schemas} from '../../api/client';
 import {onEvent} from '../../api/events';
 import {place} from '../../state/address';
+import {clothOf} from '../../state/cloths';
 import {placeOf} from '../../state/place';
 import {useAction} from '../../ui/action';
 import {Button} from '../../ui/button';
@@ -42,16 +43,15 @@ export function Choose() {
   );
 }
 
-/** An address without maps becomes that of the session's newest. */
-export function NewestMaps({session}: {session: string}) {
+/** An address without maps becomes that of the session's current set. */
+export function CurrentMaps({session}: {session: string}) {
   const [hasNone, setHasNone] = useState(false);
   const [complaint, setComplaint] = useState<ApiError | null>(null);
   useEffect(() => {
     const ask = () => {
-      answer(api.GET('/api/v1/sessions/{name}/maps', {params: {path: {name: session}}})).then(({sets}) => {
-        const newest = sets.find(({preview}) => !preview);
-        if (!newest) return setHasNone(true);
-        history.replaceState(null, '', placeOfMaterial({of: session, is: 'maps', id: newest.id}) + location.search);
+      answer(api.GET('/api/v1/sessions/{name}/maps', {params: {path: {name: session}}})).then(({current}) => {
+        if (current === null) return setHasNone(true);
+        history.replaceState(null, '', placeOfMaterial({of: session, is: 'maps', id: current}) + location.search);
         place.value = placeOf(new URL(location.href));
       }, (error: unknown) => setComplaint(asApiError(error)));
     };
@@ -60,29 +60,46 @@ export function NewestMaps({session}: {session: string}) {
   }, [session]);
   return (
     <section class="page">
-      <h1>{session}</h1>
+      <h1>{clothOf(session)}</h1>
       <Complaint error={complaint} />
-      {hasNone && <MakeMaps session={session} />}
+      {hasNone && <><p class="dim">A material is made of maps: normals, albedo, height, occlusion, roughness. None were made of this session yet.</p><MakeMaps session={session} /></>}
     </section>
   );
 }
 
-/** The solve, where there is none, and all maps of it. */
-function MakeMaps({session}: {session: string}) {
+/** All maps of the best solve of today's photographs, which is made where there are previews alone; or a draft. */
+export function MakeMaps({session, onMade}: {session: string; onMade?: () => void}) {
   useJobs();
+  const [of, setOf] = useState<Schemas['Session'] | null>(null);
+  useEffect(() => {
+    const ask = () => void answer(api.GET('/api/v1/sessions/{name}', {params: {path: {name: session}}})).then(setOf, () => {});
+    ask();
+    return onEvent('job', (job) => job.of === session && job.kind === 'solve' && job.state === 'done' && ask());
+  }, [session]);
+  useEffect(() => onEvent('job', (job) => job.of === session && job.kind === 'maps' && job.state === 'done' && onMade?.()), [session]);
   const make = useAction(async () => {
-    const {solves} = await answer(api.GET('/api/v1/sessions/{name}/solves', {params: {path: {name: session}}}));
-    if (solves.length === 0) await queueJob({kind: 'solve', session, quality: 'standard'});
+    if (of?.maps_of == null) await queueJob({kind: 'solve', session, quality: 'standard'});
     await queueJob({kind: 'maps', session});
   });
-  const mine = jobs.value.filter(({of, kind}) => of === session && (kind === 'maps' || kind === 'solve'));
+  const draft = useAction(() => queueJob({kind: 'maps', session, draft: true}));
+  const mine = jobs.value.filter((job) => job.of === session && (job.kind === 'maps' || job.kind === 'solve'));
   const running = mine.find((job) => !hasEnded(job));
+  const isBusy = make.isBusy || draft.isBusy || running !== undefined;
+  const hasPreviewAlone = of?.maps_of === null && of.current_level === 'preview';
   return (
     <>
-      <p class="dim">A material is made of maps: normals, albedo, height, occlusion, roughness. None were made of this session yet.</p>
-      <div class="row"><Button kind="main" isDisabled={make.isBusy || running !== undefined} onClick={() => void make.run()}>Make the maps</Button></div>
-      <Complaint error={make.complaint} />
+      {of && <p class="dim">{sourceInWords(of)}</p>}
+      <div class="row">
+        <Button kind="main" isDisabled={isBusy || of === null} onClick={() => void make.run()}>Make the maps</Button>
+        {hasPreviewAlone && <Button kind="quiet" isDisabled={isBusy} onClick={() => void draft.run()}>Only a draft, of the preview</Button>}
+      </div>
+      <Complaint error={make.complaint ?? draft.complaint} />
       {mine[0] && <JobLine job={running ?? mine[0]} />}
     </>
   );
+}
+
+function sourceInWords({maps_of, current_solve}: Schemas['Session']): string {
+  if (maps_of) return [`They are made of the ${maps_of.level} solve ${maps_of.solve.slice(0, 8)}.`, ...maps_of.stale.map((why) => `But ${why}.`)].join(' ');
+  return current_solve === '' ? 'It is solved at standard first.' : 'Today’s photographs have no solve that is better than a preview: they are solved at standard first.';
 }

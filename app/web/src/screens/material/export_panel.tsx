@@ -15,16 +15,17 @@ import {addressOfExports, addressOfFile, type ExportFile, filesOf, type Price, p
 import {JobLine} from './job_line';
 import type {MaterialName} from './sight';
 
-export function ExportPanel({name}: {name: MaterialName}) {
+export function ExportPanel({name, isDraft}: {name: MaterialName; isDraft: boolean}) {
   useJobs();
   const [presets, setPresets] = useState<Schemas['Preset'][]>([]);
+  const [takesDraft, setTakesDraft] = useState(false);
   const [chosen, setChosen] = useState<string[]>([]);
   const [complaint, setComplaint] = useState<ApiError | null>(null);
   useEffect(() => {
     answer(api.GET('/api/v1/presets')).then((list) => setPresets(list.presets), (error: unknown) => setComplaint(asApiError(error)));
   }, []);
-  const price = useAction(() => queueJob(requestOf('export_price', name, chosen)));
-  const make = useAction(() => queueJob(requestOf('export', name, chosen)));
+  const price = useAction(() => queueJob(requestOf('export_price', name, chosen, isDraft && takesDraft)));
+  const make = useAction(() => queueJob(requestOf('export', name, chosen, isDraft && takesDraft)));
   const newest = (kind: string) => jobs.value.find((job) => job.kind === kind && job.of === name.of && job.wants.set === name.id);
   const prices = pricesOf(newest('export_price')?.result);
   const formats = prices.get('');
@@ -40,6 +41,12 @@ export function ExportPanel({name}: {name: MaterialName}) {
             <Preset key={preset.name} preset={preset} isChosen={chosen.includes(preset.name)} price={prices.get(preset.name)} onToggle={() => toggle(preset.name)} />
           ))}
         </ul>
+        {isDraft && (
+          <label>
+            <input type="checkbox" checked={takesDraft} onChange={(event) => setTakesDraft(event.currentTarget.checked)} />
+            {' '}Export the draft: it is of a preview, of half the size and without masks
+          </label>
+        )}
         <div class="row sticky">
           <Button isDisabled={chosen.length === 0 || price.isBusy || isRunning('export_price')} onClick={() => void price.run()}>What it costs</Button>
           <Button kind="main" isDisabled={chosen.length === 0 || make.isBusy || isRunning('export')} onClick={() => void make.run()}>Export</Button>

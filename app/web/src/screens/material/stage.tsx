@@ -9,6 +9,7 @@ import {lengthInWords, roundBelow} from '../viewer/bars';
 import {lightAt, lightInWords, nudged, placeOf} from '../viewer/light';
 import type {Look} from './look';
 import type {Shape} from './sight';
+import {titleOf} from './title';
 
 const BAR_PX = 160;
 const STEP = 0.05;
@@ -102,7 +103,7 @@ export function Stage({look}: {look: Look}) {
   return (
     <div ref={box} class="picture">
       <canvas ref={canvas} role="application" tabIndex={0} {...handOf(look)}
-        aria-label={`${look.name.of} ${shapesInWords[shape]}, lit ${lightInWords(light)}. Arrows move the lamp.`} />
+        aria-label={`${titleOf(look.name)} ${shapesInWords[shape]}, lit ${lightInWords(light)}. Arrows move the lamp.`} />
       <Lamp look={look} />
       <Bar look={look} />
       {means === 'none' && <p class="remark" role="alert">This browser has no WebGL 2, which the material is drawn by. The viewer shows its maps without it.</p>}

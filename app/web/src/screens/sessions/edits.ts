@@ -2,6 +2,7 @@
 // Changes of what is said of cloths. Each is a step on the daemon that can be undone, also after it was restarted.
 import {signal} from '@preact/signals';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
+import {hearOfCloths} from '../../state/cloths';
 import type {MetadataChange} from './metadata';
 
 export interface Word {
@@ -16,6 +17,7 @@ export async function change(name: string, body: MetadataChange): Promise<Schema
   const params = {path: {name}};
   const done = await answer(api.PATCH('/api/v1/sessions/{name}/metadata', {params, body}));
   lastWord.value = {says: done.words, error: null};
+  if (body.fabric !== undefined) hearOfCloths([{name, fabric: body.fabric ?? ''}]);
   return done;
 }
 

@@ -17,6 +17,8 @@ export function MapSets({session, solve}: {session: string; solve: string}) {
             <a class="button" href={addressOfViewer({session, solve: set.id, isSet: true})}>Look at them</a>
             <a class="button" href={`/material/${session}/maps/${set.id}`}>As a material</a>
             <span><strong>{setInWords(set)}</strong> <span class="dim numbers">{set.width} × {set.height}, {timeOf(set.created)}, {bytesOf(set.bytes)}</span></span>
+            {set.draft && <Mark verdict="warning">draft</Mark>}
+            {set.stale.map((why) => <Mark key={why} verdict="warning">stale: {why}</Mark>)}
             {set.warnings.length > 0 && <Mark verdict="warning">{counted(set.warnings.length, 'warning')}</Mark>}
           </li>
         ))}

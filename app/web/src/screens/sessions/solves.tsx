@@ -33,10 +33,11 @@ export function Solves({one, onChanged}: SolvesProps) {
         </Empty>
       )}
       <ul class="solves">
-        {solves.map(({id, method, width, height, warnings, created, bytes}) => (
+        {solves.map(({id, method, width, height, warnings, created, bytes, outdated}) => (
           <li key={id}>
             <a class="button" href={`/viewer/${session.name}/${id}`}>Look at it</a>
             <span><strong>{method}</strong> <span class="dim numbers">{width} × {height}, {timeOf(created)}, {bytesOf(bytes)}</span></span>
+            {outdated !== '' && <Mark verdict="warning">stale: {outdated}</Mark>}
             {warnings.length > 0 && <Mark verdict="warning">{counted(warnings.length, 'warning')}</Mark>}
             {session.current_solve === id
               ? <Mark verdict="fine">current</Mark>

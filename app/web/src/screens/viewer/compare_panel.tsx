@@ -2,6 +2,7 @@
 // Two solves beside each other, or the angle between them.
 import {useEffect, useState} from 'preact/hooks';
 import {answer, api, type Schemas} from '../../api/client';
+import {clothOf} from '../../state/cloths';
 import {Button} from '../../ui/button';
 import {Choice} from '../../ui/choice';
 import {degrees} from '../../ui/say';
@@ -56,7 +57,7 @@ export function ComparePanel({viewer}: {viewer: Viewer}) {
     <section>
       <h2>Compare</h2>
       <Choice label="Session compared with" value={session} onChange={setSession}
-        options={[...new Set([viewer.name.session, session, ...names])].map((name) => ({value: name, says: name}))} />
+        options={[...new Set([viewer.name.session, session, ...names])].map((name) => ({value: name, says: clothOf(name) === name ? name : `${clothOf(name)} ${name}`}))} />
       <Choice label="Solve compared with" value={other?.session === session ? textOf(other) : ''} onChange={choose}
         options={[{value: '', says: 'none'}, ...options]} />
       {other && <Ways viewer={viewer} />}

@@ -2,6 +2,7 @@
 // What lies over the picture: ruler, rectangle, held pixel, divider, lamp.
 import {type Repeat, repeats} from '../../gl/tiles';
 import {type Point, type Size, type View, toCanvas} from '../../gl/view';
+import {clothOf} from '../../state/cloths';
 import {placeOf} from './light';
 import {type Maps, solveInWords} from './maps';
 import type {Viewer} from './viewer';
@@ -99,5 +100,5 @@ export function SideNames({viewer}: {viewer: Viewer}) {
 
 function nameOf({name, solve}: Maps, beside: Maps): string {
   const what = name.solve === 'truth' ? 'truth' : solveInWords(solve);
-  return name.session === beside.name.session ? what : `${name.session}, ${what}`;
+  return name.session === beside.name.session ? what : `${clothOf(name.session)}, ${what}`;
 }

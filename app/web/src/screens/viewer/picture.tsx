@@ -2,6 +2,7 @@
 // The picture with all that lies on it.
 import {useEffect, useMemo, useRef, useState} from 'preact/hooks';
 import type {Point} from '../../gl/view';
+import {clothOf} from '../../state/cloths';
 import {Button} from '../../ui/button';
 import {Complaint} from '../../ui/complaint';
 import {PictureCanvas} from './canvas';
@@ -22,7 +23,7 @@ const keysInWords = 'Keys: 1 to 8 layers, D difference, B divider, L light, R ru
 export function labelOf(viewer: Viewer): string {
   const {layer, light} = viewer.sight.value;
   const lit = layer === 'relit' ? ` ${lightInWords(light)}` : '';
-  return `${saysOf(layer)}${lit}, ${viewer.name.session}. ${keysInWords}`;
+  return `${saysOf(layer)}${lit}, ${clothOf(viewer.name.session)}. ${keysInWords}`;
 }
 
 /** Pixels of the canvas a pixel of the page. */

@@ -3,6 +3,7 @@ import './viewer.css';
 import {useEffect, useMemo, useState} from 'preact/hooks';
 import {answer, api, ApiError, asApiError} from '../../api/client';
 import {go, place} from '../../state/address';
+import {clothOf} from '../../state/cloths';
 import {placeOf} from '../../state/place';
 import {Choice} from '../../ui/choice';
 import {Complaint} from '../../ui/complaint';
@@ -30,25 +31,25 @@ export default function ViewerScreen() {
   const [session] = parts;
   if (session === undefined) return <NoSession />;
   const name = nameOf(parts);
-  return name ? <Viewing key={parts.join('/')} name={name} /> : <NewestSolve key={session} session={session} />;
+  return name ? <Viewing key={parts.join('/')} name={name} /> : <CurrentSolve key={session} session={session} />;
 }
 
 function noSolveOf(session: string): ApiError {
   return new ApiError('There is nothing to look at yet.', session, 'This session was not solved.', 'Queue a solve under Jobs.', 404);
 }
 
-/** An address without a solve becomes that of the session's newest. */
-function NewestSolve({session}: {session: string}) {
+/** An address without a solve becomes that of the session's current one. */
+function CurrentSolve({session}: {session: string}) {
   const [complaint, setComplaint] = useState<ApiError | null>(null);
   useEffect(() => {
     answer(api.GET('/api/v1/sessions/{name}/solves', {params: {path: {name: session}}})).then(({solves, truth}) => {
-      const solve = solves[0]?.id ?? (truth ? 'truth' : null);
+      const solve = solves.find(({is_current}) => is_current)?.id ?? (truth ? 'truth' : null);
       if (solve === null) return setComplaint(noSolveOf(session));
       history.replaceState(null, '', addressOfViewer({session, solve}) + location.search);
       place.value = placeOf(new URL(location.href));
     }, (error: unknown) => setComplaint(asApiError(error)));
   }, [session]);
-  return <section class="page"><h1>{session}</h1><Complaint error={complaint} /></section>;
+  return <section class="page"><h1>{clothOf(session)}</h1><Complaint error={complaint} /></section>;
 }
 
 /** The session beside this one in the library, with its solve. */
@@ -106,7 +107,7 @@ function Chosen({viewer, panel}: {viewer: Viewer; panel: Panel}) {
     case 'compare':
       return <ComparePanel viewer={viewer} />;
     case 'why':
-      return viewer.name.isSet ? <MadePanel document={viewer.maps.value?.solve.set} /> : <WhyPanel viewer={viewer} />;
+      return viewer.name.isSet ? <MadePanel of={viewer.name} document={viewer.maps.value?.solve.set} /> : <WhyPanel viewer={viewer} />;
     case 'finish':
       return <FinishPanel viewer={viewer} />;
   }
@@ -135,11 +136,12 @@ function Head({viewer}: {viewer: Viewer}) {
   return (
     <section class="head">
       <div class="row">
-        <h1>{session}</h1>
+        <h1>{clothOf(session)}</h1>
         {solves && (
           <Choice label="Solve" value={textOf(viewer.name)} options={options} onChange={choose} />
         )}
       </div>
+      {clothOf(session) !== session && <p class="dim">{session}</p>}
       {maps && (
         <p class="dim numbers">
           {maps.solve.width} × {maps.solve.height} pixels
@@ -148,6 +150,7 @@ function Head({viewer}: {viewer: Viewer}) {
         </p>
       )}
       {viewer.name.isSet && <a href={`/material/${textOf(viewer.name)}`}>As a material</a>}
+      {maps?.solve.stale.map((why) => <p key={why} class="warning">▲ Stale: {why}</p>)}
       {maps?.solve.warnings.map((warning) => <p key={warning} class="warning">▲ {warning}</p>)}
     </section>
   );

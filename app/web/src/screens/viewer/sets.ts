@@ -24,9 +24,9 @@ export function useSets(session: string): readonly MapSet[] {
   return sets;
 }
 
-/** "maps 1c0f22aa, a tile" */
-export function setInWords({id, is_tile, preview}: MapSet): string {
-  return `${preview ? 'preview' : 'maps'} ${id.slice(0, 8)}${is_tile ? ', a tile' : ''}`;
+/** "maps 1c0f22aa, standard, a tile" */
+export function setInWords({id, level, is_tile, preview}: MapSet): string {
+  return [`${preview ? 'preview' : 'maps'} ${id.slice(0, 8)}`, level, is_tile ? 'a tile' : ''].filter((word) => word !== '').join(', ');
 }
 
 export function optionOf(session: string, set: MapSet): {value: string; says: string} {
