@@ -1,1 +1,0 @@
-import{q as e}from"./index-D2nATQnQ.js";import{c as n}from"./plan-DASD0N84.js";function r(o,s){sessionStorage.setItem(n,JSON.stringify({sessions:o,calibration:s})),e("/batches?plan=chosen")}export{r as p};
