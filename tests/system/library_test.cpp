@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@
 
 namespace weft::test {
 namespace {
+
+namespace fs = std::filesystem;
 
 using testing::AllOf, testing::HasSubstr, testing::Not;
 
@@ -101,11 +104,11 @@ TEST_F(Library, ListsWhatItWouldPruneAndPrunesOnRequestAlone) {
   for (const char* level : {"preview", "fast", "standard"})
     ASSERT_EQ(run_weft({"solve", session_.string(), "-q", "--quality", level}).exit_code, 0);
   const Json listed = library({"prune"}).json();
-  EXPECT_EQ(listed["solves"].size(), 1U) << "the first is current, the last the newest";
+  EXPECT_EQ(listed["solves"].size(), 2U) << "the last is the current one, and the newest";
   EXPECT_GT(listed["bytes"], 0);
   EXPECT_EQ(library({"show", "cloth"}).json()["solves"], 3);
   EXPECT_EQ(library({"prune", "--yes"}).json()["bytes"], listed["bytes"]);
-  EXPECT_EQ(library({"show", "cloth"}).json()["solves"], 2);
+  EXPECT_EQ(library({"show", "cloth"}).json()["solves"], 1);
 }
 
 TEST_F(Library, RefusesWhatItDoesNotKnow) {
@@ -113,6 +116,9 @@ TEST_F(Library, RefusesWhatItDoesNotKnow) {
   EXPECT_EQ(library({"tag", "cloth", "--set", "side=left"}).exit_code, 64);
   EXPECT_EQ(library({"tag", "cloth", "--set", "shots=none"}).exit_code, 64);
   EXPECT_EQ(library({"tag", "cloth", "--set", "current_solve=0000000000000000"}).exit_code, 66);
+  EXPECT_EQ(library({"tag", "cloth.weft", "--add", "red"}).exit_code, 0) << "a folder's name is one";
+  EXPECT_EQ(library({"tag", session_.string(), "--add", "blue"}).exit_code, 0) << "and the folder itself";
+  EXPECT_EQ(library({"tag", "other.weft", "--add", "blue"}).exit_code, 66);
   EXPECT_EQ(library({"find", "--limit", "0"}).exit_code, 64);
 }
 

@@ -8,14 +8,18 @@
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/jobs/gloss_maps.h"
 #include "app/jobs/maps/surface_files.h"
 #include "app/jobs/solve.h"
+#include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/session.h"
+#include "tests/material/weave.h"
 #include "tests/system/program.h"
 #include "tests/system/session_test.h"
 
@@ -303,6 +307,59 @@ TEST(SurfaceFiles, OfARelativeAlbedoKeepTheirRoughness) {
     EXPECT_NEAR(read->surface.lobe(2, 2, 1), 0.5, 1e-3);
     EXPECT_NEAR(read->surface.lobe(2, 2, 3), has_f0 ? 0.07 : app::kTypedF0, 1e-4);
   }
+}
+
+// A plain weave that lies turned on the table.
+simulator::Scene turned_weave(double turn_deg) {
+  simulator::Scene scene = scene_named("flat", {288, 216});
+  const material::WeaveSettings settings = {
+      .pitch_x_px = 11, .pitch_y_px = 10, .turn_deg = turn_deg, .tone = 0};
+  const material::Weave weave(settings);
+  Image<float> heights({360, 288});
+  for (int y = 0; y < heights.height(); ++y) {
+    for (int x = 0; x < heights.width(); ++x) {
+      const material::Vec2 at = {x - 179.5, 143.5 - y};
+      heights(x, y) = static_cast<float>(scene.camera.mm_per_pixel * weave.seen(at, heights.size()).z);
+    }
+  }
+  scene.geometry = {};
+  scene.geometry.kind = simulator::GeometryKind::kHeightMap;
+  scene.geometry.height_map.mm_per_sample = scene.camera.mm_per_pixel;
+  scene.geometry.heights_mm = std::make_shared<const Image<float>>(std::move(heights));
+  return scene;
+}
+
+TEST_F(Maps, OfAClothThatLiesTurnedAreStraightenedOnceTheirRemedyIsFollowed) {
+  const fs::path turned = work_ / "turned.weft";
+  simulate(turned_weave(25), turned);
+  ASSERT_EQ(run_weft({"solve", turned.string(), "--quality", "fast", "-q"}).exit_code, 0);
+  const auto finished = [&](const std::string& recipe) {
+    const Outcome outcome =
+        run_weft({"finish", turned.string(), "--recipe", recipe, "--strict", "--json", "-q"});
+    Json made = Json::parse(outcome.output, nullptr, false);
+    EXPECT_EQ(outcome.exit_code, made["verdicts"].empty() ? 0 : 2) << outcome.error << outcome.output;
+    return made;
+  };
+  const Json asked = finished("tile");
+  const Json& found = asked["steps"][1]["facts"];
+  EXPECT_EQ(found["acts"], false);
+  EXPECT_NEAR(std::abs(found["turn_deg"].get<double>()), 25, 0.1) << found;
+  EXPECT_NEAR(found["yarn_px"][0].get<double>(), 11, 0.05) << found;
+  EXPECT_NEAR(found["yarn_px"][1].get<double>(), 10, 0.05) << found;
+  ASSERT_EQ(asked["verdicts"][0]["name"], "TURN_ASKED");
+  const fs::path maps = turned / "maps" / asked["id"].get<std::string>();
+  EXPECT_TRUE(fs::is_regular_file(maps / found["picture"].get<std::string>()));
+  EXPECT_THAT(read_text(maps / "report.html").value(), HasSubstr("where the yarns seem to lie"));
+
+  const std::string remedy = asked["verdicts"][0]["remedy"].get<std::string>();
+  const std::size_t begin = remedy.find("straighten = {"), end = remedy.find('}');
+  ASSERT_LT(begin, end) << remedy;
+  const std::string keys = remedy.substr(begin, end + 1 - begin);
+  ASSERT_TRUE(write_file(work_ / "said.toml", "recipe = \"tile\"\n" + keys + "\n"));
+  const Json said = finished((work_ / "said.toml").string());
+  EXPECT_EQ(said["steps"][1]["facts"]["acts"], true) << said["verdicts"];
+  EXPECT_EQ(said["steps"][2]["facts"]["has_repeat"], true);
+  for (const Json& verdict : said["verdicts"]) EXPECT_NE(verdict["name"], "TURN_ASKED") << verdict;
 }
 
 TEST_F(Maps, ByTheProgramAreTold) {

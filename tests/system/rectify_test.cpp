@@ -95,9 +95,14 @@ TEST_F(Rectify, TakesTheCurrentSolveAndHalfSizeMapsOfThePreviewToo) {
   fs::last_write_time(fast / "solve.json",
                       fs::last_write_time(preview / "solve.json") - std::chrono::hours(1));
   const RectifyReport current = rectified(options());
-  EXPECT_EQ(current.document["solve"], fast.filename().string()) << "a further solve does not become it";
+  EXPECT_EQ(current.document["solve"], fast.filename().string())
+      << "a preview that is newer does not become it";
   RectifyOptions named = options();
   named.solve = preview.filename().string();
+  const auto refused = rectify_session(named, {});
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().remedy, HasSubstr("--draft"));
+  named.is_draft = true;
   const RectifyReport half = rectified(named);
   EXPECT_EQ(half.document["solve"], preview.filename().string());
   EXPECT_NEAR(half.document["mm_per_pixel"].get<double>() / current.document["mm_per_pixel"].get<double>(), 2,
@@ -113,7 +118,7 @@ TEST_F(Rectify, RefusesInWordsAndLeavesNothingBehind) {
     EXPECT_THAT(report.error().message(), HasSubstr(words));
     EXPECT_EQ(contents_of(work_.path()), before);
   };
-  expect_refused(options(), ErrorKind::kNoInput, "no complete solve");
+  expect_refused(options(), ErrorKind::kNoInput, "weft solve");
   const fs::path solved = solve("fast");
   RectifyOptions wrong = options();
   wrong.solve = "0123";

@@ -121,7 +121,10 @@ TEST_F(Sameness, OfWholeRunsOfTheProgram) {
     arguments.insert(arguments.end(), division.begin(), division.end());
     const Outcome run = run_weft(arguments);
     EXPECT_EQ(run.exit_code, 0) << run.error;
-    // Of all files only the report says how long it took.
+    // Of all files only solve.json and the report say how long it took.
+    edit_json(work_ / name / "solve.json", [](Json& document) {
+      EXPECT_EQ(document.at("taken").erase("seconds") + document["taken"].erase("parts_s"), 2U);
+    });
     edit_json(work_ / name / "report.json", [](Json& report) { EXPECT_EQ(report.erase("seconds"), 1U); });
     const std::string page = bytes_of(work_ / name / "report.html");
     const std::size_t begin = page.find("<section id=\"time\">"), end = page.find("</section>", begin);
@@ -129,7 +132,7 @@ TEST_F(Sameness, OfWholeRunsOfTheProgram) {
     put_bytes(work_ / name / "report.html", page.substr(0, begin) + page.substr(end));
     return contents_of(work_ / name);
   };
-  // Pictures, solve.json and report too: they name neither date nor threads nor this machine.
+  // Pictures and report too: they name neither date nor threads nor this machine.
   EXPECT_EQ(solve("a", {"--threads", "7", "--tile-width", "1", "--tile-height", "1"}),
             solve("b", {"--threads", "1"}));
 }

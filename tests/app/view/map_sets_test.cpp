@@ -129,6 +129,14 @@ TEST_F(MapSets, RefuseWhatIsNotThereAndWhatIsDamaged) {
   std::filesystem::remove_all(damaged);
 }
 
+TEST_F(MapSets, ShowThePicturesThatLieBesideThem) {
+  const Answer picture = get(here() + "/pictures/relit.png");
+  EXPECT_EQ(picture.status, 200) << picture.body;
+  EXPECT_EQ(picture.body.substr(1, 3), "PNG");
+  for (const char* other : {"maps.json", "normal.exr", "none.png", "..%2frelit.png"})
+    EXPECT_EQ(get(here() + "/pictures/" + other).status, 404) << other;
+}
+
 TEST_F(MapSets, HaveRecipesWhoseStepsAreKnown) {
   const Json recipes = get("recipes").json();
   EXPECT_EQ(recipes["recipes"].size(), 3U);
