@@ -64,13 +64,21 @@ const char* name_of(BoardFault fault) {
 }
 
 Result<void> check_board(const Board& board) {
-  const auto refused = [](const char* name, const char* rule) {
-    return Error{ErrorKind::kUsage, "board cannot be used", name, rule, "say how the board was printed"};
+  const auto refused = [](const char* name, std::string rule) {
+    return Error{ErrorKind::kUsage, "board cannot be used", name, std::move(rule),
+                 "say how the board was printed"};
   };
-  if (board.squares_x < 3 || board.squares_x > 100) return refused("squares_x", "it must be 3 to 100");
-  if (board.squares_y < 3 || board.squares_y > 100) return refused("squares_y", "it must be 3 to 100");
-  if (!(board.square_mm > 0 && board.square_mm <= 1e4))
-    return refused("square_mm", "it must be above 0, to 10000");
+  struct Said {
+    const char* name;
+    double value;
+    NumberRange range;
+  };
+  for (const Said& said : {Said{"squares_x", static_cast<double>(board.squares_x), kBoardSquares},
+                           Said{"squares_y", static_cast<double>(board.squares_y), kBoardSquares},
+                           Said{"square_mm", board.square_mm, kBoardSquare_mm}}) {
+    if (!said.range.holds(said.value))
+      return refused(said.name, fmt::format("it must be {:g} to {:g}", said.range.least, said.range.most));
+  }
   if (board.kind == BoardKind::kCheckerboard) {
     if (board.squares_x < 4 || board.squares_y < 4)
       return refused("squares_x and squares_y", "a checkerboard needs 4 squares a side");
@@ -80,8 +88,9 @@ Result<void> check_board(const Board& board) {
     }
     return {};
   }
-  if (!(board.marker_share >= 0.3 && board.marker_share <= 0.9))
-    return refused("marker_share", "it must be 0.3 to 0.9");
+  if (!kMarkerShare.holds(board.marker_share))
+    return refused("marker_share",
+                   fmt::format("it must be {:g} to {:g}", kMarkerShare.least, kMarkerShare.most));
   const auto dictionary = find_dictionary(board.dictionary);
   if (!dictionary) return dictionary.error();
   const int markers = board.squares_x * board.squares_y / 2;
