@@ -288,25 +288,26 @@ test('a test shot tells exposure and focus, and a turned ring is seen', async ()
   await visitor.leave();
 });
 
-test('a cable pulled at LED 7 is told of with its cause, and once it is back only what is missing is photographed', async () => {
+test('a cable pulled in a scan is told of with its cause, and once it is back only what is missing is photographed', async () => {
   const visitor = await visit(browser, rig);
   const page = await atTheDesk(visitor);
   await page.keyboard.type('cable');
   await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
   await page.keyboard.press('Enter');
   await page.keyboard.press('Space');
-  await until(async () => (await rig.ask('rig')).led === 7);
+  await until(async () => (await rig.ask('rig')).led >= 2);
   await rig.inject('board unplug');
   await page.getByRole('complementary', {name: 'Scan'}).getByText(/the LED board is not there|the LED board is gone/).waitFor();
   const {session} = await rig.ask('rig');
-  const kept = async () => (await rig.ask(`sessions/${session}`)).frames.filter(({led, role}) => role === 'lit' && led < 7).map(({led, sha256}) => [led, sha256]);
+  const kept = async () => (await rig.ask(`sessions/${session}`)).frames.filter(({role}) => role === 'lit').map(({led, sha256}) => [led, sha256]);
   const before = await kept();
-  assert.deepEqual(before.map(([led]) => led), [1, 2, 3, 4, 5, 6]);
+  const isOfBefore = (led) => before.some(([one]) => one === led);
+  assert.ok(before.length > 0 && before.length < 10, `${before.length} of ten were kept`);
   await rig.inject('board replug');
   await page.getByRole('region', {name: 'Last scan'}).getByText('cable', {exact: true}).waitFor({timeout: scanTakes_ms});
-  assert.deepEqual(await kept(), before, 'the first six are those of before');
+  assert.deepEqual((await kept()).filter(([led]) => isOfBefore(led)), before, 'those of before are kept');
   const {leds} = await rig.ask('rig');
-  assert.deepEqual(leds.filter(({led, takes}) => led > 0 && led < 7 && takes > 1), []);
+  assert.deepEqual(leds.filter(({led, takes}) => isOfBefore(led) && takes > 1), []);
   await visitor.leave();
 });
 
