@@ -27,7 +27,7 @@ constexpr double kAsGood = 0.02, kLack = 0.1;
 // Shots that lie within so many pixels of each other lie at one place.
 constexpr int kOnePlace_px = 1;
 
-// AreaSums over rectangles of a picture and of its squares.
+// Sums over rectangles of a picture and of its squares.
 class AreaSums {
  public:
   explicit AreaSums(View<const float> picture)
