@@ -190,10 +190,11 @@ Error is_only_preview(const SessionSolves& solves, const ChoosableSolve& preview
                     is_named ? "named" : "chosen"),
         fmt::format("take {} with --solve {}{}", words_of(best), best.id, otherwise));
   }
+  const std::string only =
+      fmt::format("there is only {}, of half the size and without masks", words_of(preview));
   return nothing_to_make_maps_of(
       is_named ? ErrorKind::kUsage : ErrorKind::kNoInput, solves,
-      fmt::format("of today's photographs there is only {}, of half the size and without masks",
-                  words_of(preview)),
+      preview.outdated.empty() ? "of today's photographs " + only : only + ", and " + preview.outdated,
       fmt::format("solve it with {}{}{}", command_to_solve(solves, "standard"),
                   solves.is_chosen && !is_named ? ", and name that solve with --solve" : "", otherwise));
 }

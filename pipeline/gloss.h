@@ -30,7 +30,9 @@ struct MeasuredGloss {
 /// The lobes that the pixels of sample_gloss() share with those of a second pose, one a material
 /// (solver/reflectance/materials.h). They depend on the photographs alone, and on the correction that their
 /// readings go through, if there is one. Where the scale of the albedo is relative, the unit is the one in
-/// which the lobe is as strong as that of a fibre: any scale of the intensities leads to the same lobe.
+/// which the lobe is as strong as that of a fibre, as far as the albedo stays that of a cloth, and before a
+/// lobe is found the one in which the albedo is a usual one: any scale of the intensities leads to the same
+/// lobe.
 /// Errors of the calibration count as if both poses saw the rig from the same side, which at 20 degrees makes
 /// them wrong by 6 percent. Errors: of the correction.
 Result<MeasuredGloss> measure_gloss(const Photographs& photographs, const solver::Method& base,

@@ -27,9 +27,10 @@ struct LightChoice {
 /// sigma.
 ///
 /// Both factors of a bounce carry the albedo's scale. Where it is relative, the scale is the one with which
-/// left-out light is predicted best, mean albedos up to 1 being tried: so the same cloth is corrected alike
-/// whatever intensities the solve was given. Where brighter cloth would always do better, it is open: that is
-/// so on shallow weaves, whose bounces look like a little more albedo.
+/// left-out light is predicted best, mean albedos up to 1.4 being tried, and 2 to see that brighter cloth
+/// does worse: so the same cloth is corrected alike whatever intensities the solve was given. Where brighter
+/// cloth would always do better, it is open: that is so on shallow weaves, whose bounces look like a little
+/// more albedo.
 Result<LightChoice> choose_light(const Photographs& photographs, const solver::Method& method,
                                  const SolvedFrame& solved, LightCorrection& correction,
                                  const LightStages& traced, const JobContext& context);

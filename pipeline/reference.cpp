@@ -231,11 +231,12 @@ class Reference {
     facts.work.few_rows += watch.lap() - gloss->facts.seconds;
     facts.over_robust = gain_of_correction(*of_below, *left_out);
     facts.robust_is_published = !options_.force_stages && facts.over_robust.mean < 0;
+    gloss->facts.seconds += facts.gloss.seconds;
     if (facts.robust_is_published) {
+      facts.gloss.seconds = gloss->facts.seconds;
       last_.reset();
       return {};
     }
-    gloss->facts.seconds += facts.gloss.seconds;
     facts.gloss = gloss->facts;
     last_gloss_ = std::move(*gloss);
     last_method_ = &method;

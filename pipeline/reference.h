@@ -45,7 +45,7 @@ struct ReferenceFacts {
   solver::Gates gates;
   LightChoice choice;  ///< of the first round; of none where no gate is open or stages were forced
   LightStages stages;  ///< that the last solve took out
-  std::vector<ReferenceRound> rounds;
+  std::vector<ReferenceRound> rounds;  ///< the last solve at their end, unless `robust` is published
   bool shadow_reach_is_capped = false;
   /// Left-out light by what the last round would give, over that by the level below; without patches where
   /// nothing was to be taken out.
@@ -53,7 +53,8 @@ struct ReferenceFacts {
   bool robust_is_published = false;  ///< it predicts better: `stages` are none
   double robust_share = 1;           ///< of the frame; the rest is solved as the standard level does
   GlossFacts gloss;                  ///< of the readings that the last solve used
-  solver::LeftOut left_out;   ///< of the readings that the last solve used, on patches that chose nothing
+  /// Of the readings that the last solve used, on patches that chose nothing but between it and `robust`.
+  solver::LeftOut left_out;
   solver::SolveTally tally;   ///< of the last solve
   double waited_seconds = 0;  ///< for the sink
   SolveWork work;             ///< but for what grows with the frame
@@ -67,8 +68,8 @@ struct ReferenceFacts {
 /// blocks where `robust` predicts left-out light no better are solved as `standard` does. Pixels are solved
 /// in double where their conditioning asks for it, as at any level. Without an effect there is but one solve.
 ///
-/// What the last round would give is held against the level below on patches that chose nothing. Where that
-/// predicts left-out light better, its solution is the one that is published.
+/// What the last round would give is held against the level below on patches that chose nothing before. Where
+/// that predicts left-out light better, by however little, its solution is the one that is published.
 ///
 /// The lobe of a glossy cloth (pipeline/gloss.h) is found before the first round, so that relief and bounces
 /// follow normals that highlights did not turn, and again for the last solve once bounces are out.

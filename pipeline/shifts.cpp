@@ -42,6 +42,16 @@ bool has_moved(const solver::ShotRegistration& shot) {
 constexpr int kFarSide = 256;                          // pixels a side that are searched
 constexpr std::array<int, 2> kFarParts = {512, 2048};  // pixels a side of the frame, one after the other
 
+// Of so many photographs shifts are found in moments; photographs that are developed are copied as they are
+// cut.
+constexpr std::size_t kMostFarShots = 64;
+constexpr double kMostCopied_bytes = 512e6;
+
+int most_copied_px(std::size_t shots) {
+  constexpr double kPixel_bytes = 3 * sizeof(float);
+  return static_cast<int>(std::sqrt(kMostCopied_bytes / kPixel_bytes / static_cast<double>(shots)));
+}
+
 // The middle of a frame, on whole cells of the colour filter.
 Rect middle_of(Size size, int side) {
   const Size part = {std::min(size.width, side), std::min(size.height, side)};
@@ -105,8 +115,10 @@ Result<SessionShifts> register_shots(const Photographs& photographs, const JobCo
 
 Result<FarShifts> find_far_shifts(const Photographs& photographs, const JobContext& context) {
   FarShifts result;
+  if (photographs.count() > kMostFarShots) return result;
   const int longest = std::max(photographs.size.width, photographs.size.height);
-  for (const int side : kFarParts) {
+  for (const int wanted : kFarParts) {
+    const int side = photographs.mosaics() ? wanted : std::min(wanted, most_copied_px(photographs.count()));
     Result<Photographs> part = cut(photographs, middle_of(photographs.size, side));
     double pixel_px = 1;
     while (part && (part->mosaics() || std::max(part->size.width, part->size.height) > kFarSide)) {

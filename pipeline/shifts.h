@@ -50,8 +50,9 @@ struct FarShifts {
 };
 
 /// Looks for shifts that are too large to be registered (solver/registration/far_shifts.h) in the middle of
-/// the frame: 512 pixels a side, then 2048 and coarser. Memory: a copy of that part. Errors: kInterrupted,
-/// and those of cut().
+/// the frame: 512 pixels a side, then 2048 and coarser. Memory: a copy of that part, which is smaller where
+/// photographs are developed, so that it has at most 512 MB. None is looked for in more than 64 photographs.
+/// Errors: kInterrupted, and those of cut().
 Result<FarShifts> find_far_shifts(const Photographs& photographs, const JobContext& context);
 
 }  // namespace weft::pipeline

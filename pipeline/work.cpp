@@ -7,7 +7,9 @@
 #include "solver/sample_tiles.h"
 
 namespace weft::pipeline {
+namespace {
 
+// How much of each there is in a frame; one of `lobe`.
 SolveWork amounts_in(Size frame) {
   SolveWork amounts;
   amounts.frame = static_cast<double>(frame.pixels());
@@ -18,6 +20,8 @@ SolveWork amounts_in(Size frame) {
   amounts.lobe = 1;
   return amounts;
 }
+
+}  // namespace
 
 SolveWork carried_over(const SolveWork& work, Size from, Size to) {
   const SolveWork measured = amounts_in(from), wanted = amounts_in(to);

@@ -16,9 +16,6 @@ struct SolveWork {
   double total() const { return frame + few_rows + choice + samples + lobe; }
 };
 
-/// How much of each there is in a frame; one of `lobe`.
-SolveWork amounts_in(Size frame);
-
 /// What work that was measured on one frame would take on another of the same cloth.
 SolveWork carried_over(const SolveWork& work, Size from, Size to);
 

@@ -166,10 +166,13 @@ void print_plan(const PlanBatchReport& report) {
   const batch::Plan& plan = report.plan;
   const batch::Header& header = plan.header;
   print("level       node-hours of all   degrees        of  spread  planned");
-  for (const batch::LevelTotal& level : header.levels)
-    print(fmt::format("{:<10} {:>18.3g} {:>9.3g} {:>9} {:>7.2g} {:>8}", level.quality, level.hours,
-                      level.mean_deg, share_in_words(level.solved.value_or(1)), level.spread_deg,
-                      level.sessions));
+  for (const batch::LevelTotal& level : header.levels) {
+    const std::string error = header.sampled > 0
+                                  ? fmt::format("{:>9.3g} {:>9} {:>7.2g}", level.mean_deg,
+                                                share_in_words(level.solved.value_or(1)), level.spread_deg)
+                                  : fmt::format("{:>9} {:>9} {:>7}", "-", "-", "-");
+    print(fmt::format("{:<10} {:>18.3g} {} {:>8}", level.quality, level.hours, error, level.sessions));
+  }
   if (!header.curve.empty())
     print(
         "hours spent where they buy most, and the mean error in degrees, a radian where there is no normal:");
@@ -201,12 +204,13 @@ Json plan_json(const PlanBatchReport& report) {
   const batch::Header& header = report.plan.header;
   const PlanSums sums = sums_of(report.plan);
   Json levels = Json::array(), curve = Json::array(), left_out = Json::array();
+  const auto if_sampled = [&](double number) { return header.sampled > 0 ? Json(number) : Json(); };
   for (const batch::LevelTotal& level : header.levels)
     levels.push_back({{"quality", level.quality},
                       {"hours", level.hours},
-                      {"mean_deg", level.mean_deg},
-                      {"spread_deg", level.spread_deg},
-                      {"solved", level.solved.value_or(1)},
+                      {"mean_deg", if_sampled(level.mean_deg)},
+                      {"spread_deg", if_sampled(level.spread_deg)},
+                      {"solved", if_sampled(level.solved.value_or(1))},
                       {"sessions", level.sessions}});
   for (const batch::Spent& spent : header.curve)
     curve.push_back({{"hours", spent.hours}, {"mean_deg", spent.mean_deg}});
@@ -215,14 +219,22 @@ Json plan_json(const PlanBatchReport& report) {
                         {"left_out", batch::kReasonNames[static_cast<std::size_t>(left.reason)]},
                         {"said", left.said},
                         {"seconds", left.seconds}});
-  return {{"plan", report.file.string()},  {"id", header.id},
-          {"sessions", header.sessions},   {"tasks", header.tasks.size()},
-          {"hours", sums.hours},           {"mean_deg", sums.error.degrees()},
-          {"solved", sums.error.solved()}, {"read_gb", sums.read_gb},
-          {"write_gb", sums.write_gb},     {"memory_bytes", sums.memory_bytes},
-          {"sampled", header.sampled},     {"sample_seconds", header.sample_seconds},
-          {"seconds", report.seconds},     {"levels", std::move(levels)},
-          {"curve", std::move(curve)},     {"left_out", std::move(left_out)}};
+  return {{"plan", report.file.string()},
+          {"id", header.id},
+          {"sessions", header.sessions},
+          {"tasks", header.tasks.size()},
+          {"hours", sums.hours},
+          {"mean_deg", if_sampled(sums.error.degrees())},
+          {"solved", if_sampled(sums.error.solved())},
+          {"read_gb", sums.read_gb},
+          {"write_gb", sums.write_gb},
+          {"memory_bytes", sums.memory_bytes},
+          {"sampled", header.sampled},
+          {"sample_seconds", header.sample_seconds},
+          {"seconds", report.seconds},
+          {"levels", std::move(levels)},
+          {"curve", std::move(curve)},
+          {"left_out", std::move(left_out)}};
 }
 
 Result<int> plan(const PlanArguments& a, const CommonArguments& common) {

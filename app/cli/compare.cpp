@@ -31,6 +31,16 @@ constexpr std::array<const char*, 3> kKindNames = {"normal", "albedo",
 // A mean that falls to less than half by turning y round is no chance from here on.
 constexpr double kTellsFlip_deg = 1;
 
+// Of two maps or of two solves.
+std::string angles_in_words(const auto& c) {
+  return fmt::format("{} pixels: mean {:.4f}, median {:.4f}, 95 % under {:.4f}, max {:.4f} degrees", c.pixels,
+                     c.mean_deg, c.median_deg, c.p95_deg, c.max_deg);
+}
+
+std::string albedo_in_words(double mean_rel, double bias_rel) {
+  return fmt::format("mean |A - B| / B {:.5f}, bias {:+.5f}", mean_rel, bias_rel);
+}
+
 void print_comparison(const NormalComparison& c, bool json) {
   const bool is_flipped = c.mean_deg > kTellsFlip_deg && 2 * c.flipped_mean_deg < c.mean_deg;
   if (json) {
@@ -40,8 +50,7 @@ void print_comparison(const NormalComparison& c, bool json) {
     print_json(document);
     return;
   }
-  print(fmt::format("{} pixels: mean {:.4f}, median {:.4f}, 95 % under {:.4f}, max {:.4f} degrees", c.pixels,
-                    c.mean_deg, c.median_deg, c.p95_deg, c.max_deg));
+  print(angles_in_words(c));
   if (is_flipped)
     print(
         fmt::format("  with the green of one map turned round the mean is {:.4f} degrees: one of them is in "
@@ -55,7 +64,7 @@ void print_comparison(const AlbedoComparison& c, bool json) {
         {{"kind", "albedo"}, {"pixels", c.pixels}, {"mean_rel", c.mean_rel}, {"bias_rel", c.bias_rel}});
     return;
   }
-  print(fmt::format("{} pixels: mean |A - B| / B {:.5f}, bias {:+.5f}", c.pixels, c.mean_rel, c.bias_rel));
+  print(fmt::format("{} pixels: {}", c.pixels, albedo_in_words(c.mean_rel, c.bias_rel)));
 }
 
 void print_comparison(const std::vector<NumberComparison>& all, bool json) {
@@ -86,10 +95,8 @@ Result<int> compare_two_solves(const CompareArguments& a, const CommonArguments&
     print_json(document);
     return kDone;
   }
-  print(fmt::format("{} pixels: mean {:.4f}, median {:.4f}, 95 % under {:.4f}, max {:.4f} degrees",
-                    change->pixels, change->mean_deg, change->median_deg, change->p95_deg, change->max_deg));
-  print(fmt::format("  albedo: mean |A - B| / B {:.5f}, bias {:+.5f}", change->albedo_rel,
-                    change->albedo_bias_rel));
+  print(angles_in_words(*change));
+  print("  albedo: " + albedo_in_words(change->albedo_rel, change->albedo_bias_rel));
   if (change->sigma_deg)
     print(fmt::format("  sigma of the normals: {:.4g} to {:.4g} degrees", change->sigma_deg->before,
                       change->sigma_deg->after));

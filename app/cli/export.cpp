@@ -20,6 +20,7 @@
 #include "app/jobs/export/preset_files.h"
 #include "app/jobs/export/price.h"
 #include "core/number.h"
+#include "exchange/presets/loss.h"
 
 namespace weft::app {
 namespace {
@@ -54,8 +55,6 @@ Result<int> show_preset(const std::string& name) {
   return kDone;
 }
 
-constexpr std::size_t kDistanceShown = 3;  // levels
-
 std::string lost_words(const Json& lost) {
   std::string words;
   if (lost.contains("normal_deg")) {
@@ -68,12 +67,14 @@ std::string lost_words(const Json& lost) {
     words += fmt::format("; albedo {:.2g}", albedo["mean"].get<double>());
     if (albedo["psnr_db"].is_number()) words += fmt::format(", {:.1f} dB", albedo["psnr_db"].get<double>());
   }
-  if (lost.contains("by_distance") && !lost["by_distance"].empty()) {
-    const Json& levels = lost["by_distance"];
-    const Json& seen = levels[std::min<std::size_t>(levels.size(), kDistanceShown) - 1];
-    words += fmt::format("; roughness {:.2g} off {} times as far", seen["lost"].get<double>(),
-                         1 << seen["level"].get<int>());
+  const Json levels = lost.value("by_distance", Json::array());
+  const Json* seen = nullptr;
+  for (const Json& each : levels) {
+    if (each["level"].get<int>() <= exchange::kToldDistance) seen = &each;
   }
+  if (seen != nullptr)
+    words += fmt::format("; roughness {:.2g} off {} times as far", (*seen)["lost"].get<double>(),
+                         1 << (*seen)["level"].get<int>());
   return words;
 }
 

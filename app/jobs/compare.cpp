@@ -71,7 +71,11 @@ Result<Pair> read_pair(const fs::path& tested_file, const fs::path& truth_file, 
 
 using Triple = std::array<double, 3>;
 
-// Calls visit(tested, truth) for every pixel that counts, row by row.
+bool counts(const Pair& pair, int x, int y) {
+  return !(pair.mask && !(pair.mask->planes(x, y) > 0.5f)) && !is_unsolved(pair.status, x, y);
+}
+
+// Calls visit(tested, truth) for every pixel that counts and is not all zero in the truth, row by row.
 void for_each_counted(const Pair& pair, const Triples& tested, const Triples& truth,
                       const std::function<void(const Triple&, const Triple&)>& visit) {
   const auto finite = [](const Triple& t) {
@@ -80,9 +84,7 @@ void for_each_counted(const Pair& pair, const Triples& tested, const Triples& tr
   const Size size = pair.tested.image.info.size;
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
-      if (pair.mask && !(pair.mask->planes(x, y) > 0.5f)) continue;
-      if (is_unsolved(pair.status, x, y)) continue;
-      if (truth.are_zero(x, y)) continue;
+      if (!counts(pair, x, y) || truth.are_zero(x, y)) continue;
       const Triple a = tested.at(x, y), b = truth.at(x, y);
       if (finite(a) && finite(b)) visit(a, b);
     }
@@ -140,7 +142,7 @@ Result<NumberComparison> compare_numbers(const Pair& pair, std::size_t tested_ch
   NumberComparison c;
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
-      if (pair.mask && !(pair.mask->planes(x, y) > 0.5f)) continue;
+      if (!counts(pair, x, y)) continue;
       const double off = pair.tested.number(tested_channel, x, y) - pair.truth.number(truth_channel, x, y);
       if (!std::isfinite(off)) continue;
       ++c.pixels;

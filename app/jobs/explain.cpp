@@ -190,11 +190,17 @@ std::vector<std::size_t> from_cheapest(const Ladder& ladder) {
   return order;
 }
 
+std::string another_scan(bool of_session) {
+  return of_session ? "scan it again with the exposure that the meter takes"
+                    : "photograph it again with another exposure";
+}
+
 void add_notes(Ladder& ladder) {
   std::vector<std::size_t> cheaper;
   for (const std::size_t i : from_cheapest(ladder)) {
     LevelPrice& level = ladder.levels[i];
-    if (!level.is_solved()) level.note = "most of the cloth has no normal: scan it again";
+    if (!level.is_solved())
+      level.note = "most of the cloth has no normal: " + another_scan(ladder.of_session);
     if (!cheaper.empty()) {
       const LevelPrice& best = ladder.levels[best_of(ladder, cheaper)];
       if (level.is_solved() && level.error.of_whole_deg() > (1 - kWorthwhileGain) * best.error.of_whole_deg())
@@ -227,12 +233,13 @@ Result<Priced> price_level(const Photographs& photographs, const solver::MethodN
   return priced;
 }
 
-// What is measured on the photographs of a frame before one level is.
-struct FrameSeconds {
-  double read = 0, prepare = 0;
+// What is known of photographs before one level is priced.
+struct Frame {
+  bool of_session = true;
+  double read = 0, prepare = 0;  ///< seconds
 };
 
-Result<Ladder> price(const Photographs& photographs, const FrameSeconds& frame, const SolveOptions& options,
+Result<Ladder> price(const Photographs& photographs, const Frame& frame, const SolveOptions& options,
                      const PriceOptions& wanted, const JobContext& context) {
   const JobContext silent = {context.threads, context.stop};
   context.progress("explain", 0);
@@ -248,6 +255,7 @@ Result<Ladder> price(const Photographs& photographs, const FrameSeconds& frame, 
     if (level.level && (!wanted.only || level.level == wanted.only)) levels.push_back(&level);
   }
   Ladder ladder;
+  ladder.of_session = frame.of_session;
   std::vector<std::vector<std::string>> notes;
   for (const solver::MethodName* level : levels) {
     Result<Priced> priced = price_level(photographs, *level, *shared, options, wanted.crops, silent);
@@ -268,14 +276,14 @@ Result<Ladder> price(const Photographs& photographs, const FrameSeconds& frame, 
   return ladder;
 }
 
-Result<Ladder> explain(Photographs photographs, double read, const SolveOptions& options,
+Result<Ladder> explain(Photographs photographs, bool of_session, double read, const SolveOptions& options,
                        const PriceOptions& wanted, const JobContext& context) {
   Stopwatch watch;
   Result<pipeline::SessionShifts> shifts = register_shots(photographs, context);
   if (!shifts) return std::move(shifts).error();
   if (Result<void> ok = leave_out(shifts->with(pipeline::ShiftVerdict::kLeftOut), photographs); !ok)
     return std::move(ok).error();
-  return price(photographs, {read, watch.lap()}, options, wanted, context);
+  return price(photographs, {of_session, read, watch.lap()}, options, wanted, context);
 }
 
 Error nothing_fits(const Ladder& ladder, const LevelWish& wish) {
@@ -312,7 +320,7 @@ Error nothing_solved(const Ladder& ladder) {
   return {
       ErrorKind::kBadData, "no level solves this cloth", "the middle of the frame",
       fmt::format("the most, {} of it, has a normal by {}", share_in_words(most->error.solved), most->name()),
-      "scan it again with the exposure that the meter takes; --explain lists all levels"};
+      another_scan(ladder.of_session) + "; --explain lists all levels"};
 }
 
 }  // namespace
@@ -324,7 +332,7 @@ Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& 
   Stopwatch watch;
   Result<LoadedSession> loaded = load_session(*plan, context);
   if (!loaded) return std::move(loaded).error();
-  return explain(std::move(loaded->photographs), watch.lap(), options, wanted, context);
+  return explain(std::move(loaded->photographs), true, watch.lap(), options, wanted, context);
 }
 
 Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,
@@ -334,7 +342,7 @@ Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& opt
   Stopwatch watch;
   Result<Photographs> photographs = load_photos(*plan, context);
   if (!photographs) return std::move(photographs).error();
-  return explain(std::move(*photographs), watch.lap(), options, wanted, context);
+  return explain(std::move(*photographs), false, watch.lap(), options, wanted, context);
 }
 
 Result<std::size_t> choose_level(const Ladder& ladder, const LevelWish& wish) {

@@ -20,8 +20,8 @@ namespace weft::app {
 
 /// What one channel of a file holds.
 struct ChannelMeaning {
-  std::string is =
-      {};  ///< by the catalogue of exports ("albedo.r", "normal.y", "height"); empty: nobody says
+  /// By the catalogue of exports ("albedo.r", "normal.y", "height"); empty: nobody says.
+  std::string is = {};
   bool is_srgb = false;  ///< as a colour it has that transfer function (transfer_of() of linear_image.h)
   std::optional<exchange::ChannelRange> range = {};  ///< values of the samples 0 and 1; none: nobody says
 

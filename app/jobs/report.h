@@ -121,14 +121,14 @@ inline constexpr double kSpecularDominated = 0.2;
 /// Readings are said not to fit where shots cannot be registered and they deviate by more than this from
 /// their fit, over the albedo: cloth that shows nothing to register by fits well.
 inline constexpr double kMisfit = 0.05;
+/// Nor where more than this share of the cloth is solved with its lobe, or highlights dominate: what deviates
+/// is then gloss.
+inline constexpr double kMostlyGlossy = 0.5;
 /// From here on shifts are looked for that are too large to be registered: of one shot of ten that moved the
 /// median hardly tells.
 inline constexpr double kLeastMisfit = 0.01;
 /// Whether they are. What named faults explain does not count.
 bool may_have_moved_far(const PhotographsSummary& photographs);
-/// Nor where more than this share of the cloth is solved with its lobe, or highlights dominate: what deviates
-/// is then gloss.
-inline constexpr double kMostlyGlossy = 0.5;
 /// What is left alone and costs more is warned of.
 inline constexpr double kLeastWarnedShift_deg = 0.2;
 

@@ -24,7 +24,7 @@ app::Run add_explain(app::Options& options) {
     bool whole = false;
   };
   const auto said = std::make_shared<Said>();
-  options.add_flag("--quick", &said->options.quick, "One small patch a scene");
+  options.add_flag("--quick", &said->options.quick, "One small patch a scene, and no whole session");
   options.add_flag("--whole", &said->whole, "Whole sessions alone, whose seconds are foretold too");
   options.add("--set", &said->set, "Scenes: those that the prediction is fitted to, or those held out")
       .one_of({"tuning", "held-out"})
@@ -39,7 +39,7 @@ app::Run add_explain(app::Options& options) {
     said->options.set = said->set == "tuning" ? SceneSet::kTuning : SceneSet::kHeldOut;
     said->options.threads = common.threads;
     said->price.threads = common.threads;
-    Result<Rows> rows = price_table(said->price);
+    Result<Rows> rows = said->options.quick ? Rows() : price_table(said->price);
     if (!rows || said->whole) return print_rows(rows, common);
     Result<Rows> patches = explain_table(said->options);
     if (!patches) return std::move(patches).error();

@@ -5,14 +5,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 #include <chrono>
+#include <string_view>
 #include <thread>
 #include <utility>
 
 #include "capture/camera/camera_values.h"
 #include "capture/camera/usb_serial.h"
 #include "core/iso_time.h"
+#include "core/number.h"
 #include "core/same_camera.h"
 
 namespace weft::capture {
@@ -108,11 +109,8 @@ Result<double> read_number(GphotoCamera& camera, const std::string& widget,
 
 std::optional<double> clock_of(GphotoCamera& camera, const std::string& widget) {
   const Result<std::string> text = camera.value(widget);
-  double seconds = 0;
-  if (!text || std::from_chars(text->data(), text->data() + text->size(), seconds).ec != std::errc() ||
-      seconds <= 0)
-    return {};
-  return seconds;
+  const std::optional<double> seconds = text ? as_number(*text) : std::nullopt;
+  return seconds && *seconds > 0 ? seconds : std::nullopt;
 }
 
 }  // namespace
@@ -178,9 +176,9 @@ Result<double> battery_of(GphotoCamera& camera, const CameraProfile& profile) {
   if (profile.widgets.battery.empty()) return 1.0;
   const Result<std::string> text = camera.value(profile.widgets.battery);
   if (!text) return text.error();
-  double percent = 0;
-  if (std::from_chars(text->data(), text->data() + text->size(), percent).ec == std::errc())
-    return std::clamp(percent / 100, 0.0, 1.0);
+  const std::string_view number = *text;
+  if (const auto percent = as_number(number.substr(0, number.find('%'))))
+    return std::clamp(*percent / 100, 0.0, 1.0);
   return *text == "Low" ? 0.0 : 1.0;  // bodies that have words only
 }
 

@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <system_error>
+
+#include "core/number.h"
 
 namespace weft::capture {
 namespace {
@@ -14,11 +14,8 @@ namespace {
 constexpr double kMostOff = 0.01;
 
 std::optional<double> plain_number(std::string_view text) {
-  double value = 0;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failed != std::errc() || end != text.data() + text.size()) return {};
-  if (!std::isfinite(value) || value <= 0) return {};
-  return value;
+  const std::optional<double> value = as_number(text);
+  return value && *value > 0 ? value : std::nullopt;
 }
 
 }  // namespace

@@ -7,17 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "core/files.h"
+#include "core/number.h"
 
 namespace weft::capture {
 namespace {
@@ -82,10 +81,7 @@ struct Directories {
 };
 
 std::optional<int> digits(std::string_view text) {
-  int value = 0;
-  const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (failed != std::errc() || end != text.data() + text.size() || text.starts_with('-')) return {};
-  return value;
+  return text.starts_with('-') ? std::nullopt : as_whole_number<int>(text);
 }
 
 /// "2026:01:31 23:59:58" in seconds since 1970.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "capture/scan/plan.h"
+#include "core/exposed.h"
 #include "core/exposure_words.h"
 
 namespace weft::capture {
@@ -20,8 +21,7 @@ constexpr double kReadableTo = 0.97;
 constexpr double kStepDown = 0.125, kMostStepUp = 32;
 constexpr double kMostOverStart = 100;  // where the light is known: no cloth reflects less than 1 percent
 constexpr double kAgree = 0.1;          // of two LEDs' brightness with what the lights let expect
-constexpr double kMostClippedByMeter = 1e-5;
-constexpr double kPoorRange = 0.5;  // 99.9 percent below less than this share of white
+constexpr double kPoorRange = 0.5;      // 99.9 percent below less than this share of white
 constexpr double kLongestBracket = 100;
 constexpr double kWhite = 0.8;  // albedo that the first test shot holds
 constexpr double kStart_us = 1e6 / 125;
@@ -121,7 +121,7 @@ class Meter {
       if (next_us == exposure_us_) break;
       exposure_us_ = next_us;
     }
-    const bool is_full = seen.clipped > kMostClippedByMeter;
+    const bool is_full = seen.clipped > kMostClipped;
     return Error{ErrorKind::kBadData, is_full ? "cloth is too bright" : "cloth is too dark",
                  fmt::format("LED {}", led),
                  fmt::format("at {} its brightest photosites come to {:.3f} of white",
@@ -151,7 +151,7 @@ class Meter {
 }  // namespace
 
 bool MeteredShot::is_full() const {
-  return seen.clipped > kMostClippedByMeter || seen.brightest > kReadableTo;
+  return seen.clipped > kMostClipped || seen.brightest > kReadableTo;
 }
 
 bool MeteredShot::is_readable() const {

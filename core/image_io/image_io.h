@@ -33,11 +33,11 @@ using ImageAttributes = std::map<std::string, std::string>;
 using PixelPitch = std::array<double, 2>;
 
 /// What a file says of its colours. Their transfer function is told by the chunks sRGB, gAMA and iCCP of a
-/// PNG, the ICC profile of a TIFF, the chromaticities of an EXR.
+/// PNG, the ICC profile of a TIFF or JPEG, the chromaticities of an EXR. A JPEG without a profile is sRGB.
 enum class ColorSpace {
   kData,         ///< they are none, or nothing is said
   kSrgb,         ///< that of IEC 61966-2-1, which PNG and TIFF are written with
-  kLinearColor,  ///< none: linear Rec.709, written as chromaticities of an EXR; no word in PNG and TIFF
+  kLinearColor,  ///< none: linear Rec.709, written as chromaticities of an EXR, not in PNG and TIFF
   kOther         ///< another one; not written
 };
 

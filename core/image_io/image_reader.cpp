@@ -145,7 +145,6 @@ ColorSpace color_of_png(const fs::path& file) {
 
 /// OpenImageIO takes every EXR for linear colour and every PNG for sRGB: here it counts what the file says.
 ColorSpace color_of(const OIIO::ImageSpec& spec, const std::string& format, const fs::path& file) {
-  if (format == "jpeg") return ColorSpace::kSrgb;
   if (format == "openexr") {
     return spec.find_attribute("chromaticities") != nullptr ? ColorSpace::kLinearColor : ColorSpace::kData;
   }
@@ -154,6 +153,7 @@ ColorSpace color_of(const OIIO::ImageSpec& spec, const std::string& format, cons
     const ColorSpace color = color_of_profile({bytes, static_cast<std::size_t>(profile->datasize())});
     if (color != ColorSpace::kData) return color;
   }
+  if (format == "jpeg") return ColorSpace::kSrgb;
   return format == "png" ? color_of_png(file) : ColorSpace::kData;
 }
 

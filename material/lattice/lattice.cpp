@@ -115,12 +115,10 @@ void find_weave(const Cell& first, const Correlation& mean, const std::vector<co
   lattice.strength = strength_of(lattice.weave, slopes);
 }
 
-Error not_as_said(const SaidYarns& said) {
-  std::string what = said.turn_deg ? fmt::format("turned by {:g} degrees", *said.turn_deg) : "";
-  if (said.x_px > 0 || said.y_px > 0)
-    what += fmt::format("{}{:g} by {:g} pixels wide", what.empty() ? "" : " and ", said.x_px, said.y_px);
+Error not_as_said() {
   return {ErrorKind::kBadData, "the yarns do not lie as was said", "turn_deg, yarn_px",
-          "no repeat of the cloth has yarns " + what, "leave both out, and see what is found"};
+          "no repeat of the cloth has yarns that are turned so and so far apart",
+          "leave both out, and see what is found"};
 }
 
 }  // namespace
@@ -187,11 +185,14 @@ Result<Lattice> find_lattice(const Surface& surface, const LatticeOptions& optio
     return lattice;
   }
   find_weave(*first, mean, slopes, lattice);
-  const std::optional<Yarns> yarns = find_yarns(lattice.weave, correlations, options.said);
-  if (!yarns) return not_as_said(options.said);
+  std::optional<Yarns> yarns = find_yarns(lattice.weave, correlations, options.said);
+  const bool are_as_said = yarns.has_value();
+  if (!are_as_said) yarns = find_yarns(lattice.weave, correlations, {});
+  if (!yarns) return not_as_said();
   find_colours(correlations.of[2], yarns->along, lattice);
   state_yarns(*yarns, lattice);
   lattice.kind = kind_of(lattice, slopes, surface.size());
+  if (!are_as_said && lattice.kind == LatticeKind::kRepeat) return not_as_said();
   return lattice;
 }
 

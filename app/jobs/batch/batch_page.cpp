@@ -47,21 +47,22 @@ report::Section done_section(const BatchState& state) {
   report::Section section = {.title = "What was done"};
   const double hours = s.seconds / 3600, predicted = s.predicted_seconds / 3600;
   section.table = report::Table{
-      .rows = {
-          {"planned", std::to_string(header.sessions)},
-          {"solved", std::to_string(s.solved)},
-          {"solved before", std::to_string(s.there)},
-          {"failed", std::to_string(s.failed)},
-          {"missing", std::to_string(s.missing)},
-          {"begun more than once", std::to_string(s.second_attempts)},
-          {"node-hours", fmt::format("{:.3g}", hours)},
-          {"node-hours predicted of these",
-           predicted > 0 ? fmt::format("{:.3g}, {:.2f} times what it took", predicted, s.seconds_ratio())
-                         : ""},
-          {"mean error expected", error_in_words(s.error.degrees(), s.error.solved())},
-          {"mean error planned", error_in_words(s.predicted_error.degrees(), s.predicted_error.solved())},
-          {"largest memory, MB", std::to_string(s.peak_bytes >> 20)},
-          {"left out by the plan", std::to_string(header.left_out)}}};
+      .rows = {{"planned", std::to_string(header.sessions)},
+               {"solved", std::to_string(s.solved)},
+               {"solved before", std::to_string(s.there)},
+               {"failed", std::to_string(s.failed)},
+               {"missing", std::to_string(s.missing)},
+               {"begun more than once", std::to_string(s.second_attempts)},
+               {"node-hours", fmt::format("{:.3g}", hours)},
+               {"node-hours predicted of these",
+                predicted > 0 ? fmt::format("{:.3g}, {:.2f} times what it took", predicted, s.seconds_ratio())
+                              : ""},
+               {"mean error expected", error_in_words(s.error.degrees(), s.error.solved())},
+               {"mean error planned",
+                header.sampled > 0 ? error_in_words(s.predicted_error.degrees(), s.predicted_error.solved())
+                                   : "none was foretold"},
+               {"largest memory, MB", std::to_string(s.peak_bytes >> 20)},
+               {"left out by the plan", std::to_string(header.left_out)}}};
   return section;
 }
 

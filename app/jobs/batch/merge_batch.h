@@ -40,7 +40,7 @@ struct MergeReport {
 inline constexpr std::size_t kMostDrawn = 10;
 
 /// Reads what became of a batch, removes what dead processes left half made, and writes report/: report.json
-/// (weft.batch-report/1, docs/formats.md), report.html and worst-NN.png. Written anew by each merge. Errors
+/// (weft.batch-report/1.1, docs/formats.md), report.html and worst-NN.png. Written anew by each merge. Errors
 /// of read_batch(); kCannotCreate, kInputOutput.
 Result<MergeReport> merge_batch(const std::filesystem::path& plan, const JobContext& context);
 

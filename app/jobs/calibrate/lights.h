@@ -25,12 +25,11 @@ struct CalibrateLightsOptions {
   std::filesystem::path from;    ///< the calibration to change: camera and response are needed
   std::filesystem::path output;  ///< the new one, which must not be there; empty: nothing is written
   LightsMethod method = LightsMethod::kPhysical;
-  double tape_sigma_mm = 10;   ///< how well positions were measured, along each axis; kTapeSigma_mm
-  double flatness_deg = 0.05;  ///< of the sheet's slow waves, rms; kFlatness_deg
-  double flicker_percent =
-      0.3;                     ///< of LEDs from shot to shot, where the sheets do not tell; kFlicker_percent
-  bool lambertian = false;     ///< takes the paper to follow Lambert's law
-  bool accept_misfit = false;  ///< writes the calibration although readings and model contradict each other
+  double tape_sigma_mm = 10;     ///< how well positions were measured, along each axis; kTapeSigma_mm
+  double flatness_deg = 0.05;    ///< of the sheet's slow waves, rms; kFlatness_deg
+  double flicker_percent = 0.3;  ///< of LEDs from shot to shot, where no sheet tells; kFlicker_percent
+  bool lambertian = false;       ///< takes the paper to follow Lambert's law
+  bool accept_misfit = false;    ///< writes the calibration although readings and model contradict each other
 };
 
 /// Measures the lights of a rig from sessions of a sheet of white paper in several poses, which its tags tell

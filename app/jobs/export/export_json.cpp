@@ -77,12 +77,11 @@ Json json_of(const WrittenDocument& document) {
 // What becomes of roughness some eight times as far, where engines make the mips; empty where they are right
 // to 2 percent.
 std::string distance_note(const std::vector<EncodedFile>& files) {
-  constexpr int kLevel = 3;
   constexpr double kNothing = 0.02;
   for (const EncodedFile& file : files) {
     const exchange::DistanceLoss* seen = nullptr;
     for (const exchange::DistanceLoss& each : file.loss.by_distance) {
-      if (each.level <= kLevel) seen = &each;
+      if (each.level <= exchange::kToldDistance) seen = &each;
     }
     if (seen == nullptr || seen->mean_abs <= kNothing * seen->mean) continue;
     return fmt::format(

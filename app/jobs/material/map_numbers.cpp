@@ -108,7 +108,7 @@ bool convert(const Conversion& to, Values& v, std::size_t count) {
   }
   if (to.map.is_lobe) {
     v[0] = of_lobe(to.parameter, v);
-    return true;
+    count = 1;
   }
   if (to.is_srgb) v = rec709_of_srgb(v);
   for (std::size_t p = 0; p < count; ++p) v[p] = to.scale * v[p] + to.offset;
@@ -120,7 +120,8 @@ bool convert(const Conversion& to, Values& v, std::size_t count) {
     v = {slopes[0], slopes[1], 0};
     return true;
   }
-  const bool is_gloss = to.parameter == Parameter::kRoughness || to.parameter == Parameter::kSheenRoughness;
+  const bool is_gloss = !to.map.is_lobe &&
+                        (to.parameter == Parameter::kRoughness || to.parameter == Parameter::kSheenRoughness);
   if (is_gloss && !to.map.scale) v[0] = perceptual(v[0], to.map.unit);
   for (std::size_t p = 0; p < count; ++p) {
     if (!(v[p] >= to.least - kOutside && v[p] <= to.most + kOutside)) return false;

@@ -367,7 +367,11 @@ Result<MapFile> map_of_scan(std::optional<Parameter> parameter, const Json& valu
   MapFile map = file_in(*set, *found);
   const std::optional<double> own = map.scale;
   take_words(value, map);
-  if (own) map.scale = *own * map.scale.value_or(1);
+  const bool is_said = value.contains("scale") || value.contains("offset");
+  if (map.same && is_said && parameter != kNormal) {
+    for (double& each : *map.same) each = map.scale.value_or(1) * each + map.offset.value_or(0);
+  }
+  if (own && is_said) map.scale = *own * map.scale.value_or(1);
   return map;
 }
 

@@ -46,8 +46,8 @@ struct MapFile {
   std::string source = "assumed";          ///< measured, derived or assumed
   std::optional<double> scale = {}, offset = {};
   bool y_is_down = false;
-  std::optional<bool> is_srgb =
-      {};  ///< none: colours are what transfer_of() of linear_image.h says of the file
+  /// None: colours are what transfer_of() of linear_image.h says of the file.
+  std::optional<bool> is_srgb = {};
   std::optional<std::vector<double>> same = {};  ///< the whole map is this
   Size size = {};
   std::optional<std::array<double, 2>> size_mm = {};

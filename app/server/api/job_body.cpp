@@ -20,6 +20,7 @@
 #include "app/server/api/library_materials.h"
 #include "core/files.h"
 #include "core/number.h"
+#include "library/current.h"
 #include "library/session_files.h"
 
 namespace weft::app {
@@ -95,7 +96,7 @@ JobField count(const char* field, const char* option, const NumberRange& range) 
   return {field, option, Holds::kCount, false, range};
 }
 
-const std::vector<std::string_view> kLevels = {"preview", "fast", "standard", "robust", "reference"};
+const std::vector<std::string_view> kLevels(library::kLevels.begin(), library::kLevels.end());
 
 JobKind batch_plan_kind() {
   return {"batch_plan",

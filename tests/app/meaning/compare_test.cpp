@@ -9,6 +9,8 @@
 
 #include "app/jobs/material/map_set.h"
 #include "core/color_spaces.h"
+#include "core/json_document.h"
+#include "core/solve_record.h"
 #include "core/temporary_folder.h"
 #include "tests/app/meaning/small_set.h"
 
@@ -65,6 +67,24 @@ class Compare : public testing::Test {
   }
   TemporaryFolder folder_;
 };
+
+TEST_F(Compare, CountsNoPixelOfASolveThatIsUnsolved) {
+  const auto height = [](int x, int y, int) { return small_height_mm(x, y); };
+  const auto with_a_hole = [&](int x, int y, int) { return x < 10 ? 0 : small_height_mm(x, y); };
+  fs::create_directories(file("solve"));
+  write_small(file("height.exr"), {"height"}, height);
+  write_small(file("solve/height.exr"), {"height"}, with_a_hole);
+  write_small(file("solve/status.png"), {"Y"},
+              [](int x, int, int) { return x < 10 ? static_cast<int>(kNoSolution) / 65535.0 : 0; },
+              {.type = SampleType::kUint16});
+  ASSERT_TRUE(write_json(file("solve/solve.json"), {{"schema", "weft.solve/1.1"}}));
+  const Result<MapComparison> both = compared("solve/height.exr", "height.exr");
+  ASSERT_TRUE(both) << both.error().message();
+  const auto* numbers = std::get_if<std::vector<NumberComparison>>(&*both);
+  ASSERT_TRUE(numbers != nullptr && numbers->size() == 1);
+  EXPECT_EQ(numbers->front().pixels, static_cast<std::int64_t>(kSmall.width - 10) * kSmall.height);
+  EXPECT_EQ(numbers->front().max_abs, 0);
+}
 
 TEST_F(Compare, TellsNormalsOfFloatsFromZeroToOne) {
   write_small(file("a.exr"), {"R", "G", "B"}, packed_part);

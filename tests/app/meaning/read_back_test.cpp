@@ -183,6 +183,50 @@ TEST_F(ReadBack, MaterialsTakeEachFileOfEachPresetForWhatItIs) {
   EXPECT_GE(read["roughness"], 14);
 }
 
+TEST_F(ReadBack, MaterialsTakeTheMapsOfAScanInTheirUnits) {
+  using enum Parameter;
+  for (const auto& [parameter, name] :
+       {std::pair{kAlbedo, "albedo"}, std::pair{kNormal, "normal"}, std::pair{kHeight, "height"},
+        std::pair{kOcclusion, "occlusion"}, std::pair{kRoughness, "roughness"},
+        std::pair{kSpecular, "specular"}}) {
+    const auto read = [&](const Json& more) {
+      Json value = {{"scan", set().string()}, {"map", name}};
+      value.update(more);
+      const Result<MapFile> map = find_map(parameter, value, name);
+      EXPECT_TRUE(map) << map.error().message();
+      return map ? read_field(parameter, *map, name) : map.error();
+    };
+    const Result<material::Field> field = read(Json::object());
+    ASSERT_TRUE(field) << name << ": " << field.error().message();
+    EXPECT_NEAR(field->at(7, 5), truth_of(parameter, 7, 5, 0), 1e-5) << name;
+    if (parameter == kNormal) continue;  // its slopes have a strength of their own
+    const Result<material::Field> half = read({{"scale", 0.5}});
+    ASSERT_TRUE(half) << name << ": " << half.error().message();
+    EXPECT_NEAR(half->at(7, 5), truth_of(parameter, 7, 5, 0) / 2, 1e-5) << name << ", halved";
+  }
+}
+
+TEST_F(ReadBack, MaterialsScaleWhatIsTheSameAllOverAScanToo) {
+  const fs::path alike = folder_->path() / "alike";
+  SmallSet().write(alike);
+  Result<Json> document = read_json(alike / "maps.json", "weft.maps", 1);
+  ASSERT_TRUE(document);
+  for (Json& map : (*document)["maps"]) {
+    if (map["name"] == "specular") map = {{"name", "specular"}, {"constant", kSmallF0}};
+  }
+  ASSERT_TRUE(write_json(alike / "maps.json", *document));
+  fs::remove(alike / "specular.exr");
+  for (const double scale : {1.0, 0.5}) {
+    Json value = {{"scan", alike.string()}, {"map", "specular"}};
+    if (scale != 1) value["scale"] = scale;
+    const Result<MapFile> map = find_map(Parameter::kSpecular, value, "specular");
+    ASSERT_TRUE(map) << map.error().message();
+    const Result<material::Field> field = read_field(Parameter::kSpecular, *map, "specular");
+    ASSERT_TRUE(field) << field.error().message();
+    EXPECT_NEAR(field->at(7, 5), scale * kSmallF0 / material::kF0OfSpecular, 1e-6) << scale;
+  }
+}
+
 TEST_F(ReadBack, MaterialsRefuseAFileOfAnotherMap) {
   const fs::path file = folder_->path() / "png16" / "cloth_height.png";
   const Result<MapFile> map = find_map(Parameter::kAlbedo, {{"map", file.string()}}, "m.toml: albedo");

@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
-import {startRig, until} from './support/rig.mjs';
+import {mostToTell_ms, startRig, until} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
 const scanTakes_ms = 60_000;
@@ -220,7 +220,8 @@ test('from before the first exposure to the close of the last every tab is black
 test('a key at the dark page shows how things are for two seconds, and Escape and Enter cancel', async () => {
   const visitor = await visit(browser, rig);
   const page = await atTheDesk(visitor);
-  await page.keyboard.type('cancelled');
+  await page.getByLabel('Exposure').fill('250');  // so that it is not over before it is cancelled
+  await page.getByLabel('Fabric').fill('cancelled');
   await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
   await page.keyboard.press('Enter');
   await page.keyboard.press('Space');
@@ -292,7 +293,8 @@ test('a test shot tells exposure and focus, and a turned ring is seen', async ()
 test('a cable pulled in a scan is told of with its cause, and once it is back only what is missing is photographed', async () => {
   const visitor = await visit(browser, rig);
   const page = await atTheDesk(visitor);
-  await page.keyboard.type('cable');
+  await page.getByLabel('Exposure').fill('250');  // so that it is not over before the cable is out
+  await page.getByLabel('Fabric').fill('cable');
   await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
   await page.keyboard.press('Enter');
   await page.keyboard.press('Space');
@@ -340,11 +342,12 @@ for (const [how, goOn] of [
   });
 }
 
-test('a daemon that dies while it is dark leaves the page light within three seconds, and nothing claims that it photographs', async () => {
+test('a daemon that dies while it is dark leaves the page light, and nothing claims that it photographs', async () => {
   const visitor = await visit(browser, rig);
   visitor.mayFail(/net::ERR_/);
   const page = await atTheDesk(visitor);
-  await page.keyboard.type('killed');
+  await page.getByLabel('Exposure').fill('250');  // so that it is not over before the daemon is dead
+  await page.getByLabel('Fabric').fill('killed');
   await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
   await page.keyboard.press('Enter');
   await page.keyboard.press('Space');
@@ -355,7 +358,7 @@ test('a daemon that dies while it is dark leaves the page light within three sec
   const dead = Date.now();
   await page.locator('.dark').waitFor({state: 'detached'});
   const took_ms = Date.now() - dead;
-  assert.ok(took_ms < 3000, `it took ${took_ms} ms`);
+  assert.ok(took_ms < mostToTell_ms, `it took ${took_ms} ms`);
   await page.getByRole('alert').filter({hasText: /^The daemon/}).first().waitFor();
   assert.equal(await page.locator('header .rig').getByText(/photographing|fetching|ready/).count(), 0);
   await picture(page, 'desk-killed');

@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import {after, before, test} from 'node:test';
 import {luminanceOf, picture, pixelsOf, violations, visit} from './support/browser.mjs';
+import {mostToTell_ms} from './support/rig.mjs';
 import {setUp, takeDown} from './support/setting.mjs';
 
 const screens = ['desk', 'sessions', 'viewer', 'material', 'calibrate', 'jobs', 'doctor'];
@@ -103,7 +104,7 @@ test('when the daemon is stopped the page greys, and is back by itself once it a
   await visitor.leave();
 });
 
-test('without its daemon every screen says so within three seconds and claims nothing of the rig', async () => {
+test('without its daemon every screen says so and claims nothing of the rig', async () => {
   const visitor = await visit(browser, rig);
   visitor.mayFail(/net::ERR_/);
   const pages = [];
@@ -114,7 +115,7 @@ test('without its daemon every screen says so within three seconds and claims no
   const dead = Date.now();
   await Promise.all(pages.map((page) => page.getByRole('alert').filter({hasText: /^The daemon (does not answer|has said nothing)/}).waitFor()));
   const took_ms = Date.now() - dead;
-  assert.ok(took_ms < 3000, `it took ${took_ms} ms`);
+  assert.ok(took_ms < mostToTell_ms, `it took ${took_ms} ms`);
   for (const page of pages) assert.equal(await page.locator('header .rig').getByText('ready').count(), 0);
   await picture(pages[0], 'frame-silent');
   await rig.serve({port});
@@ -122,7 +123,7 @@ test('without its daemon every screen says so within three seconds and claims no
   await visitor.leave();
 });
 
-test('a daemon that hangs is told of within three seconds', async () => {
+test('a daemon that hangs is told of', async () => {
   const visitor = await visit(browser, rig);
   const page = await enter(visitor);
   await page.locator('header .rig').getByText('ready').waitFor();
@@ -131,7 +132,7 @@ test('a daemon that hangs is told of within three seconds', async () => {
   await page.getByRole('alert').filter({hasText: 'The daemon has said nothing for'}).waitFor();
   const took_ms = Date.now() - hung;
   rig.hang(false);
-  assert.ok(took_ms < 3500, `it took ${took_ms} ms`);
+  assert.ok(took_ms < mostToTell_ms, `it took ${took_ms} ms`);
   await page.locator('header .rig').getByText('ready').waitFor();
   await visitor.leave();
 });

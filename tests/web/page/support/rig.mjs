@@ -31,6 +31,9 @@ export function firstLine(program) {
   });
 }
 
+/** How late a page may say on a busy machine that its daemon is gone: the unit tests of events.ts hold the three seconds. */
+export const mostToTell_ms = 10_000;
+
 /** Asks until it is so. */
 export async function until(isSo) {
   for (let asked = 0; asked < 300; asked++) {
