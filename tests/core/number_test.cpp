@@ -30,8 +30,8 @@ TEST(Number, IsWholeWhereThatIsAskedAndNeverTurnsAround) {
 
 TEST(Number, IsThatOfAPointInALocaleOfCommas) {
   const std::string before = std::setlocale(LC_NUMERIC, nullptr);
-  const bool has_commas = std::setlocale(LC_NUMERIC, "de_DE.UTF-8") != nullptr;
-  EXPECT_EQ(as_number("2.23"), 2.23) << "with the locale of commas: " << has_commas;
+  if (std::setlocale(LC_NUMERIC, "de_DE.UTF-8") == nullptr) GTEST_SKIP() << "there is no locale de_DE.UTF-8";
+  EXPECT_EQ(as_number("2.23"), 2.23);
   EXPECT_EQ(as_number("2,23"), std::nullopt);
   std::setlocale(LC_NUMERIC, before.c_str());
 }

@@ -295,6 +295,10 @@ class GlossyExports : public Exports {
     EXPECT_TRUE(reports) << reports.error().message();
     return reports ? (*reports)[0] : ExportReport();
   }
+  static void TearDownTestSuite() {
+    glossy_.clear();
+    Exports::TearDownTestSuite();
+  }
   static inline fs::path glossy_;
 };
 

@@ -14,7 +14,7 @@ import {followKeys} from './state/keys';
 import {followRig} from './state/rig';
 import {followRunningJob} from './state/running_job';
 
-type Entry = {is: 'coming'} | {is: 'refused'; error: ApiError} | {is: 'in'};
+type Entry = {is: 'coming'} | {is: 'refused'; error: ApiError; token: string} | {is: 'in'};
 const entry = signal<Entry>({is: 'coming'});
 
 async function begin(): Promise<void> {
@@ -29,14 +29,14 @@ async function comeIn(token: string): Promise<void> {
     if (token !== '') await logIn(token);
     await begin();
   } catch (error) {
-    entry.value = {is: 'refused', error: asApiError(error)};
+    entry.value = {is: 'refused', error: asApiError(error), token};
   }
 }
 
 /** While it is dark the screens stay as they are, unseen, so that nothing typed is lost. */
 function Page() {
   if (entry.value.is === 'coming') return null;
-  if (entry.value.is === 'refused') return <Entrance error={entry.value.error} onEntered={begin} />;
+  if (entry.value.is === 'refused') return <Entrance error={entry.value.error} linked={entry.value.token} onEntered={begin} />;
   return (
     <>
       <div class={isDark.value ? 'frame covered' : 'frame'} inert={isDark.value}>

@@ -49,7 +49,7 @@ test('the levels are priced as the command prices them, as a table and as points
   await page.getByRole('button', {name: 'Queue standard'}).waitFor({timeout: price_ms});
   const folder = path.join(rig.folder, 'scans', `${session}.weft`);
   const {stdout} = await run(weft, ['solve', folder, '--explain', '--json'], {env: rig.environment});
-  const share = (solved) => (solved === 1 ? '100 %' : 'over 99 %');
+  const share = (solved) => (solved === 1 ? '100 %' : solved >= 0.995 ? 'over 99 %' : `${Math.round(100 * solved)} %`);
   const expected = JSON.parse(stdout).levels.map(({quality, predicted_deg, solved, parts_deg}) => [
     quality, `${degrees(predicted_deg)} on ${share(solved)}`, ...[parts_deg.noise, parts_deg.model, parts_deg.calibration].map(degrees),
   ]);

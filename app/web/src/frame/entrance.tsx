@@ -20,19 +20,22 @@ export function takeToken(): string {
   return token;
 }
 
-export function Entrance({error, onEntered}: {error: ApiError; onEntered: () => Promise<void>}) {
-  const [token, setToken] = useState('');
+/** `linked`: the token of the link, which waits for a daemon that was not there. */
+export function Entrance({error, linked, onEntered}: {error: ApiError; linked: string; onEntered: () => Promise<void>}) {
+  const [token, setToken] = useState(linked);
   const enter = useAction(async () => {
-    if (error.status === 401) await logIn(token.replace(/^.*#/, '').trim());
+    const said = token.replace(/^.*#/, '').trim();
+    if (said !== '') await logIn(said);
     await onEntered();
   });
-  const isGone = (enter.complaint ?? error).status === 0;
+  const {status} = enter.complaint ?? error;
+  const isGone = status === 0;
   useEffect(() => {
     if (!isGone || enter.isBusy) return undefined;
     const timer = setTimeout(() => void enter.run(), again_ms);
     return () => clearTimeout(timer);
   }, [isGone, enter.isBusy]);
-  if (error.status !== 401) {
+  if (status !== 401) {
     return (
       <main class="entrance">
         <h1>weft</h1>

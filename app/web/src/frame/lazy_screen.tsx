@@ -55,10 +55,10 @@ function useBack(back: () => void): void {
 function useArrivals(): number {
   const [arrivals, setArrivals] = useState(0);
   const arrived = useRef(0);
-  const address = place.value;
+  const {screen, parts} = place.value;
   useEffect(() => {
     arrived.current = Date.now();
-  }, [address]);
+  }, [screen, parts.join('/')]);
   useBack(() => {
     if (arrived.current >= heardAt()) setArrivals((before) => before + 1);
   });

@@ -2,6 +2,7 @@
 // What people call the cloths of sessions: a session's own name is one for folders.
 import {signal} from '@preact/signals';
 import {answer, api, type Schemas} from '../api/client';
+import {onEvent} from '../api/events';
 
 type Named = Pick<Schemas['Sessions']['sessions'][number], 'name' | 'fabric'>;
 
@@ -16,10 +17,22 @@ export function hearOfCloths(sessions: readonly Named[]): void {
   fabrics.value = new Map([...fabrics.value, ...sessions.map(({name, fabric}) => [name, fabric] as const)]);
 }
 
-async function ask(query: {query?: string; limit: number}): Promise<void> {
-  const found = await answer(api.GET('/api/v1/sessions', {params: {query}})).catch(() => null);
-  if (found) hearOfCloths(found.sessions);
+/** What is said of cloths was changed in a way that only the daemon knows. */
+export function forgetCloths(): void {
+  askAgain();
+  fabrics.value = new Map();
 }
+
+async function ask(query: {query?: string; limit: number}): Promise<void> {
+  hearOfCloths((await answer(api.GET('/api/v1/sessions', {params: {query}}))).sessions);
+}
+
+/** What was not known or not answered may be by now. */
+function askAgain(): void {
+  all = null;
+  asked.clear();
+}
+onEvent('gap', askAgain);
 
 /** Those that the archive took last at once, and others one by one. */
 async function askFor(session: string): Promise<void> {
@@ -33,7 +46,7 @@ export function clothOf(session: string): string {
   const fabric = fabrics.value.get(session);
   if (fabric === undefined && session !== '' && !asked.has(session)) {
     asked.add(session);
-    void askFor(session);
+    askFor(session).catch(askAgain);
   }
   return fabric || session;
 }

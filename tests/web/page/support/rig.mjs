@@ -75,6 +75,7 @@ export class Rig {
     const daemon = this.#daemon;
     this.#daemon = null;
     if (!daemon || daemon.exitCode !== null) return;
+    daemon.kill('SIGCONT');  // one that hangs would hear nothing else
     const ended = new Promise((resolve) => daemon.once('exit', resolve));
     daemon.kill(signal);
     await ended;

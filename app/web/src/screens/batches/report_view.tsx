@@ -36,10 +36,16 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
           seconds predicted were {digits(report.seconds_ratio)} times those taken.
         </p>
       )}
+      {report.barely_solved.length > 0 && (
+        <p>
+          <Mark verdict="warning">Most of the cloth has no normal:</Mark>
+          {report.barely_solved.map((session) => <> <a key={session} href={`/sessions/${session}`}><Cloth session={session} /></a></>)}
+        </p>
+      )}
       {report.warned.length > 0 && (
-        <details open={report.barely_solved.length > 0}>
+        <details>
           <summary>{counted(report.warned.length, 'session')} solved with warnings</summary>
-          <ul>{report.warned.map((session) => <li key={session}><a href={`/sessions/${session}`}>{session}</a></li>)}</ul>
+          <ul>{report.warned.map((session) => <li key={session}><a href={`/sessions/${session}`}><Cloth session={session} /></a></li>)}</ul>
         </details>
       )}
       <p>{counted(report.changed, 'session')} compared with the solve before, {report.worse} worse in something, {report.unchanged} without a changed pixel.</p>

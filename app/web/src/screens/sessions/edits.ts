@@ -2,7 +2,7 @@
 // Changes of what is said of cloths. Each is a step on the daemon that can be undone, also after it was restarted.
 import {signal} from '@preact/signals';
 import {answer, api, asApiError, type ApiError, type Schemas} from '../../api/client';
-import {hearOfCloths} from '../../state/cloths';
+import {forgetCloths, hearOfCloths} from '../../state/cloths';
 import type {MetadataChange} from './metadata';
 
 export interface Word {
@@ -24,6 +24,7 @@ export async function change(name: string, body: MetadataChange): Promise<Schema
 async function step(path: '/api/v1/undo' | '/api/v1/redo', saying: string): Promise<void> {
   try {
     const done = await answer(api.POST(path, {body: {}}));
+    forgetCloths();
     lastWord.value = {says: `${saying}: ${done.words}`, error: null};
   } catch (error) {
     lastWord.value = {says: '', error: asApiError(error)};
