@@ -20,7 +20,6 @@
 #include "app/jobs/export/preset_files.h"
 #include "app/jobs/export/price.h"
 #include "core/number.h"
-#include "exchange/presets/loss.h"
 
 namespace weft::app {
 namespace {
@@ -70,7 +69,7 @@ std::string lost_words(const Json& lost) {
   const Json levels = lost.value("by_distance", Json::array());
   const Json* seen = nullptr;
   for (const Json& each : levels) {
-    if (each["level"].get<int>() <= exchange::kToldDistance) seen = &each;
+    if (each["level"].get<int>() <= kToldDistance) seen = &each;
   }
   if (seen != nullptr)
     words += fmt::format("; roughness {:.2g} off {} times as far", (*seen)["lost"].get<double>(),

@@ -43,9 +43,6 @@ struct DistanceLoss {
   double mean_abs = 0;          ///< of the difference
 };
 
-/// The farthest level that people are told of: 8 times as far.
-inline constexpr int kToldDistance = 3;
-
 /// What a file holds otherwise than the maps.
 struct Loss {
   std::optional<AngleLoss> normal = {};  ///< of a file with normal.x and normal.y

@@ -126,7 +126,8 @@ is_to_be_tried_again() {
 
 # Of the report of a plan.
 count_of() {
-  tr -d ' \n' <"$work/$1.results/report/report.json" | sed -n "s/.*\"$2\":\([0-9]*\).*/\1/p"
+  # The first of that name: each session has its own share that is solved, too.
+  tr -d ' \n' <"$work/$1.results/report/report.json" | grep -o "\"$2\":[0-9]*" | head -n 1 | sed 's/.*://'
 }
 
 # One published solve beside the one before, and the bytes of this machine.

@@ -81,7 +81,7 @@ std::string distance_note(const std::vector<EncodedFile>& files) {
   for (const EncodedFile& file : files) {
     const exchange::DistanceLoss* seen = nullptr;
     for (const exchange::DistanceLoss& each : file.loss.by_distance) {
-      if (each.level <= exchange::kToldDistance) seen = &each;
+      if (each.level <= kToldDistance) seen = &each;
     }
     if (seen == nullptr || seen->mean_abs <= kNothing * seen->mean) continue;
     return fmt::format(

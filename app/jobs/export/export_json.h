@@ -22,6 +22,9 @@ struct WrittenDocument {
   std::vector<std::string> left_out = {};  ///< what its format cannot hold
 };
 
+/// The farthest level of `lost.by_distance` that people are told of: 8 times as far.
+inline constexpr int kToldDistance = 3;
+
 /// export.json (weft.export/1, docs/formats.md).
 Json export_document(const PlannedExport& plan, const MapFolder& folder, const Json& provenance,
                      const std::vector<EncodedFile>& files, const std::vector<WrittenDocument>& documents);
