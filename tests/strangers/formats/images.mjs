@@ -230,7 +230,8 @@ function judgePhysicalSize(tags, mm_per_pixel) {
 function judgeWords(tags, entry) {
   const names = Object.keys(tags).map((tag) => tag.split(':')).filter(([group]) => !['System', 'ExifTool', 'File', 'Composite'].includes(group)).map(([, name]) => name);
   const srgb = names.includes('SRGBRendering');
-  const verdicts = [{ok: !names.some((name) => /Date/.test(name)), says: 'no date'}];
+  // That of an ICC profile is the profile's own, the same in every file.
+  const verdicts = [{ok: !names.some((name) => /Date/.test(name) && name !== 'ProfileDateTime'), says: 'no date'}];
   if (entry.encoding === 'png') {
     verdicts.push({ok: srgb === (entry.color === 'srgb'), says: srgb ? 'sRGB' : 'no sRGB chunk'});
     verdicts.push({ok: entry.color === 'srgb' || !names.includes('Gamma'), says: 'no gamma of data'});
