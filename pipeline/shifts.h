@@ -46,7 +46,7 @@ struct FarShifts {
   std::vector<std::size_t> moved;  ///< lights whose shots show the cloth elsewhere; empty: nothing was found
   double most_px = 0;              ///< of them, in pixels of the frame
   double explained = 0;            ///< solver::FarShifts::explained
-  double reach_px = 0;             ///< no shift beyond it was looked for
+  double reach_px = 0;             ///< no shift beyond it was looked for; 0: none was
 };
 
 /// Looks for shifts that are too large to be registered (solver/registration/far_shifts.h) in the middle of

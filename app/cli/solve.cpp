@@ -226,10 +226,10 @@ Level add_level(Options& options, const Option& session, SolveArguments& a) {
   const Option level = add_method(options, "--quality", "Level", true, a.options.method);
   const Option by_name =
       add_method(options, "--method", "Method for comparison", false, a.options.method).excludes(level);
-  const Option explain = options.add_flag("--explain", &a.explain,
-                                          "Solve nothing: predict, from a cut of the middle, each level's "
-                                          "mean error in degrees, the share of the "
-                                          "cloth that it holds for, and its seconds here");
+  const Option explain = options.add_flag(
+      "--explain", &a.explain,
+      "Solve nothing: predict, from a cut of the middle, each level's mean error in degrees, "
+      "the share of the cloth that it holds for, and its seconds here");
   options
       .add("--crops", &a.crops,
            "With --explain: folder for what each level made of the same 512 x 256 pixels, LEVEL_relit.png, "

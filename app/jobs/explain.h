@@ -24,12 +24,10 @@ namespace weft::app {
 /// Wall seconds of one level on the whole frame, by the phases of a solve. What is not measured on the frame
 /// itself is told by solving cuts of it.
 struct LevelSeconds {
-  double read = 0;     ///< measured: the photographs were read
-  double prepare = 0;  ///< measured: shots registered to each other; of a preview the cut's, by pixels
-  double solve = 0;    ///< of the cut below, each part by what it grows with (pipeline/work.h)
-  /// Of `solve`, what stays the same whatever the frame: beginning, and looking for a lobe. No part of
-  /// total().
-  double fixed = 0;
+  double read = 0;      ///< measured: the photographs were read
+  double prepare = 0;   ///< measured: shots registered to each other; of a preview the cut's, by pixels
+  double solve = 0;     ///< of the cut below, each part by what it grows with (pipeline/work.h)
+  double fixed = 0;     ///< of `solve`, what no frame makes longer: beginning, and looking for a lobe
   double write = 0;     ///< by two cuts, 1024 x 1024 and 512 x 256: so much for each pixel more than in them
   double pictures = 0;  ///< likewise, up to the size that previews have
   double report = 0;    ///< of the cut, as it is: it looks at samples
@@ -87,12 +85,11 @@ struct Ladder {
 /// A dearer level that is not this share better than a cheaper one has nothing to gain.
 inline constexpr double kWorthwhileGain = 0.05;
 
-/// Reads the photographs and solves a cut of up to 512 x 256 pixels
-/// from the middle of the frame at each level that is wanted as `weft solve` does, on the threads of
-/// `context`: the quicker of two runs, or one where it takes long. The error to expect is what sigma.exr says
-/// of the cut. That the height's transform of the reference level grows by a logarithm faster than the frame
-/// is left out, and so is holding a simulated session against its truth. Nothing is written beside the
-/// photographs.
+/// Reads the photographs and solves a cut of up to 512 x 256 pixels from the middle of the frame at each
+/// level that is wanted as `weft solve` does, on the threads of `context`: the quicker of two runs, or one
+/// where it takes long. The error to expect is what sigma.exr says of the cut. That the height's transform of
+/// the reference level grows by a logarithm faster than the frame is left out, and so is holding a simulated
+/// session against its truth. Nothing is written beside the photographs.
 Result<Ladder> explain_session(const SessionOptions& input, const SolveOptions& options,
                                const PriceOptions& wanted, const JobContext& context);
 Result<Ladder> explain_photos(const PhotoOptions& input, const SolveOptions& options,

@@ -428,7 +428,7 @@ double misfit_of(const PhotographsSummary& photographs) {
 // Of readings that fit no cloth, for a reason that nothing told.
 Verdict unexplained(const PhotographsSummary& photographs, std::optional<solver::Level> level) {
   std::string looked_at = "exchanged, dead and dimmer lights";
-  if (photographs.far_shifts)
+  if (photographs.far_shifts && photographs.far_shifts->reach_px > 0)
     looked_at += fmt::format(", a cloth that moved by up to {:.0f} pixels", photographs.far_shifts->reach_px);
   if (level) looked_at += ", highlights";
   const double residual = photographs.diagnosis.residual;

@@ -19,6 +19,13 @@ async function atTheDesk(visitor, {address} = rig) {
   return page;
 }
 
+/** A scan of 13 shots takes 3.5 s as it is metered: this one is not over before somebody has looked at it. */
+async function nameSlowScan(page, name) {
+  await page.getByLabel('Exposure').fill('250');
+  await page.getByLabel('Fabric').fill(name);
+  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+}
+
 /** By keys alone, from the name to the photographs. */
 async function scanByKeys(page, name) {
   await page.keyboard.type(name);
@@ -193,9 +200,7 @@ test('from before the first exposure to the close of the last every tab is black
   await page.keyboard.press('Escape');
   await page.keyboard.press('v');
   await page.getByRole('img', {name: 'Live view'}).waitFor();
-  await page.getByLabel('Exposure').fill('250');  // so that the pictures are taken long before it is over
-  await page.getByLabel('Fabric').fill('velvet');
-  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await nameSlowScan(page, 'velvet');
   await page.keyboard.press('Enter');
   const lives = [];
   await page.keyboard.press('Space');
@@ -220,9 +225,7 @@ test('from before the first exposure to the close of the last every tab is black
 test('a key at the dark page shows how things are for two seconds, and Escape and Enter cancel', async () => {
   const visitor = await visit(browser, rig);
   const page = await atTheDesk(visitor);
-  await page.getByLabel('Exposure').fill('250');  // so that it is not over before it is cancelled
-  await page.getByLabel('Fabric').fill('cancelled');
-  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await nameSlowScan(page, 'cancelled');
   await page.keyboard.press('Enter');
   await page.keyboard.press('Space');
   await page.locator('.dark').waitFor();
@@ -293,9 +296,7 @@ test('a test shot tells exposure and focus, and a turned ring is seen', async ()
 test('a cable pulled in a scan is told of with its cause, and once it is back only what is missing is photographed', async () => {
   const visitor = await visit(browser, rig);
   const page = await atTheDesk(visitor);
-  await page.getByLabel('Exposure').fill('250');  // so that it is not over before the cable is out
-  await page.getByLabel('Fabric').fill('cable');
-  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await nameSlowScan(page, 'cable');
   await page.keyboard.press('Enter');
   await page.keyboard.press('Space');
   await until(async () => (await rig.ask('rig')).led >= 2);
@@ -346,9 +347,7 @@ test('a daemon that dies while it is dark leaves the page light, and nothing cla
   const visitor = await visit(browser, rig);
   visitor.mayFail(/net::ERR_/);
   const page = await atTheDesk(visitor);
-  await page.getByLabel('Exposure').fill('250');  // so that it is not over before the daemon is dead
-  await page.getByLabel('Fabric').fill('killed');
-  await page.getByRole('button', {name: 'Scan'}).and(page.locator(':enabled')).waitFor();
+  await nameSlowScan(page, 'killed');
   await page.keyboard.press('Enter');
   await page.keyboard.press('Space');
   await page.locator('.dark').waitFor();

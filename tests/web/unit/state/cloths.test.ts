@@ -33,6 +33,21 @@ describe('the cloth of a session', () => {
     expect(GET).toHaveBeenCalledTimes(2);
   });
 
+  test('is asked for again after a request that failed, and after the daemon changed it', async () => {
+    GET.mockImplementationOnce(() => Promise.reject(new Error('gone')));
+    GET.mockImplementation(() => answerWith([{name: 'a_001', fabric: 'satin'}]));
+    cloths.clothOf('a_001');
+    await settled();
+    cloths.clothOf('a_001');
+    await settled();
+    expect(cloths.clothOf('a_001')).toBe('satin');
+    GET.mockImplementation(() => answerWith([{name: 'a_001', fabric: 'silk'}]));
+    cloths.forgetCloths();
+    cloths.clothOf('a_001');
+    await settled();
+    expect(cloths.clothOf('a_001')).toBe('silk');
+  });
+
   test('is called what it was renamed to', () => {
     cloths.hearOfCloths([{name: 'a_001', fabric: 'satin'}]);
     expect(cloths.clothOf('a_001')).toBe('satin');

@@ -12,15 +12,16 @@ const lane_px = 15;
 
 /** What a plan costs and gives, and what it leaves out. */
 export function PlanView({plan}: {plan: Plan}) {
+  const foretold = (text: string) => (plan.sampled > 0 ? text : '–');
   return (
     <>
       <p class="dim">
-        {degreesOn(plan.mean_deg, plan.solved)} of the cloth predicted, {bytesOf(plan.memory_bytes)} of memory, {bytesOf(plan.write_bytes)} written;
+        {plan.sampled > 0 ? `${degreesOn(plan.mean_deg, plan.solved)} of the cloth predicted` : 'No error foretold'}, {bytesOf(plan.memory_bytes)} of memory, {bytesOf(plan.write_bytes)} written;
         measured on {counted(plan.sampled, 'session')} in {durationOf(plan.sample_seconds)}
       </p>
       <Table caption="Levels" heads={['Level', 'All at it', 'Mean error', 'Spread', 'Planned']}
         rows={plan.levels.map(({quality, seconds, mean_deg, solved, spread_deg, sessions}) => ({
-          key: quality, cells: [quality, durationOf(seconds), degreesOn(mean_deg, solved), degrees(spread_deg), sessions],
+          key: quality, cells: [quality, durationOf(seconds), foretold(degreesOn(mean_deg, solved)), foretold(degrees(spread_deg)), sessions],
         }))} />
       <Curve plan={plan} />
       <Leaf title={counted(plan.jobs.length, 'session')}>
@@ -28,7 +29,7 @@ export function PlanView({plan}: {plan: Plan}) {
           rows={plan.jobs.map((job) => ({
             key: job.session,
             cells: [
-              <a href={`/sessions/${job.session}`}><Cloth session={job.session} /></a>, job.quality, durationOf(job.seconds), degreesOn(job.degrees, job.solved),
+              <a href={`/sessions/${job.session}`}><Cloth session={job.session} /></a>, job.quality, durationOf(job.seconds), foretold(degreesOn(job.degrees, job.solved)),
               job.turn_deg === null ? '' : degrees(job.turn_deg), job.is_measured ? 'measured' : 'carried over',
             ],
           }))} />

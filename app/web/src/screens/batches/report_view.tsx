@@ -37,10 +37,10 @@ export function ReportView({name, report, onAccepted}: ReportProps) {
         </p>
       )}
       {report.barely_solved.length > 0 && (
-        <p>
-          <Mark verdict="warning">Most of the cloth has no normal:</Mark>
-          {report.barely_solved.map((session) => <> <a key={session} href={`/sessions/${session}`}><Cloth session={session} /></a></>)}
-        </p>
+        <>
+          <p><Mark verdict="warning">Most of the cloth has no normal</Mark></p>
+          <ul>{report.barely_solved.map((session) => <li key={session}><a href={`/sessions/${session}`}><Cloth session={session} /></a></li>)}</ul>
+        </>
       )}
       {report.warned.length > 0 && (
         <details>
