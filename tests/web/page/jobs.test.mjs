@@ -119,9 +119,11 @@ test('another browser shows the share that the closed one showed, and a job that
   const {id} = await longSolve();
   const job = () => rig.ask(`jobs/${id}`);
   await until(async () => { const {phase, share} = await job(); return phase === 'solve' && share > 0; });
-  await rig.inject('board unplug');
-  await rig.ask('scan', {fabric: 'holds the job', cloth_height_mm: 0.8});
+  // A slow scan, so that it holds the job before its board is gone, and until it is back.
+  const {session: holding} = await rig.ask('scan', {fabric: 'holds the job', cloth_height_mm: 0.8, exposure_us: 250_000});
+  assert.ok(holding, 'the scan began');
   await until(async () => (await job()).held);
+  await rig.inject('board unplug');
   const first = await visit(browser, rig);
   const share = await shareShown(first, id);
   await first.leave();
