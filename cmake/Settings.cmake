@@ -81,21 +81,40 @@ function(weft_vector_code)
   endif()
 endfunction()
 
-# weft_test(NAME DEPENDS ... SOURCES ...): one test program, one CTest entry.
-# One entry a program: loading OpenImageIO costs 0.2 s a process. The longest, by TIMEOUT, begin first. SERIAL: it runs
-# with no other beside it, since what it asserts is real time.
+# weft_test(NAME DEPENDS ... SOURCES ...): one test program. CTest has one entry a program, as loading OpenImageIO costs
+# 0.2 s a process; SHARDS n makes n entries NAME.1 to NAME.n, each with its share of the tests. An entry computes, and
+# holds one of the cores that `./dev test` gives out; one that WAITS, for clocks of devices and programs, holds none.
+# SERIAL: it runs with no other beside it, since what it asserts is real time. The longest, by TIMEOUT, begin first.
 function(weft_test name)
-  cmake_parse_arguments(ARG "SERIAL" "TIMEOUT" "SOURCES;DEPENDS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;WAITS" "TIMEOUT;SHARDS" "SOURCES;DEPENDS;LABELS;ENVIRONMENT" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE weft_settings ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
   target_compile_options(${name} PRIVATE ${WEFT_TEST_OPTIONS})
   target_precompile_headers(${name} REUSE_FROM weft_precompiled_tests)
-  add_test(NAME ${name} COMMAND ${name})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 300)
   endif()
-  set_tests_properties(${name} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT} LABELS "${ARG_LABELS}"
-    RUN_SERIAL ${ARG_SERIAL})
+  if(NOT ARG_SHARDS)
+    weft_test_entry(${name} ${name})
+    return()
+  endif()
+  foreach(shard RANGE 1 ${ARG_SHARDS})
+    math(EXPR index "${shard} - 1")
+    weft_test_entry(${name} ${name}.${shard} GTEST_TOTAL_SHARDS=${ARG_SHARDS} GTEST_SHARD_INDEX=${index})
+  endforeach()
+endfunction()
+
+# weft_test_entry(PROGRAM ENTRY [NAME=VALUE...]): within weft_test, whose ARG_ it reads.
+function(weft_test_entry program entry)
+  add_test(NAME ${entry} COMMAND ${program})
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${CMAKE_SOURCE_DIR}/tests OUTPUT_VARIABLE room)
+  string(REGEX REPLACE "/.*" "" room "${room}")
+  set_tests_properties(${entry} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT} RUN_SERIAL ${ARG_SERIAL}
+    LABELS "room-${room};${ARG_LABELS}"
+    ENVIRONMENT "GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/gtest/${entry}.xml;${ARGN};${ARG_ENVIRONMENT}")
+  if(NOT ARG_WAITS)
+    set_tests_properties(${entry} PROPERTIES RESOURCE_GROUPS cores:1)
+  endif()
 endfunction()
 
 # weft_fuzzer(NAME DEPENDS ... SOURCES ... SEEDS ...): one libFuzzer program, one CTest entry. It goes on from where it
