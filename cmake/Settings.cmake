@@ -13,6 +13,7 @@ set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
 set(WEFT_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=: address,undefined or thread")
 option(WEFT_PLAIN_THREADS "parallel_for on plain threads instead of oneTBB, which ThreadSanitizer cannot see into" OFF)
 option(WEFT_FUZZERS "Build the libFuzzer programs (clang only)" OFF)
+set(WEFT_BUILT "" CACHE PATH "Build folder whose libraries stand in for those that no sanitizer is to watch")
 set(WEFT_FUZZ_SECONDS 30 CACHE STRING "How long each libFuzzer program runs as a test")
 
 add_library(weft_settings INTERFACE)
@@ -62,11 +63,20 @@ weft_precompile(weft_precompiled_tests
   OPTIONS ${WEFT_TEST_OPTIONS})
 
 # weft_library(NAME DEPENDS ... SOURCES ...): one folder, one target. PLAIN: without the precompiled headers, for C and
-# for what is compiled with other options.
+# for what is compiled with other options. With WEFT_BUILT a library that no sanitizer is to watch is not compiled: its
+# archive is that of this other build.
 function(weft_library name)
-  cmake_parse_arguments(ARG "PLAIN" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  cmake_parse_arguments(ARG "PLAIN" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;OPTIONS" ${ARGN})
+  cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE folder)
+  if(WEFT_BUILT AND folder MATCHES "^(batch|bench|calibration|material|pipeline|report|simulator|solver)(/|$)")
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE weft_settings ${WEFT_BUILT}/${folder}/lib${name}.a
+      ${ARG_DEPENDS} ${ARG_PRIVATE_DEPENDS})
+    return()
+  endif()
   add_library(${name} STATIC ${ARG_SOURCES})
   target_link_libraries(${name} PUBLIC weft_settings ${ARG_DEPENDS} PRIVATE ${ARG_PRIVATE_DEPENDS})
+  target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
   if(NOT ARG_PLAIN)
     target_precompile_headers(${name} REUSE_FROM weft_precompiled)
   endif()

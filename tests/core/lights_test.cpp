@@ -33,7 +33,7 @@ constexpr std::array<std::array<int, 2>, 4> kSizes = {{{4, 4}, {5, 9}, {12, 8}, 
 TEST(GainSpline, OfEqualCoefficientsIsConstant) {
   for (const auto& [columns, rows] : kSizes) {
     const GainSpline spline = spline_of(columns, rows, [](double, double) { return 0.7; });
-    at_many_places([&](double u, double v) {
+    at_many_places([&, columns = columns, rows = rows](double u, double v) {
       EXPECT_NEAR(spline.at(u, v), 0.7, 1e-15) << "at " << u << ", " << v << ", " << columns << " x " << rows;
     });
   }
@@ -43,7 +43,7 @@ TEST(GainSpline, ReproducesALinearFunctionFromItsGrevilleAbscissae) {
   const auto linear = [](double u, double v) { return 0.3 - 1.7 * u + 0.9 * v; };
   for (const auto& [columns, rows] : kSizes) {
     const GainSpline spline = spline_of(columns, rows, linear);
-    at_many_places([&](double u, double v) {
+    at_many_places([&, columns = columns, rows = rows](double u, double v) {
       EXPECT_NEAR(spline.at(u, v), linear(u, v), 1e-14)
           << "at " << u << ", " << v << ", " << columns << " x " << rows;
     });

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -58,8 +59,7 @@ Scene checked_rig() {
 class CalibrationCheck : public testing::Test {
  protected:
   static void SetUpTestSuite() {
-    root_ = fs::path(testing::TempDir()) / "weft_calibration_check";
-    fs::remove_all(root_);
+    root_ = fs::path(testing::TempDir()) / ("weft_calibration_check_" + std::to_string(getpid()));
     fs::create_directories(root_);
     simulate(checked_rig(), "cloth.weft");
     simulator::CapturesOptions options;

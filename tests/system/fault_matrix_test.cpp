@@ -4,8 +4,22 @@
 namespace weft {
 namespace {
 
-TEST(FaultMatrix, SixtyRunsLoseMislabelAndHalveNoFrame) {
-  test::expect_no_run_goes_wrong(60, 8);
+// Some faults of each kind, every one once: all of them, a thousand runs, are the soak.
+void expect_each_goes_right(const std::vector<std::string>& faults) {
+  test::expect_no_run_goes_wrong(static_cast<int>(faults.size()), static_cast<int>(faults.size()), faults);
+}
+
+TEST(FaultMatrix, OfTheCameraLosesMislabelsAndHalvesNoFrame) {
+  expect_each_goes_right(
+      {"transfer ends early", "camera off between exposures", "USB cable pulled in the transfer"});
+}
+
+TEST(FaultMatrix, OfBoardAndLightLosesMislabelsAndHalvesNoFrame) {
+  expect_each_goes_right({"board unplugged and plugged in", "wires swapped", "room light goes on"});
+}
+
+TEST(FaultMatrix, OfProgramsAndPowerLosesMislabelsAndHalvesNoFrame) {
+  expect_each_goes_right({"disk is full", "weft serve is killed", "power cut of camera and board"});
 }
 
 }  // namespace
