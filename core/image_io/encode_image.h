@@ -11,8 +11,9 @@
 namespace weft {
 
 enum class PictureFormat {
-  kJpeg,  ///< quality 92, colours at every pixel
-  kPng,   ///< every value, compressed quickly
+  kJpeg,      ///< quality 92, colours at every pixel
+  kLiveJpeg,  ///< quality 85, colours at every fourth pixel
+  kPng,       ///< every value, compressed quickly
 };
 
 /// The bytes of an 8-bit picture of one channel or three, interleaved without gaps. The same pixels give the

@@ -13,8 +13,7 @@ constexpr std::size_t kMostHeld = std::size_t{1} << 14;
 }
 
 FileSink::FileSink(const std::filesystem::path& file)
-    : IOProxy(file.string(), IOProxy::Write),
-      file_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
+    : file_(::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644)) {
   if (file_ < 0) error_number_ = errno;
   held_.reserve(kMostHeld);
 }
@@ -35,11 +34,11 @@ bool FileSink::finish() {
   return error_number_ == 0;
 }
 
-std::size_t FileSink::write(const void* data, std::size_t bytes) {
-  const std::int64_t offset = m_pos;
-  m_pos += static_cast<std::int64_t>(bytes);
-  if (error_number_ != 0 || (only_append_ && offset < end_)) return bytes;
-  end_ = std::max(end_, m_pos);
+void FileSink::write(const void* data, std::size_t bytes) {
+  const std::int64_t offset = at_;
+  at_ += static_cast<std::int64_t>(bytes);
+  end_ = std::max(end_, at_);
+  if (error_number_ != 0) return;
   const bool follows = offset == held_offset_ + static_cast<std::int64_t>(held_.size());
   if (!follows || held_.size() + bytes > kMostHeld) {
     drain();
@@ -47,12 +46,11 @@ std::size_t FileSink::write(const void* data, std::size_t bytes) {
   }
   if (bytes > kMostHeld) {
     put(data, bytes, offset);
-    held_offset_ = m_pos;
+    held_offset_ = at_;
   } else {
     const char* first = static_cast<const char*>(data);
     held_.insert(held_.end(), first, first + bytes);
   }
-  return bytes;
 }
 
 void FileSink::drain() {

@@ -1,33 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <OpenImageIO/filesystem.h>
-
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <vector>
 
 namespace weft {
 
-/// The file below an image writer of OpenImageIO. It collects small writes, keeps the first error of the
-/// system, and after that takes and drops everything, so that no encoder has to cope with a full disk.
-class FileSink : public OIIO::Filesystem::IOProxy {
+/// The file below an encoder. It collects small writes, keeps the first error of the system, and after that
+/// takes and drops everything, so that no encoder has to cope with a full disk.
+class FileSink {
  public:
   /// Creates or empties `file`; `error_number` says whether that went well.
   explicit FileSink(const std::filesystem::path& file);
-  ~FileSink() override;
+  ~FileSink();
+  FileSink(const FileSink&) = delete;
+  FileSink& operator=(const FileSink&) = delete;
 
   /// errno of the first failure, or 0.
   int error_number() const { return error_number_; }
-  /// While set, writes before the end of the file are dropped.
-  void only_append(bool yes) { only_append_ = yes; }
   /// Drops all that has not reached the file yet and all that follows.
   void abandon();
   /// Writes what is still held and closes the file; false on any failure so far.
   bool finish();
 
-  const char* proxytype() const override { return "weft"; }
-  std::size_t write(const void* data, std::size_t bytes) override;
-  std::size_t size() const override { return static_cast<std::size_t>(end_); }
+  void write(const void* data, std::size_t bytes);
+  void seek(std::int64_t offset) { at_ = offset; }
+  std::int64_t tell() const { return at_; }
+  std::int64_t size() const { return end_; }
 
  private:
   void put(const void* data, std::size_t bytes, std::int64_t offset);
@@ -35,7 +36,7 @@ class FileSink : public OIIO::Filesystem::IOProxy {
 
   int file_ = -1;
   int error_number_ = 0;
-  bool only_append_ = false;
+  std::int64_t at_ = 0;  ///< where the next byte belongs
   std::int64_t end_ = 0;
   std::int64_t held_offset_ = 0;  ///< where the first byte of `held_` belongs
   std::vector<char> held_;

@@ -15,7 +15,7 @@
 #include "core/image.h"
 #include "core/result.h"
 
-// Image files: EXR, TIFF, PNG, and JPEG for reading. OpenImageIO stays behind this header. Values are what
+// Image files: EXR, TIFF, PNG, and JPEG for reading. Their libraries stay behind this header. Values are what
 // the file holds, without transfer function or premultiplication by alpha; full scale of integers is 1.
 // Pixels are not converted by what a file says of its colours.
 

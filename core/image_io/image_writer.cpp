@@ -7,13 +7,14 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "core/files.h"
 #include "core/image_io/file_sink.h"
 #include "core/image_io/image_io.h"
-#include "core/image_io/oiio.h"
+#include "core/image_io/image_sink.h"
+#include "core/image_io/image_source.h"
 #include "core/image_io/pack_row.h"
-#include "core/image_io/spec_words.h"
 
 namespace weft {
 namespace {
@@ -22,6 +23,7 @@ namespace fs = std::filesystem;
 
 struct Format {
   std::string name;
+  std::unique_ptr<ImageSink> (*open)(const ImageToWrite& image, FileSink& file, std::string& why);
   std::vector<std::string> extensions;
   std::vector<SampleType> types;
   std::vector<Compression> compressions;
@@ -32,24 +34,31 @@ const std::vector<Format>& formats() {
   using enum SampleType;
   using enum Compression;
   static const std::vector<Format> all = {
-      {"openexr", {".exr"}, {kHalf, kFloat}, {kNone, kZip, kPiz}, 1024},
-      {"tiff", {".tif", ".tiff"}, {kUint8, kUint16, kHalf, kFloat}, {kNone, kZip}, 1024},
-      {"png", {".png"}, {kUint8, kUint16}, {kNone, kZip}, 4}};
+      {"openexr", exr_sink, {".exr"}, {kHalf, kFloat}, {kNone, kZip, kPiz}, 1024},
+      {"tiff", tiff_sink, {".tif", ".tiff"}, {kUint8, kUint16, kHalf, kFloat}, {kNone, kZip}, 1024},
+      {"png", png_sink, {".png"}, {kUint8, kUint16}, {kNone, kZip}, 4}};
   return all;
 }
 
-OIIO::TypeDesc oiio_type(SampleType type) {
+const char* word_of(SampleType type) {
   switch (type) {
     case SampleType::kUint8:
-      return OIIO::TypeUInt8;
+      return "uint8";
     case SampleType::kUint16:
-      return OIIO::TypeUInt16;
+      return "uint16";
     case SampleType::kHalf:
-      return OIIO::TypeHalf;
+      return "half";
     case SampleType::kFloat:
-      return OIIO::TypeFloat;
+      return "float";
   }
-  return OIIO::TypeFloat;
+  return "float";
+}
+
+std::string lower(std::string word) {
+  for (char& c : word) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return word;
 }
 
 bool names_are_distinct(std::vector<std::string> names) {
@@ -67,7 +76,7 @@ Result<const Format*> format_for(const fs::path& file, Size size, const std::vec
   const auto has = [](const auto& list, const auto& value) {
     return std::find(list.begin(), list.end(), value) != list.end();
   };
-  const std::string extension = OIIO::Strutil::lower(file.extension().string());
+  const std::string extension = lower(file.extension().string());
   const auto format = std::find_if(formats().begin(), formats().end(),
                                    [&](const Format& f) { return has(f.extensions, extension); });
   if (format == formats().end()) {
@@ -82,35 +91,10 @@ Result<const Format*> format_for(const fs::path& file, Size size, const std::vec
   }
   if (!has(format->types, options.type) || !has(format->compressions, options.compression)) {
     return refuse(fmt::format("{} cannot hold {} samples with compression {}", format->name,
-                              oiio_type(options.type).c_str(), name_of(options.compression)),
+                              word_of(options.type), name_of(options.compression)),
                   "choose another type, compression or ending");
   }
   return &*format;
-}
-
-OIIO::ImageSpec spec_of(const std::string& format, Size size, const std::vector<std::string>& channels,
-                        const WriteOptions& options) {
-  OIIO::ImageSpec spec(size.width, size.height, static_cast<int>(channels.size()), oiio_type(options.type));
-  spec.channelnames = channels;
-  const auto alpha = std::find(channels.begin(), channels.end(), "A");
-  spec.alpha_channel = alpha == channels.end() ? -1 : static_cast<int>(alpha - channels.begin());
-  if (format == "openexr") {
-    for (const auto& [key, text] : options.attributes) spec.attribute(key, text);
-  } else if (!options.attributes.empty()) {
-    constexpr auto kReplaceBadUtf8 = nlohmann::json::error_handler_t::replace;
-    spec.attribute("ImageDescription",
-                   nlohmann::json(options.attributes).dump(-1, ' ', /*ensure_ascii=*/true, kReplaceBadUtf8));
-  }
-  spec.attribute("compression", name_of(options.compression));
-  spec.attribute("oiio:UnassociatedAlpha", 1);
-  spec.attribute("png:compressionLevel", 2);  // three times as fast as the default, for a file a third larger
-  spec.attribute("tiff:half", 1);
-  spec.attribute("tiff:write_exif", 0);
-  // A date of another type than text is dropped; without one, OpenImageIO would write the present.
-  spec.attribute("DateTime", 0);
-  add_density(spec, format, options.pitch_mm);
-  add_color(spec, format, options.color);
-  return spec;
 }
 
 fs::path aside(fs::path file) {
@@ -118,7 +102,7 @@ fs::path aside(fs::path file) {
   return file;
 }
 
-/// Rows handed to the encoder at once: always the same, since some encoders make blocks of what they get.
+/// Rows handed to the encoder at once: always the same, since encoders make blocks of what they get.
 int rows_a_chunk(std::size_t row_bytes) {
   constexpr std::size_t kChunkBytes = std::size_t{4} << 20;
   constexpr std::size_t kStep = 32;  // lines of a TIFF strip and of an EXR piz block
@@ -126,6 +110,12 @@ int rows_a_chunk(std::size_t row_bytes) {
 }
 
 }  // namespace
+
+std::string text_of_attributes(const ImageAttributes& attributes) {
+  if (attributes.empty()) return "";
+  constexpr auto kReplaceBadUtf8 = nlohmann::json::error_handler_t::replace;
+  return nlohmann::json(attributes).dump(-1, ' ', /*ensure_ascii=*/true, kReplaceBadUtf8);
+}
 
 struct ImageWriter::State {
   State(fs::path target, Size image_size, std::size_t image_channels, SampleType sample_type)
@@ -138,7 +128,6 @@ struct ImageWriter::State {
   ~State() {
     if (finished) return;
     sink.abandon();
-    if (begun) complete_into_nothing();
     output.reset();
     ::unlink(aside(file).c_str());
   }
@@ -146,10 +135,9 @@ struct ImageWriter::State {
   State& operator=(const State&) = delete;
 
   std::byte* next_row() { return chunk.data() + static_cast<std::size_t>(rows_held) * row_bytes; }
-  void complete_into_nothing();
   Result<void> row_added();
   Result<void> encode_chunk();
-  Result<void> check(bool encoder_is_content);
+  Result<void> check(const std::string& complaint);
   Result<void> check_rows(Size rows, std::size_t planes, bool type_fits);
 
   fs::path file;
@@ -158,29 +146,19 @@ struct ImageWriter::State {
   SampleType type;
   std::size_t row_bytes;
   FileSink sink;
-  std::unique_ptr<OIIO::ImageOutput> output;
+  std::unique_ptr<ImageSink> output;
   std::vector<std::byte> chunk;
   int rows_held = 0;
   int rows_encoded = 0;
   std::optional<Error> failure;
-  bool begun = false;
   bool finished = false;
 };
 
-// libpng prints a complaint about an image that ends without pixels.
-void ImageWriter::State::complete_into_nothing() {
-  if (output->format_name() != std::string("png")) return;
-  while (rows_encoded < size.height) {
-    rows_held = std::min(rows_a_chunk(row_bytes), size.height - rows_encoded);
-    static_cast<void>(encode_chunk());
-  }
-}
-
-Result<void> ImageWriter::State::check(bool encoder_is_content) {
+Result<void> ImageWriter::State::check(const std::string& complaint) {
   if (sink.error_number() != 0) {
     failure = cannot_write(file, sink.error_number());
-  } else if (!encoder_is_content) {
-    failure = Error{ErrorKind::kInputOutput, "cannot encode", file.string(), oiio_reason(output->geterror()),
+  } else if (!complaint.empty()) {
+    failure = Error{ErrorKind::kInputOutput, "cannot encode", file.string(), library_reason(complaint),
                     "choose another format or compression"};
   }
   if (failure) return *failure;
@@ -205,10 +183,9 @@ Result<void> ImageWriter::State::row_added() {
 
 Result<void> ImageWriter::State::encode_chunk() {
   if (rows_held == 0) return {};
-  const int y = rows_encoded;
-  rows_encoded += rows_held;
-  rows_held = 0;
-  return check(output->write_scanlines(y, rows_encoded, 0, oiio_type(type), chunk.data()));
+  const int rows = std::exchange(rows_held, 0);
+  rows_encoded += rows;
+  return check(output->write(chunk.data(), rows));
 }
 
 ImageWriter::ImageWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -218,7 +195,6 @@ ImageWriter::~ImageWriter() = default;
 
 Result<ImageWriter> ImageWriter::open(const fs::path& file, Size size,
                                       const std::vector<std::string>& channels, const WriteOptions& options) {
-  prepare_oiio();
   const Result<const Format*> format = format_for(file, size, channels, options);
   if (!format) return format.error();
 
@@ -226,13 +202,9 @@ Result<ImageWriter> ImageWriter::open(const fs::path& file, Size size,
   if (state->sink.error_number() != 0) return cannot_write(file, state->sink.error_number());
   state->chunk.resize(state->row_bytes *
                       static_cast<std::size_t>(std::min(rows_a_chunk(state->row_bytes), size.height)));
-  state->output = OIIO::ImageOutput::create((*format)->name, &state->sink);
-  const bool opened = state->output->open(file.string(), spec_of((*format)->name, size, channels, options));
-  if (Result<void> checked = state->check(opened); !checked) return checked.error();
-  // Until the end each format only appends. What would not is the directory that OpenImageIO's TIFF rewrites
-  // every five seconds, which makes bytes depend on time; the one that counts is written by `close`.
-  state->sink.only_append(true);
-  state->begun = true;
+  std::string why;
+  state->output = (*format)->open({size, channels, options}, state->sink, why);
+  if (Result<void> checked = state->check(why); !checked) return checked.error();
   return ImageWriter(std::move(state));
 }
 
@@ -270,10 +242,9 @@ Result<void> ImageWriter::finish() {
                  fmt::format("{} of {} rows", state.rows_encoded + state.rows_held, state.size.height), ""};
   }
   if (Result<void> encoded = state.encode_chunk(); !encoded) return encoded;
-  state.sink.only_append(false);
-  const bool closed = state.output->close();
+  const std::string complaint = state.output->finish();
   state.sink.finish();
-  if (Result<void> checked = state.check(closed); !checked) return checked;
+  if (Result<void> checked = state.check(complaint); !checked) return checked;
   if (::rename(aside(state.file).c_str(), state.file.c_str()) != 0) return cannot_write(state.file, errno);
   state.finished = true;
   return {};

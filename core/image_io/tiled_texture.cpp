@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/image_io/tiled_texture.h"
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <OpenEXR/ImfFloatAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfStringAttribute.h>
+#include <OpenEXR/ImfTileDescriptionAttribute.h>
+#include <OpenEXR/ImfTiledOutputFile.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -11,8 +14,9 @@
 #include <vector>
 
 #include "core/files.h"
-#include "core/image_io/oiio.h"
-#include "core/image_io/spec_words.h"
+#include "core/image_io/exr_channels.h"
+#include "core/image_io/image_source.h"
+#include "core/image_io/pack_row.h"
 
 namespace weft {
 namespace {
@@ -96,38 +100,67 @@ bool are_whole(std::span<const PlaneLevels> own, Size size, std::size_t channels
   return true;
 }
 
-OIIO::ImageSpec spec_of_texture(Size size, const std::vector<std::string>& channels,
-                                const TiledTextureOptions& options) {
-  OIIO::ImageSpec spec(size.width, size.height, static_cast<int>(channels.size()),
-                       options.type == SampleType::kHalf ? OIIO::TypeHalf : OIIO::TypeFloat);
-  spec.channelnames = channels;
-  spec.tile_width = spec.tile_height = kTilePx;
-  for (const auto& [key, text] : options.attributes) spec.attribute(key, text);
-  spec.attribute("compression", "zip");
-  spec.attribute("textureformat", "Plain Texture");
-  spec.attribute("wrapmodes", options.is_periodic ? "periodic,periodic" : "clamp,clamp");
+Imf::Header texture_header(Size size, const std::vector<std::string>& channels,
+                           const TiledTextureOptions& options) {
+  Imf::Header header = exr_header({size,
+                                   channels,
+                                   {.type = options.type,
+                                    .compression = Compression::kZip,
+                                    .attributes = options.attributes,
+                                    .pitch_mm = options.pitch_mm,
+                                    .color = options.color}});
+  header.setTileDescription(Imf::TileDescription(kTilePx, kTilePx, Imf::MIPMAP_LEVELS, Imf::ROUND_DOWN));
+  header.insert("textureformat", Imf::StringAttribute("Plain Texture"));
+  header.insert("wrapmodes", Imf::StringAttribute(options.is_periodic ? "periodic,periodic" : "clamp,clamp"));
   if (options.is_prman) {
-    spec.attribute("PixarTextureFormat", "Plain Texture");
-    spec.attribute("fovcot", static_cast<float>(size.width) / static_cast<float>(size.height));
+    header.insert("PixarTextureFormat", Imf::StringAttribute("Plain Texture"));
+    header.insert("fovcot",
+                  Imf::FloatAttribute(static_cast<float>(size.width) / static_cast<float>(size.height)));
   }
-  // A date of another type than text is dropped; without one, OpenImageIO would write the present.
-  spec.attribute("DateTime", 0);
-  add_density(spec, "openexr", options.pitch_mm);
-  add_color(spec, "openexr", options.color);
-  return spec;
+  return header;
 }
 
-Error refused(const fs::path& file, const std::string& why) {
-  return {ErrorKind::kInputOutput, "cannot encode", file.string(), oiio_reason(why), "choose another format"};
+void write_level(const Level& level, int number, const std::vector<std::string>& channels, SampleType type,
+                 Imf::TiledOutputFile& output) {
+  const std::size_t sample = sample_bytes(type), pixel = sample * channels.size();
+  std::vector<std::byte> packed(level.samples.size() * sample);
+  const float* samples = level.samples.data();
+  pack_row({&samples, 1}, level.samples.size(), type, packed.data());
+  Imf::FrameBuffer frame;
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    auto* first = reinterpret_cast<char*>(packed.data() + c * sample);
+    frame.insert(channels[c], Imf::Slice(type == SampleType::kHalf ? Imf::HALF : Imf::FLOAT, first, pixel,
+                                         pixel * static_cast<std::size_t>(level.size.width)));
+  }
+  output.setFrameBuffer(frame);
+  output.writeTiles(0, output.numXTiles(number) - 1, 0, output.numYTiles(number) - 1, number);
 }
+
+/// The bytes of a file that OpenEXR writes.
+class Memory : public Imf::OStream {
+ public:
+  Memory() : OStream("texture") {}
+  void write(const char c[], int n) override {
+    const auto count = static_cast<std::size_t>(n);
+    if (bytes_.size() < at_ + count) bytes_.resize(at_ + count);
+    std::copy_n(c, count, bytes_.begin() + static_cast<std::ptrdiff_t>(at_));
+    at_ += count;
+  }
+  std::uint64_t tellp() override { return at_; }
+  void seekp(std::uint64_t offset) override { at_ = offset; }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
 
 }  // namespace
 
 // Into memory first: threads of OpenEXR wait for each other for ever where a disk is full.
 Result<void> write_tiled_texture(const fs::path& file, std::span<const View<const float>> planes,
                                  const std::vector<std::string>& channels,
-                                 const TiledTextureOptions& options) {
-  prepare_oiio();
+                                 const TiledTextureOptions& options) try {
   const bool is_float = options.type == SampleType::kHalf || options.type == SampleType::kFloat;
   if (planes.empty() || planes.size() != channels.size() || planes[0].empty() || !is_float ||
       !are_whole(options.own_levels, planes[0].size(), planes.size())) {
@@ -135,26 +168,21 @@ Result<void> write_tiled_texture(const fs::path& file, std::span<const View<cons
                  "it has no planes, levels of other sizes, or samples that are neither half nor float",
                  "choose half or float"};
   }
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput sink(bytes);
-  const std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("openexr");
-  if (!output) return refused(file, OIIO::geterror());
-  if (!output->set_ioproxy(&sink)) return refused(file, output->geterror());
-  const std::string name = file.string();
+  Memory memory;
   Level level = first_level(planes);
-  std::size_t number = 0;
-  OIIO::ImageOutput::OpenMode mode = OIIO::ImageOutput::Create;
-  while (true) {
-    const OIIO::ImageSpec spec = spec_of_texture(level.size, channels, options);
-    if (!output->open(name, spec, mode)) return refused(file, output->geterror());
-    if (!output->write_image(OIIO::TypeFloat, level.samples.data())) return refused(file, output->geterror());
-    if (level.size == Size{1, 1}) break;
-    level = next_level(level, planes.size());
-    put_own(options.own_levels, ++number, planes.size(), level);
-    mode = OIIO::ImageOutput::AppendMIPLevel;
-  }
-  if (!output->close()) return refused(file, output->geterror());
-  return write_file(file, std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  {
+    Imf::TiledOutputFile output(memory, texture_header(level.size, channels, options), exr_threads());
+    for (int number = 0;; ++number) {
+      write_level(level, number, channels, options.type, output);
+      if (level.size == Size{1, 1}) break;
+      level = next_level(level, planes.size());
+      put_own(options.own_levels, static_cast<std::size_t>(number) + 1, planes.size(), level);
+    }
+  }  // writes where tiles begin
+  return write_file(file, memory.bytes());
+} catch (const std::exception& refusal) {
+  return Error{ErrorKind::kInputOutput, "cannot encode", file.string(), library_reason(refusal.what()),
+               "choose another format"};
 }
 
 }  // namespace weft
