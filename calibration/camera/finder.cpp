@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/camera/picture.h"
+#include "core/image_io/grey_jpeg.h"
 
 namespace weft::calibration {
 namespace {
@@ -21,15 +21,12 @@ int times_larger(int width) {
 }  // namespace
 
 std::optional<Image<std::uint8_t>> finder_picture(const std::string& jpeg) {
-  if (jpeg.empty()) return std::nullopt;
-  const cv::Mat bytes(1, static_cast<int>(jpeg.size()), CV_8UC1,
-                      const_cast<char*>(jpeg.data()));  // NOLINT: OpenCV only reads it
-  const cv::Mat small = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
-  if (small.empty()) return std::nullopt;
-  const int times = times_larger(small.cols);
-  Image<std::uint8_t> picture({times * small.cols, times * small.rows});
+  std::optional<Image<std::uint8_t>> small = grey_of_jpeg(jpeg);
+  if (!small) return std::nullopt;
+  const int times = times_larger(small->width());
+  Image<std::uint8_t> picture({times * small->width(), times * small->height()});
   cv::Mat large = mat_of(picture.plane());
-  cv::resize(small, large, large.size(), 0, 0, cv::INTER_CUBIC);
+  cv::resize(mat_of(small->plane()), large, large.size(), 0, 0, cv::INTER_CUBIC);
   return picture;
 }
 

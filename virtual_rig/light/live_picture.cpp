@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 
+#include "core/image_io/encode_image.h"
 #include "core/statistics.h"
 #include "simulator/effects/random_key.h"
 #include "simulator/sampling/random.h"
@@ -14,7 +14,6 @@ namespace weft::virtual_rig {
 namespace {
 
 constexpr int kLongSide_px = 640;
-constexpr int kQuality = 85;
 constexpr double kGrey = 0.35;       // linear, of the brightest half
 constexpr double kMostGain = 200;    // over a reading of full scale
 constexpr double kReadNoise = 2e-4;  // of full scale
@@ -55,7 +54,7 @@ std::vector<std::uint8_t> live_picture(const LightFrames& frames, const Gathered
     }
   }
   const std::array<double, 3> gain = {gain_of(planes[0]), gain_of(planes[1]), gain_of(planes[2])};
-  cv::Mat picture(height, width, CV_8UC3);
+  std::vector<std::uint8_t> picture;
   const auto key = simulator::random_key(frames.scene());
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
@@ -66,13 +65,12 @@ std::vector<std::uint8_t> live_picture(const LightFrames& frames, const Gathered
       for (std::size_t c = 0; c < 3; ++c) {
         const double seen = gain[c] * (planes[c][at] + kReadNoise * (c == 1 ? noise.first : noise.second));
         const double shown = 255 * std::pow(std::clamp(seen, 0.0, 1.0), kGamma);
-        picture.at<cv::Vec3b>(y, x)[static_cast<int>(2 - c)] = static_cast<std::uint8_t>(std::lround(shown));
+        picture.push_back(static_cast<std::uint8_t>(std::lround(shown)));
       }
     }
   }
-  std::vector<std::uint8_t> bytes;
-  cv::imencode(".jpg", picture, bytes, {cv::IMWRITE_JPEG_QUALITY, kQuality});
-  return bytes;
+  const Result<std::string> jpeg = encode_image(picture, {width, height}, 3, PictureFormat::kLiveJpeg);
+  return jpeg ? std::vector<std::uint8_t>(jpeg->begin(), jpeg->end()) : std::vector<std::uint8_t>();
 }
 
 }  // namespace weft::virtual_rig

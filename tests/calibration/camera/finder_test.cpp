@@ -4,9 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <vector>
+
+#include "core/image_io/encode_image.h"
 
 namespace weft::calibration {
 namespace {
@@ -61,10 +62,10 @@ TEST(Finder, OutlinesABoardClockwiseInSharesOfThePicture) {
 
 TEST(Finder, IsEnlargedAndRefusesWhatIsNoPicture) {
   for (const auto& [width, times] : {std::pair{32, 4}, {306, 4}, {640, 2}, {1024, 2}, {1280, 1}, {1920, 1}}) {
-    cv::Mat grey(24, width, CV_8UC1, cv::Scalar(90));
-    std::vector<std::uint8_t> bytes;
-    ASSERT_TRUE(cv::imencode(".jpg", grey, bytes));
-    const auto picture = finder_picture({bytes.begin(), bytes.end()});
+    const std::vector<std::uint8_t> grey(24 * static_cast<std::size_t>(width), 90);
+    const Result<std::string> jpeg = encode_image(grey, {width, 24}, 1, PictureFormat::kJpeg);
+    ASSERT_TRUE(jpeg) << jpeg.error().message();
+    const auto picture = finder_picture(*jpeg);
     ASSERT_TRUE(picture);
     EXPECT_EQ(picture->size(), (Size{times * width, times * 24})) << width;
     EXPECT_NEAR((*picture)(20, 20), 90, 2);
