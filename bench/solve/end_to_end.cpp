@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "bench/solve/end_to_end.h"
 
-#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <array>
 #include <cstdio>
-#include <memory>
 #include <string>
 
 #include "bench/base/libraw_alone.h"
 #include "bench/base/rig.h"
+#include "bench/solve/write_alone.h"
 #include "core/parallel.h"
 #include "core/session.h"
 #include "core/temporary_folder.h"
@@ -36,25 +35,13 @@ Result<Json> json_of_command(const std::string& command) {
   return json;
 }
 
-// OpenImageIO alone: the maps of a solve, as they are on disk, written again in one call each.
+// OpenEXR and libpng alone: the maps of a solve, as they are on disk, written again in one call each.
 Result<double> write_seconds(const fs::path& maps, const fs::path& folder) {
   double sum = 0;
   for (const char* name : {"normal.exr", "albedo.exr", "sigma.exr", "residual.exr", "status.png"}) {
-    const auto in = OIIO::ImageInput::open((maps / name).string());
-    if (!in)
-      return Error{ErrorKind::kInternal, "cannot read back", (maps / name).string(), OIIO::geterror(), ""};
-    OIIO::ImageSpec spec = in->spec();
-    std::vector<char> pixels(spec.image_bytes(true));
-    if (!in->read_image(0, 0, 0, spec.nchannels, spec.format, pixels.data())) {
-      return Error{ErrorKind::kInternal, "cannot read back", (maps / name).string(), in->geterror(), ""};
-    }
-    bool written = true;
-    sum += least_seconds(3, [&] {
-      const auto out = OIIO::ImageOutput::create(name);
-      written &= out && out->open((folder / name).string(), spec) &&
-                 out->write_image(spec.format, pixels.data()) && out->close();
-    });
-    if (!written) return Error{ErrorKind::kInputOutput, "cannot write", (folder / name).string(), "", ""};
+    const Result<double> seconds = write_alone_seconds(maps / name, folder / name);
+    if (!seconds) return seconds.error();
+    sum += *seconds;
   }
   return sum;
 }

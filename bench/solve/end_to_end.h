@@ -16,8 +16,8 @@ struct EndToEndOptions {
 };
 
 /// From eleven DNG files to maps on disk by `weft solve --quality fast`, next to LibRaw's unpacking of the
-/// same files and OpenImageIO's writing of the same maps alone, with the same threads: `ratio` is decode to
-/// write over their sum, without compression, syncing and hashing. Memory is the peak of the process.
+/// same files and OpenEXR's and libpng's writing of the same maps, with the same threads: `ratio` is decode
+/// to write over their sum, without compression, syncing and hashing. Memory is the peak of the process.
 Result<Rows> end_to_end(const EndToEndOptions& options);
 
 }  // namespace weft::bench
