@@ -91,8 +91,8 @@ function(weft_vector_code)
   endif()
 endfunction()
 
-# weft_test(NAME DEPENDS ... SOURCES ...): one test program. CTest has one entry a program, as loading OpenImageIO costs
-# 0.2 s a process; SHARDS n makes n entries NAME.1 to NAME.n, each with its share of the tests. An entry computes, and
+# weft_test(NAME DEPENDS ... SOURCES ...): one test program. CTest has one entry a program, whose tests share what they
+# prepare; SHARDS n makes n entries NAME.1 to NAME.n, each with its share of the tests. An entry computes, and
 # holds one of the cores that `./dev test` gives out; one that WAITS, for clocks of devices and programs, holds none.
 # SERIAL: it runs with no other beside it, since what it asserts is real time. The longest, by TIMEOUT, begin first.
 function(weft_test name)

@@ -7,8 +7,8 @@
 
 namespace weft::app {
 
-/// Verbs that run in `weft` itself, since they load neither OpenImageIO nor OpenCV. A verb of verbs may be
-/// here with some of them empty (a name and a help alone): weft-work runs those.
+/// Verbs that run in `weft` itself, since they load neither OpenCV nor readers of images. A verb of verbs may
+/// be here with some of them empty (a name and a help alone): weft-work runs those.
 std::vector<Verb> light_verbs();
 
 }  // namespace weft::app

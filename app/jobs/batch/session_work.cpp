@@ -125,7 +125,7 @@ void compare_with_before(const SessionWork& work, const JobContext& context, bat
 }  // namespace
 
 batch::Outcome ended_by(const SessionWork& work, Error error) {
-  // OpenImageIO and LibRaw catch it, and what they then say is of a file.
+  // Readers of images and LibRaw catch it, and what they then say is of a file.
   if (error.why.find("bad_alloc") != std::string::npos)
     error = {ErrorKind::kTryAgain, "out of memory", work.session.string(), error.what,
              "run it with more --memory, or on a larger machine"};
