@@ -12,8 +12,8 @@ namespace weft {
 
 enum class PictureFormat {
   kJpeg,      ///< quality 92, colours at every pixel
-  kLiveJpeg,  ///< quality 85, colours at every fourth pixel
   kPng,       ///< every value, compressed quickly
+  kLiveJpeg,  ///< quality 85, colours at every fourth pixel
 };
 
 /// The bytes of an 8-bit picture of one channel or three, interleaved without gaps. The same pixels give the
