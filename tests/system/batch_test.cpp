@@ -213,7 +213,7 @@ TEST_F(BatchTest, MemoryThatRunsOutCostsTheSessionInHandAlone) {
   fill_archive(2);
   simulate(scene_named("golden", {1600, 1200}), session(7));
   plan();
-  const Outcome outcome = run({"-q", "--memory", "200M", "--threads", "1"});
+  const Outcome outcome = run({"-q", "--memory", "100M", "--threads", "1"});
   EXPECT_EQ(outcome.exit_code, 75) << outcome.error;
   EXPECT_EQ(outcome.json()["solved"], 2) << outcome.error;
   EXPECT_EQ(outcome.json()["lost"], 1);
