@@ -45,6 +45,6 @@ inline constexpr std::array<StatusName, 11> kStatusNames = {{{kSaturated, "SATUR
 inline constexpr double kIllConditionedFrom = 1e6;
 
 /// Raised whenever the bytes of an output may change.
-inline constexpr int kSolverVersion = 12;
+inline constexpr int kSolverVersion = 13;
 
 }  // namespace weft

@@ -27,7 +27,7 @@ using material::TableGrid;
 
 constexpr ProductKind kRectified = {"weft.rectified", "rectify.json", "set of rectified maps",
                                     "rectify a solve first with weft rectify"};
-constexpr int kVersion = 2;  // raised whenever the bytes of a map may change
+constexpr int kVersion = 3;  // raised whenever the bytes of a map may change
 constexpr const char* kFilter =
     "cubic convolution, a = -1/2 (Keys 1981), stretched to the grid where it is coarser than the frame";
 

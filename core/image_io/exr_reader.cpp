@@ -9,7 +9,6 @@
 #include <OpenEXR/ImfTileDescriptionAttribute.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <bit>
 #include <set>
 
@@ -119,7 +118,12 @@ class ExrSource : public ImageSource {
     return why;
   }
 
-  double scratch_bytes() const override { return 1 << 20; }
+  /// OpenEXR holds a row of tiles.
+  double scratch_bytes() const override {
+    const Imf::Header& header = file_.header(0);
+    const double rows = header.hasTileDescription() ? header.tileDescription().ySize : 0;
+    return (1 << 20) + 4.0 * static_cast<double>(info_.channels.size()) * rows * info_.size.width;
+  }
 
   std::string read(Image<float>& planes) override {
     Imf::InputPart part(file_, 0);

@@ -2,6 +2,8 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfOutputFile.h>
 
+#include <bit>
+
 #include "core/image_io/exr_channels.h"
 #include "core/image_io/image_sink.h"
 #include "core/image_io/image_source.h"

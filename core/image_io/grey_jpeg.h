@@ -10,7 +10,7 @@
 namespace weft {
 
 /// The luma of a JPEG in memory, as it is stored: not turned, and grey where its data end early. Nothing
-/// where it is no JPEG.
+/// where it is no JPEG of grey or YCbCr, or has more than 64 megapixels, which no live picture has.
 std::optional<Image<std::uint8_t>> grey_of_jpeg(std::string_view jpeg);
 
 }  // namespace weft

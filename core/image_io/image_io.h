@@ -49,7 +49,7 @@ struct ImageFileInfo {
   std::string format;                    ///< "openexr", "tiff", "png", "jpeg"
   ImageAttributes attributes;
   PixelPitch pitch_mm = {};
-  ColorSpace color = ColorSpace::kData;  ///< a JPEG is always kSrgb
+  ColorSpace color = ColorSpace::kData;
 };
 
 /// An image in memory: one float plane a channel. lround(65535 * v) is the count of a 16-bit file, exactly.

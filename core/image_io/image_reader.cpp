@@ -56,6 +56,7 @@ Opened open_image(const fs::path& file) {
   for (const Signature& signature : kSignatures) {
     if (!start.starts_with(signature.bytes)) continue;
     if (signature.open == open_png && !ends_in(in, kPngEnd)) return bad_image(file, "its end is missing");
+    in.close();
     return signature.open(file);
   }
   return bad_image(file, "it is no EXR, TIFF, PNG or JPEG file");

@@ -55,6 +55,7 @@ class JpegSource : public ImageSource {
       jpeg_read_header(&jpeg_, TRUE);
       if (is_cmyk()) jpeg_.out_color_space = JCS_CMYK;
       jpeg_calc_output_dimensions(&jpeg_);
+      is_progressive_ = jpeg_has_multiple_scans(&jpeg_) != FALSE;
     });
     if (!done || words_.complaint[0] != 0) return library_reason(words_.complaint.data());
     info_.size = {static_cast<int>(jpeg_.image_width), static_cast<int>(jpeg_.image_height)};
@@ -73,7 +74,11 @@ class JpegSource : public ImageSource {
     return "";
   }
 
-  double scratch_bytes() const override { return static_cast<double>(row_bytes()); }
+  /// Scans that refine each other need all coefficients of the image.
+  double scratch_bytes() const override {
+    return static_cast<double>(row_bytes()) +
+           (is_progressive_ ? 2.0 * jpeg_.num_components * static_cast<double>(info_.size.pixels()) : 0);
+  }
 
   std::string read(Image<float>& planes) override {
     std::vector<std::uint8_t> row(row_bytes());
@@ -101,8 +106,10 @@ class JpegSource : public ImageSource {
   ColorSpace color() {
     JOCTET* profile = nullptr;
     unsigned bytes = 0;
-    ColorSpace told = ColorSpace::kData;
-    if (jpeg_read_icc_profile(&jpeg_, &profile, &bytes) != FALSE) told = color_of_profile({profile, bytes});
+    jpeg_does(words_, [&] { jpeg_read_icc_profile(&jpeg_, &profile, &bytes); });
+    words_.complaint = {};  // a profile that is broken says nothing of the pixels
+    const ColorSpace told =
+        profile == nullptr ? ColorSpace::kData : color_of_profile({profile, std::size_t{bytes}});
     std::free(profile);  // NOLINT: libjpeg takes it from malloc
     return told == ColorSpace::kData ? ColorSpace::kSrgb : told;
   }
@@ -111,6 +118,7 @@ class JpegSource : public ImageSource {
   std::FILE* file_;
   jpeg_decompress_struct jpeg_ = {};
   bool is_made_ = false;
+  bool is_progressive_ = false;
 };
 
 }  // namespace
@@ -131,9 +139,14 @@ Result<std::unique_ptr<ImageSource>> open_jpeg(const fs::path& file) {
   return std::unique_ptr<ImageSource>(std::move(source));
 }
 
+constexpr std::uint64_t kMostOfAPreview = std::uint64_t{64} << 20;
+
 std::optional<Image<std::uint8_t>> grey_of_jpeg(std::string_view jpeg) {
+  struct Decoder : jpeg_decompress_struct {
+    ~Decoder() { jpeg_destroy_decompress(this); }
+  };
   JpegWords words;
-  jpeg_decompress_struct decoder = {};
+  Decoder decoder = {};
   decoder.err = &words.manager;
   const bool is_read = jpeg_does(words, [&] {
     jpeg_create_decompress(&decoder);
@@ -142,6 +155,8 @@ std::optional<Image<std::uint8_t>> grey_of_jpeg(std::string_view jpeg) {
     decoder.out_color_space = JCS_GRAYSCALE;
     jpeg_start_decompress(&decoder);
   });
+  if (is_read && std::uint64_t{decoder.output_width} * decoder.output_height > kMostOfAPreview)
+    return std::nullopt;
   Image<std::uint8_t> picture;
   if (is_read)
     picture = Image<std::uint8_t>(
@@ -152,7 +167,6 @@ std::optional<Image<std::uint8_t>> grey_of_jpeg(std::string_view jpeg) {
                             jpeg_read_scanlines(&decoder, &row, 1);
                           }
                         });
-  jpeg_destroy_decompress(&decoder);
   if (!is_whole) return std::nullopt;
   return picture;
 }

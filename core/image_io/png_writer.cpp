@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include "core/image_io/image_sink.h"
 #include "core/image_io/image_source.h"
@@ -10,9 +11,6 @@
 
 namespace weft {
 namespace {
-
-// Three times as fast as the default, for a file a third larger.
-constexpr int kEffort = 2;
 
 png_uint_32 pixels_a_metre(double mm) {
   return static_cast<png_uint_32>(std::clamp(std::round(1000 / mm), 1.0, 16777216.0));
@@ -59,7 +57,13 @@ void PngEncoder::put_header(const char* description) {
   png_set_write_fn(
       png_, &put_,
       [](png_structp png, png_bytep data, png_size_t bytes) {
-        (*static_cast<Put*>(png_get_io_ptr(png)))(data, bytes);
+        bool is_put = true;
+        try {
+          (*static_cast<Put*>(png_get_io_ptr(png)))(data, bytes);
+        } catch (const std::exception&) {
+          is_put = false;
+        }
+        if (!is_put) png_error(png, "its bytes find no room");
       },
       nullptr);
   static constexpr int kColors[] = {PNG_COLOR_TYPE_GRAY, PNG_COLOR_TYPE_GRAY_ALPHA, PNG_COLOR_TYPE_RGB,
@@ -69,7 +73,7 @@ void PngEncoder::put_header(const char* description) {
   png_set_IHDR(png_, header_, static_cast<png_uint_32>(image_.size.width),
                static_cast<png_uint_32>(image_.size.height), is_16 ? 16 : 8, kColors[image_.channels - 1],
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
-  png_set_compression_level(png_, kEffort);
+  png_set_compression_level(png_, kPngEffort);
   if (image_.color == ColorSpace::kSrgb) png_set_sRGB_gAMA_and_cHRM(png_, header_, PNG_sRGB_INTENT_ABSOLUTE);
   const auto [x_mm, y_mm] = image_.pitch_mm;
   if (x_mm > 0 && y_mm > 0)

@@ -19,7 +19,8 @@ struct PngToWrite {
   ColorSpace color = ColorSpace::kData;
 };
 
-/// A PNG whose bytes go to `put`, which does not throw. Functions return why they failed, or nothing.
+/// A PNG whose bytes go to `put`; where that throws, the image fails. Functions return why they failed, or
+/// nothing.
 class PngEncoder {
  public:
   using Put = std::function<void(const void* data, std::size_t bytes)>;

@@ -47,9 +47,8 @@ enum class Meaning {
   kRaster     ///< libtiff alone knows: its own conversion to 8 bits
 };
 
-/// A strip or a tile, the part of it inside of the image, and the plane it belongs to.
+/// The part of a strip or tile inside of the image, and the plane it belongs to.
 struct Unit {
-  std::uint32_t number = 0;
   int plane = 0;
   Rect part;
 };
@@ -145,6 +144,10 @@ std::string TiffSource::objection() {
   const auto compression = field_or<std::uint16_t>(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
   if (TIFFIsCODECConfigured(compression) == 0)
     return fmt::format("its compression {} is not known", compression);
+  const bool is_cmyk = samples_ == 4 && !is_separate_ &&
+                       field_or<std::uint16_t>(tiff, TIFFTAG_INKSET, INKSET_CMYK) == INKSET_CMYK;
+  if (photometric_ == PHOTOMETRIC_SEPARATED && !is_cmyk)
+    return "its inks are others than cyan, magenta, yellow and black side by side";
   const auto format = field_or<std::uint16_t>(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
   if (!sample_.is_known() || format == SAMPLEFORMAT_COMPLEXINT || format == SAMPLEFORMAT_COMPLEXIEEEFP)
     return fmt::format("its samples of {} bits are not known", sample_.bits);
@@ -158,6 +161,7 @@ void TiffSource::read_meaning() {
   if (compression == COMPRESSION_JPEG && is_ycbcr && !is_separate_) {
     TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
   } else if (compression == COMPRESSION_OJPEG || is_ycbcr || photometric_ == PHOTOMETRIC_CIELAB ||
+             photometric_ == PHOTOMETRIC_ICCLAB || photometric_ == PHOTOMETRIC_ITULAB ||
              photometric_ == PHOTOMETRIC_LOGL || photometric_ == PHOTOMETRIC_LOGLUV) {
     meaning_ = Meaning::kRaster;
     sample_ = {TiffSample::Kind::kCount, 8};
@@ -166,9 +170,7 @@ void TiffSource::read_meaning() {
                          sample_.kind == TiffSample::Kind::kCount && sample_.bits <= 16 &&
                          TIFFGetField(tiff, TIFFTAG_COLORMAP, &table_[0], &table_[1], &table_[2]) != 0;
   if (has_table) meaning_ = Meaning::kPalette;
-  if (photometric_ == PHOTOMETRIC_SEPARATED && samples_ == 4 && !is_separate_ &&
-      field_or<std::uint16_t>(tiff, TIFFTAG_INKSET, INKSET_CMYK) == INKSET_CMYK)
-    meaning_ = Meaning::kInk;
+  if (photometric_ == PHOTOMETRIC_SEPARATED) meaning_ = Meaning::kInk;
   if (photometric_ == PHOTOMETRIC_MINISWHITE && sample_.kind == TiffSample::Kind::kCount)
     meaning_ = Meaning::kInverted;
 }
@@ -190,7 +192,7 @@ void TiffSource::name_channels() {
   static constexpr std::array kNames = {"R", "G", "B"};
   bool has_alpha = false;
   for (int c = 0; c < samples_; ++c) {
-    const bool alpha = is_alpha(c) && !std::exchange(has_alpha, has_alpha || is_alpha(c));
+    const bool alpha = is_alpha(c) && !std::exchange(has_alpha, true);
     info_.channels.push_back(alpha   ? "A"
                              : c < 3 ? kNames[static_cast<std::size_t>(c)]
                                      : fmt::format("channel{}", c));
@@ -290,7 +292,7 @@ void TiffSource::unpack_colors(const std::byte* row, Rect line, Image<float>& pl
   std::vector<std::uint8_t> colors(indices_.size());
   for (std::size_t c = 0; c < 3; ++c) {
     for (std::size_t i = 0; i < indices_.size(); ++i)
-      colors[i] = static_cast<std::uint8_t>(table_[c][indices_[i]] / 257);
+      colors[i] = static_cast<std::uint8_t>(table_[c][indices_[i]] >> 8);
     unpack_counts(colors.data(), 1, planes.plane(static_cast<int>(c)).crop(line));
   }
 }

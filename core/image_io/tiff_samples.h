@@ -19,10 +19,11 @@ struct TiffSample {
   SampleType type() const;
 };
 
-/// Numbers `first`, `first + step` ... of a decoded row; counts and signed ones by their full scale.
+/// Numbers `first`, `first + step` ... of a decoded row that holds them all, of a known kind; counts and
+/// signed ones by their full scale.
 void unpack_tiff(const std::byte* row, TiffSample sample, std::size_t first, std::size_t step,
                  View<float> out);
-/// The same counts as they are; at most 16 bits each.
+/// The first `count` counts of such a row, unscaled; at most 16 bits each.
 void unpack_indices(const std::byte* row, int bits, std::size_t count, std::vector<std::uint16_t>& out);
 
 }  // namespace weft

@@ -69,6 +69,7 @@ void simulate(const simulator::Scene& scene, const fs::path& folder) {
     std::error_code another_was_first;
     fs::rename(aside, sample, another_was_first);
   }
+  fs::create_directories(folder);
   fs::copy(sample, folder, fs::copy_options::recursive);
 }
 

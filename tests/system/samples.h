@@ -20,8 +20,8 @@ std::filesystem::path source_file(const std::string& path);
 /// One of testdata/scenes at another size.
 simulator::Scene scene_named(const std::string& name, Size size);
 
-/// Simulates a scene into `folder`; throws where it cannot. In the folder that WEFT_SAMPLES names each scene is made
-/// once, for all programs of a run; a picture is known by its name there.
+/// Simulates a scene into `folder`; throws where it cannot. In the folder that WEFT_SAMPLES names each scene
+/// is made once, for all programs of a run; a picture is known by its name there.
 void simulate(const simulator::Scene& scene, const std::filesystem::path& folder);
 
 /// The same session with linear RGB images (".exr", ".tif") instead of raw frames: each a lit shot without

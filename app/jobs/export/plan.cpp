@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using exchange::DocumentKind;
 using exchange::Preset;
 
-constexpr int kVersion = 2;  // raised whenever the bytes of an export may change
+constexpr int kVersion = 3;  // raised whenever the bytes of an export may change
 
 Error unfit_export(std::string where, std::string why, std::string remedy) {
   return {ErrorKind::kBadData, "the maps cannot be exported", std::move(where), std::move(why),

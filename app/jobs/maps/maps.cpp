@@ -33,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 using material::Surface;
 
-constexpr int kVersion = 2;  // raised whenever the bytes of a map may change
+constexpr int kVersion = 3;  // raised whenever the bytes of a map may change
 
 Json json_of(const DeriveOptions& options) {
   return {{"height", kHeightMethodNames[static_cast<std::size_t>(options.height)]},

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -47,7 +48,8 @@ bool loads(const std::vector<std::string>& names, const std::string& begin) {
 TEST(Start, LoadsNeitherOpenCVNorReadersOfImages) {
   const std::vector<std::string> light = loaded_by(WEFT_PROGRAM);
   EXPECT_TRUE(loads(light, "libc.so")) << testing::PrintToString(light);
-  for (const char* heavy : {"libopencv", "libembree", "libceres", "libglog", "libOpenEXR", "libtiff"})
+  for (const char* heavy :
+       {"libopencv", "libembree", "libceres", "libglog", "libOpenEXR", "libtiff", "libpng"})
     EXPECT_FALSE(loads(light, heavy)) << heavy << " among " << testing::PrintToString(light);
   EXPECT_LT(light.size(), 40U) << testing::PrintToString(light);
   // The same question finds them where they are.
@@ -58,9 +60,14 @@ TEST(Start, LoadsNeitherOpenCVNorReadersOfImages) {
 
 // They bring in more than a hundred libraries each, for formats that weft does not read.
 TEST(Start, NoProgramLoadsOpenImageIOOrOpenCVsCodecs) {
-  const std::vector<std::string> whole = loaded_by(WEFT_WORK);
-  for (const char* many : {"libOpenImageIO", "libopencv_imgcodecs", "libgdal", "libavcodec"})
-    EXPECT_FALSE(loads(whole, many)) << many << " among " << testing::PrintToString(whole);
+  for (const char* program : {"weft-work", "weft-bench", "weft-virtual-rig"}) {
+    const std::vector<std::string> whole =
+        loaded_by((std::filesystem::path(WEFT_WORK).parent_path() / program).string());
+    EXPECT_TRUE(loads(whole, "libc.so")) << program;
+    for (const char* many : {"libOpenImageIO", "libopencv_imgcodecs", "libgdal", "libavcodec"})
+      EXPECT_FALSE(loads(whole, many))
+          << program << ": " << many << " among " << testing::PrintToString(whole);
+  }
 }
 
 TEST(Start, HelpIsThatOfTheProgramWithAllVerbs) {

@@ -35,7 +35,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using Clock = std::chrono::steady_clock;
 
-constexpr auto kStartPatience = seconds(20);  // for a process that loads 260 shared objects on a busy machine
+constexpr auto kStartPatience = seconds(20);  // for a process that begins on a busy machine
 
 template <typename Condition>
 bool comes_true(const Condition& condition) {

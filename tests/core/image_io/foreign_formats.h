@@ -63,11 +63,15 @@ inline std::vector<std::pair<std::string, ForeignTiff>> foreign_tiffs() {
   }
   auto separate = tiff_fields(8, 3, PHOTOMETRIC_RGB);
   separate.back().second = PLANARCONFIG_SEPARATE;
+  std::vector<std::uint8_t> sixteen;  // in the order of this machine, which libtiff turns
+  for (const int count : {0, 1, 256, 513, 32768, 65535, 4660, 43981})
+    sixteen.insert(sixteen.end(),
+                   {static_cast<std::uint8_t>(count & 255), static_cast<std::uint8_t>(count >> 8)});
   std::vector<std::uint16_t> table(3 * 16);
   for (std::size_t i = 0; i < 16; ++i) {
     table[i] = static_cast<std::uint16_t>(257 * 17 * i);
     table[16 + i] = static_cast<std::uint16_t>(65535 - table[i]);
-    table[32 + i] = 257 * 100;
+    table[32 + i] = 256 * 100;  // as some programs write a count of 8 bits
   }
   std::vector<std::uint8_t> with_alpha;
   for (const std::uint8_t each : eight) with_alpha.insert(with_alpha.end(), {each, 128});
@@ -80,6 +84,7 @@ inline std::vector<std::pair<std::string, ForeignTiff>> foreign_tiffs() {
       {"ink", {.fields = tiff_fields(8, 4, PHOTOMETRIC_SEPARATED), .bytes = ink}},
       {"separate", {.fields = separate, .bytes = planes}},
       {"big", {.fields = tiff_fields(8, 1, PHOTOMETRIC_MINISBLACK), .bytes = eight, .mode = "w8"}},
+      {"big_endian", {.fields = tiff_fields(16, 1, PHOTOMETRIC_MINISBLACK), .bytes = sixteen, .mode = "wb"}},
       {"associated",
        {.fields = tiff_fields(8, 2, PHOTOMETRIC_MINISBLACK),
         .bytes = with_alpha,

@@ -104,7 +104,7 @@ TEST(ColorSpaceOfAFile, IsSaidOfColoursAndNeverAsAGamma) {
     write(folder / "a.png", {.type = SampleType::kUint8, .color = color});
     const std::string png = bytes_of(folder / "a.png");
     EXPECT_EQ(png.find("sRGB") != std::string::npos, color == ColorSpace::kSrgb);
-    // OpenImageIO's gamma of 1 makes browsers brighten linear pictures.
+    // A gamma of 1 makes browsers brighten linear pictures.
     EXPECT_TRUE(color == ColorSpace::kSrgb || png.find("gAMA") == std::string::npos);
     write(folder / "a.exr", {.type = SampleType::kHalf, .color = color});
     const bool has_primaries = bytes_of(folder / "a.exr").find("chromaticities") != std::string::npos;

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -36,33 +35,6 @@ const std::vector<StoredAs> kStoredAs = {
 
 std::string describe(const StoredAs& c) {
   return fmt::format("{} of type {}, {}", c.ending, static_cast<int>(c.type), name_of(c.compression));
-}
-
-/// The first pixel at which two images differ in any bit, or nothing.
-std::string first_difference(const Image<float>& a, const Image<float>& b) {
-  if (a.size() != b.size() || a.planes() != b.planes()) return "another shape";
-  for (int p = 0; p < a.planes(); ++p) {
-    for (int y = 0; y < a.height(); ++y) {
-      for (int x = 0; x < a.width(); ++x) {
-        if (std::bit_cast<std::uint32_t>(a(x, y, p)) == std::bit_cast<std::uint32_t>(b(x, y, p))) continue;
-        return fmt::format("({}, {}, {}): {}, not {}", x, y, p, a(x, y, p), b(x, y, p));
-      }
-    }
-  }
-  return "";
-}
-
-/// Integers are compared by count: their quotient by full scale may round either way.
-void round_to_counts(Image<float>& image, SampleType type) {
-  const float full = type == kUint8 ? 255.0f : type == kUint16 ? 65535.0f : 0.0f;
-  if (full == 0) return;
-  for (int p = 0; p < image.planes(); ++p) {
-    for (int y = 0; y < image.height(); ++y) {
-      for (int x = 0; x < image.width(); ++x) {
-        image(x, y, p) = static_cast<float>(std::lround(full * image(x, y, p)));
-      }
-    }
-  }
 }
 
 TEST(ImageRoundTrip, KeepsEveryValueOfEveryFormatTypeAndSize) {
@@ -270,6 +242,17 @@ TEST(ForeignFile, WhoseFirstImageIsAThumbnailIsRefused) {
   ASSERT_FALSE(read);
   EXPECT_EQ(read.error().kind, ErrorKind::kBadData);
   EXPECT_THAT(read.error().why, testing::HasSubstr("thumbnail"));
+}
+
+TEST(ForeignFile, OfJpegWithABrokenProfileIsReadForWhatItsPixelsAre) {
+  const ScratchFolder folder;
+  // Two parts of a profile, the first of one and the first of two.
+  const std::string profile =
+      std::string("FFE200114943435F50524F46494C45000101AA") + "FFE200114943435F50524F46494C45000102AA";
+  const std::string sound(kGreyJpeg);
+  const Result<LoadedImage> read = read_hex(folder, sound.substr(0, 4) + profile + sound.substr(4));
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(read->info.color, ColorSpace::kSrgb);
 }
 
 TEST(ForeignFile, OfJpegThatStopsEarlyIsRefused) {

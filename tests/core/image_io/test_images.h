@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <fmt/format.h>
+
+#include <bit>
+#include <cmath>
 #include <cstdint>
 #include <random>
 #include <string>
@@ -58,6 +62,33 @@ inline std::vector<std::string> channel_names(int channels) {
   std::vector<std::string> names = {"R", "G", "B", "A"};
   names.resize(static_cast<std::size_t>(channels));
   return names;
+}
+
+/// The first pixel at which two images differ in any bit, or nothing.
+inline std::string first_difference(const Image<float>& a, const Image<float>& b) {
+  if (a.size() != b.size() || a.planes() != b.planes()) return "another shape";
+  for (int p = 0; p < a.planes(); ++p) {
+    for (int y = 0; y < a.height(); ++y) {
+      for (int x = 0; x < a.width(); ++x) {
+        if (std::bit_cast<std::uint32_t>(a(x, y, p)) == std::bit_cast<std::uint32_t>(b(x, y, p))) continue;
+        return fmt::format("({}, {}, {}): {}, not {}", x, y, p, a(x, y, p), b(x, y, p));
+      }
+    }
+  }
+  return "";
+}
+
+/// Integers are compared by count: their quotient by full scale may round either way.
+inline void round_to_counts(Image<float>& image, SampleType type) {
+  const float full = type == SampleType::kUint8 ? 255.0f : type == SampleType::kUint16 ? 65535.0f : 0.0f;
+  if (full == 0) return;
+  for (int p = 0; p < image.planes(); ++p) {
+    for (int y = 0; y < image.height(); ++y) {
+      for (int x = 0; x < image.width(); ++x) {
+        image(x, y, p) = static_cast<float>(std::lround(full * image(x, y, p)));
+      }
+    }
+  }
 }
 
 }  // namespace weft
