@@ -6,7 +6,7 @@ import path from 'node:path';
 import {chromium} from 'playwright-core';
 import {here} from './programs.mjs';
 
-const program = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const program = process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell';
 const flags = [
   '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb', '--disable-quic',
   '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync',
@@ -19,7 +19,7 @@ const imports = JSON.stringify({imports: {
   'three/addons/': '/node_modules/three/examples/jsm/',
 }});
 
-export const whyNoBrowser = fs.existsSync(program) ? '' : `there is no ${program} (Debian's chromium)`;
+export const whyNoBrowser = fs.existsSync(program) ? '' : `there is no ${program} (Debian's chromium-headless-shell)`;
 
 export class Browser {
   #folders = [];

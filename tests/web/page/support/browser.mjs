@@ -6,7 +6,7 @@ import path from 'node:path';
 import {chromium} from 'playwright-core';
 import {PNG} from 'pngjs';
 
-const program = process.env.CHROMIUM ?? '/usr/bin/chromium';
+const program = process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell';
 const flags = [
   '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb',
   '--font-render-hinting=none', '--hide-scrollbars', '--disable-quic', '--no-first-run',
