@@ -55,7 +55,8 @@ Result<Rows> measure(const PageArguments& a, bool quiet) {
   const Json rows = Json::parse((*browser)->said(), nullptr, false);
   if (code == 0 && rows.is_array()) return Rows(rows.begin(), rows.end());
   return Error{ErrorKind::kTryAgain, "the browser ended otherwise than it should", kScript,
-               (*browser)->said().substr(0, 2000), "npm ci --prefix tests/web, and chromium-headless-shell, are needed"};
+               (*browser)->said().substr(0, 2000),
+               "npm ci --prefix tests/web, and chromium-headless-shell, are needed"};
 }
 
 app::Run add_page(app::Options& options) {
