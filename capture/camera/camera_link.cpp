@@ -23,6 +23,11 @@ namespace {
 namespace fs = std::filesystem;
 using Steady = std::chrono::steady_clock;
 
+// For the worker to start and to load its drivers, which a busy machine may take long over and no camera has
+// a part in.
+constexpr double kDriversS = 30;
+constexpr const char* kNoDriversRemedy =
+    "try again; libgphoto2 looks at each mounted disk: see that none hangs";
 // Detection, session, the card's list, settings, 1.5 s of watching a clock. On USB a silent body is reset
 // twice, after 1.5 s each; over the network a new connection does more than libgphoto2's third try.
 constexpr double kOpenUsbS = 12, kOpenNetworkS = 5;
@@ -163,7 +168,7 @@ Result<Photograph> CameraLink::take(const fs::path& file, const std::function<vo
   if (!ready_) return not_connected();
   const double deadline_s = 1e-6 * facts_.exposure.exposure_us + profile_.readout_s;
   const Result<Json> landed = request({{"do", "take"}, {"file", file.string()}, {"deadline_s", deadline_s}},
-                                      deadline_s + kOverdueS, exposed);
+                                      deadline_s + kOverdueS, [&](auto&) { exposed(); });
   if (!landed) return landed.error();
   const fs::path aside = file.string() + ".arrived";
   Result<Photograph> photograph = examined(aside, *landed);
@@ -233,10 +238,14 @@ Result<CameraFacts> CameraLink::open(const std::string& serial, bool watch_clock
   Json asked = {{"do", "open"}, {"profile", options_.profile}, {"port", options_.port}, {"serial", serial}};
   if (watch_clock) asked["watch_clock"] = true;
   const bool is_network = options_.port.starts_with("ptpip:");
-  const Result<Json> opened = request(std::move(asked), is_network ? kOpenNetworkS : kOpenUsbS);
+  bool is_asked = false;
+  const Result<Json> opened = request(std::move(asked), kDriversS, [&](WorkerProcess::Deadline& deadline) {
+    is_asked = true;
+    deadline = Steady::now() + seconds(is_network ? kOpenNetworkS : kOpenUsbS);
+  });
   if (!opened) {
     Error error = opened.error();
-    if (!worker_) error.remedy = kNotOpenedRemedy;
+    if (!worker_) error.remedy = is_asked ? kNotOpenedRemedy : kNoDriversRemedy;
     return error;
   }
   Result<CameraFacts> facts = note_opened(*opened);
@@ -293,11 +302,11 @@ void CameraLink::end_worker() {
 }
 
 /// Sends a request and waits for its answer. A worker that has ended or does not answer is not kept.
-Result<Json> CameraLink::request(Json asked, double most_s, const std::function<void()>& exposed) {
+Result<Json> CameraLink::request(Json asked, double most_s, const OnEvent& on_event) {
   asked["id"] = ++id_;
-  const auto deadline = Steady::now() + seconds(most_s);
+  auto deadline = Steady::now() + seconds(most_s);
   const Result<void> sent = worker_->send(asked.dump(-1, ' ', false, Json::error_handler_t::replace));
-  Result<Json> answer = sent ? answer_of(deadline, exposed) : Result<Json>(sent.error());
+  Result<Json> answer = sent ? answer_of(deadline, on_event) : Result<Json>(sent.error());
   if (answer) {
     const auto error = answer->find("error");
     if (error == answer->end()) return (*answer)["ok"];
@@ -311,7 +320,7 @@ Result<Json> CameraLink::request(Json asked, double most_s, const std::function<
   return answer;
 }
 
-Result<Json> CameraLink::answer_of(WorkerProcess::Deadline deadline, const std::function<void()>& exposed) {
+Result<Json> CameraLink::answer_of(WorkerProcess::Deadline& deadline, const OnEvent& on_event) {
   for (;;) {
     const Result<std::string> line = worker_->read_line(deadline);
     if (!line) return line.error();
@@ -319,7 +328,7 @@ Result<Json> CameraLink::answer_of(WorkerProcess::Deadline deadline, const std::
     if (!answer.is_object() || answer.value("id", Json()) != Json(id_)) return wrong_line(*line);
     if (answer.contains("ok") || answer.contains("error")) return answer;
     if (!answer.contains("event")) return wrong_line(*line);
-    exposed();
+    on_event(deadline);
   }
 }
 

@@ -67,9 +67,11 @@ class CameraLink : public Camera {
   void forget_clock();
   Result<void> start_worker();
   void end_worker();
+  /// What the worker says before it answers may move the deadline.
+  using OnEvent = std::function<void(WorkerProcess::Deadline&)>;
   Result<Json> request(
-      Json asked, double most_s, const std::function<void()>& exposed = [] {});
-  Result<Json> answer_of(WorkerProcess::Deadline deadline, const std::function<void()>& exposed);
+      Json asked, double most_s, const OnEvent& on_event = [](auto&) {});
+  Result<Json> answer_of(WorkerProcess::Deadline& deadline, const OnEvent& on_event);
   Result<Photograph> examined(const std::filesystem::path& aside, const Json& landed) const;
 
   CameraLinkOptions options_;

@@ -53,7 +53,7 @@ Error error_of(int code, const std::string& what, const std::string& where, cons
   }
 }
 
-/// The drivers take 35 ms to load, so one process does it once.
+/// One process does it once.
 Result<CameraAbilitiesList*> known_cameras(GPContext* context) {
   static const Abilities list = [context] {
     Abilities loading = make<Abilities>(&gp_abilities_list_new);
@@ -163,6 +163,13 @@ void GphotoCamera::set_up_library() {
   gp_setting_set(driver, cached, cached_s);
   char patience[] = "start_timeout", patience_ms[] = "1500";
   gp_setting_set(driver, patience, patience_ms);
+}
+
+Result<void> GphotoCamera::load_drivers() {
+  const Context context(gp_context_new());
+  if (const auto known = known_cameras(context.get()); !known) return known.error();
+  if (const Result<Ports> ports = ports_now(); !ports) return ports.error();
+  return {};
 }
 
 Result<std::vector<CameraAddress>> GphotoCamera::on_usb() {

@@ -52,6 +52,9 @@ class GphotoCamera {
   /// read back is the camera's, and resets a body on USB that lets OpenSession wait for 1.5 s, twice at most.
   /// The library keeps what it remembers in $HOME/.gphoto.
   static void set_up_library();
+  /// Loads the library's drivers, once a process, and has them look for ports. It asks no camera, and takes
+  /// some 40 ms; where the disk with the drivers, or any disk that is mounted, hangs, as long as that does.
+  static Result<void> load_drivers();
   /// The cameras that libgphoto2 knows among what is plugged in.
   static Result<std::vector<CameraAddress>> on_usb();
   static Result<std::unique_ptr<GphotoCamera>> open(const CameraAddress& address);

@@ -90,6 +90,8 @@ class Worker {
     if (!profile) return std::move(profile).error();
     profile_ = std::move(*profile);
 
+    if (Result<void> loaded = GphotoCamera::load_drivers(); !loaded) return std::move(loaded).error();
+    say("event", "asking");
     auto opened = open_camera(profile_, wanted);
     if (!opened) return std::move(opened).error();
     GphotoCamera& camera = **opened;

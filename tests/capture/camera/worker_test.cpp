@@ -45,6 +45,12 @@ std::string open_line(LinkBench& bench) {
       .dump();
 }
 
+/// The answer, after the word that the drivers are loaded.
+Json opened(Spoken& spoken, LinkBench& bench) {
+  EXPECT_EQ(spoken.ask(open_line(bench)), (Json{{"id", 1}, {"event", "asking"}}));
+  return spoken.hear();
+}
+
 TEST(Worker, AnswersEveryLineThatIsNoRequestByAnError) {
   LinkBench bench;
   Spoken spoken(bench.folder());
@@ -61,9 +67,9 @@ TEST(Worker, AnswersEveryLineThatIsNoRequestByAnError) {
 TEST(Worker, TakesByHandWhatTheLinkAsksFor) {
   LinkBench bench;
   Spoken spoken(bench.folder());
-  const Json opened = spoken.ask(open_line(bench));
-  ASSERT_TRUE(opened.contains("ok")) << opened;
-  EXPECT_EQ(opened["ok"]["dropped"], 0);
+  const Json answer = opened(spoken, bench);
+  ASSERT_TRUE(answer.contains("ok")) << answer;
+  EXPECT_EQ(answer["ok"]["dropped"], 0);
   const Json request = {{"id", "a"}, {"do", "take"}, {"file", bench.raw(1).string()}, {"deadline_s", 5}};
   EXPECT_EQ(spoken.ask(request.dump()), (Json{{"id", "a"}, {"event", "exposed"}}));
   const Json taken = spoken.hear();
@@ -74,7 +80,7 @@ TEST(Worker, TakesByHandWhatTheLinkAsksFor) {
 TEST(Worker, EndsWhenItsInputEnds) {
   LinkBench bench;
   Spoken spoken(bench.folder());
-  ASSERT_TRUE(spoken.ask(open_line(bench)).contains("ok"));
+  ASSERT_TRUE(opened(spoken, bench).contains("ok"));
   const pid_t pid = spoken.worker->pid();
   const auto begin = steady_clock::now();
   spoken.worker->end(begin + seconds(5));
@@ -86,7 +92,7 @@ TEST(Worker, EndsWithoutItsParentEvenWhereTheCameraBlocksIt) {
   LinkBench bench;
   ASSERT_TRUE(bench.camera().inject({"busy_for_ever", 1}));
   Spoken spoken(bench.folder());
-  ASSERT_TRUE(spoken.ask(open_line(bench)).contains("ok"));
+  ASSERT_TRUE(opened(spoken, bench).contains("ok"));
   ASSERT_TRUE(
       spoken.worker->send(Json{{"do", "take"}, {"file", bench.raw(1).string()}, {"deadline_s", 5}}.dump()));
   const auto patience = steady_clock::now() + seconds(10);
