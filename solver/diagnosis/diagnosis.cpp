@@ -149,23 +149,34 @@ Deviation deviation_of(const Evidence& evidence, const LightModel& model, const 
   RobustFit fit;
   for (std::size_t p = first; p < last; ++p) {
     if (!fit.fit(evidence, p, model)) continue;
-    double sum = 0, part = 0;
-    int count = 0, counted = 0;
+    of_all.push_back(fit.deviation());
+    double part = 0;
+    int counted = 0;
     for (std::size_t k = 0; k < evidence.lights; ++k) {
-      if (!fit.is_usable(k)) continue;
-      const double deviation = std::abs(fit.residual(k));
-      sum += deviation;
-      ++count;
-      part += some[k] ? deviation : 0;
-      counted += some[k] ? 1 : 0;
+      if (!some[k] || !fit.is_usable(k)) continue;
+      part += std::abs(fit.residual(k));
+      ++counted;
     }
-    of_all.push_back(sum / count);
     if (counted > 0) of_some.push_back(part / counted);
   }
   return {median(std::move(of_all)), median(std::move(of_some))};
 }
 Deviation deviation_of(const Evidence& evidence, const LightModel& model, const std::vector<char>& some) {
   return deviation_of(evidence, model, some, 0, evidence.pixels());
+}
+
+// That of all lights where it is below a bound; infinity as soon as half of the pixels say that it is not.
+double deviation_below(const Evidence& evidence, const LightModel& model, double bound) {
+  std::vector<double> deviations;
+  std::size_t beyond = 0;
+  RobustFit fit;
+  for (std::size_t p = 0; p < evidence.pixels(); ++p) {
+    if (!fit.fit(evidence, p, model)) continue;
+    deviations.push_back(fit.deviation());
+    beyond += deviations.back() >= bound;
+    if (2 * beyond >= evidence.pixels() + 1) return std::numeric_limits<double>::infinity();
+  }
+  return median(std::move(deviations));
 }
 
 // How far a correction turns the normals of least squares: median over pixels.
@@ -266,16 +277,16 @@ LightModel best_order(const Evidence& evidence, LightModel model, int threads) {
   for (std::size_t j = 1; j < some.size(); ++j) {
     for (std::size_t i = 0; i < j; ++i) pairs.emplace_back(some[i], some[j]);
   }
-  const std::vector<char> none(evidence.lights, 0);
-  double least = deviation_of(evidence, model, none).all;
+  double least = deviation_of(evidence, model, std::vector<char>(evidence.lights, 0)).all;
   for (int round = 0; round < kMostExchanges; ++round) {
+    // Two of K lights that fit again lower the mean of K by about a share of 2 / K and more.
+    const double bound = least * (1 - 0.5 / static_cast<double>(evidence.lights));
     std::vector<double> deviations(pairs.size());
     parallel_for(pairs.size(), threads, [&](std::size_t i, int) {
-      deviations[i] = deviation_of(evidence, exchanged(model, pairs[i]), none).all;
+      deviations[i] = deviation_below(evidence, exchanged(model, pairs[i]), bound);
     });
     const auto best = std::min_element(deviations.begin(), deviations.end());
-    // Two of K lights that fit again lower the mean of K by about a share of 2 / K and more.
-    if (!(*best < least * (1 - 0.5 / static_cast<double>(evidence.lights)))) break;
+    if (!(*best < bound)) break;
     least = *best;
     model = exchanged(std::move(model), pairs[static_cast<std::size_t>(best - deviations.begin())]);
   }

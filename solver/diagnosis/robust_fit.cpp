@@ -32,6 +32,17 @@ double RobustFit::predicted(std::size_t k) const {
   return std::max(0.0, dot(l_[k], b_));
 }
 
+double RobustFit::deviation() const {
+  double sum = 0;
+  int count = 0;
+  for (std::size_t k = 0; k < x_.size(); ++k) {
+    if (!usable_[k]) continue;
+    sum += std::abs(residual(k));
+    ++count;
+  }
+  return sum / count;
+}
+
 bool RobustFit::fit(const Evidence& evidence, std::size_t pixel, const LightModel& model,
                     std::size_t left_out, int rounds) {
   const std::size_t lights = evidence.lights;

@@ -41,6 +41,7 @@ class RobustFit {
   Vec3 normal() const { return (1 / albedo_) * b_; }
   /// (x_k - predicted) / albedo.
   double residual(std::size_t k) const { return (x_[k] - predicted(k)) / albedo_; }
+  double deviation() const;  ///< mean size of the residuals of usable lights
 
  private:
   std::vector<Vec3> l_;

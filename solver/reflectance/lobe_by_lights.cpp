@@ -19,11 +19,8 @@ using Slopes = ReadingSlopes<kValues>;
 
 class Slope {
  public:
-  Slope(const LobeFit& fit, const LobeParameters& fitted) : fit_(fit), fitted_(fitted) {
-    for (std::size_t p = 0; p < kLobeParameters; ++p) {
-      if (fitted[p]) nudged_[p] = nudged(fit.lobe, static_cast<LobeParameter>(p));
-    }
-  }
+  Slope(const LobeFit& fit, const LobeParameters& fitted)
+      : fit_(fit), fitted_(fitted), nudged_(nudged(fit.lobe, fitted)) {}
 
   Slopes of(const LobeReading& r, std::size_t pixel) const {
     const Vec3 b = fit_.b[pixel];
@@ -44,7 +41,7 @@ class Slope {
  private:
   const LobeFit& fit_;
   const LobeParameters& fitted_;
-  std::array<NudgedLobe, kLobeParameters> nudged_;
+  NudgedLobes nudged_;
 };
 
 }  // namespace

@@ -56,14 +56,10 @@ struct Reduced {
 };
 
 // Adds a pixel: M = S^T W S - (S^T W J)(J^T W J)^-1 (J^T W S), and likewise the gradient.
-void add_pixel(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted,
-               std::size_t pixel, Reduced& sums) {
+void add_pixel(const LobeSamples& samples, const LobeFit& fit, const NudgedLobes& there,
+               const LobeParameters& fitted, std::size_t pixel, Reduced& sums) {
   const Vec3 b = fit.b[pixel];
   const double yarn = fit.yarn[pixel];
-  std::array<NudgedLobe, kLobeParameters> there;
-  for (std::size_t p = 0; p < kLobeParameters; ++p) {
-    if (fitted[p]) there[p] = nudged(fit.lobe, static_cast<LobeParameter>(p));
-  }
   PixelSystem system;
   std::array<Vec3, kLobeParameters> mixed = {};
   for (const LobeReading& r : samples.of(pixel)) {
@@ -96,10 +92,11 @@ void add_pixel(const LobeSamples& samples, const LobeFit& fit, const LobeParamet
 
 Reduced reduced(const LobeSamples& samples, const LobeFit& fit, const LobeParameters& fitted, int threads) {
   const std::size_t pixels = samples.pixels();
+  const NudgedLobes there = nudged(fit.lobe, fitted);
   std::vector<Reduced> parts((pixels + kChunk - 1) / kChunk);
   parallel_for(parts.size(), threads, [&](std::size_t chunk, int) {
     for (std::size_t i = chunk * kChunk; i < std::min(pixels, (chunk + 1) * kChunk); ++i)
-      add_pixel(samples, fit, fitted, i, parts[chunk]);
+      add_pixel(samples, fit, there, fitted, i, parts[chunk]);
   });
   Reduced all;
   for (const Reduced& part : parts) {
@@ -226,6 +223,14 @@ NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter) {
   Shared there = values_of(lobe);
   there[static_cast<Eigen::Index>(parameter)] += by;
   return {lobe_of(lobe, there), by};
+}
+
+NudgedLobes nudged(const Lobe& lobe, const LobeParameters& fitted) {
+  NudgedLobes there;
+  for (std::size_t p = 0; p < kLobeParameters; ++p) {
+    if (fitted[p]) there[p] = nudged(lobe, static_cast<LobeParameter>(p));
+  }
+  return there;
 }
 
 std::vector<Lobe> one_sigma_off(const Lobe& lobe, const LobeCovariance& covariance) {

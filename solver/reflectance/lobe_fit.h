@@ -72,6 +72,9 @@ struct NudgedLobe {
   double by = 0;
 };
 NudgedLobe nudged(const Lobe& lobe, LobeParameter parameter);
+/// By each of the fitted parameters; the others are not filled in.
+using NudgedLobes = std::array<NudgedLobe, kLobeParameters>;
+NudgedLobes nudged(const Lobe& lobe, const LobeParameters& fitted);
 
 /// Lobes one sigma away, one along each principal axis of a covariance: any quantity's variance is to first
 /// order the sum of the squares of what it changes by to each. None along an axis where nothing is open.

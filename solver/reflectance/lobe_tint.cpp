@@ -96,7 +96,10 @@ class TintEquations {
     double cost = 0, freedom = 0;
     for (std::size_t c = 0; c < channels.size(); ++c) {
       const Channel& channel = channels[c];
-      for (std::size_t i = 0; i < channel.samples.pixels(); ++i) add(channel, c, i);
+      LobeParameters fitted = form;
+      fitted[static_cast<std::size_t>(LobeParameter::kF0)] = true;
+      const NudgedLobes there = nudged(channel.fit.lobe, fitted);
+      for (std::size_t i = 0; i < channel.samples.pixels(); ++i) add(channel, there, c, i);
       cost += channel.fit.total();
       freedom += static_cast<double>(channel.samples.used()) - 3 * static_cast<double>(channel.fit.b.size());
     }
@@ -128,7 +131,8 @@ class TintEquations {
  private:
   using Slopes = ReadingSlopes<kTintValues>;
 
-  Slopes slopes_of(const Channel& channel, std::size_t c, const LobeReading& r, std::size_t pixel) const {
+  Slopes slopes_of(const Channel& channel, const NudgedLobes& there, std::size_t c, const LobeReading& r,
+                   std::size_t pixel) const {
     const Lobe& lobe = channel.fit.lobe;
     const Vec3 b = channel.fit.b[pixel];
     const double yarn = channel.fit.yarn[pixel];
@@ -137,8 +141,8 @@ class TintEquations {
     s.weight = r.weight * huber_weight((r.x - m.x) * std::sqrt(r.weight));
     s.by_b = m.by_b;
     const auto slope_by = [&](LobeParameter p) {
-      const NudgedLobe there = nudged(lobe, p);
-      return (modelled(there.lobe, b, r.from, yarn) - m.x) / there.by;
+      const auto& [nudged_lobe, by] = there[static_cast<std::size_t>(p)];
+      return (modelled(nudged_lobe, b, r.from, yarn) - m.x) / by;
     };
     for (std::size_t p = 0; p < kForm.size(); ++p) {
       if (form_[static_cast<std::size_t>(kForm[p])])
@@ -149,11 +153,11 @@ class TintEquations {
     return s;
   }
 
-  void add(const Channel& channel, std::size_t c, std::size_t pixel) {
+  void add(const Channel& channel, const NudgedLobes& there, std::size_t c, std::size_t pixel) {
     const auto readings = channel.samples.of(pixel);
     std::vector<Slopes> slopes(readings.size());
     for (std::size_t k = 0; k < readings.size(); ++k) {
-      if (readings[k].weight > 0) slopes[k] = slopes_of(channel, c, readings[k], pixel);
+      if (readings[k].weight > 0) slopes[k] = slopes_of(channel, there, c, readings[k], pixel);
     }
     take_out_pixel(std::span(slopes));
     for (std::size_t k = 0; k < readings.size(); ++k) {
