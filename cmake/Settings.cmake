@@ -94,24 +94,30 @@ endfunction()
 # weft_test(NAME DEPENDS ... SOURCES ...): one test program. CTest has one entry a program, whose tests share what they
 # prepare; SHARDS n makes n entries NAME.1 to NAME.n, each with its share of the tests. An entry computes, and
 # holds one of the cores that `./dev test` gives out; one that WAITS, for clocks of devices and programs, holds none.
-# SERIAL: it runs with no other beside it, since what it asserts is real time. The longest, by TIMEOUT, begin first.
+# SERIAL: it runs with no other beside it, since what it asserts is real time. Those that wait begin first, then the
+# longest, by TIMEOUT. SOAK NAME=VALUE: another entry, NAME_soak, which has this variable and draws more by it.
 function(weft_test name)
-  cmake_parse_arguments(ARG "SERIAL;WAITS" "TIMEOUT;SHARDS" "SOURCES;DEPENDS;LABELS;ENVIRONMENT" ${ARGN})
+  cmake_parse_arguments(ARG "SERIAL;WAITS" "TIMEOUT;SHARDS;SOAK" "SOURCES;DEPENDS;LABELS;ENVIRONMENT" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_link_libraries(${name} PRIVATE weft_settings ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
   target_compile_options(${name} PRIVATE ${WEFT_TEST_OPTIONS})
   target_precompile_headers(${name} REUSE_FROM weft_precompiled_tests)
   if(NOT ARG_TIMEOUT)
-    set(ARG_TIMEOUT 300)
+    set(ARG_TIMEOUT 600)
   endif()
-  if(NOT ARG_SHARDS)
+  if(ARG_SHARDS)
+    foreach(shard RANGE 1 ${ARG_SHARDS})
+      math(EXPR index "${shard} - 1")
+      weft_test_entry(${name} ${name}.${shard} GTEST_TOTAL_SHARDS=${ARG_SHARDS} GTEST_SHARD_INDEX=${index})
+    endforeach()
+  else()
     weft_test_entry(${name} ${name})
-    return()
   endif()
-  foreach(shard RANGE 1 ${ARG_SHARDS})
-    math(EXPR index "${shard} - 1")
-    weft_test_entry(${name} ${name}.${shard} GTEST_TOTAL_SHARDS=${ARG_SHARDS} GTEST_SHARD_INDEX=${index})
-  endforeach()
+  if(ARG_SOAK)
+    set(ARG_LABELS soak)
+    set(ARG_TIMEOUT 3600)
+    weft_test_entry(${name} ${name}_soak ${ARG_SOAK})
+  endif()
 endfunction()
 
 # weft_test_entry(PROGRAM ENTRY [NAME=VALUE...]): within weft_test, whose ARG_ it reads.
@@ -122,7 +128,9 @@ function(weft_test_entry program entry)
   set_tests_properties(${entry} PROPERTIES TIMEOUT ${ARG_TIMEOUT} COST ${ARG_TIMEOUT} RUN_SERIAL ${ARG_SERIAL}
     LABELS "room-${room};${ARG_LABELS}"
     ENVIRONMENT "GTEST_OUTPUT=xml:${CMAKE_BINARY_DIR}/gtest/${entry}.xml;${ARGN};${ARG_ENVIRONMENT}")
-  if(NOT ARG_WAITS)
+  if(ARG_WAITS)
+    set_tests_properties(${entry} PROPERTIES COST 10000)
+  else()
     set_tests_properties(${entry} PROPERTIES RESOURCE_GROUPS cores:1)
   endif()
 endfunction()

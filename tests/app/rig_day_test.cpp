@@ -62,7 +62,7 @@ class RigDay : public testing::Test {
     std::ofstream(script) << "set -ev\ncd '" << folder_->path().string()
                           << "'\nexport PATH='" WEFT_PROGRAMS "':\"$PATH\" WEFT_RIG=\n"
                           << lines;
-    const std::string command = "timeout -k 5 400 bash '" + script.string() + "' > '" +
+    const std::string command = "timeout -k 5 800 bash '" + script.string() + "' > '" +
                                 (folder_->path() / (name + ".txt")).string() + "' 2>&1 < /dev/null";
     return std::system(command.c_str());
   }

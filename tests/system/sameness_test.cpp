@@ -31,9 +31,9 @@ const Division kDivisions[] = {{2, {}},
 
 using Solve = std::function<Result<app::SolveReport>(const app::SolveOptions&, const JobContext&)>;
 
-/// Solves by every method, whole and divided in many ways, and compares the maps byte by byte.
-void expect_same_maps(const Workspace& work, const Solve& solve) {
-  for (const char* method : {"fast", "robust", "least-squares", "seed"}) {
+/// Solves by each of some methods, whole and divided in many ways, and compares the maps byte by byte.
+void expect_same_maps(const Workspace& work, const std::vector<std::string>& methods, const Solve& solve) {
+  for (const std::string& method : methods) {
     const auto maps_of = [&](const Division& division) {
       app::SolveOptions options;
       options.method = method;
@@ -69,10 +69,11 @@ class SameMapsOfASession : public testing::TestWithParam<Size> {};
 TEST_P(SameMapsOfASession, ForAnyThreadsAndTiles) {
   const Workspace work;
   simulate(scene_named("golden", GetParam()), work / "cloth.weft");
-  expect_same_maps(work, [&](const auto& options, const auto& context) {
+  const auto solve = [&](const auto& options, const auto& context) {
     return app::solve_session({.folder = work / "cloth.weft", .calibration = {}, .leds = {}}, options,
                               context);
-  });
+  };
+  expect_same_maps(work, {"fast", "robust", "least-squares", "seed"}, solve);
 }
 
 // One tile of a band; several bands; several tiles a band.
@@ -94,11 +95,13 @@ TEST_P(SameMapsOfPhotographs, ForAnyThreadsAndTiles) {
   sample.ending = GetParam().ending;
   sample.type = GetParam().type;
   sample.write(work / "photos");
-  expect_same_maps(work, [&](const auto& options, const auto& context) {
+  const auto solve = [&](const auto& options, const auto& context) {
     app::PhotoOptions photos;
     photos.folder = work / "photos";
     return app::solve_photos(photos, options, context);
-  });
+  };
+  // Photographs come to all methods by the same reader.
+  expect_same_maps(work, {"fast", "robust"}, solve);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, SameMapsOfPhotographs,

@@ -31,6 +31,14 @@ TEST(CameraLink, KnowsTheCameraOnceItIsConnected) {
   EXPECT_NEAR(facts->battery, 0.62, 0.006);
 }
 
+TEST(CameraLink, IsMadeAmongAllDriversOfTheLibrary) {
+  LinkBench bench;
+  bench.options().environment.emplace_back("CAMLIBS", WEFT_CAMERA_DRIVERS);
+  const auto facts = bench.link().connect();
+  ASSERT_TRUE(facts) << facts.error().message();
+  EXPECT_EQ(facts->model, "D5100");
+}
+
 TEST(CameraLink, ReadsTheCamerasClockToAFewHundredths) {
   VirtualCameraOptions options;
   options.clock_offset_s = -3723.4;

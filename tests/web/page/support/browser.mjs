@@ -8,7 +8,7 @@ import {PNG} from 'pngjs';
 
 const program = process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell';
 const flags = [
-  '--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--force-color-profile=srgb',
+  '--no-sandbox', '--use-angle=swiftshader-webgl', '--enable-unsafe-swiftshader', '--force-color-profile=srgb',
   '--font-render-hinting=none', '--hide-scrollbars', '--disable-quic', '--no-first-run',
   '--disable-background-networking', '--disable-component-update', '--disable-sync',
 ];
