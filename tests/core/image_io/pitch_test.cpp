@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What files say of the size of their pixels and of their colours, by their bytes and by the reader.
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfTiledInputFile.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -197,6 +199,37 @@ TEST(TiledTexture, IsTheSameBytesTwiceAndHoldsItsPixels) {
   EXPECT_EQ(read->info.type, SampleType::kHalf);
   EXPECT_NEAR(read->info.pitch_mm[0], 0.05, 1e-7);
   for (int x = 0; x < 150; ++x) EXPECT_NEAR(read->planes(x, 33, 1), image(x, 33, 1), 0.0005);
+}
+
+TEST(TiledTexture, HasInEachLevelTheMeansOfAllPixelsOfTheOneBefore) {
+  const ScratchFolder folder;
+  Image<float> image({5, 3});
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 5; ++x) image(x, y) = static_cast<float>(10 * x * x + y * y);
+  }
+  const Result<void> written =
+      write_tiled_texture(folder / "a.tx", views_of(image), {"Y"}, {.type = SampleType::kFloat});
+  ASSERT_TRUE(written) << written.error().message();
+  Imf::TiledInputFile file((folder / "a.tx").c_str());
+  ASSERT_EQ(file.numLevels(), 3);
+  const auto level = [&](int number) {
+    const int width = file.levelWidth(number), height = file.levelHeight(number);
+    std::vector<float> samples(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    Imf::FrameBuffer buffer;
+    buffer.insert("Y", Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(samples.data()), sizeof(float),
+                                  sizeof(float) * static_cast<std::size_t>(width)));
+    file.setFrameBuffer(buffer);
+    file.readTiles(0, file.numXTiles(number) - 1, 0, file.numYTiles(number) - 1, number);
+    return samples;
+  };
+  // Columns 0 and 1, and 2 to 4; all three rows.
+  const float rows = (0 + 1 + 4) / 3.0F, left = 10 * (0 + 1) / 2.0F, right = 10 * (4 + 9 + 16) / 3.0F;
+  const std::vector<float> first = level(1), second = level(2);
+  ASSERT_EQ(first.size(), 2U);
+  EXPECT_FLOAT_EQ(first[0], left + rows);
+  EXPECT_FLOAT_EQ(first[1], right + rows);
+  ASSERT_EQ(second.size(), 1U);
+  EXPECT_FLOAT_EQ(second[0], (left + right) / 2 + rows);
 }
 
 TEST(TiledTexture, WithoutPlanesIsRefused) {
