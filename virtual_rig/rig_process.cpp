@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <thread>
 #include <utility>
@@ -25,6 +27,13 @@ std::vector<std::string> lines_of(const fs::path& file) {
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   return lines;
+}
+
+// Where the program is with its light, by what it has said.
+std::optional<double> share_rendered(const std::string& said) {
+  const std::size_t last = said.rfind(kRenders);
+  if (last == std::string::npos) return {};
+  return std::atoi(said.c_str() + last + std::strlen(kRenders)) / 100.0;
 }
 
 Error rig_error(const std::string& why, const std::string& where) {
@@ -50,7 +59,8 @@ Result<std::unique_ptr<RigProcess>> RigProcess::start(const RigProcessOptions& o
   if (!process) return std::move(process).error();
   const Steady::time_point deadline =
       Steady::now() + std::chrono::duration_cast<Steady::duration>(std::chrono::duration<double>(kStart_s));
-  while ((*process)->said().find("READY") == std::string::npos) {
+  for (std::string said; said.find("READY") == std::string::npos; said = (*process)->said()) {
+    if (const auto share = share_rendered(said); share && options.rendering) options.rendering(*share);
     if (!(*process)->runs()) return rig_error((*process)->said(), options.folder.string());
     if (Steady::now() > deadline) return rig_error("it is not ready", options.folder.string());
     std::this_thread::sleep_for(kPoll);

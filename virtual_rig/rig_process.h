@@ -4,6 +4,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,7 +26,12 @@ struct RigProcessOptions {
   bool usb = false;
   bool has_more_outputs = false;  ///< a light below the cloth and a polariser
   bool same_noise = false;        ///< a shot taken again is the same picture
+  /// Called while its light is rendered, which the first rig of a scene does, for as long as minutes.
+  std::function<void(double share)> rendering = {};
 };
+
+/// What the program says before each percent of it.
+inline constexpr const char* kRenders = "rendering light:";
 
 /// weft-virtual-rig as a process of its own.
 class RigProcess {

@@ -51,13 +51,20 @@ struct Outcome {
   std::uint64_t session_bytes = 0, map_bytes = 0;
 };
 
+Result<std::unique_ptr<virtual_rig::RigProcess>> started_rig(const DemoArguments& arguments, bool quiet) {
+  ProgressLine line(quiet);
+  return virtual_rig::RigProcess::start(
+      {.programs = program_beside("weft").parent_path(),
+       .scene = arguments.scene,
+       .folder = arguments.output / "rig",
+       .megapixels = arguments.megapixels,
+       .rendering = [&line](double share) { line.update("light", share); }});
+}
+
 /// `weft scan` on a virtual rig that lasts for it, and the truth beside what it photographed.
 Result<void> scan(const DemoArguments& arguments, const simulator::Scene& scene, const fs::path& session,
                   const CommonArguments& common) {
-  const auto rig = virtual_rig::RigProcess::start({.programs = program_beside("weft").parent_path(),
-                                                   .scene = arguments.scene,
-                                                   .folder = arguments.output / "rig",
-                                                   .megapixels = arguments.megapixels});
+  const auto rig = started_rig(arguments, common.quiet);
   if (!rig) return rig.error();
   std::vector<std::string> command = {"scan",     "-o",         session.string(),
                                       "--fabric", scene.fabric, "--no-preview"};

@@ -17,7 +17,7 @@ int main(int argc, char** argv) {
   scene.effects.near_light = true;
   bool has_rendered = false;
   RenderLightOptions options;
-  options.progress = [&](int, int) {
+  options.progress = [&](double) {
     has_rendered = true;
     if (argc > 3) std::raise(SIGKILL);
   };

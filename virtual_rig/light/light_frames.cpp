@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstdlib>
+#include <mutex>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -108,16 +109,26 @@ class Planes {
     std::vector<int> shots(plan_.rig.leds.leds.size());
     std::iota(shots.begin(), shots.end(), 1);
     const std::vector<int> none = {0};
+    std::mutex counting;
+    std::int64_t done = 0;
+    const std::int64_t all = size_.pixels() * static_cast<std::int64_t>(shots.size() + 1);
+    const auto count = [&](std::int64_t pixels) {
+      const std::lock_guard lock(counting);
+      done += pixels;
+      if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(all));
+    };
     for (int y0 = 0; y0 < size_.height; y0 += kBandRows) {
       const Rect band = {0, y0, size_.width, std::min(y0 + kBandRows, size_.height)};
       const auto run = [&](simulator::PassRunner& runner, const std::vector<int>& which) {
         return runner.run(
             band, which, options.stop, [](const simulator::Tile&) {},
-            [&](const simulator::Tile& t) { put(t); });
+            [&](const simulator::Tile& t) {
+              put(t);
+              count(t.rect.pixels());
+            });
       };
       if (Result<void> ok = run(lit, shots); !ok) return ok;
       if (Result<void> ok = run(dark, none); !ok) return ok;
-      if (options.progress) options.progress(band.y1, size_.height);
     }
     return {};
   }

@@ -44,7 +44,8 @@ class MappedFloats {
 struct RenderLightOptions {
   TileOptions tiles = {};
   std::stop_token stop = {};
-  std::function<void(int rows_done, int rows)> progress = {};  ///< only called where something is rendered
+  /// Only called where something is rendered; by any thread, one at a time.
+  std::function<void(double share)> progress = {};
 };
 
 /// What arrives at each photosite of a scene's camera, rendered once and without noise: a plane for each LED

@@ -21,6 +21,7 @@
 #include "core/files.h"
 #include "virtual_rig/program/background.h"
 #include "virtual_rig/program/spawn.h"
+#include "virtual_rig/rig_process.h"
 
 namespace weft::app {
 namespace {
@@ -133,9 +134,10 @@ Result<std::unique_ptr<VirtualRig>> start_rig(virtual_rig::VirtualRigOptions opt
                                               const Signals& signals) {
   std::stop_source stop;
   options.render.stop = stop.get_token();
-  options.render.progress = [last = -1](int done, int rows) mutable {
-    const int tenth = 10 * done / rows;
-    if (std::exchange(last, tenth) != tenth) fmt::print(stderr, "rendering light: {} %\n", 10 * tenth);
+  options.render.progress = [last = -1](double share) mutable {
+    const int percent = static_cast<int>(100 * share);
+    if (std::exchange(last, percent) != percent)
+      fmt::print(stderr, "{} {} %\n", virtual_rig::kRenders, percent);
   };
   auto starting = std::async(std::launch::async, [&options] { return VirtualRig::start(options); });
   while (starting.wait_for(std::chrono::milliseconds(kPoll_ms)) != std::future_status::ready) {

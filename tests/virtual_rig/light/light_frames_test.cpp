@@ -106,7 +106,7 @@ TEST(LightFrames, AreRenderedOnceByThreadsThatComeTogether) {
       bool has_rendered = false;
       RenderLightOptions options;
       options.tiles.threads = 1;
-      options.progress = [&](int, int) { has_rendered = true; };
+      options.progress = [&](double) { has_rendered = true; };
       const Result<LightFrames> frames = LightFrames::open(small_scene(), cache, options);
       EXPECT_TRUE(frames) << frames.error().message();
       renders += has_rendered ? 1 : 0;
