@@ -1,14 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "capture/scan/second_copy.h"
 
+#include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/sendfile.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <set>
 
 #include "core/files.h"
 #include "tests/capture/scan/files_under.h"
+
+// A disk that garbles what it takes: the C++ library copies files by this call.
+static bool disk_garbles = false;
+extern "C" ssize_t sendfile(int out, int in, off_t* offset, size_t count) noexcept {
+  static const auto real = reinterpret_cast<decltype(&sendfile)>(dlsym(RTLD_NEXT, "sendfile"));
+  const ssize_t taken = real(out, in, offset, count);
+  if (disk_garbles && taken > 0) {
+    EXPECT_EQ(pwrite(out, "?", 1, 0), 1);
+  }
+  return taken;
+}
 
 namespace weft::capture {
 namespace {
@@ -51,6 +65,17 @@ fs::path other_disk(const Session& session) {
 
 Json copy_in(const Session& session) {
   return read_session(session.folder)->document.value("copy", Json());
+}
+
+TEST(SecondCopy, OnADiskThatGarblesWhatItTakesIsNone) {
+  const Session session = finished_session();
+  disk_garbles = true;
+  const Result<void> copied = copy_session(session, other_disk(session));
+  disk_garbles = false;
+  ASSERT_FALSE(copied);
+  EXPECT_THAT(copied.error().message(), HasSubstr("copy differs from its session"));
+  EXPECT_THAT(copied.error().where, HasSubstr("other disk"));
+  EXPECT_FALSE(fs::exists(place_of_copy(session, other_disk(session))));
 }
 
 TEST(SecondCopy, HoldsTheSessionUnderTheNameOfItsRig) {
