@@ -77,12 +77,29 @@ TEST(ColorFit, FindsItUnderALampThatStandsToOneSide) {
   EXPECT_TRUE(fit->left_out.empty());
 }
 
-TEST(ColorFit, KeepsWhiteWhite) {
+// Of a camera whose channels no matrix takes to the chart's colours.
+std::vector<ChartSample> uneven_samples() {
   std::vector<ChartSample> samples = samples_of(1, 0);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c)
       samples[i].camera[c] *= 1 + 0.05 * std::sin(static_cast<double>(7 * i + 2 * c));
   }
+  return samples;
+}
+
+TEST(ColorFit, LeavesEachPatchOutByItselfWhateverTheirOrder) {
+  std::vector<ChartSample> samples = uneven_samples();
+  const auto fit = fit_color(samples, ChartLight::kEven, true);
+  std::reverse(samples.begin(), samples.end());
+  const auto reversed = fit_color(samples, ChartLight::kEven, true);
+  ASSERT_TRUE(fit && reversed);
+  ASSERT_EQ(fit->left_out.size(), samples.size());
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    EXPECT_NEAR(fit->left_out[i], reversed->left_out[samples.size() - 1 - i], 1e-3) << "patch " << i;
+}
+
+TEST(ColorFit, KeepsWhiteWhite) {
+  const std::vector<ChartSample> samples = uneven_samples();
   const auto fit = fit_color(samples, ChartLight::kEven, false);
   ASSERT_TRUE(fit);
   for (const auto& row : fit->rec709_from_camera) EXPECT_NEAR(row[0] + row[1] + row[2], 1, 1e-12);
