@@ -163,14 +163,21 @@ try_fault() {
   took[i]=$((SECONDS - began)) finders[i]=$finder
 }
 
-# ask_tests ROOM: those of the room first, then all others.
+# ask_tests ROOM: those of the room first, then all others, each once it is built.
 ask_tests() {
-  verdicts[i]=broken
-  in_clone configure_and_make release >>"$log" 2>&1 </dev/null || return 0
-  verdicts[i]=found
+  local programs
+  mapfile -t programs < <(in_clone entries -L "^room-$1\$" | sed 's/[.].*//' | sort -u)
+  is_built "${programs[@]}" || return 0
   is_found_by -L "^room-$1\$" -LE '^soak$' && return
+  is_built || return 0
   is_found_by -LE "^(room-$1|soak)\$" && return
   verdicts[i]=missed
+}
+
+# is_built [TARGET...]: with the fault; else it is no fault to look for.
+is_built() {
+  verdicts[i]=found
+  in_clone configure_and_make release "$@" >>"$log" 2>&1 </dev/null || { verdicts[i]=broken && return 1; }
 }
 
 # is_found_by ARGS: whether one of these tests fails, and fails again by itself; into `finder`. One that then passes
