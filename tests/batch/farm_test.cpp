@@ -86,6 +86,14 @@ TEST(Farm, GivesATaskTwiceItsTimeByTheCoresThatItHas) {
   EXPECT_EQ(asked_minutes(1e30, 1, 1), 365 * 24 * 60);
 }
 
+TEST(Farm, AsksForTheMinutesOfTheLongestTaskOfAnArray) {
+  Header header = header_of({600, 600, 600});
+  header.tasks[1].seconds = 1200;
+  const std::vector<TaskArray> arrays = arrays_of(header, all_of(header), 2, {});
+  ASSERT_THAT(arrays, SizeIs(1));
+  EXPECT_EQ(arrays[0].minutes, asked_minutes(1200, 2, 2));
+}
+
 TEST(Farm, SubmitsAnArrayThatIsSignalledQueuedAgainAndFound) {
   const Header header = header_of({600, 600, 600});
   const std::vector<TaskArray> arrays = arrays_of(header, all_of(header), 1, {});

@@ -57,16 +57,22 @@ TEST_F(Lamps, GoOffByCommandWhenAnotherIsLit) {
   EXPECT_EQ(lamps_.dark_cause, kWeftDarkByCommand);
 }
 
-TEST_F(Lamps, RestForAsLongAsTheyWereLitTooLong) {
-  EXPECT_EQ(weft_lamps_rest_ms(&lamps_, 4, kMost_ms), 0);
-  weft_lamps_light(&lamps_, 4, kMost_ms);
-  wait_ms(kMost_ms);
-  EXPECT_EQ(lamps_.lit, 0);
-  EXPECT_EQ(weft_lamps_rest_ms(&lamps_, 4, 1000), 1000);
-  EXPECT_EQ(weft_lamps_rest_ms(&lamps_, 8, kMost_ms), 0) << "another LED has not been lit";
-  EXPECT_EQ(weft_lamps_rest_ms(&lamps_, 4 | 8, kMost_ms), kMost_ms) << "a pair waits for both";
-  wait_ms(1000 + 2 * 16);  // cooling comes in steps
-  EXPECT_EQ(weft_lamps_rest_ms(&lamps_, 4, 1000), 0);
+TEST_F(Lamps, EachRestForAsLongAsTheyWereLitTooLong) {
+  for (int led = 0; led < kWeftBelow; ++led) {
+    weft_lamps_start(&lamps_, &heat_);
+    const auto mask = static_cast<std::uint16_t>(1 << led),
+               another = static_cast<std::uint16_t>(led == 0 ? 2 : 1);
+    EXPECT_EQ(weft_lamps_rest_ms(&lamps_, mask, kMost_ms), 0);
+    weft_lamps_light(&lamps_, mask, kMost_ms);
+    wait_ms(kMost_ms);
+    EXPECT_EQ(lamps_.lit, 0);
+    EXPECT_EQ(weft_lamps_rest_ms(&lamps_, mask, 1000), 1000) << "bit " << led;
+    EXPECT_EQ(weft_lamps_rest_ms(&lamps_, another, kMost_ms), 0) << "another LED has not been lit";
+    EXPECT_EQ(weft_lamps_rest_ms(&lamps_, mask | another, kMost_ms), kMost_ms) << "a pair waits for both";
+    wait_ms(1000 + 2 * 16);  // cooling comes in steps
+    EXPECT_EQ(weft_lamps_rest_ms(&lamps_, mask, 1000), 0) << "bit " << led;
+    wait_ms(kMost_ms);
+  }
 }
 
 TEST_F(Lamps, ComeOutOfAResetAsHotAsTheyWentIn) {

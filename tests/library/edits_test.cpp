@@ -43,12 +43,13 @@ TEST(Edits, AreTakenBackAndMadeAgainTwentyTimesAcrossRestarts) {
 
 TEST(Edits, ForgetWhatWasUndoneOnceAnotherFollows) {
   const Shelf shelf;
-  const auto folder = shelf.put("a"), file = shelf.beside("edits.json");
+  const auto folder = shelf.put("a"), other = shelf.put("b"), file = shelf.beside("edits.json");
   ASSERT_TRUE(write_notes(file, folder, "one"));
   ASSERT_TRUE(Edits::open(file)->undo());
   EXPECT_EQ(notes_of(folder), "") << "there was none before";
-  ASSERT_TRUE(write_notes(file, folder, "two"));
+  ASSERT_TRUE(write_notes(file, other, "two"));
   EXPECT_FALSE(Edits::open(file)->redo());
+  EXPECT_EQ(notes_of(folder), "");
 }
 
 TEST(Edits, LeaveAloneWhatSomebodyElseChangedSince) {
