@@ -75,7 +75,7 @@ const Prefixes kRoots = {"app/",       "batch/",    "bench/",   "calibration/", 
 
 const std::vector<Door> kDoors = {
     {"CLI/", {"app/cli/", "virtual_rig/program/"}},
-    {"OpenEXR/", {"core/image_io/", "bench/"}},
+    {"OpenEXR/", {"core/image_io/", "tests/core/image_io/", "bench/"}},
     {"OpenImageIO/", {}},
     {"jpeglib.h", {"core/image_io/"}},
     {"png.h", {"core/image_io/"}},
