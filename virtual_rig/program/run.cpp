@@ -135,7 +135,7 @@ Result<std::unique_ptr<VirtualRig>> start_rig(virtual_rig::VirtualRigOptions opt
   std::stop_source stop;
   options.render.stop = stop.get_token();
   options.render.progress = [last = -1](double share) mutable {
-    const int percent = static_cast<int>(100 * share);
+    const int percent = 5 * static_cast<int>(20 * share);
     if (std::exchange(last, percent) != percent)
       fmt::print(stderr, "{} {} %\n", virtual_rig::kRenders, percent);
   };
