@@ -26,8 +26,6 @@ using Steady = std::chrono::steady_clock;
 // For the worker to start and to load its drivers, which a busy machine may take long over and no camera has
 // a part in.
 constexpr double kDriversS = 30;
-constexpr const char* kNoDriversRemedy =
-    "try again; libgphoto2 looks at each mounted disk: see that none hangs";
 // Detection, session, the card's list, settings, 1.5 s of watching a clock. On USB a silent body is reset
 // twice, after 1.5 s each; over the network a new connection does more than libgphoto2's third try.
 constexpr double kOpenUsbS = 12, kOpenNetworkS = 5;
@@ -58,6 +56,11 @@ Error wrong_line(const std::string& why) {
 
 Error not_connected() {
   return {ErrorKind::kTryAgain, "the camera is not connected", "", "", "connect it again"};
+}
+
+Error not_started(const Error& cause) {
+  return {ErrorKind::kTryAgain, "the camera's program does not start", "weft-camera", cause.why,
+          "try again; libgphoto2 looks at each mounted disk: see that none hangs"};
 }
 
 Result<fs::path> folder_of_its_own() {
@@ -245,7 +248,9 @@ Result<CameraFacts> CameraLink::open(const std::string& serial, bool watch_clock
   });
   if (!opened) {
     Error error = opened.error();
-    if (!worker_) error.remedy = is_asked ? kNotOpenedRemedy : kNoDriversRemedy;
+    if (worker_) return error;
+    if (!is_asked && error.kind == ErrorKind::kTryAgain) return not_started(error);
+    error.remedy = kNotOpenedRemedy;
     return error;
   }
   Result<CameraFacts> facts = note_opened(*opened);

@@ -245,7 +245,8 @@ std::optional<CameraClock> read_clock(GphotoCamera& camera, const CameraProfile&
   double before = seconds_since_1970();
   const auto first = clock_of(camera, widget);
   if (!first) return {};
-  if (!watched) return CameraClock{*first + 0.5 - seconds_since_1970(), 0.5};
+  const double glanced = seconds_since_1970();
+  if (!watched) return CameraClock{*first + 0.5 - (before + glanced) / 2, 0.5 + (glanced - before) / 2};
   const auto end = Steady::now() + std::chrono::milliseconds(1500);
   while (Steady::now() < end) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));

@@ -60,8 +60,8 @@ TEST(CameraLink, TakesARememberedClockThatAGlanceAgreesWith) {
   ASSERT_TRUE(watched) << "the clock that was watched is not kept";
   EXPECT_EQ(watched->serial, "6004711");
 
-  // Off by what a glance cannot see.
-  const CameraClock nudged = {watched->clock.offset_s + 0.11, watched->clock.uncertainty_s};
+  // Off by no more than it says, which no glance can gainsay.
+  const CameraClock nudged = {watched->clock.offset_s + 0.11, watched->clock.uncertainty_s + 0.11};
   memory.keep({watched->serial, nudged}, seconds_since_1970());
   const auto before = bench.link().connect();
   ASSERT_TRUE(before) << before.error().message();
@@ -314,6 +314,16 @@ TEST(CameraLink, SaysWhereItsProgramShouldBe) {
   ASSERT_FALSE(facts);
   EXPECT_EQ(facts.error().kind, ErrorKind::kNoInput);
   EXPECT_THAT(facts.error().message(), HasSubstr("absent"));
+}
+
+TEST(CameraLink, BlamesNoCameraForAProgramThatDoesNotStart) {
+  LinkBench bench;
+  bench.options().worker = "/bin/false";
+  const auto facts = bench.link().connect();
+  ASSERT_FALSE(facts);
+  EXPECT_EQ(facts.error().kind, ErrorKind::kTryAgain);
+  EXPECT_EQ(facts.error().what, "the camera's program does not start");
+  EXPECT_THAT(facts.error().why, HasSubstr("code 1"));
 }
 
 TEST(CameraLink, SaysThatTheDiskTakesNoFileAndGoesOn) {
