@@ -31,7 +31,7 @@ class ExposureAtTheRig : public testing::Test {
   /// What is at a path once it is so.
   template <typename IsSo>
   Json once(const std::string& path, const IsSo& is_so) const {
-    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(300);
     Json said = get(path);
     for (; !is_so(said) && std::chrono::steady_clock::now() < until; said = get(path))
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
@@ -50,7 +50,7 @@ class ExposureAtTheRig : public testing::Test {
         {"scan", "--fabric", "twill", "--leds", "1", "--no-repeat", "--no-preview", "--exposure", exposure},
         "scan.log");
     if (!weft) return {-1, weft.error().message()};
-    const int code = (*weft)->wait(60).value_or(-1);
+    const int code = (*weft)->wait(300).value_or(-1);
     return {code, (*weft)->said()};
   }
 

@@ -62,7 +62,7 @@ TEST_F(FocusAtTheRig, IsBestWhereTheLensIsSharpest) {
 TEST_F(FocusAtTheRig, IsToldOnATerminalThroughTheDaemon) {
   const auto weft = served_.rig().weft({"focus", "--shots", "2", "--exposure", "20000"}, "focus.log");
   ASSERT_TRUE(weft) << weft.error().message();
-  EXPECT_EQ((*weft)->wait(60), 0) << (*weft)->said();
+  EXPECT_EQ((*weft)->wait(300), 0) << (*weft)->said();
   EXPECT_THAT((*weft)->said(), HasSubstr("sharpest"));
   EXPECT_THAT((*weft)->said(), HasSubstr("each part of the picture"));
 }

@@ -40,7 +40,7 @@ TEST_F(BatchTest, TheWalkOfThePageGoesLineByLine) {
         fmt::format("cd {} && PATH={}:$PATH && {}", work_.path().string(), programs.string(), line);
     const auto shell = ChildProcess::start({"/bin/sh", "-c", command}, {}, work_ / "log");
     ASSERT_TRUE(shell);
-    ASSERT_EQ((*shell)->wait(120), 0) << bytes_of(work_ / "log");
+    ASSERT_EQ((*shell)->wait(300), 0) << bytes_of(work_ / "log");
   }
   EXPECT_TRUE(fs::exists(work_ / "night.results" / "report" / "report.html"));
   ASSERT_THAT(solves_of(session(0)), testing::SizeIs(1)) << "the old one was freed";

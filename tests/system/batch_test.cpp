@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <fstream>
 #include <random>
@@ -122,8 +123,8 @@ TEST_F(BatchTest, KilledAtRandomMomentsItEndsWithOneSolveASession) {
   int kills = 0;
   for (bool is_whole = false; !is_whole && kills < 40;) {
     const auto child = begin_run(plan_file(), work_ / "log");
-    // Longer each time, so that a machine that is slow gets there too.
-    std::uniform_real_distribution<double> wait_s(0.02, 0.1 + 0.3 * kills);
+    // Up to a fifth longer each time, to two minutes, so that a machine that is slow gets there too.
+    std::uniform_real_distribution<double> wait_s(0.02, 0.1 * std::pow(1.2, kills));
     const std::optional<int> code = child->wait(wait_s(random));
     is_whole = code == 0;
     if (code) continue;
@@ -244,8 +245,8 @@ TEST_F(BatchTest, TwoPlansOfOneArchiveAtOnceDoNoHarm) {
       run_weft({"batch", "plan", archive().string(), "--sample", "0", "-q", "-o", other.string()}).exit_code,
       0);
   const auto first = begin_run(plan_file(), work_ / "log"), second = begin_run(other, work_ / "log2");
-  EXPECT_EQ(first->wait(60), 0) << bytes_of(work_ / "log");
-  EXPECT_EQ(second->wait(60), 0) << bytes_of(work_ / "log2");
+  EXPECT_EQ(first->wait(300), 0) << bytes_of(work_ / "log");
+  EXPECT_EQ(second->wait(300), 0) << bytes_of(work_ / "log2");
   for (int i = 0; i < 3; ++i) EXPECT_THAT(solves_of(session(i)), SizeIs(1)) << i;
   EXPECT_THAT(half_made(), IsEmpty());
   EXPECT_EQ(merge().exit_code, 0);
@@ -426,7 +427,7 @@ TEST_F(BatchTest, ReadsSessionsFromStandardInput) {
                                                 plan_file().string(), (work_ / "list").string())},
                                    {}, work_ / "log");
   ASSERT_TRUE(shell);
-  ASSERT_EQ((*shell)->wait(60), 0) << bytes_of(work_ / "log");
+  ASSERT_EQ((*shell)->wait(300), 0) << bytes_of(work_ / "log");
   ASSERT_EQ(run({"-q"}).exit_code, 0);
   EXPECT_THAT(solves_of(session(0)), IsEmpty());
   EXPECT_THAT(solves_of(session(2)), SizeIs(1));

@@ -218,7 +218,7 @@ TEST(Bench, IsMissedBesideAWeftThatWasInstalledAlone) {
   fs::copy(WEFT_PROGRAM, work / "weft");
   const auto weft = ChildProcess::start({(work / "weft").string(), "bench", "solve"}, {}, work / "bench.log");
   ASSERT_TRUE(weft) << weft.error().message();
-  EXPECT_EQ((*weft)->wait(60), 66);
+  EXPECT_EQ((*weft)->wait(300), 66);
   EXPECT_THAT((*weft)->said(), testing::AllOf(testing::HasSubstr((work / "weft-bench").string()),
                                               testing::HasSubstr("build all of weft")));
 }
