@@ -11,7 +11,6 @@ namespace {
 TEST(LiveView, ShowsPicturesUntilAShotIsTakenAndAfterIt) {
   LinkBench bench(with_finder());
   CameraLink& link = bench.ready();
-  const auto began = std::chrono::steady_clock::now();
   std::uint8_t last = 0;
   for (int shot = 0; shot < 2; ++shot) {
     for (int i = 0; i < 5; ++i) {
@@ -20,9 +19,6 @@ TEST(LiveView, ShowsPicturesUntilAShotIsTakenAndAfterIt) {
       ASSERT_EQ(picture->size(), 40'000U);
       EXPECT_GT(static_cast<std::uint8_t>((*picture)[2]), last);
       last = static_cast<std::uint8_t>((*picture)[2]);
-      if (shot == 0 && i == 0) {
-        EXPECT_LT(seconds_since(began), 1.5) << "the first picture";
-      }
     }
     const Result<Photograph> taken = link.take(bench.raw(shot), [] {});
     ASSERT_TRUE(taken) << taken.error().message();
