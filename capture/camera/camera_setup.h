@@ -46,8 +46,8 @@ Result<ExposureSettings> set_exposure(GphotoCamera& camera, const CameraProfile&
                                       const ExposureSettings& wanted);
 Result<std::vector<double>> shutter_times_us(GphotoCamera& camera, const CameraProfile& profile);
 
-/// `watched`: up to 1.5 s, until the clock's second changes, for a few hundredths instead of half a second.
-/// Nothing where there is no clock or it stands.
+/// `watched`: up to 1.5 s, until the clock's second changes, for a few hundredths. Else a glance, which is
+/// sure to half a second and half of what the answer took. Nothing where there is no clock or it stands.
 std::optional<CameraClock> read_clock(GphotoCamera& camera, const CameraProfile& profile, bool watched);
 
 }  // namespace weft::capture

@@ -39,13 +39,13 @@ TEST(CameraLink, IsMadeAmongAllDriversOfTheLibrary) {
   EXPECT_EQ(facts->model, "D5100");
 }
 
-TEST(CameraLink, ReadsTheCamerasClockToAFewHundredths) {
+TEST(CameraLink, WatchesTheCamerasClockWhereItKnowsNone) {
   VirtualCameraOptions options;
   options.clock_offset_s = -3723.4;
   LinkBench bench(options);
   const auto facts = bench.link().connect();
   ASSERT_TRUE(facts) << facts.error().message();
-  EXPECT_LT(facts->clock_uncertainty_s, 0.5) << "of a glance";
+  EXPECT_LT(facts->clock_uncertainty_s, 0.5) << "that of a glance is more";
   EXPECT_NEAR(facts->clock_offset_s, -3723.4, facts->clock_uncertainty_s + 0.005);
 }
 
@@ -83,7 +83,7 @@ TEST(CameraLink, WatchesTheClockAgainWhereItWasSetOrIsAnotherCameras) {
     ClockMemory(bench.options().state / "clock.json").keep(wrong, seconds_since_1970());
     const auto facts = bench.link().connect();
     ASSERT_TRUE(facts) << facts.error().message();
-    EXPECT_LT(facts->clock_uncertainty_s, 0.5) << wrong.serial << ": of a glance";
+    EXPECT_LT(facts->clock_uncertainty_s, 0.5) << wrong.serial << ": that of a glance is more";
     EXPECT_NEAR(facts->clock_offset_s, 60, facts->clock_uncertainty_s + 0.005) << wrong.serial;
   }
 }
