@@ -8,8 +8,6 @@ set(CMAKE_C_FLAGS_RELEASE "-O2 -DNDEBUG")
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
 set_property(GLOBAL PROPERTY GLOBAL_DEPENDS_NO_CYCLES ON)
 
-# Presets that are built whole compile eight files of a target at a time: a name of an unnamed namespace stands once
-# in a target. The preset dev compiles each by itself, and so shows what it forgot to include.
 set(WEFT_SANITIZE "" CACHE STRING "Sanitizers, as in -fsanitize=: address,undefined or thread")
 option(WEFT_PLAIN_THREADS "parallel_for on plain threads instead of oneTBB, which ThreadSanitizer cannot see into" OFF)
 option(WEFT_FUZZERS "Build the libFuzzer programs (clang only)" OFF)
@@ -25,7 +23,7 @@ target_compile_options(weft_settings INTERFACE
 target_compile_options(weft_settings INTERFACE
   $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-maybe-uninitialized -Wno-restrict -Wno-stringop-overflow
   -Wno-stringop-overread>)
-if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+if(WEFT_JOINED AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # A class of one file whose member is of that file's unnamed namespace: GCC takes the file for a header.
   target_compile_options(weft_settings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
@@ -63,10 +61,10 @@ weft_precompile(weft_precompiled_tests
   OPTIONS ${WEFT_TEST_OPTIONS})
 
 # weft_library(NAME DEPENDS ... SOURCES ...): one folder, one target. PLAIN: without the precompiled headers, for C and
-# for what is compiled with other options. With WEFT_BUILT a library that no sanitizer is to watch is not compiled: its
+# for what is compiled with other options. APART: each file by itself. With WEFT_BUILT a library that no sanitizer is to watch is not compiled: its
 # archive is that of this other build.
 function(weft_library name)
-  cmake_parse_arguments(ARG "PLAIN" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;OPTIONS" ${ARGN})
+  cmake_parse_arguments(ARG "PLAIN;APART" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS;OPTIONS" ${ARGN})
   cmake_path(RELATIVE_PATH CMAKE_CURRENT_SOURCE_DIR BASE_DIRECTORY ${CMAKE_SOURCE_DIR} OUTPUT_VARIABLE folder)
   if(WEFT_BUILT AND folder MATCHES "^(batch|bench|calibration|material|pipeline|report|simulator|solver)(/|$)")
     add_library(${name} INTERFACE)
@@ -79,6 +77,9 @@ function(weft_library name)
   target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
   if(NOT ARG_PLAIN)
     target_precompile_headers(${name} REUSE_FROM weft_precompiled)
+  endif()
+  if(NOT ARG_APART)
+    weft_joined(${name})
   endif()
 endfunction()
 
@@ -102,6 +103,7 @@ function(weft_test name)
   target_link_libraries(${name} PRIVATE weft_settings ${ARG_DEPENDS} GTest::gtest_main GTest::gmock)
   target_compile_options(${name} PRIVATE ${WEFT_TEST_OPTIONS})
   target_precompile_headers(${name} REUSE_FROM weft_precompiled_tests)
+  weft_joined(${name})
   if(NOT ARG_TIMEOUT)
     set(ARG_TIMEOUT 600)
   endif()
