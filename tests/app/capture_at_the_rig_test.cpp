@@ -12,6 +12,7 @@
 #include "bench/server/served_rig.h"
 #include "core/files.h"
 #include "core/json_document.h"
+#include "tests/core/places.h"
 
 namespace weft::bench {
 namespace {
@@ -25,7 +26,7 @@ class CaptureAtTheRig : public testing::Test {
  protected:
   explicit CaptureAtTheRig(double megapixels = 0.25) : megapixels_(megapixels) {}
   void SetUp() override {
-    ASSERT_TRUE(served_.start(WEFT_PROGRAMS, WEFT_SOURCE_DIR "/testdata/scenes/rig.toml", megapixels_));
+    ASSERT_TRUE(served_.start(program_folder(), in_sources("testdata/scenes/rig.toml"), megapixels_));
     ASSERT_TRUE(served_.serve());
   }
 

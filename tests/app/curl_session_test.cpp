@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/core/places.h"
 #include "tests/virtual_rig/ptp/client_process.h"
 #include "tests/virtual_rig/small_scene.h"
 
@@ -66,7 +67,7 @@ class CurlSession : public testing::Test {
   }
 
   virtual_rig::ProgramRun rig(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), WEFT_VIRTUAL_RIG);
+    arguments.insert(arguments.begin(), program_path("weft-virtual-rig"));
     return virtual_rig::run_program(arguments, {"XDG_CACHE_HOME=" + (folder_ / "cache").string()},
                                     folder_.string(), 60);
   }
@@ -92,10 +93,10 @@ start
 
 TEST_F(CurlSession, OfTheDocumentationIsWhatTheServerSays) {
   const std::vector<Step> steps =
-      steps_of(text_of(fs::path(WEFT_SOURCE_DIR) / "docs/http.md"), "## A session with curl");
+      steps_of(text_of(source_folder() / "docs/http.md"), "## A session with curl");
   ASSERT_GT(steps.size(), 10U);
   ASSERT_EQ(rig({"scene.toml", "--folder", "rig", "--no-wait"}).exit_code, 0);
-  std::string script = "WEFT=" + std::string(WEFT_PROGRAM) + kService;
+  std::string script = "WEFT=" + program_path("weft") + kService;
   for (const Step& step : steps) {
     const std::string command =
         std::regex_replace(step.command, std::regex("127\\.0\\.0\\.1:8470"), "127.0.0.1:$port");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/json_document.h"
+#include "tests/core/places.h"
 #include "tests/virtual_rig/ptp/client_process.h"
 #include "tests/virtual_rig/small_scene.h"
 
@@ -29,15 +30,15 @@ class DoctorProgram : public testing::Test {
   ~DoctorProgram() override { rig({"--folder", "rig", "--inject", "end"}); }
 
   ProgramRun rig(std::vector<std::string> arguments) const {
-    arguments.insert(arguments.begin(), WEFT_VIRTUAL_RIG);
+    arguments.insert(arguments.begin(), program_path("weft-virtual-rig"));
     return virtual_rig::run_program(arguments, {"XDG_CACHE_HOME=" + (folder_ / "cache").string()},
                                     folder_.string(), 60);
   }
   /// weft doctor as a person asks it of the rig in the background.
   ProgramRun doctor() const {
     return virtual_rig::run_program(
-        {"/bin/sh", "-c", std::string("exec env $(cat rig/environment) ") + WEFT_PROGRAM + " doctor"}, {},
-        folder_.string(), 60);
+        {"/bin/sh", "-c", std::string("exec env $(cat rig/environment) ") + program_path("weft") + " doctor"},
+        {}, folder_.string(), 60);
   }
 
   const fs::path folder_;

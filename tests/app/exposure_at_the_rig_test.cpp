@@ -11,6 +11,7 @@
 
 #include "bench/server/served_rig.h"
 #include "core/json_document.h"
+#include "tests/core/places.h"
 
 namespace weft::bench {
 namespace {
@@ -20,7 +21,7 @@ using testing::HasSubstr;
 class ExposureAtTheRig : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_TRUE(served_.start(WEFT_PROGRAMS, WEFT_SOURCE_DIR "/testdata/scenes/twill.toml", 0.05));
+    ASSERT_TRUE(served_.start(program_folder(), in_sources("testdata/scenes/twill.toml"), 0.05));
     ASSERT_TRUE(served_.serve());
   }
 

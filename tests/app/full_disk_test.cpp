@@ -11,6 +11,7 @@
 #include "bench/server/served_rig.h"
 #include "core/json_document.h"
 #include "core/session.h"
+#include "tests/core/places.h"
 
 namespace weft::bench {
 namespace {
@@ -20,7 +21,7 @@ using testing::HasSubstr;
 class FullDisk : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_TRUE(served_.start(WEFT_PROGRAMS, WEFT_SOURCE_DIR "/testdata/scenes/satin.toml", 0.02));
+    ASSERT_TRUE(served_.start(program_folder(), in_sources("testdata/scenes/satin.toml"), 0.02));
     ASSERT_TRUE(served_.serve());
     ASSERT_TRUE(served_.client().post("/api/v1/scan",
                                       {{"session", "cloth"}, {"fabric", "satin"}, {"exposure_us", 20000}}));

@@ -3,13 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/core/places.h"
+
 namespace weft::bench {
 namespace {
 
 TEST(LightLease, EndsWithinTwoSecondsOfTheDeathOfClientAndDaemon) {
   ServerLeaseOptions options;
-  options.programs = WEFT_PROGRAMS;
-  options.scene = WEFT_SOURCE_DIR "/testdata/scenes/satin.toml";
+  options.programs = program_folder();
+  options.scene = in_sources("testdata/scenes/satin.toml");
   options.trials = 5;
   const auto rows = server_lease_table(options);
   ASSERT_TRUE(rows) << rows.error().message();

@@ -19,6 +19,7 @@
 #include "simulator/scene/resolution.h"
 #include "simulator/scene/rig.h"
 #include "simulator/scene/scene.h"
+#include "tests/core/places.h"
 #include "virtual_rig/table/knock.h"
 
 namespace weft::app {
@@ -47,8 +48,8 @@ class RigDay : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     folder_ = new TemporaryFolder;
-    fs::create_directory_symlink(WEFT_SOURCE_DIR "/testdata", folder_->path() / "testdata");
-    code_ = run("rig_day", typed_lines(WEFT_SOURCE_DIR "/docs/user/rig_day.md"));
+    fs::create_directory_symlink(in_sources("testdata"), folder_->path() / "testdata");
+    code_ = run("rig_day", typed_lines(in_sources("docs/user/rig_day.md")));
     said_ = read_text(folder_->path() / "rig_day.txt").value();
   }
   static void TearDownTestSuite() {
@@ -59,8 +60,8 @@ class RigDay : public testing::Test {
   /// A shell runs the lines and stops at the first that fails; its exit code. NAME.txt has what it said.
   static int run(const std::string& name, const std::string& lines) {
     const fs::path script = folder_->path() / (name + ".sh");
-    std::ofstream(script) << "set -ev\ncd '" << folder_->path().string()
-                          << "'\nexport PATH='" WEFT_PROGRAMS "':\"$PATH\" WEFT_RIG=\n"
+    std::ofstream(script) << "set -ev\ncd '" << folder_->path().string() << "'\nexport PATH='"
+                          << program_folder().string() << "':\"$PATH\" WEFT_RIG=\n"
                           << lines;
     const std::string command = "timeout -k 5 800 bash '" + script.string() + "' > '" +
                                 (folder_->path() / (name + ".txt")).string() + "' 2>&1 < /dev/null";
@@ -72,7 +73,7 @@ class RigDay : public testing::Test {
   /// know better.
   static Result<void> write_exact_calibration(const fs::path& to, const Calibration& measured,
                                               const virtual_rig::Knocks& knocks) {
-    Result<simulator::Scene> scene = simulator::read_scene(WEFT_SOURCE_DIR "/testdata/scenes/rig.toml");
+    Result<simulator::Scene> scene = simulator::read_scene(in_sources("testdata/scenes/rig.toml"));
     if (!scene) return scene.error();
     simulator::resize(scene->camera, 0.25);
     scene = virtual_rig::knocked(std::move(*scene), knocks);

@@ -8,6 +8,7 @@
 
 #include "bench/server/served_rig.h"
 #include "core/json_document.h"
+#include "tests/core/places.h"
 
 namespace weft::bench {
 namespace {
@@ -17,7 +18,7 @@ constexpr const char* kVirtual = "/api/v1/rig/virtual";
 class ToldRig : public testing::Test {
  protected:
   void SetUp() override {
-    ASSERT_TRUE(served_.start(WEFT_PROGRAMS, WEFT_SOURCE_DIR "/testdata/scenes/satin.toml", 0.02));
+    ASSERT_TRUE(served_.start(program_folder(), in_sources("testdata/scenes/satin.toml"), 0.02));
     ASSERT_TRUE(served_.serve());
   }
   Result<Json> tell(const std::string& line) const {

@@ -9,11 +9,12 @@
 #include "batch/outcome.h"
 #include "batch/plan.h"
 #include "core/files.h"
+#include "tests/core/places.h"
 
 namespace weft::batch {
 namespace {
 
-const std::filesystem::path kSchemas = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas";
+const std::filesystem::path kSchemas = source_folder() / "testdata/schemas";
 
 std::string stored(const std::string& file) {
   const Result<std::string> text = read_text(kSchemas / file);

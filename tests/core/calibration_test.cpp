@@ -9,6 +9,7 @@
 
 #include "core/files.h"
 #include "tests/core/image_io/scratch_folder.h"
+#include "tests/core/places.h"
 
 namespace weft {
 namespace {
@@ -336,7 +337,7 @@ TEST(CalibrationId, IsWhatTheScriptOfTheDocumentationSays) {
   fs::create_directory(folder / "c" / "report");
   put_bytes(folder / "c" / "report" / "lights.json", "{}");
 
-  const std::string page = bytes_of(fs::path(WEFT_SOURCE_DIR) / "docs" / "formats.md");
+  const std::string page = bytes_of(source_folder() / "docs" / "formats.md");
   const std::string fence = "```sh\n";
   const std::size_t begin = page.find(fence) + fence.size();
   const std::string script = page.substr(begin, page.find("```", begin) - begin);

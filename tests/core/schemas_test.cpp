@@ -7,12 +7,13 @@
 #include "core/session.h"
 #include "core/solve.h"
 #include "core/solve_record.h"
+#include "tests/core/places.h"
 
 namespace weft {
 namespace {
 
-const std::filesystem::path kSchemas = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas";
-const std::filesystem::path kGolden = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/golden";
+const std::filesystem::path kSchemas = source_folder() / "testdata/schemas";
+const std::filesystem::path kGolden = source_folder() / "testdata/golden";
 
 TEST(Schemas, Session1) {
   const Result<Session> session = read_session(kSchemas / "weft.session-1");

@@ -6,6 +6,8 @@
 
 #include <numeric>
 
+#include "tests/core/places.h"
+
 namespace weft {
 namespace {
 
@@ -110,8 +112,7 @@ TEST(SolveFacts, WithAFieldOfTheWrongKindAreRefusedByItsName) {
 }
 
 TEST(SolveFacts, KeepWhatWasForetoldBesideWhatWasTaken) {
-  const std::filesystem::path file =
-      std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas/weft.solve-1.1/solve.json";
+  const std::filesystem::path file = source_folder() / "testdata/schemas/weft.solve-1.1/solve.json";
   const Result<Json> document = read_json(file, "weft.solve", 1);
   ASSERT_TRUE(document) << document.error().message();
   const Result<SolveFacts> facts = solve_facts_from_json(*document);
@@ -134,7 +135,7 @@ TEST(SolveFacts, OfAClothThatIsPartlySolvedCountARadianWhereThereIsNoNormal) {
 }
 
 TEST(SolveFacts, OfStoredSolvesAreRead) {
-  const std::filesystem::path data = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata";
+  const std::filesystem::path data = source_folder() / "testdata";
   const Result<Json> first = read_json(data / "schemas/weft.solve-1/solve.json", "weft.solve", 1);
   ASSERT_TRUE(first) << first.error().message();
   const Result<SolveFacts> early = solve_facts_from_json(*first);

@@ -16,6 +16,7 @@
 #include "core/session.h"
 #include "core/solve.h"
 #include "tests/core/image_io/scratch_folder.h"
+#include "tests/core/places.h"
 
 namespace weft {
 namespace {
@@ -23,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-const fs::path kSource = WEFT_SOURCE_DIR;
+const fs::path kSource = source_folder();
 
 Result<Json> json_in(const fs::path& file) {
   const Result<std::string> text = read_text(file);

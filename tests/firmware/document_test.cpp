@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/core/places.h"
 #include "tests/firmware/requests.h"
 
 namespace weft {
@@ -27,7 +28,7 @@ Bytes bytes_in(const std::string& text) {
 }
 
 TEST(ProtocolPage, ShowsTheBytesThatTheFirmwareMakes) {
-  std::ifstream page(WEFT_SOURCE_DIR "/docs/protocol.md");
+  std::ifstream page(in_sources("docs/protocol.md"));
   test::BareBoard board;
   board.board.reset_cause = kWeftResetExternal;
   Bytes reply;
@@ -45,7 +46,7 @@ TEST(ProtocolPage, ShowsTheBytesThatTheFirmwareMakes) {
 }
 
 TEST(ProtocolPage, ShowsFramesForAShellThatTheFirmwareUnderstands) {
-  std::ifstream page(WEFT_SOURCE_DIR "/docs/protocol.md");
+  std::ifstream page(in_sources("docs/protocol.md"));
   test::BareBoard board;
   int lit = 0;
   for (std::string line; std::getline(page, line);) {

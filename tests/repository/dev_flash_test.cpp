@@ -10,6 +10,8 @@
 #include <sstream>
 #include <string>
 
+#include "tests/core/places.h"
+
 namespace weft::repository {
 namespace {
 
@@ -29,8 +31,8 @@ class DevFlash : public testing::Test {
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "cmake");
     fs::create_directories(folder_ / "programs");
-    fs::copy(fs::path(WEFT_SOURCE_DIR) / "dev", folder_);
-    fs::copy(fs::path(WEFT_SOURCE_DIR) / "cmake/packages.txt", folder_ / "cmake");
+    fs::copy(source_folder() / "dev", folder_);
+    fs::copy(source_folder() / "cmake/packages.txt", folder_ / "cmake");
     stand_in("dpkg-query", "shift 3; printf 'installed %s\\n' \"$@\"");
     stand_in("cmake", "echo cmake \"$@\" >>calls");
     stand_in("avrdude", "echo avrdude \"$@\" >>calls; exit $AVRDUDE_EXIT_CODE");
@@ -70,7 +72,7 @@ TEST_F(DevFlash, RefusesToFlashNoPortAndOneThatIsNotThere) {
 
 TEST_F(DevFlash, BuildsTheFirmwareAndWritesItAsThePageSays) {
   EXPECT_EQ(flash("/dev/null"), 0) << said();
-  const std::string page = text_of(WEFT_SOURCE_DIR "/docs/rig.md");
+  const std::string page = text_of(in_sources("docs/rig.md"));
   const std::size_t begin = page.find("avrdude -c");
   ASSERT_NE(begin, std::string::npos);
   std::string line = page.substr(begin, page.find('`', begin) - begin);

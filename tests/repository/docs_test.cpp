@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "solver/method.h"
+#include "tests/core/places.h"
 #include "tests/repository/source_tree.h"
 
 namespace weft::repository {
@@ -104,7 +105,7 @@ TEST(Docs, EveryLinkLeadsToAFileAndAHeading) {
   for (const TextFile& page : pages()) {
     for (const Link& link : links_in(page)) {
       ++followed;
-      EXPECT_TRUE(fs::exists(fs::path(WEFT_SOURCE_DIR) / link.path))
+      EXPECT_TRUE(fs::exists(source_folder() / link.path))
           << place(page.path, link.line) << ": no " << link.path;
       if (link.heading.empty()) continue;
       EXPECT_TRUE(headings[link.path].contains(link.heading))

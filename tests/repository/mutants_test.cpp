@@ -6,11 +6,13 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/core/places.h"
+
 namespace weft::repository {
 namespace {
 
 TEST(Mutants, StillFitTheLinesThatTheyChange) {
-  const int status = std::system("bash '" WEFT_SOURCE_DIR "/dev' mutants --check >&2");
+  const int status = std::system(("bash '" + in_sources("dev") + "' mutants --check >&2").c_str());
   EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0)
       << "a line of tests/mutants/faults.txt is not in its file once";
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/repository/source_tree.h"
+#include "tests/core/places.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -26,7 +27,7 @@ std::string read_text(const fs::path& file) {
 }  // namespace
 
 std::vector<TextFile> text_files() {
-  const fs::path root = WEFT_SOURCE_DIR;
+  const fs::path root = source_folder();
   std::vector<TextFile> files;
   for (auto entry = fs::recursive_directory_iterator(root); entry != fs::end(entry); ++entry) {
     const std::string path = entry->path().lexically_relative(root).generic_string();

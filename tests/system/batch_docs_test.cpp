@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/process.h"
+#include "tests/core/places.h"
 #include "tests/system/batch_test.h"
 #include "tests/system/samples.h"
 
@@ -33,7 +34,7 @@ TEST_F(BatchTest, TheWalkOfThePageGoesLineByLine) {
   fill_archive(1);
   const std::vector<std::string> lines = walk();
   ASSERT_GT(lines.size(), 8U) << "the walk was not found";
-  const fs::path programs = fs::path(WEFT_PROGRAM).parent_path();
+  const fs::path programs = program_folder();
   for (const std::string& line : lines) {
     SCOPED_TRACE(line);
     const std::string command =

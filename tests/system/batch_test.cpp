@@ -19,6 +19,7 @@
 #include "core/solve.h"
 #include "library/current.h"
 #include "library/session_files.h"
+#include "tests/core/places.h"
 #include "tests/system/samples.h"
 
 namespace weft::test {
@@ -32,7 +33,7 @@ using testing::SizeIs;
 // A run of the plan in a process of its own.
 std::unique_ptr<ChildProcess> begin_run(const fs::path& plan, const fs::path& log) {
   auto started =
-      ChildProcess::start({WEFT_PROGRAM, "batch", "run", plan.string(), "--threads", "1"}, {}, log);
+      ChildProcess::start({program_path("weft"), "batch", "run", plan.string(), "--threads", "1"}, {}, log);
   EXPECT_TRUE(started);
   return std::move(*started);
 }
@@ -423,7 +424,7 @@ TEST_F(BatchTest, ReadsSessionsFromStandardInput) {
   put_bytes(work_ / "list",
             "  Affected sessions\n  " + session(2).string() + "   2026-01-31T10:00:00Z  yes\n");
   auto shell = ChildProcess::start({"/bin/sh", "-c",
-                                    fmt::format("{} batch plan - --sample 0 -o {} < {}", WEFT_PROGRAM,
+                                    fmt::format("{} batch plan - --sample 0 -o {} < {}", program_path("weft"),
                                                 plan_file().string(), (work_ / "list").string())},
                                    {}, work_ / "log");
   ASSERT_TRUE(shell);

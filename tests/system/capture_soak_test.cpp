@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/json_document.h"
+#include "tests/core/places.h"
 #include "virtual_rig/rig_process.h"
 
 namespace weft {
@@ -27,12 +28,11 @@ class CaptureSoak : public testing::Test {
 
   /// The rows of `weft bench capture --part PART --runs N`.
   Json rows(const std::string& part, int runs, double megapixels, double most_s) {
-    const auto rig =
-        virtual_rig::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
-                                        .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
-                                        .folder = folder_ / "rig",
-                                        .megapixels = megapixels,
-                                        .same_noise = true});
+    const auto rig = virtual_rig::RigProcess::start({.programs = program_folder(),
+                                                     .scene = source_folder() / "testdata/scenes/satin.toml",
+                                                     .folder = folder_ / "rig",
+                                                     .megapixels = megapixels,
+                                                     .same_noise = true});
     EXPECT_TRUE(rig) << rig.error().message();
     if (!rig) return Json::array();
     const auto weft = (*rig)->weft(
@@ -78,11 +78,10 @@ TEST_F(CaptureSoak, TwentyScansOfSixteenMegapixelsAreAlikeAndLeaveNothingBehind)
 // A LED may be lit for 40 s at once and half of the time. The third photograph of LED 1 within two minutes,
 // after one that was truncated, asks for more than that.
 TEST_F(CaptureSoak, ExposuresOf25SecondsWaitForTheLedToCool) {
-  const auto rig =
-      virtual_rig::RigProcess::start({.programs = fs::path(WEFT_PROGRAM).parent_path(),
-                                      .scene = fs::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
-                                      .folder = folder_ / "rig",
-                                      .megapixels = 0.05});
+  const auto rig = virtual_rig::RigProcess::start({.programs = program_folder(),
+                                                   .scene = source_folder() / "testdata/scenes/satin.toml",
+                                                   .folder = folder_ / "rig",
+                                                   .megapixels = 0.05});
   ASSERT_TRUE(rig) << rig.error().message();
   ASSERT_TRUE((*rig)->say("camera short_data 2"));
   const auto weft = (*rig)->weft(

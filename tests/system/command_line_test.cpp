@@ -11,6 +11,7 @@
 
 #include "core/files.h"
 #include "core/process.h"
+#include "tests/core/places.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {
@@ -215,7 +216,7 @@ TEST(Bench, PrintsOneJsonDocument) {
 
 TEST(Bench, IsMissedBesideAWeftThatWasInstalledAlone) {
   const Workspace work;
-  fs::copy(WEFT_PROGRAM, work / "weft");
+  fs::copy(program_path("weft"), work / "weft");
   const auto weft = ChildProcess::start({(work / "weft").string(), "bench", "solve"}, {}, work / "bench.log");
   ASSERT_TRUE(weft) << weft.error().message();
   EXPECT_EQ((*weft)->wait(300), 66);

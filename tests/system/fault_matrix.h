@@ -8,19 +8,19 @@
 #include <vector>
 
 #include "bench/capture/fault_matrix.h"
+#include "tests/core/places.h"
 
 namespace weft::test {
 
 /// Goes through so many runs of the matrix that `weft bench capture --part faults` prints; no frame may be
 /// lost, mislabelled or half-written, and no scan may end without a sentence. No faults named: all.
 inline void expect_no_run_goes_wrong(int runs, int rigs, const std::vector<std::string>& faults = {}) {
-  const auto tallies =
-      bench::fault_matrix({.programs = std::filesystem::path(WEFT_PROGRAM).parent_path(),
-                           .scene = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/scenes/satin.toml",
-                           .megapixels = 0.2,
-                           .runs = runs,
-                           .rigs = rigs,
-                           .faults = faults});
+  const auto tallies = bench::fault_matrix({.programs = program_folder(),
+                                            .scene = source_folder() / "testdata/scenes/satin.toml",
+                                            .megapixels = 0.2,
+                                            .runs = runs,
+                                            .rigs = rigs,
+                                            .faults = faults});
   ASSERT_TRUE(tallies) << tallies.error().message();
   int run = 0;
   for (const bench::FaultTally& tally : *tallies) {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include "tests/core/places.h"
 #include "tests/system/session_test.h"
 
 namespace weft::test {
@@ -20,7 +21,7 @@ class NoPermission : public SessionTest {
  protected:
   void SetUp() override {
     if (run_weft({"--version"}, {.as_nobody = true}).exit_code != 0) {
-      GTEST_SKIP() << "the user nobody may not run " << WEFT_PROGRAM;
+      GTEST_SKIP() << "the user nobody may not run " << program_path("weft");
     }
     SessionTest::SetUp();
     fs::create_directories(work_ / "open");

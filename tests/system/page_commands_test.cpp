@@ -18,6 +18,7 @@
 
 #include "core/image_io/image_io.h"
 #include "core/json_document.h"
+#include "tests/core/places.h"
 #include "tests/system/samples.h"
 #include "tests/system/workspace.h"
 
@@ -92,7 +93,7 @@ class PageCommands : public testing::Test {
  protected:
   /// In one shell, one after the other, with no settings of whoever runs the tests.
   std::vector<Ran> run(const std::vector<std::string>& commands) const {
-    const std::string programs = fs::path(WEFT_PROGRAM).parent_path().string();
+    const std::string programs = program_folder().string();
     std::string script = "cd '" + work_.path().string() + "' || exit 1\nexport PATH='" + programs +
                          "':$PATH HOME=\"$PWD/home\"; unset WEFT_RIG XDG_CONFIG_HOME XDG_STATE_HOME\n";
     for (const std::string& command : commands)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/system/program.h"
+#include "tests/core/places.h"
 
 #include <fcntl.h>
 #include <grp.h>
@@ -58,7 +59,7 @@ class Capture {
     if (setgroups(0, nullptr) != 0 || setgid(kNobody) != 0 || setuid(kNobody) != 0) _exit(kCannotStart);
   }
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  execv(WEFT_PROGRAM, arguments);
+  execv(program_path("weft").c_str(), arguments);
   _exit(kCannotStart);
 }
 

@@ -14,6 +14,7 @@
 #include "core/files.h"
 #include "core/session.h"
 #include "simulator/simulate.h"
+#include "tests/core/places.h"
 
 namespace weft::test {
 namespace {
@@ -46,7 +47,7 @@ void write_planes(const fs::path& file, Size size, const std::vector<std::string
 }  // namespace
 
 fs::path source_file(const std::string& path) {
-  return fs::path(WEFT_SOURCE_DIR) / path;
+  return source_folder() / path;
 }
 
 simulator::Scene scene_named(const std::string& name, Size size) {

@@ -12,6 +12,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/core/places.h"
+
 namespace weft::app {
 namespace {
 
@@ -46,14 +48,14 @@ bool loads(const std::vector<std::string>& names, const std::string& begin) {
 }
 
 TEST(Start, LoadsNeitherOpenCVNorReadersOfImages) {
-  const std::vector<std::string> light = loaded_by(WEFT_PROGRAM);
+  const std::vector<std::string> light = loaded_by(program_path("weft"));
   EXPECT_TRUE(loads(light, "libc.so")) << testing::PrintToString(light);
   for (const char* heavy :
        {"libopencv", "libembree", "libceres", "libglog", "libOpenEXR", "libtiff", "libpng"})
     EXPECT_FALSE(loads(light, heavy)) << heavy << " among " << testing::PrintToString(light);
   EXPECT_LT(light.size(), 40U) << testing::PrintToString(light);
   // The same question finds them where they are.
-  const std::vector<std::string> heavy = loaded_by(WEFT_WORK);
+  const std::vector<std::string> heavy = loaded_by(program_path("weft-work"));
   EXPECT_TRUE(loads(heavy, "libtiff")) << testing::PrintToString(heavy);
   EXPECT_TRUE(loads(heavy, "libopencv")) << testing::PrintToString(heavy);
 }
@@ -61,8 +63,7 @@ TEST(Start, LoadsNeitherOpenCVNorReadersOfImages) {
 // They bring in more than a hundred libraries each, for formats that weft does not read.
 TEST(Start, NoProgramLoadsOpenImageIOOrOpenCVsCodecs) {
   for (const char* program : {"weft-work", "weft-bench", "weft-virtual-rig"}) {
-    const std::vector<std::string> whole =
-        loaded_by((std::filesystem::path(WEFT_WORK).parent_path() / program).string());
+    const std::vector<std::string> whole = loaded_by(program_path(program));
     EXPECT_TRUE(loads(whole, "libc.so")) << program;
     for (const char* many : {"libOpenImageIO", "libopencv_imgcodecs", "libgdal", "libavcodec"})
       EXPECT_FALSE(loads(whole, many))
@@ -71,7 +72,8 @@ TEST(Start, NoProgramLoadsOpenImageIOOrOpenCVsCodecs) {
 }
 
 TEST(Start, HelpIsThatOfTheProgramWithAllVerbs) {
-  const Said light = said_by(WEFT_PROGRAM " --help"), whole = said_by(WEFT_WORK " --help");
+  const Said light = said_by(program_path("weft") + " --help"),
+             whole = said_by(program_path("weft-work") + " --help");
   EXPECT_EQ(light.status, 0);
   EXPECT_EQ(light.text, whole.text);
   EXPECT_THAT(light.text, HasSubstr("solve"));
@@ -79,22 +81,22 @@ TEST(Start, HelpIsThatOfTheProgramWithAllVerbs) {
 
 TEST(Start, AVerbThatIsElsewhereKeepsItsWordsAndItsExitCode) {
   for (const char* words : {"solve --help", "solve no-such.weft", "calibrate camera --no-such"}) {
-    const Said light = said_by(std::string(WEFT_PROGRAM " ") + words);
-    const Said whole = said_by(std::string(WEFT_WORK " ") + words);
+    const Said light = said_by(program_path("weft") + " " + words);
+    const Said whole = said_by(program_path("weft-work") + " " + words);
     EXPECT_EQ(light.status, whole.status) << words << "\n" << light.text;
     EXPECT_EQ(light.text, whole.text) << words;
   }
 }
 
 TEST(Start, AWordThatIsNoVerbIsRefusedAtOnce) {
-  EXPECT_EQ(said_by(WEFT_PROGRAM " solv").status, 64);
-  EXPECT_EQ(said_by(WEFT_PROGRAM).status, 64);
+  EXPECT_EQ(said_by(program_path("weft") + " solv").status, 64);
+  EXPECT_EQ(said_by(program_path("weft")).status, 64);
 }
 
 TEST(Start, VersionNamesTheCommit) {
-  const Said said = said_by(WEFT_PROGRAM " --version");
+  const Said said = said_by(program_path("weft") + " --version");
   EXPECT_EQ(said.status, 0);
-  const Said commit = said_by("git -C '" WEFT_SOURCE_DIR "' cat-file -e HEAD");
+  const Said commit = said_by("git -C '" + source_folder().string() + "' cat-file -e HEAD");
   EXPECT_THAT(said.text,
               testing::ContainsRegex(commit.status == 0 ? "^" WEFT_VERSION " \\([0-9a-f]{12}(-dirty)?\\)\n$"
                                                         : "^" WEFT_VERSION "\n$"));

@@ -9,6 +9,7 @@
 #include "core/files.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
+#include "tests/core/places.h"
 
 namespace weft::app {
 namespace {
@@ -19,9 +20,8 @@ TEST(CalibrationsOfARig, ScansAtOnceWithTheCalibrationThatWasAccepted) {
   const std::filesystem::path folder = scripted.rig.file.parent_path();
   const std::filesystem::path one = folder / "calibrations" / "one";
   std::filesystem::create_directories(folder / "calibrations" / "check");
-  std::filesystem::copy(
-      std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas/weft.calibration-1.2-measured", one,
-      std::filesystem::copy_options::recursive);
+  std::filesystem::copy(source_folder() / "testdata/schemas/weft.calibration-1.2-measured", one,
+                        std::filesystem::copy_options::recursive);
   ASSERT_TRUE(
       write_file(scripted.rig.file, "name = \"scripted\"\nleds = 3\n\n[scan]\nsessions = \"scans\"\n"));
   const Result<Calibration> read = read_calibration(one);

@@ -23,6 +23,7 @@
 #include "core/files.h"
 #include "tests/app/server/raw_client.h"
 #include "tests/app/server/scripted_rig.h"
+#include "tests/core/places.h"
 
 namespace weft::app {
 namespace {
@@ -360,9 +361,8 @@ TEST(RigServer, ScansWithACalibrationWhoseCheckFailedOnlyForAReason) {
   const std::filesystem::path folder = scripted.rig.file.parent_path();
   const std::filesystem::path calibration = folder / "calibrations" / "one";
   std::filesystem::create_directories(folder / "calibrations" / "checks");
-  std::filesystem::copy(
-      std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/schemas/weft.calibration-1.2-measured", calibration,
-      std::filesystem::copy_options::recursive);
+  std::filesystem::copy(source_folder() / "testdata/schemas/weft.calibration-1.2-measured", calibration,
+                        std::filesystem::copy_options::recursive);
   const Result<Calibration> read = read_calibration(calibration);
   ASSERT_TRUE(read) << read.error().message();
   scripted.rig.scan.calibration = calibration;

@@ -26,6 +26,7 @@
 #include "capture/rig.h"
 #include "core/descriptor.h"
 #include "tests/app/server/raw_client.h"
+#include "tests/core/places.h"
 
 namespace weft::app {
 namespace {
@@ -58,7 +59,7 @@ class Daemon {
     dup2(open(said.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600), STDERR_FILENO);
     const int nothing = open("/dev/null", O_WRONLY);
     dup2(nothing, STDOUT_FILENO);
-    execl(WEFT_PROGRAM, "weft", verb.c_str(), "--rig", file.c_str(), more.c_str(),
+    execl(program_path("weft").c_str(), "weft", verb.c_str(), "--rig", file.c_str(), more.c_str(),
           static_cast<char*>(nullptr));
     _exit(127);
   }
@@ -94,7 +95,7 @@ struct Ran {
 /// weft with these words, to its end.
 Ran run(const std::string& words) {
   Ran ran;
-  FILE* const out = popen((std::string(WEFT_PROGRAM) + " " + words + " 2>&1").c_str(), "re");
+  FILE* const out = popen((program_path("weft") + " " + words + " 2>&1").c_str(), "re");
   if (out == nullptr) return ran;
   std::array<char, 512> line = {};
   while (fgets(line.data(), static_cast<int>(line.size()), out) != nullptr) ran.said += line.data();
@@ -274,7 +275,7 @@ class ArchiveServer {
       setenv("XDG_STATE_HOME", state.c_str(), 1);
       unsetenv("WEFT_RIG");
       if (chdir(archives.front().c_str()) != 0) _exit(126);
-      execv(WEFT_PROGRAM, arguments.data());
+      execv(program_path("weft").c_str(), arguments.data());
       _exit(127);
     }
     EXPECT_TRUE(comes_true([&] { return fs::exists(address) && fs::file_size(address) > 0; }));

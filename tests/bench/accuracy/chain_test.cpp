@@ -7,10 +7,12 @@
 #include <set>
 #include <string>
 
+#include "tests/core/places.h"
+
 namespace weft::bench {
 namespace {
 
-const std::filesystem::path kRig = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/scenes/rig.toml";
+const std::filesystem::path kRig = source_folder() / "testdata/scenes/rig.toml";
 
 TEST(Chain, HasCasesThatCanBeSimulatedEachOfAnotherName) {
   const auto cases = chain_cases(kRig, 1);

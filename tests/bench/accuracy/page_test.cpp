@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "core/files.h"
+#include "tests/core/places.h"
 
 namespace weft::bench {
 namespace {
@@ -68,7 +69,7 @@ TEST(AccuracyPage, KeepsItsFiguresInAFileThatGivesThemBack) {
 
 // The page is what its command made: nobody has changed a figure by hand or left a section out.
 TEST(AccuracyPage, IsMadeOfTheFiguresBesideIt) {
-  const std::filesystem::path docs = std::filesystem::path(WEFT_SOURCE_DIR) / "docs";
+  const std::filesystem::path docs = source_folder() / "docs";
   const auto figures = read_accuracy_docs(docs);
   ASSERT_TRUE(figures.has_value()) << figures.error().message();
   const auto page = read_text(docs / "accuracy.md");

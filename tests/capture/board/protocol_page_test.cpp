@@ -15,6 +15,7 @@
 #include "capture/board/board_replies.h"
 #include "core/descriptor.h"
 #include "tests/capture/board/desk.h"
+#include "tests/core/places.h"
 
 namespace weft::capture {
 namespace {
@@ -23,7 +24,7 @@ using virtual_rig::RigClock;
 
 /// The script of the page's chapter "Lighting LED 3 from a shell".
 std::string script_of_page() {
-  std::ifstream page(WEFT_SOURCE_DIR "/docs/protocol.md");
+  std::ifstream page(in_sources("docs/protocol.md"));
   std::string line, script;
   while (std::getline(page, line) && line != "## Lighting LED 3 from a shell") {
   }

@@ -10,6 +10,7 @@
 
 #include "core/solve_record.h"
 #include "tests/core/image_io/scratch_folder.h"
+#include "tests/core/places.h"
 
 namespace weft {
 namespace {
@@ -127,7 +128,7 @@ TEST(SolveMaps, ThatAreNotThereAreNamed) {
 }
 
 TEST(SolveMaps, OfAStoredSolveAreRead) {
-  const fs::path golden = fs::path(WEFT_SOURCE_DIR) / "testdata/golden/satin.weft";
+  const fs::path golden = source_folder() / "testdata/golden/satin.weft";
   for (const char* product : {"solve", "rectified"}) {
     for (const fs::directory_entry& entry : fs::directory_iterator(golden / product)) {
       const Result<SolveMaps> maps = SolveMaps::open(entry.path());

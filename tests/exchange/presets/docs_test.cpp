@@ -8,6 +8,7 @@
 
 #include "core/files.h"
 #include "exchange/presets/preset.h"
+#include "tests/core/places.h"
 
 namespace weft::exchange {
 namespace {
@@ -82,7 +83,7 @@ std::string channel_table() {
 }
 
 std::string part_of_page(const std::string& begin, const std::string& end) {
-  const Result<std::string> page = read_text(std::string(WEFT_SOURCE_DIR) + "/docs/exports.md");
+  const Result<std::string> page = read_text(in_sources("docs/exports.md"));
   EXPECT_TRUE(page);
   if (!page) return "";
   const std::size_t at = page->find('\n', page->find("<!-- " + begin)), to = page->find("<!-- " + end);

@@ -7,6 +7,8 @@
 #include <cstdlib>
 #include <fstream>
 
+#include "tests/core/places.h"
+
 namespace weft::simulator {
 namespace {
 
@@ -43,7 +45,7 @@ TEST(MeasuredRig, TurnsTheFrameOfItsCameraIntoThatOfTheRig) {
 }
 
 TEST(MeasuredRig, LeavesTheLightsOfACalibrationInTheirFrame) {
-  const fs::path schemas = fs::path(WEFT_SOURCE_DIR) / "testdata" / "schemas";
+  const fs::path schemas = source_folder() / "testdata" / "schemas";
   const auto leds = read_measured_rig(schemas / "weft.calibration-1" / "lights.json", 600);
   ASSERT_TRUE(leds) << leds.error().message();
   ASSERT_EQ(leds->size(), 3U);

@@ -10,10 +10,11 @@
 
 #include "core/image.h"
 #include "simulator/scene/scene.h"
+#include "tests/core/places.h"
 
 namespace weft::simulator {
 
-inline const std::filesystem::path kSource = WEFT_SOURCE_DIR;
+inline const std::filesystem::path kSource = source_folder();
 
 inline const std::vector<Reflectance> kModels = {
     Lambert{},   Ggx{},           AnisotropicGgx{}, Beckmann{}, BlinnPhong{}, Cloth{}, MultipleScattering{},

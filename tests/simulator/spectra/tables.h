@@ -3,9 +3,11 @@
 
 #include <filesystem>
 
+#include "tests/core/places.h"
+
 namespace weft::simulator {
 
 /// Where the repository keeps its measured spectra.
-inline const std::filesystem::path kTables = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/spectra";
+inline const std::filesystem::path kTables = source_folder() / "testdata/spectra";
 
 }  // namespace weft::simulator

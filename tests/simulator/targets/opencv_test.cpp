@@ -15,11 +15,12 @@
 
 #include "simulator/spectra/observer.h"
 #include "simulator/targets/target.h"
+#include "tests/core/places.h"
 
 namespace weft::simulator {
 namespace {
 
-const std::filesystem::path kTables = std::filesystem::path(WEFT_SOURCE_DIR) / "testdata/spectra";
+const std::filesystem::path kTables = source_folder() / "testdata/spectra";
 
 /// A pinhole 600 mm above the table, upright: x to the right, y up.
 struct Pinhole {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/json_document.h"
+#include "tests/core/places.h"
 #include "tests/virtual_rig/ptp/client_process.h"
 #include "tests/virtual_rig/small_scene.h"
 #include "virtual_rig/control_socket.h"
@@ -27,7 +28,7 @@ class Program : public testing::Test {
  protected:
   Program() : folder_(fresh_folder()) { std::ofstream(folder_ / "scene.toml") << to_toml(small_scene()); }
   ProgramRun run(std::vector<std::string> arguments) {
-    arguments.insert(arguments.begin(), WEFT_VIRTUAL_RIG);
+    arguments.insert(arguments.begin(), program_path("weft-virtual-rig"));
     return run_program(arguments, {"XDG_CACHE_HOME=" + (folder_ / "cache").string()}, folder_.string(), 60);
   }
   std::string scene() const { return (folder_ / "scene.toml").string(); }
@@ -66,7 +67,7 @@ TEST_F(Program, RunsACommandInsideTheRigAndEndsWithIt) {
 }
 
 TEST_F(Program, FillsTheDiskOfItsHosts) {
-  const std::string inject = std::string(WEFT_VIRTUAL_RIG) + " --folder rig --inject ";
+  const std::string inject = program_path("weft-virtual-rig") + " --folder rig --inject ";
   const ProgramRun ran = run({scene(), "--folder", "rig", "--", "/bin/sh", "-c",
                               inject + "'disk full' && ! cp scene.toml a && " + inject +
                                   "'disk room' && cp scene.toml b && cmp scene.toml b"});
@@ -97,7 +98,7 @@ TEST_F(Program, LivesInTheBackgroundUntilItIsToldToEnd) {
 TEST_F(Program, EndsWithItsParent) {
   const ProgramRun ran = run({"--help"});
   ASSERT_EQ(ran.exit_code, 0);
-  const std::string command = std::string(WEFT_VIRTUAL_RIG) +
+  const std::string command = program_path("weft-virtual-rig") +
                               " scene.toml --folder rig >said 2>&1 & "
                               "while ! grep -q READY said; do sleep 0.02; done";
   const ProgramRun shell = run_program(

@@ -12,6 +12,7 @@
 #include "app/server/api/job_body.h"
 #include "core/files.h"
 #include "core/temporary_folder.h"
+#include "tests/core/places.h"
 
 namespace weft::app {
 namespace {
@@ -24,7 +25,7 @@ struct Said {
 };
 
 Said said_by_weft(const std::vector<std::string>& arguments) {
-  std::string command = std::string("'") + WEFT_PROGRAM + "'";
+  std::string command = std::string("'") + program_path("weft") + "'";
   for (const std::string& argument : arguments) command += " '" + argument + "'";
   Said said;
   FILE* const out = popen((command + " -q --json-events 2>&1 </dev/null").c_str(), "re");
@@ -88,7 +89,7 @@ class JobRanges : public testing::Test {
 };
 
 TEST_F(JobRanges, HoldNothingThatTheVerbRefuses) {
-  const Result<std::string> text = read_text(fs::path(WEFT_SOURCE_DIR) / "app/server/api/jobs.openapi.json");
+  const Result<std::string> text = read_text(source_folder() / "app/server/api/jobs.openapi.json");
   ASSERT_TRUE(text) << text.error().message();
   const Json request = Json::parse(*text)["schemas"]["JobRequest"];
   int fields = 0;

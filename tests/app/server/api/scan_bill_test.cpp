@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/files.h"
+#include "tests/core/places.h"
 
 namespace weft::app {
 namespace {
@@ -47,7 +48,7 @@ TEST(ScanBill, NamesWhatIsPhotographedAndNothingElse) {
 
 /// Errors without and with a correction, of every row of docs/conditions.md that has both.
 std::set<std::pair<double, double>> measured() {
-  const std::string page = read_text(WEFT_SOURCE_DIR "/docs/conditions.md").value();
+  const std::string page = read_text(in_sources("docs/conditions.md")).value();
   const std::regex row(R"(\| ([0-9.]+)° \| ([0-9.]+)°)");
   std::set<std::pair<double, double>> rows;
   for (std::sregex_iterator match(page.begin(), page.end(), row), end; match != end; ++match)
