@@ -445,7 +445,8 @@ ShotVerdict ScanEvidence::judge_pattern(const PlannedShot& shot, const std::vect
 
 /// Gloss comes and goes with the polariser, unevenly, but the light still falls from its own side: over the
 /// frame of another LED this one is more uneven than over that of its own. Where it is the other way round,
-/// the frame that the other LED has in this state may show this one.
+/// the frame that the other LED has in this state may show this one. A lamp that came on looks so as well,
+/// sooner over one LED than over another: no frame of this state is believed.
 ShotVerdict ScanEvidence::judge_other_state(const PlannedShot& shot, const std::vector<double>& light) const {
   const std::vector<double> own = without_dark(light);
   const auto refuse = [&](Finding finding, std::string sentence) {
@@ -466,8 +467,9 @@ ShotVerdict ScanEvidence::judge_other_state(const PlannedShot& shot, const std::
     verdict = refuse(
         Finding::kOther,
         fmt::format("LED {} lights where LED {} should: are their wires swapped?", seen.shot.led, shot.led));
-    const auto of_that_led = other_.find(seen.shot.led);
-    if (of_that_led != other_.end()) verdict.accused.push_back(of_that_led->second);
+    for (const auto& [led, of_this_state] : other_) {
+      if (led != shot.led) verdict.accused.push_back(of_this_state);
+    }
   }
   return verdict;
 }

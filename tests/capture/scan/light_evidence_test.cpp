@@ -130,6 +130,13 @@ TEST(LightEvidence, AccusesBothFramesOfSwappedLedsInTheOtherState) {
   EXPECT_THAT(swapped.accused, ElementsAre(16, 14));
 }
 
+TEST(LightEvidence, BelievesNoFrameOfTheOtherStateWhereOneIsNotOfItsLed) {
+  const ShotVerdict other =
+      other_state({{2, {{{2, 1.0}}, 0}}, {3, {{{3, 1.0}}, 0}}, {4, {{{4, 1.0}}, 0}}, {6, {{{9, 1.0}}, 0}}});
+  EXPECT_EQ(other.finding, Finding::kOther);
+  EXPECT_THAT(other.accused, ElementsAre(17, 13, 14, 15)) << "a lamp may have lit them";
+}
+
 TEST(LightEvidence, SpeaksOfALightBelowThatNothingComesThroughOf) {
   const test::SimulatedCloth cloth(woven());
   ScanEvidence evidence(PatchGrid::over(cloth.calibration().camera->size), std::nullopt);
