@@ -123,6 +123,12 @@ int JsonFields::integer(const char* key) {
   return value ? value->get<int>() : 0;
 }
 
+bool JsonFields::flag(const char* key) {
+  const Json* value = find(
+      key, [](const Json& v) { return v.is_boolean(); }, "true or false");
+  return value && value->get<bool>();
+}
+
 std::array<double, 3> JsonFields::rgb(const char* key) {
   const Json* value = find(key, is_triple, "a list of three numbers");
   return value ? value->get<std::array<double, 3>>() : std::array<double, 3>{};
@@ -145,7 +151,9 @@ std::size_t JsonFields::place_of(const char* key, std::span<const char* const> n
   const std::string name = text(key);
   const auto found = std::ranges::find(names, std::string_view(name));
   if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
-  reject(key, fmt::format("is {}; {} was expected", beginning_of(name), fmt::join(names, " or ")));
+  const auto but_last = names.first(names.size() - 1);
+  reject(key, fmt::format("is {}; {} or {} was expected", beginning_of(name), fmt::join(but_last, ", "),
+                          names.back()));
   return 0;
 }
 

@@ -35,6 +35,7 @@ class JsonFields {
   std::string text(const char* key);
   double number(const char* key);  ///< finite
   int integer(const char* key);
+  bool flag(const char* key);
   Vec3 vec3(const char* key);
   std::array<double, 3> rgb(const char* key);
   Mat3 mat3(const char* key);  ///< a list of its rows
@@ -49,6 +50,7 @@ class JsonFields {
   Enum one_of(const char* key, const std::array<const char*, N>& names) {
     return static_cast<Enum>(place_of(key, names));
   }
+  std::size_t place_of(const char* key, std::span<const char* const> names);
 
   /// Remembers that the value of `key` breaks a rule: "must be above 0".
   void reject(const char* key, const std::string& rule);
@@ -57,7 +59,6 @@ class JsonFields {
 
  private:
   const Json* find(const char* key, bool (*is_kind)(const Json&), const char* kind);
-  std::size_t place_of(const char* key, std::span<const char* const> names);
 
   const Json* object_;
   std::string where_;

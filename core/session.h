@@ -13,6 +13,8 @@
 
 namespace weft {
 
+class Fields;
+
 /// What a photograph is for.
 enum class ShotRole {
   kLit,
@@ -53,6 +55,7 @@ struct Shot {
   std::optional<int> superseded_by;  ///< index of the shot of the same LED and role that stands for it
   Json document;                     ///< as read, so that fields of newer minor versions survive a rewrite
 };
+void describe(Fields& fields, Shot& shot);
 
 /// One scan of one cloth: a folder that can be moved. Reads and writes session.json (schema weft.session/1).
 struct Session {
@@ -75,6 +78,7 @@ struct Session {
   std::vector<const Shot*> lit() const;
   std::vector<const Shot*> lit(Polariser polariser) const;
 };
+void describe(Fields& fields, Session& session);
 
 /// Reads and checks session.json: files stay inside the folder, no LED is lit twice with one polariser, all
 /// lit and dark shots share exposure, ISO and aperture, what supersedes a shot is there and is of its LED and

@@ -89,7 +89,7 @@ TEST(SolveFacts, WithAFieldOfTheWrongKindAreRefusedByItsName) {
                                           {"/check/rms", "small", "check: \"rms\""},
                                           {"/check/lights/0/light", 0.5, "check: lights: \"light\""},
                                           {"/status/DARK", 0.5, "status: \"DARK\""},
-                                          {"/compression", "rar", "none or zip or piz was expected"},
+                                          {"/compression", "rar", "none, zip or piz was expected"},
                                           {"/albedo_scale", "big", "relative or absolute was expected"},
                                           {"/color", "sepia", "\"camera\" or \"rec709\""},
                                           {"/warnings/1/text", Json(), "warnings: \"text\""},

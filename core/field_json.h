@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "core/fields.h"
+#include "core/json_document.h"
+#include "core/result.h"
+
+namespace weft {
+
+/// Reads the fields of an object over the values that are there.
+class JsonReader final : public Fields {
+ public:
+  JsonReader(const Json& object, std::string where) : object_(object), fields_(object, std::move(where)) {}
+
+  void require(bool holds, const char* field, const std::string& rule) override;
+  void keep(Json& document) override { document = object_; }
+  /// The first field that is missing, of another kind or out of its range: kBadData.
+  Result<void> status() const { return error_ ? Result<void>(*error_) : fields_.status(); }
+
+ private:
+  void take(const Field& field, Value value) override;
+  void choose(const Field& field, Words words, std::size_t now,
+              const std::function<void(std::size_t)>& choose) override;
+  void enter(const Field& field, const std::function<void(Fields&)>& inside, bool is_default) override;
+  void repeat(const Field& field, std::size_t count, const std::function<void(std::size_t)>& resize,
+              const std::function<void(Fields&, std::size_t)>& inside) override;
+
+  template <typename T>
+  void hold(const Field& field, const T& read);
+  bool is_said(const Field& field) const;
+  void read_inside(const Json& object, const std::string& name, const std::function<void(Fields&)>& inside);
+
+  const Json& object_;
+  JsonFields fields_;
+  std::optional<Error> error_;  // of an object within
+};
+
+/// Writes the fields into an object, over what it has of them.
+class JsonWriter final : public Fields {
+ public:
+  explicit JsonWriter(Json& object) : object_(object) {}
+
+  void keep(Json& document) override;
+
+ private:
+  void take(const Field& field, Value value) override;
+  void choose(const Field& field, Words words, std::size_t now,
+              const std::function<void(std::size_t)>& choose) override;
+  void enter(const Field& field, const std::function<void(Fields&)>& inside, bool is_default) override;
+  void repeat(const Field& field, std::size_t count, const std::function<void(std::size_t)>& resize,
+              const std::function<void(Fields&, std::size_t)>& inside) override;
+
+  void write(const Field& field, bool is_empty, Json value);
+
+  Json& object_;
+};
+
+/// Says what an object may have, as JSON Schema does (2020-12).
+class JsonSchema final : public Fields {
+ public:
+  /// {"type": "object", "properties": ...}
+  Json schema() const;
+
+ private:
+  void take(const Field& field, Value value) override;
+  void choose(const Field& field, Words words, std::size_t now,
+              const std::function<void(std::size_t)>& choose) override;
+  void enter(const Field& field, const std::function<void(Fields&)>& inside, bool is_default) override;
+  void repeat(const Field& field, std::size_t count, const std::function<void(std::size_t)>& resize,
+              const std::function<void(Fields&, std::size_t)>& inside) override;
+
+  void add(const Field& field, Json schema);
+
+  Json properties_ = Json::object(), needed_ = Json::array();
+};
+
+/// The fields of what is described, read from an object over their defaults. kBadData.
+template <typename Described>
+Result<Described> read_fields(const Json& object, const std::string& where) {
+  Described read;
+  JsonReader reader(object, where);
+  describe(reader, read);
+  if (Result<void> ok = reader.status(); !ok) return std::move(ok).error();
+  return read;
+}
+
+template <typename Described>
+void write_fields(Json& object, Described described) {
+  JsonWriter writer(object);
+  describe(writer, described);
+}
+
+template <typename Described>
+Json schema_of() {
+  Described described;
+  JsonSchema schema;
+  describe(schema, described);
+  return schema.schema();
+}
+
+}  // namespace weft

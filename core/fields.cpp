@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace weft {
+
+std::string option_of(const Field& field) {
+  if (field.option != nullptr) return field.option;
+  std::string name = field.name;
+  for (const std::string_view unit : {"_mm", "_deg", "_percent", "_px", "_us", "_s"}) {
+    if (!name.ends_with(unit)) continue;
+    name.resize(name.size() - unit.size());
+    break;
+  }
+  std::ranges::replace(name, '_', '-');
+  return "--" + name;
+}
+
+std::string rule_of(const NumberRange& range, bool is_whole) {
+  const char* number = is_whole ? "must be a whole number" : "must be a number";
+  if (range.most < kMostNumber) return fmt::format("{} from {} to {}", number, range.least, range.most);
+  if (range.least == kAboveZero.least) return fmt::format("{} above 0", number);
+  return range.least > -kMostNumber ? fmt::format("{} of at least {}", number, range.least) : number;
+}
+
+void Fields::enter(const Field& /*field*/, const std::function<void(Fields&)>& inside, bool /*is_default*/) {
+  inside(*this);
+}
+
+void Fields::repeat(const Field& /*field*/, std::size_t /*count*/,
+                    const std::function<void(std::size_t)>& /*resize*/,
+                    const std::function<void(Fields&, std::size_t)>& /*inside*/) {}
+
+}  // namespace weft

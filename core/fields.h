@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/json_document.h"
+#include "core/number.h"
+
+// Each thing that people fill in or that a file keeps says its fields once, in a function beside its struct:
+//
+//   void describe(Fields& fields, CalibrateLightsOptions& o) {
+//     fields.value({"flatness_deg", "Rms waviness of the sheet, degrees", {0, 2}}, o.flatness_deg);
+//   }
+//
+// What reads, writes, checks or explains it is a Fields that the function walks over: the command line, the
+// body of a call, a JSON document, its schema (docs/decisions/0016).
+
+namespace weft {
+
+inline constexpr double kMostNumber = std::numeric_limits<double>::max();
+inline constexpr NumberRange kAnyNumber = {-kMostNumber, kMostNumber};
+inline constexpr NumberRange kNotNegative = {0, kMostNumber};
+inline constexpr NumberRange kAboveZero = {std::numeric_limits<double>::min(), kMostNumber};
+
+/// What a path may name where not every path will do: to a client that sends names and no paths, and to a
+/// form.
+enum class PathTo {
+  kAnything,
+  kFile,          ///< one that is there
+  kFolder,        ///< one that is there
+  kNewFolder,     ///< one that must not be there
+  kSession,       ///< NAME.weft
+  kSessionOrSet,  ///< a session, or a set of photographs that is a folder of some
+};
+
+/// When a field must be said, and when a document leaves it out.
+enum class Need {
+  kMaySay,      ///< it has a default, and is always written
+  kMustSay,     ///< a reader refuses what has no such field
+  kUnlessEmpty  ///< it has a default, and is written where it differs from "", the first word or nothing
+};
+
+/// Who may say a field.
+enum class Said {
+  kEverywhere,
+  kAtThisMachine,  ///< on a command line alone: where files go, what is printed
+};
+
+/// What is said of one field.
+struct Field {
+  const char* name;                ///< in documents and bodies, with its unit: "tape_sigma_mm"
+  std::string says = {};           ///< what it is, with its unit, without a full stop
+  NumberRange range = kAnyNumber;  ///< of a number, and of each in a list
+  Need need = Need::kMaySay;
+  PathTo path = PathTo::kAnything;
+  /// On the command line; null: option_of(name); "": a word without a dash; "!--no-repeat": turns a flag off.
+  const char* option = nullptr;
+  std::vector<std::string> words = {};  ///< that a text, or each in a list, may be; none: any
+  int fewest = 0, most = 0;             ///< of a list; 0 and 0: any number
+  Said said = Said::kEverywhere;
+};
+
+/// "--tape-sigma" of "tape_sigma_mm": its help says the unit.
+std::string option_of(const Field& field);
+/// "must be a number from 0 to 2", "must be a whole number above 0".
+std::string rule_of(const NumberRange& range, bool is_whole = false);
+
+/// Walks over the fields of a struct, in their order. What is walked over must live as long as the visitor.
+class Fields {
+ public:
+  using Value = std::variant<bool*, int*, double*, std::string*, std::filesystem::path*, std::optional<int>*,
+                             std::optional<double>*, std::optional<std::string>*, std::vector<int>*,
+                             std::vector<double>*, std::vector<std::string>*>;
+  using Words = std::span<const char* const>;
+
+  virtual ~Fields() = default;
+
+  template <typename T>
+  void value(const Field& field, T& value) {
+    take(field, Value(&value));
+  }
+  /// An enum by the name of its value; `words` has one a value, in their order.
+  template <typename Enum, std::size_t N>
+  void choice(const Field& field, Enum& value, const std::array<const char*, N>& words) {
+    choose(field, words, static_cast<std::size_t>(value),
+           [&value](std::size_t chosen) { value = static_cast<Enum>(chosen); });
+  }
+  /// A struct that is described itself.
+  template <typename T>
+  void object(const Field& field, T& value) {
+    enter(
+        field, [&value](Fields& inside) { describe(inside, value); }, value == T());
+  }
+  /// A list of such.
+  template <typename T>
+  void list(const Field& field, std::vector<T>& values) {
+    repeat(
+        field, values.size(), [&values](std::size_t count) { values.resize(count); },
+        [&values](Fields& inside, std::size_t i) { describe(inside, values[i]); });
+  }
+
+  /// What a field must keep to beside its range: "must be above 0 for a lit shot".
+  virtual void require(bool /*holds*/, const char* /*field*/, const std::string& /*rule*/) {}
+  /// At most one of the two may be said.
+  virtual void exclude(const char* /*field*/, const char* /*other*/) {}
+  /// Who says the field must say the other.
+  virtual void need(const char* /*field*/, const char* /*other*/) {}
+  /// The object as it was read, so that fields of newer minor versions survive a rewrite.
+  virtual void keep(Json& /*document*/) {}
+
+ protected:
+  virtual void take(const Field& field, Value value) = 0;
+  virtual void choose(const Field& field, Words words, std::size_t now,
+                      const std::function<void(std::size_t)>& choose) = 0;
+  /// Where nothing is nested, as on a command line, the fields of a struct stand among the others.
+  virtual void enter(const Field& field, const std::function<void(Fields&)>& inside, bool is_default);
+  /// Where there is no list, there is none of these.
+  virtual void repeat(const Field& field, std::size_t count, const std::function<void(std::size_t)>& resize,
+                      const std::function<void(Fields&, std::size_t)>& inside);
+};
+
+}  // namespace weft

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/field_check.h"
+#include "core/field_json.h"
+
+namespace weft {
+namespace {
+
+using testing::HasSubstr;
+
+enum class Weave { kPlain, kTwill };
+constexpr std::array<const char*, 2> kWeaves = {"plain", "twill"};
+
+struct Yarn {
+  double width_mm = 0.5;
+  bool is_dyed = false;
+
+  friend bool operator==(const Yarn&, const Yarn&) = default;
+};
+
+void describe(Fields& fields, Yarn& y) {
+  fields.value({"width_mm", "How wide it is, mm", {0.01, 10}}, y.width_mm);
+  fields.value({"is_dyed", "Whether it is dyed"}, y.is_dyed);
+}
+
+struct Cloth {
+  std::string name = {};
+  int threads = 1;
+  double gain = 1;
+  std::optional<double> weight = {};
+  Weave weave = Weave::kPlain;
+  Yarn warp = {};
+  std::vector<Yarn> yarns = {};
+  std::vector<double> corners_px = {};
+  Json document = {};
+
+  friend bool operator==(const Cloth&, const Cloth&) = default;
+};
+
+void describe(Fields& fields, Cloth& c) {
+  fields.keep(c.document);
+  fields.value({"name", "What it is called", kAnyNumber, Need::kMustSay}, c.name);
+  fields.value({"threads", "Threads a mm", {1, 100}}, c.threads);
+  fields.value({"gain", "Of its picture", kAboveZero}, c.gain);
+  fields.value({"weight", "Grams a square metre", {0, 5000}}, c.weight);
+  fields.choice({"weave", "How yarns cross", kAnyNumber, Need::kUnlessEmpty}, c.weave, kWeaves);
+  fields.object({"warp", "The yarn along it", kAnyNumber, Need::kUnlessEmpty}, c.warp);
+  fields.list({"yarns", "All of them"}, c.yarns);
+  fields.value({.name = "corners_px",
+                .says = "Of its picture",
+                .range = {0, 1000},
+                .need = Need::kUnlessEmpty,
+                .fewest = 2,
+                .most = 4},
+               c.corners_px);
+  fields.require(c.weave == Weave::kPlain || c.threads > 1, "threads", "must be above 1 for a twill");
+}
+
+std::string refusal_of(const char* text) {
+  const Result<Cloth> read = read_fields<Cloth>(Json::parse(text), "cloth.json");
+  return read ? "read" : read.error().message();
+}
+
+TEST(Describe, ReadsBackWhatItWrote) {
+  Cloth cloth;
+  cloth.name = "denim";
+  cloth.threads = 3;
+  cloth.weight = 400;
+  cloth.weave = Weave::kTwill;
+  cloth.warp.width_mm = 0.25;
+  cloth.yarns = {Yarn{1, true}, Yarn{2, false}};
+  cloth.corners_px = {1.5, 2, 3};
+  Json written = Json::object();
+  write_fields(written, cloth);
+  Result<Cloth> read = read_fields<Cloth>(written, "cloth.json");
+  ASSERT_TRUE(read) << read.error().message();
+  EXPECT_EQ(read->document, written);
+  read->document = cloth.document;
+  EXPECT_EQ(*read, cloth);
+}
+
+TEST(Describe, LeavesOutWhatIsEmptyAndMayBe) {
+  Json written = Json::object();
+  write_fields(written, Cloth{.name = "voile"});
+  EXPECT_EQ(written.dump(), R"({"name":"voile","threads":1,"gain":1.0,"yarns":[]})");
+}
+
+TEST(Describe, KeepsFieldsThatItDoesNotKnow) {
+  const Json document = Json::parse(R"({"new": [1], "name": "voile", "threads": 2, "yarns": []})");
+  Result<Cloth> read = read_fields<Cloth>(document, "cloth.json");
+  ASSERT_TRUE(read);
+  read->threads = 5;
+  Json written;
+  write_fields(written, *read);
+  EXPECT_EQ(written.dump(), R"({"new":[1],"name":"voile","threads":5,"yarns":[],"gain":1.0})");
+}
+
+TEST(Describe, RefusesByFieldAndRule) {
+  EXPECT_EQ(refusal_of(R"({"name": "a"})"), "read");
+  EXPECT_THAT(refusal_of("{}"), HasSubstr("\"name\" is missing"));
+  EXPECT_THAT(refusal_of("[]"), HasSubstr("\"name\" is missing"));
+  EXPECT_THAT(refusal_of(R"({"name": 3})"), HasSubstr("\"name\" is 3; a text was expected"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "threads": 0})"),
+              HasSubstr("\"threads\" must be a whole number from 1 to 100"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "threads": 1.5})"), HasSubstr("a whole number was expected"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "gain": 0})"), HasSubstr("\"gain\" must be a number above 0"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "weight": 5001})"),
+              HasSubstr("\"weight\" must be a number from 0 to 5000"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "weave": "knit"})"),
+              HasSubstr("\"weave\" is \"knit\"; plain or twill was expected"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "weave": "twill"})"),
+              HasSubstr("\"threads\" must be above 1 for a twill"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "warp": 1})"), HasSubstr("\"warp\" is 1; an object was expected"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "yarns": [{}, {"width_mm": 11}]})"),
+              HasSubstr("cloth.json: yarn 1: \"width_mm\" must be a number from 0.01 to 10"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "corners_px": [1, 2, 3, 4, 5]})"),
+              HasSubstr("\"corners_px\" must be a list of 2 to 4"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "corners_px": [1, "b"]})"), HasSubstr("a number was expected"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "corners_px": [1, 2000]})"),
+              HasSubstr("\"corners_px\" must be a number from 0 to 1000"));
+  EXPECT_THAT(refusal_of(R"({"name": "a", "yarns": [{"is_dyed": "yes"}]})"),
+              HasSubstr("\"is_dyed\" is \"yes\"; true or false was expected"));
+}
+
+TEST(Describe, HoldsAStructAgainstItsRangesAndRules) {
+  EXPECT_TRUE(check_fields(Cloth{}));
+  const auto why = [](const Cloth& cloth) {
+    const Result<void> checked = check_fields(cloth);
+    return checked ? "holds" : checked.error().where + " " + checked.error().why;
+  };
+  EXPECT_EQ(why(Cloth{.threads = 101}), "threads must be a whole number from 1 to 100, and is 101");
+  EXPECT_EQ(why(Cloth{.weight = -1.0}), "weight must be a number from 0 to 5000, and is -1");
+  EXPECT_EQ(why(Cloth{.warp = {.width_mm = 20}}), "width_mm must be a number from 0.01 to 10, and is 20");
+  EXPECT_EQ(why(Cloth{.corners_px = {1}}), "corners_px must be 2 to 4 values, and is 1");
+  EXPECT_EQ(why(Cloth{.weave = Weave::kTwill}), "threads must be above 1 for a twill");
+}
+
+TEST(Describe, SaysItsSchema) {
+  const Json schema = schema_of<Cloth>();
+  EXPECT_EQ(schema["required"], Json::parse(R"(["name"])"));
+  EXPECT_EQ(schema["properties"]["threads"],
+            Json::parse(R"({"type": "integer", "minimum": 1.0, "maximum": 100.0, "default": 1,
+                            "description": "Threads a mm"})"));
+  EXPECT_EQ(schema["properties"]["gain"]["exclusiveMinimum"], 0);
+  EXPECT_EQ(schema["properties"]["weave"]["enum"], Json::parse(R"(["plain", "twill"])"));
+  EXPECT_EQ(schema["properties"]["yarns"]["items"], schema_of<Yarn>());
+}
+
+TEST(Describe, NamesAnOptionWithoutItsUnit) {
+  EXPECT_EQ(option_of({"tape_sigma_mm"}), "--tape-sigma");
+  EXPECT_EQ(option_of({"accept_misfit"}), "--accept-misfit");
+  EXPECT_EQ(option_of({.name = "square_mm", .option = "--square-mm"}), "--square-mm");
+  EXPECT_EQ(option_of({.name = "input", .option = ""}), "");
+}
+
+}  // namespace
+}  // namespace weft
