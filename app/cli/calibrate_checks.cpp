@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/cli/calibrate.h"
+#include "app/cli/described_options.h"
 #include "app/cli/exit_code.h"
 #include "app/cli/rig_options.h"
 #include "app/cli/rig_owner.h"
@@ -26,39 +27,10 @@
 namespace weft::app {
 namespace {
 
-void add_paper_delta(Options& options, std::optional<double>& paper_delta) {
-  options
-      .add("--paper-delta", &paper_delta,
-           "The paper reflects 1 - delta (1 - cosine) of Lambert's law; default as the lights' report has it")
-      .in_range(-0.5, 1.0);
-}
-
-// What a scan is looked at for: both kinds of check, and update.
-void add_evidence(Options& options, std::filesystem::path& from, std::filesystem::path& sheet,
-                  const std::string& about_sheet, std::optional<double>& paper_delta) {
-  options.add("--from", &from, "The calibration in question; default each session's own");
-  options.add("--sheet", &sheet, about_sheet);
-  add_paper_delta(options, paper_delta);
-}
-
-void add_limits(Options& options, calibration::CheckLimits& limits) {
-  options.add("--flat-limit", &limits.flat_rms_deg, "Of flat sheets, rms degrees")
-      .above_zero()
-      .shows_default();
-  options.add("--tilted-limit", &limits.tilted_rms_deg, "Of tilted sheets, rms degrees")
-      .above_zero()
-      .shows_default();
-  options.add("--gain-limit", &limits.slope_gain, "Of the slope gain, off 1").above_zero().shows_default();
-  options.add("--drift-limit", &limits.drift, "Of a LED that is lit once more, relative")
-      .above_zero()
-      .shows_default();
-}
-
-Result<CalibrateOutcome> check(const CalibrateCheckOptions& sheets, const std::filesystem::path& session,
-                               const JobContext& context) {
-  if (!session.empty()) {
+Result<CalibrateOutcome> check(const CalibrateCheckOptions& sheets, const JobContext& context) {
+  if (!sheets.session.empty()) {
     CheckRigOptions rig;
-    rig.session = session;
+    rig.session = sheets.session;
     rig.from = sheets.from;
     rig.sheet = sheets.sheet;
     rig.output = sheets.output;
@@ -72,44 +44,19 @@ Result<CalibrateOutcome> check(const CalibrateCheckOptions& sheets, const std::f
 
 Run add_check(Options& options) {
   const auto a = std::make_shared<CalibrateCheckOptions>();
-  const auto session = std::make_shared<std::filesystem::path>();
-  const Option input = options.add("input", &a->input, "Session of a sheet, or a folder of sessions");
-  options
-      .add("--session", session.get(),
-           "Any scan that shows tags, white patches or the sheet; or a folder of scans of the sheet "
-           "in several poses (weft capture moved)")
-      .excludes(input);
-  add_evidence(options, a->from, a->sheet,
-               "sheet.toml of the sheet in the pictures; default that beside them, with --session no sheet",
-               a->paper_delta);
-  options.add("-o,--output", &a->output, "Folder for result and report; default nothing is written");
-  options.add("--square-px", &a->square_px, "Side of the squares that are compared, pixels")
-      .in_range(8, 512)
-      .shows_default();
-  add_limits(options, a->limits);
-  return run_check(options, [a, session](const JobContext& context) { return check(*a, *session, context); });
+  add_options(options, *a);
+  return run_check(options, [a](const JobContext& context) { return check(*a, context); });
 }
 
 Run add_patches(Options& options) {
   const auto a = std::make_shared<CalibratePatchesOptions>();
-  options.add("session", &a->session, "A scan of the table while the calibration is fresh").required();
-  options.add("--patches", &a->patches, "patches.toml: where they lie; default beside the session");
-  options.add("--from", &a->from, "The calibration to add them to; default the session's own");
-  add_paper_delta(options, a->paper_delta);
-  options.add("-o,--output", &a->output, "Folder of the new calibration, which must not exist").required();
+  add_options(options, *a);
   return run_step(options, [a](const JobContext& context) { return calibrate_patches(*a, context); });
 }
 
 Run add_update(Options& options) {
   const auto a = std::make_shared<CalibrateUpdateOptions>();
-  options
-      .add("session", &a->session,
-           "A scan after the move that shows tags, white patches or the sheet; or a folder of scans "
-           "of the sheet in several poses (weft capture moved)")
-      .required();
-  add_evidence(options, a->from, a->sheet, "sheet.toml of the sheet in the pictures; default no sheet",
-               a->paper_delta);
-  options.add("-o,--output", &a->output, "Folder of the new calibration, which must not exist").required();
+  add_options(options, *a);
   return run_step(options, [a](const JobContext& context) { return calibrate_update(*a, context); });
 }
 

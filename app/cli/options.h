@@ -76,11 +76,11 @@ class Options {
   }
   /// Turns `value` on; "!--no-previews" turns it off.
   Option add_flag(const std::string& names, bool* value, const std::string& help);
-
- private:
+  /// One of some words; `choose` is given its place among them. Its help says what it is otherwise.
   Option add_word(const std::string& names, const std::vector<std::string>& words, std::size_t otherwise,
                   const std::function<void(std::size_t)>& choose, const std::string& help);
 
+ private:
   CLI::App& verb_;
 };
 

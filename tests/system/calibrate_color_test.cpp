@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "app/jobs/solve.h"
+#include "calibration/color/chart.h"
 #include "calibration/color/color_fit.h"
 #include "core/color_transform.h"
 #include "core/files.h"
@@ -32,11 +33,14 @@ using testing::SizeIs;
 
 constexpr double kPitch_px = 44, kSide_px = kPitch_px * calibration::kPatchShare;
 constexpr int kLeft = 40, kTop = 40;
-const calibration::ChartCorners kCorners = {
-    {{kLeft - 0.5, kTop - 0.5},
-     {kLeft - 0.5 + 5 * kPitch_px + kSide_px, kTop - 0.5},
-     {kLeft - 0.5 + 5 * kPitch_px + kSide_px, kTop - 0.5 + 3 * kPitch_px + kSide_px},
-     {kLeft - 0.5, kTop - 0.5 + 3 * kPitch_px + kSide_px}}};
+const std::vector<double> kCorners = {kLeft - 0.5,
+                                      kTop - 0.5,
+                                      kLeft - 0.5 + 5 * kPitch_px + kSide_px,
+                                      kTop - 0.5,
+                                      kLeft - 0.5 + 5 * kPitch_px + kSide_px,
+                                      kTop - 0.5 + 3 * kPitch_px + kSide_px,
+                                      kLeft - 0.5,
+                                      kTop - 0.5 + 3 * kPitch_px + kSide_px};
 
 // A photograph of the published chart by a camera that a matrix describes, as a 16-bit TIFF.
 struct Photograph {
@@ -143,7 +147,7 @@ TEST(CalibrateColor, ReadsAChartThatWasFoundUpsideDown) {
   photograph.upside_down = true;
   photograph.write(work / "color" / "chart.tif");
   CalibrateColorOptions options = options_of(work);
-  options.corners_px.reset();
+  options.corners_px.clear();
   const auto outcome = calibrate_color(options, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   ASSERT_THAT(outcome->warnings, SizeIs(1));
@@ -196,7 +200,7 @@ TEST(CalibrateColor, RefusesWhatIsNoChartAndNoPicture) {
   fs::create_directories(work / "color");
   Photograph().write(work / "color" / "chart.tif");
   CalibrateColorOptions options = options_of(work);
-  for (auto& corner : *options.corners_px) corner[0] = corner[0] / 4 + 150;
+  for (std::size_t i = 0; i < 8; i += 2) options.corners_px[i] = options.corners_px[i] / 4 + 150;
   EXPECT_THAT(refusal(work, options), HasSubstr("not the chart"));
   ASSERT_TRUE(write_file(work / "color" / "chart.toml", "srgb = [[1, 2, 3]]\n"));
   EXPECT_THAT(refusal(work, options_of(work)), HasSubstr("not 24 lists"));
@@ -280,7 +284,7 @@ TEST(CalibrateColor, MakesSolvedAlbedoRec709) {
   const fs::path session = work / "color" / "chart.weft";
   CalibrateColorOptions options = options_of(work);
   options.from = session / "calibration";
-  options.corners_px.reset();
+  options.corners_px.clear();
   const auto outcome = calibrate_color(options, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   EXPECT_LT(outcome->report.numbers["mean_held_out"].get<double>(), 1.5);
@@ -340,7 +344,7 @@ TEST(CalibrateColor, TakesWhiteAndScaleFromTheChartWhereNobodyMeasuredThem) {
   ASSERT_TRUE(write_calibration(work / "tinted", tinted));
   CalibrateColorOptions options = options_of(work);
   options.from = work / "tinted";
-  options.corners_px.reset();
+  options.corners_px.clear();
   const auto outcome = calibrate_color(options, {});
   ASSERT_TRUE(outcome) << outcome.error().message();
   const Calibration& now = outcome->calibration;

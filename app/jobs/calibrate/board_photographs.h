@@ -9,6 +9,7 @@
 #include "calibration/camera/boards.h"
 #include "calibration/camera/markers.h"
 #include "core/calibration.h"
+#include "core/fields.h"
 #include "core/image.h"
 #include "core/job.h"
 #include "core/number.h"
@@ -28,6 +29,7 @@ struct BoardSettings {
   std::optional<double> square_mm, marker_share, thickness_mm;
   std::optional<std::string> dictionary;
 };
+void describe(Fields& fields, BoardSettings& settings);
 
 /// A board that lies on something.
 struct PrintedBoard {

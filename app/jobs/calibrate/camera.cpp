@@ -10,12 +10,14 @@
 #include <utility>
 
 #include "app/jobs/calibrate/camera_report.h"
+#include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/linear_image.h"
 #include "calibration/camera/lateral.h"
 #include "calibration/camera/lens.h"
 #include "calibration/camera/spread.h"
 #include "capture/raw/decode.h"
+#include "core/field_check.h"
 #include "core/files.h"
 
 namespace weft::app {
@@ -30,16 +32,8 @@ using calibration::TagSighting;
 constexpr double kMostScatter_px = 1;  // of a tag's corner over the photographs of the table
 
 Result<void> check_options(const CalibrateCameraOptions& options) {
-  const auto refused = [](const char* name, const char* rule) {
-    return Error{ErrorKind::kUsage, "option is out of its range", name, rule, "give a value in that range"};
-  };
-  if (!(options.most_blur_px >= 1 && options.most_blur_px <= 100))
-    return refused("most_blur_px", "it is 1 to 100");
-  if (options.least_boards < 3 || options.least_boards > 1000)
-    return refused("least_boards", "it is 3 to 1000");
-  if (!(options.most_focal_percent >= 0.001 && options.most_focal_percent <= 10))
-    return refused("most_focal_percent", "it is 0.001 to 10");
-  return check_new(options.output);
+  const Result<void> fits = check_fields(options);
+  return fits ? check_new(options.output) : fits;
 }
 
 // The views to fit, the first of them on the table.
@@ -134,6 +128,47 @@ Result<std::vector<BoardEdge>> edges_of(const fs::path& folder, const calibratio
 }
 
 }  // namespace
+
+void describe(Fields& fields, BoardSettings& b) {
+  fields.value({.name = "board",
+                .says = "What is printed; default that of board.toml",
+                .words = {"charuco", "checkerboard"}},
+               b.kind);
+  fields.value({"squares_x", "Squares a row", calibration::kBoardSquares}, b.squares_x);
+  fields.value({"squares_y", "Squares a column", calibration::kBoardSquares}, b.squares_y);
+  fields.value({.name = "square_mm",
+                .says = "Side of a square, mm",
+                .range = calibration::kBoardSquare_mm,
+                .option = "--square-mm"},
+               b.square_mm);
+  fields.value({"marker_share", "ChArUco: side of a marker over that of a square", calibration::kMarkerShare},
+               b.marker_share);
+  fields.value({"dictionary", "ChArUco: as OpenCV names it, DICT_5X5_100"}, b.dictionary);
+  fields.value({.name = "thickness_mm",
+                .says = "Of the board: the table is so far below its print",
+                .range = kBoardThickness_mm,
+                .option = "--thickness-mm"},
+               b.thickness_mm);
+}
+
+void describe(Fields& fields, CalibrateCameraOptions& o) {
+  describe_input(
+      fields, o.input,
+      "Folder of photographs of one board in many poses; those named table... show it flat on the table");
+  describe_kept(fields, o.from);
+  describe_new_calibration(fields, o.output);
+  describe_rig(fields, o.rig);
+  describe(fields, o.board);
+  fields.value({"tags", "Dictionary of the tags on the table"}, o.tag_dictionary);
+  fields.value({"most_blur_px", "Photographs with wider edges are left out, pixels", {1, 100}},
+               o.most_blur_px);
+  fields.value({"least_boards", "Fewer usable photographs are refused", {3, 1000}}, o.least_boards);
+  fields.value({.name = "most_focal_percent",
+                .says = "Boards too alike are refused: predicted sigma of the focal length, percent",
+                .range = {0.001, 10},
+                .option = "--most-focal-percent"},
+               o.most_focal_percent);
+}
 
 Result<CalibrateOutcome> calibrate_camera(const CalibrateCameraOptions& options, const JobContext& context) {
   if (const Result<void> ok = check_options(options); !ok) return ok.error();

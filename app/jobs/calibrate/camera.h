@@ -6,6 +6,7 @@
 
 #include "app/jobs/calibrate/board_photographs.h"
 #include "app/jobs/calibrate/outcome.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/result.h"
 
@@ -24,6 +25,7 @@ struct CalibrateCameraOptions {
   /// Predicted sigma of the focal length above which boards are too alike; 0.001 to 10.
   double most_focal_percent = 0.3;
 };
+void describe(Fields& fields, CalibrateCameraOptions& options);
 
 /// Measures lens and pose of the camera from photographs of a checkerboard or ChArUco board and writes a
 /// calibration: camera.json with its covariance and the tags that the photographs of the table show, and

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "app/jobs/calibrate/check_result.h"
+#include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/history.h"
 #include "app/jobs/calibrate/movement_words.h"
 #include "app/jobs/calibrate/rig_evidence.h"
@@ -18,6 +19,7 @@
 #include "app/jobs/calibrate/sheet_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/session_input.h"
+#include "core/field_check.h"
 #include "core/files.h"
 #include "core/iso_time.h"
 #include "core/toml/toml_keys.h"
@@ -37,10 +39,6 @@ struct CheckedSheet {
   bool was_fitted = false;      ///< lights were fitted to this session
   std::vector<std::string> warnings;
 };
-
-Error usage(const char* name, const char* rule) {
-  return {ErrorKind::kUsage, "option is out of its range", name, rule, "give a value in that range"};
-}
 
 Result<std::vector<fs::path>> sessions_in(const fs::path& input) {
   if (is_there(input / "session.json")) return std::vector{input};
@@ -434,11 +432,52 @@ Result<Look> look(const CheckRigOptions& options, const JobContext& context) {
 
 }  // namespace
 
+void describe(Fields& fields, calibration::CheckLimits& l) {
+  fields.value({"flat_limit_deg", "Of flat sheets, rms degrees", kAboveZero}, l.flat_rms_deg);
+  fields.value({"tilted_limit_deg", "Of tilted sheets, rms degrees", kAboveZero}, l.tilted_rms_deg);
+  fields.value({"gain_limit", "Of the slope gain, off 1", kAboveZero}, l.slope_gain);
+  fields.value({"drift_limit", "Of a LED that is lit once more, relative", kAboveZero}, l.drift);
+}
+
+void describe(Fields& fields, CalibrateCheckOptions& o) {
+  fields.value({.name = "input",
+                .says = "Session of a sheet, or a folder of sessions",
+                .path = PathTo::kFolder,
+                .option = ""},
+               o.input);
+  fields.value(
+      {.name = "session",
+       .says = "Any scan that shows tags, white patches or the sheet; or a folder of scans of the sheet in "
+               "several poses (weft capture moved)",
+       .path = PathTo::kSessionOrSet},
+      o.session);
+  fields.exclude("session", "input");
+  fields.value({.name = "from",
+                .says = "The calibration in question; default each session's own",
+                .path = PathTo::kFolder},
+               o.from);
+  fields.value(
+      {.name = "sheet",
+       .says = "sheet.toml of the sheet in the pictures; default that beside them, with --session no sheet",
+       .path = PathTo::kFile},
+      o.sheet);
+  describe_paper_delta(fields, o.paper_delta);
+  fields.value({.name = "output",
+                .says = "Folder for result and report; default nothing is written",
+                .path = PathTo::kNewFolder,
+                .option = "-o,--output"},
+               o.output);
+  fields.value({.name = "square_px",
+                .says = "Side of the squares that are compared, pixels",
+                .range = {8, 512},
+                .option = "--square-px"},
+               o.square_px);
+  fields.require(o.square_px % 2 == 0, "square_px", "must be even");
+  describe(fields, o.limits);
+}
+
 Result<CalibrateOutcome> calibrate_check(const CalibrateCheckOptions& options, const JobContext& context) {
-  if (options.square_px < 8 || options.square_px > 512 || options.square_px % 2 != 0)
-    return usage("square_px", "it is even, 8 to 512");
-  if (options.paper_delta && !(*options.paper_delta >= -0.5 && *options.paper_delta <= 1))
-    return usage("paper_delta", "it is -0.5 to 1");
+  if (Result<void> fits = check_fields(options); !fits) return std::move(fits).error();
   if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
   const Result<std::vector<fs::path>> sessions = sessions_in(options.input);
   if (!sessions) return sessions.error();

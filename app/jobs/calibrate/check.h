@@ -7,6 +7,7 @@
 #include "app/jobs/calibrate/outcome.h"
 #include "calibration/checks/flatness.h"
 #include "calibration/checks/movement.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/result.h"
 
@@ -19,9 +20,10 @@ namespace weft::app {
 /// On evidence that the calibration was not fitted to: sheets of white paper with tags that lie flat (another
 /// one, or the same one turned) and tilted.
 struct CalibrateCheckOptions {
-  std::filesystem::path input = {};  ///< a session, or a folder of sessions (*.weft)
-  std::filesystem::path from = {};   ///< the calibration to check; empty: each session's own
-  std::filesystem::path sheet = {};  ///< sheet.toml; empty: in the folder `input`, or beside the session
+  std::filesystem::path input = {};    ///< a session, or a folder of sessions (*.weft)
+  std::filesystem::path session = {};  ///< in its place, what calibrate_check_rig() looks at
+  std::filesystem::path from = {};     ///< the calibration to check; empty: each session's own
+  std::filesystem::path sheet = {};    ///< sheet.toml; empty: in the folder `input`, or beside the session
   std::filesystem::path output =
       {};              ///< folder for the result, which must not be there; empty: nothing is written
   int square_px = 32;  ///< side of the squares that are compared; even, 8 to 512
@@ -30,6 +32,7 @@ struct CalibrateCheckOptions {
   std::optional<double> paper_delta = {};
   calibration::CheckLimits limits = {};
 };
+void describe(Fields& fields, CalibrateCheckOptions& options);
 
 /// The report's verdicts are empty where the calibration is accepted. In the folder of the sessions
 /// there may be check.toml with the angle of a wedge, [[plane]] session, tilt_deg, azimuth_deg; else a

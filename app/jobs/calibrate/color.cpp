@@ -9,7 +9,10 @@
 
 #include "app/jobs/calibrate/chart_pictures.h"
 #include "app/jobs/calibrate/color_report.h"
+#include "app/jobs/calibrate/described.h"
+#include "calibration/color/chart.h"
 #include "core/color_transform.h"
+#include "core/field_check.h"
 #include "core/files.h"
 #include "core/suits.h"
 
@@ -87,10 +90,10 @@ class ChartReader {
   // The patches of the upright chart.
   Result<std::vector<PatchReading>> find_patches(const ChartPicture& picture) {
     calibration::ChartCorners corners = {};
-    if (options_.corners_px) {
+    if (!options_.corners_px.empty()) {
       for (std::size_t i = 0; i < 4; ++i) {
         for (std::size_t k = 0; k < 2; ++k) {
-          corners[i][k] = ((*options_.corners_px)[i][k] + 0.5) / picture.pixels - 0.5;
+          corners[i][k] = (options_.corners_px[2 * i + k] + 0.5) / picture.pixels - 0.5;
         }
       }
     } else {
@@ -122,7 +125,7 @@ class ChartReader {
       }
       return patches;
     }
-    if (side == ChartSide::kUpsideDown && !options_.corners_px) {
+    if (side == ChartSide::kUpsideDown && options_.corners_px.empty()) {
       std::reverse(patches->begin(), patches->end());
       warnings_.push_back(
           fmt::format("{}: the chart lies upside down, and was read so", picture.source.string()));
@@ -134,8 +137,8 @@ class ChartReader {
     }
     if (side == ChartSide::kMirrored) {
       return bad_chart(picture, "the chart is mirrored", "its columns or rows run backwards",
-                       options_.corners_px ? "name the corners clockwise from patch 1 (dark skin) on"
-                                           : "use the picture as the camera took it, not flipped");
+                       !options_.corners_px.empty() ? "name the corners clockwise from patch 1 (dark skin) on"
+                                                    : "use the picture as the camera took it, not flipped");
     }
     return bad_chart(picture, "this is not the chart",
                      "its patches do not have the colours of a 24-patch chart",
@@ -405,7 +408,22 @@ CalibrationSubject subject_of(const CalibrateColorOptions& options, const Calibr
 
 }  // namespace
 
+void describe(Fields& fields, CalibrateColorOptions& o) {
+  describe_input(fields, o.input, "Photograph or session of the chart, or a folder of them");
+  describe_kept(fields, o.from);
+  describe_new_calibration(fields, o.output);
+  describe_rig(fields, o.rig);
+  fields.value(
+      {.name = "corners_px",
+       .says = "Outer corners of patches 1, 6, 24, 19 in pixels: x,y,x,y,x,y,x,y; default: found by itself",
+       .fewest = 8,
+       .most = 8},
+      o.corners_px);
+  fields.value({"curve", "Affine, cubic, affine in xyY in place of a 3 x 3 matrix"}, o.curve);
+}
+
 Result<CalibrateOutcome> calibrate_color(const CalibrateColorOptions& options, const JobContext& context) {
+  if (Result<void> fits = check_fields(options); !fits) return std::move(fits).error();
   if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();
   std::optional<Calibration> from;
   if (!options.from.empty()) {

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "app/jobs/calibrate/outcome.h"
-#include "calibration/color/chart.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/result.h"
 
@@ -17,11 +17,12 @@ struct CalibrateColorOptions {
   std::filesystem::path from;    ///< the calibration to change; empty: none
   std::filesystem::path output;  ///< the new one; must not be there
   std::string rig;               ///< its name where there is no `from`; empty: the input folder's
-  /// Outer corners of patches 1, 6, 24 and 19, in pixels of the photograph or of the session's frames; empty:
-  /// the chart is looked for.
-  std::optional<calibration::ChartCorners> corners_px;
+  /// x and y of the outer corners of patches 1, 6, 24 and 19, in pixels of the photograph or of the session's
+  /// frames; empty: the chart is looked for.
+  std::vector<double> corners_px = {};
   bool curve = false;  ///< affine, cubic, affine in xyY in place of the matrix
 };
+void describe(Fields& fields, CalibrateColorOptions& options);
 
 /// Fits what makes linear Rec.709 of the camera's channels and writes a calibration with color.json and
 /// report/color.html. Pictures are white balanced on the chart's greys, for the white balance of scans is

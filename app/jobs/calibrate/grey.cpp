@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/calibrate/scale_file.h"
@@ -176,6 +177,24 @@ CalibrationReport report_of(const GreyChartFit& fit, const Calibration& before, 
 }
 
 }  // namespace
+
+void describe(Fields& fields, CalibrateGreyOptions& o) {
+  fields.value({.name = "session",
+                .says = "A scan of the scale, flat on the table",
+                .need = Need::kMustSay,
+                .path = PathTo::kSession,
+                .option = ""},
+               o.session);
+  fields.value({.name = "scale",
+                .says = "scale.toml: where it lies; default beside the session",
+                .path = PathTo::kFile},
+               o.scale);
+  fields.value({.name = "from",
+                .says = "The calibration to change; default the session's own",
+                .path = PathTo::kFolder},
+               o.from);
+  describe_new_calibration(fields, o.output);
+}
 
 Result<CalibrateOutcome> calibrate_grey(const CalibrateGreyOptions& options, const JobContext& context) {
   if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();

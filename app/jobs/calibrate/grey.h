@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "app/jobs/calibrate/outcome.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/result.h"
 
@@ -15,6 +16,7 @@ struct CalibrateGreyOptions {
   std::filesystem::path from = {};     ///< the calibration to change; empty: the session's own
   std::filesystem::path output = {};   ///< the new one; must not be there
 };
+void describe(Fields& fields, CalibrateGreyOptions& options);
 
 /// Measures the flux of each LED by channel, and so its white balance, from a scan of a grey scale
 /// (calibration/lights/grey_chart.h), and writes a calibration with them in its lights.json and

@@ -9,10 +9,12 @@
 #include <cmath>
 #include <numeric>
 
+#include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/lights_report.h"
 #include "app/jobs/calibrate/patches.h"
 #include "app/jobs/calibrate/sheet_captures.h"
 #include "capture/rig.h"
+#include "core/field_check.h"
 #include "core/files.h"
 #include "core/image_io/image_io.h"
 #include "core/light_field.h"
@@ -81,26 +83,13 @@ class LightsJob {
   std::vector<Verdict> verdicts_;
 };
 
-Result<void> check_range(const char* option, double value, const NumberRange& range, const char* remedy) {
-  if (range.holds(value)) return {};
-  return bad(ErrorKind::kUsage, "option out of range", option,
-             fmt::format("{} is not {} to {}", value, range.least, range.most), remedy);
-}
-
 Result<void> LightsJob::prepare() {
   if (options_.from.empty()) {
     return bad(ErrorKind::kUsage, "lights cannot be calibrated alone", "--from",
                "the camera says where each pixel looks, and the response what its counts mean",
                "name a calibration that has both with --from");
   }
-  for (const Result<void>& fits :
-       {check_range("tape sigma, mm", options_.tape_sigma_mm, kTapeSigma_mm,
-                    "say how well the tape measures"),
-        check_range("flatness, degrees", options_.flatness_deg, kFlatness_deg, "say how flat the sheet lies"),
-        check_range("flicker, percent", options_.flicker_percent, kFlicker_percent,
-                    "say how much LEDs flicker from shot to shot")}) {
-    if (!fits) return fits;
-  }
+  if (Result<void> fits = check_fields(options_); !fits) return fits;
   if (!options_.output.empty()) {
     if (Result<void> ok = check_new(options_.output); !ok) return ok;
   }
@@ -446,6 +435,33 @@ Result<CalibrateOutcome> LightsJob::write() {
 }
 
 }  // namespace
+
+void describe(Fields& fields, CalibrateLightsOptions& o) {
+  describe_input(
+      fields, o.input,
+      "Folder of sessions (*.weft) of a sheet with tags, sheet.toml and, where measured anew, rig.toml");
+  describe_kept(fields, o.from);
+  fields.value(
+      {.name = "output",
+       .says = "Folder of the new calibration, which must not exist; default none: only says what comes out",
+       .path = PathTo::kNewFolder,
+       .option = "-o,--output"},
+      o.output);
+  fields.choice({"method",
+                 "physical (a model of each LED), per-pixel (directions cell by cell), seed (the iteration "
+                 "of the paper "
+                 "that this scanner follows, on one flat sheet)"},
+                o.method, kLightsMethodNames);
+  fields.value({"tape_sigma_mm", "How well positions were measured, mm an axis", {0.1, 1000}},
+               o.tape_sigma_mm);
+  fields.value({"flatness_deg", "Rms waviness of the sheet, degrees", {0, 2}}, o.flatness_deg);
+  fields.value(
+      {"flicker_percent", "Flicker of LEDs from shot to shot, percent, where sheets do not tell", {0.01, 5}},
+      o.flicker_percent);
+  fields.value({"lambertian", "Take the paper to follow Lambert's law"}, o.lambertian);
+  fields.value({"accept_misfit", "Write the calibration although readings and model contradict each other"},
+               o.accept_misfit);
+}
 
 Result<CalibrateOutcome> calibrate_lights(const CalibrateLightsOptions& options, const JobContext& context) {
   return LightsJob(options, context).run();

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <filesystem>
 
 #include "app/jobs/calibrate/outcome.h"
+#include "core/fields.h"
 #include "core/job.h"
-#include "core/number.h"
 #include "core/result.h"
 
 namespace weft::app {
@@ -16,21 +17,20 @@ enum class LightsMethod {
   kPerPixel,  ///< its directions and intensities cell by cell (calibration/lights/per_pixel.h)
   kSeed,      ///< the iteration of seed 000 on one flat sheet (calibration/lights/seed_iteration.h)
 };
-
-inline constexpr NumberRange kTapeSigma_mm = {0.1, 1000}, kFlatness_deg = {0, 2},
-                             kFlicker_percent = {0.01, 5};
+inline constexpr std::array<const char*, 3> kLightsMethodNames = {"physical", "per-pixel", "seed"};
 
 struct CalibrateLightsOptions {
-  std::filesystem::path input;   ///< *.weft, sheet.toml and, where a tape measured the LEDs, rig.toml
-  std::filesystem::path from;    ///< the calibration to change: camera and response are needed
-  std::filesystem::path output;  ///< the new one, which must not be there; empty: nothing is written
+  std::filesystem::path input;  ///< *.weft, sheet.toml and, where a tape measured the LEDs, rig.toml
+  std::filesystem::path from;   ///< camera and response are needed
+  std::filesystem::path output;
   LightsMethod method = LightsMethod::kPhysical;
-  double tape_sigma_mm = 10;     ///< how well positions were measured, along each axis; kTapeSigma_mm
-  double flatness_deg = 0.05;    ///< of the sheet's slow waves, rms; kFlatness_deg
-  double flicker_percent = 0.3;  ///< of LEDs from shot to shot, where no sheet tells; kFlicker_percent
-  bool lambertian = false;       ///< takes the paper to follow Lambert's law
-  bool accept_misfit = false;    ///< writes the calibration although readings and model contradict each other
+  double tape_sigma_mm = 10;
+  double flatness_deg = 0.05;
+  double flicker_percent = 0.3;
+  bool lambertian = false;
+  bool accept_misfit = false;
 };
+void describe(Fields& fields, CalibrateLightsOptions& options);
 
 /// Measures the lights of a rig from sessions of a sheet of white paper in several poses, which its tags tell
 /// (app/jobs/calibrate/sheet_captures.h), and writes a calibration with lights.json and report/lights.html.

@@ -8,6 +8,7 @@
 #include <span>
 
 #include "app/jobs/calibrate/check_result.h"
+#include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "app/jobs/calibrate/sheet_files.h"
 #include "app/jobs/session_input.h"
@@ -126,6 +127,25 @@ std::string patches_left_out(const std::string& part) {
       "the white patches were left out, as they were measured by the {} of before: measure them "
       "again with weft calibrate patches",
       part);
+}
+
+void describe(Fields& fields, CalibratePatchesOptions& o) {
+  fields.value({.name = "session",
+                .says = "A scan of the table while the calibration is fresh",
+                .need = Need::kMustSay,
+                .path = PathTo::kSession,
+                .option = ""},
+               o.session);
+  fields.value({.name = "patches",
+                .says = "patches.toml: where they lie; default beside the session",
+                .path = PathTo::kFile},
+               o.patches);
+  fields.value({.name = "from",
+                .says = "The calibration to add them to; default the session's own",
+                .path = PathTo::kFolder},
+               o.from);
+  describe_paper_delta(fields, o.paper_delta);
+  describe_new_calibration(fields, o.output);
 }
 
 Result<CalibrateOutcome> calibrate_patches(const CalibratePatchesOptions& options,

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "app/jobs/calibrate/outcome.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/result.h"
 
@@ -18,6 +19,7 @@ struct CalibratePatchesOptions {
   std::filesystem::path output = {};   ///< the new calibration, which must not be there yet
   std::optional<double> paper_delta = {};  ///< as CalibrateCheckOptions has it
 };
+void describe(Fields& fields, CalibratePatchesOptions& options);
 
 /// Measures white patches on the table by the light that the calibration knows, and writes a calibration with
 /// them in its lights.json: what later scans tell of drift and of moves by. patches.toml: for each a

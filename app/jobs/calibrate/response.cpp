@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/response_reader.h"
 #include "app/jobs/calibrate/scale_file.h"
 #include "app/jobs/raw_picture.h"
@@ -393,6 +394,18 @@ Result<void> write_hot_picture(const fs::path& file, View<const std::uint8_t> ba
 }
 
 }  // namespace
+
+void describe(Fields& fields, CalibrateResponseOptions& o) {
+  describe_input(fields, o.input,
+                 "Folder with dark/, led01/, led02/, led01+led02/, scale/ of raw frames of a still scene");
+  describe_kept(fields, o.from);
+  describe_new_calibration(fields, o.output);
+  describe_rig(fields, o.rig);
+  fields.value({.name = "trap",
+                .says = "Set of a black trap (weft capture trap): the lens's veil; default trap/ of input",
+                .path = PathTo::kFolder},
+               o.trap);
+}
 
 Result<CalibrateOutcome> calibrate_response(const CalibrateResponseOptions& options,
                                             const JobContext& context) {

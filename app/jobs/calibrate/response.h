@@ -5,6 +5,7 @@
 #include <string>
 
 #include "app/jobs/calibrate/outcome.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/result.h"
 
@@ -17,6 +18,7 @@ struct CalibrateResponseOptions {
   std::string rig;               ///< its name where there is no `from`; empty: the input folder's
   std::filesystem::path trap = {};  ///< a set of part trap; empty: trap/ of `input`, if it is there
 };
+void describe(Fields& fields, CalibrateResponseOptions& options);
 
 /// Measures gain, read noise, black level, linearity, bad photosites, exposure ratios and the white balance
 /// of the LEDs from raw frames (calibration/response/response_measurement.h), checks the patches of a grey

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "app/jobs/calibrate/check.h"
+#include "app/jobs/calibrate/described.h"
 #include "app/jobs/calibrate/movement_words.h"
 #include "app/jobs/calibrate/rig_evidence.h"
 #include "core/files.h"
@@ -132,6 +133,28 @@ CalibrationReport report_of(const RigCheck& rig, const fs::path& session) {
 }
 
 }  // namespace
+
+void describe(Fields& fields, CalibrateUpdateOptions& o) {
+  fields.value(
+      {.name = "session",
+       .says =
+           "A scan after the move that shows tags, white patches or the sheet; or a folder of scans of the "
+           "sheet in several poses (weft capture moved)",
+       .need = Need::kMustSay,
+       .path = PathTo::kSessionOrSet,
+       .option = ""},
+      o.session);
+  fields.value({.name = "from",
+                .says = "The calibration in question; default each session's own",
+                .path = PathTo::kFolder},
+               o.from);
+  fields.value({.name = "sheet",
+                .says = "sheet.toml of the sheet in the pictures; default no sheet",
+                .path = PathTo::kFile},
+               o.sheet);
+  describe_paper_delta(fields, o.paper_delta);
+  describe_new_calibration(fields, o.output);
+}
 
 Result<CalibrateOutcome> calibrate_update(const CalibrateUpdateOptions& options, const JobContext& context) {
   if (Result<void> ok = check_new(options.output); !ok) return std::move(ok).error();

@@ -6,6 +6,7 @@
 
 #include "app/jobs/calibrate/outcome.h"
 #include "calibration/checks/movement.h"
+#include "core/fields.h"
 #include "core/job.h"
 #include "core/result.h"
 
@@ -20,6 +21,7 @@ struct CalibrateUpdateOptions {
   std::optional<double> paper_delta = {};  ///< of patches and sheet, as CalibrateCheckOptions has it
   calibration::MovementOptions movement = {};
 };
+void describe(Fields& fields, CalibrateUpdateOptions& options);
 
 /// Fits again what has moved (calibration/checks/movement.h), the rest held by what the calibration knows of
 /// it, and writes a new calibration: camera.json where camera and table moved to each other, lights.json

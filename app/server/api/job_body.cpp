@@ -12,12 +12,19 @@
 #include <utility>
 #include <vector>
 
-#include "app/jobs/calibrate/board_photographs.h"
+#include "app/jobs/calibrate/camera.h"
+#include "app/jobs/calibrate/check.h"
+#include "app/jobs/calibrate/color.h"
+#include "app/jobs/calibrate/grey.h"
 #include "app/jobs/calibrate/lights.h"
+#include "app/jobs/calibrate/patches.h"
+#include "app/jobs/calibrate/response.h"
+#include "app/jobs/calibrate/update.h"
 #include "app/jobs/maps/recipe.h"
 #include "app/jobs/planned_cloth.h"
 #include "app/server/api/batch_body.h"
 #include "app/server/api/library_materials.h"
+#include "core/fields.h"
 #include "core/files.h"
 #include "core/number.h"
 #include "library/current.h"
@@ -45,11 +52,13 @@ enum class Holds {
   kNumber,
   kFlag,       // true: the option
   kWords,      // a list, which becomes words by commas
+  kNumbers,    // likewise
   kRecipe,     // {"steps": [...]}, which becomes its text
   kSession,    // the name of one
   kMaterial,   // the key of one of the library
   kBuild,      // likewise, of which the newest build or that of `set` is meant
-  kFolder,     // one that is there, below the rig's
+  kFile,       // one that is there, below the rig's folder
+  kFolder,     // likewise
   kNewFolder,  // one that is not there yet
   kCount,      // a whole number
   kSeconds,    // a number, which becomes 3600s
@@ -59,12 +68,13 @@ enum class Holds {
 // A field of the body that becomes an argument of the verb.
 struct JobField {
   const char* field;
-  const char* option;  // empty: the argument itself
+  std::string option;  // empty: the argument itself
   Holds holds;
   bool is_needed = false;
-  NumberRange range = {};                    // of a number
-  std::vector<std::string_view> words = {};  // that are allowed; none: all
-  const char* unless = "";                   // another field, which says it already
+  NumberRange range = {};               // of a number
+  std::vector<std::string> words = {};  // that are allowed; none: all
+  const char* unless = "";              // another field, which says it already
+  int fewest = 0, most = 0;             // of numbers
 };
 
 struct JobKind {
@@ -75,11 +85,7 @@ struct JobKind {
 };
 
 const JobField kSession = {"session", "", Holds::kSession, true};
-const JobField kInput = {"input", "", Holds::kFolder, true};
-const JobField kOutput = {"output", "--output", Holds::kNewFolder, true};
-const JobField kFrom = {"from", "--from", Holds::kFolder};
-
-JobField word(const char* field, const char* option, std::vector<std::string_view> words = {}) {
+JobField word(const char* field, const char* option, std::vector<std::string> words = {}) {
   return {field, option, Holds::kWord, false, {}, std::move(words)};
 }
 JobField number(const char* field, const char* option, const NumberRange& range) {
@@ -96,7 +102,73 @@ JobField count(const char* field, const char* option, const NumberRange& range) 
   return {field, option, Holds::kCount, false, range};
 }
 
-const std::vector<std::string_view> kLevels(library::kLevels.begin(), library::kLevels.end());
+// The fields of a described verb, as a client says them.
+class JobFields final : public Fields {
+ public:
+  std::vector<JobField> fields;
+
+ private:
+  void take(const Field& field, Value value) override {
+    if (field.said == Said::kAtThisMachine) return;
+    fields.push_back(row_of(field, held_by(field, value)));
+    if (field.path != PathTo::kSessionOrSet) return;
+    fields.back().is_needed = false;
+    fields.push_back(fields.back());
+    fields.back().field = "moved";
+    fields.back().holds = Holds::kFolder;
+  }
+  void choose(const Field& field, Words words, std::size_t /*now*/,
+              const std::function<void(std::size_t)>& /*choose*/) override {
+    fields.push_back(row_of(field, Holds::kWord));
+    fields.back().words = {words.begin(), words.end()};
+  }
+
+  // "-o,--output" is called by its long name.
+  static JobField row_of(const Field& field, Holds holds) {
+    const std::string option = option_of(field);
+    JobField row = {field.name, option.substr(option.find(',') + 1), holds, field.need == Need::kMustSay,
+                    field.range};
+    row.words = field.words;
+    row.fewest = field.fewest;
+    row.most = field.most;
+    return row;
+  }
+  static Holds held_by(const Field& field, const Value& value) {
+    if (std::holds_alternative<bool*>(value)) return Holds::kFlag;
+    if (std::holds_alternative<int*>(value) || std::holds_alternative<std::optional<int>*>(value))
+      return Holds::kCount;
+    if (std::holds_alternative<double*>(value) || std::holds_alternative<std::optional<double>*>(value))
+      return Holds::kNumber;
+    if (std::holds_alternative<std::vector<std::string>*>(value)) return Holds::kWords;
+    if (std::holds_alternative<std::vector<double>*>(value) ||
+        std::holds_alternative<std::vector<int>*>(value))
+      return Holds::kNumbers;
+    if (!std::holds_alternative<fs::path*>(value)) return Holds::kWord;
+    switch (field.path) {
+      case PathTo::kSession:
+      case PathTo::kSessionOrSet:
+        return Holds::kSession;
+      case PathTo::kNewFolder:
+        return Holds::kNewFolder;
+      case PathTo::kFile:
+        return Holds::kFile;
+      case PathTo::kFolder:
+      case PathTo::kAnything:
+        break;
+    }
+    return Holds::kFolder;
+  }
+};
+
+template <typename Described>
+std::vector<JobField> fields_of() {
+  Described described;
+  JobFields walk;
+  describe(walk, described);
+  return walk.fields;
+}
+
+const std::vector<std::string> kLevels(library::kLevels.begin(), library::kLevels.end());
 
 JobKind batch_plan_kind() {
   return {"batch_plan",
@@ -120,15 +192,10 @@ JobKind batch_run_kind() {
            {"retry_failed", "--retry-failed", Holds::kFlag}}};
 }
 
-std::vector<std::string_view> plan_cloths() {
-  std::vector<std::string_view> names;
+std::vector<std::string> plan_cloths() {
+  std::vector<std::string> names;
   for (const NamedCloth& each : planned_cloths()) names.emplace_back(each.name);
   return names;
-}
-
-std::vector<std::string_view> own_recipes() {
-  static const std::vector<std::string> names = recipe_names();
-  return {names.begin(), names.end()};
 }
 
 // What both verbs of maps take.
@@ -138,7 +205,7 @@ std::vector<JobField> maps_fields() {
           kDraft,
           number("mm_per_pixel", "--mm-per-pixel", 1e-4, 100),
           {"preview", "--preview", Holds::kFlag},
-          word("recipe", "--recipe", own_recipes()),
+          word("recipe", "--recipe", recipe_names()),
           {"steps", "--steps", Holds::kRecipe}};
 }
 
@@ -187,40 +254,14 @@ const std::vector<JobKind>& job_kinds() {
         number("f0", "--f0", 0, 0.6), number("albedo", "--albedo", 1e-3, 1),
         number("relief_deg", "--relief", 0, 60), word("aim", "--aim", {"all", "normal", "alpha", "f0"}),
         number("pace", "--pace", 0.1, 600)}},
-      {"check",
-       {"calibrate", "check"},
-       {{"session", "--session", Holds::kSession},
-        {"input", "", Holds::kFolder},
-        kFrom,
-        {"moved", "--session", Holds::kFolder},
-        {"output", "--output", Holds::kNewFolder}}},
-      {"calibrate_camera",
-       {"calibrate", "camera"},
-       {kInput, kOutput, kFrom, word("board", "--board", {"charuco", "checkerboard"}),
-        count("squares_x", "--squares-x", calibration::kBoardSquares),
-        count("squares_y", "--squares-y", calibration::kBoardSquares),
-        number("square_mm", "--square-mm", calibration::kBoardSquare_mm),
-        number("thickness_mm", "--thickness-mm", kBoardThickness_mm)},
-       true},
-      {"calibrate_response",
-       {"calibrate", "response"},
-       {kInput, kOutput, kFrom, {"trap", "--trap", Holds::kFolder}},
-       true},
-      {"calibrate_color", {"calibrate", "color"}, {kInput, kOutput, kFrom}, true},
-      {"calibrate_lights",
-       {"calibrate", "lights"},
-       {kInput,
-        {"output", "--output", Holds::kNewFolder},
-        kFrom,
-        word("method", "--method", {"physical", "per-pixel", "seed"}),
-        number("tape_sigma_mm", "--tape-sigma", kTapeSigma_mm),
-        number("flatness_deg", "--flatness", kFlatness_deg),
-        number("flicker_percent", "--flicker", kFlicker_percent)}},
-      {"calibrate_grey", {"calibrate", "grey"}, {kSession, kOutput, kFrom}},
-      {"calibrate_patches", {"calibrate", "patches"}, {kSession, kOutput, kFrom}},
-      {"calibrate_update",
-       {"calibrate", "update"},
-       {{"session", "", Holds::kSession}, {"moved", "", Holds::kFolder}, kOutput, kFrom}},
+      {"check", {"calibrate", "check"}, fields_of<CalibrateCheckOptions>()},
+      {"calibrate_camera", {"calibrate", "camera"}, fields_of<CalibrateCameraOptions>(), true},
+      {"calibrate_response", {"calibrate", "response"}, fields_of<CalibrateResponseOptions>(), true},
+      {"calibrate_color", {"calibrate", "color"}, fields_of<CalibrateColorOptions>(), true},
+      {"calibrate_lights", {"calibrate", "lights"}, fields_of<CalibrateLightsOptions>()},
+      {"calibrate_grey", {"calibrate", "grey"}, fields_of<CalibrateGreyOptions>()},
+      {"calibrate_patches", {"calibrate", "patches"}, fields_of<CalibratePatchesOptions>()},
+      {"calibrate_update", {"calibrate", "update"}, fields_of<CalibrateUpdateOptions>()},
       batch_plan_kind(),
       batch_run_kind()};
   return kinds;
@@ -256,11 +297,13 @@ Result<fs::path> place_below(const fs::path& root, const Json& body, const char*
 }
 
 // Where no link leads out of the root.
-Result<void> check_inside(const fs::path& folder, const fs::path& root) {
+Result<void> check_inside(const fs::path& folder, const fs::path& root, bool is_file = false) {
   std::error_code error;
-  if (fs::is_directory(folder, error) && library::lies_in(folder, root)) return {};
-  return Error{ErrorKind::kNoInput, "there is no such folder", folder.lexically_relative(root).string(),
-               "it is looked for below the rig file's", "copy it there first"};
+  const bool is_it = is_file ? fs::is_regular_file(folder, error) : fs::is_directory(folder, error);
+  if (is_it && library::lies_in(folder, root)) return {};
+  return Error{ErrorKind::kNoInput, is_file ? "there is no such file" : "there is no such folder",
+               folder.lexically_relative(root).string(), "it is looked for below the rig file's",
+               "copy it there first"};
 }
 
 Result<fs::path> new_folder_below(const fs::path& root, const Json& body, const char* field) {
@@ -281,11 +324,21 @@ Result<std::string> number_in(const Json& value, const JobField& field) {
   const double amount = value.is_number() ? value.get<double>() : field.range.least - 1;
   const bool is_whole = field.holds == Holds::kCount;
   const bool fits = field.range.holds(amount) && (!is_whole || amount == std::floor(amount));
-  if (!fits)
-    return unfit(field.field, fmt::format("must be a {}number from {} to {}", is_whole ? "whole " : "",
-                                          field.range.least, field.range.most));
+  if (!fits) return unfit(field.field, rule_of(field.range, is_whole));
   if (is_whole) return fmt::format("{:.0f}", amount);
   return fmt::format("{}{}", amount, field.holds == Holds::kSeconds ? "s" : "");
+}
+
+Result<std::string> numbers_in(const Json& value, const JobField& field) {
+  const auto fits = [&](const Json& each) {
+    return each.is_number() && field.range.holds(each.get<double>());
+  };
+  const bool is_list = value.is_array() && value.size() >= static_cast<std::size_t>(field.fewest) &&
+                       value.size() <= static_cast<std::size_t>(field.most) &&
+                       std::ranges::all_of(value, fits);
+  if (!is_list)
+    return unfit(field.field, fmt::format("must be a list of {} to {} numbers", field.fewest, field.most));
+  return fmt::format("{}", fmt::join(value.get<std::vector<double>>(), ","));
 }
 
 Result<std::string> words_in(const Json& value, const JobField& field) {
@@ -333,6 +386,7 @@ Result<std::string> argument_of(const Json& body, const JobField& field, const J
   if (field.holds == Holds::kNumber || field.holds == Holds::kCount || field.holds == Holds::kSeconds)
     return number_in(body[field.field], field);
   if (field.holds == Holds::kWords) return words_in(body[field.field], field);
+  if (field.holds == Holds::kNumbers) return numbers_in(body[field.field], field);
   if (field.holds == Holds::kRecipe) return recipe_in(body[field.field], field);
   if (field.holds == Holds::kWord) {
     Result<std::string> text = word_in(body, field.field);
@@ -347,6 +401,12 @@ Result<std::string> argument_of(const Json& body, const JobField& field, const J
     const Json& name = body[field.field];
     if (!name.is_string()) return unfit(field.field, "must be the name of a session");
     folder = places.session(name.get<std::string>());
+  } else if (field.holds == Holds::kFile) {
+    folder = place_below(places.folder, body, field.field);
+    if (folder) {
+      if (Result<void> inside = check_inside(*folder, places.folder, true); !inside)
+        return std::move(inside).error();
+    }
   } else {
     folder = field.holds == Holds::kFolder ? folder_below(places.folder, body, field.field)
                                            : new_folder_below(places.folder, body, field.field);
@@ -374,7 +434,7 @@ Result<void> add_field(const Json& body, const JobField& field, const JobPlaces&
   }
   Result<std::string> argument = argument_of(body, field, places, spec);
   if (!argument) return std::move(argument).error();
-  if (*field.option != '\0') spec.arguments.emplace_back(field.option);
+  if (!field.option.empty()) spec.arguments.emplace_back(field.option);
   spec.arguments.push_back(std::move(*argument));
   return {};
 }

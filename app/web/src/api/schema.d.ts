@@ -6040,6 +6040,44 @@ export interface components {
             flatness_deg?: number;
             /** @description Of calibrate_lights */
             flicker_percent?: number;
+            /** @description Of calibrate_camera: side of a marker over that of a square, of ChArUco */
+            marker_share?: number;
+            /** @description Of calibrate_camera: as OpenCV names it, DICT_5X5_100, of ChArUco */
+            dictionary?: string;
+            /** @description Of calibrate_camera: dictionary of the tags on the table */
+            tags?: string;
+            /** @description Of calibrate_camera: photographs with wider edges are left out, pixels */
+            most_blur_px?: number;
+            /** @description Of calibrate_camera: fewer usable photographs are refused */
+            least_boards?: number;
+            /** @description Of calibrate_camera: boards too alike are refused: predicted sigma of the focal length, percent */
+            most_focal_percent?: number;
+            /** @description Of calibrate_color: outer corners of patches 1, 6, 24, 19 in pixels: x, y and so on; absent: found by itself */
+            corners_px?: number[];
+            /** @description Of calibrate_color: affine, cubic, affine in xyY in place of a 3 x 3 matrix */
+            curve?: boolean;
+            /** @description Of calibrate_lights: take the paper to follow Lambert's law */
+            lambertian?: boolean;
+            /** @description Of calibrate_lights: write the calibration although readings and model contradict each other */
+            accept_misfit?: boolean;
+            /** @description Of calibrate_grey: scale.toml, below the rig file's folder; absent: beside the session */
+            scale?: string;
+            /** @description Of calibrate_patches: patches.toml, below the rig file's folder; absent: beside the session */
+            patches?: string;
+            /** @description Of calibrate_patches, calibrate_update, check: the paper reflects 1 - delta (1 - cosine) of Lambert's law */
+            paper_delta?: number;
+            /** @description Of calibrate_update, check: sheet.toml of the sheet in the pictures, below the rig file's folder */
+            sheet?: string;
+            /** @description Of check: side of the squares that are compared, even, pixels */
+            square_px?: number;
+            /** @description Of check: of flat sheets, rms degrees */
+            flat_limit_deg?: number;
+            /** @description Of check: of tilted sheets, rms degrees */
+            tilted_limit_deg?: number;
+            /** @description Of check: of the slope gain, off 1 */
+            gain_limit?: number;
+            /** @description Of check: of a LED that is lit once more, relative */
+            drift_limit?: number;
             /** @description Of maps: which to derive; absent: all */
             maps?: string[];
             /** @description Of maps, finish: on a grid four times as coarse; earlier previews of the session go */

@@ -58,6 +58,9 @@ class JobRanges : public testing::Test {
     if (kind == "calibrate_lights" || kind == "calibrate_camera") {
       body["input"] = body["from"] = "photographs";
       if (kind == "calibrate_camera") body["output"] = "new";
+    } else if (kind == "calibrate_patches" || kind == "calibrate_update") {
+      body["session"] = "satin";
+      body["output"] = "new";
     } else if (kind == "batch_plan") {
       body["sessions"] = {"satin"};
     } else if (kind == "rig_plan") {
