@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <type_traits>
 
 namespace weft {
+
 void FieldCheck::require(bool holds, const char* field, const std::string& rule) {
   if (holds || error_) return;
   error_ = Error{ErrorKind::kUsage, "option is out of its range", field, rule, "give a value in that range"};
@@ -14,6 +16,12 @@ void FieldCheck::require(bool holds, const char* field, const std::string& rule)
 void FieldCheck::hold(const Field& field, double number, bool is_whole) {
   if (field.range.holds(number)) return;
   require(false, field.name, fmt::format("{}, and is {}", rule_of(field.range, is_whole), number));
+}
+
+void FieldCheck::hold_word(const Field& field, const std::string& word) {
+  if (word.empty() || field.words.empty() || std::ranges::find(field.words, word) != field.words.end())
+    return;
+  require(false, field.name, rule_of_words(field.words, word));
 }
 
 void FieldCheck::hold_count(const Field& field, std::size_t count) {
@@ -27,14 +35,19 @@ void FieldCheck::hold_count(const Field& field, std::size_t count) {
 void FieldCheck::take(const Field& field, Value value) {
   std::visit(
       [&]<typename T>(T* each) {
-        if constexpr (std::is_same_v<T, int> || std::is_same_v<T, double>) {
-          hold(field, *each, std::is_same_v<T, int>);
-        } else if constexpr (std::is_same_v<T, std::optional<int>> ||
-                             std::is_same_v<T, std::optional<double>>) {
-          if (*each) hold(field, **each, std::is_same_v<T, std::optional<int>>);
-        } else if constexpr (std::is_same_v<T, std::vector<int>> || std::is_same_v<T, std::vector<double>>) {
+        using Held = typename Inner<T>::Type;
+        const auto hold_one = [&](const Held& held) {
+          if constexpr (std::is_same_v<Held, int> || std::is_same_v<Held, double>)
+            hold(field, held, std::is_same_v<Held, int>);
+          if constexpr (std::is_same_v<Held, std::string>) hold_word(field, held);
+        };
+        if constexpr (kIsList<T>) {
           hold_count(field, each->size());
-          for (const auto one : *each) hold(field, one, std::is_same_v<T, std::vector<int>>);
+          for (const Held& held : *each) hold_one(held);
+        } else if constexpr (kIsOptional<T>) {
+          if (*each) hold_one(**each);
+        } else {
+          hold_one(*each);
         }
       },
       value);

@@ -15,6 +15,7 @@ class FieldCheck final : public Fields {
 
  private:
   void hold(const Field& field, double number, bool is_whole);
+  void hold_word(const Field& field, const std::string& word);
   void hold_count(const Field& field, std::size_t count);
   void take(const Field& field, Value value) override;
   void choose(const Field& field, Words words, std::size_t now,
@@ -25,7 +26,7 @@ class FieldCheck final : public Fields {
   std::optional<Error> error_;
 };
 
-/// Whether what is described keeps to its ranges. kUsage with the field's option.
+/// Whether what is described keeps to its ranges. kUsage with the field's name.
 template <typename Described>
 Result<void> check_fields(Described described) {
   FieldCheck check;

@@ -10,29 +10,6 @@ namespace weft {
 namespace {
 
 template <typename T>
-struct Held {
-  using Type = T;
-};
-template <typename T>
-struct Held<std::optional<T>> {
-  using Type = T;
-};
-
-template <typename T>
-struct Held<std::vector<T>> {
-  using Type = T;
-};
-
-template <typename T>
-constexpr bool kIsList = false;
-template <typename T>
-constexpr bool kIsList<std::vector<T>> = true;
-template <typename T>
-constexpr bool kIsOptional = false;
-template <typename T>
-constexpr bool kIsOptional<std::optional<T>> = true;
-
-template <typename T>
 const char* type_of() {
   if constexpr (std::is_same_v<T, bool>) return "boolean";
   if constexpr (std::is_same_v<T, int>) return "integer";
@@ -55,9 +32,10 @@ template <typename T>
 void JsonReader::hold(const Field& field, const T& read) {
   if constexpr (std::is_arithmetic_v<T> && !std::is_same_v<T, bool>)
     require(field.range.holds(read), field.name, rule_of(field.range, std::is_integral_v<T>));
-  if constexpr (std::is_same_v<T, std::string>)
-    require(field.words.empty() || std::ranges::find(field.words, read) != field.words.end(), field.name,
-            fmt::format("must be one of {}", fmt::join(field.words, ", ")));
+  if constexpr (std::is_same_v<T, std::string>) {
+    if (!field.words.empty() && std::ranges::find(field.words, read) == field.words.end())
+      fields_.reject(field.name, rule_of_words(field.words, read));
+  }
 }
 
 bool JsonReader::is_said(const Field& field) const {
@@ -68,13 +46,21 @@ void JsonReader::require(bool holds, const char* field, const std::string& rule)
   if (!holds) fields_.reject(field, rule);
 }
 
+// One value stands for a list of one where a list of one will do.
+Json JsonReader::list_of(const Field& field) {
+  const bool is_one = field.fewest == 1 && fields_.has(field.name) && !object_.at(field.name).is_array();
+  return is_one ? Json::array({object_.at(field.name)}) : fields_.list(field.name);
+}
+
 void JsonReader::take(const Field& field, Value value) {
   if (!is_said(field)) return;
   std::visit(
       [&]<typename T>(T* each) {
-        using Read = typename Held<T>::Type;
-        if constexpr (kIsList<T>) {
-          const Json& list = fields_.list(field.name);
+        using Read = typename Inner<T>::Type;
+        if constexpr (std::is_same_v<T, Json>) {
+          *each = object_.at(field.name);
+        } else if constexpr (kIsList<T>) {
+          const Json list = list_of(field);
           T read;
           for (std::size_t i = 0; i < list.size() && fields_.status(); ++i) {
             const Json one = {{field.name, list[i]}};
@@ -145,6 +131,10 @@ void JsonWriter::take(const Field& field, Value value) {
           write(field, !each->has_value(), *each ? Json(**each) : Json());
         } else if constexpr (std::is_same_v<T, std::filesystem::path>) {
           write(field, field.need == Need::kUnlessEmpty && each->empty(), each->string());
+        } else if constexpr (std::is_same_v<T, std::vector<std::filesystem::path>>) {
+          Json paths = Json::array();
+          for (const std::filesystem::path& path : *each) paths.push_back(path.string());
+          write(field, field.need == Need::kUnlessEmpty && each->empty(), std::move(paths));
         } else {
           write(field, field.need == Need::kUnlessEmpty && *each == T(), *each);
         }
@@ -181,22 +171,11 @@ void JsonWriter::repeat(const Field& field, std::size_t count,
   object_[field.name] = std::move(list);
 }
 
-Json JsonSchema::schema() const {
-  Json schema = {{"type", "object"}, {"properties", properties_}};
-  if (!needed_.empty()) schema["required"] = needed_;
-  return schema;
-}
-
-void JsonSchema::add(const Field& field, Json schema) {
-  if (!field.says.empty()) schema["description"] = field.says;
-  if (field.need == Need::kMustSay) needed_.push_back(field.name);
-  properties_[field.name] = std::move(schema);
-}
-
-void JsonSchema::take(const Field& field, Value value) {
-  std::visit(
-      [&]<typename T>(T* each) {
-        Json schema = {{"type", type_of<typename Held<T>::Type>()}};
+Json property_of(const Field& field, const Fields::Value& value) {
+  return std::visit(
+      [&]<typename T>(const T* each) {
+        if constexpr (std::is_same_v<T, Json>) return Json{{"type", "object"}};
+        Json schema = {{"type", type_of<typename Inner<T>::Type>()}};
         if (!field.words.empty()) schema["enum"] = field.words;
         if (field.range.least == kAboveZero.least) {
           schema["exclusiveMinimum"] = 0;
@@ -211,10 +190,45 @@ void JsonSchema::take(const Field& field, Value value) {
         }
         if constexpr (std::is_arithmetic_v<T>) {
           if (field.need == Need::kMaySay) schema["default"] = *each;
+        } else if constexpr (std::is_same_v<T, std::string>) {
+          if (!each->empty()) schema["default"] = *each;
         }
-        add(field, std::move(schema));
+        return schema;
       },
       value);
+}
+
+Json JsonSchema::schema() const {
+  Json schema = {{"type", "object"}, {"properties", properties_}};
+  if (!needed_.empty()) schema["required"] = needed_;
+  if (!needed_beside_.empty()) schema["dependentRequired"] = needed_beside_;
+  if (!rules_.empty()) schema["allOf"] = rules_;
+  return schema;
+}
+
+void JsonSchema::exclude(const char* field, const char* other) {
+  rules_.push_back({{"not", {{"required", {field, other}}}}});
+}
+
+void JsonSchema::need(const char* field, const char* other) {
+  needed_beside_[field].push_back(other);
+}
+
+void JsonSchema::need_one(const std::vector<const char*>& fields) {
+  if (fields.size() == 1) return needed_.push_back(fields.front());
+  Json one = Json::array();
+  for (const char* field : fields) one.push_back({{"required", {field}}});
+  rules_.push_back({{"anyOf", std::move(one)}});
+}
+
+void JsonSchema::add(const Field& field, Json schema) {
+  if (!field.says.empty()) schema["description"] = field.says;
+  if (field.need == Need::kMustSay) needed_.push_back(field.name);
+  properties_[field.name] = std::move(schema);
+}
+
+void JsonSchema::take(const Field& field, Value value) {
+  add(field, property_of(field, value));
 }
 
 void JsonSchema::choose(const Field& field, Words words, std::size_t now,

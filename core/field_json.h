@@ -31,6 +31,7 @@ class JsonReader final : public Fields {
   template <typename T>
   void hold(const Field& field, const T& read);
   bool is_said(const Field& field) const;
+  Json list_of(const Field& field);
   void read_inside(const Json& object, const std::string& name, const std::function<void(Fields&)>& inside);
 
   const Json& object_;
@@ -58,13 +59,20 @@ class JsonWriter final : public Fields {
   Json& object_;
 };
 
+/// What one field may hold, as JSON Schema says it, with its default.
+Json property_of(const Field& field, const Fields::Value& value);
+
 /// Says what an object may have, as JSON Schema does (2020-12).
-class JsonSchema final : public Fields {
+class JsonSchema : public Fields {
  public:
   /// {"type": "object", "properties": ...}
   Json schema() const;
 
- private:
+  void exclude(const char* field, const char* other) override;
+  void need(const char* field, const char* other) override;
+  void need_one(const std::vector<const char*>& fields) override;
+
+ protected:
   void take(const Field& field, Value value) override;
   void choose(const Field& field, Words words, std::size_t now,
               const std::function<void(std::size_t)>& choose) override;
@@ -73,8 +81,11 @@ class JsonSchema final : public Fields {
               const std::function<void(Fields&, std::size_t)>& inside) override;
 
   void add(const Field& field, Json schema);
+  bool has(const char* field) const { return properties_.contains(field); }
 
+ private:
   Json properties_ = Json::object(), needed_ = Json::array();
+  Json needed_beside_ = Json::object(), rules_ = Json::array();
 };
 
 /// The fields of what is described, read from an object over their defaults. kBadData.

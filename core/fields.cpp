@@ -2,10 +2,18 @@
 #include "core/fields.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "core/text.h"
+
 namespace weft {
+namespace {
+
+constexpr std::size_t kMostCompared = 60;
+
+}  // namespace
 
 std::string option_of(const Field& field) {
   if (field.option != nullptr) return field.option;
@@ -24,6 +32,17 @@ std::string rule_of(const NumberRange& range, bool is_whole) {
   if (range.most < kMostNumber) return fmt::format("{} from {} to {}", number, range.least, range.most);
   if (range.least == kAboveZero.least) return fmt::format("{} above 0", number);
   return range.least > -kMostNumber ? fmt::format("{} of at least {}", number, range.least) : number;
+}
+
+std::string nearest_word(const std::vector<std::string>& words, std::string_view said) {
+  const std::string_view start = said.substr(0, kMostCompared);
+  return *std::ranges::min_element(words, {},
+                                   [&](const std::string& word) { return edit_distance(start, word); });
+}
+
+std::string rule_of_words(const std::vector<std::string>& words, std::string_view said) {
+  return fmt::format("must be one of {}, and is \"{}\"; did you mean '{}'", fmt::join(words, ", "),
+                     said.substr(0, kMostCompared), nearest_word(words, said));
 }
 
 void Fields::enter(const Field& /*field*/, const std::function<void(Fields&)>& inside, bool /*is_default*/) {

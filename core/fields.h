@@ -41,6 +41,13 @@ enum class PathTo {
   kNewFolder,     ///< one that must not be there
   kSession,       ///< NAME.weft
   kSessionOrSet,  ///< a session, or a set of photographs that is a folder of some
+  kNamed,         ///< one of Field::words, or a file where files can be named
+};
+
+/// What stands behind a number on a command line: {"h", 3600} of seconds.
+struct NumberUnit {
+  const char* name;
+  double size = 1;
 };
 
 /// When a field must be said, and when a document leaves it out.
@@ -54,6 +61,7 @@ enum class Need {
 enum class Said {
   kEverywhere,
   kAtThisMachine,  ///< on a command line alone: where files go, what is printed
+  kToServer,       ///< in a call alone: a name that the server turns into arguments of its verb
 };
 
 /// What is said of one field.
@@ -68,19 +76,49 @@ struct Field {
   std::vector<std::string> words = {};  ///< that a text, or each in a list, may be; none: any
   int fewest = 0, most = 0;             ///< of a list; 0 and 0: any number
   Said said = Said::kEverywhere;
+  bool is_sentence = false;            ///< a text for people, of any words
+  bool is_said_again = false;          ///< on a command line each of a list has its own option
+  std::vector<NumberUnit> units = {};  ///< of which one stands behind the number on a command line
 };
 
 /// "--tape-sigma" of "tape_sigma_mm": its help says the unit.
 std::string option_of(const Field& field);
 /// "must be a number from 0 to 2", "must be a whole number above 0".
 std::string rule_of(const NumberRange& range, bool is_whole = false);
+/// "must be one of plain, twill, and is "twil"; did you mean 'twill'"
+std::string rule_of_words(const std::vector<std::string>& words, std::string_view said);
+/// The nearest of some words: what somebody meant.
+std::string nearest_word(const std::vector<std::string>& words, std::string_view said);
+
+/// What is held in an optional or a list; else the type itself.
+template <typename T>
+struct Inner {
+  using Type = T;
+};
+template <typename T>
+struct Inner<std::optional<T>> {
+  using Type = T;
+};
+template <typename T>
+struct Inner<std::vector<T>> {
+  using Type = T;
+};
+template <typename T>
+constexpr bool kIsList = false;
+template <typename T>
+constexpr bool kIsList<std::vector<T>> = true;
+template <typename T>
+constexpr bool kIsOptional = false;
+template <typename T>
+constexpr bool kIsOptional<std::optional<T>> = true;
 
 /// Walks over the fields of a struct, in their order. What is walked over must live as long as the visitor.
 class Fields {
  public:
   using Value = std::variant<bool*, int*, double*, std::string*, std::filesystem::path*, std::optional<int>*,
                              std::optional<double>*, std::optional<std::string>*, std::vector<int>*,
-                             std::vector<double>*, std::vector<std::string>*>;
+                             std::vector<double>*, std::vector<std::string>*,
+                             std::vector<std::filesystem::path>*, Json*>;
   using Words = std::span<const char* const>;
 
   virtual ~Fields() = default;
@@ -115,6 +153,8 @@ class Fields {
   virtual void exclude(const char* /*field*/, const char* /*other*/) {}
   /// Who says the field must say the other.
   virtual void need(const char* /*field*/, const char* /*other*/) {}
+  /// Of some fields one at least must be said.
+  virtual void need_one(const std::vector<const char*>& /*fields*/) {}
   /// The object as it was read, so that fields of newer minor versions survive a rewrite.
   virtual void keep(Json& /*document*/) {}
 

@@ -8,7 +8,8 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <string_view>
+#include <set>
+#include <vector>
 
 #include "core/files.h"
 
@@ -39,17 +40,28 @@ bool is_triple(const Json& list) {
 
 }  // namespace
 
+ParsedJson parse_json(std::string_view text) {
+  ParsedJson parsed;
+  std::vector<std::set<std::string>> keys;  // of each object that is open
+  const auto look = [&](int depth, Json::parse_event_t event, const Json& said) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    const bool is_twice = event == Json::parse_event_t::key && !keys.back().insert(said).second;
+    if (parsed.why.empty() && depth > kMostDepth)
+      parsed.why = fmt::format("it is nested over {} deep", kMostDepth);
+    if (parsed.why.empty() && is_twice) parsed.why = fmt::format("it says {} twice", beginning_of(said));
+    return depth <= kMostDepth;
+  };
+  parsed.document = Json::parse(text, look, /*allow_exceptions=*/false);
+  if (parsed.why.empty() && parsed.document.is_discarded()) parsed.why = "it is not valid JSON";
+  return parsed;
+}
+
 Result<Json> read_json(const std::filesystem::path& file, const std::string& name, int major) {
   Result<std::string> text = read_text(file);
   if (!text) return std::move(text).error();
-  bool too_deep = false;
-  const auto shallow = [&](int depth, Json::parse_event_t, const Json&) {
-    too_deep = too_deep || depth > kMostDepth;
-    return !too_deep;
-  };
-  Json document = Json::parse(*text, shallow, /*allow_exceptions=*/false);
-  if (too_deep) return bad_document(file.string(), fmt::format("it is nested over {} deep", kMostDepth));
-  if (document.is_discarded()) return bad_document(file.string(), "it is not valid JSON");
+  auto [document, why] = parse_json(*text);
+  if (!why.empty()) return bad_document(file.string(), why);
   if (!document.is_object() || !document.contains("schema") || !document["schema"].is_string()) {
     return bad_document(file.string(),
                         fmt::format("it has no \"schema\"; \"{}/{}\" was expected", name, major));

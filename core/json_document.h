@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "core/result.h"
 #include "core/vec.h"
@@ -16,6 +17,14 @@ namespace weft {
 
 /// JSON with its keys in the order they were written, so that files read as they were meant.
 using Json = nlohmann::ordered_json;
+
+/// Why a text is not read as JSON: "it says \"leds\" twice". Empty: it is read.
+struct ParsedJson {
+  Json document;
+  std::string why;
+};
+/// Lists in lists to 64 deep, and each key of an object once.
+ParsedJson parse_json(std::string_view text);
 
 /// Reads a document whose "schema" is `name`/`major` or `name`/`major`.minor. A newer major version is
 /// refused with a sentence that names the version needed; a newer minor version is read and its fields are
